@@ -1,0 +1,522 @@
+/* bundle.h - runs many cases, one in each lane: the time loop, the controller's sampling, the
+ * outcome rules, recording, and the refilling of finished lanes.
+ *
+ * Included by each method after METHOD_THETA is defined; gives `bundle_run`.
+ */
+#ifndef STANCE_CORE_BUNDLE_H
+#define STANCE_CORE_BUNDLE_H
+
+#include "step.h"
+
+#include <Random123/philox.h>
+
+#define BUNDLE_MAX_SUBDIVISION 10 /* a step is halved at most this often */
+#define BUNDLE_ERROR_FLOOR 1e-9   /* of settle.angle and settle.rate: smaller errors do not grow */
+
+/* A condition that must hold for a while without its measure growing. */
+struct window {
+    lanes begin;   /* step at which it began; negative: it does not hold */
+    lanes measure; /* then */
+};
+
+struct bundle {
+    const stance_case *which[LANES]; /* NULL: idle */
+    stance_result *result[LANES];
+    struct setting set;
+    struct motion now;
+    lanes torque[SCENE_ACTUATORS];
+    lanes h, n, steps; /* step length, steps done, steps wanted */
+    lanes sample_every, next_sample;
+    lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
+    int64_t row[LANES];
+    lanes recorded_at; /* step of the row before */
+    lanes impulse[SCENE_CONTACTS][2]; /* since then */
+
+    lanes judge_on_way, has_target, support; /* support: contact index or -1 */
+    lanes settle_angle, settle_rate, settle_steps, fall_height;
+    struct window settled, resting;
+
+    lanes iterations, ambiguous, subdivided;
+    lanes penetration, slip, peak_torque, friction_used, impact_energy, projection_energy;
+};
+
+static inline void set_all(lanes *v, int n, int lane, const double *x)
+{
+    for (int i = 0; i < n; i++)
+        lane_set(&v[i], lane, x[i]);
+}
+
+static void bundle_load_setting(struct setting *set, int lane, const stance_case *c)
+{
+    scene_load_body(&set->body, lane, c->robot);
+    lane_set(&set->friction, lane, c->friction);
+    lane_set(&set->restitution, lane, c->restitution);
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        lane_set(&set->law.feedforward[i], lane, c->feedforward[i]);
+        for (int j = 0; j < SCENE_POSTURE; j++) {
+            lane_set(&set->law.gain[i][j], lane, c->gain[i][j]);
+            lane_set(&set->law.gain[i][SCENE_POSTURE + j], lane, c->gain[i][SCENE_POSTURE + j]);
+        }
+    }
+    set_all(set->law.target, SCENE_POSTURE, lane, c->target);
+    lane_set(&set->law.limit, lane, c->torque_limit);
+}
+
+static void bundle_clear_answers(struct bundle *b, int lane)
+{
+    lanes *const zero[] = {&b->iterations,  &b->ambiguous,   &b->subdivided,   &b->penetration,
+                           &b->slip,        &b->peak_torque, &b->friction_used, &b->impact_energy,
+                           &b->projection_energy, &b->n,     &b->recorded_at,  &b->next_sample};
+    for (size_t i = 0; i < sizeof zero / sizeof *zero; i++)
+        lane_set(zero[i], lane, 0);
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        lane_set(&b->impulse[i][0], lane, 0), lane_set(&b->impulse[i][1], lane, 0);
+    lane_set(&b->settled.begin, lane, -1);
+    lane_set(&b->settled.measure, lane, 0);
+    lane_set(&b->resting.begin, lane, -1);
+    lane_set(&b->resting.measure, lane, 0);
+}
+
+/* Puts a case into a lane. The motion's derived parts follow in bundle_begin. */
+static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance_result *result)
+{
+    double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    b->which[lane] = c;
+    b->result[lane] = result;
+    bundle_load_setting(&b->set, lane, c);
+    scene_enter(c->robot, c->position, c->velocity, s, w);
+    set_all(b->now.s, SCENE_COORDINATES, lane, s);
+    set_all(b->now.w, SCENE_COORDINATES, lane, w);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        lane_set(&b->torque[i], lane, 0);
+    bundle_clear_answers(b, lane);
+    lane_set(&b->h, lane, c->step);
+    lane_set(&b->steps, lane, (double)c->steps);
+    lane_set(&b->sample_every, lane, (double)c->sample_every);
+    if (c->sample_every == 0)
+        lane_set(&b->next_sample, lane, INFINITY);
+    lane_set(&b->next_record, lane, c->trajectory && c->trajectory->rows > 0 ? 0 : INFINITY);
+    b->row[lane] = 0;
+    lane_set(&b->judge_on_way, lane, c->settle);
+    lane_set(&b->has_target, lane, c->has_target);
+    lane_set(&b->support, lane, c->support);
+    lane_set(&b->settle_angle, lane, c->settle_angle);
+    lane_set(&b->settle_rate, lane, c->settle_rate);
+    lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));
+    lane_set(&b->fall_height, lane, c->fall_height);
+}
+
+/* Gaps, approach and trigonometry of freshly loaded lanes. A standing foot is exactly closed. */
+static void bundle_begin(struct bundle *b, mask fresh)
+{
+    scene_trig trig;
+    scene_trigonometry(b->now.s, &trig);
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        b->now.trig.sine[a] = choose(fresh, trig.sine[a], b->now.trig.sine[a]);
+        b->now.trig.cosine[a] = choose(fresh, trig.cosine[a], b->now.trig.cosine[a]);
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes u[2];
+        scene_contact_velocity(&b->set.body, &trig, c, b->now.w, u);
+        b->now.gap[c] = choose(fresh, scene_gap(&b->set.body, b->now.s, &trig, c), b->now.gap[c]);
+        b->now.approach[c] = choose(fresh, u[0], b->now.approach[c]);
+    }
+}
+
+/* Uniform in [-1, 1): actuator i of sampling instant k, keyed as stance.h says. */
+static inline double noise_value(uint64_t bits)
+{
+    return (double)(int64_t)(bits >> 11) * 0x1p-52 - 1;
+}
+static void bundle_noise(const stance_case *c, double instant, double noise[SCENE_ACTUATORS])
+{
+    const philox4x64_key_t key = {{c->seed, 0}};
+    const philox4x64_ctr_t counter = {{c->grid_index, c->sample_index, (uint64_t)instant, 0}};
+    const philox4x64_ctr_t random = philox4x64(counter, key);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        noise[i] = c->noise * noise_value(random.v[i]);
+}
+
+/* New torques in the lanes whose sampling instant it is. */
+static inline void bundle_sample(struct bundle *b, mask live)
+{
+    const mask due = live & mask_less_equal(b->next_sample, b->n);
+    if (!mask_any(due))
+        return;
+    lanes torque[SCENE_ACTUATORS];
+    law_torque(&b->set.law, b->now.s, b->now.w, torque);
+    for (int lane = 0; lane < LANES; lane++) {
+        const stance_case *const c = b->which[lane];
+        if (!c || c->noise == 0 || !mask_get(due, lane))
+            continue;
+        double noise[SCENE_ACTUATORS];
+        bundle_noise(c, lane_get(&b->n, lane) / (double)c->sample_every, noise);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            lane_set(&torque[i], lane, lane_get(&torque[i], lane) + noise[i]);
+    }
+    law_clip(&b->set.law, torque);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        b->torque[i] = choose(due, torque[i], b->torque[i]);
+    b->next_sample = choose(due, b->next_sample + b->sample_every, b->next_sample);
+}
+
+/* Adds a part of a step to the whole. */
+static void report_add(struct step_report *sum, const struct step_report *part)
+{
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        sum->slip[c] += part->slip[c];
+        for (int a = 0; a < 2; a++)
+            sum->impulse[c][a] += part->impulse[c][a];
+    }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        sum->torque[i] = part->torque[i];
+    sum->iterations += part->iterations;
+    sum->impact_energy = lanes_max(part->impact_energy, sum->impact_energy);
+    sum->projection_energy += part->projection_energy;
+    sum->ambiguous |= part->ambiguous;
+}
+
+/* Lanes that did not converge: the step again in 2, 4, ... equal parts. */
+static mask bundle_subdivide(struct bundle *b, mask run, bool coupled, struct motion *to,
+                             struct step_report *total)
+{
+    mask failed = run;
+    for (int level = 1; level <= BUNDLE_MAX_SUBDIVISION && mask_any(failed); level++) {
+        const int parts = 1 << level;
+        struct motion here = b->now;
+        struct step_report sum;
+        memset(&sum, 0, sizeof sum);
+        sum.iterations = total->iterations;
+        mask good = failed;
+        for (int k = 0; k < parts && mask_any(good); k++) {
+            struct step_report part;
+            struct motion next = here;
+            good &= take_step(&b->set, &here, b->torque, b->h / parts, good, coupled, &next, &part);
+            here = next;
+            report_add(&sum, &part);
+        }
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            to->s[i] = choose(good, here.s[i], to->s[i]);
+            to->w[i] = choose(good, here.w[i], to->w[i]);
+        }
+        for (int c = 0; c < SCENE_CONTACTS; c++) {
+            to->gap[c] = choose(good, here.gap[c], to->gap[c]);
+            to->approach[c] = choose(good, here.approach[c], to->approach[c]);
+            total->slip[c] = choose(good, sum.slip[c], total->slip[c]);
+            for (int a = 0; a < 2; a++)
+                total->impulse[c][a] = choose(good, sum.impulse[c][a], total->impulse[c][a]);
+        }
+        for (int a = 0; a < SCENE_ANGLES; a++) {
+            to->trig.sine[a] = choose(good, here.trig.sine[a], to->trig.sine[a]);
+            to->trig.cosine[a] = choose(good, here.trig.cosine[a], to->trig.cosine[a]);
+        }
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            total->torque[i] = choose(good, sum.torque[i], total->torque[i]);
+        total->iterations = choose(failed, sum.iterations, total->iterations);
+        total->impact_energy = choose(good, sum.impact_energy, total->impact_energy);
+        total->projection_energy = choose(good, sum.projection_energy, total->projection_energy);
+        total->ambiguous = (total->ambiguous & LANES_NOT(good)) | (sum.ambiguous & good);
+        failed &= LANES_NOT(good);
+    }
+    return run & LANES_NOT(failed);
+}
+
+static inline void bundle_account(struct bundle *b, mask ok, const struct step_report *report)
+{
+    const lanes none = lanes_of(0);
+    b->n = choose(ok, b->n + 1, b->n);
+    b->iterations += choose(ok, report->iterations, none);
+    b->ambiguous += choose(ok & report->ambiguous, lanes_of(1), none);
+    b->impact_energy = choose(ok, lanes_max(report->impact_energy, b->impact_energy), b->impact_energy);
+    b->projection_energy += choose(ok, report->projection_energy, none);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        b->peak_torque = choose(ok, lanes_max(lanes_abs(report->torque[i]), b->peak_torque), b->peak_torque);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask may = ok & mask_less(none, b->set.may_touch[c]);
+        b->penetration = choose(may, lanes_max(-b->now.gap[c], b->penetration), b->penetration);
+        b->slip += choose(ok, report->slip[c], none);
+        const mask loaded = ok & mask_less(none, report->impulse[c][0]);
+        const lanes ratio = lanes_abs(report->impulse[c][1]) /
+                            choose(loaded, report->impulse[c][0], lanes_of(1));
+        b->friction_used = choose(loaded, lanes_max(ratio, b->friction_used), b->friction_used);
+        for (int a = 0; a < 2; a++)
+            b->impulse[c][a] += choose(ok, report->impulse[c][a], none);
+    }
+}
+
+/* Advances a window in the lanes of `live`; returns those where it has lasted long enough. */
+static inline mask window_advance(struct window *w, mask live, mask holds, lanes measure, lanes n,
+                                  lanes length)
+{
+    const mask open = mask_less_equal(lanes_of(0), w->begin);
+    const mask full = holds & open & mask_less_equal(length, n - w->begin);
+    const mask calm = mask_less_equal(measure, lanes_max(w->measure, lanes_of(BUNDLE_ERROR_FLOOR)));
+    const mask restart = live & holds & (LANES_NOT(open) | (full & LANES_NOT(calm)));
+    w->begin = choose(restart, n, choose(live & LANES_NOT(holds), lanes_of(-1), w->begin));
+    w->measure = choose(restart, measure, w->measure);
+    return live & full & calm;
+}
+
+struct verdict {
+    mask stabilised, rested, fell;
+};
+
+/* The outcome rules at the present state; `loaded`: contacts that carry. `last`: time is up. */
+static inline struct verdict bundle_judge(struct bundle *b, mask live, const mask *loaded, mask last)
+{
+    lanes posture[SCENE_POSTURE], rate[SCENE_POSTURE];
+    scene_posture(b->now.s, posture);
+    scene_posture(b->now.w, rate);
+    lanes angle = lanes_of(0), speed = lanes_of(0);
+    for (int i = 0; i < SCENE_POSTURE; i++) {
+        angle = lanes_max(lanes_abs(posture[i] - b->set.law.target[i]), angle);
+        speed = lanes_max(lanes_abs(rate[i]), speed);
+    }
+    angle = angle / b->settle_angle;
+    const lanes all = lanes_max(scene_translation_speed(&b->set.body, b->now.w, &b->now.trig), speed) /
+                      b->settle_rate;
+    speed = speed / b->settle_rate;
+    mask alone = LANES_ALL;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask mine = mask_less(lanes_abs(b->support - (double)c), lanes_of(0.5));
+        alone &= (mine & loaded[c]) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
+    }
+    const lanes error = lanes_max(angle, speed), one = lanes_of(1);
+    const mask at_target = alone & mask_less(lanes_of(0), b->has_target) & mask_less_equal(error, one);
+    const mask still = LANES_NOT(at_target) & mask_less_equal(all, one);
+    const mask on_way = mask_less(lanes_of(0), b->judge_on_way);
+
+    struct verdict v;
+    v.fell = live & scene_fallen(&b->set.body, b->now.s, &b->now.trig, b->fall_height);
+    v.stabilised = on_way & window_advance(&b->settled, live, at_target, error, b->n, b->settle_steps);
+    v.rested = on_way & window_advance(&b->resting, live, still, all, b->n, b->settle_steps);
+    const mask at_end = live & last & LANES_NOT(on_way);
+    v.stabilised |= at_end & at_target;
+    v.rested |= at_end & still;
+    return v;
+}
+
+/* Writes the rows that are due at the present step into the trajectory of a lane. */
+static void bundle_record(struct bundle *b, int lane)
+{
+    const stance_case *const c = b->which[lane];
+    stance_trajectory *const t = c->trajectory;
+    const double n = lane_get(&b->n, lane);
+    double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
+    const double elapsed = (n - lane_get(&b->recorded_at, lane)) * c->step;
+    int64_t row = b->row[lane];
+    for (; row < t->rows && nearbyint((double)row * t->interval / c->step) <= n; row++) {
+        scene_leave(c->robot, s, w, t->position + row * SCENE_COORDINATES,
+                    t->velocity + row * SCENE_COORDINATES);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            t->torque[row * SCENE_ACTUATORS + i] = lane_get(&b->torque[i], lane);
+        for (int k = 0; k < SCENE_CONTACTS; k++) {
+            t->gap[row * SCENE_CONTACTS + k] = lane_get(&b->now.gap[k], lane);
+            for (int a = 0; a < 2; a++)
+                t->force[(row * SCENE_CONTACTS + k) * 2 + a] =
+                    elapsed > 0 ? lane_get(&b->impulse[k][a], lane) / elapsed : NAN;
+        }
+    }
+    for (int k = 0; k < SCENE_CONTACTS; k++)
+        lane_set(&b->impulse[k][0], lane, 0), lane_set(&b->impulse[k][1], lane, 0);
+    b->row[lane] = row;
+    lane_set(&b->recorded_at, lane, n);
+    lane_set(&b->next_record, lane,
+             row < t->rows ? nearbyint((double)row * t->interval / c->step) : INFINITY);
+}
+
+/* Writes a lane's result and leaves the lane idle. */
+static void bundle_finish(struct bundle *b, int lane, stance_status status, stance_outcome outcome,
+                          stance_failure failure)
+{
+    stance_result *const r = b->result[lane];
+    const stance_case *const c = b->which[lane];
+    const double n = lane_get(&b->n, lane), h = c->step;
+    double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    const double begin = outcome == STANCE_RESTED ? lane_get(&b->resting.begin, lane)
+                                                  : lane_get(&b->settled.begin, lane);
+    const bool calm = outcome == STANCE_RESTED || outcome == STANCE_STABILISED;
+    *r = (stance_result){
+        .status = status,
+        .outcome = outcome,
+        .failure = failure,
+        .end_time = n * h,
+        .settle_time = calm ? (begin >= 0 ? begin : n) * h : NAN,
+        .fall_time = outcome == STANCE_FELL ? n * h : NAN,
+        .steps = (int64_t)n,
+        .iterations = (int64_t)lane_get(&b->iterations, lane),
+        .ambiguous_steps = (int64_t)lane_get(&b->ambiguous, lane),
+        .subdivided_steps = (int64_t)lane_get(&b->subdivided, lane),
+        .max_penetration = lane_get(&b->penetration, lane),
+        .slip_distance = lane_get(&b->slip, lane),
+        .peak_torque = lane_get(&b->peak_torque, lane),
+        .friction_used = lane_get(&b->friction_used, lane),
+        .impact_energy = lane_get(&b->impact_energy, lane),
+        .projection_energy = lane_get(&b->projection_energy, lane),
+    };
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
+    scene_leave(c->robot, s, w, r->position, r->velocity);
+    b->which[lane] = NULL;
+}
+
+/* Why a lane could not go on. */
+static stance_failure bundle_failure(const struct bundle *b, int lane)
+{
+    double sum = 0;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        sum += lane_get(&b->now.s[i], lane) + lane_get(&b->now.w[i], lane);
+    lanes ahead[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        ahead[i] = b->now.s[i] + 2 * b->h * b->now.w[i];
+    if (!isfinite(sum))
+        return STANCE_FAILURE_NOT_FINITE;
+    return mask_get(scene_angles_in_range(ahead), lane) ? STANCE_FAILURE_NEWTON
+                                                        : STANCE_FAILURE_ANGLE;
+}
+
+/* Ends the lanes that a verdict or the clock ends. */
+static void bundle_end(struct bundle *b, mask live, mask failed, const struct verdict *v, mask last)
+{
+    const mask over = failed | v->fell | v->stabilised | v->rested | last;
+    if (!mask_any(live & over))
+        return;
+    for (int lane = 0; lane < LANES; lane++) {
+        if (!b->which[lane] || !mask_get(live & over, lane))
+            continue;
+        if (mask_get(failed, lane))
+            bundle_finish(b, lane, STANCE_FAILED, STANCE_NONE, bundle_failure(b, lane));
+        else if (mask_get(v->fell, lane))
+            bundle_finish(b, lane, STANCE_DONE, STANCE_FELL, STANCE_FAILURE_NONE);
+        else if (mask_get(v->stabilised, lane))
+            bundle_finish(b, lane, STANCE_DONE, STANCE_STABILISED, STANCE_FAILURE_NONE);
+        else if (mask_get(v->rested, lane))
+            bundle_finish(b, lane, STANCE_DONE, STANCE_RESTED, STANCE_FAILURE_NONE);
+        else
+            bundle_finish(b, lane, STANCE_DONE, STANCE_UNDECIDED, STANCE_FAILURE_NONE);
+    }
+}
+
+/* Rows due now in any live lane. */
+static inline void bundle_record_due(struct bundle *b, mask live)
+{
+    const mask due = live & mask_less_equal(b->next_record, b->n);
+    if (!mask_any(due))
+        return;
+    for (int lane = 0; lane < LANES; lane++)
+        if (b->which[lane] && mask_get(due, lane))
+            bundle_record(b, lane);
+}
+
+/* Judges and records the initial state of fresh lanes. */
+static void bundle_start(struct bundle *b, mask fresh, bool coupled)
+{
+    bundle_begin(b, fresh);
+    mask loaded[SCENE_CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        loaded[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
+                    mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
+    const struct verdict v = bundle_judge(b, fresh, loaded, MASK_NONE);
+    bundle_sample(b, fresh);
+    if (coupled) {
+        lanes torque[SCENE_ACTUATORS];
+        law_torque(&b->set.law, b->now.s, b->now.w, torque);
+        law_clip(&b->set.law, torque);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            b->torque[i] = choose(fresh, torque[i], b->torque[i]);
+    }
+    bundle_record_due(b, fresh);
+    bundle_end(b, fresh, MASK_NONE, &v, mask_less_equal(b->steps, lanes_of(0)));
+}
+
+/* One step of all live lanes, with everything that follows from it. */
+static inline void bundle_step(struct bundle *b, mask live, bool coupled)
+{
+    struct step_report report;
+    struct motion next = b->now;
+    bundle_sample(b, live);
+    mask ok = take_step(&b->set, &b->now, b->torque, b->h, live, coupled, &next, &report);
+    const mask stuck = live & LANES_NOT(ok);
+    if (mask_any(stuck)) {
+        const mask saved = bundle_subdivide(b, stuck, coupled, &next, &report);
+        b->subdivided += choose(saved, lanes_of(1), lanes_of(0));
+        ok |= saved;
+    }
+    b->now = next;
+    if (coupled)
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            b->torque[i] = choose(ok, report.torque[i], b->torque[i]);
+    bundle_account(b, ok, &report);
+    mask loaded[SCENE_CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        loaded[c] = mask_less(lanes_of(0), report.impulse[c][0]);
+    const mask last = ok & mask_less_equal(b->steps, b->n);
+    const struct verdict v = bundle_judge(b, ok, loaded, last);
+    bundle_record_due(b, ok);
+    bundle_end(b, live, live & LANES_NOT(ok), &v, last);
+}
+
+/* A law that acts inside the step couples the angles: such cases run in bundles of their own, so
+ * that a case's arithmetic depends on nothing but the case. */
+static bool case_is_coupled(const stance_case *c)
+{
+    if (c->sample_every > 0)
+        return false;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        for (int j = 0; j < 2 * SCENE_POSTURE; j++)
+            if (c->gain[i][j] != 0)
+                return true;
+    return false;
+}
+
+static inline __attribute__((always_inline)) void
+bundle_run_part(const stance_case *cases, stance_result *results, size_t n, bool coupled)
+{
+    struct bundle b;
+    memset(&b, 0, sizeof b);
+    size_t next = 0;
+    bool any = true;
+    while (any) {
+        mask fresh = MASK_NONE, live = MASK_NONE;
+        any = false;
+        for (int lane = 0; lane < LANES; lane++) {
+            while (!b.which[lane] && next < n && case_is_coupled(&cases[next]) != coupled)
+                next++;
+            if (!b.which[lane] && next < n) {
+                bundle_load(&b, lane, &cases[next], &results[next]);
+                next++;
+                fresh |= mask_of_lane(lane);
+            }
+            if (b.which[lane])
+                live |= mask_of_lane(lane), any = true;
+        }
+        if (!any)
+            break;
+        if (mask_any(fresh)) {
+            bundle_start(&b, fresh, coupled);
+            continue; /* a case may have ended at its start */
+        }
+        size_t filled = 0;
+        for (int lane = 0; lane < LANES; lane++)
+            filled += b.which[lane] != NULL;
+        size_t left = filled;
+        while (left == filled) {
+            bundle_step(&b, live, coupled);
+            left = 0;
+            for (int lane = 0; lane < LANES; lane++)
+                left += b.which[lane] != NULL;
+        }
+    }
+}
+
+static void bundle_run(const stance_case *cases, stance_result *results, size_t n)
+{
+    bundle_run_part(cases, results, n, false);
+    bundle_run_part(cases, results, n, true);
+}
+
+#endif

@@ -1,0 +1,195 @@
+/* lanes.h - a vector of STANCE_LANES doubles, one simulation in each lane, and masks over it.
+ *
+ * The stepping core is written once against these few operations and compiled for 1, 2, 4 and 8
+ * lanes. Everything is plain IEEE arithmetic (+ - * / and comparisons), without contraction, so a
+ * lane computes the same bits whatever the width. Control flow is by masks: `choose(m, a, b)`.
+ */
+#ifndef STANCE_CORE_LANES_H
+#define STANCE_CORE_LANES_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifndef STANCE_LANES
+#error "STANCE_LANES is 1, 2, 4 or 8"
+#endif
+
+enum { LANES = STANCE_LANES };
+
+#if STANCE_LANES == 1
+
+typedef double lanes;
+typedef bool mask;
+
+#define LANES_ALL true
+#define LANES_NOT(m) (!(m))
+static inline lanes lanes_of(double x)
+{
+    return x;
+}
+static inline mask mask_less(lanes a, lanes b)
+{
+    return a < b;
+}
+static inline mask mask_less_equal(lanes a, lanes b)
+{
+    return a <= b;
+}
+static inline lanes choose(mask m, lanes a, lanes b)
+{
+    return m ? a : b;
+}
+static inline bool mask_any(mask m)
+{
+    return m;
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return fabs(a);
+}
+
+#elif STANCE_LANES == 8 && defined(__AVX512F__)
+
+#include <immintrin.h>
+typedef double lanes __attribute__((vector_size(64), may_alias));
+typedef __mmask8 mask;
+
+#define LANES_ALL ((mask)0xff)
+#define LANES_NOT(m) ((mask) ~(m))
+static inline lanes lanes_of(double x)
+{
+    return _mm512_set1_pd(x);
+}
+static inline mask mask_less(lanes a, lanes b)
+{
+    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+}
+static inline mask mask_less_equal(lanes a, lanes b)
+{
+    return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ);
+}
+static inline lanes choose(mask m, lanes a, lanes b)
+{
+    return _mm512_mask_blend_pd(m, b, a);
+}
+static inline bool mask_any(mask m)
+{
+    return m != 0;
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return _mm512_abs_pd(a);
+}
+
+#elif STANCE_LANES == 4 && defined(__AVX2__)
+
+#include <immintrin.h>
+typedef double lanes __attribute__((vector_size(32), may_alias));
+typedef int64_t mask __attribute__((vector_size(32)));
+
+#define LANES_ALL ((mask){-1, -1, -1, -1})
+#define LANES_NOT(m) (~(m))
+static inline lanes lanes_of(double x)
+{
+    return _mm256_set1_pd(x);
+}
+static inline mask mask_less(lanes a, lanes b)
+{
+    return (mask)(a < b);
+}
+static inline mask mask_less_equal(lanes a, lanes b)
+{
+    return (mask)(a <= b);
+}
+static inline lanes choose(mask m, lanes a, lanes b)
+{
+    return _mm256_blendv_pd(b, a, (__m256d)m);
+}
+static inline bool mask_any(mask m)
+{
+    return _mm256_movemask_pd((__m256d)m) != 0;
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
+}
+
+#elif STANCE_LANES == 2 /* SSE2, NEON: the compiler's generic vectors */
+
+typedef double lanes __attribute__((vector_size(16), may_alias));
+typedef int64_t mask __attribute__((vector_size(16)));
+
+#define LANES_ALL ((mask){-1, -1})
+#define LANES_NOT(m) (~(m))
+static inline lanes lanes_of(double x)
+{
+    return (lanes){x, x};
+}
+static inline mask mask_less(lanes a, lanes b)
+{
+    return (mask)(a < b);
+}
+static inline mask mask_less_equal(lanes a, lanes b)
+{
+    return (mask)(a <= b);
+}
+static inline lanes choose(mask m, lanes a, lanes b)
+{
+    return (lanes)(((mask)a & m) | ((mask)b & ~m));
+}
+static inline bool mask_any(mask m)
+{
+    return (m[0] | m[1]) != 0;
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return (lanes)((mask)a & (mask){INT64_MAX, INT64_MAX});
+}
+
+#else
+#error "no lanes of this width for these compiler flags"
+#endif
+
+#define MASK_NONE LANES_NOT(LANES_ALL)
+
+/* min and max as comparisons spell them: the second operand where the first is NAN. */
+static inline lanes lanes_max(lanes a, lanes b)
+{
+    return choose(mask_less(b, a), a, b);
+}
+static inline lanes lanes_min(lanes a, lanes b)
+{
+    return choose(mask_less(a, b), a, b);
+}
+/* NAN is not finite, neither is an infinity. */
+static inline mask mask_finite(lanes a)
+{
+    return mask_less_equal(lanes_abs(a), lanes_of(1.7976931348623157e308));
+}
+
+/* One lane read and written: at loading, finishing and recording only. */
+static inline double lane_get(const lanes *v, int lane)
+{
+    double x;
+    memcpy(&x, (const char *)v + (size_t)lane * sizeof x, sizeof x);
+    return x;
+}
+static inline void lane_set(lanes *v, int lane, double x)
+{
+    memcpy((char *)v + (size_t)lane * sizeof x, &x, sizeof x);
+}
+static inline bool mask_get(mask m, int lane)
+{
+    lanes v = choose(m, lanes_of(1), lanes_of(0));
+    return lane_get(&v, lane) != 0;
+}
+static inline mask mask_of_lane(int lane)
+{
+    lanes v = lanes_of(0);
+    lane_set(&v, lane, 1);
+    return mask_less(lanes_of(0), v);
+}
+
+#endif

@@ -1,0 +1,449 @@
+/* step.h - one time step of every lane: implicit in the velocity, contact exact, any theta.
+ *
+ * With w the velocity sought, w0 and s0 the state before, theta = METHOD_THETA, the equation is
+ *
+ *   P(w, r) = A(u) (w - w0) - h F(u, v) - H^T r = 0,   v = (1 - theta) w0 + theta w,
+ *   u = s0 + h theta v,   end position s1 = s0 + h v,
+ *
+ * the paper's (8) for theta = 1. Contact impulses r obey Signorini's and Coulomb's laws with the
+ * velocity H(s1) w at the end (contact.h); they are fully implicit whatever theta is, or a ball
+ * would rebound at e = 0. The paper's steps (i)-(vi) run as one Newton iteration: each iterate
+ * linearises P and H w exactly (H^T r and H w too, so convergence is quadratic), takes the free
+ * velocity (11), builds the Delassus operator (14), solves the contact laws and updates (13).
+ *
+ * Which contacts take part: those closed before the step, and each whose gap at some iterate's s1
+ * is not positive. The paper tests the free motion's gap instead; testing the iterate lets a foot
+ * that already stands hold the robot up while the other foot is judged.
+ *
+ * Impulse directions are taken at u; in a step with an impact at s1 for theta < 1 too, so that an
+ * impact at e = 0 cannot add energy: with the same H in P and in the laws the impulses add
+ * r.U - r.G r / 2 <= 0, G = H A^-1 H^T.
+ *
+ * Velocity laws leave a position error of O(h |v|) at a touchdown and O(h^2) later. It is removed
+ * after the step by moving s1 along A^-1 H_N^T (with the step's matrix for A) until the gaps of
+ * loaded contacts are zero, or after a rebound what is left of the step at the rebound's speed, and
+ * none is negative. The energy that this adds is reported.
+ */
+#ifndef STANCE_CORE_STEP_H
+#define STANCE_CORE_STEP_H
+
+#include "contact.h"
+
+#define STEP_MAX_ITERATIONS 25
+#define STEP_TOLERANCE 1e-7   /* last Newton correction, m/s and rad/s; the error left is its square */
+#define STEP_CLOSED 1e-12     /* m: a contact this close counts as closed */
+#define STEP_PROJECTION 1e-13 /* m: gap error left by the projection */
+#define STEP_APPROACH 1e-9    /* m/s: a closed contact that approaches faster is an impact */
+
+/* torque = clip(feedforward - gain (posture - target, rate)), see stance_case. */
+struct law {
+    lanes feedforward[SCENE_ACTUATORS];
+    lanes gain[SCENE_ACTUATORS][2 * SCENE_POSTURE];
+    lanes target[SCENE_POSTURE];
+    lanes limit;
+};
+
+/* What does not change during a case. */
+struct setting {
+    scene_body body;
+    lanes friction, restitution;
+    lanes may_touch[SCENE_CONTACTS]; /* 1 or 0 */
+    struct law law;
+};
+
+struct motion {
+    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    lanes gap[SCENE_CONTACTS];
+    lanes approach[SCENE_CONTACTS]; /* normal velocity */
+    scene_trig trig;                /* at s, but for the last projection */
+};
+
+struct step_report {
+    lanes impulse[SCENE_CONTACTS][2]; /* N s */
+    lanes slip[SCENE_CONTACTS];       /* m, where loaded */
+    lanes torque[SCENE_ACTUATORS];    /* N m, as applied at the end */
+    lanes iterations;
+    lanes impact_energy, projection_energy; /* J */
+    mask ambiguous;
+};
+
+/* The iterate of one step and what is frozen with it in each lane. */
+struct iterate {
+    lanes w[SCENE_COORDINATES];
+    lanes s1[SCENE_COORDINATES];
+    lanes r[SCENE_CONTACTS][2], u[SCENE_CONTACTS][2];
+    lanes gap[SCENE_CONTACTS];
+    lanes lift[SCENE_CONTACTS][SCENE_COORDINATES]; /* response to a unit normal impulse */
+    lanes torque[SCENE_ACTUATORS];
+    scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
+    mask active[SCENE_CONTACTS];
+    mask ambiguous, unsolved;
+};
+
+static inline void law_torque(const struct law *law, const lanes *s, const lanes *w, lanes *torque)
+{
+    lanes posture[SCENE_POSTURE], rate[SCENE_POSTURE];
+    scene_posture(s, posture);
+    scene_posture(w, rate);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        torque[i] = law->feedforward[i];
+        for (int j = 0; j < SCENE_POSTURE; j++)
+            torque[i] -= law->gain[i][j] * (posture[j] - law->target[j]) +
+                         law->gain[i][SCENE_POSTURE + j] * rate[j];
+    }
+}
+static inline void law_clip(const struct law *law, lanes *torque)
+{
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        torque[i] = lanes_max(lanes_min(torque[i], law->limit), -law->limit);
+}
+
+/* The law acting inside the step: torque and its derivative by the velocity at the end. */
+static inline void law_inside(const struct law *law, const lanes *s, const lanes *w, lanes lever,
+                              lanes *torque, lanes rate[SCENE_ACTUATORS][SCENE_POSTURE])
+{
+    lanes command[SCENE_ACTUATORS];
+    law_torque(law, s, w, command);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        torque[i] = command[i];
+    law_clip(law, torque);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        const mask free = mask_less(lanes_abs(command[i]), law->limit);
+        for (int j = 0; j < SCENE_POSTURE; j++) {
+            const lanes slope = law->gain[i][j] * lever +
+                                law->gain[i][SCENE_POSTURE + j] * METHOD_THETA;
+            rate[i][j] = choose(free, -slope, lanes_of(0));
+        }
+    }
+}
+
+/* The velocity that forces and positions see: (1 - theta) w0 + theta w. */
+static inline lanes step_velocity(lanes w0, lanes w)
+{
+    if (METHOD_THETA == 1)
+        return w;
+    return (1 - METHOD_THETA) * w0 + METHOD_THETA * w;
+}
+
+/* Position at the end and the trigonometry that goes with an iterate's velocity. */
+static inline void iterate_place(const struct setting *set, const struct motion *from, lanes h,
+                                 struct iterate *it)
+{
+    lanes middle[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        const lanes v = step_velocity(from->w[i], it->w[i]);
+        it->s1[i] = from->s[i] + h * v;
+        middle[i] = from->s[i] + (METHOD_THETA * h) * v;
+    }
+    if (METHOD_THETA == 1) {
+        scene_trigonometry(it->s1, &it->end);
+    } else {
+        scene_trigonometry(middle, &it->middle);
+        scene_contact_trigonometry(it->s1, &it->end); /* the rest when the step is done */
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
+}
+
+/* Impulses of the active contacts for the linearised step; zero elsewhere. */
+static inline void solve_contacts(const struct setting *set, const lanes D[2][2][2][2],
+                                  const lanes uf[2][2], const mask *active, lanes r[2][2],
+                                  mask *ambiguous, mask *unsolved)
+{
+    lanes scale = lanes_of(1);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2; a++) {
+            scale = lanes_max(lanes_abs(uf[c][a]), scale);
+            r[c][a] = lanes_of(0);
+        }
+    const lanes tolerance = CONTACT_TOLERANCE * scale;
+    *ambiguous = *unsolved = MASK_NONE;
+    const mask both = active[0] & active[1];
+    const mask one = (active[0] | active[1]) & LANES_NOT(both);
+    contact_choice best;
+    if (mask_any(one)) {
+        lanes D1[2][2][2][2], uf1[2][2];
+        for (int a = 0; a < 2; a++) {
+            uf1[0][a] = choose(active[0], uf[0][a], uf[1][a]);
+            for (int b = 0; b < 2; b++)
+                D1[0][0][a][b] = choose(active[0], D[0][0][a][b], D[1][1][a][b]);
+        }
+        contact_solve(&(contact_problem){D1, uf1, set->friction, tolerance, 1}, &best);
+        for (int a = 0; a < 2; a++) {
+            r[0][a] = choose(one & active[0], best.r[0][a], r[0][a]);
+            r[1][a] = choose(one & active[1], best.r[0][a], r[1][a]);
+        }
+        *ambiguous |= one & best.ambiguous;
+        *unsolved |= one & LANES_NOT(mask_less_equal(best.violation, 1e3 * tolerance));
+    }
+    if (mask_any(both)) {
+        contact_solve(&(contact_problem){D, uf, set->friction, tolerance, 2}, &best);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                r[c][a] = choose(both, best.r[c][a], r[c][a]);
+        *ambiguous |= both & best.ambiguous;
+        *unsolved |= both & LANES_NOT(mask_less_equal(best.violation, 1e3 * tolerance));
+    }
+}
+
+/* One Newton iteration in the lanes that still run; returns the size of the correction. */
+static inline lanes iterate_newton(const struct setting *set, const struct motion *from, lanes h,
+                                   mask running, mask impact, bool coupled, struct iterate *it)
+{
+    const lanes lever = h * (METHOD_THETA * METHOD_THETA), end_lever = h * METHOD_THETA;
+    const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
+    lanes v[SCENE_COORDINATES], change[SCENE_COORDINATES], residual[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        v[i] = step_velocity(from->w[i], it->w[i]);
+        change[i] = it->w[i] - from->w[i];
+    }
+    scene_trig direction = it->end;
+    lanes direction_lever = end_lever;
+    if (METHOD_THETA != 1) {
+        scene_choose_trig(impact, &it->end, &it->middle, &direction);
+        direction_lever = choose(impact, end_lever, lever);
+    }
+
+    lanes torque[SCENE_ACTUATORS], torque_rate[SCENE_ACTUATORS][SCENE_POSTURE];
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        torque[i] = it->torque[i];
+    if (coupled) {
+        lanes u[SCENE_COORDINATES];
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+        law_inside(&set->law, u, v, lever, torque, torque_rate);
+    }
+
+    scene_matrix J;
+    lanes dw[SCENE_COORDINATES];
+    scene_residual(&set->body, h, trig, v, change, torque, residual);
+    scene_factor(&set->body, h, METHOD_THETA, lever, direction_lever, trig, &direction, v, change,
+                 (const lanes(*)[2])it->r, coupled, (const lanes(*)[SCENE_POSTURE])torque_rate, &J);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        residual[i] = -residual[i];
+    scene_solve(&J, coupled, residual, dw);
+
+    mask touching = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        touching |= it->active[c] & running;
+    if (mask_any(touching)) {
+        lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES];
+        lanes D[SCENE_CONTACTS][SCENE_CONTACTS][2][2], uf[SCENE_CONTACTS][2];
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            scene_contact_response(&set->body, &J, coupled, &direction, c, response[c]);
+        for (int c = 0; c < SCENE_CONTACTS; c++) {
+            lanes now[2], moved[2];
+            scene_contact_velocity(&set->body, &it->end, c, it->w, now);
+            scene_contact_velocity_change(&set->body, &it->end, c, it->w, end_lever, dw, moved);
+            uf[c][0] = now[0] + moved[0] +
+                       set->restitution * lanes_min(from->approach[c], lanes_of(0));
+            uf[c][1] = now[1] + moved[1];
+            for (int k = 0; k < SCENE_CONTACTS; k++)
+                for (int b = 0; b < 2; b++) {
+                    scene_contact_velocity_change(&set->body, &it->end, c, it->w, end_lever,
+                                                  response[k][b], moved);
+                    D[c][k][0][b] = moved[0];
+                    D[c][k][1][b] = moved[1];
+                }
+        }
+        lanes r[SCENE_CONTACTS][2];
+        mask ambiguous, unsolved;
+        solve_contacts(set, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, it->active, r,
+                       &ambiguous, &unsolved);
+        it->ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
+        it->unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
+        for (int c = 0; c < SCENE_CONTACTS; c++) {
+            for (int i = 0; i < SCENE_COORDINATES; i++) {
+                /* Where nothing touches even the sign of a zero stays as it is. */
+                dw[i] = choose(touching,
+                               dw[i] + (response[c][0][i] * r[c][0] + response[c][1][i] * r[c][1]),
+                               dw[i]);
+                it->lift[c][i] = choose(running, response[c][0][i], it->lift[c][i]);
+            }
+            for (int a = 0; a < 2; a++)
+                it->r[c][a] = choose(running, r[c][a], it->r[c][a]);
+        }
+    }
+    lanes size = lanes_of(0), speed = lanes_of(1);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        it->w[i] = choose(running, it->w[i] + dw[i], it->w[i]);
+        size += lanes_abs(dw[i]); /* a sum keeps NAN */
+        speed = lanes_max(lanes_abs(it->w[i]), speed);
+    }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        it->torque[i] = choose(running, torque[i], it->torque[i]);
+    return size / speed;
+}
+
+/* Moves the end position until loaded contacts have their gap and no contact penetrates. */
+static inline void iterate_project(const struct setting *set, const struct motion *from, lanes h,
+                                   mask run, struct iterate *it, lanes *energy)
+{
+    lanes wanted[SCENE_CONTACTS], error[SCENE_CONTACTS];
+    mask held[SCENE_CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        /* A rebound has used part of the step to arrive: it leaves e times what it overshot. */
+        const lanes overshoot = -(from->gap[c] + h * from->approach[c]);
+        wanted[c] = set->restitution * lanes_max(overshoot, lanes_of(0));
+        held[c] = run & it->active[c] & mask_less(lanes_of(0), it->r[c][0]);
+    }
+    *energy = lanes_of(0);
+    for (int round = 0; round < 12; round++) {
+        mask todo = MASK_NONE;
+        for (int c = 0; c < SCENE_CONTACTS; c++) {
+            const mask touching = run & mask_less(lanes_of(0), set->may_touch[c]) &
+                                  (it->active[0] | it->active[1]);
+            held[c] |= touching & mask_less(it->gap[c], lanes_of(-STEP_PROJECTION));
+            error[c] = choose(held[c], choose(mask_less(lanes_of(0), it->r[c][0]), wanted[c],
+                                              lanes_of(0)) - it->gap[c], lanes_of(0));
+            todo |= mask_less(lanes_of(STEP_PROJECTION), lanes_abs(error[c]));
+        }
+        if (!mask_any(todo))
+            return;
+        lanes G[2][2], multiplier[2];
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int k = 0; k < SCENE_CONTACTS; k++) {
+                lanes u[2];
+                scene_contact_velocity(&set->body, &it->end, c, it->lift[k], u);
+                const mask in = held[c] & held[k];
+                G[c][k] = choose(in, u[0], lanes_of(c == k));
+            }
+        const lanes product = G[0][0] * G[1][1], determinant = product - G[0][1] * G[1][0];
+        const mask regular = mask_less(1e-12 * product, determinant);
+        const lanes reciprocal = 1 / choose(regular, determinant, G[0][0]);
+        multiplier[0] = choose(regular, G[1][1] * error[0] - G[0][1] * error[1], error[0]) * reciprocal;
+        multiplier[1] = choose(regular, G[0][0] * error[1] - G[1][0] * error[0], lanes_of(0)) * reciprocal;
+        lanes d[SCENE_COORDINATES], far = lanes_of(0);
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            d[i] = choose(todo, it->lift[0][i] * multiplier[0] + it->lift[1][i] * multiplier[1],
+                          lanes_of(0));
+            it->s1[i] = choose(todo, it->s1[i] + d[i], it->s1[i]);
+        }
+        *energy += lanes_abs(scene_energy_change(&set->body, &it->end, it->w, d));
+        for (int c = 0; c < SCENE_CONTACTS; c++) {
+            it->gap[c] = choose(todo, it->gap[c] + scene_gap_change(&set->body, &it->end, c, d),
+                                it->gap[c]);
+            far = lanes_max(scene_gap_change_error(&set->body, c, d), far);
+        }
+        const mask moved = todo & mask_less(lanes_of(0.1 * STEP_PROJECTION), far);
+        if (mask_any(moved)) { /* too far for the expansion: the gaps anew */
+            scene_trig trig = it->end;
+            scene_trigonometry(it->s1, &trig);
+            for (int c = 0; c < SCENE_CONTACTS; c++)
+                it->gap[c] = choose(moved, scene_gap(&set->body, it->s1, &trig, c), it->gap[c]);
+            for (int a = 0; a < SCENE_ANGLES; a++) {
+                it->end.sine[a] = choose(moved, trig.sine[a], it->end.sine[a]);
+                it->end.cosine[a] = choose(moved, trig.cosine[a], it->end.cosine[a]);
+            }
+        }
+    }
+}
+
+/* Kinetic energy that the contact impulses added: r.U - x^T A x / 2, x = A^-1 H^T r. */
+static inline lanes impact_energy(const struct setting *set, const struct iterate *it)
+{
+    const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
+    lanes nothing[SCENE_COORDINATES], no_impulse[SCENE_CONTACTS][2];
+    lanes no_rate[SCENE_ACTUATORS][SCENE_POSTURE];
+    memset(nothing, 0, sizeof nothing);
+    memset(no_impulse, 0, sizeof no_impulse);
+    memset(no_rate, 0, sizeof no_rate);
+    scene_matrix A;
+    scene_factor(&set->body, lanes_of(0), 0, lanes_of(0), lanes_of(0), trig, trig, nothing, nothing,
+                 (const lanes(*)[2])no_impulse, false, (const lanes(*)[SCENE_POSTURE])no_rate, &A);
+    lanes x[SCENE_COORDINATES], work = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        x[i] = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes response[2][SCENE_COORDINATES], u[2];
+        scene_contact_response(&set->body, &A, false, &it->end, c, response);
+        scene_contact_velocity(&set->body, &it->end, c, it->w, u);
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            x[i] += response[0][i] * it->r[c][0] + response[1][i] * it->r[c][1];
+        work += u[0] * it->r[c][0] + u[1] * it->r[c][1];
+    }
+    return work - scene_kinetic(&set->body, trig, x);
+}
+
+/* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
+ * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
+ * inside it. Returns the lanes that converged. */
+static inline mask take_step(const struct setting *set, const struct motion *from,
+                             const lanes *torque, lanes h, mask run, bool coupled,
+                             struct motion *to, struct step_report *report)
+{
+    struct iterate it;
+    mask impact = MASK_NONE, running = run;
+    mask closed[SCENE_CONTACTS];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        it.w[i] = from->w[i];
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        it.torque[i] = torque[i];
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        closed[c] = mask_less(lanes_of(0), set->may_touch[c]) &
+                    mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
+        it.active[c] = closed[c];
+        impact |= closed[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH));
+        it.r[c][0] = it.r[c][1] = lanes_of(0);
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            it.lift[c][i] = lanes_of(0);
+    }
+    it.ambiguous = it.unsolved = MASK_NONE;
+    iterate_place(set, from, h, &it);
+    lanes iterations = lanes_of(0);
+    for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
+        const lanes correction = iterate_newton(set, from, h, running, impact, coupled, &it);
+        iterations += choose(running, lanes_of(1), lanes_of(0));
+        iterate_place(set, from, h, &it);
+        mask news = MASK_NONE;
+        for (int c = 0; c < SCENE_CONTACTS; c++) {
+            const mask hit = running & LANES_NOT(it.active[c]) &
+                             mask_less(lanes_of(0), set->may_touch[c]) &
+                             mask_less_equal(it.gap[c], lanes_of(0));
+            it.active[c] |= hit;
+            news |= hit;
+        }
+        impact |= news;
+        const mask done = mask_less_equal(correction, lanes_of(STEP_TOLERANCE)) &
+                          LANES_NOT(news) & LANES_NOT(it.unsolved);
+        running &= LANES_NOT(done);
+    }
+    const mask converged = run & LANES_NOT(running);
+    if (METHOD_THETA != 1)
+        scene_trigonometry(it.s1, &it.end);
+
+    report->iterations = iterations;
+    report->impact_energy = report->projection_energy = lanes_of(0);
+    report->ambiguous = it.ambiguous & converged;
+    mask loaded_impact = MASK_NONE, touching = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask loaded = it.active[c] & mask_less(lanes_of(0), it.r[c][0]) & converged;
+        loaded_impact |= loaded & impact;
+        touching |= it.active[c] & converged;
+        lanes u[2];
+        scene_contact_velocity(&set->body, &it.end, c, it.w, u);
+        report->slip[c] = choose(loaded, h * lanes_abs(u[1]), lanes_of(0));
+        for (int a = 0; a < 2; a++)
+            report->impulse[c][a] = choose(loaded, it.r[c][a], lanes_of(0));
+        to->approach[c] = choose(converged, u[0], to->approach[c]);
+    }
+    if (mask_any(loaded_impact))
+        report->impact_energy = choose(loaded_impact, impact_energy(set, &it), lanes_of(0));
+    if (mask_any(touching))
+        iterate_project(set, from, h, touching, &it, &report->projection_energy);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        to->s[i] = choose(converged, it.s1[i], to->s[i]);
+        to->w[i] = choose(converged, it.w[i], to->w[i]);
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        to->gap[c] = choose(converged, it.gap[c], to->gap[c]);
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        to->trig.sine[a] = choose(converged, it.end.sine[a], to->trig.sine[a]);
+        to->trig.cosine[a] = choose(converged, it.end.cosine[a], to->trig.cosine[a]);
+    }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        report->torque[i] = it.torque[i];
+    return converged;
+}
+
+#endif

@@ -1,0 +1,87 @@
+/* kernels.c - the tables of methods and kernels, and the choice among instruction sets. */
+#include "stance.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* What there is: a method is a word here, a scene two lines below. STANCE_ISA_LIST comes
+ * from the Makefile: X(scalar) X(sse2) ... in order of width. */
+#define STANCE_METHODS(X) X(implicit) X(midpoint)
+
+#ifndef STANCE_ISA_LIST
+#define STANCE_ISA_LIST X(scalar)
+#endif
+
+#define DECLARE_METHOD(m) extern const stance_method stance_method_##m;
+STANCE_METHODS(DECLARE_METHOD)
+
+#define ENTRY_METHOD(m) &stance_method_##m,
+static const stance_method *const methods[] = {STANCE_METHODS(ENTRY_METHOD) NULL};
+
+#define X(isa)                                                                                     \
+    extern const stance_kernel stance_kernel_biped_implicit_##isa;                                 \
+    extern const stance_kernel stance_kernel_biped_midpoint_##isa;
+STANCE_ISA_LIST
+#undef X
+
+/* Narrow to wide. */
+static const stance_kernel *const kernels[] = {
+#define X(isa) &stance_kernel_biped_implicit_##isa, &stance_kernel_biped_midpoint_##isa,
+    STANCE_ISA_LIST
+#undef X
+};
+
+enum { KERNELS = sizeof kernels / sizeof *kernels };
+
+const stance_method *const *stance_methods(void)
+{
+    return methods;
+}
+
+const stance_method *stance_method_find(const char *name)
+{
+    for (size_t i = 0; methods[i]; i++)
+        if (strcmp(methods[i]->name, name) == 0)
+            return methods[i];
+    return NULL;
+}
+
+/* Does this processor (and its operating system) run the instruction set? */
+static bool isa_runs(const char *isa)
+{
+#if defined(__x86_64__)
+    if (strcmp(isa, "avx2") == 0)
+        return __builtin_cpu_supports("avx2");
+    if (strcmp(isa, "avx512") == 0)
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+               __builtin_cpu_supports("avx512vl");
+#endif
+    (void)isa;
+    return true;
+}
+
+const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_method *method,
+                                        const char *isa)
+{
+    for (int i = KERNELS - 1; i >= 0; i--) {
+        const stance_kernel *const k = kernels[i];
+        if (k->scene != scene || k->method != method || !isa_runs(k->isa))
+            continue;
+        if (!isa || strcmp(isa, k->isa) == 0)
+            return k;
+    }
+    return NULL;
+}
+
+const char *stance_isa(int rank)
+{
+    const char *previous = "";
+    for (int i = KERNELS - 1; i >= 0; i--) {
+        if (strcmp(kernels[i]->isa, previous) == 0 || !isa_runs(kernels[i]->isa))
+            continue;
+        previous = kernels[i]->isa;
+        if (rank-- == 0)
+            return previous;
+    }
+    return NULL;
+}

@@ -1,0 +1,18 @@
+/* implicit.c - the paper's non-regular algorithm: Moreau's implicit step with theta = 1.
+ *
+ * Forces, inertia and contact directions at the end of the step (the paper's equations 6-15), the
+ * fully converged Newton iteration and the exact contact solution of core/step.h. First order,
+ * dissipative in flight, unconditionally stable under stiff servo gains.
+ */
+#define METHOD_THETA 1.0
+
+#include "../core/kernel.h"
+#include STANCE_SCENE_LANES
+#include "../core/bundle.h"
+
+#if STANCE_LANES == 1
+const stance_method stance_method_implicit = {
+    "implicit", "Moreau's implicit step, theta = 1, exact contact: the paper's method", 1};
+#endif
+
+STANCE_KERNEL(implicit);

@@ -1,0 +1,18 @@
+/* midpoint.c - Moreau's step with theta = 1/2 for the smooth forces.
+ *
+ * The implicit midpoint rule between impacts: forces and inertia at the middle of the step, second
+ * order while the contact mode lasts. Contact impulses stay fully implicit: the contact laws hold
+ * for the velocity at the end, or a ball would rebound at e = 0.
+ */
+#define METHOD_THETA 0.5
+
+#include "../core/kernel.h"
+#include STANCE_SCENE_LANES
+#include "../core/bundle.h"
+
+#if STANCE_LANES == 1
+const stance_method stance_method_midpoint = {
+    "midpoint", "implicit midpoint for smooth forces, implicit contact impulses", 2};
+#endif
+
+STANCE_KERNEL(midpoint);

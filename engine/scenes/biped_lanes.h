@@ -1,0 +1,367 @@
+/* biped_lanes.h - the biped's algebra for the stepping core, one robot in each lane.
+ *
+ * Inside, the coordinates are s = (p_x, p_z, theta, phi1, phi2): the hip and the absolute angles
+ * of trunk and legs, phi_i = theta + q_i. With n(a) = (cos a, sin a), t(a) = dn/da = (-sin a,
+ * cos a) and the couplings k_theta = -mt lt, k_phi = m l the kinetic energy is
+ *
+ *   T = M |p'|^2 / 2 + sum_a ( I_a a'^2 / 2 + k_a a' n(a).p' ),
+ *   M = mt + mh + 2 m,  I_theta = mt lt^2,  I_phi = m l^2,
+ *
+ * and the potential V = M g p_z + g (mt lt cos theta - m l (cos phi1 + cos phi2)), so dV/da =
+ * k_a g sin a for each of the three angles. Lagrange's equations with the impulses r_c on the feet
+ * (velocity of foot c: U_c = p' + l phi_c' n(phi_c)):
+ *
+ *   M p'' + sum_a k_a ( n(a) a'' + t(a) a'^2 ) + M g e_z = sum_c r_c
+ *   I_a a'' + k_a n(a).p'' + k_a g sin a = tau_a + l n(phi_c).r_c,
+ *   tau = (-(Gamma1 + Gamma2), Gamma1, Gamma2).
+ *
+ * The inertia matrix is an arrow: the angles couple to the hip alone. A step's equation keeps that
+ * shape, so it is solved by eliminating the angles (a diagonal, or a full 3 x 3 block where the
+ * controller acts inside the step) and a 2 x 2 Schur complement for the hip.
+ */
+#ifndef STANCE_SCENES_BIPED_LANES_H
+#define STANCE_SCENES_BIPED_LANES_H
+
+#include "../core/lanes.h"
+#include "../core/sincos.h"
+#include "../stance.h"
+
+enum {
+    SCENE_COORDINATES = 5,
+    SCENE_CONTACTS = 2,
+    SCENE_ACTUATORS = 2,
+    SCENE_POSTURE = 3,
+    SCENE_ANGLES = 3,
+};
+
+/* Constants of a robot. Arrays over (theta, phi1, phi2) where indexed by an angle. */
+typedef struct scene_body {
+    lanes mass;                    /* M */
+    lanes coupling_trunk, coupling_leg; /* k_theta, k_phi */
+    lanes inertia_trunk, inertia_leg;
+    lanes leg, trunk; /* lengths */
+} scene_body;
+
+typedef struct scene_trig {
+    lanes sine[SCENE_ANGLES], cosine[SCENE_ANGLES];
+} scene_trig;
+
+/* The step's matrix J = d(residual)/d(velocity), factored. */
+typedef struct scene_matrix {
+    lanes row[SCENE_ANGLES][2];    /* d residual_a / d p' = k_a n(a) */
+    lanes column[SCENE_ANGLES][2]; /* d residual_p / d a' */
+    lanes inverse[SCENE_ANGLES][SCENE_ANGLES]; /* of the angles' block; diagonal unless coupled */
+    lanes schur[2][2];                         /* inverse of the Schur complement */
+} scene_matrix;
+
+static inline void scene_load_body(scene_body *b, int lane, const double *robot)
+{
+    const double l = robot[0], lt = robot[1], m = robot[2], mt = robot[3], mh = robot[4];
+    lane_set(&b->mass, lane, mt + mh + 2 * m);
+    lane_set(&b->coupling_trunk, lane, -(mt * lt));
+    lane_set(&b->coupling_leg, lane, m * l);
+    lane_set(&b->inertia_trunk, lane, mt * lt * lt);
+    lane_set(&b->inertia_leg, lane, m * l * l);
+    lane_set(&b->leg, lane, l);
+    lane_set(&b->trunk, lane, lt);
+}
+
+/* The paper's q = (x, z, theta, q1, q2) and its rate to s, s', and back. */
+static inline void scene_enter(const double *robot, const double *q, const double *v, double *s,
+                               double *w)
+{
+    double sine, cosine;
+    stance_sincos(q[2], &sine, &cosine);
+    s[0] = q[0] + robot[1] * sine;
+    s[1] = q[1] - robot[1] * cosine;
+    w[0] = v[0] + robot[1] * (cosine * v[2]);
+    w[1] = v[1] + robot[1] * (sine * v[2]);
+    s[2] = q[2], w[2] = v[2];
+    for (int i = 3; i < 5; i++)
+        s[i] = q[2] + q[i], w[i] = v[2] + v[i];
+}
+static inline void scene_leave(const double *robot, const double *s, const double *w, double *q,
+                               double *v)
+{
+    double sine, cosine;
+    stance_sincos(s[2], &sine, &cosine);
+    q[0] = s[0] - robot[1] * sine;
+    q[1] = s[1] + robot[1] * cosine;
+    v[0] = w[0] - robot[1] * (cosine * w[2]);
+    v[1] = w[1] - robot[1] * (sine * w[2]);
+    q[2] = s[2], v[2] = w[2];
+    for (int i = 3; i < 5; i++)
+        q[i] = s[i] - s[2], v[i] = w[i] - w[2];
+}
+
+static inline void scene_trigonometry(const lanes *s, scene_trig *trig)
+{
+    for (int a = 0; a < SCENE_ANGLES; a++)
+        lanes_sincos(s[2 + a], &trig->sine[a], &trig->cosine[a]);
+}
+/* The part that contacts need: the legs. */
+static inline void scene_contact_trigonometry(const lanes *s, scene_trig *trig)
+{
+    for (int a = 1; a < SCENE_ANGLES; a++)
+        lanes_sincos(s[2 + a], &trig->sine[a], &trig->cosine[a]);
+}
+static inline void scene_choose_trig(mask m, const scene_trig *a, const scene_trig *b,
+                                     scene_trig *trig)
+{
+    for (int i = 1; i < SCENE_ANGLES; i++) {
+        trig->sine[i] = choose(m, a->sine[i], b->sine[i]);
+        trig->cosine[i] = choose(m, a->cosine[i], b->cosine[i]);
+    }
+}
+/* Angles within the range of lanes_sincos. */
+static inline mask scene_angles_in_range(const lanes *s)
+{
+    const lanes limit = lanes_of(SINCOS_LARGEST_ANGLE);
+    return mask_less_equal(lanes_abs(s[2]), limit) & mask_less_equal(lanes_abs(s[3]), limit) &
+           mask_less_equal(lanes_abs(s[4]), limit);
+}
+
+/* Posture (theta, q1, q2) or its rate. */
+static inline void scene_posture(const lanes *s, lanes *posture)
+{
+    posture[0] = s[2];
+    posture[1] = s[3] - s[2];
+    posture[2] = s[4] - s[2];
+}
+
+/* residual = A(u) change - h (forces without contact), evaluated at angles `trig` and velocity w;
+ * change = velocity at the end minus velocity before the step. */
+static inline void scene_residual(const scene_body *b, lanes h, const scene_trig *trig,
+                                  const lanes *w, const lanes *change, const lanes *torque,
+                                  lanes *residual)
+{
+    const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
+    const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};
+    const lanes tau[SCENE_ANGLES] = {-(torque[0] + torque[1]), torque[0], torque[1]};
+    const lanes hg = h * STANCE_GRAVITY;
+    lanes x = b->mass * change[0], z = b->mass * (change[1] + hg);
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        const lanes s = trig->sine[a], c = trig->cosine[a];
+        const lanes centrifugal = h * (w[2 + a] * w[2 + a]);
+        x += k[a] * (c * change[2 + a] - s * centrifugal);
+        z += k[a] * (s * change[2 + a] + c * centrifugal);
+        residual[2 + a] = inertia[a] * change[2 + a] +
+                          k[a] * (c * change[0] + s * (change[1] + hg)) - h * tau[a];
+    }
+    residual[0] = x;
+    residual[1] = z;
+}
+
+/* Inverse of the angles' block when the controller couples it: 3 x 3 by cofactors. */
+static inline void scene_invert_angles(lanes m[SCENE_ANGLES][SCENE_ANGLES],
+                                       lanes inverse[SCENE_ANGLES][SCENE_ANGLES])
+{
+    lanes cofactor[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+            cofactor[i][j] = m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1];
+        }
+    const lanes reciprocal =
+        1 / (m[0][0] * cofactor[0][0] + m[0][1] * cofactor[0][1] + m[0][2] * cofactor[0][2]);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            inverse[i][j] = cofactor[j][i] * reciprocal;
+}
+
+/* y = D^-1 x over the angles. */
+static inline void scene_solve_angles(const scene_matrix *m, bool coupled, const lanes *x, lanes *y)
+{
+    for (int i = 0; i < SCENE_ANGLES; i++) {
+        if (!coupled) {
+            y[i] = m->inverse[i][i] * x[i];
+            continue;
+        }
+        y[i] = m->inverse[i][0] * x[0] + m->inverse[i][1] * x[1] + m->inverse[i][2] * x[2];
+    }
+}
+
+/* Factors J = d residual / d velocity. `rate`: d(evaluation velocity)/d(velocity) = the method's
+ * theta; `lever`: d(evaluation angle)/d(velocity), s; `contact_lever` the same for the angles that
+ * the contact directions are taken at, with `contact_trig` there and the impulses r[contact][2] of
+ * the last iterate. torque_rate[i][j] = d Gamma_i / d(rate of posture j) in all, read when
+ * `coupled` only. */
+static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes lever,
+                                lanes contact_lever, const scene_trig *trig,
+                                const scene_trig *contact_trig, const lanes *w, const lanes *change,
+                                const lanes r[SCENE_CONTACTS][2], bool coupled,
+                                const lanes torque_rate[SCENE_ACTUATORS][SCENE_POSTURE],
+                                scene_matrix *m)
+{
+    const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
+    const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};
+    const lanes hg = h * STANCE_GRAVITY, twice = 2 * rate * h;
+    lanes diagonal[SCENE_ANGLES];
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        const lanes s = trig->sine[a], c = trig->cosine[a], rotation = w[2 + a];
+        const lanes along = 1 - lever * (h * (rotation * rotation));
+        const lanes across = lever * change[2 + a] + twice * rotation;
+        m->row[a][0] = k[a] * c;
+        m->row[a][1] = k[a] * s;
+        m->column[a][0] = k[a] * (c * along - s * across);
+        m->column[a][1] = k[a] * (s * along + c * across);
+        diagonal[a] = inertia[a] + lever * (k[a] * (c * (change[1] + hg) - s * change[0]));
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const int a = 1 + c;
+        diagonal[a] -= contact_lever * (b->leg * (contact_trig->cosine[a] * r[c][1] -
+                                                  contact_trig->sine[a] * r[c][0]));
+    }
+    if (!coupled) {
+        for (int a = 0; a < SCENE_ANGLES; a++)
+            m->inverse[a][a] = 1 / diagonal[a];
+    } else {
+        lanes block[3][3];
+        for (int j = 0; j < 3; j++)
+            for (int i = 0; i < 3; i++)
+                block[i][j] = i == j ? diagonal[i] : lanes_of(0);
+        for (int j = 0; j < 3; j++) {
+            /* By the absolute angles: d/dtheta' = d/dtheta' - d/dq1' - d/dq2', d/dphi_i' = d/dq_i'. */
+            lanes g[2];
+            for (int i = 0; i < 2; i++) {
+                g[i] = h * torque_rate[i][j];
+                if (j == 0)
+                    g[i] -= h * (torque_rate[i][1] + torque_rate[i][2]);
+            }
+            block[0][j] += g[0] + g[1];
+            block[1][j] -= g[0];
+            block[2][j] -= g[1];
+        }
+        scene_invert_angles(block, m->inverse);
+    }
+    /* Schur complement: M I - column^T D^-1 row. */
+    lanes xx = b->mass, xz = lanes_of(0), zx = lanes_of(0), zz = b->mass;
+    for (int j = 0; j < 2; j++) {
+        const lanes x[3] = {m->row[0][j], m->row[1][j], m->row[2][j]};
+        lanes y[3];
+        scene_solve_angles(m, coupled, x, y);
+        const lanes first = m->column[0][0] * y[0] + m->column[1][0] * y[1] + m->column[2][0] * y[2];
+        const lanes second = m->column[0][1] * y[0] + m->column[1][1] * y[1] + m->column[2][1] * y[2];
+        if (j == 0)
+            xx -= first, zx -= second;
+        else
+            xz -= first, zz -= second;
+    }
+    const lanes reciprocal = 1 / (xx * zz - xz * zx);
+    m->schur[0][0] = zz * reciprocal;
+    m->schur[0][1] = -xz * reciprocal;
+    m->schur[1][0] = -zx * reciprocal;
+    m->schur[1][1] = xx * reciprocal;
+}
+
+/* x = J^-1 b. */
+static inline void scene_solve(const scene_matrix *m, bool coupled, const lanes *b, lanes *x)
+{
+    lanes y[SCENE_ANGLES];
+    scene_solve_angles(m, coupled, b + 2, y);
+    lanes p[2];
+    for (int j = 0; j < 2; j++)
+        p[j] = b[j] - (m->column[0][j] * y[0] + m->column[1][j] * y[1] + m->column[2][j] * y[2]);
+    x[0] = m->schur[0][0] * p[0] + m->schur[0][1] * p[1];
+    x[1] = m->schur[1][0] * p[0] + m->schur[1][1] * p[1];
+    lanes rest[SCENE_ANGLES];
+    for (int a = 0; a < SCENE_ANGLES; a++)
+        rest[a] = b[2 + a] - (m->row[a][0] * x[0] + m->row[a][1] * x[1]);
+    scene_solve_angles(m, coupled, rest, x + 2);
+}
+
+/* x[direction] = J^-1 H_c^T e_direction for normal (0) and tangential (1) impulses at contact c. */
+static inline void scene_contact_response(const scene_body *b, const scene_matrix *m, bool coupled,
+                                          const scene_trig *trig, int c,
+                                          lanes x[2][SCENE_COORDINATES])
+{
+    const lanes zero = lanes_of(0), one = lanes_of(1);
+    for (int direction = 0; direction < 2; direction++) {
+        const bool normal = direction == 0;
+        const lanes lever = b->leg * (normal ? trig->sine[1 + c] : trig->cosine[1 + c]);
+        lanes rhs[SCENE_COORDINATES] = {normal ? zero : one, normal ? one : zero, zero, zero, zero};
+        rhs[3 + c] = lever;
+        scene_solve(m, coupled, rhs, x[direction]);
+    }
+}
+
+/* Velocity of contact c: normal, tangential. */
+static inline void scene_contact_velocity(const scene_body *b, const scene_trig *trig, int c,
+                                          const lanes *w, lanes u[2])
+{
+    const lanes speed = b->leg * w[3 + c];
+    u[0] = w[1] + speed * trig->sine[1 + c];
+    u[1] = w[0] + speed * trig->cosine[1 + c];
+}
+/* Its derivative along `change` of the velocity, when the angle moves by `lever` times the change:
+ * (H + lever dH/ds w) change. */
+static inline void scene_contact_velocity_change(const scene_body *b, const scene_trig *trig, int c,
+                                                 const lanes *w, lanes lever, const lanes *change,
+                                                 lanes u[2])
+{
+    const lanes s = trig->sine[1 + c], k = trig->cosine[1 + c];
+    const lanes turn = lever * w[3 + c];
+    const lanes speed = b->leg * change[3 + c];
+    u[0] = change[1] + speed * (s + turn * k);
+    u[1] = change[0] + speed * (k - turn * s);
+}
+
+static inline lanes scene_gap(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+{
+    return s[1] - b->leg * trig->cosine[1 + c];
+}
+/* Gap after a small displacement d of s, to second order in the leg's angle. */
+static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c,
+                                     const lanes *d)
+{
+    const lanes a = d[3 + c];
+    return d[1] + b->leg * (a * (trig->sine[1 + c] + 0.5 * (a * trig->cosine[1 + c])));
+}
+/* Bound on what scene_gap_change leaves out. */
+static inline lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
+{
+    const lanes a = lanes_abs(d[3 + c]);
+    return b->leg * (a * a * a);
+}
+
+/* Mechanical energy that a small displacement d adds at velocity w, first order. */
+static inline lanes scene_energy_change(const scene_body *b, const scene_trig *trig, const lanes *w,
+                                        const lanes *d)
+{
+    const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
+    lanes sum = b->mass * (STANCE_GRAVITY * d[1]);
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        const lanes s = trig->sine[a], c = trig->cosine[a];
+        sum += d[2 + a] * (k[a] * (STANCE_GRAVITY * s + w[2 + a] * (c * w[1] - s * w[0])));
+    }
+    return sum;
+}
+/* Kinetic energy of a velocity change x: x^T A x / 2. */
+static inline lanes scene_kinetic(const scene_body *b, const scene_trig *trig, const lanes *x)
+{
+    const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
+    const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};
+    lanes sum = 0.5 * (b->mass * (x[0] * x[0] + x[1] * x[1]));
+    for (int a = 0; a < SCENE_ANGLES; a++)
+        sum += x[2 + a] * (0.5 * (inertia[a] * x[2 + a]) +
+                           k[a] * (trig->cosine[a] * x[0] + trig->sine[a] * x[1]));
+    return sum;
+}
+
+/* Down: the hip below `fall_height` leg lengths, or the trunk on the ground. */
+static inline mask scene_fallen(const scene_body *b, const lanes *s, const scene_trig *trig,
+                                lanes fall_height)
+{
+    return mask_less(s[1], fall_height * b->leg) |
+           mask_less_equal(s[1] + b->trunk * trig->cosine[0], lanes_of(0));
+}
+/* Largest speed of the translation coordinates (the trunk's x and z). */
+static inline lanes scene_translation_speed(const scene_body *b, const lanes *w,
+                                            const scene_trig *trig)
+{
+    const lanes turn = b->trunk * w[2];
+    return lanes_max(lanes_abs(w[0] - turn * trig->cosine[0]),
+                     lanes_abs(w[1] - turn * trig->sine[0]));
+}
+
+#endif

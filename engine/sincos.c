@@ -1,0 +1,10 @@
+/* sincos.c - the kernels' sine and cosine for one angle. */
+#define STANCE_LANES 1
+#include "stance.h"
+
+#include "core/sincos.h"
+
+void stance_sincos(double angle, double *sine, double *cosine)
+{
+    lanes_sincos(angle, sine, cosine);
+}

@@ -1,0 +1,260 @@
+/* stance.h - the engine's one public header: scenes, cases, kernels and control design.
+ *
+ * The engine knows no files, no terminals, no MPI. Everything is SI (m, kg, s, N, rad), `double`
+ * only, row-major, and free of global state; every function may be called from several threads.
+ * Functions that can fail return a `stance_error`; results leave by pointer and are defined only
+ * when STANCE_OK is returned.
+ */
+#ifndef STANCE_H
+#define STANCE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    STANCE_MAX_COORDINATES = 5,
+    STANCE_MAX_CONTACTS = 2,
+    STANCE_MAX_ACTUATORS = 2,
+    STANCE_MAX_POSTURE = 3, /* coordinates that a posture law acts on */
+    STANCE_MAX_ROBOT = 8,   /* parameters of a scene's body */
+    STANCE_MAX_POINTS = 8,  /* points of a stick figure */
+};
+
+#define STANCE_GRAVITY 9.81 /* m/s^2 */
+
+/* ---- errors: one table gives the enumeration and the text --------------------------------- */
+
+#define STANCE_ERRORS(X)                                                                           \
+    X(OK, "no error")                                                                              \
+    X(NO_EQUILIBRIUM, "no such equilibrium exists")                                                \
+    X(BAD_ARGUMENT, "an argument is out of range")                                                 \
+    X(UNCONTROLLABLE, "the linearised system is not controllable")                                 \
+    X(BAD_POLES, "the poles cannot be placed")                                                     \
+    X(NOT_CONVERGED, "an iteration did not converge")                                              \
+    X(NUMERICAL, "a numerical library reported a failure")                                         \
+    X(NO_MEMORY, "out of memory")
+
+typedef enum stance_error {
+#define STANCE_ERROR_ENUM(name, text) STANCE_##name,
+    STANCE_ERRORS(STANCE_ERROR_ENUM)
+#undef STANCE_ERROR_ENUM
+} stance_error;
+
+/* Text of an error; never NULL. */
+const char *stance_error_text(stance_error error);
+
+/* A sentence that says what exactly failed; written by functions that take it, may be NULL. */
+typedef struct stance_message {
+    char text[240];
+} stance_message;
+
+/* ---- scenes: what is simulated -------------------------------------------------------------- */
+
+typedef struct stance_quantity {
+    const char *name, *unit, *text;
+    double fallback;  /* default */
+    double low, high; /* admitted range, both ends included */
+} stance_quantity;
+
+/* A position of rest on one contact, with the actuator torques that hold it. */
+typedef struct stance_equilibrium {
+    int support; /* index of the contact that carries the robot */
+    double position[STANCE_MAX_COORDINATES];
+    double torque[STANCE_MAX_ACTUATORS]; /* N m */
+} stance_equilibrium;
+
+/* What fixes a member of the family of equilibria: two numbers of (theta, q1, q2); NAN where not
+ * given. `lower` picks the arcsine branch with the hip below the foot. */
+typedef struct stance_equilibrium_choice {
+    int support; /* contact index, 0-based */
+    double posture[STANCE_MAX_POSTURE];
+    bool lower;
+} stance_equilibrium_choice;
+
+typedef struct stance_scene {
+    const char *name, *text;
+    int coordinates, contacts, actuators, postures, robot_count;
+    const stance_quantity *robot;       /* [robot_count] */
+    const stance_quantity *coordinate;  /* [coordinates] name, unit, text; ranges of initial values */
+    const char *const *contact_name;    /* [contacts] */
+    const char *const *actuator_name;   /* [actuators] */
+    const int *posture;                 /* [postures] indices into the coordinates */
+    /* Gap of each contact above the ground, m. position[coordinates], gap[contacts]. */
+    void (*gaps)(const double *robot, const double *position, double *gap);
+    /* Position (x, z) and velocity of a contact point. */
+    void (*contact_point)(const double *robot, const double *position, const double *velocity,
+                          int contact, double point[2], double speed[2]);
+    /* Replaces the translation so that contact `support` stands at rest at the origin. */
+    void (*stand)(const double *robot, int support, double *position, double *velocity);
+    /* Stick figure: a polyline of `n` points (x, z); returns n <= STANCE_MAX_POINTS. */
+    int (*figure)(const double *robot, const double *position, double points[][2]);
+    /* Height (hip, m) that `fell` is judged by and the length that it is measured in. */
+    void (*height)(const double *robot, const double *position, double *height, double *length);
+    double (*energy)(const double *robot, const double *position, const double *velocity);
+    /* NULL where a scene has none. */
+    stance_error (*equilibrium)(const double *robot, const stance_equilibrium_choice *choice,
+                                stance_equilibrium *result, stance_message *message);
+    /* Pinned at the support contact: d/dt (dp, dp') = A (dp, dp') + B dtorque, p the posture;
+     * A[2p][2p], B[2p][actuators], exact derivatives. NULL where a scene has none. */
+    stance_error (*linearise)(const double *robot, const stance_equilibrium *equilibrium,
+                              double *A, double *B);
+} stance_scene;
+
+/* The scenes there are, NULL-terminated; and one by name, or NULL. */
+const stance_scene *const *stance_scenes(void);
+const stance_scene *stance_scene_find(const char *name);
+
+/* ---- cases: one simulation ------------------------------------------------------------------ */
+
+typedef enum stance_status { STANCE_PENDING, STANCE_DONE, STANCE_FAILED } stance_status;
+
+typedef enum stance_outcome {
+    STANCE_NONE,
+    STANCE_STABILISED,
+    STANCE_FELL,
+    STANCE_RESTED,
+    STANCE_UNDECIDED,
+} stance_outcome;
+
+/* What an outcome rests on: simulated to its end, or inferred from where the state had come. */
+typedef enum stance_evidence {
+    STANCE_EVIDENCE_NONE,
+    STANCE_SIMULATED,
+    STANCE_INFERRED,
+} stance_evidence;
+
+/* Why a case has status FAILED: one table gives the enumeration, the name and the text. */
+#define STANCE_FAILURES(X)                                                                         \
+    X(NONE, none, "the case did not fail")                                                         \
+    X(NEWTON, newton, "the implicit step did not converge, nor did any subdivision of it")        \
+    X(NOT_FINITE, not_finite, "the state left the finite numbers")                                 \
+    X(ANGLE, angle, "an angle left the range in which sine and cosine are defined (1e4 rad)")      \
+    X(CONTACT, contact, "the contact problem of a step has no solution to tolerance")              \
+    X(INITIAL, initial, "the initial state or the controller does not exist for this case")
+
+typedef enum stance_failure {
+#define STANCE_FAILURE_ENUM(NAME, name, text) STANCE_FAILURE_##NAME,
+    STANCE_FAILURES(STANCE_FAILURE_ENUM)
+#undef STANCE_FAILURE_ENUM
+} stance_failure;
+
+/* Trajectory buffers of one case, owned by the caller; rows beyond `rows` are left untouched.
+ * Row k belongs to the step that ends nearest to k * interval. */
+typedef struct stance_trajectory {
+    double interval; /* s, > 0 */
+    int64_t rows;    /* number of rows that fit */
+    double *position, *velocity; /* [rows][coordinates] */
+    double *torque;              /* [rows][actuators] as applied in the step that ends there */
+    double *force;               /* [rows][contacts][2] N: normal, tangential; mean since the row before */
+    double *gap;                 /* [rows][contacts] m */
+} stance_trajectory;
+
+typedef struct stance_case {
+    double robot[STANCE_MAX_ROBOT];
+    double friction;      /* Coulomb coefficient, >= 0 */
+    double restitution;   /* Newton's, 0 ... 1 */
+    uint32_t contacts;    /* bit c: contact c may touch the ground */
+    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
+
+    /* torque = clip(feedforward - gain * (posture - target, rates) + noise, +-torque_limit) */
+    double feedforward[STANCE_MAX_ACTUATORS];
+    double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
+    double target[STANCE_MAX_POSTURE];
+    double torque_limit;  /* N m, > 0, may be INFINITY */
+    double noise;         /* N m, half-width of uniform noise, 0 when continuous */
+    int64_t sample_every; /* steps per sample, held between; 0: acts continuously inside the step */
+
+    double step;   /* s */
+    int64_t steps; /* length of the run */
+
+    bool settle;         /* judge `stabilised` and `rested` on the way and stop there */
+    bool has_target;     /* without one nothing is ever `stabilised` */
+    int support;         /* contact that a stabilised robot stands on, or -1 */
+    double settle_angle; /* rad */
+    double settle_rate;  /* rad/s, and m/s for the translation */
+    double settle_hold;  /* s */
+    double fall_height;  /* in lengths of the scene, see stance_scene.height */
+
+    uint64_t seed, grid_index, sample_index; /* key of the random numbers */
+    stance_trajectory *trajectory;           /* NULL: not recorded */
+} stance_case;
+
+typedef struct stance_result {
+    int32_t status;  /* stance_status */
+    int32_t outcome; /* stance_outcome */
+    int32_t evidence; /* stance_evidence */
+    int32_t failure; /* stance_failure */
+    double end_time, settle_time, fall_time; /* s; NAN where not reached */
+    int64_t steps, iterations; /* steps taken; Newton iterations summed over them */
+    int64_t ambiguous_steps;   /* steps whose contact problem had several solutions */
+    int64_t subdivided_steps;  /* steps that converged only after being subdivided */
+    double max_penetration;    /* m, at the ends of steps */
+    double slip_distance;      /* m, summed over contacts */
+    double peak_torque;        /* N m */
+    double friction_used;      /* largest |rT|/rN */
+    double impact_energy;      /* J, largest kinetic energy that contact impulses added in one step */
+    double projection_energy;  /* J, sum of |energy| added by position projection */
+    double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
+} stance_result;
+
+/* ---- kernels: how it is stepped ------------------------------------------------------------- */
+
+typedef struct stance_method {
+    const char *name, *text;
+    int order_smooth; /* order of convergence while the contact mode lasts */
+} stance_method;
+
+/* One compiled stepping core: a scene, a method, a number of lanes. */
+typedef struct stance_kernel {
+    const stance_scene *scene;
+    const stance_method *method;
+    const char *isa; /* "scalar", "sse2", "avx2", "avx512", "neon" */
+    int lanes;
+    /* Runs n cases; cases[i] -> results[i]. The results do not depend on lanes, order or n. */
+    void (*run)(const stance_case *cases, stance_result *results, size_t n);
+} stance_kernel;
+
+/* The methods there are, NULL-terminated; and one by name, or NULL. */
+const stance_method *const *stance_methods(void);
+const stance_method *stance_method_find(const char *name);
+/* The kernel for a scene and a method; isa NULL: the widest that this processor runs. NULL when
+ * there is none. */
+const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_method *method,
+                                        const char *isa);
+/* Name of the instruction set that comes at `rank` (0: widest) among those that this build has and
+ * this processor runs; NULL past the last. */
+const char *stance_isa(int rank);
+
+/* Sine and cosine as the kernels compute them (same bits on every processor): absolute error
+ * below 2.5e-16 for |angle| <= 1e4, NAN beyond. */
+void stance_sincos(double angle, double *sine, double *cosine);
+
+/* ---- control design ------------------------------------------------------------------------- */
+
+/* Singular values sv[n] (descending) of (B, AB, ..., A^(n-1)B), each column block scaled so that
+ * the rank does not depend on the unit of time; rank counts sv > tolerance * sv[0].
+ * A[n][n], B[n][m]. */
+stance_error stance_kalman(int n, int m, const double *A, const double *B, double *sv, int *rank);
+
+/* Robust pole assignment after Kautsky, Nichols and Van Dooren (1985, method 0), iterated until
+ * the eigenvectors no longer change: K[m][n] with eig(A - B K) = re + i im. Poles: n values,
+ * conjugate pairs complete, multiplicity at most rank B. sweeps (out, may be NULL): iterations;
+ * condition (out, may be NULL): 2-norm condition number of the eigenvectors. */
+stance_error stance_place(int n, int m, const double *A, const double *B, const double *re,
+                          const double *im, double *K, int *sweeps, double *condition,
+                          stance_message *message);
+
+/* Eigenvalues of A[n][n], sorted by real then imaginary part. */
+stance_error stance_eigenvalues(int n, const double *A, double *re, double *im);
+
+/* Exact discretisation under a zero-order hold: Ad[n][n], Bd[n][m]. */
+stance_error stance_discretise(int n, int m, const double *A, const double *B, double T,
+                               double *Ad, double *Bd);
+
+/* Smallest sample time T* at which Ad(T) - Bd(T) K leaves the unit circle; 0 when the continuous
+ * loop is unstable, INFINITY when none is found up to `longest` seconds. */
+stance_error stance_critical_sample_time(int n, int m, const double *A, const double *B,
+                                         const double *K, double longest, double *T);
+
+#endif

@@ -1,0 +1,86 @@
+/* main.c - the program: finds the command and runs it. */
+#include "build_info.h"
+#include "command.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct command *const commands[] = {
+    &command_check,   &command_design, &command_run,     &command_status, &command_summary,
+    &command_plot,    &command_compare, &command_describe, &command_bench,
+};
+enum { COMMANDS = sizeof commands / sizeof commands[0] };
+
+static void print_usage(FILE *out)
+{
+    fputs("stance maps where a legged robot keeps its balance.\n\n"
+          "usage: stance COMMAND [ARGUMENTS]\n\n",
+          out);
+    for (size_t i = 0; i < COMMANDS; i++) {
+        fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
+    }
+    fputs("\nstance COMMAND -h explains a command; stance --version says what was built.\n"
+          "Exit codes: 0 done, 1 some cases failed numerically (compare: files differ),\n"
+          "2 bad use or bad scenario, 3 input or output failed, 4 interrupted and resumable.\n",
+          out);
+}
+
+static void print_version(void)
+{
+    char libraries[BUILD_LIBRARIES_SIZE];
+    build_libraries(libraries);
+    printf("stance %s (revision %s)\n%s\n%s\n%s\n", STANCE_VERSION, build_revision(),
+           build_compiler(), build_flags(), libraries);
+}
+
+static int unknown_command(const char *word)
+{
+    const char *names[COMMANDS];
+    for (size_t i = 0; i < COMMANDS; i++) {
+        names[i] = commands[i]->name;
+    }
+    const char *near = nearest_word(word, names, COMMANDS);
+    fprintf(stderr, "stance: unknown command '%s'", word);
+    if (near) {
+        fprintf(stderr, "; did you mean '%s'?\n", near);
+    } else {
+        fprintf(stderr, "; stance -h lists the commands\n");
+    }
+    return EXIT_USAGE;
+}
+
+/* What was printed must have arrived, or the exit code says so. */
+static int checked_output(int code)
+{
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fputs("stance: cannot write to standard output\n", stderr);
+        return code == EXIT_DONE ? EXIT_IO : code;
+    }
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    /* A write beyond the file size limit is to fail with an error, not to kill the process. */
+    signal(SIGXFSZ, SIG_IGN);
+    if (argc < 2) {
+        print_usage(stderr);
+        return EXIT_USAGE;
+    }
+    if (strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "--help") == 0 ||
+        strcmp(argv[1], "help") == 0) {
+        print_usage(stdout);
+        return checked_output(EXIT_DONE);
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        print_version();
+        return checked_output(EXIT_DONE);
+    }
+    for (size_t i = 0; i < COMMANDS; i++) {
+        if (strcmp(argv[1], commands[i]->name) == 0) {
+            return checked_output(commands[i]->run(argc - 1, argv + 1));
+        }
+    }
+    return unknown_command(argv[1]);
+}

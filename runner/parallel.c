@@ -1,0 +1,252 @@
+/* parallel.c - the one file that talks to MPI; without STANCE_MPI it does for one rank. */
+#include "parallel.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#ifdef STANCE_MPI
+#include <mpi.h>
+#endif
+
+struct parallel_shared {
+#ifdef STANCE_MPI
+    MPI_Win window;
+#endif
+    int64_t *counter; /* [COUNTERS] on rank 0, else none */
+};
+
+struct parallel parallel_alone(void)
+{
+    return (struct parallel){.rank = 0, .size = 1};
+}
+
+void parallel_host(char *name, size_t size)
+{
+    if (gethostname(name, size) != 0) {
+        snprintf(name, size, "unknown");
+    }
+    name[size - 1] = '\0';
+}
+
+#ifdef STANCE_MPI
+
+/* MPI counts in int: longer messages go in pieces. */
+enum { PIECE = 1 << 28 };
+
+struct parallel parallel_start(void)
+{
+    struct parallel parallel = parallel_alone();
+    MPI_Init(NULL, NULL);
+    MPI_Comm_rank(MPI_COMM_WORLD, &parallel.rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &parallel.size);
+    return parallel;
+}
+
+void parallel_finish(struct parallel *parallel)
+{
+    parallel_unshare(parallel);
+    MPI_Finalize();
+}
+
+static int piece_of(size_t left)
+{
+    return left < PIECE ? (int)left : PIECE;
+}
+
+void parallel_broadcast(const struct parallel *parallel, void *data, size_t size)
+{
+    char *bytes = data;
+    if (parallel->size == 1) {
+        return;
+    }
+    for (size_t at = 0; at < size; at += PIECE) {
+        MPI_Bcast(bytes + at, piece_of(size - at), MPI_BYTE, 0, MPI_COMM_WORLD);
+    }
+}
+
+void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all)
+{
+    if (parallel->size == 1) {
+        memcpy(all, data, size);
+        return;
+    }
+    MPI_Gather(data, (int)size, MPI_BYTE, all, (int)size, MPI_BYTE, 0, MPI_COMM_WORLD);
+}
+
+void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,
+                           size_t first, size_t count)
+{
+    char *bytes = array;
+    for (int rank = 1; rank < parallel->size; rank++) {
+        uint64_t block[2] = {first * element, count * element};
+        if (parallel->rank == rank) {
+            MPI_Send(block, 2, MPI_UINT64_T, 0, 0, MPI_COMM_WORLD);
+        } else if (parallel->rank == 0) {
+            MPI_Recv(block, 2, MPI_UINT64_T, rank, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        } else {
+            continue;
+        }
+        for (uint64_t at = 0; at < block[1]; at += PIECE) {
+            char *piece = bytes + block[0] + at;
+            if (parallel->rank == rank) {
+                MPI_Send(piece, piece_of(block[1] - at), MPI_BYTE, 0, 1, MPI_COMM_WORLD);
+            } else {
+                MPI_Recv(piece, piece_of(block[1] - at), MPI_BYTE, rank, 1, MPI_COMM_WORLD,
+                         MPI_STATUS_IGNORE);
+            }
+        }
+    }
+}
+
+void parallel_sum(const struct parallel *parallel, uint64_t *number, int n)
+{
+    if (parallel->size > 1) {
+        MPI_Allreduce(MPI_IN_PLACE, number, n, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+    }
+}
+
+bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size)
+{
+    if (parallel->size == 1) {
+        return good;
+    }
+    int lowest = good ? parallel->size : parallel->rank;
+    MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (lowest == parallel->size) {
+        return true;
+    }
+    MPI_Bcast(text, (int)size, MPI_BYTE, lowest, MPI_COMM_WORLD);
+    return false;
+}
+
+bool parallel_share(struct parallel *parallel)
+{
+    struct parallel_shared *shared = calloc(1, sizeof *shared);
+    char none[1] = "";
+    if (!parallel_agree(parallel, shared != NULL, none, sizeof none)) {
+        free(shared);
+        return false;
+    }
+    MPI_Aint size = parallel->rank == 0 ? COUNTERS * (MPI_Aint)sizeof(int64_t) : 0;
+    MPI_Win_allocate(size, sizeof(int64_t), MPI_INFO_NULL, MPI_COMM_WORLD, &shared->counter,
+                     &shared->window);
+    MPI_Win_lock_all(0, shared->window);
+    if (parallel->rank == 0) {
+        memset(shared->counter, 0, (size_t)size);
+        MPI_Win_sync(shared->window);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    parallel->shared = shared;
+    return true;
+}
+
+void parallel_unshare(struct parallel *parallel)
+{
+    if (parallel->shared) {
+        MPI_Win_unlock_all(parallel->shared->window);
+        MPI_Win_free(&parallel->shared->window);
+        free(parallel->shared);
+        parallel->shared = NULL;
+    }
+}
+
+/* One-sided, so nobody serves the counters. Some networks move them on only while rank 0 is
+ * inside MPI: rank 0 must come here often, too. */
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter,
+                     int64_t value)
+{
+    int64_t before = 0;
+    MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)counter, MPI_SUM,
+                     parallel->shared->window);
+    MPI_Win_flush(0, parallel->shared->window);
+    return before;
+}
+
+void parallel_library(char *text, size_t size)
+{
+    char name[MPI_MAX_LIBRARY_VERSION_STRING];
+    int length;
+    MPI_Get_library_version(name, &length);
+    name[strcspn(name, ",\n")] = '\0';
+    snprintf(text, size, "%s", name);
+}
+
+#else
+
+struct parallel parallel_start(void)
+{
+    return parallel_alone();
+}
+
+void parallel_finish(struct parallel *parallel)
+{
+    parallel_unshare(parallel);
+}
+
+void parallel_broadcast(const struct parallel *parallel, void *data, size_t size)
+{
+    (void)parallel, (void)data, (void)size;
+}
+
+void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all)
+{
+    (void)parallel;
+    memcpy(all, data, size);
+}
+
+void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,
+                           size_t first, size_t count)
+{
+    (void)parallel, (void)array, (void)element, (void)first, (void)count;
+}
+
+void parallel_sum(const struct parallel *parallel, uint64_t *number, int n)
+{
+    (void)parallel, (void)number, (void)n;
+}
+
+bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size)
+{
+    (void)parallel, (void)text, (void)size;
+    return good;
+}
+
+bool parallel_share(struct parallel *parallel)
+{
+    struct parallel_shared *shared = malloc(sizeof *shared);
+    int64_t *counter = calloc(COUNTERS, sizeof *counter);
+    if (!shared || !counter) {
+        free(shared);
+        free(counter);
+        return false;
+    }
+    shared->counter = counter;
+    parallel->shared = shared;
+    return true;
+}
+
+void parallel_unshare(struct parallel *parallel)
+{
+    if (parallel->shared) {
+        free(parallel->shared->counter);
+        free(parallel->shared);
+        parallel->shared = NULL;
+    }
+}
+
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter,
+                     int64_t value)
+{
+    int64_t before = parallel->shared->counter[counter];
+    parallel->shared->counter[counter] += value;
+    return before;
+}
+
+void parallel_library(char *text, size_t size)
+{
+    snprintf(text, size, "no MPI");
+}
+
+#endif

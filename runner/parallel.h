@@ -1,0 +1,58 @@
+/* parallel.h - the ranks of a job and what they tell each other.
+ *
+ * parallel.c is the one file that includes mpi.h. Built without STANCE_MPI, or before
+ * parallel_start, there is one rank and everything here is trivial. A failure of MPI itself ends
+ * the job (MPI's default handler): no rank could tell the others.
+ */
+#ifndef STANCE_RUNNER_PARALLEL_H
+#define STANCE_RUNNER_PARALLEL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Numbers that all ranks share while cases are computed; they live on rank 0. */
+enum parallel_counter { COUNTER_CHUNK, COUNTER_STOP, COUNTER_DONE, COUNTERS };
+
+struct parallel_shared; /* the counters' memory, private to parallel.c */
+
+struct parallel {
+    int rank, size;
+    struct parallel_shared *shared;
+};
+
+/* One rank, without starting MPI. */
+struct parallel parallel_alone(void);
+/* Starts MPI: once in a process. */
+struct parallel parallel_start(void);
+/* Ends MPI; every rank must come here. */
+void parallel_finish(struct parallel *parallel);
+
+/* Collective: `size` bytes of rank 0 reach every rank. */
+void parallel_broadcast(const struct parallel *parallel, void *data, size_t size);
+/* Collective: `size` bytes of each rank, in order of rank, in all[ranks * size] on rank 0
+ * (elsewhere `all` may be NULL). */
+void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all);
+/* Collective: the caller's block [first, first + count) of an array of `element` bytes reaches
+ * rank 0's array; the blocks of all ranks must tile it in order of rank. */
+void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,
+                           size_t first, size_t count);
+/* Collective: sums each of n numbers over the ranks, in place, on every rank. */
+void parallel_sum(const struct parallel *parallel, uint64_t *number, int n);
+/* Collective: true when every rank says true. Else `text` (of `size` bytes, the same on every
+ * rank) becomes that of the lowest rank that said false. */
+bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size);
+
+/* Collective: begin and end the use of the counters, all zero at first. false: no memory. */
+bool parallel_share(struct parallel *parallel);
+void parallel_unshare(struct parallel *parallel);
+/* Not collective: adds to a counter and returns what it held before; adding 0 reads it. */
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter,
+                     int64_t value);
+
+/* Name of this machine. */
+void parallel_host(char *name, size_t size);
+/* Name and version of the MPI library, or "no MPI". */
+void parallel_library(char *text, size_t size);
+
+#endif

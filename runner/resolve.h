@@ -1,0 +1,32 @@
+/* resolve.h - from the numbers of one case to what the engine runs.
+ *
+ * Split in two so that results do not depend on the processor: `resolve_design` uses LAPACK and
+ * libm and may differ in the last bit between machines; it is computed once per distinct design,
+ * stored in the file, and read from there. `resolve_case` uses only IEEE arithmetic and the
+ * engine's own sine and cosine.
+ */
+#ifndef STANCE_RUNNER_RESOLVE_H
+#define STANCE_RUNNER_RESOLVE_H
+
+#include "scenario.h"
+
+/* What depends on fields marked `design` in the schema only (robot.*, initial.equilibrium.*,
+ * initial.support_foot, controller.kind, .design, .model.*, .equilibrium.*, .poles, .gains). */
+struct resolved_design {
+    double start[STANCE_MAX_COORDINATES];          /* initial equilibrium, foot at the origin; NAN if none */
+    double equilibrium[STANCE_MAX_COORDINATES];    /* controller's equilibrium; NAN if none */
+    double torque[STANCE_MAX_ACTUATORS];           /* feedforward, N m */
+    double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
+};
+
+/* false: `message` says what is impossible (no such equilibrium, poles not placeable, ...). */
+bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
+                    struct resolved_design *design, stance_message *message);
+
+/* Fills *out (trajectory NULL). Checks the initial state: a gap below -1e-9 m of a contact that
+ * may touch is an error, and so is a state that is not finite. `index` is the flat case index. */
+bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
+                  const struct resolved_design *design, uint64_t seed, uint64_t index,
+                  stance_case *out, stance_message *message);
+
+#endif

@@ -1,0 +1,131 @@
+/* scenario.h - a scenario file, read, checked and resolved.
+ *
+ * scenario text -> tree of nodes with line and column (libyaml) -> checked against one table of
+ * keys (schema.c: path, type, unit, default, range, documentation) -> struct scenario.
+ * Nothing here runs a simulation.
+ */
+#ifndef STANCE_RUNNER_SCENARIO_H
+#define STANCE_RUNNER_SCENARIO_H
+
+#include "../engine/stance.h"
+
+#include <stdio.h>
+
+enum {
+    SCENARIO_MAX_AXES = 24,
+    SCENARIO_MAX_PATHS = 8,          /* paths that one axis varies together */
+    SCENARIO_MAX_STATES = 2 * STANCE_MAX_COORDINATES,
+    SCENARIO_MAX_GAINS = STANCE_MAX_ACTUATORS * 2 * STANCE_MAX_POSTURE,
+    SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
+};
+
+enum scenario_law { LAW_NONE, LAW_HOLD, LAW_STATE_FEEDBACK };
+enum scenario_design { DESIGN_PLACE, DESIGN_GAINS };
+enum scenario_record { RECORD_NONE, RECORD_ALL, RECORD_LIST };
+
+/* Which member of the family of equilibria, as the user gave it: NAN where not given. */
+struct scenario_equilibrium {
+    bool given;
+    double posture[STANCE_MAX_POSTURE]; /* theta, q1, q2 for the biped */
+    int lower;                          /* branch: 0 upper (default), 1 lower */
+};
+
+/* Everything that one case needs, as numbers: a sweep changes fields of this struct only, found
+ * by their offset. Enumerations and indices are ints, all else double. */
+struct scenario_values {
+    double robot[STANCE_MAX_ROBOT];
+    double friction, restitution;
+    int contacts; /* bit mask */
+
+    struct scenario_equilibrium equilibrium; /* initial.equilibrium */
+    int support_foot;                        /* 1-based contact; 0: none */
+    double offset[SCENARIO_MAX_STATES];      /* positions, then velocities, in the scene's order */
+    int state_given;                         /* initial.state instead of an equilibrium */
+    double state[SCENARIO_MAX_STATES];
+
+    int law;                                  /* enum scenario_law */
+    int design;                               /* enum scenario_design */
+    double model[STANCE_MAX_ROBOT];           /* the robot that the design believes in; NAN: as robot */
+    struct scenario_equilibrium design_point; /* controller.equilibrium; not given: initial's */
+    double pole_re[SCENARIO_MAX_POLES], pole_im[SCENARIO_MAX_POLES];
+    double gains[SCENARIO_MAX_GAINS];         /* [actuators][2 postures] */
+    double kp, kd;                            /* hold */
+    double target[STANCE_MAX_POSTURE];        /* hold: controller.target; NAN: the initial angles */
+    double sample_time;                       /* 0: continuous */
+    double torque_limit;                      /* INFINITY: none */
+    double noise;
+
+    int method; /* index into stance_methods() */
+    double step;
+
+    double stop_time;
+    int settle; /* 1: judge on the way (default), 0: `off` */
+    double settle_angle, settle_rate, settle_hold, fall_height;
+};
+
+struct scenario_field; /* a row of the schema, see schema.h */
+
+/* One axis of the grid: `count` points; along it `paths` fields change together. */
+struct scenario_axis {
+    char name[96];     /* the path as written (the first one), used as dimension name */
+    char unit[24];     /* of the first path, "1" where it has none */
+    char text[160];    /* its documentation, as long_name */
+    int paths;
+    char path[SCENARIO_MAX_PATHS][96];
+    size_t offset[SCENARIO_MAX_PATHS]; /* of the field in struct scenario_values */
+    bool integer[SCENARIO_MAX_PATHS];  /* the field is an int (an enumeration: words below) */
+    bool words;                        /* the axis lists strings */
+    bool design;                       /* some path changes what the design depends on */
+    size_t count;
+    /* value[point * paths + k] for lists; for ranges NULL: computed from `from`, `to`, `log`.
+     * Words are stored as the enumeration's numbers, their text in word[point * paths + k]. */
+    double *value;
+    char **word;
+    double from, to;
+    bool log;
+    int line, column;
+};
+
+struct scenario {
+    char file[512];
+    char name[128]; /* file name without directory and .yaml */
+    char title[256];
+    const stance_scene *scene;
+    struct scenario_values base;
+    uint64_t seed;
+
+    int axes;
+    struct scenario_axis axis[SCENARIO_MAX_AXES];
+    uint64_t cases; /* product of the counts; 1 without a sweep */
+
+    double record_every;       /* s; 0: no trajectories */
+    enum scenario_record record_cases;
+    uint64_t *record_list;     /* sorted, unique, all < cases */
+    size_t record_count;
+    uint32_t answers;          /* bit per row of the answer table in store.h; all ones by default */
+
+    char *text;      /* resolved scenario: after --set, as YAML; what the file stores and hashes */
+    /* Where fields stand, for errors found later (design, initial state). */
+    int initial_line, initial_column, controller_line, controller_column;
+};
+
+/* One error or many on `errors` as "FILE:LINE:COLUMN: message"; false then, and *s is empty.
+ * `sets`: PATH=VALUE strings of --set. Reads a file, or (text not NULL) that text under the name
+ * `file`. */
+bool scenario_read(struct scenario *s, const char *file, const char *text, const char *const *sets,
+                   size_t set_count, FILE *errors);
+void scenario_free(struct scenario *s);
+
+/* Value k of point `i` of an axis (k < paths); for words the enumeration's number. */
+double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);
+/* Text of that value, for messages and pictures. */
+void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer, size_t size);
+
+/* Fields of case `index` (flat, row-major in the order of the axes): base, then the axes. */
+void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);
+
+/* Documentation of the format from the table: all of it, one path, or JSON Schema.
+ * false: no such path (a message with the nearest one on `errors`). */
+bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *errors);
+
+#endif
