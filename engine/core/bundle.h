@@ -285,7 +285,9 @@ static inline struct verdict bundle_judge(struct bundle *b, mask live, const mas
     }
     const lanes error = lanes_max(angle, speed), one = lanes_of(1);
     const mask at_target = alone & mask_less(lanes_of(0), b->has_target) & mask_less_equal(error, one);
-    const mask still = LANES_NOT(at_target) & mask_less_equal(all, one);
+    /* On the way to the target is not `elsewhere`, however slow. */
+    const mask elsewhere = LANES_NOT(alone & mask_less(lanes_of(0), b->has_target));
+    const mask still = elsewhere & mask_less_equal(all, one);
     const mask on_way = mask_less(lanes_of(0), b->judge_on_way);
 
     struct verdict v;

@@ -33,6 +33,7 @@
 #define STEP_TOLERANCE 1e-7   /* last Newton correction, m/s and rad/s; the error left is its square */
 #define STEP_CLOSED 1e-12     /* m: a contact this close counts as closed */
 #define STEP_PROJECTION 1e-13 /* m: gap error left by the projection */
+#define STEP_FARTHEST 0.3     /* rad: a projection that turns the robot further is refused */
 #define STEP_APPROACH 1e-9    /* m/s: a closed contact that approaches faster is an impact */
 
 /* torque = clip(feedforward - gain (posture - target, rate)), see stance_case. */
@@ -275,8 +276,10 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
     return size / speed;
 }
 
-/* Moves the end position until loaded contacts have their gap and no contact penetrates. */
-static inline void iterate_project(const struct setting *set, const struct motion *from, lanes h,
+/* Moves the end position until loaded contacts have their gap and no contact penetrates. Returns
+ * the lanes where that needed no more than STEP_FARTHEST of turning: elsewhere the step is too
+ * long for its velocity. */
+static inline mask iterate_project(const struct setting *set, const struct motion *from, lanes h,
                                    mask run, struct iterate *it, lanes *energy)
 {
     lanes wanted[SCENE_CONTACTS], error[SCENE_CONTACTS];
@@ -288,8 +291,10 @@ static inline void iterate_project(const struct setting *set, const struct motio
         held[c] = run & it->active[c] & mask_less(lanes_of(0), it->r[c][0]);
     }
     *energy = lanes_of(0);
+    lanes turned = lanes_of(0);
+    mask todo = run;
     for (int round = 0; round < 12; round++) {
-        mask todo = MASK_NONE;
+        todo = MASK_NONE;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
             const mask touching = run & mask_less(lanes_of(0), set->may_touch[c]) &
                                   (it->active[0] | it->active[1]);
@@ -299,7 +304,7 @@ static inline void iterate_project(const struct setting *set, const struct motio
             todo |= mask_less(lanes_of(STEP_PROJECTION), lanes_abs(error[c]));
         }
         if (!mask_any(todo))
-            return;
+            break;
         lanes G[2][2], multiplier[2];
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int k = 0; k < SCENE_CONTACTS; k++) {
@@ -318,6 +323,8 @@ static inline void iterate_project(const struct setting *set, const struct motio
             d[i] = choose(todo, it->lift[0][i] * multiplier[0] + it->lift[1][i] * multiplier[1],
                           lanes_of(0));
             it->s1[i] = choose(todo, it->s1[i] + d[i], it->s1[i]);
+            if (i >= SCENE_COORDINATES - SCENE_ANGLES)
+                turned += lanes_abs(d[i]);
         }
         *energy += lanes_abs(scene_energy_change(&set->body, &it->end, it->w, d));
         for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -337,6 +344,7 @@ static inline void iterate_project(const struct setting *set, const struct motio
             }
         }
     }
+    return run & LANES_NOT(todo) & mask_less(turned, lanes_of(STEP_FARTHEST));
 }
 
 /* Kinetic energy that the contact impulses added: r.U - x^T A x / 2, x = A^-1 H^T r. */
@@ -408,29 +416,35 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
                           LANES_NOT(news) & LANES_NOT(it.unsolved);
         running &= LANES_NOT(done);
     }
-    const mask converged = run & LANES_NOT(running);
+    mask converged = run & LANES_NOT(running), touching = MASK_NONE;
     if (METHOD_THETA != 1)
         scene_trigonometry(it.s1, &it.end);
-
-    report->iterations = iterations;
-    report->impact_energy = report->projection_energy = lanes_of(0);
-    report->ambiguous = it.ambiguous & converged;
-    mask loaded_impact = MASK_NONE, touching = MASK_NONE;
+    lanes slip[SCENE_CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        const mask loaded = it.active[c] & mask_less(lanes_of(0), it.r[c][0]) & converged;
-        loaded_impact |= loaded & impact;
-        touching |= it.active[c] & converged;
         lanes u[2];
         scene_contact_velocity(&set->body, &it.end, c, it.w, u);
-        report->slip[c] = choose(loaded, h * lanes_abs(u[1]), lanes_of(0));
+        to->approach[c] = choose(converged, u[0], to->approach[c]);
+        slip[c] = h * lanes_abs(u[1]);
+        touching |= it.active[c] & converged;
+    }
+    lanes energy = lanes_of(0), projected = lanes_of(0);
+    if (mask_any(touching & impact))
+        energy = choose(touching & impact, impact_energy(set, &it), lanes_of(0));
+    if (mask_any(touching)) {
+        const mask near = iterate_project(set, from, h, touching, &it, &projected);
+        converged &= near | LANES_NOT(touching);
+    }
+
+    report->iterations = iterations;
+    report->impact_energy = energy;
+    report->projection_energy = projected;
+    report->ambiguous = it.ambiguous & converged;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask loaded = it.active[c] & mask_less(lanes_of(0), it.r[c][0]) & converged;
+        report->slip[c] = choose(loaded, slip[c], lanes_of(0));
         for (int a = 0; a < 2; a++)
             report->impulse[c][a] = choose(loaded, it.r[c][a], lanes_of(0));
-        to->approach[c] = choose(converged, u[0], to->approach[c]);
     }
-    if (mask_any(loaded_impact))
-        report->impact_energy = choose(loaded_impact, impact_energy(set, &it), lanes_of(0));
-    if (mask_any(touching))
-        iterate_project(set, from, h, touching, &it, &report->projection_energy);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         to->s[i] = choose(converged, it.s1[i], to->s[i]);
         to->w[i] = choose(converged, it.w[i], to->w[i]);
