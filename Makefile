@@ -1,33 +1,51 @@
 # stance: build, test, demonstrate. `make help` lists the targets.
 .DEFAULT_GOAL := all
-BUILD  ?= build
-PREFIX ?= /usr/local
-CC      = gcc
-MPI    ?= 1
-CFLAGS ?= -O2 -g
+BUILD   ?= build
+PREFIX  ?= /usr/local
+CC       = gcc
+MPI     ?= 1
+CFLAGS  ?= -O2 -g
+KERNEL_CFLAGS ?= -O3 -g
+PYTHON  ?= /usr/bin/python3
 
-WARNINGS  = -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
-STRICT    = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -fno-trapping-math
-ALLFLAGS  = $(CFLAGS) $(STRICT) $(WARNINGS) $(SANITIZE)
+WARNINGS = -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
+# The same bits on every machine: no contraction, no reassociation.
+STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -fno-trapping-math
 
-include packages.mk
+# ---- libraries: found with pkg-config and mpicc; MPI=0 builds for one rank with serial HDF5 ------
+PKG_CONFIG ?= pkg-config
+PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
+                libslicot-dev librandom123-dev libjansson-dev gnuplot-nox fonts-dejavu-core
+PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
+PACKAGES_LINT = clang-format clang-tidy cppcheck
+BUILD_TOOLS   = gcc make pkg-config
 
-# ---- the engine: a library without MPI, HDF5, YAML, files or terminals ------------------------
+ifeq ($(MPI),1)
+HDF5_PACKAGE = hdf5-openmpi
+MPI_CFLAGS   = -DSTANCE_MPI $(shell mpicc --showme:compile 2>/dev/null)
+MPI_LIBS     = $(shell mpicc --showme:link 2>/dev/null)
+else
+HDF5_PACKAGE = hdf5-serial
+endif
+LIBRARY_CFLAGS := $(shell $(PKG_CONFIG) --cflags $(HDF5_PACKAGE) yaml-0.1 jansson lapacke 2>/dev/null)
+LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson lapacke 2>/dev/null)
+PROGRAM_CFLAGS  = $(MPI_CFLAGS) $(LIBRARY_CFLAGS)
+LIBS            = $(LIBRARIES) -lhdf5_hl $(MPI_LIBS) -lslicot -llapack -lblas -lm
+
+ALLFLAGS = $(STRICT) $(WARNINGS) $(SANITIZE)
+
+# ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
 SCENES  = biped
 METHODS = implicit midpoint
 MACHINE := $(shell uname -m)
-ifeq ($(MACHINE),x86_64)
-ISAS    = scalar sse2 avx2 avx512
-endif
-ifeq ($(MACHINE),aarch64)
-ISAS    = scalar neon
-endif
-ISAS   ?= scalar
+ISAS_x86_64  = scalar sse2 avx2 avx512
+ISAS_aarch64 = scalar neon
+ISAS    := $(or $(ISAS_$(MACHINE)),scalar)
 isa_flags_scalar = -DSTANCE_LANES=1
 isa_flags_sse2   = -DSTANCE_LANES=2
 isa_flags_neon   = -DSTANCE_LANES=2
 isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2
-isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl -mprefer-vector-width=512
+isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl
 
 kernels := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i))))
 kernel_objects := $(kernels:%=$(BUILD)/kernel/%.o)
@@ -35,50 +53,117 @@ engine_sources := $(wildcard engine/*.c engine/control/*.c engine/scenes/*.c)
 engine_objects := $(engine_sources:%.c=$(BUILD)/%.o) $(kernel_objects)
 isa_list = -DSTANCE_ISA_LIST='$(foreach i,$(ISAS),X($(i)))'
 
-# ---- the program ------------------------------------------------------------------------------
+# ---- the program ---------------------------------------------------------------------------------
 program_sources := $(wildcard runner/*.c analysis/*.c)
 program_objects := $(program_sources:%.c=$(BUILD)/%.o)
+shared_objects   = $(filter-out $(BUILD)/runner/main.o,$(program_objects))
 
 REVISION := $(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)
 BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
-             -DSTANCE_CFLAGS='"$(CFLAGS) $(STRICT)"'
+             -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all install clean help
+.PHONY: all help packages demo test test-long bench lint sanitize install clean FORCE
 all: bin/stance
 
 bin/stance: $(program_objects) $(BUILD)/libstance.a
 	@mkdir -p $(@D)
-	$(LINK) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LDFLAGS) $(LIBS)
 
 $(BUILD)/libstance.a: $(engine_objects)
 	rm -f $@ && ar rcs $@ $^
 
 define kernel_rule
-$(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c
+$(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
-	$$(CC) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -DSTANCE_ISA=$(3) -MMD -c -o $$@ $$<
+	$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) \
+	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
 $(eval $(call kernel_rule,$(s),$(m),$(i))))))
 
-$(BUILD)/engine/%.o: engine/%.c
+$(BUILD)/engine/%.o: engine/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(ALLFLAGS) $(isa_list) $(LAPACK_CFLAGS) -MMD -c -o $@ $<
-$(BUILD)/runner/%.o: runner/%.c
+	$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(LIBRARY_CFLAGS) -MMD -c -o $@ $<
+$(BUILD)/runner/%.o: runner/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -c -o $@ $<
-$(BUILD)/analysis/%.o: analysis/%.c
+	$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -c -o $@ $<
+$(BUILD)/analysis/%.o: analysis/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -c -o $@ $<
+	$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -c -o $@ $<
 # What the build was is recorded in one object, made anew when the revision changes.
-$(BUILD)/runner/build_info.o: ALLFLAGS += $(BUILD_INFO)
+$(BUILD)/runner/build_info.o: EXTRA = $(BUILD_INFO)
+$(BUILD)/runner/build_info.o: $(BUILD)/revision
 $(BUILD)/revision: FORCE
 	@mkdir -p $(@D); echo '$(REVISION)' | cmp -s - $@ || echo '$(REVISION)' > $@
-$(BUILD)/runner/build_info.o: $(BUILD)/revision
-FORCE:
 
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
+# ---- tests ---------------------------------------------------------------------------------------
+test_sources  := $(wildcard tests/test_*.c)
+test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
+
+$(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MF $@.d -o $@ $< $(shared_objects) \
+	    $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
+
+# What Open MPI wants in a container, as root, on few cores.
+MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+                  OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
+
+test: packages-test
+	$(MAKE) bin/stance check
+check: $(test_programs)
+	@$(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) bash tests/run.sh
+test-long: packages-test
+	$(MAKE) bin/stance $(test_programs)
+	@$(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE_TEST_LONG=1 bash tests/run.sh
+
+# ---- what a new user types -----------------------------------------------------------------------
+# Installs Debian packages that are missing (as root or with sudo), else names them.
+packages packages-test: packages%:
+	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT))"; \
+	missing=; for p in $$need; do \
+	    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
+	[ -z "$$missing" ] && exit 0; \
+	if [ "$$(id -u)" = 0 ]; then as=; elif command -v sudo >/dev/null; then as=sudo; \
+	else echo "missing packages; install them as root: apt-get install$$missing" >&2; exit 1; fi; \
+	echo "installing$$missing"; \
+	$$as apt-get update -qq && DEBIAN_FRONTEND=noninteractive $$as apt-get install -y -qq --no-install-recommends $$missing >/dev/null
+
+CORES := $(shell nproc)
+demo: packages
+	$(MAKE) bin/stance
+	@mkdir -p results
+	$(MPI_ENVIRONMENT) mpirun -n $(CORES) bin/stance run --force scenarios/basin_one_foot.yaml
+	bin/stance summary results/basin_one_foot.h5
+	@echo; echo "The stability domain, drawn:"; bin/stance plot results/basin_one_foot.h5
+
+bench: bin/stance
+	bin/stance bench
+
+lint: packages-test
+	@bash tests/lint.sh
+
+sanitize:
+	$(MAKE) BUILD=build/sanitize CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g' \
+	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' check
+
+install: bin/stance
+	install -D -m 755 bin/stance $(DESTDIR)$(PREFIX)/bin/stance
+	for f in scenarios/*.yaml; do install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/stance/$$f; done
+
 clean:
-	rm -rf $(BUILD) bin
+	rm -rf build bin
+
+help:
+	@echo 'make            build bin/stance'
+	@echo 'make demo       install what is missing, build, map a stability domain, draw it'
+	@echo 'make test       install what is missing, build, run every test'
+	@echo 'make test-long  the same with the long tests'
+	@echo 'make bench      speed of the stepping kernels'
+	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
+	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'
+	@echo 'make install    PREFIX=/usr/local DESTDIR='
+	@echo 'make MPI=0      a build for one rank, with serial HDF5 and without MPI'

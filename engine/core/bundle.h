@@ -29,7 +29,7 @@ struct bundle {
     lanes sample_every, next_sample;
     lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
     int64_t row[LANES];
-    lanes recorded_at; /* step of the row before */
+    lanes recorded_at;                /* step of the row before */
     lanes impulse[SCENE_CONTACTS][2]; /* since then */
 
     lanes judge_on_way, has_target, support; /* support: contact index or -1 */
@@ -66,9 +66,10 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
 
 static void bundle_clear_answers(struct bundle *b, int lane)
 {
-    lanes *const zero[] = {&b->iterations,  &b->ambiguous,   &b->subdivided,   &b->penetration,
-                           &b->slip,        &b->peak_torque, &b->friction_used, &b->impact_energy,
-                           &b->projection_energy, &b->n,     &b->recorded_at,  &b->next_sample};
+    lanes *const zero[] = {
+        &b->iterations,  &b->ambiguous,     &b->subdivided,    &b->penetration,       &b->slip,
+        &b->peak_torque, &b->friction_used, &b->impact_energy, &b->projection_energy, &b->n,
+        &b->recorded_at, &b->next_sample};
     for (size_t i = 0; i < sizeof zero / sizeof *zero; i++)
         lane_set(zero[i], lane, 0);
     for (int i = 0; i < SCENE_CONTACTS; i++)
@@ -229,17 +230,19 @@ static inline void bundle_account(struct bundle *b, mask ok, const struct step_r
     b->n = choose(ok, b->n + 1, b->n);
     b->iterations += choose(ok, report->iterations, none);
     b->ambiguous += choose(ok & report->ambiguous, lanes_of(1), none);
-    b->impact_energy = choose(ok, lanes_max(report->impact_energy, b->impact_energy), b->impact_energy);
+    b->impact_energy =
+        choose(ok, lanes_max(report->impact_energy, b->impact_energy), b->impact_energy);
     b->projection_energy += choose(ok, report->projection_energy, none);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        b->peak_torque = choose(ok, lanes_max(lanes_abs(report->torque[i]), b->peak_torque), b->peak_torque);
+        b->peak_torque =
+            choose(ok, lanes_max(lanes_abs(report->torque[i]), b->peak_torque), b->peak_torque);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask may = ok & mask_less(none, b->set.may_touch[c]);
         b->penetration = choose(may, lanes_max(-b->now.gap[c], b->penetration), b->penetration);
         b->slip += choose(ok, report->slip[c], none);
         const mask loaded = ok & mask_less(none, report->impulse[c][0]);
-        const lanes ratio = lanes_abs(report->impulse[c][1]) /
-                            choose(loaded, report->impulse[c][0], lanes_of(1));
+        const lanes ratio =
+            lanes_abs(report->impulse[c][1]) / choose(loaded, report->impulse[c][0], lanes_of(1));
         b->friction_used = choose(loaded, lanes_max(ratio, b->friction_used), b->friction_used);
         for (int a = 0; a < 2; a++)
             b->impulse[c][a] += choose(ok, report->impulse[c][a], none);
@@ -264,7 +267,8 @@ struct verdict {
 };
 
 /* The outcome rules at the present state; `loaded`: contacts that carry. `last`: time is up. */
-static inline struct verdict bundle_judge(struct bundle *b, mask live, const mask *loaded, mask last)
+static inline struct verdict bundle_judge(struct bundle *b, mask live, const mask *loaded,
+                                          mask last)
 {
     lanes posture[SCENE_POSTURE], rate[SCENE_POSTURE];
     scene_posture(b->now.s, posture);
@@ -275,8 +279,9 @@ static inline struct verdict bundle_judge(struct bundle *b, mask live, const mas
         speed = lanes_max(lanes_abs(rate[i]), speed);
     }
     angle = angle / b->settle_angle;
-    const lanes all = lanes_max(scene_translation_speed(&b->set.body, b->now.w, &b->now.trig), speed) /
-                      b->settle_rate;
+    const lanes all =
+        lanes_max(scene_translation_speed(&b->set.body, b->now.w, &b->now.trig), speed) /
+        b->settle_rate;
     speed = speed / b->settle_rate;
     mask alone = LANES_ALL;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -284,7 +289,8 @@ static inline struct verdict bundle_judge(struct bundle *b, mask live, const mas
         alone &= (mine & loaded[c]) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
     }
     const lanes error = lanes_max(angle, speed), one = lanes_of(1);
-    const mask at_target = alone & mask_less(lanes_of(0), b->has_target) & mask_less_equal(error, one);
+    const mask at_target =
+        alone & mask_less(lanes_of(0), b->has_target) & mask_less_equal(error, one);
     /* On the way to the target is not `elsewhere`, however slow. */
     const mask elsewhere = LANES_NOT(alone & mask_less(lanes_of(0), b->has_target));
     const mask still = elsewhere & mask_less_equal(all, one);
@@ -292,7 +298,8 @@ static inline struct verdict bundle_judge(struct bundle *b, mask live, const mas
 
     struct verdict v;
     v.fell = live & scene_fallen(&b->set.body, b->now.s, &b->now.trig, b->fall_height);
-    v.stabilised = on_way & window_advance(&b->settled, live, at_target, error, b->n, b->settle_steps);
+    v.stabilised =
+        on_way & window_advance(&b->settled, live, at_target, error, b->n, b->settle_steps);
     v.rested = on_way & window_advance(&b->resting, live, still, all, b->n, b->settle_steps);
     const mask at_end = live & last & LANES_NOT(on_way);
     v.stabilised |= at_end & at_target;

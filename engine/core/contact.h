@@ -14,8 +14,8 @@
  * Choice among several solutions (frictional impacts have them): the one that leaves the least
  * kinetic energy, r.(uf + u)/2 added by the impulses; ties go to the earlier mode in the order
  * open, stick, forward, backward. Where legs are parallel the operator is singular with both feet
- * sticking (rank 3 of 4): the redundant impulse is set to zero, velocities stay unique, guard 1e-13.
- * D need not be symmetric (an exact Newton linearisation is not).
+ * sticking (rank 3 of 4): the redundant impulse is set to zero, velocities stay unique, guard
+ * 1e-13. D need not be symmetric (an exact Newton linearisation is not).
  */
 #ifndef STANCE_CORE_CONTACT_H
 #define STANCE_CORE_CONTACT_H
@@ -27,15 +27,16 @@
 
 /* The best solution found so far, in each lane. */
 typedef struct contact_choice {
-    lanes r[2][2];     /* [contact][normal, tangential] */
+    lanes r[2][2]; /* [contact][normal, tangential] */
     lanes u[2][2];
-    lanes violation;   /* largest violation of a law, as a velocity */
-    lanes energy;      /* kinetic energy added */
-    mask ambiguous;    /* another solution with other velocities exists */
+    lanes violation; /* largest violation of a law, as a velocity */
+    lanes energy;    /* kinetic energy added */
+    mask ambiguous;  /* another solution with other velocities exists */
 } contact_choice;
 
 typedef struct contact_problem {
-    const lanes (*D)[2][2][2]; /* D[i][j][a][b]: velocity a of contact i per impulse b of contact j */
+    const lanes (
+        *D)[2][2][2]; /* D[i][j][a][b]: velocity a of contact i per impulse b of contact j */
     const lanes (*uf)[2];
     lanes friction;
     lanes tolerance; /* admitted violation, m/s */
@@ -62,20 +63,21 @@ static inline void contact_offer(const contact_problem *p, lanes r[2][2], contac
         violation = lanes_max(-u[i][0], violation);
         violation = lanes_max(-(r[i][0] * normal), violation);
         /* Complementarity: what is apart must not push. */
-        violation = lanes_max(lanes_min(lanes_abs(u[i][0]), lanes_abs(r[i][0] * normal)), violation);
+        violation =
+            lanes_max(lanes_min(lanes_abs(u[i][0]), lanes_abs(r[i][0] * normal)), violation);
         violation = lanes_max((lanes_abs(r[i][1]) - bound) * tangential, violation);
         /* Maximum dissipation: slip means an impulse at the edge of the cone, against it. */
-        const lanes room = choose(mask_less(u[i][1], lanes_of(0)), bound - r[i][1], bound + r[i][1]);
+        const lanes room =
+            choose(mask_less(u[i][1], lanes_of(0)), bound - r[i][1], bound + r[i][1]);
         violation = lanes_max(lanes_min(lanes_abs(u[i][1]), room * tangential), violation);
     }
     const mask number = mask_finite(energy) & mask_finite(violation);
     const mask valid = number & mask_less_equal(violation, p->tolerance);
     const mask have = mask_less_equal(best->violation, p->tolerance);
     const lanes tie = 1e-12 * (lanes_abs(energy) + lanes_abs(best->energy));
-    const mask better = (valid & LANES_NOT(have)) |
-                        (valid & have & mask_less(energy, best->energy - tie)) |
-                        (number & LANES_NOT(valid) & LANES_NOT(have) &
-                         mask_less(violation, best->violation));
+    const mask better =
+        (valid & LANES_NOT(have)) | (valid & have & mask_less(energy, best->energy - tie)) |
+        (number & LANES_NOT(valid) & LANES_NOT(have) & mask_less(violation, best->violation));
     best->ambiguous |= valid & have & mask_less(16 * p->tolerance, apart);
     for (int i = 0; i < p->contacts; i++)
         for (int a = 0; a < 2; a++) {
@@ -129,8 +131,8 @@ static inline void contact_eliminate(const contact_problem *p, enum contact_mode
     for (int a = 0; a < 2; a++) {
         uf[a] = p->uf[1][a] + p->D[1][0][a][0] * alone[0] + p->D[1][0][a][1] * alone[1];
         for (int b = 0; b < 2; b++)
-            D[a][b] = p->D[1][1][a][b] + p->D[1][0][a][0] * push[0][b] +
-                      p->D[1][0][a][1] * push[1][b];
+            D[a][b] =
+                p->D[1][1][a][b] + p->D[1][0][a][0] * push[0][b] + p->D[1][0][a][1] * push[1][b];
     }
     for (enum contact_mode other = CONTACT_OPEN; other < CONTACT_MODES; other++) {
         lanes r[2][2];

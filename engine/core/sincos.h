@@ -14,7 +14,8 @@
 
 static inline void lanes_sincos(lanes x, lanes *sine, lanes *cosine)
 {
-    const double round_bits = 0x1.8p52; /* adding it leaves the nearest whole number in the low bits */
+    const double round_bits =
+        0x1.8p52; /* adding it leaves the nearest whole number in the low bits */
     const lanes shifted = x * 0x1.45f306dc9c883p-1 + round_bits;
     const lanes n = shifted - round_bits;
     const lanes r = ((x - n * 0x1.921fb544p+0) - n * 0x1.0b4611a6p-34) - n * 0x1.3198a2e037073p-69;

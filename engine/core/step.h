@@ -30,8 +30,9 @@
 #include "contact.h"
 
 #define STEP_MAX_ITERATIONS 25
-#define STEP_TOLERANCE 1e-7   /* last Newton correction, m/s and rad/s; the error left is its square */
-#define STEP_CLOSED 1e-12     /* m: a contact this close counts as closed */
+#define STEP_TOLERANCE                                                                             \
+    1e-7                  /* last Newton correction, m/s and rad/s; the error left is its square */
+#define STEP_CLOSED 1e-12 /* m: a contact this close counts as closed */
 #define STEP_PROJECTION 1e-13 /* m: gap error left by the projection */
 #define STEP_FARTHEST 0.3     /* rad: a projection that turns the robot further is refused */
 #define STEP_APPROACH 1e-9    /* m/s: a closed contact that approaches faster is an impact */
@@ -111,8 +112,8 @@ static inline void law_inside(const struct law *law, const lanes *s, const lanes
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         const mask free = mask_less(lanes_abs(command[i]), law->limit);
         for (int j = 0; j < SCENE_POSTURE; j++) {
-            const lanes slope = law->gain[i][j] * lever +
-                                law->gain[i][SCENE_POSTURE + j] * METHOD_THETA;
+            const lanes slope =
+                law->gain[i][j] * lever + law->gain[i][SCENE_POSTURE + j] * METHOD_THETA;
             rate[i][j] = choose(free, -slope, lanes_of(0));
         }
     }
@@ -236,8 +237,8 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
             lanes now[2], moved[2];
             scene_contact_velocity(&set->body, &it->end, c, it->w, now);
             scene_contact_velocity_change(&set->body, &it->end, c, it->w, end_lever, dw, moved);
-            uf[c][0] = now[0] + moved[0] +
-                       set->restitution * lanes_min(from->approach[c], lanes_of(0));
+            uf[c][0] =
+                now[0] + moved[0] + set->restitution * lanes_min(from->approach[c], lanes_of(0));
             uf[c][1] = now[1] + moved[1];
             for (int k = 0; k < SCENE_CONTACTS; k++)
                 for (int b = 0; b < 2; b++) {
@@ -296,11 +297,13 @@ static inline mask iterate_project(const struct setting *set, const struct motio
     for (int round = 0; round < 12; round++) {
         todo = MASK_NONE;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
-            const mask touching = run & mask_less(lanes_of(0), set->may_touch[c]) &
-                                  (it->active[0] | it->active[1]);
+            const mask touching =
+                run & mask_less(lanes_of(0), set->may_touch[c]) & (it->active[0] | it->active[1]);
             held[c] |= touching & mask_less(it->gap[c], lanes_of(-STEP_PROJECTION));
-            error[c] = choose(held[c], choose(mask_less(lanes_of(0), it->r[c][0]), wanted[c],
-                                              lanes_of(0)) - it->gap[c], lanes_of(0));
+            error[c] = choose(held[c],
+                              choose(mask_less(lanes_of(0), it->r[c][0]), wanted[c], lanes_of(0)) -
+                                  it->gap[c],
+                              lanes_of(0));
             todo |= mask_less(lanes_of(STEP_PROJECTION), lanes_abs(error[c]));
         }
         if (!mask_any(todo))
@@ -316,8 +319,10 @@ static inline mask iterate_project(const struct setting *set, const struct motio
         const lanes product = G[0][0] * G[1][1], determinant = product - G[0][1] * G[1][0];
         const mask regular = mask_less(1e-12 * product, determinant);
         const lanes reciprocal = 1 / choose(regular, determinant, G[0][0]);
-        multiplier[0] = choose(regular, G[1][1] * error[0] - G[0][1] * error[1], error[0]) * reciprocal;
-        multiplier[1] = choose(regular, G[0][0] * error[1] - G[1][0] * error[0], lanes_of(0)) * reciprocal;
+        multiplier[0] =
+            choose(regular, G[1][1] * error[0] - G[0][1] * error[1], error[0]) * reciprocal;
+        multiplier[1] =
+            choose(regular, G[0][0] * error[1] - G[1][0] * error[0], lanes_of(0)) * reciprocal;
         lanes d[SCENE_COORDINATES], far = lanes_of(0);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             d[i] = choose(todo, it->lift[0][i] * multiplier[0] + it->lift[1][i] * multiplier[1],
@@ -328,8 +333,8 @@ static inline mask iterate_project(const struct setting *set, const struct motio
         }
         *energy += lanes_abs(scene_energy_change(&set->body, &it->end, it->w, d));
         for (int c = 0; c < SCENE_CONTACTS; c++) {
-            it->gap[c] = choose(todo, it->gap[c] + scene_gap_change(&set->body, &it->end, c, d),
-                                it->gap[c]);
+            it->gap[c] =
+                choose(todo, it->gap[c] + scene_gap_change(&set->body, &it->end, c, d), it->gap[c]);
             far = lanes_max(scene_gap_change_error(&set->body, c, d), far);
         }
         const mask moved = todo & mask_less(lanes_of(0.1 * STEP_PROJECTION), far);
@@ -412,8 +417,8 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
             news |= hit;
         }
         impact |= news;
-        const mask done = mask_less_equal(correction, lanes_of(STEP_TOLERANCE)) &
-                          LANES_NOT(news) & LANES_NOT(it.unsolved);
+        const mask done = mask_less_equal(correction, lanes_of(STEP_TOLERANCE)) & LANES_NOT(news) &
+                          LANES_NOT(it.unsolved);
         running &= LANES_NOT(done);
     }
     mask converged = run & LANES_NOT(running), touching = MASK_NONE;

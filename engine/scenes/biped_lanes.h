@@ -36,7 +36,7 @@ enum {
 
 /* Constants of a robot. Arrays over (theta, phi1, phi2) where indexed by an angle. */
 typedef struct scene_body {
-    lanes mass;                    /* M */
+    lanes mass;                         /* M */
     lanes coupling_trunk, coupling_leg; /* k_theta, k_phi */
     lanes inertia_trunk, inertia_leg;
     lanes leg, trunk; /* lengths */
@@ -48,8 +48,8 @@ typedef struct scene_trig {
 
 /* The step's matrix J = d(residual)/d(velocity), factored. */
 typedef struct scene_matrix {
-    lanes row[SCENE_ANGLES][2];    /* d residual_a / d p' = k_a n(a) */
-    lanes column[SCENE_ANGLES][2]; /* d residual_p / d a' */
+    lanes row[SCENE_ANGLES][2];                /* d residual_a / d p' = k_a n(a) */
+    lanes column[SCENE_ANGLES][2];             /* d residual_p / d a' */
     lanes inverse[SCENE_ANGLES][SCENE_ANGLES]; /* of the angles' block; diagonal unless coupled */
     lanes schur[2][2];                         /* inverse of the Schur complement */
 } scene_matrix;
@@ -145,8 +145,8 @@ static inline void scene_residual(const scene_body *b, lanes h, const scene_trig
         const lanes centrifugal = h * (w[2 + a] * w[2 + a]);
         x += k[a] * (c * change[2 + a] - s * centrifugal);
         z += k[a] * (s * change[2 + a] + c * centrifugal);
-        residual[2 + a] = inertia[a] * change[2 + a] +
-                          k[a] * (c * change[0] + s * (change[1] + hg)) - h * tau[a];
+        residual[2 + a] =
+            inertia[a] * change[2 + a] + k[a] * (c * change[0] + s * (change[1] + hg)) - h * tau[a];
     }
     residual[0] = x;
     residual[1] = z;
@@ -209,8 +209,9 @@ static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes
     }
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const int a = 1 + c;
-        diagonal[a] -= contact_lever * (b->leg * (contact_trig->cosine[a] * r[c][1] -
-                                                  contact_trig->sine[a] * r[c][0]));
+        diagonal[a] -=
+            contact_lever *
+            (b->leg * (contact_trig->cosine[a] * r[c][1] - contact_trig->sine[a] * r[c][0]));
     }
     if (!coupled) {
         for (int a = 0; a < SCENE_ANGLES; a++)
@@ -221,7 +222,8 @@ static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes
             for (int i = 0; i < 3; i++)
                 block[i][j] = i == j ? diagonal[i] : lanes_of(0);
         for (int j = 0; j < 3; j++) {
-            /* By the absolute angles: d/dtheta' = d/dtheta' - d/dq1' - d/dq2', d/dphi_i' = d/dq_i'. */
+            /* By the absolute angles: d/dtheta' = d/dtheta' - d/dq1' - d/dq2', d/dphi_i' = d/dq_i'.
+             */
             lanes g[2];
             for (int i = 0; i < 2; i++) {
                 g[i] = h * torque_rate[i][j];
@@ -240,8 +242,10 @@ static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes
         const lanes x[3] = {m->row[0][j], m->row[1][j], m->row[2][j]};
         lanes y[3];
         scene_solve_angles(m, coupled, x, y);
-        const lanes first = m->column[0][0] * y[0] + m->column[1][0] * y[1] + m->column[2][0] * y[2];
-        const lanes second = m->column[0][1] * y[0] + m->column[1][1] * y[1] + m->column[2][1] * y[2];
+        const lanes first =
+            m->column[0][0] * y[0] + m->column[1][0] * y[1] + m->column[2][0] * y[2];
+        const lanes second =
+            m->column[0][1] * y[0] + m->column[1][1] * y[1] + m->column[2][1] * y[2];
         if (j == 0)
             xx -= first, zx -= second;
         else

@@ -1,0 +1,453 @@
+/* plan.c - designs, chunks and estimates. */
+#include "plan.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum {
+    CHECKED_CASES = 4096,
+    CORNER_AXES = 11, /* 2048 corners */
+    TRACE_ROWS = 1000000,
+    CHUNK_LARGEST = 4096,
+    CHUNK_SMALLEST = 64,
+    CHUNK_BUNDLE = 8, /* the widest bundle of lanes */
+    COST_CASES = 64,
+    COST_STEPS = 500, /* length of the beginnings tried first */
+};
+static const double trace_interval = 0.01;
+
+double plan_clock(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* ---- making ------------------------------------------------------------------------------- */
+
+/* Largest value of a double field over the sweep. */
+static double largest_value(const struct scenario *s, size_t offset)
+{
+    double largest;
+    memcpy(&largest, (const char *)&s->base + offset, sizeof largest);
+    for (int a = 0; a < s->axes; a++) {
+        for (int k = 0; k < s->axis[a].paths; k++) {
+            if (s->axis[a].offset[k] != offset) {
+                continue;
+            }
+            largest = -INFINITY;
+            for (size_t i = 0; i < s->axis[a].count; i++) {
+                largest = fmax(largest, scenario_axis_value(&s->axis[a], i, k));
+            }
+        }
+    }
+    return largest;
+}
+
+static void plan_trajectories(struct plan *plan, bool trace)
+{
+    const struct scenario *s = plan->scenario;
+    double stop = largest_value(s, offsetof(struct scenario_values, stop_time));
+    struct scenario_values values;
+
+    if (plan->single) {
+        scenario_case_values(s, plan->single_case, &values);
+        stop = values.stop_time;
+        if (!trace) {
+            return;
+        }
+        plan->record_interval = s->record_every;
+        if (plan->record_interval <= 0) {
+            plan->record_interval = fmax(trace_interval, fmax(values.step, stop / TRACE_ROWS));
+        }
+        plan->record_cases = 1;
+    } else {
+        if (s->record_cases == RECORD_NONE || s->record_every <= 0) {
+            return;
+        }
+        plan->record_interval = s->record_every;
+        plan->record_cases = s->record_cases == RECORD_ALL ? s->cases : s->record_count;
+    }
+    /* A run counts whole steps and may end a hair before its last instant. */
+    plan->record_rows = (int64_t)floor(stop / plan->record_interval + 1e-6) + 1;
+}
+
+static bool method_runs(const struct scenario *s, int method, struct plan_error *error)
+{
+    const stance_method *m = stance_methods()[method];
+    if (stance_kernel_find(s->scene, m, NULL)) {
+        return true;
+    }
+    snprintf(error->message.text, sizeof error->message.text,
+             "method '%s' cannot run scene '%s' in this build", m->name, s->scene->name);
+    return false;
+}
+
+static bool methods_run(const struct scenario *s, struct plan_error *error)
+{
+    bool swept = false;
+    for (int a = 0; a < s->axes; a++) {
+        const struct scenario_axis *axis = &s->axis[a];
+        for (int k = 0; k < axis->paths; k++) {
+            if (axis->offset[k] != offsetof(struct scenario_values, method)) {
+                continue;
+            }
+            swept = true;
+            for (size_t i = 0; i < axis->count; i++) {
+                if (!method_runs(s, (int)scenario_axis_value(axis, i, k), error)) {
+                    error->line = axis->line;
+                    error->column = axis->column;
+                    return false;
+                }
+            }
+        }
+    }
+    return swept || method_runs(s, s->base.method, error);
+}
+
+bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
+               uint64_t single_case, bool trace, struct plan_error *error)
+{
+    *plan = (struct plan){
+        .scenario = scenario, .single = single, .single_case = single_case, .designs = 1};
+    *error = (struct plan_error){0};
+    plan->rows = single ? 1 : scenario->cases;
+    if (!methods_run(scenario, error)) {
+        return false;
+    }
+    for (int a = 0; !single && a < scenario->axes; a++) {
+        if (scenario->axis[a].design) {
+            plan->designs *= scenario->axis[a].count;
+        }
+    }
+    plan_trajectories(plan, trace);
+    plan->design = calloc(plan->designs, sizeof *plan->design);
+    plan->design_status = calloc(plan->designs, sizeof *plan->design_status);
+    if (!plan->design || !plan->design_status) {
+        snprintf(error->message.text, sizeof error->message.text,
+                 "not enough memory for %zu controller designs", plan->designs);
+        plan_free(plan);
+        return false;
+    }
+    return true;
+}
+
+void plan_free(struct plan *plan)
+{
+    free(plan->design);
+    free(plan->design_status);
+    *plan = (struct plan){0};
+}
+
+/* ---- where things are --------------------------------------------------------------------- */
+
+uint64_t plan_case(const struct plan *plan, uint64_t row)
+{
+    return plan->single ? plan->single_case : row;
+}
+
+size_t plan_design(const struct plan *plan, uint64_t index)
+{
+    const struct scenario *s = plan->scenario;
+    size_t design = 0, stride = 1;
+
+    for (int a = s->axes - 1; !plan->single && a >= 0; a--) {
+        size_t point = (size_t)(index % s->axis[a].count);
+        index /= s->axis[a].count;
+        if (s->axis[a].design) {
+            design += point * stride;
+            stride *= s->axis[a].count;
+        }
+    }
+    return design;
+}
+
+/* The first case that uses a design. */
+static uint64_t design_case(const struct plan *plan, size_t design)
+{
+    const struct scenario *s = plan->scenario;
+    uint64_t index = 0, stride = 1;
+
+    if (plan->single) {
+        return plan->single_case;
+    }
+    for (int a = s->axes - 1; a >= 0; a--) {
+        if (s->axis[a].design) {
+            index += stride * (design % s->axis[a].count);
+            design /= s->axis[a].count;
+        }
+        stride *= s->axis[a].count;
+    }
+    return index;
+}
+
+bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place)
+{
+    const struct scenario *s = plan->scenario;
+    if (plan->record_rows == 0) {
+        return false;
+    }
+    if (plan->single || s->record_cases == RECORD_ALL) {
+        *place = row;
+        return true;
+    }
+    size_t low = 0, high = s->record_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (s->record_list[middle] < row) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    *place = low;
+    return low < s->record_count && s->record_list[low] == row;
+}
+
+uint64_t plan_recorded_case(const struct plan *plan, uint64_t place)
+{
+    if (plan->single) {
+        return plan->single_case;
+    }
+    const struct scenario *s = plan->scenario;
+    return s->record_cases == RECORD_ALL ? place : s->record_list[place];
+}
+
+/* ---- designs ------------------------------------------------------------------------------ */
+
+/* Whose fault it is that a design does not exist: the initial equilibrium's, or the law's. */
+static void blame_design(const struct plan *plan, size_t design, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    struct scenario_values values;
+    struct resolved_design result;
+    stance_message ignored;
+
+    scenario_case_values(s, design_case(plan, design), &values);
+    resolve_design(s->scene, &values, &result, &error->message);
+    values.law = LAW_NONE;
+    bool law = resolve_design(s->scene, &values, &result, &ignored);
+    error->line = law ? s->controller_line : s->initial_line;
+    error->column = law ? s->controller_column : s->initial_column;
+}
+
+bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
+                          struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    size_t share = plan->designs / (size_t)parallel->size;
+    size_t extra = plan->designs % (size_t)parallel->size, rank = (size_t)parallel->rank;
+    size_t first = rank * share + smaller(rank, extra), count = share + (rank < extra);
+    uint64_t found = 0;
+
+    for (size_t d = first; d < first + count; d++) {
+        struct scenario_values values;
+        stance_message ignored;
+        scenario_case_values(s, design_case(plan, d), &values);
+        bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
+        plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
+        found += exists;
+    }
+    parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
+    parallel_gather_block(parallel, plan->design_status, 1, first, count);
+    parallel_sum(parallel, &found, 1);
+    if (found == 0) {
+        blame_design(plan, 0, error);
+    }
+    return found > 0;
+}
+
+bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method)
+{
+    const struct scenario *s = plan->scenario;
+    struct scenario_values values;
+    stance_message ignored;
+    uint64_t index = plan_case(plan, row);
+    size_t design = plan_design(plan, index);
+
+    scenario_case_values(s, index, &values);
+    *method = values.method;
+    return plan->design_status[design] == STANCE_DONE &&
+           resolve_case(s->scene, &values, &plan->design[design], s->seed, index, out, &ignored);
+}
+
+/* ---- checking ----------------------------------------------------------------------------- */
+
+static bool check_case(const struct plan *plan, uint64_t index, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    struct scenario_values values;
+    stance_case resolved;
+    stance_message message = {""};
+    size_t design = plan_design(plan, index);
+
+    if (plan->design_status[design] != STANCE_DONE) {
+        return true;
+    }
+    scenario_case_values(s, index, &values);
+    if (resolve_case(s->scene, &values, &plan->design[design], s->seed, index, &resolved,
+                     &message)) {
+        return true;
+    }
+    error->line = s->initial_line;
+    error->column = s->initial_column;
+    if (s->cases == 1) {
+        error->message = message;
+    } else {
+        snprintf(error->message.text, sizeof error->message.text, "case %llu: %.200s",
+                 (unsigned long long)index, message.text);
+    }
+    return false;
+}
+
+/* Corner c of the grid: bit a says which end of axis a. */
+static uint64_t corner_case(const struct scenario *s, uint64_t c)
+{
+    uint64_t index = 0;
+    for (int a = 0; a < s->axes; a++) {
+        index = index * s->axis[a].count + ((c >> a & 1) ? s->axis[a].count - 1 : 0);
+    }
+    return index;
+}
+
+/* Case i of n spread evenly over all. */
+static uint64_t spread_case(const struct plan *plan, uint64_t i, uint64_t n)
+{
+    uint64_t last = plan->scenario->cases - 1;
+    return n < 2 ? 0 : last / (n - 1) * i + last % (n - 1) * i / (n - 1);
+}
+
+bool plan_check_cases(const struct plan *plan, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    if (plan->single) {
+        return check_case(plan, plan->single_case, error);
+    }
+    uint64_t n = s->cases < CHECKED_CASES ? s->cases : CHECKED_CASES;
+    for (uint64_t i = 0; i < n; i++) {
+        if (!check_case(plan, spread_case(plan, i, n), error)) {
+            return false;
+        }
+    }
+    uint64_t corners = (uint64_t)1 << smaller((size_t)s->axes, CORNER_AXES);
+    for (uint64_t c = 0; n < s->cases && c < corners; c++) {
+        if (!check_case(plan, corner_case(s, c), error)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---- chunks ------------------------------------------------------------------------------- */
+
+bool plan_chunk(uint64_t rows, int ranks, uint64_t k, uint64_t *first, uint64_t *count)
+{
+    uint64_t workers = (uint64_t)ranks, smallest = rows / (8 * workers);
+    smallest = smallest < CHUNK_BUNDLE     ? CHUNK_BUNDLE
+               : smallest > CHUNK_SMALLEST ? CHUNK_SMALLEST
+                                           : smallest;
+    uint64_t begin = 0, batch = k / workers, member = k % workers;
+
+    while (begin < rows) {
+        uint64_t left = rows - begin, size = left / (2 * workers), batches = 1;
+        if (size >= CHUNK_LARGEST) {
+            /* As many batches as keep to the largest size, in one stride. */
+            size = CHUNK_LARGEST;
+            batches = (left / (2 * workers) - size) * 2 / size + 1;
+        } else if (size <= smallest) {
+            size = smallest;
+            batches = UINT64_MAX;
+        }
+        if (batch < batches) {
+            *first = begin + (batch * workers + member) * size;
+            if (batch > rows || *first >= rows) {
+                return false;
+            }
+            *count = rows - *first < size ? rows - *first : size;
+            return true;
+        }
+        batch -= batches;
+        begin += batches * workers * size;
+    }
+    return false;
+}
+
+/* ---- cost --------------------------------------------------------------------------------- */
+
+struct trial {
+    double seconds;       /* spent */
+    uint64_t steps;       /* taken */
+    uint64_t steps_asked; /* that the cases would take to their ends */
+    uint64_t cases;
+};
+
+/* Runs n cases spread over the sweep, from number `from` of COST_CASES on, at most `steps` long. */
+static void try_cases(const struct plan *plan, uint64_t from, uint64_t n, int64_t steps,
+                      struct trial *trial)
+{
+    for (uint64_t i = from; i < from + n; i++) {
+        stance_case input;
+        stance_result result = {0};
+        int method;
+        uint64_t row = plan->single ? 0 : spread_case(plan, i, COST_CASES) % plan->rows;
+        trial->cases++;
+        if (!plan_resolve(plan, row, &input, &method)) {
+            continue;
+        }
+        trial->steps_asked += (uint64_t)input.steps;
+        input.steps = input.steps < steps ? input.steps : steps;
+        const stance_kernel *kernel =
+            stance_kernel_find(plan->scenario->scene, stance_methods()[method], NULL);
+        /* Lanes share the work of a bundle: a full one is timed, of copies. */
+        stance_case bundle[CHUNK_BUNDLE];
+        stance_result results[CHUNK_BUNDLE] = {{0}};
+        int lanes = kernel->lanes < CHUNK_BUNDLE ? kernel->lanes : CHUNK_BUNDLE;
+        for (int lane = 0; lane < lanes; lane++) {
+            bundle[lane] = input;
+        }
+        double start = plan_clock();
+        kernel->run(bundle, results, (size_t)lanes);
+        trial->seconds += (plan_clock() - start) / lanes;
+        result = results[0];
+        trial->steps += (uint64_t)result.steps;
+    }
+}
+
+double plan_cost(const struct plan *plan, double budget, bool *bound)
+{
+    enum { FIRST = 8 };
+    struct trial beginnings = {0}, whole = {0};
+    double start = plan_clock();
+
+    *bound = false;
+    /* Beginnings first, evenly spread, to learn what whole cases would take. */
+    for (uint64_t i = 0; i < FIRST; i++) {
+        try_cases(plan, i * (COST_CASES / FIRST), 1, COST_STEPS, &beginnings);
+    }
+    if (beginnings.steps == 0) {
+        return -1;
+    }
+    double per_step = beginnings.seconds / (double)beginnings.steps;
+    double per_case = per_step * (double)beginnings.steps_asked / FIRST;
+    if (per_case * CHUNK_BUNDLE * FIRST > budget) {
+        *bound = true;
+        return per_case * (double)plan->rows;
+    }
+    /* Cases in an order that is spread evenly wherever it is cut: 27 and 64 have no divisor. */
+    for (uint64_t i = 0; i < COST_CASES && plan_clock() - start < budget; i++) {
+        try_cases(plan, i * 27 % COST_CASES, 1, INT64_MAX, &whole);
+    }
+    if (whole.cases == 0) {
+        *bound = true;
+        return per_case * (double)plan->rows;
+    }
+    return whole.seconds / (double)whole.cases * (double)plan->rows;
+}

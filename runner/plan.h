@@ -1,0 +1,73 @@
+/* plan.h - what a run will compute: its rows, its distinct designs, its chunks, its trajectories.
+ *
+ * Nothing here is as large as the number of cases: the parameters of a case are made when it is
+ * drawn. Designs (equilibria and gains) are kept once per distinct combination of those axes that
+ * they depend on.
+ */
+#ifndef STANCE_RUNNER_PLAN_H
+#define STANCE_RUNNER_PLAN_H
+
+#include "parallel.h"
+#include "resolve.h"
+
+struct plan {
+    const struct scenario *scenario;
+    bool single;          /* --only: the file holds one case */
+    uint64_t single_case; /* its flat index */
+    uint64_t rows;        /* cases in the file: 1, or all of the scenario's */
+
+    size_t designs;                 /* distinct ones, row-major over the axes flagged `design` */
+    struct resolved_design *design; /* [designs] */
+    uint8_t *design_status;         /* [designs] enum stance_status */
+
+    double record_interval; /* s; 0: no trajectories */
+    int64_t record_rows;    /* instants k * record_interval, k = 0 ... record_rows - 1 */
+    uint64_t record_cases;  /* cases with a trajectory */
+};
+
+/* What is wrong with a scenario beyond its text, and where. */
+struct plan_error {
+    stance_message message;
+    int line, column; /* 0: nowhere in particular */
+};
+
+/* The whole scenario, or (single) one case of it, with its trajectory if `trace`. Sets everything
+ * but the designs. false: no memory, or a method without a kernel for this scene. */
+bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
+               uint64_t single_case, bool trace, struct plan_error *error);
+void plan_free(struct plan *plan);
+
+/* Flat index of the case in a row of the file; design that a case uses. */
+uint64_t plan_case(const struct plan *plan, uint64_t row);
+size_t plan_design(const struct plan *plan, uint64_t index);
+/* Place of a row among the recorded cases; false when it is not recorded. And the reverse. */
+bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place);
+uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
+
+/* Collective: computes every design, each rank a block, and gathers them on rank 0. false on
+ * every rank when no design exists at all. */
+bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
+                          struct plan_error *error);
+
+/* Tries the initial states of the first, the last, the corners and up to 4096 other cases spread
+ * evenly. Cases whose design does not exist are left out. Needs the designs. */
+bool plan_check_cases(const struct plan *plan, struct plan_error *error);
+
+/* Parameters of a row; *method as index into stance_methods(). false: the case does not exist,
+ * because its design or its initial state does not. */
+bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method);
+
+/* Chunk k of the guided schedule: sizes shrink from at most 4096 rows to a few bundles of lanes,
+ * a batch of one chunk per rank taking half of what is left. Pure function; chunks tile the rows.
+ * false beyond the last chunk. */
+bool plan_chunk(uint64_t rows, int ranks, uint64_t k, uint64_t *first, uint64_t *count);
+
+/* Seconds on one rank, measured on cases spread over the sweep for about `budget` seconds. When
+ * whole cases take too long to try, beginnings are measured and *bound is set: no more than that.
+ * Negative: could not be measured. Needs the designs. */
+double plan_cost(const struct plan *plan, double budget, bool *bound);
+
+/* Seconds of a clock that never jumps. */
+double plan_clock(void);
+
+#endif

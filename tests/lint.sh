@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# Format, static analysis, symbol prefixes, include rules, file lengths.
+set -u
+cd "$(dirname "$0")/.."
+bad=0
+complain() { echo "lint: $*"; bad=1; }
+
+mapfile -t sources < <(git ls-files '*.c' '*.h')
+clang-format --dry-run --Werror "${sources[@]}" || complain "run clang-format -i on the files above"
+
+grep -nE '#include *[<"](mpi|hdf5|yaml)\.h' $(git ls-files engine) && complain "the engine must not know MPI, HDF5 or YAML"
+[ "$(git ls-files runner analysis | xargs grep -lE '#include *<mpi\.h>' | sort | tr '\n' ' ')" = "runner/parallel.c " ] ||
+    complain "only runner/parallel.c includes mpi.h"
+[ "$(git ls-files runner | xargs grep -lE '#include *<hdf5(_hl)?\.h>' | tr '\n' ' ')" = "runner/store.c " ] ||
+    complain "only runner/store.c includes hdf5.h for writing"
+
+for f in "${sources[@]}"; do
+    lines=$(wc -l <"$f")
+    ((lines <= 800)) || complain "$f has $lines lines"
+done
+
+make -s build/libstance.a || complain "the engine does not build"
+nm -g --defined-only build/libstance.a 2>/dev/null | awk 'NF == 3 && $3 !~ /^stance_/ {print $3}' | sort -u |
+    while read -r symbol; do echo "lint: exported engine symbol without stance_: $symbol"; done | tee /tmp/lint.$$
+[ -s /tmp/lint.$$ ] && bad=1
+rm -f /tmp/lint.$$
+
+cppcheck --quiet --std=c11 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability \
+    --suppress=missingIncludeSystem --suppress=unknownMacro -DSTANCE_LANES=1 -D__x86_64__ \
+    '-DSTANCE_SCENE_LANES="../scenes/biped_lanes.h"' -DSTANCE_SCENE=biped -DSTANCE_ISA=scalar \
+    runner analysis engine/*.c engine/control engine/scenes || complain "cppcheck"
+
+flags="-std=c17 -D_GNU_SOURCE -DSTANCE_MPI $(mpicc --showme:compile) $(pkg-config --cflags hdf5-openmpi yaml-0.1 jansson lapacke)"
+checks='-*,bugprone-*,-bugprone-easily-swappable-parameters,-bugprone-reserved-identifier,-bugprone-narrowing-conversions,-bugprone-implicit-widening-of-multiplication-result,-bugprone-assignment-in-if-condition,-bugprone-macro-parentheses,clang-analyzer-*,-clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling,-clang-analyzer-optin.mpi*'
+git ls-files 'runner/*.c' 'analysis/*.c' 'engine/*.c' 'engine/control/*.c' 'engine/scenes/*.c' |
+    xargs -P 2 -I{} sh -c "clang-tidy --quiet --warnings-as-errors='*' --checks='$checks' {} -- $flags 2>/dev/null" ||
+    complain "clang-tidy"
+
+((bad == 0)) && echo "lint: clean"
+exit $bad

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Runs every test program and whole-program test; each speaks TAP. Ends with "N passed, N failed".
+# Usage: tests/run.sh [PATTERN]  (only tests whose name contains PATTERN)
+set -u
+cd "$(dirname "$0")/.."
+build=${BUILD:-build} pattern=${1:-} passed=0 failed=0
+export CMOCKA_MESSAGE_OUTPUT=TAP PYTHON=${PYTHON:-/usr/bin/python3} BUILD=$build
+scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
+
+run() { # name, command ...
+    local name=$1 log="$scratch/log" status ok bad
+    shift
+    [[ -z $pattern || $name == *$pattern* ]] || return 0
+    local begin=$SECONDS
+    "$@" >"$log" 2>"$log.err" </dev/null
+    status=$?
+    ok=$(grep -c '^ok' "$log") bad=$(grep -c '^not ok' "$log")
+    # A program that dies, or that tests nothing, has failed whatever it printed.
+    if ((status != 0 && bad == 0)) || ((ok + bad == 0)); then bad=$((bad + 1)); fi
+    printf '%-28s %4d passed %4d failed  %3d s\n' "$name" "$ok" "$bad" $((SECONDS - begin))
+    if ((bad > 0)); then
+        grep -v '^ok' "$log" | tail -n 60
+        tail -n 40 "$log.err"
+        echo "($name: exit status $status)"
+    fi
+    passed=$((passed + ok)) failed=$((failed + bad))
+}
+
+for source in tests/test_*.c; do
+    name=$(basename "$source" .c)
+    run "$name" "$build/tests/$name"
+done
+for script in tests/whole_*.sh; do
+    [ -e "$script" ] && run "$(basename "$script" .sh)" bash "$script"
+done
+echo
+echo "$passed passed, $failed failed"
+((failed == 0 && passed > 0))
