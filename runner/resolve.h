@@ -23,6 +23,12 @@ struct resolved_design {
 bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
                     struct resolved_design *design, stance_message *message);
 
+/* The robot that the design believes in, model[STANCE_MAX_ROBOT], and the equilibrium it is made
+ * at: the controller's, or for laws without one the initial one. false: `message` says why there is
+ * none. */
+bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
+                         double *model, stance_equilibrium *equilibrium, stance_message *message);
+
 /* Fills *out (trajectory NULL). Checks the initial state: a gap below -1e-9 m of a contact that
  * may touch is an error, and so is a state that is not finite. `index` is the flat case index. */
 bool resolve_case(const stance_scene *scene, const struct scenario_values *values,

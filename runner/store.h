@@ -5,26 +5,35 @@
  *     an axis of several paths adds a variable "<path>" over that dimension for every further
  *     path; an axis of words is a string variable. Without a sweep: one dimension `case`, length 1.
  *   every answer of STORE_ANSWERS over those dimensions, row-major in their order;
+ *     `status` (0 pending, 1 done, 2 failed), written after everything else of a case;
  *     `final_state` has a last dimension `state` (string names x ... vq2);
- *     `checksum`: CRC-32C over the case's answers, in the order of the table.
+ *     `checksum`: CRC-32C over the case's stored answers in the order of the table, then
+ *     `final_state` (where stored), then `status`, as the little-endian bytes of the file.
  *   group `design`: over those grid axes that the design depends on (scalar when none does):
  *     `gain` (..., actuator, posture_state), `equilibrium_position` (..., coordinate),
- *     `equilibrium_torque` (..., actuator), `start_position`, `start_velocity` (..., coordinate).
+ *     `equilibrium_torque` (..., actuator), `start_position` (..., coordinate), all NAN where there
+ *     is none, and `status`: done, or failed where the design does not exist.
  *   group `trajectory`, when recorded: dimensions case (value: flat index), time, coordinate,
  *     actuator, contact, component; `position`, `velocity`, `torque`, `force`, `gap`; NAN after
- *     the end of a case.
- *   group `timing`: `wall_time` (rank), `cases` (rank): the only part that differs between runs.
+ *     the end of a case; `checksum` (case): CRC-32C over these five in this order.
+ *   group `timing`: `wall_time` (rank, seconds of computing), `cases` (rank): the only part that
+ *     differs between runs. A resumed run adds its ranks' numbers, modulo the length.
  *   root attributes: Conventions "CF-1.8", title, format_version (int 1), program_version,
- *     git_revision, compiler, library_versions, ranks, hosts, date, seed, scenario (text),
- *     scenario_sha256, axes (comma-separated dimension names, in order).
+ *     git_revision, compiler (with flags), library_versions, ranks, hosts, date, seed, scenario
+ *     (text), axes (comma-separated dimension names, in order), scenario_sha256.
+ * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as
+ * its value, and over it one variable per path of the axes.
+ *
+ * Rows of pending cases are whatever the file system hands out for reserved space, mostly zeros:
+ * look at `status` first. A variable of an actuator that a scene lacks is left out.
  */
 #ifndef STANCE_RUNNER_STORE_H
 #define STANCE_RUNNER_STORE_H
 
 #include "scenario.h"
 
-/* The answers: name, C type of the file, field of stance_result, fill value, unit, long name.
- * `status` is written last, after everything else of a case. */
+/* The answers: name, C type of the file, field of stance_result, value where a case has none
+ * (`_FillValue`), unit, long name. */
 #define STORE_ANSWERS(X)                                                                           \
     X(outcome, uint8_t, outcome, 0, "1", "how the case ended")                                     \
     X(evidence, uint8_t, evidence, 0, "1", "what the outcome rests on")                            \
@@ -38,13 +47,82 @@
       "steps whose contact problem had several solutions")                                        \
     X(subdivided_steps, int64_t, subdivided_steps, 0, "1",                                         \
       "steps that converged only after being subdivided")                                         \
-    X(max_penetration, double, max_penetration, 0, "m", "deepest penetration at the end of a step") \
-    X(slip_distance, double, slip_distance, 0, "m", "distance slipped, summed over contacts")      \
-    X(peak_torque, double, peak_torque, 0, "N m", "largest torque applied")                        \
-    X(friction_used, double, friction_used, 0, "1", "largest ratio |rT|/rN of a contact")          \
-    X(impact_energy, double, impact_energy, 0, "J",                                                \
+    X(max_penetration, double, max_penetration, NAN, "m", "deepest penetration at the end of a step") \
+    X(slip_distance, double, slip_distance, NAN, "m", "distance slipped, summed over contacts")      \
+    X(peak_torque, double, peak_torque, NAN, "N m", "largest torque applied")                        \
+    X(friction_used, double, friction_used, NAN, "1", "largest ratio |rT|/rN of a contact")          \
+    X(impact_energy, double, impact_energy, NAN, "J",                                                \
       "largest kinetic energy added by contact impulses in one step")                             \
-    X(projection_energy, double, projection_energy, 0, "J",                                        \
+    X(projection_energy, double, projection_energy, NAN, "J",                                        \
       "sum of |energy| added by position projection")
+
+/* Bit of `scenario.answers` that stands for `final_state`: the one after the table's. */
+enum {
+#define STORE_BIT(name, type, field, fill, unit, text) STORE_BIT_##name,
+    STORE_ANSWERS(STORE_BIT)
+#undef STORE_BIT
+    STORE_BIT_FINAL_STATE,
+};
+
+enum { STORE_ROWS = 256 }; /* most rows in one call */
+
+struct plan;  /* plan.h */
+struct store; /* an open file */
+
+/* Call before MPI starts: an unfinished file must not be touched again at exit. */
+void store_prepare(void);
+/* Name and version of the HDF5 library. */
+void store_library(char *text, size_t size);
+
+/* Bytes that the file of a plan takes, near enough to say whether it fits. */
+uint64_t store_size(const struct plan *plan, int ranks);
+
+/* Every function below writes the one-line reason of a failure into *message. */
+
+/* Rank 0 alone: creates the file, which must not exist, with everything but the cases, and
+ * reserves its space. On failure nothing is left behind. Designs must have been computed. */
+bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
+                  stance_message *message);
+
+/* What a file was made from, for a resume; release with store_origin_free. */
+struct store_origin {
+    char *scenario; /* resolved text */
+    char revision[80];
+    int ranks;
+};
+bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);
+void store_origin_free(struct store_origin *origin);
+/* Values of a logarithmic axis as the file has them, into axis->value; other axes are left. */
+bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message);
+
+/* Collective when `ranks` > 1: opens a file of this plan for writing. */
+bool store_open(struct store **store, const char *file, const struct plan *plan, int ranks,
+                stance_message *message);
+/* Collective: ends the writing; the store is freed in any case. After a failed write call
+ * store_abandon instead, which leaves the file as it is. */
+bool store_close(struct store *store, stance_message *message);
+void store_abandon(struct store *store);
+
+/* Not collective. Designs of the file into the plan. */
+bool store_read_designs(struct store *store, struct plan *plan, stance_message *message);
+/* Rows [first, first + n), n <= STORE_ROWS; their status last. */
+bool store_write(struct store *store, uint64_t first, size_t n, const stance_result *results,
+                 stance_message *message);
+/* The trajectory at one place of the recorded cases; before the row itself. */
+bool store_write_trajectory(struct store *store, uint64_t place,
+                            const stance_trajectory *trajectory, stance_message *message);
+/* Which rows are whole: done or failed, and as their checksums say; of these, status and outcome
+ * (where stored) are filled in. Trajectories of recorded cases are verified, too. */
+bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
+                  bool *whole, stance_message *message);
+/* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
+bool store_add_timing(struct store *store, int ranks, const double *wall_time,
+                      const int64_t *cases, stance_message *message);
+
+/* Counts the cases of a file, which another process may be writing. */
+struct store_counts {
+    uint64_t cases, done, failed;
+};
+bool store_count(const char *file, struct store_counts *counts, stance_message *message);
 
 #endif

@@ -10,8 +10,9 @@
 
 #include <Random123/philox.h>
 
-#define BUNDLE_MAX_SUBDIVISION 10 /* a step is halved at most this often */
-#define BUNDLE_ERROR_FLOOR 1e-9   /* of settle.angle and settle.rate: smaller errors do not grow */
+#define BUNDLE_MAX_SUBDIVISION 6 /* a step is halved at most this often ... */
+#define BUNDLE_FREEZE_AFTER 6    /* ... and in the last attempt the geometry freezes here */
+#define BUNDLE_ERROR_FLOOR 1e-9  /* of settle.angle and settle.rate: smaller errors do not grow */
 
 /* A condition that must hold for a while without its measure growing. */
 struct window {
@@ -186,6 +187,8 @@ static mask bundle_subdivide(struct bundle *b, mask run, bool coupled, struct mo
     mask failed = run;
     for (int level = 1; level <= BUNDLE_MAX_SUBDIVISION && mask_any(failed); level++) {
         const int parts = 1 << level;
+        const int freeze =
+            level < BUNDLE_MAX_SUBDIVISION ? STEP_MAX_ITERATIONS : BUNDLE_FREEZE_AFTER;
         struct motion here = b->now;
         struct step_report sum;
         memset(&sum, 0, sizeof sum);
@@ -194,7 +197,8 @@ static mask bundle_subdivide(struct bundle *b, mask run, bool coupled, struct mo
         for (int k = 0; k < parts && mask_any(good); k++) {
             struct step_report part;
             struct motion next = here;
-            good &= take_step(&b->set, &here, b->torque, b->h / parts, good, coupled, &next, &part);
+            good &= take_step(&b->set, &here, b->torque, b->h / parts, good, coupled, freeze, &next,
+                              &part);
             here = next;
             report_add(&sum, &part);
         }
@@ -448,7 +452,8 @@ static inline void bundle_step(struct bundle *b, mask live, bool coupled)
     struct step_report report;
     struct motion next = b->now;
     bundle_sample(b, live);
-    mask ok = take_step(&b->set, &b->now, b->torque, b->h, live, coupled, &next, &report);
+    mask ok = take_step(&b->set, &b->now, b->torque, b->h, live, coupled, STEP_MAX_ITERATIONS,
+                        &next, &report);
     const mask stuck = live & LANES_NOT(ok);
     if (mask_any(stuck)) {
         const mask saved = bundle_subdivide(b, stuck, coupled, &next, &report);

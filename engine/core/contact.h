@@ -157,7 +157,7 @@ static inline void contact_solve(const contact_problem *p, contact_choice *best)
         if (p->contacts == 2) {
             contact_eliminate(p, mode, best);
         } else {
-            lanes r[2][2];
+            lanes r[2][2] = {{lanes_of(0), lanes_of(0)}, {lanes_of(0), lanes_of(0)}};
             contact_impulse(mode, p->D[0][0], p->uf[0], p->friction, r[0]);
             contact_offer(p, r, best);
         }

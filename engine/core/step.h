@@ -127,9 +127,9 @@ static inline lanes step_velocity(lanes w0, lanes w)
     return (1 - METHOD_THETA) * w0 + METHOD_THETA * w;
 }
 
-/* Position at the end and the trigonometry that goes with an iterate's velocity. */
+/* Position at the end and, unless the geometry is frozen, the trigonometry that goes with it. */
 static inline void iterate_place(const struct setting *set, const struct motion *from, lanes h,
-                                 struct iterate *it)
+                                 bool frozen, struct iterate *it)
 {
     lanes middle[SCENE_COORDINATES];
     for (int i = 0; i < SCENE_COORDINATES; i++) {
@@ -137,6 +137,8 @@ static inline void iterate_place(const struct setting *set, const struct motion 
         it->s1[i] = from->s[i] + h * v;
         middle[i] = from->s[i] + (METHOD_THETA * h) * v;
     }
+    if (frozen)
+        return;
     if (METHOD_THETA == 1) {
         scene_trigonometry(it->s1, &it->end);
     } else {
@@ -188,11 +190,14 @@ static inline void solve_contacts(const struct setting *set, const lanes D[2][2]
     }
 }
 
-/* One Newton iteration in the lanes that still run; returns the size of the correction. */
+/* One Newton iteration in the lanes that still run; returns the size of the correction. With the
+ * geometry frozen the derivatives by it are left out too, so that the operator is constant. */
 static inline lanes iterate_newton(const struct setting *set, const struct motion *from, lanes h,
-                                   mask running, mask impact, bool coupled, struct iterate *it)
+                                   mask running, mask impact, bool coupled, bool frozen,
+                                   struct iterate *it)
 {
-    const lanes lever = h * (METHOD_THETA * METHOD_THETA), end_lever = h * METHOD_THETA;
+    const double moves = frozen ? 0 : METHOD_THETA;
+    const lanes lever = h * (METHOD_THETA * moves), end_lever = h * moves;
     const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
     lanes v[SCENE_COORDINATES], change[SCENE_COORDINATES], residual[SCENE_COORDINATES];
     for (int i = 0; i < SCENE_COORDINATES; i++) {
@@ -213,13 +218,13 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
         lanes u[SCENE_COORDINATES];
         for (int i = 0; i < SCENE_COORDINATES; i++)
             u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
-        law_inside(&set->law, u, v, lever, torque, torque_rate);
+        law_inside(&set->law, u, v, h * (METHOD_THETA * METHOD_THETA), torque, torque_rate);
     }
 
     scene_matrix J;
     lanes dw[SCENE_COORDINATES];
     scene_residual(&set->body, h, trig, v, change, torque, residual);
-    scene_factor(&set->body, h, METHOD_THETA, lever, direction_lever, trig, &direction, v, change,
+    scene_factor(&set->body, h, moves, lever, direction_lever, trig, &direction, v, change,
                  (const lanes(*)[2])it->r, coupled, (const lanes(*)[SCENE_POSTURE])torque_rate, &J);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         residual[i] = -residual[i];
@@ -380,9 +385,11 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
 
 /* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
  * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
- * inside it. Returns the lanes that converged. */
+ * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
+ * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
+ * between two modes for every h. Returns the lanes that converged. */
 static inline mask take_step(const struct setting *set, const struct motion *from,
-                             const lanes *torque, lanes h, mask run, bool coupled,
+                             const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
                              struct motion *to, struct step_report *report)
 {
     struct iterate it;
@@ -402,12 +409,13 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
             it.lift[c][i] = lanes_of(0);
     }
     it.ambiguous = it.unsolved = MASK_NONE;
-    iterate_place(set, from, h, &it);
+    iterate_place(set, from, h, false, &it);
     lanes iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
-        const lanes correction = iterate_newton(set, from, h, running, impact, coupled, &it);
+        const lanes correction =
+            iterate_newton(set, from, h, running, impact, coupled, k > freeze_after, &it);
         iterations += choose(running, lanes_of(1), lanes_of(0));
-        iterate_place(set, from, h, &it);
+        iterate_place(set, from, h, k >= freeze_after, &it);
         mask news = MASK_NONE;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
             const mask hit = running & LANES_NOT(it.active[c]) &
@@ -422,6 +430,8 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
         running &= LANES_NOT(done);
     }
     mask converged = run & LANES_NOT(running), touching = MASK_NONE;
+    if (freeze_after < STEP_MAX_ITERATIONS)
+        iterate_place(set, from, h, false, &it);
     if (METHOD_THETA != 1)
         scene_trigonometry(it.s1, &it.end);
     lanes slip[SCENE_CONTACTS];

@@ -1,0 +1,758 @@
+/* place.c - robust pole assignment by state feedback.
+ *
+ * Kautsky, Nichols, Van Dooren, "Robust pole assignment in linear state feedback", Int. J. Control
+ * 41 (1985) 1129-1155. With B = U0 S V^T (rank r) and U1 spanning the rest, A - B K can have x as
+ * eigenvector to the pole p exactly when x lies in S_p, the null space of U1^T (A - p I), of
+ * dimension r. Given independent unit vectors x_j of the S_j, X = (x_1 ... x_n),
+ *
+ *   K = V S^-1 U0^T (A - X diag(p) X^-1).
+ *
+ * The poles are the less sensitive to errors of A, B and K the better X is conditioned. Method 0
+ * replaces one x_j after the other by the projection on S_j of the normal of all other vectors.
+ * That is the best x_j can do for |det X|, so the sweeps climb |det X|; they are repeated here
+ * until the vectors stand still. A conjugate pair x = S w, with q1, q2 an orthonormal basis of the
+ * complement of the other vectors, contributes
+ *
+ *   |Im(conj(q1^T x) (q2^T x))| = |w^H H w|,   H = (a b^H - b a^H) / 2i,   a = S^H q1, b = S^H q2,
+ *
+ * and the eigenvector of the Hermitian H to its largest eigenvalue is the best both can do at once
+ * (compare Tits and Yang, IEEE TAC 41 (1996) 1432-1452). In store, a pair is its real and its
+ * imaginary part, so that X and K stay real.
+ *
+ * The maximum need not be unique. A mechanical system of p degrees of freedom without damping
+ * under p - 1 torques has S_j = {(v, p_j v)}, where v is orthogonal to p_j^2 u - G^T u, u the
+ * direction without torque and p'' = G p: all these normals lie in one plane. The reflection of v
+ * in that plane maps each S_j to itself and keeps |det X| and the condition number, so that
+ * maxima come as mirror images whose gains differ. place() therefore
+ *   1. climbs from several fixed starts and takes the highest maximum,
+ *   2. finds the reflection from the S_j alone and climbs from the mirror image too,
+ *   3. of maxima equally high (1e-9) takes the one with the larger Frobenius norm of K: a fixed
+ *      choice that changes continuously with the robot, which "where the iteration happens to end"
+ *      does not. (For the default biped both common starts and this rule agree.)
+ */
+#include "control.h"
+
+#include <complex.h>
+#include <lapacke.h>
+#include <stdio.h>
+#include <string.h>
+
+#define STARTS 4
+#define SCREEN_TOLERANCE 1e-7 /* change of a unit vector in one sweep that tells maxima apart */
+#define SCREEN_SWEEPS 2000
+#define TOLERANCE 1e-13 /* change that counts as none */
+#define ROUNDING 1e-9   /* below it, no progress in PATIENCE sweeps means rounding */
+#define PATIENCE 100
+#define MAX_SWEEPS 20000
+#define FLAT 1e-6         /* change still admitted after MAX_SWEEPS: a degenerate maximum */
+#define EQUAL_HEIGHT 1e-9 /* relative difference of |det X| between mirror images */
+#define WORST_CONDITION 1e13
+#define SAME_POLE 1e-12
+#define RANK_TOLERANCE 1e-12
+
+typedef double _Complex number;
+
+typedef struct problem {
+    int n, m, r;
+    const double *A, *B;
+    double complex *pole;  /* [n]; a pair in two places in a row, the one with im > 0 first */
+    double *range;         /* [n][n] columns of U: r for U0, then U1 (column-major) */
+    double *pseudo;        /* [m][r] V S^-1 */
+    number *space;         /* [n][n r] orthonormal basis of S_j, column-major */
+    number *vector;        /* [n][n] x_j; the conjugate's place in a pair is unused */
+    number *image, *small; /* [n n] and [4 n n] scratch */
+    double *X;             /* [n][n] column-major: x_j, or real and imaginary part */
+    double *factor;        /* [n][n] scratch */
+    double *rhs;           /* [n][n] scratch */
+    double *real;          /* [8 n n] scratch */
+    lapack_int *pivot;     /* [n] */
+    unsigned char *memory;
+} problem;
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+static stance_error problem_make(problem *p, int n, int m, const double *A, const double *B)
+{
+    const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
+    const size_t numbers = (size_t)n + nn * (size_t)n + nn + nn + 4 * nn;
+    const size_t reals = nn + nm + nn + nn + nn + 8 * nn + 2 * nm + nn;
+    *p = (problem){.n = n, .m = m, .A = A, .B = B};
+    p->memory = calloc(1, numbers * sizeof(number) + reals * sizeof(double) +
+                              (size_t)n * sizeof(lapack_int));
+    if (!p->memory) {
+        return STANCE_NO_MEMORY;
+    }
+    number *z = (number *)p->memory;
+    p->pole = z, z += n;
+    p->space = z, z += nn * (size_t)n;
+    p->vector = z, z += nn;
+    p->image = z, z += nn;
+    p->small = z, z += 4 * nn;
+    double *d = (double *)z;
+    p->range = d, d += nn;
+    p->pseudo = d, d += nm;
+    p->X = d, d += nn;
+    p->factor = d, d += nn;
+    p->rhs = d, d += nn;
+    p->real = d, d += 8 * nn + 2 * nm + nn;
+    p->pivot = (lapack_int *)d;
+    return STANCE_OK;
+}
+
+static bool is_pair(const problem *p, int j)
+{
+    return cimag(p->pole[j]) > 0;
+}
+
+/* ---- the poles that are wanted --------------------------------------------------------------- */
+
+static bool same_pole(double complex a, double complex b)
+{
+    return cabs(a - b) <= SAME_POLE * fmax(1, cabs(a));
+}
+
+static stance_error unpaired(stance_message *message, double complex pole)
+{
+    return stance_refuse(message, STANCE_BAD_POLES,
+                         "the pole %.6g%+.6gi has no conjugate %.6g%+.6gi among the poles",
+                         creal(pole), cimag(pole), creal(pole), -cimag(pole));
+}
+
+/* Brings pairs together; p->vector serves as the list of poles not yet placed in the order. */
+static stance_error order_poles(problem *p, const double *re, const double *im,
+                                stance_message *message)
+{
+    const int n = p->n;
+    number *left = p->vector;
+    int placed = 0;
+
+    for (int j = 0; j < n; j++) {
+        if (!isfinite(re[j]) || !isfinite(im[j])) {
+            return stance_refuse(message, STANCE_BAD_POLES,
+                                 "%d poles are needed, all of them finite", n);
+        }
+        left[j] = CMPLX(re[j], im[j]);
+    }
+    for (int j = 0; j < n; j++) {
+        if (isnan(creal(left[j]))) {
+            continue; /* taken as a conjugate */
+        }
+        const double complex pole = left[j];
+        p->pole[placed++] = pole;
+        if (cimag(pole) == 0) {
+            continue;
+        }
+        int k = j + 1;
+        while (k < n && (isnan(creal(left[k])) || !same_pole(left[k], conj(pole)))) {
+            k++;
+        }
+        if (k == n) {
+            return unpaired(message, pole);
+        }
+        left[k] = NAN;
+        p->pole[placed - 1] = CMPLX(creal(pole), fabs(cimag(pole)));
+        p->pole[placed++] = CMPLX(creal(pole), -fabs(cimag(pole)));
+    }
+    return STANCE_OK;
+}
+
+static stance_error check_multiplicity(const problem *p, stance_message *message)
+{
+    for (int j = 0; j < p->n; j++) {
+        int times = 0;
+        for (int k = 0; k < p->n; k++) {
+            times += same_pole(p->pole[j], p->pole[k]);
+        }
+        if (times > p->r) {
+            char imaginary[40] = "";
+            if (cimag(p->pole[j]) != 0) {
+                snprintf(imaginary, sizeof imaginary, "%+.6gi", cimag(p->pole[j]));
+            }
+            return stance_refuse(message, STANCE_BAD_POLES,
+                                 "the pole %.6g%s is wanted %d times, but %d independent input%s "
+                                 "place a pole %d time%s at most",
+                                 creal(p->pole[j]), imaginary, times, p->r, p->r == 1 ? "" : "s",
+                                 p->r, p->r == 1 ? "" : "s");
+        }
+    }
+    return STANCE_OK;
+}
+
+/* ---- what can be placed ---------------------------------------------------------------------- */
+
+/* B = U S V^T: fills r, range, pseudo. */
+static stance_error split_inputs(problem *p, stance_message *message)
+{
+    const int n = p->n, m = p->m, k = n < m ? n : m;
+    double *copy = p->real, *vt = copy + n * m, *sv = vt + k * m, *unused = sv + k;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < m; j++) {
+            copy[j * n + i] = p->B[i * m + j];
+        }
+    }
+    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'S', n, m, copy, n, sv, p->range, n, vt, k, unused) !=
+        0) {
+        return STANCE_NUMERICAL;
+    }
+    while (p->r < k && sv[p->r] > RANK_TOLERANCE * sv[0]) {
+        p->r++;
+    }
+    if (p->r == 0) {
+        return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                             "the inputs have no effect: the matrix B is zero");
+    }
+    for (int i = 0; i < m; i++) {
+        for (int j = 0; j < p->r; j++) {
+            p->pseudo[i * p->r + j] = vt[i * k + j] / sv[j];
+        }
+    }
+    return STANCE_OK;
+}
+
+/* Hautus: every eigenvalue s of A must leave (A - s I, B) of full rank. */
+static stance_error check_controllable(const problem *p, stance_message *message)
+{
+    const int n = p->n, width = n + p->r;
+    double *re = p->real, *im = re + n, *sv = im + n, *unused = sv + n;
+    number *matrix = p->small;
+    double norm = 0;
+
+    stance_error error = stance_eigenvalues(n, p->A, re, im);
+    for (int i = 0; i < n * n; i++) {
+        norm = hypot(norm, p->A[i]);
+    }
+    for (int e = 0; error == STANCE_OK && e < n; e++) {
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < width; j++) {
+                /* The range of B in place of B: the unit of the inputs does not matter. */
+                matrix[j * n + i] = j >= n   ? norm * p->range[(j - n) * n + i]
+                                    : i == j ? p->A[i * n + j] - CMPLX(re[e], im[e])
+                                             : p->A[i * n + j];
+            }
+        }
+        if (LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, width, matrix, n, sv, NULL, 1, NULL, 1,
+                           unused) != 0) {
+            return STANCE_NUMERICAL;
+        }
+        if (sv[n - 1] <= 1e-10 * sv[0]) {
+            return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                                 "the pair (A, B) is not controllable: no input reaches the mode "
+                                 "with eigenvalue %.6g%+.6gi",
+                                 re[e], im[e]);
+        }
+    }
+    return error;
+}
+
+/* Orthonormal bases of the S_j. */
+static stance_error find_spaces(problem *p)
+{
+    const int n = p->n, rows = n - p->r;
+    number *N = p->image, *vt = p->small;
+    double *sv = p->real, *unused = sv + n;
+
+    for (int j = 0; j < n; j++) {
+        number *space = p->space + (size_t)j * (size_t)n * (size_t)p->r;
+        for (int i = 0; i < n * n; i++) {
+            vt[i] = i % (n + 1) == 0;
+        }
+        for (int i = 0; i < rows; i++) {
+            const double *u = p->range + (p->r + i) * n;
+            for (int k = 0; k < n; k++) {
+                double sum = 0;
+                for (int l = 0; l < n; l++) {
+                    sum += u[l] * p->A[l * n + k];
+                }
+                N[k * rows + i] = sum - p->pole[j] * u[k];
+            }
+        }
+        if (rows > 0 && LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'A', rows, n, N, rows, sv, NULL, 1,
+                                       vt, n, unused) != 0) {
+            return STANCE_NUMERICAL;
+        }
+        for (int k = 0; k < p->r; k++) {
+            for (int i = 0; i < n; i++) {
+                space[k * n + i] = conj(vt[i * n + rows + k]);
+            }
+        }
+    }
+    return STANCE_OK;
+}
+
+/* ---- climbing |det X| ------------------------------------------------------------------------ */
+
+static void store_columns(problem *p, int j)
+{
+    const number *x = p->vector + j * p->n;
+    for (int i = 0; i < p->n; i++) {
+        p->X[j * p->n + i] = creal(x[i]);
+        if (is_pair(p, j)) {
+            p->X[(j + 1) * p->n + i] = cimag(x[i]);
+        }
+    }
+}
+
+/* x_j = S_j w, scaled to length 1; false when w is zero. */
+static bool combine(const problem *p, int j, const number *w, number *x)
+{
+    const number *space = p->space + (size_t)j * (size_t)p->n * (size_t)p->r;
+    double norm = 0;
+    for (int i = 0; i < p->n; i++) {
+        x[i] = 0;
+        for (int k = 0; k < p->r; k++) {
+            x[i] += space[k * p->n + i] * w[k];
+        }
+        norm = hypot(norm, cabs(x[i]));
+    }
+    for (int i = 0; i < p->n; i++) {
+        x[i] /= norm;
+    }
+    return norm > 0 && isfinite(norm);
+}
+
+/* w = S_j^H y. */
+static void project(const problem *p, int j, const double *y, number *w)
+{
+    const number *space = p->space + (size_t)j * (size_t)p->n * (size_t)p->r;
+    for (int k = 0; k < p->r; k++) {
+        w[k] = 0;
+        for (int i = 0; i < p->n; i++) {
+            w[k] += conj(space[k * p->n + i]) * y[i];
+        }
+    }
+}
+
+static bool normalise(int n, double *y)
+{
+    double norm = 0;
+    for (int i = 0; i < n; i++) {
+        norm = hypot(norm, y[i]);
+    }
+    for (int i = 0; i < n; i++) {
+        y[i] /= norm;
+    }
+    return norm > 0 && isfinite(norm);
+}
+
+/* Orthonormal basis, in y, of the complement of all columns of X but `count` from column j. */
+static bool complement(problem *p, int j, int count, double *y)
+{
+    const int n = p->n;
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < n; k++) {
+            p->factor[i * n + k] = p->X[k * n + i]; /* X^T */
+        }
+    }
+    memset(y, 0, (size_t)(count * n) * sizeof *y);
+    for (int c = 0; c < count; c++) {
+        y[c * n + j + c] = 1;
+    }
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, count, p->factor, n, p->pivot, y, n) != 0 ||
+        !normalise(n, y)) {
+        return false;
+    }
+    if (count == 1) {
+        return true;
+    }
+    double *z = y + n;
+    if (!normalise(n, z)) {
+        return false;
+    }
+    for (int again = 0; again < 2; again++) {
+        double along = 0;
+        for (int i = 0; i < n; i++) {
+            along += y[i] * z[i];
+        }
+        for (int i = 0; i < n; i++) {
+            z[i] -= along * y[i];
+        }
+    }
+    return normalise(n, z);
+}
+
+/* w: eigenvector of H of the largest |eigenvalue|; of two equal ones the positive. */
+static bool best_pair(problem *p, const number *a, const number *b, number *w)
+{
+    const int r = p->r;
+    number *H = p->small + 3 * r;
+    double *value = p->real;
+    for (int i = 0; i < r; i++) {
+        for (int k = 0; k < r; k++) {
+            H[k * r + i] = (a[i] * conj(b[k]) - b[i] * conj(a[k])) / CMPLX(0, 2);
+        }
+    }
+    if (LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'U', r, H, r, value) != 0) {
+        return false;
+    }
+    const int best = -value[0] > value[r - 1] * (1 + 1e-9) ? 0 : r - 1;
+    memcpy(w, H + best * r, (size_t)r * sizeof *w);
+    return true;
+}
+
+/* Replaces x_j (and its conjugate) by the best choice; *change grows to how far it moved. */
+static bool improve(problem *p, int j, double *change)
+{
+    const int n = p->n, count = is_pair(p, j) ? 2 : 1;
+    number *x = p->vector + j * n, *fresh = p->image, *w = p->small, *a = w + p->r, *b = a + p->r;
+    if (!complement(p, j, count, p->rhs)) {
+        return false;
+    }
+    if (count == 1) {
+        project(p, j, p->rhs, w);
+    } else {
+        project(p, j, p->rhs, a);
+        project(p, j, p->rhs + n, b);
+        if (!best_pair(p, a, b, w)) {
+            return false;
+        }
+    }
+    if (!combine(p, j, w, fresh)) {
+        return false;
+    }
+    /* A vector's phase means nothing: compare after turning the new one to the old. */
+    number overlap = 0;
+    for (int i = 0; i < n; i++) {
+        overlap += conj(fresh[i]) * x[i];
+    }
+    const number phase = cabs(overlap) > 0 ? overlap / cabs(overlap) : 1;
+    double moved = 0;
+    for (int i = 0; i < n; i++) {
+        fresh[i] *= phase;
+        moved = hypot(moved, cabs(fresh[i] - x[i]));
+        x[i] = fresh[i];
+    }
+    *change = fmax(*change, moved);
+    store_columns(p, j);
+    return true;
+}
+
+/* Sweeps until nothing moves by more than `tolerance`; false: singular, or not there yet. */
+static bool climb(problem *p, double tolerance, int most, double admitted, int *sweeps)
+{
+    double least = INFINITY;
+    int progress = 0;
+    for (*sweeps = 1;; ++*sweeps) {
+        double change = 0;
+        for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1) {
+            if (!improve(p, j, &change)) {
+                return false;
+            }
+        }
+        if (change < least) {
+            least = change;
+            progress = *sweeps;
+        }
+        if (change <= tolerance || (change <= ROUNDING && *sweeps >= progress + PATIENCE)) {
+            return true;
+        }
+        if (*sweeps >= most) {
+            return change <= admitted;
+        }
+    }
+}
+
+/* log |det X|; -INFINITY for a singular X. */
+static double log_height(problem *p)
+{
+    const int n = p->n;
+    memcpy(p->factor, p->X, (size_t)(n * n) * sizeof *p->X);
+    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, p->factor, n, p->pivot) != 0) {
+        return -INFINITY;
+    }
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        sum += log(fabs(p->factor[i * (n + 1)]));
+    }
+    return sum;
+}
+
+/* ---- starts and mirror images ---------------------------------------------------------------- */
+
+/* x_j: fixed scattered vectors projected on S_j, so that the start does not depend on the bases. */
+static bool scatter(problem *p, int start)
+{
+    uint64_t state = 0x9e3779b97f4a7c15u * (uint64_t)(start + 1);
+    for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1) {
+        number *w = p->small, *part = w + p->r;
+        memset(w, 0, (size_t)p->r * sizeof *w);
+        for (int c = 0; c < (is_pair(p, j) ? 2 : 1); c++) {
+            for (int i = 0; i < p->n; i++) {
+                state = state * 6364136223846793005u + 1442695040888963407u;
+                p->rhs[i] = (double)(state >> 11) * 0x1p-52 - 1;
+            }
+            project(p, j, p->rhs, part);
+            for (int k = 0; k < p->r; k++) {
+                w[k] += c ? CMPLX(0, 1) * part[k] : part[k];
+            }
+        }
+        if (!combine(p, j, w, p->vector + j * p->n)) {
+            return false;
+        }
+        store_columns(p, j);
+    }
+    return true;
+}
+
+/* M[r][r] (column-major) = S_i^H S_j. */
+static void cross_gram(const problem *p, int i, int j, number *M)
+{
+    const int n = p->n, r = p->r;
+    const number *Si = p->space + (size_t)i * (size_t)n * (size_t)r;
+    const number *Sj = p->space + (size_t)j * (size_t)n * (size_t)r;
+    for (int a = 0; a < r; a++) {
+        for (int b = 0; b < r; b++) {
+            number sum = 0;
+            for (int k = 0; k < n; k++) {
+                sum += conj(Si[a * n + k]) * Sj[b * n + k];
+            }
+            M[b * r + a] = sum;
+        }
+    }
+}
+
+/* Direction in S_0, as coefficients, that a reflection common to all S_j turns round: where such a
+ * reflection exists it is a singular vector of S_0^H S_j; the j that shows it best is taken. */
+static bool mirror_direction(problem *p, number *direction)
+{
+    const int r = p->r;
+    number *M = p->small + r, *u = M + r * r;
+    double *sv = p->real, *unused = sv + r;
+    double clearest = 1 - 1e-9;
+    for (int j = 1; j < p->n; j++) {
+        cross_gram(p, 0, j, M);
+        if (LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'A', 'N', r, r, M, r, sv, u, r, NULL, 1, unused) !=
+            0) {
+            return false;
+        }
+        if (sv[r - 1] < clearest * sv[0]) {
+            clearest = sv[r - 1] / sv[0];
+            memcpy(direction, u + (r - 1) * r, (size_t)r * sizeof *direction);
+        }
+    }
+    return clearest < 1 - 1e-9;
+}
+
+/* Reflects every x_j: with w_j its coefficients and M = S_0^H S_j, M w_j is turned in S_0 and
+ * brought back by M^-1. false where there is nothing to reflect; X may be spoilt then. */
+static bool reflect(problem *p)
+{
+    const int n = p->n, r = p->r;
+    number *direction = p->image;
+    if (r < 2 || !mirror_direction(p, direction)) {
+        return false;
+    }
+    number *w = p->small, *image = w + r, *M = image + r;
+    for (int j = 0; j < n; j += is_pair(p, j) ? 2 : 1) {
+        const number *space = p->space + (size_t)j * (size_t)n * (size_t)r;
+        number *x = p->vector + j * n;
+        for (int k = 0; k < r; k++) {
+            w[k] = 0;
+            for (int i = 0; i < n; i++) {
+                w[k] += conj(space[k * n + i]) * x[i];
+            }
+        }
+        cross_gram(p, 0, j, M);
+        number along = 0;
+        for (int a = 0; a < r; a++) {
+            image[a] = 0;
+            for (int b = 0; b < r; b++) {
+                image[a] += M[b * r + a] * w[b];
+            }
+            along += conj(direction[a]) * image[a];
+        }
+        for (int a = 0; a < r; a++) {
+            image[a] -= 2 * along * direction[a];
+        }
+        if (LAPACKE_zgesv(LAPACK_COL_MAJOR, r, 1, M, r, p->pivot, image, r) != 0 ||
+            !combine(p, j, image, x)) {
+            return false;
+        }
+        store_columns(p, j);
+    }
+    return true;
+}
+
+/* ---- gains ----------------------------------------------------------------------------------- */
+
+/* K[m][n] = V S^-1 U0^T (A - M), M X = X Lambda in real form. */
+static bool gains(problem *p, double *K, double *norm)
+{
+    const int n = p->n, r = p->r;
+    double *M = p->rhs, *XT = p->factor, *U0M = p->real;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            XT[i * n + j] = p->X[j * n + i];
+            const double a = creal(p->pole[j]), b = cimag(p->pole[j]);
+            const double *column = p->X + j * n;
+            M[i * n + j] = b == 0  ? a * column[i]
+                           : b > 0 ? a * column[i] - b * column[n + i]
+                                   : -b * column[i - n] + a * column[i];
+        }
+    }
+    /* X^T M^T = (X Lambda)^T: column i of the solution is row i of M. */
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, n, XT, n, p->pivot, M, n) != 0) {
+        return false;
+    }
+    for (int k = 0; k < r; k++) {
+        for (int j = 0; j < n; j++) {
+            U0M[k * n + j] = 0;
+            for (int i = 0; i < n; i++) {
+                U0M[k * n + j] += p->range[k * n + i] * (p->A[i * n + j] - M[i * n + j]);
+            }
+        }
+    }
+    matrix_multiply(p->m, r, n, p->pseudo, U0M, K);
+    *norm = 0;
+    for (int i = 0; i < p->m * n; i++) {
+        *norm = hypot(*norm, K[i]);
+    }
+    return isfinite(*norm);
+}
+
+/* 2-norm condition number of the unit eigenvectors; (x, conj x) is (u, v) times sqrt(2) times a
+ * unitary matrix. */
+static double condition_number(problem *p)
+{
+    const int n = p->n;
+    double *sv = p->real, *unused = sv + n;
+    for (int j = 0; j < n; j++) {
+        const double scale = cimag(p->pole[j]) != 0 ? sqrt(2) : 1;
+        for (int i = 0; i < n; i++) {
+            p->factor[j * n + i] = scale * p->X[j * n + i];
+        }
+    }
+    if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n, p->factor, n, sv, NULL, 1, NULL, 1,
+                       unused) != 0) {
+        return INFINITY;
+    }
+    return sv[0] / sv[n - 1];
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+static stance_error not_independent(stance_message *message)
+{
+    return stance_refuse(message, STANCE_BAD_POLES,
+                         "these poles cannot be placed: no independent eigenvectors were found; "
+                         "poles that repeat or nearly coincide are spread over too few inputs");
+}
+
+/* The highest maximum that the starts lead to is left in p->vector and p->X; *taken: sweeps from
+ * its start. */
+static bool screen(problem *p, number *best, int *taken)
+{
+    const size_t bytes = (size_t)p->n * (size_t)p->n * sizeof *best;
+    double highest = -INFINITY;
+    int sweeps;
+    for (int start = 0; start < STARTS; start++) {
+        if (!scatter(p, start) || !climb(p, SCREEN_TOLERANCE, SCREEN_SWEEPS, 1, &sweeps)) {
+            continue;
+        }
+        const double height = log_height(p);
+        if (height > highest + (isfinite(highest) ? EQUAL_HEIGHT : 0)) {
+            highest = height;
+            *taken = sweeps;
+            memcpy(best, p->vector, bytes);
+        }
+    }
+    if (!isfinite(highest)) {
+        return false;
+    }
+    memcpy(p->vector, best, bytes);
+    for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1) {
+        store_columns(p, j);
+    }
+    return true;
+}
+
+/* One finished candidate: K and how it rates. */
+typedef struct candidate {
+    double height, norm, condition;
+    int sweeps;
+} candidate;
+
+static stance_error finish(problem *p, double *K, candidate *c, stance_message *message)
+{
+    if (!climb(p, TOLERANCE, MAX_SWEEPS, FLAT, &c->sweeps)) {
+        return c->sweeps >= MAX_SWEEPS
+                   ? stance_refuse(message, STANCE_NOT_CONVERGED,
+                                   "pole placement did not converge in %d sweeps", MAX_SWEEPS)
+                   : not_independent(message);
+    }
+    c->height = log_height(p);
+    c->condition = condition_number(p);
+    if (!(c->condition < WORST_CONDITION) || !gains(p, K, &c->norm)) {
+        return not_independent(message);
+    }
+    return STANCE_OK;
+}
+
+static stance_error solve(problem *p, double *K, candidate *c, stance_message *message)
+{
+    const size_t bytes = (size_t)p->n * (size_t)p->m * sizeof *K;
+    candidate mirrored;
+    int before = 0;
+    number *best = calloc((size_t)p->n * (size_t)p->n, sizeof *best);
+    double *other = malloc(bytes);
+    stance_error error = best && other ? STANCE_OK : STANCE_NO_MEMORY;
+    if (error == STANCE_OK) {
+        error = screen(p, best, &before) ? finish(p, K, c, message) : not_independent(message);
+    }
+    if (error == STANCE_OK && reflect(p) && finish(p, other, &mirrored, NULL) == STANCE_OK) {
+        const double higher = mirrored.height - c->height;
+        if (higher > EQUAL_HEIGHT || (higher >= -EQUAL_HEIGHT && mirrored.norm > c->norm)) {
+            mirrored.sweeps += c->sweeps;
+            *c = mirrored;
+            memcpy(K, other, bytes);
+        }
+    }
+    c->sweeps += before;
+    free(other);
+    free(best);
+    return error;
+}
+
+stance_error stance_place(int n, int m, const double *A, const double *B, const double *re,
+                          const double *im, double *K, int *sweeps, double *condition,
+                          stance_message *message)
+{
+    if (n < 1 || m < 1) {
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "pole placement needs at least one state and one input");
+    }
+    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite((size_t)n * (size_t)m, B)) {
+        return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
+    }
+    problem p;
+    candidate c;
+    stance_error error = problem_make(&p, n, m, A, B);
+    if (error == STANCE_OK) {
+        error = order_poles(&p, re, im, message);
+    }
+    if (error == STANCE_OK) {
+        error = split_inputs(&p, message);
+    }
+    if (error == STANCE_OK) {
+        error = check_multiplicity(&p, message);
+    }
+    if (error == STANCE_OK) {
+        error = check_controllable(&p, message);
+    }
+    if (error == STANCE_OK) {
+        error = find_spaces(&p);
+    }
+    if (error == STANCE_OK) {
+        error = solve(&p, K, &c, message);
+    }
+    if (error == STANCE_OK && sweeps) {
+        *sweeps = c.sweeps;
+    }
+    if (error == STANCE_OK && condition) {
+        *condition = c.condition;
+    }
+    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL) {
+        stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
+    }
+    free(p.memory);
+    return error;
+}

@@ -1,0 +1,33 @@
+/* scenes.c - the scenes there are, and the texts of errors. */
+#include "stance.h"
+
+#include <string.h>
+
+extern const stance_scene stance_scene_biped;
+
+const stance_scene *const *stance_scenes(void)
+{
+    static const stance_scene *const scenes[] = {&stance_scene_biped, NULL};
+    return scenes;
+}
+
+const stance_scene *stance_scene_find(const char *name)
+{
+    for (const stance_scene *const *scene = stance_scenes(); *scene; scene++) {
+        if (strcmp((*scene)->name, name) == 0) {
+            return *scene;
+        }
+    }
+    return NULL;
+}
+
+const char *stance_error_text(stance_error error)
+{
+    static const char *const texts[] = {
+#define ERROR_TEXT(name, text) [STANCE_##name] = text,
+        STANCE_ERRORS(ERROR_TEXT)
+#undef ERROR_TEXT
+    };
+    const size_t count = sizeof texts / sizeof texts[0];
+    return (size_t)error < count ? texts[error] : "unknown error";
+}

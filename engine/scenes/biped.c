@@ -1,0 +1,390 @@
+/* biped.c - the planar biped: five point masses on massless links, hinged at the hip.
+ *
+ * q = (x, z, theta, q1, q2): position (x, z) of the trunk's mass, pitch theta of the trunk, angles
+ * q1, q2 of the legs against the trunk, counter-clockwise. With phi_i = theta + q_i, the hip p and
+ * the feet f_i are at
+ *
+ *   p = (x + lt sin theta, z - lt cos theta),   f_i = p + l (sin phi_i, -cos phi_i).
+ *
+ * Masses: mt at (x, z), mh at p, m at each foot; M = mt + mh + 2 m. Torque Gamma_i acts on leg i
+ * and its opposite on the trunk.
+ *
+ * Equilibrium on foot s, the other leg f hanging free. Contact carries (0, M g). Moments about the
+ * hip, of the trunk, of the free leg, and of the leg that the ground pushes up:
+ *
+ *   mt lt g sin theta     =  Gamma_1 + Gamma_2                     the paper's (20)
+ *   (M - m) l g sin phi_s = -Gamma_s                               (21)
+ *   m l g sin phi_f       =  Gamma_f                               (22)
+ *
+ * Added up, the torques vanish and one relation between the three sines is left,
+ *
+ *   mt lt sin theta + (M - m) l sin phi_s - m l sin phi_f = 0,
+ *
+ * which says that the centre of mass is above foot s. Given theta and one leg it yields the sine of
+ * the other; given both legs it reads a sin theta + b cos theta = 0, which two opposite pitches
+ * solve. Either way there are two branches, and `lower` chooses between them.
+ *
+ * Linearisation with foot s pinned at the origin: p = l (-sin phi_s, cos phi_s), so that in
+ * a = (theta, phi_s, phi_f) the kinetic energy is a'^T N(a) a' / 2 with
+ *
+ *   N = [ mt lt^2                     mt lt l cos(theta - phi_s)     0                        ]
+ *       [ .                           (M - m) l^2                    -m l^2 cos(phi_f - phi_s)]
+ *       [ .                           .                              m l^2                    ]
+ *
+ * and the potential V = g (mt lt cos theta + (M - m) l cos phi_s - m l cos phi_f). At rest all
+ * terms with velocities are of second order and N multiplies accelerations that vanish at the
+ * equilibrium, so exactly: N da'' = -V'' da + S dGamma, V'' diagonal, S = (-1 -1; e_s; e_f).
+ * Eliminating theta and phi_f leaves the pivot
+ *
+ *   (M - m) l^2 - mt l^2 cos^2(theta - phi_s) - m l^2 cos^2(phi_f - phi_s) >= mh l^2 > 0.
+ */
+#include "../stance.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LEG_LENGTH, TRUNK_LENGTH, FOOT_MASS, TRUNK_MASS, HIP_MASS, ROBOT_COUNT };
+enum { X, Z, THETA, Q1, Q2, COORDINATES };
+enum { FEET = 2, TORQUES = 2, POSTURES = 3 };
+
+extern const stance_scene stance_scene_biped;
+
+static const stance_quantity robot_quantities[ROBOT_COUNT] = {
+    [LEG_LENGTH] = {"leg_length", "m", "length of each leg, from the hip to the foot", 0.535, 1e-3,
+                    1e3},
+    [TRUNK_LENGTH] = {"trunk_length", "m", "length of the trunk, from the hip to its mass", 0.535,
+                      1e-3, 1e3},
+    [FOOT_MASS] = {"foot_mass", "kg", "mass of each foot", 1.8, 1e-3, 1e4},
+    [TRUNK_MASS] = {"trunk_mass", "kg", "mass of the trunk, at its upper end", 1.8, 1e-3, 1e4},
+    [HIP_MASS] = {"hip_mass", "kg", "mass of the hip", 5.4, 1e-3, 1e4},
+};
+
+static const stance_quantity coordinate_quantities[COORDINATES] = {
+    [X] = {"x", "m", "horizontal position of the trunk's mass, forward", 0, -1e6, 1e6},
+    [Z] = {"z", "m", "height of the trunk's mass above the ground", 0, -1e6, 1e6},
+    [THETA] = {"theta", "rad", "pitch of the trunk, counter-clockwise from upright", 0, -1e3, 1e3},
+    [Q1] = {"q1", "rad", "angle of leg 1 against the trunk, 0 when in line with it", 0, -1e3, 1e3},
+    [Q2] = {"q2", "rad", "angle of leg 2 against the trunk, 0 when in line with it", 0, -1e3, 1e3},
+};
+
+static const char *const contact_names[FEET] = {"foot1", "foot2"};
+static const char *const actuator_names[TORQUES] = {"hip1", "hip2"};
+static const int posture_coordinates[POSTURES] = {THETA, Q1, Q2};
+
+/* ---- kinematics ------------------------------------------------------------------------------ */
+
+typedef struct point {
+    double x, z;
+} point;
+
+static point hip(const double *robot, const double *q)
+{
+    double sine, cosine;
+    stance_sincos(q[THETA], &sine, &cosine);
+    return (point){q[X] + robot[TRUNK_LENGTH] * sine, q[Z] - robot[TRUNK_LENGTH] * cosine};
+}
+
+static point foot(const double *robot, const double *q, int i)
+{
+    const point p = hip(robot, q);
+    double sine, cosine;
+    stance_sincos(q[THETA] + q[Q1 + i], &sine, &cosine);
+    return (point){p.x + robot[LEG_LENGTH] * sine, p.z - robot[LEG_LENGTH] * cosine};
+}
+
+static void gaps(const double *robot, const double *position, double *gap)
+{
+    for (int i = 0; i < FEET; i++) {
+        gap[i] = foot(robot, position, i).z;
+    }
+}
+
+static void contact_point(const double *robot, const double *position, const double *velocity,
+                          int contact, double at[2], double speed[2])
+{
+    double trunk_sine, trunk_cosine, leg_sine, leg_cosine;
+    const point f = foot(robot, position, contact);
+    stance_sincos(position[THETA], &trunk_sine, &trunk_cosine);
+    stance_sincos(position[THETA] + position[Q1 + contact], &leg_sine, &leg_cosine);
+    const double trunk = robot[TRUNK_LENGTH] * velocity[THETA];
+    const double leg = robot[LEG_LENGTH] * (velocity[THETA] + velocity[Q1 + contact]);
+    at[0] = f.x;
+    at[1] = f.z;
+    speed[0] = velocity[X] + trunk * trunk_cosine + leg * leg_cosine;
+    speed[1] = velocity[Z] + trunk * trunk_sine + leg * leg_sine;
+}
+
+static void stand(const double *robot, int support, double *position, double *velocity)
+{
+    static const double zero[COORDINATES];
+    double at[2], speed[2];
+
+    position[X] = position[Z] = 0;
+    contact_point(robot, position, zero, support, at, speed);
+    position[X] = 0 - at[0];
+    position[Z] = 0 - at[1];
+    /* Where the sum rounds downwards the foot would start inside the ground: the next heights. */
+    const double least = DBL_EPSILON / 8 * (robot[LEG_LENGTH] + robot[TRUNK_LENGTH]);
+    while (foot(robot, position, support).z < 0) {
+        position[Z] = fmax(nextafter(position[Z], INFINITY), position[Z] + least);
+    }
+    velocity[X] = velocity[Z] = 0;
+    contact_point(robot, position, velocity, support, at, speed);
+    velocity[X] = 0 - speed[0];
+    velocity[Z] = 0 - speed[1];
+}
+
+static int figure(const double *robot, const double *position, double points[][2])
+{
+    const point p = hip(robot, position), f1 = foot(robot, position, 0),
+                f2 = foot(robot, position, 1);
+    const point line[] = {f1, p, f2, p, {position[X], position[Z]}};
+    const int n = sizeof line / sizeof line[0];
+    for (int i = 0; i < n; i++) {
+        points[i][0] = line[i].x;
+        points[i][1] = line[i].z;
+    }
+    return n;
+}
+
+static void height(const double *robot, const double *position, double *hip_height, double *length)
+{
+    *hip_height = hip(robot, position).z;
+    *length = robot[LEG_LENGTH];
+}
+
+static double energy(const double *robot, const double *position, const double *velocity)
+{
+    double sine, cosine, at[2], speed[2];
+    stance_sincos(position[THETA], &sine, &cosine);
+    const double turn = robot[TRUNK_LENGTH] * velocity[THETA];
+    const double hip_vx = velocity[X] + turn * cosine, hip_vz = velocity[Z] + turn * sine;
+
+    double sum =
+        robot[TRUNK_MASS] * (0.5 * (velocity[X] * velocity[X] + velocity[Z] * velocity[Z]) +
+                             STANCE_GRAVITY * position[Z]);
+    sum += robot[HIP_MASS] *
+           (0.5 * (hip_vx * hip_vx + hip_vz * hip_vz) + STANCE_GRAVITY * hip(robot, position).z);
+    for (int i = 0; i < FEET; i++) {
+        contact_point(robot, position, velocity, i, at, speed);
+        sum += robot[FOOT_MASS] *
+               (0.5 * (speed[0] * speed[0] + speed[1] * speed[1]) + STANCE_GRAVITY * at[1]);
+    }
+    return sum;
+}
+
+/* ---- equilibrium ----------------------------------------------------------------------------- */
+
+static stance_error refuse(stance_message *message, stance_error error, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static stance_error refuse(stance_message *message, stance_error error, const char *format, ...)
+{
+    if (message) {
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(message->text, sizeof message->text, format, arguments);
+        va_end(arguments);
+    }
+    return error;
+}
+
+/* Weights of sin theta, sin phi_1, sin phi_2 in the relation that puts the centre of mass above
+ * the foot `support`. */
+static void balance(const double *robot, int support, double weight[POSTURES])
+{
+    const double carried = robot[TRUNK_MASS] + robot[HIP_MASS] + robot[FOOT_MASS];
+    weight[0] = robot[TRUNK_MASS] * robot[TRUNK_LENGTH];
+    weight[1 + support] = carried * robot[LEG_LENGTH];
+    weight[2 - support] = -robot[FOOT_MASS] * robot[LEG_LENGTH];
+}
+
+/* phi of leg `unknown` from theta and the other leg. */
+static stance_error solve_leg(const double *weight, const stance_equilibrium_choice *choice,
+                              double posture[POSTURES], int unknown, stance_message *message)
+{
+    const int known = 3 - unknown;
+    const double sine =
+        -(weight[0] * sin(posture[0]) + weight[known] * sin(posture[0] + posture[known])) /
+        weight[unknown];
+    /* A sine of 1 that rounding has made larger is one still. */
+    if (!(fabs(sine) <= 1 + 1e-14)) {
+        return refuse(message, STANCE_NO_EQUILIBRIUM,
+                      "no equilibrium: the %s leg would need sin(theta + q%d) = %.6g",
+                      unknown == 1 + choice->support ? "support" : "free", unknown, sine);
+    }
+    const double upper = asin(fmax(-1, fmin(1, sine)));
+    posture[unknown] = (choice->lower ? M_PI - upper : upper) - posture[0];
+    return STANCE_OK;
+}
+
+/* theta from both leg angles: a sin theta + b cos theta = 0 has the two opposite solutions. */
+static stance_error solve_trunk(const double *weight, const stance_equilibrium_choice *choice,
+                                double posture[POSTURES], stance_message *message)
+{
+    const int s = 1 + choice->support;
+    const double a = weight[0] + weight[1] * cos(posture[1]) + weight[2] * cos(posture[2]);
+    const double b = weight[1] * sin(posture[1]) + weight[2] * sin(posture[2]);
+    const double size = fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]);
+
+    if (fmax(fabs(a), fabs(b)) <= 1e-14 * size) {
+        return refuse(message, STANCE_NO_EQUILIBRIUM,
+                      "no single equilibrium: with these q1 and q2 the centre of mass is at the "
+                      "foot and every theta balances");
+    }
+    posture[0] = atan2(-b, a);
+    if ((cos(posture[0] + posture[s]) < 0) != choice->lower) {
+        posture[0] += posture[0] > 0 ? -M_PI : M_PI;
+    }
+    return STANCE_OK;
+}
+
+static stance_error equilibrium(const double *robot, const stance_equilibrium_choice *choice,
+                                stance_equilibrium *result, stance_message *message)
+{
+    int given = 0, unknown = -1;
+    double posture[POSTURES], weight[POSTURES], velocity[COORDINATES] = {0};
+
+    if (choice->support < 0 || choice->support >= FEET) {
+        return refuse(message, STANCE_BAD_ARGUMENT, "no such foot to stand on: foot %d",
+                      choice->support + 1);
+    }
+    for (int i = 0; i < POSTURES; i++) {
+        posture[i] = choice->posture[i];
+        if (isnan(posture[i])) {
+            unknown = i;
+        } else if (!isfinite(posture[i]) || fabs(posture[i]) > 1e3) {
+            return refuse(message, STANCE_BAD_ARGUMENT,
+                          "an equilibrium's angles must lie within +-1000 rad");
+        } else {
+            given++;
+        }
+    }
+    if (given != 2) {
+        return refuse(message, STANCE_BAD_ARGUMENT,
+                      "an equilibrium needs exactly two of theta, q1, q2; %s given",
+                      given == 0   ? "none is"
+                      : given == 1 ? "only one is"
+                                   : "all three are");
+    }
+    balance(robot, choice->support, weight);
+    const stance_error error = unknown == 0 ? solve_trunk(weight, choice, posture, message)
+                                            : solve_leg(weight, choice, posture, unknown, message);
+    if (error != STANCE_OK) {
+        return error;
+    }
+    *result = (stance_equilibrium){.support = choice->support};
+    memcpy(&result->position[THETA], posture, sizeof posture);
+    stand(robot, choice->support, result->position, velocity);
+    for (int i = 0; i < TORQUES; i++) {
+        result->torque[i] = 0 - STANCE_GRAVITY * weight[1 + i] * sin(posture[0] + posture[1 + i]);
+    }
+    return STANCE_OK;
+}
+
+/* ---- linearisation --------------------------------------------------------------------------- */
+
+/* The pinned robot about an equilibrium, in a = (theta, phi_s, phi_f): N a'' = force. */
+typedef struct pinned {
+    double trunk, support, free;        /* diagonal of N */
+    double trunk_support, free_support; /* off it */
+    double stiffness[POSTURES];         /* diagonal of V'' */
+} pinned;
+
+static pinned pin(const double *robot, const stance_equilibrium *equilibrium)
+{
+    const double l = robot[LEG_LENGTH], lt = robot[TRUNK_LENGTH], m = robot[FOOT_MASS],
+                 mt = robot[TRUNK_MASS], carried = mt + robot[HIP_MASS] + m;
+    const double *q = equilibrium->position;
+    const int s = Q1 + equilibrium->support, f = Q2 - equilibrium->support;
+    const double phi_s = q[THETA] + q[s], phi_f = q[THETA] + q[f];
+    return (pinned){
+        .trunk = mt * lt * lt,
+        .support = carried * l * l,
+        .free = m * l * l,
+        .trunk_support = mt * lt * l * cos(q[s]),
+        .free_support = -m * l * l * cos(q[f] - q[s]),
+        .stiffness = {-STANCE_GRAVITY * mt * lt * cos(q[THETA]),
+                      -STANCE_GRAVITY * carried * l * cos(phi_s),
+                      STANCE_GRAVITY * m * l * cos(phi_f)},
+    };
+}
+
+/* Accelerations of (theta, q1, q2) under generalised forces on (theta, phi_s, phi_f). */
+static void accelerate(const pinned *p, int support, const double force[POSTURES],
+                       double posture[POSTURES])
+{
+    const double pivot = p->support - p->trunk_support * p->trunk_support / p->trunk -
+                         p->free_support * p->free_support / p->free;
+    const double phi_s =
+        (force[1] - p->trunk_support / p->trunk * force[0] - p->free_support / p->free * force[2]) /
+        pivot;
+    const double theta = (force[0] - p->trunk_support * phi_s) / p->trunk;
+    const double phi_f = (force[2] - p->free_support * phi_s) / p->free;
+    posture[0] = theta;
+    posture[1 + support] = phi_s - theta;
+    posture[2 - support] = phi_f - theta;
+}
+
+static stance_error linearise(const double *robot, const stance_equilibrium *equilibrium, double *A,
+                              double *B)
+{
+    enum { STATES = 2 * POSTURES };
+    const int support = equilibrium->support;
+    if (support < 0 || support >= FEET) {
+        return STANCE_BAD_ARGUMENT;
+    }
+    const pinned p = pin(robot, equilibrium);
+    double column[POSTURES];
+
+    memset(A, 0, sizeof(double[STATES * STATES]));
+    memset(B, 0, sizeof(double[STATES * TORQUES]));
+    for (int j = 0; j < POSTURES; j++) {
+        /* A change of theta turns both legs, a change of q_i leg i alone. */
+        const double turned[POSTURES] = {j == 0, j == 0 || j == 1 + support,
+                                         j == 0 || j == 2 - support};
+        double force[POSTURES];
+        for (int i = 0; i < POSTURES; i++) {
+            force[i] = -p.stiffness[i] * turned[i];
+        }
+        accelerate(&p, support, force, column);
+        for (int i = 0; i < POSTURES; i++) {
+            A[(POSTURES + i) * STATES + j] = column[i];
+        }
+        A[j * STATES + POSTURES + j] = 1;
+    }
+    for (int j = 0; j < TORQUES; j++) {
+        const double force[POSTURES] = {-1, j == support, j != support};
+        accelerate(&p, support, force, column);
+        for (int i = 0; i < POSTURES; i++) {
+            B[(POSTURES + i) * TORQUES + j] = column[i];
+        }
+    }
+    return STANCE_OK;
+}
+
+const stance_scene stance_scene_biped = {
+    .name = "biped",
+    .text = "planar biped: trunk, hip and two legs with point feet, torques at the hip",
+    .coordinates = COORDINATES,
+    .contacts = FEET,
+    .actuators = TORQUES,
+    .postures = POSTURES,
+    .robot_count = ROBOT_COUNT,
+    .robot = robot_quantities,
+    .coordinate = coordinate_quantities,
+    .contact_name = contact_names,
+    .actuator_name = actuator_names,
+    .posture = posture_coordinates,
+    .gaps = gaps,
+    .contact_point = contact_point,
+    .stand = stand,
+    .figure = figure,
+    .height = height,
+    .energy = energy,
+    .equilibrium = equilibrium,
+    .linearise = linearise,
+};

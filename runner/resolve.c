@@ -1,0 +1,344 @@
+/* resolve.c - from the numbers of one case to what the engine runs.
+ *
+ * Which equilibrium is the target of a state-feedback law: controller.equilibrium, or where that
+ * is not given initial.equilibrium, solved for the robot that the design believes in
+ * (controller.model) and the foot that the robot stands on (initial.support_foot, foot 1 if there
+ * is none). Its posture is the target, its torques are the feedforward, and the gains come from the
+ * linearisation there. The start is the equilibrium of the true robot: where model and robot
+ * differ, so do the solved-for angle and the torques of the two.
+ *
+ * Which angles `hold` holds: controller.target, or where that is not given the joint angles that
+ * the run starts from, offsets included.
+ */
+#include "resolve.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#define DEEPEST_START 1e-9 /* m: penetration of an initial state that counts as rounding */
+#define MOST_STEPS 1e15
+
+static bool refuse(stance_message *message, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static bool refuse(stance_message *message, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message->text, sizeof message->text, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+/* ---- design ---------------------------------------------------------------------------------- */
+
+static int support_of(const struct scenario_values *values)
+{
+    return values->support_foot > 0 ? values->support_foot - 1 : 0;
+}
+
+static bool solve_equilibrium(const stance_scene *scene, const double *robot,
+                              const struct scenario_equilibrium *wanted, int support,
+                              stance_equilibrium *result, stance_message *message)
+{
+    stance_equilibrium_choice choice = {.support = support, .lower = wanted->lower != 0};
+    if (!scene->equilibrium) {
+        return refuse(message, "the scene %s has no equilibria", scene->name);
+    }
+    memcpy(choice.posture, wanted->posture, sizeof choice.posture);
+    return scene->equilibrium(robot, &choice, result, message) == STANCE_OK;
+}
+
+bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
+                         double *model, stance_equilibrium *equilibrium, stance_message *message)
+{
+    const bool law = values->law == LAW_STATE_FEEDBACK;
+    const bool own = law && values->design_point.given;
+
+    message->text[0] = '\0';
+    for (int i = 0; i < STANCE_MAX_ROBOT; i++) {
+        model[i] = law && !isnan(values->model[i]) ? values->model[i] : values->robot[i];
+    }
+    if (!own && !values->equilibrium.given) {
+        return refuse(message, law ? "the controller needs an equilibrium to work at: give "
+                                     "controller.equilibrium or initial.equilibrium"
+                                   : "the scenario has no equilibrium: give initial.equilibrium");
+    }
+    return solve_equilibrium(scene, model, own ? &values->design_point : &values->equilibrium,
+                             support_of(values), equilibrium, message);
+}
+
+static bool place_gains(const stance_scene *scene, const struct scenario_values *values,
+                        const double *model, const stance_equilibrium *equilibrium, double *K,
+                        stance_message *message)
+{
+    const int n = 2 * scene->postures, m = scene->actuators;
+    double A[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
+    double B[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
+
+    if (!scene->linearise) {
+        return refuse(message, "the scene %s has no linearisation", scene->name);
+    }
+    stance_error error = scene->linearise(model, equilibrium, A, B);
+    if (error != STANCE_OK) {
+        return refuse(message, "linearisation: %s", stance_error_text(error));
+    }
+    return stance_place(n, m, A, B, values->pole_re, values->pole_im, K, NULL, NULL, message) ==
+           STANCE_OK;
+}
+
+static bool design_state_feedback(const stance_scene *scene, const struct scenario_values *values,
+                                  struct resolved_design *design, stance_message *message)
+{
+    const int n = 2 * scene->postures, m = scene->actuators;
+    double model[STANCE_MAX_ROBOT], K[SCENARIO_MAX_GAINS];
+    stance_equilibrium equilibrium;
+
+    if (!resolve_equilibrium(scene, values, model, &equilibrium, message)) {
+        return false;
+    }
+    if (values->design == DESIGN_PLACE) {
+        if (!place_gains(scene, values, model, &equilibrium, K, message)) {
+            return false;
+        }
+    } else {
+        memcpy(K, values->gains, sizeof K);
+    }
+    for (int i = 0; i < m * n; i++) {
+        if (!isfinite(K[i])) {
+            return refuse(message, "%d finite gains are needed", m * n);
+        }
+        design->gain[i / n][i % n] = K[i];
+    }
+    memcpy(design->equilibrium, equilibrium.position,
+           (size_t)scene->coordinates * sizeof *design->equilibrium);
+    memcpy(design->torque, equilibrium.torque, (size_t)m * sizeof *design->torque);
+    return true;
+}
+
+static void clear_design(struct resolved_design *design)
+{
+    *design = (struct resolved_design){0};
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++) {
+        design->start[i] = design->equilibrium[i] = NAN;
+    }
+}
+
+bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
+                    struct resolved_design *design, stance_message *message)
+{
+    message->text[0] = '\0';
+    clear_design(design);
+    if (!values->state_given) {
+        stance_equilibrium start;
+        if (!values->equilibrium.given) {
+            return refuse(message,
+                          "an initial state is needed: initial.equilibrium or initial.state");
+        }
+        if (!solve_equilibrium(scene, values->robot, &values->equilibrium, support_of(values),
+                               &start, message)) {
+            return false;
+        }
+        memcpy(design->start, start.position, (size_t)scene->coordinates * sizeof *design->start);
+    }
+    if (values->law == LAW_STATE_FEEDBACK &&
+        !design_state_feedback(scene, values, design, message)) {
+        clear_design(design);
+        return false;
+    }
+    return true;
+}
+
+/* ---- initial state --------------------------------------------------------------------------- */
+
+static bool is_posture(const stance_scene *scene, int coordinate)
+{
+    for (int k = 0; k < scene->postures; k++) {
+        if (scene->posture[k] == coordinate) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Offsets of the angles tilt the robot about the foot it stands on; those of the translation move
+ * it away from there. */
+static void place_robot(const stance_scene *scene, const struct scenario_values *values,
+                        const double *start, stance_case *out)
+{
+    const int n = scene->coordinates;
+    for (int i = 0; i < n; i++) {
+        const bool angle = is_posture(scene, i);
+        out->position[i] = start[i] + (angle ? values->offset[i] : 0);
+        out->velocity[i] = angle ? values->offset[n + i] : 0;
+    }
+    scene->stand(out->robot, support_of(values), out->position, out->velocity);
+    for (int i = 0; i < n; i++) {
+        if (!is_posture(scene, i)) {
+            out->position[i] += values->offset[i];
+            out->velocity[i] += values->offset[n + i];
+        }
+    }
+}
+
+static bool check_start(const stance_scene *scene, const stance_case *out, stance_message *message)
+{
+    double gap[STANCE_MAX_CONTACTS];
+    for (int i = 0; i < scene->coordinates; i++) {
+        const char *name = scene->coordinate[i].name;
+        if (!isfinite(out->position[i])) {
+            return refuse(message, "the initial %s is not a finite number", name);
+        }
+        if (!isfinite(out->velocity[i])) {
+            return refuse(message, "the initial v%s is not a finite number", name);
+        }
+    }
+    scene->gaps(out->robot, out->position, gap);
+    for (int c = 0; c < scene->contacts; c++) {
+        if (!isfinite(gap[c])) {
+            return refuse(message,
+                          "the initial position of %s is not defined: an angle is beyond "
+                          "1e4 rad",
+                          scene->contact_name[c]);
+        }
+        if ((out->contacts >> c & 1) && gap[c] < -DEEPEST_START) {
+            return refuse(message, "%s would start %.6g m inside the ground",
+                          scene->contact_name[c], -gap[c]);
+        }
+    }
+    return true;
+}
+
+static bool resolve_start(const stance_scene *scene, const struct scenario_values *values,
+                          const struct resolved_design *design, stance_case *out,
+                          stance_message *message)
+{
+    const int n = scene->coordinates;
+    if (values->state_given) {
+        memcpy(out->position, values->state, (size_t)n * sizeof *out->position);
+        memcpy(out->velocity, values->state + n, (size_t)n * sizeof *out->velocity);
+    } else {
+        place_robot(scene, values, design->start, out);
+    }
+    return check_start(scene, out, message);
+}
+
+/* ---- law and time ---------------------------------------------------------------------------- */
+
+/* Actuator i drives the last postures in order: of the biped's (theta, q1, q2) the joints. */
+static void hold(const stance_scene *scene, const struct scenario_values *values, stance_case *out)
+{
+    for (int i = 0; i < scene->actuators; i++) {
+        const int joint = scene->postures - scene->actuators + i;
+        out->gain[i][joint] = values->kp;
+        out->gain[i][scene->postures + joint] = values->kd;
+    }
+    for (int k = 0; k < scene->postures; k++) {
+        const double wanted = values->target[k];
+        out->target[k] = isnan(wanted) ? out->position[scene->posture[k]] : wanted;
+    }
+}
+
+static void feed_back(const stance_scene *scene, const struct scenario_values *values,
+                      const struct resolved_design *design, stance_case *out)
+{
+    memcpy(out->feedforward, design->torque, sizeof out->feedforward);
+    memcpy(out->gain, design->gain, sizeof out->gain);
+    for (int k = 0; k < scene->postures; k++) {
+        out->target[k] = design->equilibrium[scene->posture[k]];
+    }
+    out->has_target = true;
+    out->support = support_of(values);
+}
+
+static bool check_law(const stance_scene *scene, const stance_case *out, stance_message *message)
+{
+    bool finite = isfinite(out->noise);
+    for (int i = 0; i < scene->actuators; i++) {
+        finite = finite && isfinite(out->feedforward[i]);
+        for (int j = 0; j < 2 * scene->postures; j++) {
+            finite = finite && isfinite(out->gain[i][j]);
+        }
+    }
+    for (int k = 0; k < scene->postures; k++) {
+        finite = finite && isfinite(out->target[k]);
+    }
+    if (!finite) {
+        return refuse(message, "a gain, a target or the noise of the controller is not finite");
+    }
+    if (!(out->torque_limit > 0)) {
+        return refuse(message, "controller.torque_limit must be positive");
+    }
+    if (out->noise != 0 && out->sample_every == 0) {
+        return refuse(message, "controller.noise needs a controller.sample_time above 0");
+    }
+    return true;
+}
+
+/* Each sample interval is cut into equal steps no longer than method.step; the 1e-9 lets an
+ * interval that is a multiple of the step but for rounding keep it. */
+static bool resolve_time(const struct scenario_values *values, stance_case *out,
+                         stance_message *message)
+{
+    const double interval = values->sample_time;
+    if (!isfinite(values->step) || values->step <= 0) {
+        return refuse(message, "method.step must be positive");
+    }
+    if (!isfinite(interval) || interval < 0 || !isfinite(values->stop_time)) {
+        return refuse(message, "controller.sample_time and stop.time must be finite and not "
+                               "negative");
+    }
+    out->step = values->step;
+    if (interval > 0) {
+        const double pieces = fmax(1, ceil(interval / values->step - 1e-9));
+        if (pieces > MOST_STEPS) {
+            return refuse(message, "controller.sample_time has more than %g steps", MOST_STEPS);
+        }
+        out->sample_every = (int64_t)pieces;
+        out->step = interval / pieces;
+    }
+    const double steps = fmax(1, nearbyint(values->stop_time / out->step));
+    if (!(steps <= MOST_STEPS)) {
+        return refuse(message, "stop.time has more than %g steps", MOST_STEPS);
+    }
+    out->steps = (int64_t)steps;
+    return true;
+}
+
+bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
+                  const struct resolved_design *design, uint64_t seed, uint64_t index,
+                  stance_case *out, stance_message *message)
+{
+    message->text[0] = '\0';
+    *out = (stance_case){
+        .friction = values->friction,
+        .restitution = values->restitution,
+        .contacts = (uint32_t)values->contacts,
+        .torque_limit = values->torque_limit,
+        .noise = values->noise,
+        .settle = values->settle != 0,
+        .support = -1,
+        .settle_angle = values->settle_angle,
+        .settle_rate = values->settle_rate,
+        .settle_hold = values->settle_hold,
+        .fall_height = values->fall_height,
+        .seed = seed,
+        .grid_index = index,
+    };
+    memcpy(out->robot, values->robot, sizeof out->robot);
+    if (!isfinite(out->friction) || out->friction < 0 ||
+        !(out->restitution >= 0 && out->restitution <= 1)) {
+        return refuse(message, "ground.friction must not be negative, ground.restitution lie "
+                               "within 0 ... 1");
+    }
+    if (!resolve_start(scene, values, design, out, message)) {
+        return false;
+    }
+    if (values->law == LAW_HOLD) {
+        hold(scene, values, out);
+    } else if (values->law == LAW_STATE_FEEDBACK) {
+        feed_back(scene, values, design, out);
+    }
+    return resolve_time(values, out, message) && check_law(scene, out, message);
+}

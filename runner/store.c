@@ -1,0 +1,761 @@
+/* store.c - rows of results into the file and out of it.
+ *
+ * After creation the file's structure never changes: every dataset is contiguous and allocated,
+ * and the ranks write disjoint parts of them independently, `status` last. A killed job therefore
+ * leaves a readable file, and a row that is marked done was whole when it was marked. Collective
+ * writes are never used: they hang when the disk is full.
+ */
+#include "store_private.h"
+
+#include "checksum.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct store {
+    char file[1024];
+    const struct plan *plan;
+    hid_t id;
+    hid_t column[COLUMNS];            /* -1: not stored */
+    size_t width[COLUMNS];            /* elements per case */
+    void *buffer[COLUMNS];            /* [STORE_ROWS][width] */
+    hid_t trajectory[TRAJECTORIES];   /* -1: not stored */
+    hid_t trajectory_checksum;
+    int rank;                         /* dimensions of the cases */
+    hsize_t length[SCENARIO_MAX_AXES];
+};
+
+/* ---- tables ------------------------------------------------------------------------------- */
+
+const struct store_column store_columns[COLUMNS] = {
+#define STORE_COLUMN(name, type, field, fill, unit, text)                                          \
+    [COLUMN_##name] = {#name, KIND_##type, sizeof(type), fill, true, unit, text},
+    STORE_ANSWERS(STORE_COLUMN)
+#undef STORE_COLUMN
+    [COLUMN_FINAL_STATE] = {"final_state", KIND_double, sizeof(double), NAN, true, NULL,
+                            "coordinates and their rates when the simulation stopped"},
+    [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, sizeof(uint32_t), 0, false, "1",
+                         "CRC-32C over the answers of the case"},
+    [COLUMN_STATUS] = {"status", KIND_uint8_t, sizeof(uint8_t), 0, true, "1",
+                       "whether the case was computed"},
+};
+
+const char *const store_trajectories[TRAJECTORIES] = {"position", "velocity", "torque", "force",
+                                                      "gap"};
+
+bool store_has_column(const struct scenario *scenario, int column)
+{
+    return column > COLUMN_FINAL_STATE || (scenario->answers >> column & 1);
+}
+
+size_t store_column_width(const struct scenario *scenario, int column)
+{
+    return column == COLUMN_FINAL_STATE ? 2 * (size_t)scenario->scene->coordinates : 1;
+}
+
+size_t store_trajectory_width(const stance_scene *scene, int variable)
+{
+    switch (variable) {
+    case TRAJECTORY_TORQUE:
+        return (size_t)scene->actuators;
+    case TRAJECTORY_FORCE:
+        return 2 * (size_t)scene->contacts;
+    case TRAJECTORY_GAP:
+        return (size_t)scene->contacts;
+    default:
+        return (size_t)scene->coordinates;
+    }
+}
+
+int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES])
+{
+    const struct scenario *s = plan->scenario;
+    if (plan->single || s->axes == 0) {
+        lengths[0] = 1;
+        return 1;
+    }
+    for (int a = 0; a < s->axes; a++) {
+        lengths[a] = s->axis[a].count;
+    }
+    return s->axes;
+}
+
+void store_design_columns(const stance_scene *scene,
+                          struct store_design_column columns[DESIGN_COLUMNS])
+{
+    int n = scene->coordinates, m = scene->actuators;
+    columns[0] = (struct store_design_column){
+        "gain", NULL, "gains of the linear law: torque = feedforward - gain * error",
+        offsetof(struct resolved_design, gain), m, 2 * scene->postures, 2 * STANCE_MAX_POSTURE};
+    columns[1] = (struct store_design_column){
+        "equilibrium_position", NULL, "coordinates of the controller's equilibrium",
+        offsetof(struct resolved_design, equilibrium), 1, n, n};
+    columns[2] = (struct store_design_column){
+        "equilibrium_torque", "N m", "torques that hold the controller's equilibrium",
+        offsetof(struct resolved_design, torque), 1, m, m};
+    columns[3] = (struct store_design_column){
+        "start_position", NULL, "coordinates of the initial equilibrium, foot at the origin",
+        offsetof(struct resolved_design, start), 1, n, n};
+}
+
+hid_t store_file_type(enum store_kind kind)
+{
+    const hid_t types[] = {
+        [KIND_uint8_t] = H5T_STD_U8LE,   [KIND_uint32_t] = H5T_STD_U32LE,
+        [KIND_int32_t] = H5T_STD_I32LE,  [KIND_int64_t] = H5T_STD_I64LE,
+        [KIND_uint64_t] = H5T_STD_U64LE, [KIND_double] = H5T_IEEE_F64LE,
+    };
+    return types[kind];
+}
+
+hid_t store_memory_type(enum store_kind kind)
+{
+    return store_file_type(kind); /* see the assertion on byte order */
+}
+
+/* ---- errors ------------------------------------------------------------------------------- */
+
+/* The system's words ("No space left on device"), or else HDF5's innermost. */
+static herr_t find_reason(unsigned n, const H5E_error2_t *error, void *reason)
+{
+    char *text = reason;
+    (void)n;
+    const char *system = error->desc ? strstr(error->desc, "error message = '") : NULL;
+    if (system) {
+        system += strlen("error message = '");
+        snprintf(text, 120, "%.*s", (int)strcspn(system, "'"), system);
+        return 1;
+    }
+    if (text[0] == '\0' && error->desc) {
+        snprintf(text, 120, "%.*s", (int)strcspn(error->desc, "\n"), error->desc);
+    }
+    return 0;
+}
+
+bool store_failed(stance_message *message, const char *file, const char *what)
+{
+    char reason[120] = "";
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find_reason, reason);
+    H5Eclear2(H5E_DEFAULT);
+    snprintf(message->text, sizeof message->text, "%.80s: cannot %s: %s", file, what,
+             reason[0] ? reason : "unknown reason");
+    return false;
+}
+
+void store_prepare(void)
+{
+    /* Libraries that were opened before MPI started are not closed by MPI's end, and this call
+     * keeps them from being closed at exit: after a failed write both would write again. */
+    H5dont_atexit();
+    H5open();
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+}
+
+void store_library(char *text, size_t size)
+{
+    unsigned major = 0, minor = 0, release = 0;
+    H5get_libversion(&major, &minor, &release);
+    snprintf(text, size, "HDF5 %u.%u.%u", major, minor, release);
+}
+
+hid_t store_serial_access(void)
+{
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    if (access < 0) {
+        return access;
+    }
+    if (H5Pset_sieve_buf_size(access, 0) < 0 || H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) < 0 ||
+        H5Pset_file_locking(access, false, true) < 0) {
+        H5Pclose(access);
+        return -1;
+    }
+    return access;
+}
+
+/* ---- opening and closing ------------------------------------------------------------------ */
+
+static hid_t open_for_ranks(const char *file, int ranks)
+{
+    hid_t access = store_serial_access();
+    if (access < 0) {
+        return -1;
+    }
+    hid_t id = -1;
+#if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
+    if (ranks > 1 && H5Pset_fapl_mpio(access, MPI_COMM_WORLD, MPI_INFO_NULL) < 0) {
+        H5Pclose(access);
+        return -1;
+    }
+#else
+    (void)ranks;
+#endif
+    id = H5Fopen(file, H5F_ACC_RDWR, access);
+    H5Pclose(access);
+    return id;
+}
+
+/* The dataset has exactly the shape that the plan asks for. */
+static bool has_shape(hid_t dataset, int rank, const hsize_t *length)
+{
+    hsize_t found[H5S_MAX_RANK];
+    hid_t space = H5Dget_space(dataset);
+    bool same = space >= 0 && H5Sget_simple_extent_ndims(space) == rank &&
+                H5Sget_simple_extent_dims(space, found, NULL) == rank &&
+                memcmp(found, length, (size_t)rank * sizeof *length) == 0;
+    H5Sclose(space);
+    return same;
+}
+
+static bool open_columns(struct store *store, stance_message *message)
+{
+    const struct scenario *s = store->plan->scenario;
+    hsize_t length[SCENARIO_MAX_AXES + 1];
+    memcpy(length, store->length, sizeof store->length);
+
+    for (int c = 0; c < COLUMNS; c++) {
+        if (!store_has_column(s, c)) {
+            continue;
+        }
+        size_t width = store->width[c] = store_column_width(s, c);
+        store->buffer[c] = malloc(STORE_ROWS * width * store_columns[c].size);
+        if (!store->buffer[c]) {
+            snprintf(message->text, sizeof message->text, "not enough memory");
+            return false;
+        }
+        store->column[c] = H5Dopen2(store->id, store_columns[c].name, H5P_DEFAULT);
+        length[store->rank] = width;
+        if (store->column[c] < 0 ||
+            !has_shape(store->column[c], store->rank + (width > 1), length)) {
+            snprintf(message->text, sizeof message->text,
+                     "%.100s: variable '%s' is not as this scenario needs it", store->file,
+                     store_columns[c].name);
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool open_trajectories(struct store *store, stance_message *message)
+{
+    const struct plan *plan = store->plan;
+    if (plan->record_rows == 0) {
+        return true;
+    }
+    for (int v = 0; v < TRAJECTORIES; v++) {
+        if (store_trajectory_width(plan->scenario->scene, v) == 0) {
+            continue;
+        }
+        char name[64];
+        snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v]);
+        store->trajectory[v] = H5Dopen2(store->id, name, H5P_DEFAULT);
+        if (store->trajectory[v] < 0) {
+            return store_failed(message, store->file, "open the trajectories");
+        }
+    }
+    store->trajectory_checksum = H5Dopen2(store->id, "trajectory/checksum", H5P_DEFAULT);
+    return store->trajectory_checksum >= 0 ||
+           store_failed(message, store->file, "open the trajectories");
+}
+
+bool store_open(struct store **result, const char *file, const struct plan *plan, int ranks,
+                stance_message *message)
+{
+    struct store *store = calloc(1, sizeof *store);
+    hid_t id = open_for_ranks(file, ranks); /* collective: before anything that can fail alone */
+
+    *result = NULL;
+    if (!store) {
+        snprintf(message->text, sizeof message->text, "not enough memory");
+        return false;
+    }
+    snprintf(store->file, sizeof store->file, "%s", file);
+    store->plan = plan;
+    store->id = id;
+    store->rank = store_dimensions(plan, store->length);
+    store->trajectory_checksum = -1;
+    for (int c = 0; c < COLUMNS; c++) {
+        store->column[c] = -1;
+    }
+    for (int v = 0; v < TRAJECTORIES; v++) {
+        store->trajectory[v] = -1;
+    }
+    *result = store;
+    if (id < 0) {
+        return store_failed(message, file, "open for writing");
+    }
+    return open_columns(store, message) && open_trajectories(store, message);
+}
+
+void store_abandon(struct store *store)
+{
+    if (store) {
+        for (int c = 0; c < COLUMNS; c++) {
+            free(store->buffer[c]);
+        }
+        free(store);
+    }
+}
+
+bool store_close(struct store *store, stance_message *message)
+{
+    bool good = true;
+    for (int c = 0; c < COLUMNS; c++) {
+        good &= store->column[c] < 0 || H5Dclose(store->column[c]) >= 0;
+    }
+    for (int v = 0; v < TRAJECTORIES; v++) {
+        good &= store->trajectory[v] < 0 || H5Dclose(store->trajectory[v]) >= 0;
+    }
+    good &= store->trajectory_checksum < 0 || H5Dclose(store->trajectory_checksum) >= 0;
+    good &= H5Fclose(store->id) >= 0;
+    if (!good) {
+        store_failed(message, store->file, "close");
+    }
+    store_abandon(store);
+    return good;
+}
+
+/* ---- rows --------------------------------------------------------------------------------- */
+
+/* Selects the flat, row-major range [first, last) below dimension `level` of a grid: a part of a
+ * row, whole rows, and a part of a row again, each a hyperslab at its level. start[] is fixed
+ * above `level`. */
+static bool select_range(hid_t space, int rank, const hsize_t *length, int level, hsize_t *start,
+                         hsize_t first, hsize_t last)
+{
+    hsize_t inner = 1, count[H5S_MAX_RANK];
+    for (int d = level + 1; d < rank; d++) {
+        inner *= length[d];
+    }
+    hsize_t whole = (first + inner - 1) / inner, end = last / inner;
+    if (whole > end) { /* within one row */
+        start[level] = end;
+        return select_range(space, rank, length, level + 1, start, first - end * inner,
+                            last - end * inner);
+    }
+    if (first < whole * inner) {
+        start[level] = whole - 1;
+        if (!select_range(space, rank, length, level + 1, start, first - (whole - 1) * inner,
+                          inner)) {
+            return false;
+        }
+    }
+    if (whole < end) {
+        start[level] = whole;
+        for (int d = 0; d < rank; d++) {
+            count[d] = d < level ? 1 : d == level ? end - whole : length[d];
+            start[d] = d <= level ? start[d] : 0;
+        }
+        if (H5Sselect_hyperslab(space, H5S_SELECT_OR, start, NULL, count, NULL) < 0) {
+            return false;
+        }
+    }
+    if (end * inner < last) {
+        start[level] = end;
+        return select_range(space, rank, length, level + 1, start, 0, last - end * inner);
+    }
+    return true;
+}
+
+/* File space with the rows selected, of variables with `width` elements per row; or -1. */
+static hid_t select_rows(const struct store *store, size_t width, uint64_t first, size_t n)
+{
+    hsize_t length[SCENARIO_MAX_AXES + 1], start[SCENARIO_MAX_AXES + 1] = {0};
+    int rank = store->rank + (width > 1);
+    memcpy(length, store->length, sizeof store->length);
+    length[store->rank] = width;
+    hid_t space = H5Screate_simple(rank, length, NULL);
+    if (space >= 0 &&
+        (H5Sselect_none(space) < 0 ||
+         !select_range(space, rank, length, 0, start, first * width, (first + n) * width))) {
+        H5Sclose(space);
+        return -1;
+    }
+    return space;
+}
+
+enum direction { READ, WRITE };
+
+/* Moves the rows of one column between its buffer and the file. */
+static bool move_column(struct store *store, int c, hid_t space, size_t n, enum direction way,
+                        stance_message *message)
+{
+    hid_t type = store_memory_type(store_columns[c].kind);
+    hsize_t elements = n * store->width[c];
+    hid_t memory = H5Screate_simple(1, &elements, NULL);
+    herr_t status = memory < 0 ? -1
+                    : way == WRITE
+                        ? H5Dwrite(store->column[c], type, memory, space, H5P_DEFAULT,
+                                   store->buffer[c])
+                        : H5Dread(store->column[c], type, memory, space, H5P_DEFAULT,
+                                  store->buffer[c]);
+    bool good = status >= 0 || store_failed(message, store->file,
+                                            way == WRITE ? "write the results"
+                                                         : "read the results");
+    H5Sclose(memory);
+    return good;
+}
+
+/* All columns, in order: the checksum and then the status are the last ones. */
+static bool move_rows(struct store *store, uint64_t first, size_t n, enum direction way,
+                      stance_message *message)
+{
+    hid_t narrow = select_rows(store, 1, first, n);
+    hid_t wide = select_rows(store, 2 * (size_t)store->plan->scenario->scene->coordinates, first,
+                             n);
+    bool good = (narrow >= 0 && wide >= 0) ||
+                store_failed(message, store->file, "select rows of the results");
+    for (int c = 0; good && c < COLUMNS; c++) {
+        if (store->column[c] >= 0) {
+            good = move_column(store, c, store->width[c] > 1 ? wide : narrow, n, way, message);
+        }
+    }
+    H5Sclose(narrow);
+    H5Sclose(wide);
+    return good;
+}
+
+static uint32_t row_checksum(const struct store *store, size_t row)
+{
+    uint32_t crc = 0;
+    for (int c = 0; c < COLUMNS; c++) {
+        if (store->column[c] >= 0 && c != COLUMN_CHECKSUM) {
+            size_t size = store->width[c] * store_columns[c].size;
+            crc = checksum_crc32c(crc, (const char *)store->buffer[c] + row * size, size);
+        }
+    }
+    return crc;
+}
+
+/* Results into the columns' buffers. */
+static void pack_row(struct store *store, size_t row, const stance_result *result)
+{
+    size_t n = (size_t)store->plan->scenario->scene->coordinates;
+#define STORE_PACK(name, type, field, fill, unit, text)                                            \
+    if (store->buffer[COLUMN_##name]) {                                                            \
+        ((type *)store->buffer[COLUMN_##name])[row] = (type)result->field;                         \
+    }
+    STORE_ANSWERS(STORE_PACK)
+#undef STORE_PACK
+    if (store->buffer[COLUMN_FINAL_STATE]) {
+        double *state = (double *)store->buffer[COLUMN_FINAL_STATE] + 2 * n * row;
+        memcpy(state, result->position, n * sizeof *state);
+        memcpy(state + n, result->velocity, n * sizeof *state);
+    }
+    ((uint8_t *)store->buffer[COLUMN_STATUS])[row] = (uint8_t)result->status;
+    ((uint32_t *)store->buffer[COLUMN_CHECKSUM])[row] = row_checksum(store, row);
+}
+
+bool store_write(struct store *store, uint64_t first, size_t n, const stance_result *results,
+                 stance_message *message)
+{
+    for (size_t row = 0; row < n; row++) {
+        pack_row(store, row, &results[row]);
+    }
+    return move_rows(store, first, n, WRITE, message);
+}
+
+/* ---- trajectories ------------------------------------------------------------------------- */
+
+static double *trajectory_data(const stance_trajectory *trajectory, int variable)
+{
+    double *const data[TRAJECTORIES] = {
+        [TRAJECTORY_POSITION] = trajectory->position, [TRAJECTORY_VELOCITY] = trajectory->velocity,
+        [TRAJECTORY_TORQUE] = trajectory->torque,     [TRAJECTORY_FORCE] = trajectory->force,
+        [TRAJECTORY_GAP] = trajectory->gap,
+    };
+    return data[variable];
+}
+
+/* Moves one case's part, `elements` long, of a variable whose first dimension is the case. */
+static bool move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
+                       enum direction way, void *data)
+{
+    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
+    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &elements, NULL);
+    bool good = space >= 0 && memory >= 0 && H5Sget_simple_extent_dims(space, length, NULL) >= 1;
+
+    start[0] = place;
+    length[0] = 1;
+    good = good && H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, length, NULL) >= 0;
+    if (good && way == WRITE) {
+        good = H5Dwrite(dataset, store_memory_type(kind), memory, space, H5P_DEFAULT, data) >= 0;
+    } else if (good) {
+        good = H5Dread(dataset, store_memory_type(kind), memory, space, H5P_DEFAULT, data) >= 0;
+    }
+    H5Sclose(space);
+    H5Sclose(memory);
+    return good;
+}
+
+bool store_write_trajectory(struct store *store, uint64_t place,
+                            const stance_trajectory *trajectory, stance_message *message)
+{
+    uint32_t crc = 0;
+    bool good = true;
+    for (int v = 0; good && v < TRAJECTORIES; v++) {
+        if (store->trajectory[v] < 0) {
+            continue;
+        }
+        size_t elements = (size_t)store->plan->record_rows *
+                          store_trajectory_width(store->plan->scenario->scene, v);
+        double *data = trajectory_data(trajectory, v);
+        crc = checksum_crc32c(crc, data, elements * sizeof *data);
+        good = move_place(store->trajectory[v], KIND_double, place, elements, WRITE, data);
+    }
+    good = good &&
+           move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, WRITE, &crc);
+    return good || store_failed(message, store->file, "write a trajectory");
+}
+
+static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
+                              stance_message *message)
+{
+    const struct plan *plan = store->plan;
+    uint32_t crc = 0, expected = 0;
+    size_t widest = 1;
+    for (int v = 0; v < TRAJECTORIES; v++) {
+        size_t width = store_trajectory_width(plan->scenario->scene, v);
+        widest = width > widest ? width : widest;
+    }
+    double *data = malloc((size_t)plan->record_rows * widest * sizeof *data);
+    if (!data) {
+        snprintf(message->text, sizeof message->text, "not enough memory");
+        return false;
+    }
+    bool good = true;
+    for (int v = 0; good && v < TRAJECTORIES; v++) {
+        if (store->trajectory[v] >= 0) {
+            size_t elements =
+                (size_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
+            good = move_place(store->trajectory[v], KIND_double, place, elements, READ, data);
+            crc = checksum_crc32c(crc, data, elements * sizeof *data);
+        }
+    }
+    free(data);
+    good = good &&
+           move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, READ, &expected);
+    *whole = crc == expected;
+    return good || store_failed(message, store->file, "read a trajectory");
+}
+
+bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
+                  bool *whole, stance_message *message)
+{
+    if (!move_rows(store, first, n, READ, message)) {
+        return false;
+    }
+    const uint8_t *status = store->buffer[COLUMN_STATUS];
+    const uint8_t *outcome = store->buffer[COLUMN_outcome];
+    const uint32_t *checksum = store->buffer[COLUMN_CHECKSUM];
+    for (size_t row = 0; row < n; row++) {
+        uint64_t place;
+        whole[row] = (status[row] == STANCE_DONE || status[row] == STANCE_FAILED) &&
+                     checksum[row] == row_checksum(store, row);
+        if (whole[row] && plan_recorded(store->plan, first + row, &place) &&
+            !verify_trajectory(store, place, &whole[row], message)) {
+            return false;
+        }
+        results[row].status = status[row];
+        results[row].outcome = outcome ? outcome[row] : STANCE_NONE;
+    }
+    return true;
+}
+
+/* ---- designs and timing ------------------------------------------------------------------- */
+
+bool store_read_designs(struct store *store, struct plan *plan, stance_message *message)
+{
+    struct store_design_column columns[DESIGN_COLUMNS];
+    bool good = true;
+    store_design_columns(plan->scenario->scene, columns);
+    for (int k = 0; good && k < DESIGN_COLUMNS; k++) {
+        size_t rows = (size_t)columns[k].rows, length = (size_t)columns[k].columns;
+        if (rows * length == 0) {
+            continue;
+        }
+        char name[64];
+        snprintf(name, sizeof name, "design/%s", columns[k].name);
+        double *data = malloc(plan->designs * rows * length * sizeof *data);
+        hid_t dataset = H5Dopen2(store->id, name, H5P_DEFAULT);
+        good = data && dataset >= 0 &&
+               H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                       data) >= 0;
+        for (size_t d = 0; good && d < plan->designs; d++) {
+            char *design = (char *)&plan->design[d] + columns[k].offset;
+            for (size_t r = 0; r < rows; r++) {
+                memcpy((double *)(void *)design + r * (size_t)columns[k].stride,
+                       data + (d * rows + r) * length, length * sizeof *data);
+            }
+        }
+        H5Dclose(dataset);
+        free(data);
+    }
+    hid_t dataset = H5Dopen2(store->id, "design/status", H5P_DEFAULT);
+    good = good && H5Dread(dataset, store_memory_type(KIND_uint8_t), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                           plan->design_status) >= 0;
+    H5Dclose(dataset);
+    return good || store_failed(message, store->file, "read the designs");
+}
+
+bool store_add_timing(struct store *store, int ranks, const double *wall_time,
+                      const int64_t *cases, stance_message *message)
+{
+    hid_t wall = H5Dopen2(store->id, "timing/wall_time", H5P_DEFAULT);
+    hid_t drawn = H5Dopen2(store->id, "timing/cases", H5P_DEFAULT), space = H5Dget_space(wall);
+    hssize_t length = H5Sget_simple_extent_npoints(space);
+    double *total = length > 0 ? calloc((size_t)length, sizeof *total) : NULL;
+    int64_t *sum = length > 0 ? calloc((size_t)length, sizeof *sum) : NULL;
+    bool good = total && sum &&
+                H5Dread(wall, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                        total) >= 0 &&
+                H5Dread(drawn, store_memory_type(KIND_int64_t), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                        sum) >= 0;
+    for (int rank = 0; good && rank < ranks; rank++) {
+        total[rank % length] += wall_time[rank];
+        sum[rank % length] += cases[rank];
+    }
+    good = good &&
+           H5Dwrite(wall, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                    total) >= 0 &&
+           H5Dwrite(drawn, store_memory_type(KIND_int64_t), H5S_ALL, H5S_ALL, H5P_DEFAULT, sum) >=
+               0;
+    free(total);
+    free(sum);
+    H5Sclose(space);
+    H5Dclose(wall);
+    H5Dclose(drawn);
+    return good || store_failed(message, store->file, "write the timing");
+}
+
+/* ---- looking into a file ------------------------------------------------------------------ */
+
+static hid_t open_to_read(const char *file)
+{
+    hid_t access = store_serial_access();
+    hid_t id = H5Fopen(file, H5F_ACC_RDONLY, access);
+    H5Pclose(access);
+    return id;
+}
+
+/* A text attribute of fixed length, as this program writes them; NULL when there is none. */
+static char *read_text(hid_t object, const char *name)
+{
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = H5Aget_type(attribute);
+    size_t size = H5Tget_size(type);
+    char *text = NULL;
+    if (type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
+        text = calloc(size + 1, 1);
+        if (text && H5Aread(attribute, type, text) < 0) {
+            free(text);
+            text = NULL;
+        }
+    }
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return text;
+}
+
+bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message)
+{
+    *origin = (struct store_origin){0};
+    hid_t id = open_to_read(file);
+    if (id < 0) {
+        return store_failed(message, file, "open");
+    }
+    /* The last attribute written says that the creation came to its end. */
+    char *hash = read_text(id, "scenario_sha256"), found[CHECKSUM_SHA256_TEXT];
+    char *revision = read_text(id, "git_revision");
+    origin->scenario = read_text(id, "scenario");
+    snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
+    H5Fclose(id);
+    bool good = hash && origin->scenario;
+    if (good) {
+        checksum_sha256(origin->scenario, strlen(origin->scenario), found);
+        good = strcmp(hash, found) == 0;
+    }
+    free(hash);
+    free(revision);
+    if (!good) {
+        store_origin_free(origin);
+        snprintf(message->text, sizeof message->text,
+                 "%.120s: not a results file that can be resumed; --force replaces it", file);
+    }
+    return good;
+}
+
+void store_origin_free(struct store_origin *origin)
+{
+    free(origin->scenario);
+    origin->scenario = NULL;
+}
+
+bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
+{
+    if (!axis->log || axis->value) {
+        return true;
+    }
+    hid_t id = open_to_read(file), dataset = H5Dopen2(id, axis->name, H5P_DEFAULT);
+    hsize_t length = axis->count;
+    double *value = malloc(axis->count * sizeof *value);
+    bool good = value && has_shape(dataset, 1, &length) &&
+                H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                        value) >= 0;
+    H5Dclose(dataset);
+    H5Fclose(id);
+    if (!good) {
+        free(value);
+        return store_failed(message, file, "read an axis");
+    }
+    axis->value = value;
+    return true;
+}
+
+/* Reads the status variable, whatever its shape, in pieces. */
+static bool count_status(hid_t dataset, struct store_counts *counts)
+{
+    enum { PIECE = 1 << 20 };
+    uint8_t *status = malloc(PIECE);
+    hid_t space = H5Dget_space(dataset);
+    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
+    int rank = H5Sget_simple_extent_dims(space, length, NULL);
+    hssize_t total = H5Sget_simple_extent_npoints(space);
+    bool good = status && rank >= 1 && rank <= SCENARIO_MAX_AXES && total > 0;
+
+    counts->cases = good ? (uint64_t)total : 0;
+    for (uint64_t at = 0; good && at < counts->cases; at += PIECE) {
+        hsize_t n = counts->cases - at < PIECE ? counts->cases - at : PIECE;
+        hid_t memory = H5Screate_simple(1, &n, NULL);
+        good = H5Sselect_none(space) >= 0 &&
+               select_range(space, rank, length, 0, start, at, at + n) &&
+               H5Dread(dataset, store_memory_type(KIND_uint8_t), memory, space, H5P_DEFAULT,
+                       status) >= 0;
+        H5Sclose(memory);
+        for (hsize_t i = 0; good && i < n; i++) {
+            counts->done += status[i] == STANCE_DONE;
+            counts->failed += status[i] == STANCE_FAILED;
+        }
+    }
+    H5Sclose(space);
+    free(status);
+    return good;
+}
+
+bool store_count(const char *file, struct store_counts *counts, stance_message *message)
+{
+    *counts = (struct store_counts){0};
+    hid_t id = open_to_read(file);
+    if (id < 0) {
+        return store_failed(message, file, "open");
+    }
+    hid_t dataset = H5Dopen2(id, "status", H5P_DEFAULT);
+    bool good = dataset >= 0 && count_status(dataset, counts);
+    if (!good) {
+        snprintf(message->text, sizeof message->text, "%.120s: not a results file of stance",
+                 file);
+    }
+    H5Dclose(dataset);
+    H5Fclose(id);
+    return good;
+}

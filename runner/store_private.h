@@ -1,0 +1,72 @@
+/* store_private.h - shared by store.c (rows) and store_layout.c (creation); nothing else includes
+ * it, so that HDF5 stays between the two. */
+#ifndef STANCE_RUNNER_STORE_PRIVATE_H
+#define STANCE_RUNNER_STORE_PRIVATE_H
+
+#include "plan.h"
+#include "store.h"
+
+#include <hdf5.h>
+
+/* Bytes in memory are bytes of the file, checksums included. */
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is little-endian");
+
+enum store_kind { KIND_uint8_t, KIND_uint32_t, KIND_int32_t, KIND_int64_t, KIND_uint64_t,
+                  KIND_double };
+
+/* The variables over the cases, in the order of the table, then the three of our own. */
+enum {
+#define STORE_COLUMN(name, type, field, fill, unit, text) COLUMN_##name,
+    STORE_ANSWERS(STORE_COLUMN)
+#undef STORE_COLUMN
+    COLUMN_FINAL_STATE,
+    COLUMN_CHECKSUM,
+    COLUMN_STATUS,
+    COLUMNS,
+};
+
+struct store_column {
+    const char *name;
+    enum store_kind kind;
+    size_t size; /* of one element */
+    double fill; /* value of `_FillValue` */
+    bool filled; /* has that attribute */
+    const char *unit, *text;
+};
+extern const struct store_column store_columns[COLUMNS];
+
+/* The variables of a trajectory: (case, time, width, parts). */
+enum { TRAJECTORY_POSITION, TRAJECTORY_VELOCITY, TRAJECTORY_TORQUE, TRAJECTORY_FORCE,
+       TRAJECTORY_GAP, TRAJECTORIES };
+extern const char *const store_trajectories[TRAJECTORIES];
+
+/* Whether a scenario stores a column; elements per case (2 coordinates for the final state). */
+bool store_has_column(const struct scenario *scenario, int column);
+size_t store_column_width(const struct scenario *scenario, int column);
+/* Elements per row of a trajectory; 0: the variable is left out. */
+size_t store_trajectory_width(const stance_scene *scene, int variable);
+
+/* Lengths of the dimensions of the cases; returns how many (>= 1). */
+int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
+
+/* Columns of group `design`, in struct resolved_design: name, first element, width per design. */
+struct store_design_column {
+    const char *name, *unit, *text;
+    size_t offset; /* in struct resolved_design */
+    int rows, columns, stride; /* of the matrix; its row length in memory */
+};
+enum { DESIGN_COLUMNS = 4 };
+void store_design_columns(const stance_scene *scene,
+                          struct store_design_column columns[DESIGN_COLUMNS]);
+
+hid_t store_file_type(enum store_kind kind);
+hid_t store_memory_type(enum store_kind kind);
+
+/* File access for one process: no HDF5 locks (ours is another), no buffering of raw data, so that
+ * writes reach the system in the order in which they are made. Close with H5Pclose. */
+hid_t store_serial_access(void);
+
+/* "FILE: what: reason", with the reason that HDF5 remembers. Returns false. */
+bool store_failed(stance_message *message, const char *file, const char *what);
+
+#endif

@@ -1,0 +1,101 @@
+/* support.h - what several tests share: robots, cases, random numbers, JSON references. */
+#ifndef STANCE_TESTS_SUPPORT_H
+#define STANCE_TESTS_SUPPORT_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../engine/stance.h"
+
+/* Uniform in [low, high) from splitmix64: the same everywhere. */
+static inline double uniform(uint64_t *state, double low, double high)
+{
+    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return low + (high - low) * (double)(z >> 11) * 0x1p-53;
+}
+
+static inline const stance_kernel *kernel_of(const char *method, const char *isa)
+{
+    const stance_kernel *k =
+        stance_kernel_find(stance_scene_find("biped"), stance_method_find(method), isa);
+    return k;
+}
+
+/* A case of the default robot without controller, 1 ms, one second, both feet, friction 0.8. */
+static inline stance_case plain_case(void)
+{
+    const stance_scene *scene = stance_scene_find("biped");
+    stance_case c;
+    memset(&c, 0, sizeof c);
+    for (int i = 0; i < scene->robot_count; i++)
+        c.robot[i] = scene->robot[i].fallback;
+    c.friction = 0.8;
+    c.contacts = 3;
+    c.torque_limit = INFINITY;
+    c.step = 1e-3;
+    c.steps = 1000;
+    c.support = -1;
+    c.settle_angle = 0.05, c.settle_rate = 0.5, c.settle_hold = 0.5;
+    c.fall_height = 0.2;
+    return c;
+}
+
+/* The legs' servo: holds the joint angles that the case starts with. */
+static inline void hold_legs(stance_case *c, double kp, double kd)
+{
+    for (int i = 0; i < 2; i++) {
+        c->gain[i][1 + i] = kp;
+        c->gain[i][4 + i] = kd;
+        c->target[1 + i] = c->position[3 + i];
+    }
+}
+
+/* Buffers for a trajectory of `rows` rows; freed by trajectory_free. */
+static inline stance_trajectory trajectory_new(int64_t rows, double interval)
+{
+    const size_t n = (size_t)rows;
+    stance_trajectory t = {interval,
+                           rows,
+                           calloc(n * 5, sizeof(double)),
+                           calloc(n * 5, sizeof(double)),
+                           calloc(n * 2, sizeof(double)),
+                           calloc(n * 4, sizeof(double)),
+                           calloc(n * 2, sizeof(double))};
+    assert_non_null(t.position);
+    assert_non_null(t.velocity);
+    assert_non_null(t.torque);
+    assert_non_null(t.force);
+    assert_non_null(t.gap);
+    return t;
+}
+static inline void trajectory_free(stance_trajectory *t)
+{
+    free(t->position);
+    free(t->velocity);
+    free(t->torque);
+    free(t->force);
+    free(t->gap);
+}
+
+static inline json_t *reference_load(const char *path)
+{
+    json_error_t error;
+    json_t *root = json_load_file(path, 0, &error);
+    if (!root)
+        fail_msg("%s:%d: %s", path, error.line, error.text);
+    return root;
+}
+
+#endif
