@@ -14,6 +14,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #define DEEPEST_START 1e-9 /* m: penetration of an initial state that counts as rounding */

@@ -62,6 +62,36 @@ static inline void hold_legs(stance_case *c, double kp, double kd)
     }
 }
 
+/* Section 3.2's balance: foot 1 as only contact, robust gains, torques limited to 10 N m and held
+ * for 1 ms; tilted about the foot by `theta`, turning at `vtheta`. */
+static inline stance_case balance_case(double theta, double vtheta)
+{
+    static const double re[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6}, im[6] = {0};
+    const stance_equilibrium_choice choice = {0, {-0.41, NAN, 0.82}, false};
+    const stance_scene *scene = stance_scene_find("biped");
+    stance_equilibrium equilibrium;
+    stance_message message;
+    double A[36], B[12];
+    stance_case c = plain_case();
+    if (scene->equilibrium(c.robot, &choice, &equilibrium, &message) != STANCE_OK ||
+        scene->linearise(c.robot, &equilibrium, A, B) != STANCE_OK ||
+        stance_place(6, 2, A, B, re, im, &c.gain[0][0], NULL, NULL, &message) != STANCE_OK)
+        fail_msg("no balance controller");
+    memcpy(c.position, equilibrium.position, sizeof c.position);
+    memcpy(c.feedforward, equilibrium.torque, sizeof c.feedforward);
+    memcpy(c.target, equilibrium.position + 2, sizeof c.target);
+    c.position[2] += theta;
+    c.velocity[2] = vtheta;
+    scene->stand(c.robot, 0, c.position, c.velocity);
+    c.contacts = 1;
+    c.torque_limit = 10;
+    c.sample_every = 1;
+    c.steps = 8000;
+    c.support = 0;
+    c.has_target = c.settle = true;
+    return c;
+}
+
 /* Buffers for a trajectory of `rows` rows; freed by trajectory_free. */
 static inline stance_trajectory trajectory_new(int64_t rows, double interval)
 {
