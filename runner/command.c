@@ -26,8 +26,8 @@ static size_t edit_distance(const char *a, const char *b)
         current[0] = i;
         for (size_t j = 1; j <= n; j++) {
             size_t differs = a[i - 1] != b[j - 1];
-            current[j] = minimum(minimum(previous[j], current[j - 1]) + 1,
-                                 previous[j - 1] + differs);
+            current[j] =
+                minimum(minimum(previous[j], current[j - 1]) + 1, previous[j - 1] + differs);
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
                 current[j] = minimum(current[j], before[j - 2] + 1);
             }
@@ -132,8 +132,8 @@ static bool take_option(const struct command *command, int argc, char **argv, in
             value = argv[++*i];
         }
         if (*spec->count >= spec->max) {
-            return bad_use(command, spec->max == 1 ? "given twice:" : "given too often:",
-                           spec->name);
+            return bad_use(command,
+                           spec->max == 1 ? "given twice:" : "given too often:", spec->name);
         }
         spec->values[*spec->count] = value;
     } else if (value) {

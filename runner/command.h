@@ -28,11 +28,11 @@ extern const struct command command_check, command_design, command_run, command_
 /* Options: long ones only, and -o, -h. `takes_value` options accept "--name VALUE" and
  * "--name=VALUE". A repeatable option collects into `values`. */
 struct option_spec {
-    const char *name;      /* "--set", "-o" */
+    const char *name; /* "--set", "-o" */
     bool takes_value;
-    const char **values;   /* takes_value: filled in order, at most `max` */
+    const char **values; /* takes_value: filled in order, at most `max` */
     size_t max;
-    size_t *count;         /* how often it was given */
+    size_t *count; /* how often it was given */
 };
 
 /* Splits argv into options and operands (operand[max_operands], *operands). On bad use prints one

@@ -254,7 +254,7 @@ static void print_critical(const struct report *r)
            r->critical);
     if (interval > 0) {
         printf("  controller.sample_time %.6g s is %s\n", interval,
-               interval < r->critical ? "below it" : "NOT below it: the loop is unstable");
+               interval < r->critical ? "below it" : "NOT below it");
     } else {
         puts("  controller.sample_time 0: the controller acts continuously");
     }
@@ -268,7 +268,8 @@ static void print_closed_loop(const struct report *r)
         return;
     }
     if (values->law == LAW_HOLD) {
-        puts("\nController: hold, as a gain matrix; torques = -K (X, rates)");
+        puts(
+            "\nController: hold, as a gain matrix: torques = -K X, X counted from the held angles");
     } else {
         printf("\nController: state feedback, %s; torques = those of the equilibrium - K X\n",
                values->design == DESIGN_PLACE ? "robust pole placement" : "given gains");

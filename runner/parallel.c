@@ -154,8 +154,7 @@ void parallel_unshare(struct parallel *parallel)
 
 /* One-sided, so nobody serves the counters. Some networks move them on only while rank 0 is
  * inside MPI: rank 0 must come here often, too. */
-int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter,
-                     int64_t value)
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
 {
     int64_t before = 0;
     MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)counter, MPI_SUM,
@@ -236,8 +235,7 @@ void parallel_unshare(struct parallel *parallel)
     }
 }
 
-int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter,
-                     int64_t value)
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
 {
     int64_t before = parallel->shared->counter[counter];
     parallel->shared->counter[counter] += value;

@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 /* Numbers that all ranks share while cases are computed; they live on rank 0. */
-enum parallel_counter { COUNTER_CHUNK, COUNTER_STOP, COUNTER_DONE, COUNTERS };
+enum parallel_counter { COUNTER_CHUNK, COUNTER_STOP, COUNTER_DONE, COUNTER_KEPT, COUNTERS };
 
 struct parallel_shared; /* the counters' memory, private to parallel.c */
 
@@ -47,8 +47,7 @@ bool parallel_agree(const struct parallel *parallel, bool good, char *text, size
 bool parallel_share(struct parallel *parallel);
 void parallel_unshare(struct parallel *parallel);
 /* Not collective: adds to a counter and returns what it held before; adding 0 reads it. */
-int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter,
-                     int64_t value);
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value);
 
 /* Name of this machine. */
 void parallel_host(char *name, size_t size);

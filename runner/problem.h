@@ -34,7 +34,8 @@ struct problems {
 void problem_add(struct problems *problems, struct mark mark, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Sorts and prints: those of the file by position, then those of each --set (`sets`, PATH=VALUE). */
+/* Sorts and prints: those of the file by position, then those of each --set (`sets`, PATH=VALUE).
+ */
 void problems_print(struct problems *problems, const char *file, const char *const *sets,
                     FILE *out);
 

@@ -93,7 +93,7 @@ static bool design_state_feedback(const stance_scene *scene, const struct scenar
                                   struct resolved_design *design, stance_message *message)
 {
     const int n = 2 * scene->postures, m = scene->actuators;
-    double model[STANCE_MAX_ROBOT], K[SCENARIO_MAX_GAINS];
+    double model[STANCE_MAX_ROBOT], K[SCENARIO_MAX_GAINS] = {0};
     stance_equilibrium equilibrium;
 
     if (!resolve_equilibrium(scene, values, model, &equilibrium, message)) {

@@ -13,9 +13,9 @@
 /* What depends on fields marked `design` in the schema only (robot.*, initial.equilibrium.*,
  * initial.support_foot, controller.kind, .design, .model.*, .equilibrium.*, .poles, .gains). */
 struct resolved_design {
-    double start[STANCE_MAX_COORDINATES];          /* initial equilibrium, foot at the origin; NAN if none */
-    double equilibrium[STANCE_MAX_COORDINATES];    /* controller's equilibrium; NAN if none */
-    double torque[STANCE_MAX_ACTUATORS];           /* feedforward, N m */
+    double start[STANCE_MAX_COORDINATES]; /* initial equilibrium, foot at the origin; NAN if none */
+    double equilibrium[STANCE_MAX_COORDINATES]; /* controller's equilibrium; NAN if none */
+    double torque[STANCE_MAX_ACTUATORS];        /* feedforward, N m */
     double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
 };
 

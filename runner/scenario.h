@@ -13,7 +13,7 @@
 
 enum {
     SCENARIO_MAX_AXES = 24,
-    SCENARIO_MAX_PATHS = 8,          /* paths that one axis varies together */
+    SCENARIO_MAX_PATHS = 8, /* paths that one axis varies together */
     SCENARIO_MAX_STATES = 2 * STANCE_MAX_COORDINATES,
     SCENARIO_MAX_GAINS = STANCE_MAX_ACTUATORS * 2 * STANCE_MAX_POSTURE,
     SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
@@ -43,16 +43,16 @@ struct scenario_values {
     int state_given;                         /* initial.state instead of an equilibrium */
     double state[SCENARIO_MAX_STATES];
 
-    int law;                                  /* enum scenario_law */
-    int design;                               /* enum scenario_design */
-    double model[STANCE_MAX_ROBOT];           /* the robot that the design believes in; NAN: as robot */
+    int law;                        /* enum scenario_law */
+    int design;                     /* enum scenario_design */
+    double model[STANCE_MAX_ROBOT]; /* the robot that the design believes in; NAN: as robot */
     struct scenario_equilibrium design_point; /* controller.equilibrium; not given: initial's */
     double pole_re[SCENARIO_MAX_POLES], pole_im[SCENARIO_MAX_POLES];
-    double gains[SCENARIO_MAX_GAINS];         /* [actuators][2 postures] */
-    double kp, kd;                            /* hold */
-    double target[STANCE_MAX_POSTURE];        /* hold: controller.target; NAN: the initial angles */
-    double sample_time;                       /* 0: continuous */
-    double torque_limit;                      /* INFINITY: none */
+    double gains[SCENARIO_MAX_GAINS];  /* [actuators][2 postures] */
+    double kp, kd;                     /* hold */
+    double target[STANCE_MAX_POSTURE]; /* hold: controller.target; NAN: the initial angles */
+    double sample_time;                /* 0: continuous */
+    double torque_limit;               /* INFINITY: none */
     double noise;
 
     int method; /* index into stance_methods() */
@@ -67,9 +67,9 @@ struct scenario_field; /* a row of the schema, see schema.h */
 
 /* One axis of the grid: `count` points; along it `paths` fields change together. */
 struct scenario_axis {
-    char name[96];     /* the path as written (the first one), used as dimension name */
-    char unit[24];     /* of the first path, "1" where it has none */
-    char text[160];    /* its documentation, as long_name */
+    char name[96];  /* the path as written (the first one), used as dimension name */
+    char unit[24];  /* of the first path, "1" where it has none */
+    char text[160]; /* its documentation, as long_name */
     int paths;
     char path[SCENARIO_MAX_PATHS][96];
     size_t offset[SCENARIO_MAX_PATHS]; /* of the field in struct scenario_values */
@@ -98,13 +98,13 @@ struct scenario {
     struct scenario_axis axis[SCENARIO_MAX_AXES];
     uint64_t cases; /* product of the counts; 1 without a sweep */
 
-    double record_every;       /* s; 0: no trajectories */
+    double record_every; /* s; 0: no trajectories */
     enum scenario_record record_cases;
-    uint64_t *record_list;     /* sorted, unique, all < cases */
+    uint64_t *record_list; /* sorted, unique, all < cases */
     size_t record_count;
-    uint32_t answers;          /* bit per row of the answer table in store.h; all ones by default */
+    uint32_t answers; /* bit per row of the answer table in store.h; all ones by default */
 
-    char *text;      /* resolved scenario: after --set, as YAML; what the file stores and hashes */
+    char *text; /* resolved scenario: after --set, as YAML; what the file stores and hashes */
     /* Where fields stand, for errors found later (design, initial state). */
     int initial_line, initial_column, controller_line, controller_column;
 };
@@ -119,7 +119,8 @@ void scenario_free(struct scenario *s);
 /* Value k of point `i` of an axis (k < paths); for words the enumeration's number. */
 double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);
 /* Text of that value, for messages and pictures. */
-void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer, size_t size);
+void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer,
+                        size_t size);
 
 /* Fields of case `index` (flat, row-major in the order of the axes): base, then the axes. */
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);

@@ -18,12 +18,12 @@ struct store {
     char file[1024];
     const struct plan *plan;
     hid_t id;
-    hid_t column[COLUMNS];            /* -1: not stored */
-    size_t width[COLUMNS];            /* elements per case */
-    void *buffer[COLUMNS];            /* [STORE_ROWS][width] */
-    hid_t trajectory[TRAJECTORIES];   /* -1: not stored */
+    hid_t column[COLUMNS];          /* -1: not stored */
+    size_t width[COLUMNS];          /* elements per case */
+    void *buffer[COLUMNS];          /* [STORE_ROWS][width] */
+    hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
     hid_t trajectory_checksum;
-    int rank;                         /* dimensions of the cases */
+    int rank; /* dimensions of the cases */
     hsize_t length[SCENARIO_MAX_AXES];
 };
 
@@ -34,8 +34,8 @@ const struct store_column store_columns[COLUMNS] = {
     [COLUMN_##name] = {#name, KIND_##type, sizeof(type), fill, true, unit, text},
     STORE_ANSWERS(STORE_COLUMN)
 #undef STORE_COLUMN
-    [COLUMN_FINAL_STATE] = {"final_state", KIND_double, sizeof(double), NAN, true, NULL,
-                            "coordinates and their rates when the simulation stopped"},
+        [COLUMN_FINAL_STATE] = {"final_state", KIND_double, sizeof(double), NAN, true, NULL,
+                                "coordinates and their rates when the simulation stopped"},
     [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, sizeof(uint32_t), 0, false, "1",
                          "CRC-32C over the answers of the case"},
     [COLUMN_STATUS] = {"status", KIND_uint8_t, sizeof(uint8_t), 0, true, "1",
@@ -86,18 +86,36 @@ void store_design_columns(const stance_scene *scene,
                           struct store_design_column columns[DESIGN_COLUMNS])
 {
     int n = scene->coordinates, m = scene->actuators;
-    columns[0] = (struct store_design_column){
-        "gain", NULL, "gains of the linear law: torque = feedforward - gain * error",
-        offsetof(struct resolved_design, gain), m, 2 * scene->postures, 2 * STANCE_MAX_POSTURE};
-    columns[1] = (struct store_design_column){
-        "equilibrium_position", NULL, "coordinates of the controller's equilibrium",
-        offsetof(struct resolved_design, equilibrium), 1, n, n};
-    columns[2] = (struct store_design_column){
-        "equilibrium_torque", "N m", "torques that hold the controller's equilibrium",
-        offsetof(struct resolved_design, torque), 1, m, m};
-    columns[3] = (struct store_design_column){
-        "start_position", NULL, "coordinates of the initial equilibrium, foot at the origin",
-        offsetof(struct resolved_design, start), 1, n, n};
+    columns[0] =
+        (struct store_design_column){"gain",
+                                     NULL,
+                                     "gains of the linear law: torque = feedforward - gain * error",
+                                     offsetof(struct resolved_design, gain),
+                                     m,
+                                     2 * scene->postures,
+                                     2 * STANCE_MAX_POSTURE};
+    columns[1] = (struct store_design_column){"equilibrium_position",
+                                              NULL,
+                                              "coordinates of the controller's equilibrium",
+                                              offsetof(struct resolved_design, equilibrium),
+                                              1,
+                                              n,
+                                              n};
+    columns[2] = (struct store_design_column){"equilibrium_torque",
+                                              "N m",
+                                              "torques that hold the controller's equilibrium",
+                                              offsetof(struct resolved_design, torque),
+                                              1,
+                                              m,
+                                              m};
+    columns[3] =
+        (struct store_design_column){"start_position",
+                                     NULL,
+                                     "coordinates of the initial equilibrium, foot at the origin",
+                                     offsetof(struct resolved_design, start),
+                                     1,
+                                     n,
+                                     n};
 }
 
 hid_t store_file_type(enum store_kind kind)
@@ -166,7 +184,8 @@ hid_t store_serial_access(void)
     if (access < 0) {
         return access;
     }
-    if (H5Pset_sieve_buf_size(access, 0) < 0 || H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) < 0 ||
+    if (H5Pset_sieve_buf_size(access, 0) < 0 ||
+        H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) < 0 ||
         H5Pset_file_locking(access, false, true) < 0) {
         H5Pclose(access);
         return -1;
@@ -384,15 +403,14 @@ static bool move_column(struct store *store, int c, hid_t space, size_t n, enum 
     hid_t type = store_memory_type(store_columns[c].kind);
     hsize_t elements = n * store->width[c];
     hid_t memory = H5Screate_simple(1, &elements, NULL);
-    herr_t status = memory < 0 ? -1
-                    : way == WRITE
-                        ? H5Dwrite(store->column[c], type, memory, space, H5P_DEFAULT,
-                                   store->buffer[c])
-                        : H5Dread(store->column[c], type, memory, space, H5P_DEFAULT,
-                                  store->buffer[c]);
-    bool good = status >= 0 || store_failed(message, store->file,
-                                            way == WRITE ? "write the results"
-                                                         : "read the results");
+    herr_t status =
+        memory < 0 ? -1
+        : way == WRITE
+            ? H5Dwrite(store->column[c], type, memory, space, H5P_DEFAULT, store->buffer[c])
+            : H5Dread(store->column[c], type, memory, space, H5P_DEFAULT, store->buffer[c]);
+    bool good =
+        status >= 0 ||
+        store_failed(message, store->file, way == WRITE ? "write the results" : "read the results");
     H5Sclose(memory);
     return good;
 }
@@ -402,8 +420,8 @@ static bool move_rows(struct store *store, uint64_t first, size_t n, enum direct
                       stance_message *message)
 {
     hid_t narrow = select_rows(store, 1, first, n);
-    hid_t wide = select_rows(store, 2 * (size_t)store->plan->scenario->scene->coordinates, first,
-                             n);
+    hid_t wide =
+        select_rows(store, 2 * (size_t)store->plan->scenario->scene->coordinates, first, n);
     bool good = (narrow >= 0 && wide >= 0) ||
                 store_failed(message, store->file, "select rows of the results");
     for (int c = 0; good && c < COLUMNS; c++) {
@@ -504,8 +522,7 @@ bool store_write_trajectory(struct store *store, uint64_t place,
         crc = checksum_crc32c(crc, data, elements * sizeof *data);
         good = move_place(store->trajectory[v], KIND_double, place, elements, WRITE, data);
     }
-    good = good &&
-           move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, WRITE, &crc);
+    good = good && move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, WRITE, &crc);
     return good || store_failed(message, store->file, "write a trajectory");
 }
 
@@ -534,8 +551,7 @@ static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
         }
     }
     free(data);
-    good = good &&
-           move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, READ, &expected);
+    good = good && move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, READ, &expected);
     *whole = crc == expected;
     return good || store_failed(message, store->file, "read a trajectory");
 }
@@ -599,28 +615,26 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
     return good || store_failed(message, store->file, "read the designs");
 }
 
-bool store_add_timing(struct store *store, int ranks, const double *wall_time,
-                      const int64_t *cases, stance_message *message)
+bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
+                      stance_message *message)
 {
     hid_t wall = H5Dopen2(store->id, "timing/wall_time", H5P_DEFAULT);
     hid_t drawn = H5Dopen2(store->id, "timing/cases", H5P_DEFAULT), space = H5Dget_space(wall);
     hssize_t length = H5Sget_simple_extent_npoints(space);
     double *total = length > 0 ? calloc((size_t)length, sizeof *total) : NULL;
     int64_t *sum = length > 0 ? calloc((size_t)length, sizeof *sum) : NULL;
-    bool good = total && sum &&
-                H5Dread(wall, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                        total) >= 0 &&
-                H5Dread(drawn, store_memory_type(KIND_int64_t), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                        sum) >= 0;
+    bool good =
+        total && sum &&
+        H5Dread(wall, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, total) >= 0 &&
+        H5Dread(drawn, store_memory_type(KIND_int64_t), H5S_ALL, H5S_ALL, H5P_DEFAULT, sum) >= 0;
     for (int rank = 0; good && rank < ranks; rank++) {
         total[rank % length] += wall_time[rank];
         sum[rank % length] += cases[rank];
     }
-    good = good &&
-           H5Dwrite(wall, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                    total) >= 0 &&
-           H5Dwrite(drawn, store_memory_type(KIND_int64_t), H5S_ALL, H5S_ALL, H5P_DEFAULT, sum) >=
-               0;
+    good =
+        good &&
+        H5Dwrite(wall, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, total) >= 0 &&
+        H5Dwrite(drawn, store_memory_type(KIND_int64_t), H5S_ALL, H5S_ALL, H5P_DEFAULT, sum) >= 0;
     free(total);
     free(sum);
     H5Sclose(space);
@@ -699,9 +713,9 @@ bool store_read_axis(const char *file, struct scenario_axis *axis, stance_messag
     hid_t id = open_to_read(file), dataset = H5Dopen2(id, axis->name, H5P_DEFAULT);
     hsize_t length = axis->count;
     double *value = malloc(axis->count * sizeof *value);
-    bool good = value && has_shape(dataset, 1, &length) &&
-                H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                        value) >= 0;
+    bool good =
+        value && has_shape(dataset, 1, &length) &&
+        H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
     H5Dclose(dataset);
     H5Fclose(id);
     if (!good) {
@@ -752,8 +766,7 @@ bool store_count(const char *file, struct store_counts *counts, stance_message *
     hid_t dataset = H5Dopen2(id, "status", H5P_DEFAULT);
     bool good = dataset >= 0 && count_status(dataset, counts);
     if (!good) {
-        snprintf(message->text, sizeof message->text, "%.120s: not a results file of stance",
-                 file);
+        snprintf(message->text, sizeof message->text, "%.120s: not a results file of stance", file);
     }
     H5Dclose(dataset);
     H5Fclose(id);

@@ -44,16 +44,17 @@
     X(steps, int64_t, steps, 0, "1", "time steps taken")                                           \
     X(iterations, int64_t, iterations, 0, "1", "Newton iterations over all steps")                 \
     X(ambiguous_steps, int64_t, ambiguous_steps, 0, "1",                                           \
-      "steps whose contact problem had several solutions")                                        \
+      "steps whose contact problem had several solutions")                                         \
     X(subdivided_steps, int64_t, subdivided_steps, 0, "1",                                         \
-      "steps that converged only after being subdivided")                                         \
-    X(max_penetration, double, max_penetration, NAN, "m", "deepest penetration at the end of a step") \
-    X(slip_distance, double, slip_distance, NAN, "m", "distance slipped, summed over contacts")      \
-    X(peak_torque, double, peak_torque, NAN, "N m", "largest torque applied")                        \
-    X(friction_used, double, friction_used, NAN, "1", "largest ratio |rT|/rN of a contact")          \
-    X(impact_energy, double, impact_energy, NAN, "J",                                                \
-      "largest kinetic energy added by contact impulses in one step")                             \
-    X(projection_energy, double, projection_energy, NAN, "J",                                        \
+      "steps that converged only after being subdivided")                                          \
+    X(max_penetration, double, max_penetration, NAN, "m",                                          \
+      "deepest penetration at the end of a step")                                                  \
+    X(slip_distance, double, slip_distance, NAN, "m", "distance slipped, summed over contacts")    \
+    X(peak_torque, double, peak_torque, NAN, "N m", "largest torque applied")                      \
+    X(friction_used, double, friction_used, NAN, "1", "largest ratio |rT|/rN of a contact")        \
+    X(impact_energy, double, impact_energy, NAN, "J",                                              \
+      "largest kinetic energy added by contact impulses in one step")                              \
+    X(projection_energy, double, projection_energy, NAN, "J",                                      \
       "sum of |energy| added by position projection")
 
 /* Bit of `scenario.answers` that stands for `final_state`: the one after the table's. */
@@ -61,7 +62,7 @@ enum {
 #define STORE_BIT(name, type, field, fill, unit, text) STORE_BIT_##name,
     STORE_ANSWERS(STORE_BIT)
 #undef STORE_BIT
-    STORE_BIT_FINAL_STATE,
+        STORE_BIT_FINAL_STATE,
 };
 
 enum { STORE_ROWS = 256 }; /* most rows in one call */
@@ -116,8 +117,8 @@ bool store_write_trajectory(struct store *store, uint64_t place,
 bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
                   bool *whole, stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
-bool store_add_timing(struct store *store, int ranks, const double *wall_time,
-                      const int64_t *cases, stance_message *message);
+bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
+                      stance_message *message);
 
 /* Counts the cases of a file, which another process may be writing. */
 struct store_counts {

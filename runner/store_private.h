@@ -11,15 +11,21 @@
 /* Bytes in memory are bytes of the file, checksums included. */
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is little-endian");
 
-enum store_kind { KIND_uint8_t, KIND_uint32_t, KIND_int32_t, KIND_int64_t, KIND_uint64_t,
-                  KIND_double };
+enum store_kind {
+    KIND_uint8_t,
+    KIND_uint32_t,
+    KIND_int32_t,
+    KIND_int64_t,
+    KIND_uint64_t,
+    KIND_double
+};
 
 /* The variables over the cases, in the order of the table, then the three of our own. */
 enum {
 #define STORE_COLUMN(name, type, field, fill, unit, text) COLUMN_##name,
     STORE_ANSWERS(STORE_COLUMN)
 #undef STORE_COLUMN
-    COLUMN_FINAL_STATE,
+        COLUMN_FINAL_STATE,
     COLUMN_CHECKSUM,
     COLUMN_STATUS,
     COLUMNS,
@@ -36,8 +42,14 @@ struct store_column {
 extern const struct store_column store_columns[COLUMNS];
 
 /* The variables of a trajectory: (case, time, width, parts). */
-enum { TRAJECTORY_POSITION, TRAJECTORY_VELOCITY, TRAJECTORY_TORQUE, TRAJECTORY_FORCE,
-       TRAJECTORY_GAP, TRAJECTORIES };
+enum {
+    TRAJECTORY_POSITION,
+    TRAJECTORY_VELOCITY,
+    TRAJECTORY_TORQUE,
+    TRAJECTORY_FORCE,
+    TRAJECTORY_GAP,
+    TRAJECTORIES
+};
 extern const char *const store_trajectories[TRAJECTORIES];
 
 /* Whether a scenario stores a column; elements per case (2 coordinates for the final state). */
@@ -52,7 +64,7 @@ int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]
 /* Columns of group `design`, in struct resolved_design: name, first element, width per design. */
 struct store_design_column {
     const char *name, *unit, *text;
-    size_t offset; /* in struct resolved_design */
+    size_t offset;             /* in struct resolved_design */
     int rows, columns, stride; /* of the matrix; its row length in memory */
 };
 enum { DESIGN_COLUMNS = 4 };

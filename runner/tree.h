@@ -27,6 +27,7 @@ struct tree_key {
 struct tree_node {
     enum tree_kind kind;
     bool quoted;      /* a scalar in quotes or a block: text, never a number */
+    bool fresh;       /* made by --set on the way to what it sets, of no kind yet */
     const char *text; /* of a scalar */
     size_t count, room;
     struct tree_node **item; /* of a list or mapping */
@@ -52,6 +53,9 @@ bool tree_parse(struct tree *tree, const char *text, size_t length, struct probl
 /* Puts VALUE (YAML) at PATH; `set` (from 1) marks what came from there. Keys that are missing are
  * made; the index of a list may be one past its end. */
 bool tree_set(struct tree *tree, const char *path_and_value, int set, struct problems *problems);
+
+/* Letters, digits, '_' and '-': what names in paths consist of. */
+bool tree_name_letter(char c);
 
 /* One step of a path such as "a.b[0][1].c": *at moves past it; `name` is empty for an index.
  * False at a malformed step; a path ends where **at is zero. `first`: nothing came before. */

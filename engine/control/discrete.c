@@ -4,9 +4,19 @@
  * Bd = (integral of exp(A t) over 0 ... T) B. SLICOT's MB05ND computes both by Pade approximation
  * with scaling and squaring. A gain K designed for continuous time keeps the sampled loop stable
  * as long as the spectral radius of Ad(T) - Bd(T) K stays below 1.
+ *
+ * The spectral radius has corners where eigenvalues meet, and may exceed 1 in windows of T as
+ * narrow as one likes. The search therefore watches three smooth functions of T made of the
+ * eigenvalues z,
+ *
+ *   prod (1 - z_i),   prod (1 + z_i),   prod over i < j of (1 - z_i z_j),
+ *
+ * positive while all |z| < 1; one of them vanishes where a real eigenvalue passes 1 or -1 or a pair
+ * passes the circle. On a scan that resolves the fastest mode, their signs and minima find it.
  */
 #include "control.h"
 
+#include <complex.h>
 #include <float.h>
 #include <string.h>
 
@@ -92,8 +102,15 @@ stance_error stance_discretise(int n, int m, const double *A, const double *B, d
     return error;
 }
 
-/* *excess = spectral radius of the sampled loop minus 1. */
-static stance_error sampled_excess(sampled *s, double T, double *excess)
+enum { GUARDS = 3 };
+
+/* What the sampled loop is like at one T. */
+typedef struct sample {
+    double T, excess;     /* spectral radius minus 1 */
+    double guard[GUARDS]; /* the three products */
+} sample;
+
+static stance_error sampled_look(sampled *s, double T, sample *look)
 {
     stance_error error = sampled_discretise(s, T);
     if (error != STANCE_OK) {
@@ -104,12 +121,22 @@ static stance_error sampled_excess(sampled *s, double T, double *excess)
         s->loop[i] = s->Ad[i] - s->loop[i];
     }
     error = stance_eigenvalues(s->n, s->loop, s->re, s->im);
-    double radius = 0;
-    for (int i = 0; error == STANCE_OK && i < s->n; i++) {
-        radius = fmax(radius, hypot(s->re[i], s->im[i]));
+    if (error != STANCE_OK) {
+        return error;
     }
-    *excess = radius - 1;
-    return error;
+    double radius = 0;
+    double complex below = 1, above = 1, pairs = 1;
+    for (int i = 0; i < s->n; i++) {
+        const double complex z = CMPLX(s->re[i], s->im[i]);
+        radius = fmax(radius, cabs(z));
+        below *= 1 - z;
+        above *= 1 + z;
+        for (int j = 0; j < i; j++) {
+            pairs *= 1 - z * CMPLX(s->re[j], s->im[j]);
+        }
+    }
+    *look = (sample){T, radius - 1, {creal(below), creal(above), creal(pairs)}};
+    return STANCE_OK;
 }
 
 /* Largest |eigenvalue| and largest real part of a matrix. */
@@ -124,29 +151,28 @@ static stance_error spectrum(sampled *s, const double *matrix, double *size, dou
     return error;
 }
 
-/* Highest excess between two sample times; golden section. *T is where. */
-static stance_error sampled_peak(sampled *s, double low, double high, double *T, double *excess)
+/* Golden section for the minimum of one guard; *best is the lowest point met. */
+static stance_error sampled_minimum(sampled *s, int guard, double low, double high, sample *best)
 {
     const double part = 0.3819660112501051;
-    double a = low + part * (high - low), b = high - part * (high - low), at_a, at_b;
-    stance_error error = sampled_excess(s, a, &at_a);
+    sample a, b;
+    stance_error error = sampled_look(s, low + part * (high - low), &a);
     if (error == STANCE_OK) {
-        error = sampled_excess(s, b, &at_b);
+        error = sampled_look(s, high - part * (high - low), &b);
     }
     for (int i = 0; i < 60 && error == STANCE_OK; i++) {
-        if (at_a > at_b) {
-            high = b, b = a, at_b = at_a;
-            a = low + part * (high - low);
-            error = sampled_excess(s, a, &at_a);
+        if (a.guard[guard] < b.guard[guard]) {
+            high = b.T;
+            b = a;
+            error = sampled_look(s, low + part * (high - low), &a);
         } else {
-            low = a, a = b, at_a = at_b;
-            b = high - part * (high - low);
-            error = sampled_excess(s, b, &at_b);
+            low = a.T;
+            a = b;
+            error = sampled_look(s, high - part * (high - low), &b);
         }
     }
     if (error == STANCE_OK) {
-        *T = at_a > at_b ? a : b;
-        *excess = fmax(at_a, at_b);
+        *best = a.guard[guard] < b.guard[guard] ? a : b;
     }
     return error;
 }
@@ -156,16 +182,16 @@ static stance_error sampled_bisect(sampled *s, double stable, double unstable, d
 {
     for (;;) {
         const double middle = stable + (unstable - stable) / 2;
-        double excess;
+        sample look;
         if (!(middle > stable && middle < unstable)) {
             *T = unstable;
             return STANCE_OK;
         }
-        const stance_error error = sampled_excess(s, middle, &excess);
+        const stance_error error = sampled_look(s, middle, &look);
         if (error != STANCE_OK) {
             return error;
         }
-        if (excess < 0) {
+        if (look.excess < 0) {
             stable = middle;
         } else {
             unstable = middle;
@@ -173,35 +199,48 @@ static stance_error sampled_bisect(sampled *s, double stable, double unstable, d
     }
 }
 
-/* Walks up in T. Between two stable points the excess may still have risen above zero: wherever
- * three points in a row show a maximum, its height is looked at. */
-static stance_error sampled_scan(sampled *s, double interval, double longest, double *T)
+/* The first unstable window between three stable points in a row, if their guards show that one
+ * may be there. *T stays as it is when there is none. */
+static stance_error sampled_between(sampled *s, const sample *look, double *T)
 {
-    double before = -INFINITY, excess = -INFINITY;
-    const double count = fmax(1, ceil(longest / interval));
-    *T = INFINITY;
-    for (double i = 1; i <= count; i++) {
-        const double time = fmin(i * interval, longest);
-        double next;
-        stance_error error = sampled_excess(s, time, &next);
+    for (int g = 0; g < GUARDS; g++) {
+        if (look[1].guard[g] > look[0].guard[g] || look[1].guard[g] > look[2].guard[g]) {
+            continue;
+        }
+        sample lowest;
+        double found;
+        stance_error error = sampled_minimum(s, g, look[0].T, look[2].T, &lowest);
+        if (error == STANCE_OK && lowest.excess >= 0) {
+            error = sampled_bisect(s, look[0].T, lowest.T, &found);
+            *T = error == STANCE_OK ? fmin(*T, found) : *T;
+        }
         if (error != STANCE_OK) {
             return error;
         }
-        if (i > 2 && excess > before && excess >= next && next < 0) {
-            double where, height;
-            error = sampled_peak(s, time - 2 * interval, time, &where, &height);
-            if (error != STANCE_OK) {
-                return error;
-            }
-            if (height >= 0) {
-                return sampled_bisect(s, time - 2 * interval, where, T);
-            }
+    }
+    return STANCE_OK;
+}
+
+/* Walks up in T until the loop is unstable, looking between the points too. */
+static stance_error sampled_scan(sampled *s, double interval, double longest, double *T)
+{
+    sample look[3] = {{0}};
+    const int64_t count = (int64_t)fmin(1e15, fmax(1, ceil(longest / interval)));
+
+    *T = INFINITY;
+    for (int64_t i = 1; i <= count; i++) {
+        look[0] = look[1];
+        look[1] = look[2];
+        stance_error error = sampled_look(s, fmin((double)i * interval, longest), &look[2]);
+        if (error == STANCE_OK && i > 2) {
+            error = sampled_between(s, look, T);
         }
-        if (next >= 0) {
-            return sampled_bisect(s, fmax(0, time - interval), time, T);
+        if (error == STANCE_OK && !isfinite(*T) && look[2].excess >= 0) {
+            error = sampled_bisect(s, look[1].T, look[2].T, T);
         }
-        before = excess;
-        excess = next;
+        if (error != STANCE_OK || isfinite(*T)) {
+            return error;
+        }
     }
     return STANCE_OK;
 }

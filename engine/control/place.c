@@ -26,9 +26,12 @@
  * maxima come as mirror images whose gains differ. place() therefore
  *   1. climbs from several fixed starts and takes the highest maximum,
  *   2. finds the reflection from the S_j alone and climbs from the mirror image too,
- *   3. of maxima equally high (1e-9) takes the one with the larger Frobenius norm of K: a fixed
- *      choice that changes continuously with the robot, which "where the iteration happens to end"
- *      does not. (For the default biped both common starts and this rule agree.)
+ *   3. of maxima equally high (1e-9) takes the one with the larger Frobenius norm of K: a choice
+ *      that changes continuously with the robot, which "where the iteration happens to end" does
+ *      not.
+ * For the default biped on one foot this is the gain that other programs' usual start leads to,
+ * and the better one: with 10 N m it recovers from tilts of -0.094 ... 0.020 rad, its mirror image
+ * from -0.051 ... 0.021 rad only.
  */
 #include "control.h"
 
@@ -66,7 +69,7 @@ typedef struct problem {
     double *rhs;           /* [n][n] scratch */
     double *real;          /* [8 n n] scratch */
     lapack_int *pivot;     /* [n] */
-    unsigned char *memory;
+    void *memory;
 } problem;
 
 /* ---- memory ---------------------------------------------------------------------------------- */
@@ -82,7 +85,7 @@ static stance_error problem_make(problem *p, int n, int m, const double *A, cons
     if (!p->memory) {
         return STANCE_NO_MEMORY;
     }
-    number *z = (number *)p->memory;
+    number *z = p->memory;
     p->pole = z, z += n;
     p->space = z, z += nn * (size_t)n;
     p->vector = z, z += nn;
@@ -111,11 +114,23 @@ static bool same_pole(double complex a, double complex b)
     return cabs(a - b) <= SAME_POLE * fmax(1, cabs(a));
 }
 
+/* A number as people write it: no imaginary part where there is none. */
+static const char *pole_text(double complex pole, char text[64])
+{
+    if (cimag(pole) == 0) {
+        snprintf(text, 64, "%.6g", creal(pole));
+    } else {
+        snprintf(text, 64, "%.6g%+.6gi", creal(pole), cimag(pole));
+    }
+    return text;
+}
+
 static stance_error unpaired(stance_message *message, double complex pole)
 {
+    char text[64], conjugate[64];
     return stance_refuse(message, STANCE_BAD_POLES,
-                         "the pole %.6g%+.6gi has no conjugate %.6g%+.6gi among the poles",
-                         creal(pole), cimag(pole), creal(pole), -cimag(pole));
+                         "the pole %s has no conjugate %s among the poles", pole_text(pole, text),
+                         pole_text(conj(pole), conjugate));
 }
 
 /* Brings pairs together; p->vector serves as the list of poles not yet placed in the order. */
@@ -164,15 +179,11 @@ static stance_error check_multiplicity(const problem *p, stance_message *message
             times += same_pole(p->pole[j], p->pole[k]);
         }
         if (times > p->r) {
-            char imaginary[40] = "";
-            if (cimag(p->pole[j]) != 0) {
-                snprintf(imaginary, sizeof imaginary, "%+.6gi", cimag(p->pole[j]));
-            }
+            char text[64];
             return stance_refuse(message, STANCE_BAD_POLES,
-                                 "the pole %.6g%s is wanted %d times, but %d independent input%s "
-                                 "place a pole %d time%s at most",
-                                 creal(p->pole[j]), imaginary, times, p->r, p->r == 1 ? "" : "s",
-                                 p->r, p->r == 1 ? "" : "s");
+                                 "the pole %s is wanted %d times, but the number of independent "
+                                 "inputs, %d, is the most that one pole can be repeated",
+                                 pole_text(p->pole[j], text), times, p->r);
         }
     }
     return STANCE_OK;
@@ -235,10 +246,11 @@ static stance_error check_controllable(const problem *p, stance_message *message
             return STANCE_NUMERICAL;
         }
         if (sv[n - 1] <= 1e-10 * sv[0]) {
+            char text[64];
             return stance_refuse(message, STANCE_UNCONTROLLABLE,
                                  "the pair (A, B) is not controllable: no input reaches the mode "
-                                 "with eigenvalue %.6g%+.6gi",
-                                 re[e], im[e]);
+                                 "with eigenvalue %s",
+                                 pole_text(CMPLX(re[e], im[e]), text));
         }
     }
     return error;
@@ -690,7 +702,7 @@ static stance_error finish(problem *p, double *K, candidate *c, stance_message *
 static stance_error solve(problem *p, double *K, candidate *c, stance_message *message)
 {
     const size_t bytes = (size_t)p->n * (size_t)p->m * sizeof *K;
-    candidate mirrored;
+    candidate mirrored = {0};
     int before = 0;
     number *best = calloc((size_t)p->n * (size_t)p->n, sizeof *best);
     double *other = malloc(bytes);
@@ -724,7 +736,7 @@ stance_error stance_place(int n, int m, const double *A, const double *B, const 
         return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
     }
     problem p;
-    candidate c;
+    candidate c = {0};
     stance_error error = problem_make(&p, n, m, A, B);
     if (error == STANCE_OK) {
         error = order_poles(&p, re, im, message);

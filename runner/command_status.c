@@ -1,0 +1,118 @@
+/* command_status.c - `stance status`: how far a run is, seen from another process. */
+#include "command.h"
+#include "lock.h"
+#include "report.h"
+#include "store.h"
+
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <time.h>
+
+struct state {
+    struct store_counts counts;
+    bool running;
+    double rate, left; /* cases/s and s; negative: unknown */
+};
+
+static double wall_clock(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static bool read_state(const char *file, struct state *state, stance_message *message)
+{
+    struct lock_note note;
+    *state = (struct state){.running = lock_is_held(file, &note), .rate = -1, .left = -1};
+    if (!store_count(file, &state->counts, message)) {
+        return false;
+    }
+    uint64_t finished = state->counts.done + state->counts.failed;
+    double spent = wall_clock() - note.start;
+    if (state->running && note.start > 0 && finished > note.finished && spent > 0) {
+        state->rate = (double)(finished - note.finished) / spent;
+        state->left = (double)(state->counts.cases - finished) / state->rate;
+    }
+    return true;
+}
+
+static void print_json(const char *file, const struct state *state)
+{
+    const struct store_counts *c = &state->counts;
+    json_t *root = json_pack(
+        "{s:s, s:I, s:I, s:I, s:I, s:b, s:o, s:o}", "file", file, "cases", (json_int_t)c->cases,
+        "done", (json_int_t)c->done, "failed", (json_int_t)c->failed, "pending",
+        (json_int_t)(c->cases - c->done - c->failed), "running", state->running, "rate",
+        state->rate < 0 ? json_null() : json_real(state->rate), "seconds_left",
+        state->left < 0 ? json_null() : json_real(state->left));
+    json_dumpf(root, stdout, JSON_INDENT(2));
+    putchar('\n');
+    json_decref(root);
+}
+
+static void print_text(const char *file, const struct state *state)
+{
+    const struct store_counts *c = &state->counts;
+    uint64_t pending = c->cases - c->done - c->failed;
+    char left[32];
+
+    printf("%s: %" PRIu64 " of %" PRIu64 " cases done, %" PRIu64 " failed, %" PRIu64 " pending; %s",
+           file, c->done, c->cases, c->failed, pending,
+           state->running ? "running"
+           : pending      ? "not running (stance run --resume goes on)"
+                          : "complete");
+    if (state->rate >= 0) {
+        report_seconds(left, sizeof left, state->left);
+        printf(", %.0f cases/s, %s left", state->rate, left);
+    }
+    putchar('\n');
+}
+
+static int run_status(int argc, char **argv)
+{
+    const char *file;
+    size_t json = 0, operands;
+    bool help;
+    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json}};
+    struct state state;
+    stance_message message;
+
+    if (!command_options(&command_status, argc, argv, specs, 1, &file, 1, &operands, &help)) {
+        return EXIT_USAGE;
+    }
+    if (help) {
+        return EXIT_DONE;
+    }
+    if (operands != 1) {
+        fprintf(stderr, "stance status: a results file must be given (stance status -h "
+                        "explains)\n");
+        return EXIT_USAGE;
+    }
+    store_prepare();
+    if (!read_state(file, &state, &message)) {
+        fprintf(stderr, "stance status: %s\n", message.text);
+        return EXIT_IO;
+    }
+    if (json > 0) {
+        print_json(file, &state);
+    } else {
+        print_text(file, &state);
+    }
+    return EXIT_DONE;
+}
+
+const struct command command_status = {
+    "status",
+    "status FILE [--json]",
+    "how far a run is: done, failed, pending, rate and time left",
+    run_status,
+    "Reads the results file, which a run may be writing.\n"
+    "\n"
+    "  --json   the same as JSON, with the keys\n"
+    "    file                           as given\n"
+    "    cases, done, failed, pending   numbers of cases\n"
+    "    running                        whether a run is writing the file now\n"
+    "    rate, seconds_left             cases per second and seconds; null when unknown\n",
+};

@@ -1,0 +1,120 @@
+/* report.c - cases, dimensions, designs, file size and cost of a plan. */
+#include "report.h"
+
+#include "store.h"
+
+#include <inttypes.h>
+#include <jansson.h>
+#include <math.h>
+
+static const double cost_budget = 0.2; /* s spent on trying cases */
+
+void report_bytes(char *text, size_t size, double bytes)
+{
+    static const char *const unit[] = {"B", "kB", "MB", "GB", "TB", "PB"};
+    int u = 0;
+    for (; bytes >= 1000 && u < 5; u++) {
+        bytes /= 1000;
+    }
+    snprintf(text, size, u == 0 ? "%.0f %s" : "%.1f %s", bytes, unit[u]);
+}
+
+void report_seconds(char *text, size_t size, double seconds)
+{
+    if (seconds < 120) {
+        snprintf(text, size, "%.3g s", seconds);
+    } else if (seconds < 7200) {
+        snprintf(text, size, "%.0f min", seconds / 60);
+    } else {
+        snprintf(text, size, "%.1f h", seconds / 3600);
+    }
+}
+
+struct estimate {
+    size_t designs_failed;
+    uint64_t size;
+    double seconds; /* on one rank; negative: unknown */
+    bool bound;
+};
+
+static struct estimate estimate(const struct plan *plan, int ranks)
+{
+    struct estimate e = {.size = store_size(plan, ranks)};
+    for (size_t d = 0; d < plan->designs; d++) {
+        e.designs_failed += plan->design_status[d] != STANCE_DONE;
+    }
+    e.seconds = plan_cost(plan, cost_budget, &e.bound);
+    return e;
+}
+
+static void report_json(const struct plan *plan, const struct estimate *e, int ranks,
+                        const char *file, FILE *out)
+{
+    const struct scenario *s = plan->scenario;
+    json_t *dimensions = json_array();
+    for (int a = 0; !plan->single && a < s->axes; a++) {
+        json_array_append_new(dimensions, json_pack("{s:s, s:I}", "name", s->axis[a].name, "count",
+                                                    (json_int_t)s->axis[a].count));
+    }
+    if (plan->single || s->axes == 0) {
+        json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
+    }
+    json_t *root = json_pack(
+        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b}", "scenario", s->file,
+        "title", s->title, "scene", s->scene->name, "cases", (json_int_t)plan->rows, "dimensions",
+        dimensions, "designs", (json_int_t)plan->designs, "designs_failed",
+        (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
+        file, "file_bytes", (json_int_t)e->size, "ranks", ranks, "seconds_on_one_rank",
+        e->seconds < 0 ? json_null() : json_real(e->seconds), "seconds_is_upper_bound", e->bound);
+    json_dumpf(root, out, JSON_INDENT(2));
+    fputc('\n', out);
+    json_decref(root);
+}
+
+static void report_text(const struct plan *plan, const struct estimate *e, int ranks,
+                        const char *file, FILE *out)
+{
+    const struct scenario *s = plan->scenario;
+    char text[40];
+
+    fprintf(out, "%s\nscene %s, %" PRIu64 " case%s", s->title[0] ? s->title : s->name,
+            s->scene->name, plan->rows, plan->rows == 1 ? "" : "s");
+    for (int a = 0; !plan->single && a < s->axes; a++) {
+        fprintf(out, "%s%zu", a ? " x " : ": ", s->axis[a].count);
+    }
+    fputc('\n', out);
+    for (int a = 0; !plan->single && a < s->axes; a++) {
+        char first[64], last[64];
+        scenario_axis_text(&s->axis[a], 0, 0, first, sizeof first);
+        scenario_axis_text(&s->axis[a], s->axis[a].count - 1, 0, last, sizeof last);
+        fprintf(out, "  %-32s %8zu  %s ... %s %s\n", s->axis[a].name, s->axis[a].count, first, last,
+                s->axis[a].words ? "" : s->axis[a].unit);
+    }
+    fprintf(out, "designs     %zu distinct", plan->designs);
+    if (e->designs_failed > 0) {
+        fprintf(out, ", of which %zu do not exist: their cases will fail", e->designs_failed);
+    }
+    if (plan->record_cases > 0) {
+        fprintf(out, "\nrecorded    %" PRIu64 " trajectories of %" PRId64 " instants",
+                plan->record_cases, plan->record_rows);
+    }
+    report_bytes(text, sizeof text, (double)e->size);
+    fprintf(out, "\nfile        %s, about %s\n", file, text);
+    if (e->seconds < 0) {
+        fprintf(out, "cost        unknown: none of the cases tried can be computed\n");
+        return;
+    }
+    report_seconds(text, sizeof text, e->seconds / ranks);
+    fprintf(out, "cost        %s %s on %d rank%s\n", e->bound ? "at most about" : "about", text,
+            ranks, ranks == 1 ? "" : "s");
+}
+
+void report_plan(const struct plan *plan, int ranks, const char *file, bool json, FILE *out)
+{
+    struct estimate e = estimate(plan, ranks);
+    if (json) {
+        report_json(plan, &e, ranks, file, out);
+    } else {
+        report_text(plan, &e, ranks, file, out);
+    }
+}

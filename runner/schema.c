@@ -1,0 +1,831 @@
+/* schema.c - the scenario format: the table and how a scene's names fill it. */
+#include "schema.h"
+
+#include "store.h"
+#include "tree.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- words ----------------------------------------------------------------------------------- */
+
+/* In the order of the enumerations in scenario.h. */
+static const char *const kind_words[] = {"none", "hold", "state-feedback"};
+static const char *const design_words[] = {"place", "gains"};
+static const char *const branch_words[] = {"upper", "lower"};
+static const char *const spacing_words[] = {"linear", "log"};
+static const char *const record_words[] = {"none", "all"};
+static const char *const settle_words[] = {"off"};
+static const char *const limit_words[] = {"none"};
+
+static const char *const answer_words[] = {
+#define ANSWER_WORD(name, type, field, fill, unit, text) #name,
+    STORE_ANSWERS(ANSWER_WORD)
+#undef ANSWER_WORD
+        "final_state",
+};
+
+#define WORDS(list) .words = (list), .word_count = sizeof(list) / sizeof((list)[0])
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+/* What the '*' of a path stands for, or what else of a row is the scene's. */
+enum family {
+    FAMILY_NONE,
+    FAMILY_ROBOT,    /* parameters of the body */
+    FAMILY_STATE,    /* coordinates, then their rates with a "v" before the name */
+    FAMILY_OFFSET,   /* the same, as differences */
+    FAMILY_POSTURE,  /* angles that a posture law acts on */
+    FAMILY_ACTUATED, /* the last of these, one for each actuator */
+    FAMILY_CONTACTS, /* the words are names of contacts */
+    FAMILY_FOOT,     /* the range is 1 ... contacts */
+    FAMILY_POLES,    /* 2 postures items */
+    FAMILY_MATRIX,   /* actuators x 2 postures */
+    FAMILY_SCENES,
+    FAMILY_METHODS,
+};
+
+struct row {
+    enum family family;
+    struct scenario_field field;
+};
+
+#define VALUE(member) .offset = offsetof(struct scenario_values, member)
+#define BY_HAND .offset = NO_OFFSET
+
+/* Loose bounds that keep nonsense out where physics gives none. */
+#define LARGE 1e9
+
+static const struct row rows[] = {
+    {0,
+     {.path = "stance",
+      .type = FIELD_INTEGER,
+      .required = true,
+      BY_HAND,
+      .low = 1,
+      .high = 1,
+      .fallback = NAN,
+      .text = "version of this format"}},
+    {0,
+     {.path = "title",
+      .type = FIELD_TEXT,
+      BY_HAND,
+      .fallback_text = "the file's name",
+      .text = "what the study is about, in a line"}},
+    {FAMILY_SCENES,
+     {.path = "scene",
+      .type = FIELD_WORD,
+      .required = true,
+      BY_HAND,
+      .fallback = NAN,
+      .text = "what is simulated"}},
+
+    {0,
+     {.path = "robot",
+      .type = FIELD_MAP,
+      .by_scene = true,
+      BY_HAND,
+      .text = "the robot that is simulated"}},
+    {FAMILY_ROBOT,
+     {.path = "robot.*",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .design = true,
+      .sweep = true,
+      VALUE(robot)}},
+
+    {0, {.path = "ground", .type = FIELD_MAP, BY_HAND, .text = "the ground, a half plane z <= 0"}},
+    {0,
+     {.path = "ground.friction",
+      .type = FIELD_NUMBER,
+      .sweep = true,
+      VALUE(friction),
+      .unit = "1",
+      .fallback = 0.8,
+      .low = 0,
+      .high = 10,
+      .text = "Coulomb coefficient of friction"}},
+    {0,
+     {.path = "ground.restitution",
+      .type = FIELD_NUMBER,
+      .sweep = true,
+      VALUE(restitution),
+      .unit = "1",
+      .fallback = 0,
+      .low = 0,
+      .high = 1,
+      .text = "Newton's coefficient of restitution",
+      .more = "Together with friction it can create energy in impacts; 0 never does."}},
+    {FAMILY_CONTACTS,
+     {.path = "ground.contacts",
+      .type = FIELD_WORDS,
+      .by_scene = true,
+      VALUE(contacts),
+      .fallback_text = "all of the scene's",
+      .text = "points that may touch the ground"}},
+
+    {0,
+     {.path = "initial",
+      .type = FIELD_MAP,
+      .required = true,
+      BY_HAND,
+      .text = "how a run begins: from an equilibrium or from a given state"}},
+    {0,
+     {.path = "initial.equilibrium",
+      .type = FIELD_MAP,
+      .by_scene = true,
+      .use = USE_EQUILIBRIUM,
+      BY_HAND,
+      .text = "the position of rest that the run begins at",
+      .more = "Give all but one of the angles; the last follows. Excludes initial.state."}},
+    {FAMILY_POSTURE,
+     {.path = "initial.equilibrium.*",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .use = USE_EQUILIBRIUM,
+      .design = true,
+      .sweep = true,
+      VALUE(equilibrium.posture),
+      .fallback_text = "follows from the others",
+      .text = "equilibrium: %s"}},
+    {0,
+     {.path = "initial.equilibrium.branch",
+      .type = FIELD_WORD,
+      .by_scene = true,
+      .use = USE_EQUILIBRIUM,
+      .design = true,
+      .sweep = true,
+      VALUE(equilibrium.lower),
+      .fallback = 0,
+      WORDS(branch_words),
+      .text = "which of the two solutions: hip above or below the foot"}},
+    {FAMILY_FOOT,
+     {.path = "initial.support_foot",
+      .type = FIELD_INTEGER,
+      .by_scene = true,
+      .design = true,
+      .sweep = true,
+      VALUE(support_foot),
+      .unit = "1",
+      .fallback_text = "1 with an equilibrium, else none",
+      .text = "number of the foot that the robot stands on",
+      .more = "With an equilibrium this foot stands at rest at the origin: offsets of "
+              "angles and their rates apply first, the translation follows from the "
+              "foot, offsets of the translation come last."}},
+    {0,
+     {.path = "initial.offset",
+      .type = FIELD_MAP,
+      .by_scene = true,
+      .use = USE_EQUILIBRIUM,
+      BY_HAND,
+      .text = "how far from the equilibrium the run begins"}},
+    {FAMILY_OFFSET,
+     {.path = "initial.offset.*",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .use = USE_EQUILIBRIUM,
+      .sweep = true,
+      VALUE(offset),
+      .text = "initial offset: %s"}},
+    {0,
+     {.path = "initial.state",
+      .type = FIELD_MAP,
+      .by_scene = true,
+      .use = USE_STATE,
+      BY_HAND,
+      .text = "the whole initial state by hand",
+      .more = "Excludes initial.equilibrium."}},
+    {FAMILY_STATE,
+     {.path = "initial.state.*",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .use = USE_STATE,
+      .sweep = true,
+      VALUE(state),
+      .text = "initial %s"}},
+
+    {0, {.path = "controller", .type = FIELD_MAP, BY_HAND, .text = "what drives the actuators"}},
+    {0,
+     {.path = "controller.kind",
+      .type = FIELD_WORD,
+      .design = true,
+      VALUE(law),
+      .fallback = 0,
+      WORDS(kind_words),
+      .text = "control law",
+      .more = "hold: a servo in each joint. state-feedback: torque = equilibrium torque - gains "
+              "times the deviation of angles and rates from an equilibrium."}},
+    {0,
+     {.path = "controller.design",
+      .type = FIELD_WORD,
+      .use = USE_FEEDBACK,
+      .design = true,
+      .sweep = true,
+      VALUE(design),
+      .fallback = 0,
+      WORDS(design_words),
+      .text = "where the gains come from",
+      .more = "place: robust pole placement; gains: they are given."}},
+    {FAMILY_POLES,
+     {.path = "controller.poles",
+      .type = FIELD_POLES,
+      .by_scene = true,
+      .use = USE_PLACE,
+      .required = true,
+      .design = true,
+      BY_HAND,
+      .unit = "1/s",
+      .text = "poles of the closed loop",
+      .more = "Real, or complex as -3+1.5i with -3-1.5i beside it."}},
+    {FAMILY_POLES,
+     {.path = "controller.poles[]",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .use = USE_PLACE,
+      .design = true,
+      .sweep = true,
+      VALUE(pole_re),
+      .unit = "1/s",
+      .fallback = NAN,
+      .low = -1e6,
+      .high = 1e6,
+      .text = "pole of the closed loop",
+      .more = "Only a real pole can be swept."}},
+    {FAMILY_MATRIX,
+     {.path = "controller.gains",
+      .type = FIELD_MATRIX,
+      .by_scene = true,
+      .use = USE_GAINS,
+      .required = true,
+      .design = true,
+      BY_HAND,
+      .unit = "N m/rad, N m s/rad",
+      .text = "gains: a row for each actuator; angles, then rates"}},
+    {FAMILY_MATRIX,
+     {.path = "controller.gains[][]",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .use = USE_GAINS,
+      .design = true,
+      .sweep = true,
+      VALUE(gains),
+      .unit = "N m/rad, N m s/rad",
+      .fallback = NAN,
+      .low = -LARGE,
+      .high = LARGE,
+      .text = "gain of an actuator on an angle or a rate"}},
+    {0,
+     {.path = "controller.model",
+      .type = FIELD_MAP,
+      .by_scene = true,
+      .use = USE_FEEDBACK,
+      BY_HAND,
+      .text = "the robot that the design believes in"}},
+    {FAMILY_ROBOT,
+     {.path = "controller.model.*",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .use = USE_FEEDBACK,
+      .design = true,
+      .sweep = true,
+      VALUE(model),
+      .fallback_text = "as the robot",
+      .text = "model of the design: %s"}},
+    {0,
+     {.path = "controller.equilibrium",
+      .type = FIELD_MAP,
+      .by_scene = true,
+      .use = USE_FEEDBACK,
+      BY_HAND,
+      .fallback_text = "initial.equilibrium",
+      .text = "the equilibrium that the controller is designed at"}},
+    {FAMILY_POSTURE,
+     {.path = "controller.equilibrium.*",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .use = USE_FEEDBACK,
+      .design = true,
+      .sweep = true,
+      VALUE(design_point.posture),
+      .fallback_text = "follows from the others",
+      .text = "equilibrium of the controller: %s"}},
+    {0,
+     {.path = "controller.equilibrium.branch",
+      .type = FIELD_WORD,
+      .by_scene = true,
+      .use = USE_FEEDBACK,
+      .design = true,
+      .sweep = true,
+      VALUE(design_point.lower),
+      .fallback = 0,
+      WORDS(branch_words),
+      .text = "which of the two solutions: hip above or below the foot"}},
+    {0,
+     {.path = "controller.kp",
+      .type = FIELD_NUMBER,
+      .use = USE_HOLD,
+      .required = true,
+      .sweep = true,
+      VALUE(kp),
+      .unit = "N m/rad",
+      .fallback = NAN,
+      .low = 0,
+      .high = LARGE,
+      .text = "stiffness of the servo"}},
+    {0,
+     {.path = "controller.kd",
+      .type = FIELD_NUMBER,
+      .use = USE_HOLD,
+      .required = true,
+      .sweep = true,
+      VALUE(kd),
+      .unit = "N m s/rad",
+      .fallback = NAN,
+      .low = 0,
+      .high = LARGE,
+      .text = "damping of the servo"}},
+    {0,
+     {.path = "controller.target",
+      .type = FIELD_MAP,
+      .by_scene = true,
+      .use = USE_HOLD,
+      BY_HAND,
+      .text = "the joint angles that the servo holds"}},
+    {FAMILY_ACTUATED,
+     {.path = "controller.target.*",
+      .type = FIELD_NUMBER,
+      .by_scene = true,
+      .use = USE_HOLD,
+      .sweep = true,
+      VALUE(target),
+      .fallback_text = "as the run begins",
+      .text = "angle to hold: %s"}},
+    {0,
+     {.path = "controller.sample_time",
+      .type = FIELD_NUMBER,
+      .use = USE_CONTROL,
+      .sweep = true,
+      VALUE(sample_time),
+      .unit = "s",
+      .fallback = 0,
+      .low = 0,
+      .high = LARGE,
+      .text = "time between samples of the controller",
+      .more = "Torques are held in between; 0: it acts continuously, inside the implicit step."}},
+    {0,
+     {.path = "controller.torque_limit",
+      .type = FIELD_NUMBER,
+      .use = USE_CONTROL,
+      .sweep = true,
+      VALUE(torque_limit),
+      .unit = "N m",
+      .fallback = INFINITY,
+      .fallback_text = "none",
+      .low = 0,
+      .high = LARGE,
+      .low_open = true,
+      WORDS(limit_words),
+      .text = "largest torque of each actuator"}},
+    {0,
+     {.path = "controller.noise",
+      .type = FIELD_NUMBER,
+      .use = USE_CONTROL,
+      .sweep = true,
+      VALUE(noise),
+      .unit = "N m",
+      .fallback = 0,
+      .low = 0,
+      .high = LARGE,
+      .text = "half-width of uniform noise on the torques",
+      .more = "White, new at each sample, added before the limit; needs sample_time > 0."}},
+
+    {0, {.path = "method", .type = FIELD_MAP, BY_HAND, .text = "how time is stepped"}},
+    {FAMILY_METHODS,
+     {.path = "method.name",
+      .type = FIELD_WORD,
+      .sweep = true,
+      VALUE(method),
+      .text = "time stepping method"}},
+    {0,
+     {.path = "method.step",
+      .type = FIELD_NUMBER,
+      .sweep = true,
+      VALUE(step),
+      .unit = "s",
+      .fallback = 0.001,
+      .low = 0,
+      .high = 0.1,
+      .low_open = true,
+      .text = "time step",
+      .more = "An upper bound: a sample interval is cut into equal steps no longer than this."}},
+
+    {0,
+     {.path = "stop",
+      .type = FIELD_MAP,
+      .required = true,
+      BY_HAND,
+      .text = "when a run ends and what it counts as"}},
+    {0,
+     {.path = "stop.time",
+      .type = FIELD_NUMBER,
+      .required = true,
+      .sweep = true,
+      VALUE(stop_time),
+      .unit = "s",
+      .fallback = NAN,
+      .low = 0,
+      .high = LARGE,
+      .low_open = true,
+      .text = "longest duration of a run"}},
+    {0,
+     {.path = "stop.settle",
+      .type = FIELD_MAP_OR_WORD,
+      BY_HAND,
+      WORDS(settle_words),
+      .text = "when the robot counts as stabilised or at rest",
+      .more = "off: every run lasts its whole time and is judged at its end."}},
+    {0,
+     {.path = "stop.settle.angle",
+      .type = FIELD_NUMBER,
+      .use = USE_SETTLE,
+      .sweep = true,
+      VALUE(settle_angle),
+      .unit = "rad",
+      .fallback = 0.05,
+      .low = 0,
+      .high = LARGE,
+      .low_open = true,
+      .text = "largest deviation of an angle that counts as settled"}},
+    {0,
+     {.path = "stop.settle.rate",
+      .type = FIELD_NUMBER,
+      .use = USE_SETTLE,
+      .sweep = true,
+      VALUE(settle_rate),
+      .unit = "rad/s",
+      .fallback = 0.5,
+      .low = 0,
+      .high = LARGE,
+      .low_open = true,
+      .text = "largest rate that counts as settled, in m/s for the translation"}},
+    {0,
+     {.path = "stop.settle.hold",
+      .type = FIELD_NUMBER,
+      .use = USE_SETTLE,
+      .sweep = true,
+      VALUE(settle_hold),
+      .unit = "s",
+      .fallback = 0.5,
+      .low = 0,
+      .high = LARGE,
+      .text = "how long the robot must stay settled"}},
+    {0,
+     {.path = "stop.fall_height",
+      .type = FIELD_NUMBER,
+      .sweep = true,
+      VALUE(fall_height),
+      .unit = "1",
+      .fallback = 0.2,
+      .low = 0,
+      .high = 1,
+      .text = "height of the hip, in leg lengths, below which the robot has fallen"}},
+
+    {0, {.path = "sweep", .type = FIELD_MAP, BY_HAND, .text = "what varies between cases"}},
+    {0,
+     {.path = "sweep.grid",
+      .type = FIELD_AXES,
+      BY_HAND,
+      .text = "axes whose product are the cases, the last one fastest",
+      .more = "An axis is {path, from, to, count, spacing}, {path, values: [...]} or {paths: "
+              "[...], values: [[...], ...]}; the last varies several fields together."}},
+    {0,
+     {.path = "sweep.grid[].path",
+      .type = FIELD_PATH,
+      BY_HAND,
+      .text = "the field that varies along the axis",
+      .more = "Any number of this format, such as controller.gains[0][3] or ground.friction."}},
+    {0,
+     {.path = "sweep.grid[].paths",
+      .type = FIELD_PATHS,
+      BY_HAND,
+      .high = SCENARIO_MAX_PATHS,
+      .text = "fields that vary together along the axis"}},
+    {0,
+     {.path = "sweep.grid[].from",
+      .type = FIELD_NUMBER,
+      BY_HAND,
+      .fallback = NAN,
+      .low = -INFINITY,
+      .high = INFINITY,
+      .text = "value at the first point"}},
+    {0,
+     {.path = "sweep.grid[].to",
+      .type = FIELD_NUMBER,
+      BY_HAND,
+      .fallback = NAN,
+      .low = -INFINITY,
+      .high = INFINITY,
+      .text = "value at the last point"}},
+    {0,
+     {.path = "sweep.grid[].count",
+      .type = FIELD_INTEGER,
+      BY_HAND,
+      .fallback = NAN,
+      .low = 1,
+      .high = 1e9,
+      .text = "number of points"}},
+    {0,
+     {.path = "sweep.grid[].spacing",
+      .type = FIELD_WORD,
+      BY_HAND,
+      .fallback = 0,
+      WORDS(spacing_words),
+      .text = "equal differences or equal ratios between points"}},
+    {0,
+     {.path = "sweep.grid[].values",
+      .type = FIELD_VALUES,
+      BY_HAND,
+      .text = "the points one by one: numbers or words, with `paths` a list for each point"}},
+
+    {0,
+     {.path = "record",
+      .type = FIELD_MAP,
+      BY_HAND,
+      .text = "what is stored besides the parameters"}},
+    {0,
+     {.path = "record.every",
+      .type = FIELD_NUMBER,
+      BY_HAND,
+      .unit = "s",
+      .fallback = 0.01,
+      .low = 0,
+      .high = LARGE,
+      .low_open = true,
+      .text = "time between rows of a trajectory"}},
+    {0,
+     {.path = "record.cases",
+      .type = FIELD_CASES,
+      BY_HAND,
+      .fallback = 0,
+      WORDS(record_words),
+      .text = "cases whose trajectories are stored",
+      .more = "A list counts them from 0, the last axis fastest."}},
+    {0,
+     {.path = "record.answers",
+      .type = FIELD_WORDS,
+      BY_HAND,
+      WORDS(answer_words),
+      .fallback_text = "all",
+      .text = "answers that are stored"}},
+
+    {0,
+     {.path = "seed",
+      .type = FIELD_INTEGER,
+      BY_HAND,
+      .fallback = 1,
+      .low = 0,
+      .high = 0x1p63,
+      .text = "seed of the random numbers, up to 9223372036854775807"}},
+};
+
+/* ---- writing the table out for a scene ------------------------------------------------------- */
+
+/* A further field made from a row; `name` takes the place of the '*'. NULL: no room. */
+static struct scenario_field *add_field(struct schema *schema, const struct row *row,
+                                        const char *prefix, const char *name)
+{
+    if (schema->count == SCHEMA_MAX_FIELDS) {
+        return NULL;
+    }
+    struct scenario_field *field = &schema->field[schema->count++];
+    *field = row->field;
+    const char *star = strchr(row->field.path, '*');
+    if (star) {
+        int n = snprintf(field->path, sizeof field->path, "%.*s%s%s", (int)(star - row->field.path),
+                         row->field.path, prefix, name);
+        if (n < 0 || (size_t)n >= sizeof field->path) {
+            return NULL;
+        }
+    }
+    return field;
+}
+
+/* Unit, range and text of a quantity of the scene. */
+static void describe_quantity(struct scenario_field *field, const struct row *row,
+                              const stance_quantity *quantity, const char *rate)
+{
+    char text[sizeof field->text];
+    const char *format = row->field.text;
+    const char *place = strstr(format, "%s");
+
+    snprintf(field->unit, sizeof field->unit, "%s%s", quantity->unit, rate[0] ? "/s" : "");
+    snprintf(text, sizeof text, "%s%s", rate, quantity->text);
+    if (place) {
+        snprintf(field->text, sizeof field->text, "%.*s%.120s", (int)(place - format), format,
+                 text);
+    } else {
+        snprintf(field->text, sizeof field->text, "%s", text);
+    }
+    field->low = quantity->low;
+    field->high = quantity->high;
+}
+
+static bool add_robot(struct schema *schema, const struct row *row)
+{
+    for (int i = 0; i < schema->scene->robot_count; i++) {
+        const stance_quantity *quantity = &schema->scene->robot[i];
+        struct scenario_field *field = add_field(schema, row, "", quantity->name);
+        if (!field) {
+            return false;
+        }
+        describe_quantity(field, row, quantity, "");
+        field->offset += (size_t)i * sizeof(double);
+        field->fallback = field->fallback_text ? NAN : quantity->fallback;
+    }
+    return true;
+}
+
+static bool add_states(struct schema *schema, const struct row *row)
+{
+    const int n = schema->scene->coordinates;
+    for (int i = 0; i < 2 * n; i++) {
+        const stance_quantity *quantity = &schema->scene->coordinate[i % n];
+        const bool rate = i >= n;
+        struct scenario_field *field = add_field(schema, row, rate ? "v" : "", quantity->name);
+        if (!field) {
+            return false;
+        }
+        describe_quantity(field, row, quantity, rate ? "rate of " : "");
+        field->offset += (size_t)i * sizeof(double);
+        if (rate) {
+            field->low = -1e6;
+            field->high = 1e6;
+        } else if (row->family == FAMILY_OFFSET) {
+            field->low = quantity->low - quantity->high;
+            field->high = quantity->high - quantity->low;
+        }
+    }
+    return true;
+}
+
+static bool add_postures(struct schema *schema, const struct row *row)
+{
+    const stance_scene *scene = schema->scene;
+    int first = row->family == FAMILY_ACTUATED ? scene->postures - scene->actuators : 0;
+    for (int i = first > 0 ? first : 0; i < scene->postures; i++) {
+        const stance_quantity *quantity = &scene->coordinate[scene->posture[i]];
+        struct scenario_field *field = add_field(schema, row, "", quantity->name);
+        if (!field) {
+            return false;
+        }
+        describe_quantity(field, row, quantity, "");
+        field->offset += (size_t)i * sizeof(double);
+        field->fallback = NAN;
+    }
+    return true;
+}
+
+/* Rows that stay one field, whose words or sizes are the scene's. */
+static bool add_single(struct schema *schema, const struct row *row)
+{
+    const stance_scene *scene = schema->scene;
+    struct scenario_field *field = add_field(schema, row, "", "");
+    if (!field) {
+        return false;
+    }
+    if (row->family == FAMILY_SCENES) {
+        field->words = schema->scenes;
+        field->word_count = schema->scene_count;
+    } else if (row->family == FAMILY_METHODS) {
+        field->words = schema->methods;
+        field->word_count = schema->method_count;
+    } else if (row->family == FAMILY_CONTACTS) {
+        field->words = scene->contact_name;
+        field->word_count = (size_t)scene->contacts;
+    } else if (row->family == FAMILY_FOOT) {
+        field->low = 1;
+        field->high = scene->contacts;
+        field->fallback = NAN;
+    } else if (row->family == FAMILY_POLES) {
+        field->items = 2 * (size_t)scene->postures;
+    } else if (row->family == FAMILY_MATRIX) {
+        field->items = (size_t)scene->actuators;
+        field->columns = 2 * (size_t)scene->postures;
+    }
+    return true;
+}
+
+static bool add_row(struct schema *schema, const struct row *row)
+{
+    if (row->field.by_scene && !schema->scene) {
+        /* The key is known all the same; what stands below it is not looked at. */
+        return strpbrk(row->field.path, "*[") || add_field(schema, row, "", "") != NULL;
+    }
+    switch (row->family) {
+    case FAMILY_ROBOT:
+        return add_robot(schema, row);
+    case FAMILY_STATE:
+    case FAMILY_OFFSET:
+        return add_states(schema, row);
+    case FAMILY_POSTURE:
+    case FAMILY_ACTUATED:
+        return add_postures(schema, row);
+    default:
+        return add_single(schema, row);
+    }
+}
+
+bool schema_build(struct schema *schema, const stance_scene *scene)
+{
+    *schema = (struct schema){.scene = scene};
+    for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_scenes()[i]; i++) {
+        schema->scenes[schema->scene_count++] = stance_scenes()[i]->name;
+    }
+    for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_methods()[i]; i++) {
+        schema->methods[schema->method_count++] = stance_methods()[i]->name;
+    }
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        if (!add_row(schema, &rows[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---- looking up ------------------------------------------------------------------------------ */
+
+const struct scenario_field *schema_find(const struct schema *schema, const char *path)
+{
+    for (size_t i = 0; i < schema->count; i++) {
+        if (strcmp(schema->field[i].path, path) == 0) {
+            return &schema->field[i];
+        }
+    }
+    return NULL;
+}
+
+const struct scenario_field *schema_find_concrete(const struct schema *schema, const char *path,
+                                                  size_t index[2])
+{
+    char general[128] = "", name[TREE_MAX_NAME];
+    size_t length = 0, indices = 0, number;
+
+    index[0] = index[1] = 0;
+    for (const char *at = path; at == path || *at;) {
+        bool first = at == path;
+        if (!tree_path_step(&at, first, name, &number)) {
+            return NULL;
+        }
+        int n = snprintf(general + length, sizeof general - length, "%s%s",
+                         name[0] && !first ? "." : "", name[0] ? name : "[]");
+        length += (size_t)n;
+        if (length >= sizeof general) {
+            return NULL;
+        }
+        if (!name[0]) {
+            if (indices == 2) {
+                return NULL;
+            }
+            index[indices++] = number;
+        }
+    }
+    return schema_find(schema, general);
+}
+
+const char *schema_last_name(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+size_t schema_children(const struct schema *schema, const char *path, const char **names,
+                       size_t room)
+{
+    size_t length = strlen(path), n = 0;
+    for (size_t i = 0; i < schema->count && n < room; i++) {
+        const char *child = schema->field[i].path;
+        const char *rest = child + length + (length > 0);
+        if (length > 0 && (strncmp(child, path, length) != 0 || child[length] != '.')) {
+            continue;
+        }
+        if (!strpbrk(rest, ".[")) {
+            names[n++] = rest;
+        }
+    }
+    return n;
+}
+
+const char *schema_range_text(const struct scenario_field *field, char *buffer, size_t size)
+{
+    if (field->low == field->high) {
+        snprintf(buffer, size, "%.10g", field->low);
+    } else if (isinf(field->low)) {
+        snprintf(buffer, size, "any finite number");
+    } else if (field->low_open) {
+        snprintf(buffer, size, "more than %.10g, at most %.10g", field->low, field->high);
+    } else {
+        snprintf(buffer, size, "%.10g ... %.10g", field->low, field->high);
+    }
+    return buffer;
+}

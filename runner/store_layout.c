@@ -1,0 +1,782 @@
+/* store_layout.c - creates the results file: dimensions, variables, attributes, reserved space.
+ *
+ * netCDF-4 conventions: every dimension is an HDF5 dimension scale with its own `_Netcdf4Dimid`,
+ * attached to the variables over it, so that dimensions of equal length are not confused.
+ * Done by rank 0 alone with the serial driver, closed and reserved before any case is computed.
+ */
+#include "store_private.h"
+
+#include "build_info.h"
+#include "checksum.h"
+#include "command.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <hdf5_hl.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { FORMAT_VERSION = 1, PIECE = 4096, METADATA_SIZE = 96 * 1024, DATASET_SIZE = 1024 };
+
+struct dimension {
+    hid_t id;
+    hsize_t length;
+};
+
+struct layout {
+    const struct plan *plan;
+    hid_t file;
+    int dimensions; /* made so far: the next `_Netcdf4Dimid` */
+    int rank;       /* of the cases */
+    struct dimension axis[SCENARIO_MAX_AXES];
+    int ranks;
+    const char *hosts;
+};
+
+/* ---- attributes --------------------------------------------------------------------------- */
+
+static bool put_attribute(hid_t object, const char *name, hid_t type, hid_t space,
+                          const void *value)
+{
+    hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    bool good = attribute >= 0 && H5Awrite(attribute, type, value) >= 0;
+    H5Aclose(attribute);
+    H5Sclose(space);
+    return good;
+}
+
+static bool put_text(hid_t object, const char *name, const char *text)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    size_t size = text[0] ? strlen(text) : 1;
+    bool good = H5Tset_size(type, size) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0 &&
+                H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0 &&
+                put_attribute(object, name, type, H5Screate(H5S_SCALAR), text);
+    H5Tclose(type);
+    return good;
+}
+
+static bool put_number(hid_t object, const char *name, enum store_kind kind, const void *value)
+{
+    hsize_t one = 1;
+    return put_attribute(object, name, store_file_type(kind), H5Screate_simple(1, &one, NULL),
+                         value);
+}
+
+static bool put_int(hid_t object, const char *name, int value)
+{
+    int32_t number = value;
+    return put_number(object, name, KIND_int32_t, &number);
+}
+
+static bool put_meaning(hid_t object, const char *unit, const char *text)
+{
+    return (!unit || put_text(object, "units", unit)) &&
+           (!text || !text[0] || put_text(object, "long_name", text));
+}
+
+/* CF's flags: the values 0 ... n - 1 and a word for each. */
+static bool put_flags(hid_t object, const char *words)
+{
+    uint8_t values[32];
+    hsize_t n = 1;
+    for (const char *c = words; *c; c++) {
+        n += *c == ' ';
+    }
+    for (hsize_t i = 0; i < n; i++) {
+        values[i] = (uint8_t)i;
+    }
+    return put_attribute(object, "flag_values", store_file_type(KIND_uint8_t),
+                         H5Screate_simple(1, &n, NULL), values) &&
+           put_text(object, "flag_meanings", words);
+}
+
+/* `_FillValue` in the variable's own type. */
+static bool put_fill(hid_t object, enum store_kind kind, double fill)
+{
+    uint8_t flag = 0;
+    int64_t count = 0;
+    const void *value = kind == KIND_uint8_t   ? (const void *)&flag
+                        : kind == KIND_int64_t ? (const void *)&count
+                                               : (const void *)&fill;
+    return put_number(object, "_FillValue", kind, value);
+}
+
+/* ---- groups and datasets ------------------------------------------------------------------ */
+
+static hid_t make_group(hid_t parent, const char *name)
+{
+    hid_t properties = H5Pcreate(H5P_GROUP_CREATE), group = -1;
+    if (H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
+            0 &&
+        H5Pset_obj_track_times(properties, false) >= 0) {
+        group = H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT);
+    }
+    H5Pclose(properties);
+    return group;
+}
+
+/* Contiguous, its place in the file given at once; nothing is written, so that large files start
+ * fast. No times are kept, so that equal runs give equal bytes. */
+static hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank,
+                          const hsize_t *length)
+{
+    hid_t properties = H5Pcreate(H5P_DATASET_CREATE), dataset = -1;
+    hid_t space = rank > 0 ? H5Screate_simple(rank, length, NULL) : H5Screate(H5S_SCALAR);
+    bool string = H5Tis_variable_str(type) > 0; /* pointers need their zeros */
+    if (space >= 0 && H5Pset_layout(properties, H5D_CONTIGUOUS) >= 0 &&
+        H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY) >= 0 &&
+        H5Pset_fill_time(properties, string ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER) >= 0 &&
+        H5Pset_obj_track_times(properties, false) >= 0) {
+        dataset = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    }
+    H5Sclose(space);
+    H5Pclose(properties);
+    return dataset;
+}
+
+static bool attach(hid_t dataset, const struct dimension *const *dimension, int rank)
+{
+    for (int d = 0; d < rank; d++) {
+        if (H5DSattach_scale(dataset, dimension[d]->id, (unsigned)d) < 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* A variable over dimensions; -1 on failure. */
+static hid_t make_variable(hid_t parent, const char *name, hid_t type,
+                           const struct dimension *const *dimension, int rank, const char *unit,
+                           const char *text)
+{
+    hsize_t length[SCENARIO_MAX_AXES + 2];
+    for (int d = 0; d < rank; d++) {
+        length[d] = dimension[d]->length;
+    }
+    hid_t dataset = make_dataset(parent, name, type, rank, length);
+    if (dataset >= 0 && !(put_meaning(dataset, unit, text) && attach(dataset, dimension, rank))) {
+        H5Dclose(dataset);
+        return -1;
+    }
+    return dataset;
+}
+
+/* Turns a one-dimensional dataset into a dimension. `label` is what netCDF looks at. */
+static bool make_scale(struct layout *layout, hid_t dataset, const char *label, hsize_t length,
+                       struct dimension *dimension)
+{
+    dimension->id = dataset;
+    dimension->length = length;
+    return dataset >= 0 && H5DSset_scale(dataset, label) >= 0 &&
+           put_int(dataset, "_Netcdf4Dimid", layout->dimensions++);
+}
+
+static hid_t word_type(void)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    if (H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0) {
+        H5Tclose(type);
+        return -1;
+    }
+    return type;
+}
+
+static bool write_words(hid_t dataset, hid_t type, const char *const *words)
+{
+    return H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, words) >= 0;
+}
+
+/* A dimension whose points are words. */
+static bool make_words(struct layout *layout, hid_t parent, const char *name,
+                       const char *const *words, hsize_t n, struct dimension *dimension)
+{
+    hid_t type = word_type(), dataset = make_dataset(parent, name, type, 1, &n);
+    bool good = dataset >= 0 && write_words(dataset, type, words) &&
+                make_scale(layout, dataset, name, n, dimension);
+    H5Tclose(type);
+    return good;
+}
+
+/* Value i of a coordinate. */
+typedef double (*value_function)(const void *context, uint64_t i);
+
+static bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context)
+{
+    double buffer[PIECE];
+    hid_t space = H5Screate_simple(1, &n, NULL);
+    bool good = space >= 0;
+    for (hsize_t at = 0; good && at < n; at += PIECE) {
+        hsize_t count = n - at < PIECE ? n - at : PIECE;
+        hid_t memory = H5Screate_simple(1, &count, NULL);
+        for (hsize_t i = 0; i < count; i++) {
+            buffer[i] = value(context, at + i);
+        }
+        good = H5Sselect_hyperslab(space, H5S_SELECT_SET, &at, NULL, &count, NULL) >= 0 &&
+               H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, buffer) >= 0;
+        H5Sclose(memory);
+    }
+    H5Sclose(space);
+    return good;
+}
+
+/* A dimension whose points are numbers. */
+static bool make_numbers(struct layout *layout, hid_t parent, const char *name,
+                         enum store_kind kind, hsize_t n, value_function value, const void *context,
+                         struct dimension *dimension)
+{
+    hid_t dataset = make_dataset(parent, name, store_file_type(kind), 1, &n);
+    return dataset >= 0 && write_values(dataset, n, value, context) &&
+           make_scale(layout, dataset, name, n, dimension);
+}
+
+/* ---- the axes ----------------------------------------------------------------------------- */
+
+struct axis_values {
+    const struct scenario_axis *axis;
+    int path;
+    bool single;
+    size_t point; /* single: the only one */
+};
+
+static double axis_value(const void *context, uint64_t i)
+{
+    const struct axis_values *values = context;
+    return scenario_axis_value(values->axis, values->single ? values->point : i, values->path);
+}
+
+/* Point of axis a that a case has. */
+static size_t axis_point(const struct scenario *s, int a, uint64_t index)
+{
+    for (int b = s->axes - 1; b > a; b--) {
+        index /= s->axis[b].count;
+    }
+    return (size_t)(index % s->axis[a].count);
+}
+
+static hid_t axis_type(const struct scenario_axis *axis, int path)
+{
+    return axis->words           ? word_type()
+           : axis->integer[path] ? H5Tcopy(store_file_type(KIND_int32_t))
+                                 : H5Tcopy(store_file_type(KIND_double));
+}
+
+static bool write_axis_words(hid_t dataset, hid_t type, const struct axis_values *values, hsize_t n)
+{
+    const struct scenario_axis *axis = values->axis;
+    const char **words = malloc(n * sizeof *words);
+    for (hsize_t i = 0; words && i < n; i++) {
+        size_t point = values->single ? values->point : (size_t)i;
+        words[i] = axis->word[point * (size_t)axis->paths + (size_t)values->path];
+    }
+    bool good = words && write_words(dataset, type, words);
+    free(words);
+    return good;
+}
+
+/* The values of one path of an axis, as the axis's own dimension or as a variable `over` one. */
+static bool put_path(struct layout *layout, const struct axis_values *values,
+                     const struct dimension *over, struct dimension *dimension)
+{
+    const struct scenario_axis *axis = values->axis;
+    hsize_t n = over ? over->length : axis->count;
+    const char *name = values->path == 0 ? axis->name : axis->path[values->path];
+    hid_t type = axis_type(axis, values->path);
+    hid_t dataset = type < 0 ? -1 : make_dataset(layout->file, name, type, 1, &n);
+    bool good =
+        dataset >= 0 &&
+        (axis->words ? write_axis_words(dataset, type, values, n)
+                     : write_values(dataset, n, axis_value, values)) &&
+        (values->path > 0 || put_meaning(dataset, axis->words ? NULL : axis->unit, axis->text));
+    if (over) {
+        good = good && attach(dataset, &over, 1);
+        H5Dclose(dataset);
+    } else {
+        good = good && make_scale(layout, dataset, name, n, dimension);
+    }
+    H5Tclose(type);
+    return good;
+}
+
+static double case_value(const void *context, uint64_t i)
+{
+    return (double)plan_case(context, i);
+}
+
+static bool put_axes(struct layout *layout)
+{
+    const struct plan *plan = layout->plan;
+    const struct scenario *s = plan->scenario;
+    struct dimension *one = NULL;
+
+    if (plan->single || s->axes == 0) {
+        one = &layout->axis[0];
+        if (!make_numbers(layout, layout->file, "case", KIND_int64_t, 1, case_value, plan, one) ||
+            !put_meaning(one->id, "1", "flat index of the case, row-major over the axes")) {
+            return false;
+        }
+    }
+    for (int a = 0; a < s->axes; a++) {
+        struct axis_values values = {&s->axis[a], 0, plan->single, 0};
+        if (plan->single) {
+            values.point = axis_point(s, a, plan->single_case);
+        }
+        for (; values.path < s->axis[a].paths; values.path++) {
+            const struct dimension *over = one ? one : values.path > 0 ? &layout->axis[a] : NULL;
+            if (!put_path(layout, &values, over, &layout->axis[a])) {
+                return false;
+            }
+        }
+    }
+    layout->rank = one ? 1 : s->axes;
+    return true;
+}
+
+/* ---- the answers -------------------------------------------------------------------------- */
+
+static const char *flags_of(int column)
+{
+    switch (column) {
+    case COLUMN_STATUS:
+        return "pending done failed";
+    case COLUMN_outcome:
+        return "none stabilised fell rested undecided";
+    case COLUMN_evidence:
+        return "none simulated inferred";
+    case COLUMN_failure:
+#define FAILURE_WORD(NAME, name, text) " " #name
+        return &(STANCE_FAILURES(FAILURE_WORD))[1];
+#undef FAILURE_WORD
+    default:
+        return NULL;
+    }
+}
+
+/* Names of the state: the coordinates, then "v" and the coordinates, of the body or the posture. */
+static bool make_state_names(struct layout *layout, hid_t parent, const char *name, bool posture,
+                             struct dimension *dimension)
+{
+    const stance_scene *scene = layout->plan->scenario->scene;
+    char text[SCENARIO_MAX_STATES][32];
+    const char *words[SCENARIO_MAX_STATES];
+    int n = posture ? scene->postures : scene->coordinates;
+
+    for (int i = 0; i < n; i++) {
+        const char *coordinate = scene->coordinate[posture ? scene->posture[i] : i].name;
+        snprintf(text[i], sizeof text[i], "%s", coordinate);
+        snprintf(text[n + i], sizeof text[n + i], "v%.30s", coordinate);
+    }
+    for (int i = 0; i < 2 * n; i++) {
+        words[i] = text[i];
+    }
+    return make_words(layout, parent, name, words, 2 * (hsize_t)n, dimension);
+}
+
+static bool put_answers(struct layout *layout)
+{
+    const struct scenario *s = layout->plan->scenario;
+    struct dimension state = {-1, 0};
+    const struct dimension *over[SCENARIO_MAX_AXES + 1];
+    for (int d = 0; d < layout->rank; d++) {
+        over[d] = &layout->axis[d];
+    }
+    over[layout->rank] = &state;
+    if (store_has_column(s, COLUMN_FINAL_STATE) &&
+        !make_state_names(layout, layout->file, "state", false, &state)) {
+        return false;
+    }
+    for (int c = 0; c < COLUMNS; c++) {
+        const struct store_column *column = &store_columns[c];
+        if (!store_has_column(s, c)) {
+            continue;
+        }
+        int rank = layout->rank + (c == COLUMN_FINAL_STATE);
+        const char *flags = flags_of(c);
+        hid_t dataset = make_variable(layout->file, column->name, store_file_type(column->kind),
+                                      over, rank, flags ? NULL : column->unit, column->text);
+        bool good = dataset >= 0 &&
+                    (!column->filled || put_fill(dataset, column->kind, column->fill)) &&
+                    (!flags || put_flags(dataset, flags));
+        H5Dclose(dataset);
+        if (!good) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* ---- names of coordinates, actuators, contacts -------------------------------------------- */
+
+static bool make_coordinates(struct layout *layout, hid_t parent, struct dimension *dimension)
+{
+    const stance_scene *scene = layout->plan->scenario->scene;
+    const char *words[STANCE_MAX_COORDINATES];
+    for (int i = 0; i < scene->coordinates; i++) {
+        words[i] = scene->coordinate[i].name;
+    }
+    return make_words(layout, parent, "coordinate", words, (hsize_t)scene->coordinates, dimension);
+}
+
+static bool make_actuators(struct layout *layout, hid_t parent, struct dimension *dimension)
+{
+    const stance_scene *scene = layout->plan->scenario->scene;
+    return scene->actuators == 0 || make_words(layout, parent, "actuator", scene->actuator_name,
+                                               (hsize_t)scene->actuators, dimension);
+}
+
+/* ---- the designs -------------------------------------------------------------------------- */
+
+static bool write_design_column(const struct layout *layout, hid_t dataset,
+                                const struct store_design_column *column)
+{
+    const struct plan *plan = layout->plan;
+    size_t rows = (size_t)column->rows, length = (size_t)column->columns;
+    double *data = malloc(plan->designs * rows * length * sizeof *data);
+    for (size_t d = 0; data && d < plan->designs; d++) {
+        const char *design = (const char *)&plan->design[d] + column->offset;
+        for (size_t i = 0; i < rows * length; i++) {
+            size_t from = i / length * (size_t)column->stride + i % length;
+            data[d * rows * length + i] = plan->design_status[d] == STANCE_DONE
+                                              ? ((const double *)(const void *)design)[from]
+                                              : NAN;
+        }
+    }
+    bool good =
+        data && H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+    free(data);
+    return good;
+}
+
+static bool put_design_columns(struct layout *layout, hid_t group, const struct dimension **over,
+                               int rank, const struct dimension *coordinate,
+                               const struct dimension *actuator, const struct dimension *posture)
+{
+    struct store_design_column columns[DESIGN_COLUMNS];
+    store_design_columns(layout->plan->scenario->scene, columns);
+    for (int k = 0; k < DESIGN_COLUMNS; k++) {
+        if (columns[k].rows * columns[k].columns == 0) {
+            continue;
+        }
+        int inner = 1;
+        if (k == 0) {
+            over[rank] = actuator;
+            over[rank + 1] = posture;
+            inner = 2;
+        } else {
+            over[rank] = k == 2 ? actuator : coordinate;
+        }
+        hid_t dataset = make_variable(group, columns[k].name, store_file_type(KIND_double), over,
+                                      rank + inner, columns[k].unit, columns[k].text);
+        bool good = dataset >= 0 && write_design_column(layout, dataset, &columns[k]) &&
+                    put_fill(dataset, KIND_double, NAN);
+        H5Dclose(dataset);
+        if (!good) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool put_designs(struct layout *layout)
+{
+    const struct plan *plan = layout->plan;
+    const struct scenario *s = plan->scenario;
+    struct dimension coordinate = {-1, 0}, actuator = {-1, 0}, posture = {-1, 0};
+    const struct dimension *over[SCENARIO_MAX_AXES + 2];
+    int rank = 0;
+    hid_t group = make_group(layout->file, "design");
+
+    for (int a = 0; !plan->single && a < s->axes; a++) {
+        if (s->axis[a].design) {
+            over[rank++] = &layout->axis[a];
+        }
+    }
+    bool good = group >= 0 && make_coordinates(layout, group, &coordinate) &&
+                make_actuators(layout, group, &actuator) &&
+                (s->scene->actuators == 0 || s->scene->postures == 0 ||
+                 make_state_names(layout, group, "posture_state", true, &posture)) &&
+                put_design_columns(layout, group, over, rank, &coordinate, &actuator, &posture);
+    if (good) {
+        hid_t status = make_variable(group, "status", store_file_type(KIND_uint8_t), over, rank,
+                                     NULL, "whether the design exists");
+        good = status >= 0 && put_flags(status, flags_of(COLUMN_STATUS)) &&
+               H5Dwrite(status, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                        plan->design_status) >= 0;
+        H5Dclose(status);
+    }
+    H5Gclose(group);
+    return good;
+}
+
+/* ---- the trajectories --------------------------------------------------------------------- */
+
+static double recorded_case(const void *context, uint64_t i)
+{
+    return (double)plan_recorded_case(context, i);
+}
+
+static double recorded_time(const void *context, uint64_t i)
+{
+    const struct plan *plan = context;
+    return (double)i * plan->record_interval;
+}
+
+static bool put_trajectory(hid_t group, int variable, const struct dimension *const *over, int rank)
+{
+    static const struct {
+        const char *unit, *text;
+    } meaning[TRAJECTORIES] = {
+        [TRAJECTORY_POSITION] = {NULL, "coordinates, in m and rad"},
+        [TRAJECTORY_VELOCITY] = {NULL, "rates of the coordinates, in m/s and rad/s"},
+        [TRAJECTORY_TORQUE] = {"N m", "torque applied in the step that ends there"},
+        [TRAJECTORY_FORCE] = {"N", "contact force, mean since the instant before"},
+        [TRAJECTORY_GAP] = {"m", "height of the contact point above the ground"},
+    };
+    hid_t dataset = make_variable(group, store_trajectories[variable], store_file_type(KIND_double),
+                                  over, rank, meaning[variable].unit, meaning[variable].text);
+    bool good = dataset >= 0 && put_fill(dataset, KIND_double, NAN);
+    H5Dclose(dataset);
+    return good;
+}
+
+static bool put_trajectories(struct layout *layout)
+{
+    const struct plan *plan = layout->plan;
+    const stance_scene *scene = plan->scenario->scene;
+    static const char *const components[] = {"normal", "tangential"};
+    struct dimension number, time, coordinate, actuator, contact, component;
+
+    if (plan->record_rows == 0) {
+        return true;
+    }
+    hid_t group = make_group(layout->file, "trajectory");
+    bool good = group >= 0 &&
+                make_numbers(layout, group, "case", KIND_int64_t, plan->record_cases, recorded_case,
+                             plan, &number) &&
+                put_meaning(number.id, "1", "flat index of the case, row-major over the axes") &&
+                make_numbers(layout, group, "time", KIND_double, (hsize_t)plan->record_rows,
+                             recorded_time, plan, &time) &&
+                put_meaning(time.id, "s", "instant; the step that ends nearest to it is stored") &&
+                make_coordinates(layout, group, &coordinate) &&
+                make_actuators(layout, group, &actuator) &&
+                make_words(layout, group, "contact", scene->contact_name, (hsize_t)scene->contacts,
+                           &contact) &&
+                make_words(layout, group, "component", components, 2, &component);
+    const struct dimension *last[TRAJECTORIES] = {&coordinate, &coordinate, &actuator, &contact,
+                                                  &contact};
+    for (int v = 0; good && v < TRAJECTORIES; v++) {
+        const struct dimension *over[] = {&number, &time, last[v], &component};
+        good = store_trajectory_width(scene, v) == 0 ||
+               put_trajectory(group, v, over, v == TRAJECTORY_FORCE ? 4 : 3);
+    }
+    if (good) {
+        const struct dimension *over[] = {&number};
+        const struct store_column *column = &store_columns[COLUMN_CHECKSUM];
+        hid_t dataset = make_variable(group, column->name, store_file_type(column->kind), over, 1,
+                                      column->unit, "CRC-32C over the trajectory of the case");
+        good = dataset >= 0;
+        H5Dclose(dataset);
+    }
+    H5Gclose(group);
+    return good;
+}
+
+/* ---- timing and provenance ---------------------------------------------------------------- */
+
+static double no_time(const void *context, uint64_t i)
+{
+    (void)context, (void)i;
+    return 0;
+}
+
+static bool put_timing(struct layout *layout)
+{
+    struct dimension rank;
+    const struct dimension *over[] = {&rank};
+    char label[80];
+    hsize_t n = (hsize_t)layout->ranks;
+    hid_t group = make_group(layout->file, "timing");
+    snprintf(label, sizeof label, "This is a netCDF dimension but not a netCDF variable.%10d",
+             layout->ranks);
+    /* Such dimensions are known by their label; the type is what netCDF gives them. */
+    if (group < 0 ||
+        !make_scale(layout, make_dataset(group, "rank", H5T_IEEE_F32BE, 1, &n), label, n, &rank)) {
+        return false;
+    }
+    hid_t wall = make_variable(group, "wall_time", store_file_type(KIND_double), over, 1, "s",
+                               "wall time of computing");
+    hid_t cases = make_variable(group, "cases", store_file_type(KIND_int64_t), over, 1, "1",
+                                "cases computed");
+    bool good = wall >= 0 && cases >= 0 && write_values(wall, n, no_time, NULL) &&
+                write_values(cases, n, no_time, NULL);
+    H5Dclose(wall);
+    H5Dclose(cases);
+    H5Gclose(group);
+    return good;
+}
+
+static bool put_provenance(struct layout *layout)
+{
+    const struct plan *plan = layout->plan;
+    const struct scenario *s = plan->scenario;
+    char axes[SCENARIO_MAX_AXES * 98 + 8] = "case", compiler[1024], date[40], hash[80];
+    char libraries[BUILD_LIBRARIES_SIZE];
+    time_t now = time(NULL);
+    struct tm utc;
+    size_t used = 0;
+
+    for (int a = 0; !plan->single && a < s->axes; a++) {
+        used += (size_t)snprintf(axes + used, sizeof axes - used, "%s%s", a ? "," : "",
+                                 s->axis[a].name);
+    }
+    snprintf(compiler, sizeof compiler, "%s; %s", build_compiler(), build_flags());
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+    build_libraries(libraries);
+    checksum_sha256(s->text, strlen(s->text), hash);
+    return put_text(layout->file, "Conventions", "CF-1.8") &&
+           put_text(layout->file, "title", s->title) &&
+           put_int(layout->file, "format_version", FORMAT_VERSION) &&
+           put_text(layout->file, "program_version", STANCE_VERSION) &&
+           put_text(layout->file, "git_revision", build_revision()) &&
+           put_text(layout->file, "compiler", compiler) &&
+           put_text(layout->file, "library_versions", libraries) &&
+           put_int(layout->file, "ranks", layout->ranks) &&
+           put_text(layout->file, "hosts", layout->hosts) && put_text(layout->file, "date", date) &&
+           put_number(layout->file, "seed", KIND_uint64_t, &s->seed) &&
+           put_text(layout->file, "axes", axes) && put_text(layout->file, "scenario", s->text) &&
+           put_text(layout->file, "scenario_sha256", hash);
+}
+
+/* ---- creation ----------------------------------------------------------------------------- */
+
+uint64_t store_size(const struct plan *plan, int ranks)
+{
+    const struct scenario *s = plan->scenario;
+    uint64_t size = METADATA_SIZE + 16 * (uint64_t)ranks + 2 * strlen(s->text);
+    uint64_t datasets = COLUMNS + 20, per_row = 0, per_instant = 0;
+
+    for (int c = 0; c < COLUMNS; c++) {
+        if (store_has_column(s, c)) {
+            per_row += store_column_width(s, c) * store_columns[c].size;
+        }
+    }
+    for (int v = 0; v < TRAJECTORIES; v++) {
+        per_instant += sizeof(double) * store_trajectory_width(s->scene, v);
+    }
+    for (int a = 0; a < s->axes; a++) {
+        datasets += (uint64_t)s->axis[a].paths;
+        size += plan->single ? 0 : 32 * s->axis[a].count * (uint64_t)s->axis[a].paths;
+    }
+    size += sizeof(double) * (uint64_t)plan->record_rows;
+    size += plan->record_cases * (12 + (uint64_t)plan->record_rows * per_instant);
+    return size + plan->rows * per_row + datasets * DATASET_SIZE +
+           plan->designs * sizeof(struct resolved_design);
+}
+
+static bool system_failed(stance_message *message, const char *file, const char *what, int error)
+{
+    snprintf(message->text, sizeof message->text, "%.100s: cannot %s: %s", file, what,
+             strerror(error));
+    return false;
+}
+
+/* Whether the file can fit at all, before HDF5 begins what it could not end. */
+static bool check_space(const char *file, uint64_t size, stance_message *message)
+{
+    struct statvfs system;
+    struct rlimit limit;
+    char directory[1024];
+
+    snprintf(directory, sizeof directory, "%s", file);
+    char *slash = strrchr(directory, '/');
+    if (!slash) {
+        snprintf(directory, sizeof directory, ".");
+    } else {
+        slash[slash == directory] = '\0';
+    }
+    if (statvfs(directory, &system) == 0 && (uint64_t)system.f_bavail * system.f_frsize < size) {
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: needs about %.1f MB but only %.1f MB are free: %s", file,
+                 1e-6 * (double)size, 1e-6 * (double)system.f_bavail * (double)system.f_frsize,
+                 strerror(ENOSPC));
+        return false;
+    }
+    if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+        limit.rlim_cur < size) {
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: needs about %.1f MB but the limit on file sizes is %.1f MB: %s", file,
+                 1e-6 * (double)size, 1e-6 * (double)limit.rlim_cur, strerror(EFBIG));
+        return false;
+    }
+    return true;
+}
+
+/* Reserves the space of the whole file and brings it to the disk. */
+static bool reserve(const char *file, stance_message *message)
+{
+    struct stat information;
+    int descriptor = open(file, O_RDWR | O_CLOEXEC);
+    if (descriptor < 0 || fstat(descriptor, &information) != 0) {
+        bool result = system_failed(message, file, "open", errno);
+        if (descriptor >= 0) {
+            close(descriptor);
+        }
+        return result;
+    }
+    int error = posix_fallocate(descriptor, 0, information.st_size);
+    if (error == 0 && fsync(descriptor) != 0) {
+        error = errno;
+    }
+    if (close(descriptor) != 0 && error == 0) {
+        error = errno;
+    }
+    return error == 0 || system_failed(message, file, "reserve its space", error);
+}
+
+static hid_t create_file(const char *file)
+{
+    hid_t access = store_serial_access(), properties = H5Pcreate(H5P_FILE_CREATE), id = -1;
+    if (access >= 0 && H5Pset_obj_track_times(properties, false) >= 0 &&
+        H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
+            0 &&
+        /* Lets long texts be attributes. */
+        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
+            0) {
+        id = H5Fcreate(file, H5F_ACC_EXCL, properties, access);
+    }
+    H5Pclose(access);
+    H5Pclose(properties);
+    return id;
+}
+
+bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
+                  stance_message *message)
+{
+    struct layout layout = {.plan = plan, .ranks = ranks, .hosts = hosts};
+
+    if (!check_space(file, store_size(plan, ranks), message)) {
+        return false;
+    }
+    layout.file = create_file(file);
+    if (layout.file < 0) {
+        return store_failed(message, file, "create");
+    }
+    bool good = put_axes(&layout) && put_answers(&layout) && put_designs(&layout) &&
+                put_trajectories(&layout) && put_timing(&layout) && put_provenance(&layout);
+    good = good || store_failed(message, file, "lay out");
+    if (H5Fclose(layout.file) < 0 && good) {
+        good = store_failed(message, file, "write the layout");
+    }
+    good = good && reserve(file, message);
+    if (!good) {
+        unlink(file);
+    }
+    return good;
+}

@@ -1,0 +1,36 @@
+/* work.h - the computing part of a run: every rank draws chunks of cases, has the engine run
+ * them, and writes what came out, until nothing is left or the job is told to stop.
+ */
+#ifndef STANCE_RUNNER_WORK_H
+#define STANCE_RUNNER_WORK_H
+
+#include "plan.h"
+#include "store.h"
+
+enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1 };
+
+struct work {
+    const struct plan *plan;
+    struct store *store;
+    const struct parallel *parallel; /* with shared counters */
+    bool resume;                     /* rows that the file holds whole are kept */
+    bool quiet;                      /* no progress */
+    double start;                    /* plan_clock() when the program began */
+    double time_limit;               /* s since then, INFINITY: none */
+
+    /* What came out, for this rank's cases. */
+    uint64_t finished; /* cases with an answer in the file, kept ones included */
+    uint64_t computed; /* of these, now */
+    uint64_t outcome[WORK_OUTCOMES], failed;
+    double seconds;
+};
+
+/* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop after the slice in hand. A second SIGINT
+ * kills. */
+void work_catch_signals(void);
+
+/* Not collective, but every rank calls it. Leaves early when any rank fails, or is told to stop;
+ * false when this rank failed. */
+bool work_run(struct work *work, stance_message *message);
+
+#endif

@@ -1,0 +1,740 @@
+/* The biped's statics and linearisation, and the control design, against tests/reference/
+ * control.json (other equations, other libraries: see control.py), closed formulas and the figures
+ * that were published for the default robot. */
+#include "support.h"
+
+#define REFERENCE "tests/reference/control.json"
+
+static const double PAPER_POLES[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6};
+static const double DEFAULT_ROBOT[5] = {0.535, 0.535, 1.8, 1.8, 5.4};
+
+static void assert_near(double value, double wanted, double tolerance, const char *what)
+{
+    if (!(fabs(value - wanted) <= tolerance)) {
+        fail_msg("%s: %.15g instead of %.15g +- %.3g", what, value, wanted, tolerance);
+    }
+}
+
+static void assert_text(const char *text, const char *wanted)
+{
+    if (strcmp(text, wanted) != 0) {
+        fail_msg("message '%s' instead of '%s'", text, wanted);
+    }
+}
+
+/* ---- the reference --------------------------------------------------------------------------- */
+
+static double number_at(const json_t *list, size_t i)
+{
+    const json_t *item = json_array_get(list, i);
+    return json_is_null(item) ? NAN : json_number_value(item);
+}
+
+static void matrix_of(const json_t *record, const char *key, int rows, int columns, double *x)
+{
+    const json_t *matrix = json_object_get(record, key);
+    assert_int_equal(json_array_size(matrix), rows);
+    for (int i = 0; i < rows; i++) {
+        const json_t *row = json_array_get(matrix, (size_t)i);
+        for (int j = 0; j < columns; j++) {
+            x[i * columns + j] =
+                json_is_array(row) ? number_at(row, (size_t)j) : number_at(matrix, (size_t)i);
+        }
+    }
+}
+
+static void assert_matrix(int count, const double *x, const double *wanted, double relative,
+                          const char *what)
+{
+    double scale = 0;
+    for (int i = 0; i < count; i++) {
+        scale = fmax(scale, fabs(wanted[i]));
+    }
+    for (int i = 0; i < count; i++) {
+        assert_near(x[i], wanted[i], relative * scale, what);
+    }
+}
+
+static void closed_loop(int n, int m, const double *A, const double *B, const double *K,
+                        double *loop)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            loop[i * n + j] = A[i * n + j];
+            for (int k = 0; k < m; k++) {
+                loop[i * n + j] -= B[i * m + k] * K[k * n + j];
+            }
+        }
+    }
+}
+
+/* Each wanted eigenvalue is among those of the matrix, each used once. */
+static void assert_eigenvalues(int n, const double *matrix, const double *re, const double *im,
+                               double tolerance, const char *what)
+{
+    double got_re[12], got_im[12];
+    bool used[12] = {false};
+    assert_int_equal(stance_eigenvalues(n, matrix, got_re, got_im), STANCE_OK);
+    for (int i = 0; i < n; i++) {
+        int best = -1;
+        double least = INFINITY;
+        for (int j = 0; j < n; j++) {
+            const double distance = hypot(got_re[j] - re[i], got_im[j] - im[i]);
+            if (!used[j] && distance < least) {
+                least = distance;
+                best = j;
+            }
+        }
+        used[best] = true;
+        if (least > tolerance) {
+            fail_msg("%s: no eigenvalue within %.3g of %.9g%+.9gi", what, tolerance, re[i], im[i]);
+        }
+    }
+}
+
+static stance_equilibrium equilibrium_of(const double *robot, int support, double theta, double q1,
+                                         double q2, bool lower)
+{
+    const stance_equilibrium_choice choice = {support, {theta, q1, q2}, lower};
+    stance_equilibrium e;
+    stance_message message = {""};
+    if (stance_scene_find("biped")->equilibrium(robot, &choice, &e, &message) != STANCE_OK) {
+        fail_msg("%s", message.text);
+    }
+    return e;
+}
+
+/* Eigenvalues that are multiple (right angle) move by the root of a rounding error. */
+static double eigenvalue_tolerance(const char *name)
+{
+    return strcmp(name, "right angle") == 0 ? 1e-3 : 1e-9;
+}
+
+static void compare_design(const json_t *record, const char *name, const double *A, const double *B)
+{
+    double poles[12], K[12], wanted[12], loop[36], re[6], im[6], condition, critical;
+    int sweeps;
+    stance_message message = {""};
+
+    matrix_of(record, "poles", 6, 2, poles);
+    matrix_of(record, "gain", 2, 6, wanted);
+    for (int i = 0; i < 6; i++) {
+        re[i] = poles[2 * i];
+        im[i] = poles[2 * i + 1];
+    }
+    if (stance_place(6, 2, A, B, re, im, K, &sweeps, &condition, &message) != STANCE_OK) {
+        fail_msg("%s: %s", name, message.text);
+    }
+    closed_loop(6, 2, A, B, K, loop);
+    assert_eigenvalues(6, loop, re, im, 1e-7, name);
+    const double reference = json_number_value(json_object_get(record, "condition"));
+    assert_near(condition, reference, 1e-5 * reference, "condition number");
+    if (!json_is_true(json_object_get(record, "compare_gain"))) {
+        return;
+    }
+    assert_matrix(12, K, wanted, 1e-5, name);
+    assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, 5, &critical), STANCE_OK);
+    const double T = json_number_value(json_object_get(record, "critical_sample_time"));
+    assert_near(critical, T, 1e-6 * T, "critical sample time");
+    assert_int_equal(stance_critical_sample_time(6, 2, A, B, wanted, 5, &critical), STANCE_OK);
+    assert_near(critical, T, 1e-9 * T, "critical sample time of the reference's own gain");
+}
+
+static void compare_case(const json_t *record)
+{
+    const char *name = json_string_value(json_object_get(record, "name"));
+    const int support = (int)json_integer_value(json_object_get(record, "support"));
+    double robot[5], given[3], position[5], torque[2], wanted_A[36], wanted_B[12], w[12], re[6],
+        im[6], A[36], B[12], sv[6];
+    int rank;
+
+    matrix_of(record, "robot", 5, 1, robot);
+    matrix_of(record, "given", 3, 1, given);
+    matrix_of(record, "position", 5, 1, position);
+    matrix_of(record, "torque", 2, 1, torque);
+    matrix_of(record, "A", 6, 6, wanted_A);
+    matrix_of(record, "B", 6, 2, wanted_B);
+    matrix_of(record, "eigenvalues", 6, 2, w);
+    const stance_equilibrium e = equilibrium_of(robot, support, given[0], given[1], given[2],
+                                                json_is_true(json_object_get(record, "lower")));
+    assert_int_equal(e.support, support);
+    for (int i = 0; i < 5; i++) {
+        assert_near(e.position[i], position[i], 1e-12, name);
+    }
+    assert_matrix(2, e.torque, torque, 1e-12, name);
+
+    assert_int_equal(stance_scene_find("biped")->linearise(robot, &e, A, B), STANCE_OK);
+    assert_matrix(36, A, wanted_A, 1e-12, name);
+    assert_matrix(12, B, wanted_B, 1e-12, name);
+    for (int i = 0; i < 6; i++) {
+        re[i] = w[2 * i];
+        im[i] = w[2 * i + 1];
+    }
+    assert_eigenvalues(6, A, re, im, eigenvalue_tolerance(name), name);
+    assert_int_equal(stance_kalman(6, 2, A, B, sv, &rank), STANCE_OK);
+    assert_int_equal(rank, 6);
+    assert_int_equal(rank, json_integer_value(json_object_get(record, "rank")));
+    compare_design(record, name, A, B);
+}
+
+static void reference_cases(void **state)
+{
+    (void)state;
+    json_t *root = reference_load(REFERENCE);
+    const json_t *cases = json_object_get(root, "cases");
+    size_t i;
+    json_t *record;
+    assert_true(json_array_size(cases) >= 12);
+    json_array_foreach(cases, i, record)
+    {
+        compare_case(record);
+    }
+    json_decref(root);
+}
+
+/* What is known of the default robot on one foot, to the digits known. */
+static void published_figures(void **state)
+{
+    (void)state;
+    const double open_re[6] = {-5.616145, 5.616145, -3.601149, 3.601149, 0, 0};
+    const double open_im[6] = {0, 0, 0, 0, 4.320429, -4.320429};
+    const double gain[12] = {318.97,  308.17,  -43.08, 83.55,  71.79,  -7.38,
+                             -277.81, -257.34, 35.56,  -73.42, -61.87, 6.96};
+    const double zero[6] = {0};
+    const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
+    double A[36], B[12], K[12], T, gaps[2];
+
+    assert_near(e.position[3], 0.570127, 5e-7, "q1");
+    assert_near(e.torque[0], -7.53135, 5e-6, "torque 1");
+    assert_near(e.torque[1], 3.76567, 5e-6, "torque 2");
+    stance_scene_find("biped")->gaps(DEFAULT_ROBOT, e.position, gaps);
+    assert_near(gaps[1], 0.0375, 5e-5, "gap of the free foot");
+    assert_int_equal(stance_scene_find("biped")->linearise(DEFAULT_ROBOT, &e, A, B), STANCE_OK);
+    assert_eigenvalues(6, A, open_re, open_im, 1e-6, "open loop");
+    assert_int_equal(stance_place(6, 2, A, B, PAPER_POLES, zero, K, NULL, NULL, NULL), STANCE_OK);
+    for (int i = 0; i < 12; i++) {
+        assert_near(K[i], gain[i], 0.0051, "gain");
+    }
+    assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, 5, &T), STANCE_OK);
+    assert_near(T, 0.1363, 5e-5, "critical sample time");
+    const stance_equilibrium right = equilibrium_of(DEFAULT_ROBOT, 0, M_PI / 2, NAN, 0, false);
+    assert_near(right.position[3], -M_PI / 2, 1e-15, "q1 at right angles");
+    assert_near(right.torque[1], 1.8 * 0.535 * STANCE_GRAVITY, 1e-12, "torque at right angles");
+}
+
+/* ---- the scene ------------------------------------------------------------------------------- */
+
+/* Every branch of every unknown balances: no moment about the foot, by the stick figure's own
+ * points; and the torques obey the paper's (20) ... (22). */
+static void equilibria_balance(void **state)
+{
+    (void)state;
+    const stance_scene *scene = stance_scene_find("biped");
+    uint64_t seed = 7;
+    int found = 0;
+    for (int i = 0; i < 2000; i++) {
+        const double robot[5] = {uniform(&seed, 0.2, 1), uniform(&seed, 0.2, 1),
+                                 uniform(&seed, 0.5, 3), uniform(&seed, 0.5, 3),
+                                 uniform(&seed, 0.5, 6)};
+        stance_equilibrium_choice choice = {
+            i % 2,
+            {uniform(&seed, -2, 2), uniform(&seed, -2, 2), uniform(&seed, -2, 2)},
+            i / 2 % 2};
+        choice.posture[i / 4 % 3] = NAN;
+        stance_equilibrium e;
+        double points[STANCE_MAX_POINTS][2];
+        if (scene->equilibrium(robot, &choice, &e, NULL) != STANCE_OK) {
+            continue;
+        }
+        found++;
+        assert_int_equal(scene->figure(robot, e.position, points), 5);
+        const double *feet[2] = {points[0], points[2]}, *trunk = points[4], *hip = points[1];
+        const double moment =
+            robot[2] * (feet[0][0] + feet[1][0]) + robot[3] * trunk[0] + robot[4] * hip[0];
+        assert_near(moment, 0, 1e-13 * 12, "moment about the foot");
+        assert_near(feet[choice.support][0], 0, 1e-15, "foot");
+        const double *q = e.position;
+        const int s = choice.support, f = 1 - s;
+        assert_near(e.torque[0] + e.torque[1], robot[1] * robot[3] * STANCE_GRAVITY * sin(q[2]),
+                    1e-12 * 300, "(20)");
+        assert_near(e.torque[s],
+                    -robot[0] * (robot[2] + robot[3] + robot[4]) * STANCE_GRAVITY *
+                        sin(q[2] + q[3 + s]),
+                    1e-12 * 300, "(21)");
+        assert_near(e.torque[f], robot[0] * robot[2] * STANCE_GRAVITY * sin(q[2] + q[3 + f]),
+                    1e-12 * 300, "(22)");
+        /* The branch: of the solved-for leg, or of the support leg where theta was sought. */
+        const int unknown = i / 4 % 3;
+        const double phi = q[2] + q[unknown == 0 ? 3 + s : 2 + unknown];
+        assert_true(choice.lower ? cos(phi) <= 1e-12 : cos(phi) >= -1e-12);
+    }
+    assert_true(found > 800);
+}
+
+static void standing_is_exact(void **state)
+{
+    (void)state;
+    const stance_scene *scene = stance_scene_find("biped");
+    uint64_t seed = 3;
+    for (int i = 0; i < 20000; i++) {
+        const double robot[5] = {exp(uniform(&seed, -3, 3)), exp(uniform(&seed, -3, 3)), 1, 1, 1};
+        double q[5] = {9, 9}, v[5] = {9, 9}, gap[2], at[2], speed[2];
+        for (int k = 2; k < 5; k++) {
+            q[k] = uniform(&seed, -4, 4);
+            v[k] = uniform(&seed, -4, 4);
+        }
+        scene->stand(robot, i % 2, q, v);
+        scene->gaps(robot, q, gap);
+        scene->contact_point(robot, q, v, i % 2, at, speed);
+        assert_true(gap[i % 2] >= 0 && gap[i % 2] <= 1e-15 * (robot[0] + robot[1]));
+        assert_true(gap[i % 2] == at[1]);
+        assert_near(at[0], 0, 1e-15 * (robot[0] + robot[1]), "x of the foot");
+        assert_near(speed[0], 0, 1e-13 * (robot[0] + robot[1]), "vx of the foot");
+        assert_near(speed[1], 0, 1e-13 * (robot[0] + robot[1]), "vz of the foot");
+    }
+    /* Feet level with the trunk: the height is zero but for rounding. */
+    double q[5] = {0, 0, M_PI / 2, 0, 0}, v[5] = {0}, gap[2];
+    scene->stand(DEFAULT_ROBOT, 0, q, v);
+    scene->gaps(DEFAULT_ROBOT, q, gap);
+    assert_true(gap[0] >= 0 && gap[0] < 1e-15);
+}
+
+/* Kinetic energy by differences of the stick figure along the motion, potential by its heights. */
+static void energy_of_point_masses(void **state)
+{
+    (void)state;
+    const stance_scene *scene = stance_scene_find("biped");
+    const double robot[5] = {0.6, 0.4, 1.1, 1.7, 3.1}, h = 1e-5;
+    const double mass[5] = {1.1, 3.1, 1.1, 0, 1.7}; /* of the figure's points */
+    uint64_t seed = 5;
+    for (int i = 0; i < 200; i++) {
+        double q[5], v[5], before[5], after[5], points[3][STANCE_MAX_POINTS][2], energy = 0;
+        for (int k = 0; k < 5; k++) {
+            q[k] = uniform(&seed, -2, 2);
+            v[k] = uniform(&seed, -2, 2);
+            before[k] = q[k] - h * v[k];
+            after[k] = q[k] + h * v[k];
+        }
+        scene->figure(robot, before, points[0]);
+        scene->figure(robot, q, points[1]);
+        scene->figure(robot, after, points[2]);
+        for (int p = 0; p < 5; p++) {
+            const double vx = (points[2][p][0] - points[0][p][0]) / (2 * h);
+            const double vz = (points[2][p][1] - points[0][p][1]) / (2 * h);
+            energy += mass[p] * ((vx * vx + vz * vz) / 2 + STANCE_GRAVITY * points[1][p][1]);
+        }
+        assert_near(scene->energy(robot, q, v), energy, 1e-7, "energy");
+    }
+}
+
+static void equilibrium_messages(void **state)
+{
+    (void)state;
+    const stance_scene *scene = stance_scene_find("biped");
+    const double heavy_trunk[5] = {0.4, 0.6, 1, 9, 1};
+    const struct {
+        const double *robot;
+        stance_equilibrium_choice choice;
+        stance_error error;
+        const char *text;
+    } wrong[] = {
+        {heavy_trunk,
+         {0, {1.2, NAN, -2.7}, false},
+         STANCE_NO_EQUILIBRIUM,
+         "no equilibrium: the support leg would need sin(theta + q1) = -1.23455"},
+        {DEFAULT_ROBOT,
+         {0, {-0.41, 0.82, NAN}, false},
+         STANCE_NO_EQUILIBRIUM,
+         "no equilibrium: the free leg would need sin(theta + q2) = 1.59444"},
+        {DEFAULT_ROBOT,
+         {1, {-0.41, NAN, 0.82}, true},
+         STANCE_NO_EQUILIBRIUM,
+         "no equilibrium: the free leg would need sin(theta + q1) = 1.59444"},
+        {DEFAULT_ROBOT,
+         {0, {NAN, NAN, NAN}, false},
+         STANCE_BAD_ARGUMENT,
+         "an equilibrium needs exactly two of theta, q1, q2; none is given"},
+        {DEFAULT_ROBOT,
+         {0, {-0.41, NAN, NAN}, false},
+         STANCE_BAD_ARGUMENT,
+         "an equilibrium needs exactly two of theta, q1, q2; only one is given"},
+        {DEFAULT_ROBOT,
+         {0, {-0.41, 0.57, 0.82}, false},
+         STANCE_BAD_ARGUMENT,
+         "an equilibrium needs exactly two of theta, q1, q2; all three are given"},
+        {DEFAULT_ROBOT,
+         {2, {-0.41, NAN, 0.82}, false},
+         STANCE_BAD_ARGUMENT,
+         "no such foot to stand on: foot 3"},
+        {DEFAULT_ROBOT,
+         {0, {-0.41, NAN, INFINITY}, false},
+         STANCE_BAD_ARGUMENT,
+         "an equilibrium's angles must lie within +-1000 rad"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        stance_equilibrium e;
+        stance_message message = {""};
+        assert_int_equal(scene->equilibrium(wrong[i].robot, &wrong[i].choice, &e, &message),
+                         wrong[i].error);
+        assert_text(message.text, wrong[i].text);
+        assert_int_equal(scene->equilibrium(wrong[i].robot, &wrong[i].choice, &e, NULL),
+                         wrong[i].error);
+    }
+    /* Support leg turned round, free leg in line with the trunk: where mt lt = (M - m) l + m l any
+     * pitch balances, elsewhere there is one. */
+    const double even[5] = {0.5, 1.5, 1, 1, 1};
+    const stance_equilibrium_choice any = {0, {NAN, M_PI, 0}, false};
+    stance_equilibrium e;
+    stance_message message = {""};
+    assert_int_equal(scene->equilibrium(even, &any, &e, &message), STANCE_OK);
+    const double neutral[5] = {0.5, 2, 1, 1, 1};
+    assert_int_equal(scene->equilibrium(neutral, &any, &e, &message), STANCE_NO_EQUILIBRIUM);
+    assert_text(message.text, "no single equilibrium: with these q1 and q2 the centre of mass is "
+                              "at the foot and every theta balances");
+}
+
+/* ---- placement in general -------------------------------------------------------------------- */
+
+/* Random systems of every shape, with repeated inputs, real poles and pairs. */
+static void places_any_system(void **state)
+{
+    (void)state;
+    uint64_t seed = 11;
+    for (int round = 0; round < 300; round++) {
+        const int n = 1 + round % 8, m = 1 + round / 8 % (n + 1);
+        double A[64], B[72], K[72], loop[64], re[8], im[8] = {0}, condition;
+        for (int i = 0; i < n * n; i++) {
+            A[i] = uniform(&seed, -2, 2);
+        }
+        for (int i = 0; i < n * m; i++) {
+            B[i] = uniform(&seed, -2, 2);
+        }
+        for (int i = 0; i < n; i++) { /* the last input repeats the first: rank below m */
+            if (m > 1 && round % 3 == 0) {
+                B[i * m + m - 1] = -3 * B[i * m];
+            }
+            re[i] = -1 - 0.7 * i + uniform(&seed, -0.2, 0.2);
+        }
+        if (n >= 4 && round % 2) { /* pairs need not stand side by side */
+            re[3] = re[0];
+            im[0] = uniform(&seed, 0.3, 3);
+            im[3] = -im[0];
+        }
+        if (n >= 3 && round % 5 == 0) {
+            re[2] = re[1];
+            im[1] = -1.5;
+            im[2] = 1.5;
+        }
+        stance_message message = {""};
+        if (stance_place(n, m, A, B, re, im, K, NULL, &condition, &message) != STANCE_OK) {
+            fail_msg("n = %d, m = %d: %s", n, m, message.text);
+        }
+        closed_loop(n, m, A, B, K, loop);
+        assert_true(condition >= 1 - 1e-12);
+        assert_eigenvalues(n, loop, re, im, 1e-11 * condition * (1 + n), "random system");
+    }
+}
+
+/* One input leaves no choice: the gain of a companion form can be read off the polynomial. */
+static void single_input(void **state)
+{
+    (void)state;
+    const double A[9] = {0, 1, 0, 0, 0, 1, 2, -3, 4}, B[3] = {0, 0, 2};
+    const double re[3] = {-1, -2, -2}, im[3] = {0, 3, -3}; /* (s + 1)(s^2 + 4 s + 13) */
+    const double wanted[3] = {(2 + 13) / 2.0, (-3 + 17) / 2.0, (4 + 5) / 2.0};
+    double K[3];
+    assert_int_equal(stance_place(3, 1, A, B, re, im, K, NULL, NULL, NULL), STANCE_OK);
+    assert_matrix(3, K, wanted, 1e-12, "companion form");
+}
+
+/* As many inputs as states: the best eigenvectors are orthonormal, also for a repeated pole. */
+static void full_inputs(void **state)
+{
+    (void)state;
+    const double A[9] = {1, 2, 3, 4, 5, 6, 7, 8, 10}, B[9] = {1, 0, 1, 0, 2, 0, 0, 1, 1};
+    const double re[3] = {-1, -1, -1}, pair_re[3] = {-1, -2, -1}, none[3] = {0},
+                 pair_im[3] = {2, 0, -2};
+    double K[9], loop[9], condition;
+    assert_int_equal(stance_place(3, 3, A, B, re, none, K, NULL, &condition, NULL), STANCE_OK);
+    assert_near(condition, 1, 1e-9, "condition of orthonormal vectors");
+    closed_loop(3, 3, A, B, K, loop);
+    assert_eigenvalues(3, loop, re, none, 1e-12, "triple pole");
+    assert_int_equal(stance_place(3, 3, A, B, pair_re, pair_im, K, NULL, &condition, NULL),
+                     STANCE_OK);
+    assert_near(condition, 1, 1e-9, "condition of a normal matrix");
+    closed_loop(3, 3, A, B, K, loop);
+    assert_eigenvalues(3, loop, pair_re, pair_im, 1e-12, "pair");
+}
+
+/* A double pole on two inputs, and the mirror rule: the stiffer of two equally robust gains, which
+ * does not depend on the order of the poles. */
+static void repeated_and_reordered(void **state)
+{
+    (void)state;
+    const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
+    const double twice[6] = {-3, -3.3, -3, -3.9, -4.2, -4.2}, none[6] = {0};
+    const double reversed[6] = {-3.9, -4.6, -3, -4.2, -3.3, -3.6};
+    double A[36], B[12], K[12], other[12], loop[36];
+    assert_int_equal(stance_scene_find("biped")->linearise(DEFAULT_ROBOT, &e, A, B), STANCE_OK);
+    assert_int_equal(stance_place(6, 2, A, B, twice, none, K, NULL, NULL, NULL), STANCE_OK);
+    closed_loop(6, 2, A, B, K, loop);
+    assert_eigenvalues(6, loop, twice, none, 1e-4, "double poles");
+    assert_int_equal(stance_place(6, 2, A, B, PAPER_POLES, none, K, NULL, NULL, NULL), STANCE_OK);
+    assert_int_equal(stance_place(6, 2, A, B, reversed, none, other, NULL, NULL, NULL), STANCE_OK);
+    assert_matrix(12, other, K, 1e-7, "poles in another order");
+}
+
+static void placement_messages(void **state)
+{
+    (void)state;
+    /* Two chains of integrators, lengths 2 and 1, an input each; and a mode out of reach. */
+    const double A[9] = {0, 1, 0, 0, 0, 0, 0, 0, 0}, B[6] = {0, 0, 1, 0, 0, 1};
+    const double stuck[4] = {1, 0, 0, 2}, push[2] = {1, 0}, nothing[2] = {0, 0};
+    const struct {
+        int n, m;
+        const double *A, *B;
+        double re[3], im[3];
+        stance_error error;
+        const char *text;
+    } wrong[] = {
+        {3,
+         2,
+         A,
+         B,
+         {-1, -2, -3},
+         {0, 1, 0},
+         STANCE_BAD_POLES,
+         "the pole -2+1i has no conjugate -2-1i among the poles"},
+        {3,
+         2,
+         A,
+         B,
+         {-1, -2, -2},
+         {0, 1, 1},
+         STANCE_BAD_POLES,
+         "the pole -2+1i has no conjugate -2-1i among the poles"},
+        {3,
+         2,
+         A,
+         B,
+         {-1, -1, -1},
+         {0, 0, 0},
+         STANCE_BAD_POLES,
+         "the pole -1 is wanted 3 times, but the number of independent inputs, 2, is the most that "
+         "one pole can be repeated"},
+        {2,
+         1,
+         stuck,
+         push,
+         {-1, -1},
+         {0, 0},
+         STANCE_BAD_POLES,
+         "the pole -1 is wanted 2 times, but the number of independent inputs, 1, is the most that "
+         "one pole can be repeated"},
+        {2,
+         1,
+         stuck,
+         push,
+         {-1, -2},
+         {0, 0},
+         STANCE_UNCONTROLLABLE,
+         "the pair (A, B) is not controllable: no input reaches the mode with eigenvalue 2"},
+        {2,
+         1,
+         stuck,
+         nothing,
+         {-1, -2},
+         {0, 0},
+         STANCE_UNCONTROLLABLE,
+         "the inputs have no effect: the matrix B is zero"},
+        {3,
+         2,
+         A,
+         B,
+         {-1, -2, NAN},
+         {0, 0, 0},
+         STANCE_BAD_POLES,
+         "3 poles are needed, all of them finite"},
+        {0,
+         1,
+         A,
+         B,
+         {0},
+         {0},
+         STANCE_BAD_ARGUMENT,
+         "pole placement needs at least one state and one input"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        double K[6];
+        stance_message message = {""};
+        assert_int_equal(stance_place(wrong[i].n, wrong[i].m, wrong[i].A, wrong[i].B, wrong[i].re,
+                                      wrong[i].im, K, NULL, NULL, &message),
+                         wrong[i].error);
+        assert_text(message.text, wrong[i].text);
+    }
+    const double endless[9] = {INFINITY};
+    const double re[3] = {-1, -2, -3}, im[3] = {0};
+    double K[6];
+    stance_message message = {""};
+    assert_int_equal(stance_place(3, 2, endless, B, re, im, K, NULL, NULL, &message),
+                     STANCE_BAD_ARGUMENT);
+    assert_text(message.text, "A and B must be finite");
+}
+
+/* Rosenbrock: chains of lengths 3 and 1 cannot have two double poles with full eigenvectors. */
+static void spread_too_thin(void **state)
+{
+    (void)state;
+    const double A[16] = {0, 1, 0, 0, 0, 0, 1, 0}, B[8] = {0, 0, 0, 0, 1, 0, 0, 1};
+    const double re[4] = {-1, -1, -2, -2}, im[4] = {0};
+    double K[8];
+    stance_message message = {""};
+    assert_int_equal(stance_place(4, 2, A, B, re, im, K, NULL, NULL, &message), STANCE_BAD_POLES);
+    assert_true(strstr(message.text, "no independent eigenvectors") != NULL);
+}
+
+/* ---- eigenvalues, rank, sampling ------------------------------------------------------------- */
+
+static void eigenvalues_are_sorted(void **state)
+{
+    (void)state;
+    const double A[25] = {[0] = 3, [6] = -1, [7] = 2, [11] = -2, [12] = -1, [18] = -7, [24] = -1};
+    const double wanted_re[5] = {-7, -1, -1, -1, 3}, wanted_im[5] = {0, -2, 0, 2, 0};
+    double re[5], im[5];
+    assert_int_equal(stance_eigenvalues(5, A, re, im), STANCE_OK);
+    for (int i = 0; i < 5; i++) {
+        assert_near(re[i], wanted_re[i], 1e-14, "real part");
+        assert_near(im[i], wanted_im[i], 1e-14, "imaginary part");
+    }
+    const double bad[1] = {NAN};
+    assert_int_equal(stance_eigenvalues(1, bad, re, im), STANCE_BAD_ARGUMENT);
+    assert_int_equal(stance_eigenvalues(0, A, re, im), STANCE_BAD_ARGUMENT);
+}
+
+/* The rank, and here even the singular values, do not depend on the unit of time. */
+static void kalman_rank(void **state)
+{
+    (void)state;
+    const stance_equilibrium e = equilibrium_of(DEFAULT_ROBOT, 0, -0.41, NAN, 0.82, false);
+    const double chain[9] = {0, 1, 0, 0, 0, 1, 0, 0, 0}, last[3] = {0, 0, 1}, first[3] = {1, 0, 0};
+    double A[36], B[12], sv[6], slow[6];
+    int rank;
+    assert_int_equal(stance_scene_find("biped")->linearise(DEFAULT_ROBOT, &e, A, B), STANCE_OK);
+    assert_int_equal(stance_kalman(6, 2, A, B, sv, &rank), STANCE_OK);
+    assert_int_equal(rank, 6);
+    for (int i = 0; i < 36; i++) { /* milliseconds */
+        A[i] *= i / 6 >= 3 ? 1e-6 : 1;
+    }
+    for (int i = 0; i < 12; i++) {
+        B[i] *= 1e-6;
+    }
+    assert_int_equal(stance_kalman(6, 2, A, B, slow, &rank), STANCE_OK);
+    assert_int_equal(rank, 6);
+    assert_matrix(6, slow, sv, 1e-12, "singular values");
+    assert_int_equal(stance_kalman(3, 1, chain, last, sv, &rank), STANCE_OK);
+    assert_int_equal(rank, 3);
+    assert_int_equal(stance_kalman(3, 1, chain, first, sv, &rank), STANCE_OK);
+    assert_int_equal(rank, 1);
+}
+
+static void discretisation(void **state)
+{
+    (void)state;
+    const double w = 3, T = 0.7, A[9] = {0, 1, 0, -w * w, 0, 0, 0, 0, -0.5}, B[3] = {0, 1, 2};
+    const double wanted_A[9] = {cos(w * T), sin(w * T) / w, 0, -w * sin(w * T), cos(w * T), 0, 0,
+                                0,          exp(-0.5 * T)};
+    const double wanted_B[3] = {(1 - cos(w * T)) / (w * w), sin(w * T) / w,
+                                4 * (1 - exp(-0.5 * T))};
+    double Ad[9], Bd[3], stiff_A[1] = {-2000}, stiff_B[1] = {3};
+    assert_int_equal(stance_discretise(3, 1, A, B, T, Ad, Bd), STANCE_OK);
+    assert_matrix(9, Ad, wanted_A, 2e-15, "Ad");
+    assert_matrix(3, Bd, wanted_B, 2e-15, "Bd");
+    assert_int_equal(stance_discretise(3, 1, A, B, 0, Ad, Bd), STANCE_OK);
+    assert_true(Ad[0] == 1 && Ad[1] == 0 && Bd[1] == 0);
+    assert_int_equal(stance_discretise(1, 1, stiff_A, stiff_B, 0.5, Ad, Bd), STANCE_OK);
+    assert_near(Ad[0], 0, 1e-15, "stiff Ad");
+    assert_near(Bd[0], 0.0015, 1e-15, "stiff Bd");
+    assert_int_equal(stance_discretise(3, 1, A, B, -1, Ad, Bd), STANCE_BAD_ARGUMENT);
+    assert_int_equal(stance_discretise(3, 1, A, B, NAN, Ad, Bd), STANCE_BAD_ARGUMENT);
+}
+
+static void critical_sample_times(void **state)
+{
+    (void)state;
+    double T;
+    /* x' = a x + u, u = -k x: the sampled pole exp(a T) (1 - k / a) + k / a passes -1. */
+    for (int i = 0; i < 20; i++) {
+        const double a = 0.3 + 0.2 * i, k = a * (1.05 + 0.3 * i);
+        assert_int_equal(stance_critical_sample_time(1, 1, &a, (double[]){1}, &k, 100, &T),
+                         STANCE_OK);
+        assert_near(T, log((k / a + 1) / (k / a - 1)) / a, 1e-12 * T, "scalar");
+    }
+    /* Double integrator: Jury's conditions give the smaller of 2 d / k and 2 / d. */
+    const double A[4] = {0, 1, 0, 0}, B[2] = {0, 1};
+    for (int i = 0; i < 20; i++) {
+        const double K[2] = {0.5 + 0.7 * i, 4.0 - 0.15 * i};
+        assert_int_equal(stance_critical_sample_time(2, 1, A, B, K, 100, &T), STANCE_OK);
+        assert_near(T, fmin(2 * K[1] / K[0], 2 / K[1]), 1e-10 * T, "double integrator");
+    }
+    const double bad[2] = {-1, 1}, none[2] = {0}, stable[4] = {-1, 0, 0, -2};
+    assert_int_equal(stance_critical_sample_time(2, 1, A, B, bad, 10, &T), STANCE_OK);
+    assert_true(T == 0);
+    assert_int_equal(stance_critical_sample_time(2, 1, stable, B, none, 10, &T), STANCE_OK);
+    assert_true(isinf(T) && T > 0);
+    assert_int_equal(stance_critical_sample_time(2, 1, A, B, bad, 0, &T), STANCE_BAD_ARGUMENT);
+}
+
+/* A sampled oscillator under rate feedback becomes unstable and stable again as T passes half
+ * turns; it is the first loss that counts. Looked for by brute force. */
+static void first_crossing(void **state)
+{
+    (void)state;
+    uint64_t seed = 17;
+    int lost = 0;
+    for (int i = 0; i < 40; i++) {
+        const double w = uniform(&seed, 1, 10), damping = uniform(&seed, 0, 0.4);
+        const double A[4] = {0, 1, -w * w, -damping}, B[2] = {0, 1};
+        const double K[2] = {0, uniform(&seed, 0.05, 1.5)};
+        double T, first = INFINITY, Ad[4], Bd[2], loop[4], re[2], im[2];
+        assert_int_equal(stance_critical_sample_time(2, 1, A, B, K, 4, &T), STANCE_OK);
+        for (int k = 1; k <= 40000 && isinf(first); k++) {
+            assert_int_equal(stance_discretise(2, 1, A, B, 1e-4 * k, Ad, Bd), STANCE_OK);
+            closed_loop(2, 1, Ad, Bd, K, loop);
+            assert_int_equal(stance_eigenvalues(2, loop, re, im), STANCE_OK);
+            if (hypot(re[0], im[0]) > 1 + 1e-12 || hypot(re[1], im[1]) > 1 + 1e-12) {
+                first = 1e-4 * k;
+            }
+        }
+        if (isinf(first)) {
+            assert_true(isinf(T) || T > 4 - 1e-4);
+        } else {
+            lost++;
+            assert_true(T <= first && T >= first - 1e-4 - 1e-9);
+        }
+    }
+    assert_true(lost > 10);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reference_cases),
+        cmocka_unit_test(published_figures),
+        cmocka_unit_test(equilibria_balance),
+        cmocka_unit_test(standing_is_exact),
+        cmocka_unit_test(energy_of_point_masses),
+        cmocka_unit_test(equilibrium_messages),
+        cmocka_unit_test(places_any_system),
+        cmocka_unit_test(single_input),
+        cmocka_unit_test(full_inputs),
+        cmocka_unit_test(repeated_and_reordered),
+        cmocka_unit_test(placement_messages),
+        cmocka_unit_test(spread_too_thin),
+        cmocka_unit_test(eigenvalues_are_sorted),
+        cmocka_unit_test(kalman_rank),
+        cmocka_unit_test(discretisation),
+        cmocka_unit_test(critical_sample_times),
+        cmocka_unit_test(first_crossing),
+    };
+    return cmocka_run_group_tests_name("control", tests, NULL, NULL);
+}

@@ -1,0 +1,303 @@
+/* From the numbers of a scenario to a case: start, law, sampling, and what is refused. */
+#include "support.h"
+
+#include "../runner/resolve.h"
+
+static const double PAPER_POLES[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6};
+
+/* What the scenario of section 3.2 says, in numbers. */
+static struct scenario_values balance_values(void)
+{
+    const stance_scene *scene = stance_scene_find("biped");
+    struct scenario_values v = {
+        .friction = 0.8,
+        .contacts = 1,
+        .equilibrium = {true, {-0.41, NAN, 0.82}, 0},
+        .support_foot = 1,
+        .law = LAW_STATE_FEEDBACK,
+        .design = DESIGN_PLACE,
+        .design_point = {false, {NAN, NAN, NAN}, 0},
+        .target = {NAN, NAN, NAN},
+        .sample_time = 0.001,
+        .torque_limit = 10,
+        .step = 0.001,
+        .stop_time = 8,
+        .settle = 1,
+        .settle_angle = 0.05,
+        .settle_rate = 0.5,
+        .settle_hold = 0.5,
+        .fall_height = 0.2,
+    };
+    for (int i = 0; i < scene->robot_count; i++) {
+        v.robot[i] = scene->robot[i].fallback;
+    }
+    for (int i = 0; i < STANCE_MAX_ROBOT; i++) {
+        v.model[i] = NAN;
+    }
+    memcpy(v.pole_re, PAPER_POLES, sizeof PAPER_POLES);
+    return v;
+}
+
+static stance_case resolved(const struct scenario_values *v)
+{
+    const stance_scene *scene = stance_scene_find("biped");
+    struct resolved_design design;
+    stance_message message;
+    stance_case c;
+    if (!resolve_design(scene, v, &design, &message) ||
+        !resolve_case(scene, v, &design, 42, 17, &c, &message)) {
+        fail_msg("%s", message.text);
+    }
+    return c;
+}
+
+static void assert_refused(const struct scenario_values *v, const char *text)
+{
+    const stance_scene *scene = stance_scene_find("biped");
+    struct resolved_design design;
+    stance_message message;
+    stance_case c;
+    if (resolve_design(scene, v, &design, &message) &&
+        resolve_case(scene, v, &design, 42, 17, &c, &message)) {
+        fail_msg("accepted; expected '%s'", text);
+    }
+    if (strcmp(message.text, text) != 0) {
+        fail_msg("message '%s' instead of '%s'", message.text, text);
+    }
+}
+
+static void balance(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    v.offset[2] = -0.04;
+    v.offset[5 + 2] = 0.3;
+    const stance_case c = resolved(&v), wanted = balance_case(-0.04, 0.3);
+    assert_memory_equal(c.position, wanted.position, sizeof c.position);
+    assert_memory_equal(c.velocity, wanted.velocity, sizeof c.velocity);
+    assert_memory_equal(c.gain, wanted.gain, sizeof c.gain);
+    assert_memory_equal(c.feedforward, wanted.feedforward, sizeof c.feedforward);
+    assert_memory_equal(c.target, wanted.target, sizeof c.target);
+    assert_true(c.settle && c.has_target && c.support == 0 && !c.trajectory);
+    assert_true(c.seed == 42 && c.grid_index == 17 && c.sample_index == 0);
+    assert_true(c.sample_every == 1 && c.step == 0.001 && c.steps == 8000);
+    assert_true(c.torque_limit == 10 && c.contacts == 1 && c.fall_height == 0.2);
+}
+
+/* Offsets of the translation come after the foot has been put down. */
+static void offsets_of_translation(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    const stance_case before = resolved(&v);
+    v.offset[0] = 0.5;
+    v.offset[1] = 0.25;
+    v.offset[5] = -1;
+    v.offset[6] = 2;
+    const stance_case after = resolved(&v);
+    assert_true(after.position[0] == before.position[0] + 0.5);
+    assert_true(after.position[1] == before.position[1] + 0.25);
+    assert_true(after.velocity[0] == -1 && after.velocity[1] == 2);
+    assert_memory_equal(after.position + 2, before.position + 2, 3 * sizeof(double));
+    v.offset[1] = -1e-10; /* rounding, as far as a start goes */
+    resolved(&v);
+    v.offset[1] = -0.004;
+    assert_refused(&v, "foot1 would start 0.004 m inside the ground");
+    v.contacts = 2; /* only the other foot may touch, and it hangs */
+    resolved(&v);
+}
+
+static void other_foot(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    v.support_foot = 2;
+    v.contacts = 2;
+    v.equilibrium.posture[1] = 0.82;
+    v.equilibrium.posture[2] = NAN;
+    const stance_case c = resolved(&v);
+    double gap[2];
+    stance_scene_find("biped")->gaps(c.robot, c.position, gap);
+    assert_int_equal(c.support, 1);
+    assert_true(gap[1] >= 0 && gap[1] < 1e-15 && gap[0] > 0.03);
+    v.support_foot = 0; /* foot 1 where nothing is said: no equilibrium with this q1 */
+    assert_refused(&v, "no equilibrium: the free leg would need sin(theta + q2) = 1.59444");
+}
+
+/* Steps divide the sample interval and are never longer than asked for. */
+static void sampling(void **state)
+{
+    (void)state;
+    const struct {
+        double sample_time, step, stop;
+        int64_t every, steps;
+    } rows[] = {
+        {0, 0.001, 8, 0, 8000},         {0.001, 0.001, 8, 1, 8000}, {0.003, 0.001, 0.9, 3, 900},
+        {0.0035, 0.001, 0.7, 4, 800},   {0.1, 0.1 / 3, 1, 3, 30},   {0.0005, 0.001, 1, 1, 2000},
+        {0.3, 0.1, 0.3, 3, 3},          {0, 0.001, 0, 0, 1},        {0, 0.002, 0.0029, 0, 1},
+        {0.7, 0.0007, 1.4, 1000, 2000}, {0, 0.001, 0.0016, 0, 2},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct scenario_values v = balance_values();
+        v.sample_time = rows[i].sample_time;
+        v.step = rows[i].step;
+        v.stop_time = rows[i].stop;
+        const stance_case c = resolved(&v);
+        assert_int_equal(c.sample_every, rows[i].every);
+        assert_int_equal(c.steps, rows[i].steps);
+        assert_true(c.step <= v.step * (1 + 1e-9));
+        if (v.sample_time > 0) {
+            assert_true(fabs((double)c.sample_every * c.step - v.sample_time) <
+                        1e-15 * v.sample_time + 1e-18);
+        }
+    }
+}
+
+static void no_law(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    v.law = LAW_NONE;
+    const stance_case c = resolved(&v);
+    for (int i = 0; i < 2; i++) {
+        assert_true(c.feedforward[i] == 0);
+        for (int j = 0; j < 6; j++) {
+            assert_true(c.gain[i][j] == 0);
+        }
+    }
+    assert_true(!c.has_target && c.support == -1 && c.settle);
+}
+
+static void hold_law(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    const double dropped[10] = {0, 1.5, -0.5, 0.9, -1, 2};
+    v.law = LAW_HOLD;
+    v.kp = 500;
+    v.kd = 50;
+    v.state_given = 1;
+    v.equilibrium.given = false;
+    memcpy(v.state, dropped, sizeof dropped);
+    stance_case c = resolved(&v);
+    assert_memory_equal(c.position, dropped, sizeof c.position);
+    assert_memory_equal(c.velocity, dropped + 5, sizeof c.velocity);
+    const double gain[2][6] = {{0, 500, 0, 0, 50, 0}, {0, 0, 500, 0, 0, 50}};
+    assert_memory_equal(c.gain, gain, sizeof gain);
+    assert_true(c.target[1] == 0.9 && c.target[2] == -1);
+    assert_true(c.feedforward[0] == 0 && !c.has_target && c.support == -1);
+    v.target[2] = -0.7;
+    c = resolved(&v);
+    assert_true(c.target[1] == 0.9 && c.target[2] == -0.7);
+
+    struct scenario_values tilted = balance_values();
+    tilted.law = LAW_HOLD;
+    tilted.offset[3] = 0.1;
+    const stance_case start = resolved(&tilted);
+    assert_true(start.target[1] == start.position[3]); /* the offset is held, not undone */
+}
+
+/* Target, torque and gains come from the model, the start from the robot. */
+static void wrong_model(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    const stance_case honest = resolved(&v);
+    v.model[3] = 2.0; /* trunk_mass */
+    const stance_case deceived = resolved(&v);
+    assert_memory_equal(deceived.position, honest.position, sizeof honest.position);
+    const double sine = (2.0 * sin(0.41) + 1.8 * sin(0.41)) / (2.0 + 1.8 + 5.4);
+    assert_true(fabs(deceived.target[1] - (asin(sine) + 0.41)) < 1e-14);
+    assert_true(fabs(deceived.feedforward[1] - honest.feedforward[1]) < 1e-14);
+    assert_true(fabs(deceived.gain[0][0] - honest.gain[0][0]) > 1);
+    v.robot[3] = 2.0;
+    const stance_case consistent = resolved(&v);
+    assert_memory_equal(deceived.gain, consistent.gain, sizeof consistent.gain);
+    assert_memory_equal(deceived.target, consistent.target, sizeof consistent.target);
+}
+
+static void own_equilibrium_and_gains(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    v.design_point = (struct scenario_equilibrium){true, {0, 0, NAN}, 0};
+    v.design = DESIGN_GAINS;
+    for (int i = 0; i < 12; i++) {
+        v.gains[i] = i + 0.5;
+    }
+    const stance_case c = resolved(&v);
+    assert_true(c.target[0] == 0 && c.target[1] == 0 && c.target[2] == 0);
+    assert_true(c.gain[0][0] == 0.5 && c.gain[0][5] == 5.5 && c.gain[1][0] == 6.5);
+    assert_true(c.position[2] == -0.41);
+    v.gains[11] = NAN;
+    assert_refused(&v, "12 finite gains are needed");
+}
+
+static void refusals(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    v.equilibrium.given = false;
+    assert_refused(&v, "an initial state is needed: initial.equilibrium or initial.state");
+    v.state_given = 1;
+    v.state[1] = 2;
+    assert_refused(&v, "the controller needs an equilibrium to work at: give "
+                       "controller.equilibrium or initial.equilibrium");
+    v.law = LAW_NONE;
+    v.state[1] = NAN;
+    assert_refused(&v, "the initial z is not a finite number");
+    v.state[1] = 2;
+    v.state[9] = INFINITY;
+    assert_refused(&v, "the initial vq2 is not a finite number");
+    v.state[9] = 0;
+    v.state[3] = 2e4;
+    assert_refused(&v, "the initial position of foot1 is not defined: an angle is beyond 1e4 rad");
+
+    v = balance_values();
+    v.pole_im[2] = 1;
+    assert_refused(&v, "the pole -3.6+1i has no conjugate -3.6-1i among the poles");
+    v = balance_values();
+    v.sample_time = 0;
+    v.noise = 0.1;
+    assert_refused(&v, "controller.noise needs a controller.sample_time above 0");
+    v = balance_values();
+    v.step = 0;
+    assert_refused(&v, "method.step must be positive");
+    v = balance_values();
+    v.stop_time = 1e300;
+    assert_refused(&v, "stop.time has more than 1e+15 steps");
+    v = balance_values();
+    v.friction = NAN;
+    assert_refused(&v, "ground.friction must not be negative, ground.restitution lie within 0 ... "
+                       "1");
+}
+
+/* A case that failed leaves the same bits everywhere: nothing half done. */
+static void failed_design_is_clear(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    struct resolved_design design, clear;
+    stance_message message;
+    memset(&design, 0xff, sizeof design);
+    memset(&clear, 0, sizeof clear);
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++) {
+        clear.start[i] = clear.equilibrium[i] = NAN;
+    }
+    v.pole_re[0] = -4.6;
+    v.pole_re[1] = -4.6; /* three times */
+    assert_false(resolve_design(stance_scene_find("biped"), &v, &design, &message));
+    assert_memory_equal(&design, &clear, sizeof clear);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(balance),     cmocka_unit_test(offsets_of_translation),
+        cmocka_unit_test(other_foot),  cmocka_unit_test(sampling),
+        cmocka_unit_test(no_law),      cmocka_unit_test(hold_law),
+        cmocka_unit_test(wrong_model), cmocka_unit_test(own_equilibrium_and_gains),
+        cmocka_unit_test(refusals),    cmocka_unit_test(failed_design_is_clear),
+    };
+    return cmocka_run_group_tests_name("resolve", tests, NULL, NULL);
+}
