@@ -43,7 +43,7 @@ static size_t edit_distance(const char *a, const char *b)
 const char *nearest_word(const char *word, const char *const *known, size_t count)
 {
     const char *nearest = NULL;
-    size_t length = strlen(word);
+    size_t length = minimum(strlen(word), LONGEST_WORD);
     size_t admitted = length / 3 > 2 ? length / 3 : 2, best = admitted + 1;
 
     for (size_t i = 0; i < count; i++) {
@@ -59,7 +59,8 @@ const char *nearest_word(const char *word, const char *const *known, size_t coun
 
 static void print_help(const struct command *command)
 {
-    printf("usage: stance %s\n\n%s.\n", command->synopsis, command->summary);
+    bool named = strncmp(command->synopsis, "stance ", 7) == 0;
+    printf("usage: %s%s\n\n%s.\n", named ? "" : "stance ", command->synopsis, command->summary);
     if (command->help && command->help[0]) {
         printf("\n%s", command->help);
         if (command->help[strlen(command->help) - 1] != '\n') {

@@ -77,7 +77,7 @@ static int run_status(int argc, char **argv)
     bool help;
     const struct option_spec specs[] = {{"--json", false, NULL, 0, &json}};
     struct state state;
-    stance_message message;
+    stance_message message = {""};
 
     if (!command_options(&command_status, argc, argv, specs, 1, &file, 1, &operands, &help)) {
         return EXIT_USAGE;

@@ -1,4 +1,8 @@
-/* parallel.c - the one file that talks to MPI; without STANCE_MPI it does for one rank. */
+/* parallel.c - the one file that talks to MPI; without STANCE_MPI it does for one rank.
+ *
+ * A single rank never needs MPI, so that `stance run` alone works where MPI cannot start: MPI is
+ * initialised only when a launcher started this process.
+ */
 #include "parallel.h"
 
 #include <stdio.h>
@@ -11,10 +15,10 @@
 #endif
 
 struct parallel_shared {
-#ifdef STANCE_MPI
-    MPI_Win window;
-#endif
     int64_t *counter; /* [COUNTERS] on rank 0, else none */
+#ifdef STANCE_MPI
+    MPI_Win window; /* when there are several ranks */
+#endif
 };
 
 struct parallel parallel_alone(void)
@@ -30,24 +34,73 @@ void parallel_host(char *name, size_t size)
     name[size - 1] = '\0';
 }
 
+/* ---- counters of one rank ----------------------------------------------------------------- */
+
+static bool share_alone(struct parallel *parallel)
+{
+    struct parallel_shared *shared = calloc(1, sizeof *shared);
+    int64_t *counter = calloc(COUNTERS, sizeof *counter);
+    if (!shared || !counter) {
+        free(shared);
+        free(counter);
+        return false;
+    }
+    shared->counter = counter;
+    parallel->shared = shared;
+    return true;
+}
+
+static void unshare_alone(struct parallel *parallel)
+{
+    free(parallel->shared->counter);
+    free(parallel->shared);
+    parallel->shared = NULL;
+}
+
+static int64_t add_alone(const struct parallel *parallel, enum parallel_counter counter,
+                         int64_t value)
+{
+    int64_t before = parallel->shared->counter[counter];
+    parallel->shared->counter[counter] += value;
+    return before;
+}
+
 #ifdef STANCE_MPI
 
 /* MPI counts in int: longer messages go in pieces. */
 enum { PIECE = 1 << 28 };
 
+/* Launchers tell a process its rank in one of these. */
+static bool was_launched(void)
+{
+    static const char *const variable[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
+    for (size_t i = 0; i < sizeof variable / sizeof variable[0]; i++) {
+        if (getenv(variable[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
 struct parallel parallel_start(void)
 {
     struct parallel parallel = parallel_alone();
-    MPI_Init(NULL, NULL);
-    MPI_Comm_rank(MPI_COMM_WORLD, &parallel.rank);
-    MPI_Comm_size(MPI_COMM_WORLD, &parallel.size);
+    if (was_launched()) {
+        MPI_Init(NULL, NULL);
+        MPI_Comm_rank(MPI_COMM_WORLD, &parallel.rank);
+        MPI_Comm_size(MPI_COMM_WORLD, &parallel.size);
+    }
     return parallel;
 }
 
 void parallel_finish(struct parallel *parallel)
 {
+    int started = 0;
     parallel_unshare(parallel);
-    MPI_Finalize();
+    MPI_Initialized(&started);
+    if (started) {
+        MPI_Finalize();
+    }
 }
 
 static int piece_of(size_t left)
@@ -58,10 +111,7 @@ static int piece_of(size_t left)
 void parallel_broadcast(const struct parallel *parallel, void *data, size_t size)
 {
     char *bytes = data;
-    if (parallel->size == 1) {
-        return;
-    }
-    for (size_t at = 0; at < size; at += PIECE) {
+    for (size_t at = 0; parallel->size > 1 && at < size; at += PIECE) {
         MPI_Bcast(bytes + at, piece_of(size - at), MPI_BYTE, 0, MPI_COMM_WORLD);
     }
 }
@@ -70,9 +120,9 @@ void parallel_gather(const struct parallel *parallel, const void *data, size_t s
 {
     if (parallel->size == 1) {
         memcpy(all, data, size);
-        return;
+    } else {
+        MPI_Gather(data, (int)size, MPI_BYTE, all, (int)size, MPI_BYTE, 0, MPI_COMM_WORLD);
     }
-    MPI_Gather(data, (int)size, MPI_BYTE, all, (int)size, MPI_BYTE, 0, MPI_COMM_WORLD);
 }
 
 void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,
@@ -123,9 +173,12 @@ bool parallel_agree(const struct parallel *parallel, bool good, char *text, size
 
 bool parallel_share(struct parallel *parallel)
 {
+    if (parallel->size == 1) {
+        return share_alone(parallel);
+    }
     struct parallel_shared *shared = calloc(1, sizeof *shared);
     char none[1] = "";
-    if (!parallel_agree(parallel, shared != NULL, none, sizeof none)) {
+    if (!parallel_agree(parallel, shared != NULL, none, sizeof none) || !shared) {
         free(shared);
         return false;
     }
@@ -144,12 +197,17 @@ bool parallel_share(struct parallel *parallel)
 
 void parallel_unshare(struct parallel *parallel)
 {
-    if (parallel->shared) {
-        MPI_Win_unlock_all(parallel->shared->window);
-        MPI_Win_free(&parallel->shared->window);
-        free(parallel->shared);
-        parallel->shared = NULL;
+    if (!parallel->shared) {
+        return;
     }
+    if (parallel->size == 1) {
+        unshare_alone(parallel);
+        return;
+    }
+    MPI_Win_unlock_all(parallel->shared->window);
+    MPI_Win_free(&parallel->shared->window);
+    free(parallel->shared);
+    parallel->shared = NULL;
 }
 
 /* One-sided, so nobody serves the counters. Some networks move them on only while rank 0 is
@@ -157,6 +215,9 @@ void parallel_unshare(struct parallel *parallel)
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
 {
     int64_t before = 0;
+    if (parallel->size == 1) {
+        return add_alone(parallel, counter, value);
+    }
     MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)counter, MPI_SUM,
                      parallel->shared->window);
     MPI_Win_flush(0, parallel->shared->window);
@@ -192,7 +253,9 @@ void parallel_broadcast(const struct parallel *parallel, void *data, size_t size
 void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all)
 {
     (void)parallel;
-    memcpy(all, data, size);
+    if (all) {
+        memcpy(all, data, size);
+    }
 }
 
 void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,
@@ -214,32 +277,19 @@ bool parallel_agree(const struct parallel *parallel, bool good, char *text, size
 
 bool parallel_share(struct parallel *parallel)
 {
-    struct parallel_shared *shared = malloc(sizeof *shared);
-    int64_t *counter = calloc(COUNTERS, sizeof *counter);
-    if (!shared || !counter) {
-        free(shared);
-        free(counter);
-        return false;
-    }
-    shared->counter = counter;
-    parallel->shared = shared;
-    return true;
+    return share_alone(parallel);
 }
 
 void parallel_unshare(struct parallel *parallel)
 {
     if (parallel->shared) {
-        free(parallel->shared->counter);
-        free(parallel->shared);
-        parallel->shared = NULL;
+        unshare_alone(parallel);
     }
 }
 
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
 {
-    int64_t before = parallel->shared->counter[counter];
-    parallel->shared->counter[counter] += value;
-    return before;
+    return add_alone(parallel, counter, value);
 }
 
 void parallel_library(char *text, size_t size)

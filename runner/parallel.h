@@ -23,7 +23,7 @@ struct parallel {
 
 /* One rank, without starting MPI. */
 struct parallel parallel_alone(void);
-/* Starts MPI: once in a process. */
+/* Starts MPI, once in a process, when a launcher (mpirun, srun) started it; else one rank. */
 struct parallel parallel_start(void);
 /* Ends MPI; every rank must come here. */
 void parallel_finish(struct parallel *parallel);

@@ -395,7 +395,6 @@ static void try_cases(const struct plan *plan, uint64_t from, uint64_t n, int64_
 {
     for (uint64_t i = from; i < from + n; i++) {
         stance_case input;
-        stance_result result = {0};
         int method;
         uint64_t row = plan->single ? 0 : spread_case(plan, i, COST_CASES) % plan->rows;
         trial->cases++;
@@ -416,8 +415,7 @@ static void try_cases(const struct plan *plan, uint64_t from, uint64_t n, int64_
         double start = plan_clock();
         kernel->run(bundle, results, (size_t)lanes);
         trial->seconds += (plan_clock() - start) / lanes;
-        result = results[0];
-        trial->steps += (uint64_t)result.steps;
+        trial->steps += (uint64_t)results[0].steps;
     }
 }
 

@@ -52,7 +52,7 @@ static int by_position(const void *left, const void *right)
 static void clean(char *to, size_t limit, const char *from)
 {
     size_t n = 0;
-    while (from[n] && n < limit) {
+    while (n < limit && from[n]) {
         unsigned char c = (unsigned char)from[n];
         to[n] = (c < 0x20 || c == 0x7f) ? '?' : (char)c;
         n++;

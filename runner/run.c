@@ -217,8 +217,6 @@ static void stage_scenario(struct run *run)
         } else {
             /* The reader has printed why. */
             run->failure.code = access(o->scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
-            free(run->scenario);
-            run->scenario = NULL;
         }
     }
     parallel_broadcast(&run->parallel, &length, sizeof length);
@@ -237,6 +235,9 @@ static void stage_scenario(struct run *run)
         free(text);
     } else if (length > 0) {
         parallel_broadcast(&run->parallel, run->scenario->text, length);
+    } else {
+        free(run->scenario);
+        run->scenario = NULL;
     }
     if (nowhere) {
         fclose(nowhere);
@@ -255,7 +256,9 @@ static void name_file(struct run *run)
 {
     const struct options *o = &run->options;
     if (o->output) {
-        snprintf(run->file, sizeof run->file, "%s", o->output);
+        if (snprintf(run->file, sizeof run->file, "%s", o->output) >= (int)sizeof run->file - 8) {
+            fail(run, EXIT_IO, "stance run: the name of the results file is too long");
+        }
     } else if (o->single) {
         snprintf(run->file, sizeof run->file, "results/%s-case%" PRIu64 ".h5", run->scenario->name,
                  o->single_case);
@@ -294,7 +297,7 @@ static void look_into_file(struct run *run)
 {
     struct store_origin origin;
     struct store_counts counts = {0};
-    stance_message message;
+    stance_message message = {""};
 
     if (!store_read_origin(run->file, &origin, &message)) {
         fail_io(run, &message);
@@ -325,13 +328,14 @@ static void look_into_file(struct run *run)
 static void claim_file(struct run *run)
 {
     const struct options *o = &run->options;
-    stance_message message;
+    stance_message message = {""};
     struct stat information;
     bool exists = lstat(run->file, &information) == 0;
 
     if (exists && !o->force && !o->resume) {
         snprintf(run->failure.text, sizeof run->failure.text,
-                 "stance run: %s exists; --force replaces it, --resume goes on with it", run->file);
+                 "stance run: %.400s exists; --force replaces it, --resume goes on with it",
+                 run->file);
         run->failure.code = EXIT_IO;
         return;
     }
@@ -360,7 +364,7 @@ static void claim_file(struct run *run)
 static void stage_claim(struct run *run)
 {
     name_file(run);
-    if (run->parallel.rank == 0 && !run->options.dry_run) {
+    if (run->parallel.rank == 0 && !run->options.dry_run && run->failure.code == EXIT_DONE) {
         claim_file(run);
     }
     parallel_broadcast(&run->parallel, &run->resume, sizeof run->resume);
@@ -374,19 +378,9 @@ static void share_axes(struct run *run)
 {
     for (int a = 0; a < run->scenario->axes; a++) {
         struct scenario_axis *axis = &run->scenario->axis[a];
-        bool there = axis->value != NULL;
-        if (!axis->log) {
-            continue;
+        if (axis->log) {
+            parallel_broadcast(&run->parallel, axis->value, axis->count * sizeof *axis->value);
         }
-        double *value = there ? axis->value : malloc(axis->count * sizeof *value);
-        if (!value) {
-            abort(); /* the others wait in the broadcast: MPI ends the job */
-        }
-        for (size_t i = 0; !there && i < axis->count; i++) {
-            value[i] = scenario_axis_value(axis, i, 0);
-        }
-        parallel_broadcast(&run->parallel, value, axis->count * sizeof *value);
-        axis->value = value;
     }
 }
 
@@ -451,7 +445,7 @@ static char *collect_hosts(const struct parallel *parallel)
 
 static void stage_create(struct run *run)
 {
-    stance_message message;
+    stance_message message = {""};
     if (run->resume) {
         return;
     }
@@ -573,7 +567,7 @@ static void print_interrupted(const struct run *run, uint64_t finished)
             print_word(run->argv[i]);
         }
     }
-    fputs(" --resume\n", stderr);
+    fputs(run->options.single ? " --force\n" : " --resume\n", stderr);
 }
 
 static void print_summary(const struct run *run, const uint64_t *outcome, uint64_t failed,

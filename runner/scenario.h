@@ -72,13 +72,15 @@ struct scenario_axis {
     char text[160]; /* its documentation, as long_name */
     int paths;
     char path[SCENARIO_MAX_PATHS][96];
-    size_t offset[SCENARIO_MAX_PATHS]; /* of the field in struct scenario_values */
-    bool integer[SCENARIO_MAX_PATHS];  /* the field is an int (an enumeration: words below) */
-    bool words;                        /* the axis lists strings */
-    bool design;                       /* some path changes what the design depends on */
+    size_t offset[SCENARIO_MAX_PATHS];    /* of the field in struct scenario_values */
+    bool integer[SCENARIO_MAX_PATHS];     /* the field is an int (an enumeration: words below) */
+    bool enumeration[SCENARIO_MAX_PATHS]; /* ... of words */
+    bool words;                           /* some path is an enumeration: the axis lists strings */
+    bool design;                          /* some path changes what the design depends on */
     size_t count;
-    /* value[point * paths + k] for lists; for ranges NULL: computed from `from`, `to`, `log`.
-     * Words are stored as the enumeration's numbers, their text in word[point * paths + k]. */
+    /* value[point * paths + k] for lists and logarithmic ranges; for linear ranges NULL: computed
+     * from `from` and `to`. Words are stored as the enumeration's numbers; on an axis of words
+     * word[point * paths + k] is the text of every value, numbers as they were written. */
     double *value;
     char **word;
     double from, to;
@@ -98,11 +100,12 @@ struct scenario {
     struct scenario_axis axis[SCENARIO_MAX_AXES];
     uint64_t cases; /* product of the counts; 1 without a sweep */
 
-    double record_every; /* s; 0: no trajectories */
+    double record_every; /* s; 0: not given, and no trajectories */
     enum scenario_record record_cases;
     uint64_t *record_list; /* sorted, unique, all < cases */
     size_t record_count;
-    uint32_t answers; /* bit per row of the answer table in store.h; all ones by default */
+    uint32_t answers; /* bit per row of the answer table in store.h, then one for final_state,
+                       * which bit 31 stands for as well; all ones by default */
 
     char *text; /* resolved scenario: after --set, as YAML; what the file stores and hashes */
     /* Where fields stand, for errors found later (design, initial state). */

@@ -135,30 +135,41 @@ hid_t store_memory_type(enum store_kind kind)
 
 /* ---- errors ------------------------------------------------------------------------------- */
 
-/* The system's words ("No space left on device"), or else HDF5's innermost. */
-static herr_t find_reason(unsigned n, const H5E_error2_t *error, void *reason)
+/* What HDF5 said when a call failed: the next call, be it a close, wipes HDF5's own memory. The
+ * system's words ("No space left on device") are worth more than HDF5's, the first more than the
+ * later ones. */
+static struct {
+    char text[120];
+    bool system;
+} reason;
+
+static herr_t find_reason(unsigned n, const H5E_error2_t *error, void *unused)
 {
-    char *text = reason;
-    (void)n;
+    (void)n, (void)unused;
     const char *system = error->desc ? strstr(error->desc, "error message = '") : NULL;
-    if (system) {
+    if (system && !reason.system) {
         system += strlen("error message = '");
-        snprintf(text, 120, "%.*s", (int)strcspn(system, "'"), system);
-        return 1;
-    }
-    if (text[0] == '\0' && error->desc) {
-        snprintf(text, 120, "%.*s", (int)strcspn(error->desc, "\n"), error->desc);
+        snprintf(reason.text, sizeof reason.text, "%.*s", (int)strcspn(system, "'"), system);
+        reason.system = true;
+    } else if (reason.text[0] == '\0' && error->desc) {
+        snprintf(reason.text, sizeof reason.text, "%.*s", (int)strcspn(error->desc, "\n"),
+                 error->desc);
     }
     return 0;
 }
 
+/* HDF5 calls this whenever one of its functions fails. */
+static herr_t remember_reason(hid_t stack, void *unused)
+{
+    return H5Ewalk2(stack, H5E_WALK_UPWARD, find_reason, unused);
+}
+
 bool store_failed(stance_message *message, const char *file, const char *what)
 {
-    char reason[120] = "";
-    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, find_reason, reason);
-    H5Eclear2(H5E_DEFAULT);
     snprintf(message->text, sizeof message->text, "%.80s: cannot %s: %s", file, what,
-             reason[0] ? reason : "unknown reason");
+             reason.text[0] ? reason.text : "unknown reason");
+    reason.text[0] = '\0';
+    reason.system = false;
     return false;
 }
 
@@ -168,7 +179,7 @@ void store_prepare(void)
      * keeps them from being closed at exit: after a failed write both would write again. */
     H5dont_atexit();
     H5open();
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    H5Eset_auto2(H5E_DEFAULT, remember_reason, NULL);
 }
 
 void store_library(char *text, size_t size)
@@ -707,7 +718,7 @@ void store_origin_free(struct store_origin *origin)
 
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
 {
-    if (!axis->log || axis->value) {
+    if (!axis->log) {
         return true;
     }
     hid_t id = open_to_read(file), dataset = H5Dopen2(id, axis->name, H5P_DEFAULT);
@@ -722,6 +733,7 @@ bool store_read_axis(const char *file, struct scenario_axis *axis, stance_messag
         free(value);
         return store_failed(message, file, "read an axis");
     }
+    free(axis->value);
     axis->value = value;
     return true;
 }

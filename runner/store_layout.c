@@ -12,7 +12,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <hdf5_hl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -261,9 +260,15 @@ static size_t axis_point(const struct scenario *s, int a, uint64_t index)
     return (size_t)(index % s->axis[a].count);
 }
 
+/* The other paths of an axis of words may hold numbers. */
+static bool has_words(const struct scenario_axis *axis, int path)
+{
+    return axis->words && axis->enumeration[path];
+}
+
 static hid_t axis_type(const struct scenario_axis *axis, int path)
 {
-    return axis->words           ? word_type()
+    return has_words(axis, path) ? word_type()
            : axis->integer[path] ? H5Tcopy(store_file_type(KIND_int32_t))
                                  : H5Tcopy(store_file_type(KIND_double));
 }
@@ -290,11 +295,11 @@ static bool put_path(struct layout *layout, const struct axis_values *values,
     const char *name = values->path == 0 ? axis->name : axis->path[values->path];
     hid_t type = axis_type(axis, values->path);
     hid_t dataset = type < 0 ? -1 : make_dataset(layout->file, name, type, 1, &n);
-    bool good =
-        dataset >= 0 &&
-        (axis->words ? write_axis_words(dataset, type, values, n)
-                     : write_values(dataset, n, axis_value, values)) &&
-        (values->path > 0 || put_meaning(dataset, axis->words ? NULL : axis->unit, axis->text));
+    bool good = dataset >= 0 &&
+                (has_words(axis, values->path) ? write_axis_words(dataset, type, values, n)
+                                               : write_values(dataset, n, axis_value, values)) &&
+                (values->path > 0 ||
+                 put_meaning(dataset, has_words(axis, 0) ? NULL : axis->unit, axis->text));
     if (over) {
         good = good && attach(dataset, &over, 1);
         H5Dclose(dataset);

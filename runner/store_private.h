@@ -7,6 +7,7 @@
 #include "store.h"
 
 #include <hdf5.h>
+#include <hdf5_hl.h>
 
 /* Bytes in memory are bytes of the file, checksums included. */
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is little-endian");

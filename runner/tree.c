@@ -79,15 +79,15 @@ static bool append(struct tree *tree, struct tree_node *parent, const struct tre
 {
     if (parent->count == parent->room) {
         size_t room = parent->room ? 2 * parent->room : 8;
-        struct tree_node **items = allocate(tree, room * sizeof *items);
+        struct tree_node **items = allocate(tree, room * sizeof(void *));
         struct tree_key *keys = key ? allocate(tree, room * sizeof *keys) : NULL;
         if (!items || (key && !keys)) {
             return false;
         }
-        if (parent->count) {
-            memcpy(items, parent->item, parent->count * sizeof *items);
+        if (parent->item) {
+            memcpy(items, parent->item, parent->count * sizeof(void *));
         }
-        if (key && parent->count) {
+        if (key && parent->key) {
             memcpy(keys, parent->key, parent->count * sizeof *keys);
         }
         parent->item = items;
@@ -103,7 +103,7 @@ static bool append(struct tree *tree, struct tree_node *parent, const struct tre
 
 static struct tree_node **find_place(const struct tree_node *map, const char *key, size_t *index)
 {
-    for (size_t i = 0; map->kind == TREE_MAP && i < map->count; i++) {
+    for (size_t i = 0; map->kind == TREE_MAP && map->item && i < map->count; i++) {
         if (strcmp(map->key[i].name, key) == 0) {
             *index = i;
             return &map->item[i];
@@ -504,6 +504,7 @@ static struct tree_node **descend(struct tree *tree, struct tree_node **place, c
                         node->count, node->count == 1 ? "" : "s", index);
             return NULL;
         }
+        node->mark = mark; /* its length is now that of --set */
         if (append(tree, node, NULL, item)) {
             return &node->item[index];
         }

@@ -91,10 +91,9 @@ static bool bench_make(struct bench *bench, const struct plan *plan)
     }
     size_t size = (size_t)plan->record_rows * instant_size(plan->scenario->scene);
     bench->room = TRAJECTORY_MEMORY / (size * sizeof(double));
-    bench->room = bench->room < 1 ? 1 : bench->room > STORE_ROWS ? STORE_ROWS : bench->room;
-    if (bench->room > plan->record_cases) {
-        bench->room = (size_t)plan->record_cases;
-    }
+    bench->room = bench->room > STORE_ROWS ? STORE_ROWS : bench->room;
+    bench->room = bench->room > plan->record_cases ? (size_t)plan->record_cases : bench->room;
+    bench->room = bench->room < 1 ? 1 : bench->room;
     bench->samples = malloc(bench->room * size * sizeof *bench->samples);
     bench->trajectory = calloc(bench->room, sizeof *bench->trajectory);
     bench->place = calloc(bench->room, sizeof *bench->place);
@@ -146,7 +145,7 @@ static void run_method(struct bench *bench, int method, size_t n)
             index[count++] = i;
         }
     }
-    if (count == 0) {
+    if (count == 0 || !bench->kernel[method]) { /* the plan saw to it that there is a kernel */
         return;
     }
     memset(bench->grouped_results, 0, count * sizeof *bench->grouped_results);

@@ -99,7 +99,9 @@ class Drop:
                         return self.robot.points(q, v)[2 + k][2][0] @ v
                     N, T = self.accelerate(q, v, modes)[1][k]
                     return N if kind == 'normal' else self.mu * N - abs(T)
-                f.terminal, f.direction = True, (0 if kind == 'slip' else -1)
+                f.terminal = True
+                # a slip that has just begun starts from zero: only its end counts
+                f.direction = 1 if kind == 'slip' and modes[k] == 'b' else -1
                 f.what = (k, kind)
                 return f
 

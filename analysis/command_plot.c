@@ -1,0 +1,213 @@
+/* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
+#include "plot.h"
+
+#include "../runner/command.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The directory of a file, or "." */
+static void directory_of(const char *file, char *directory, size_t size)
+{
+    const char *slash = strrchr(file, '/');
+    if (!slash) {
+        snprintf(directory, size, ".");
+    } else {
+        snprintf(directory, size, "%.*s", slash == file ? 1 : (int)(slash - file), file);
+    }
+}
+
+/* Makes the directory when it is missing; says why nothing can be written there. */
+static bool prepare_directory(const char *directory)
+{
+    struct stat information;
+    int error = 0;
+    if (mkdir(directory, 0777) != 0 && errno != EEXIST) {
+        error = errno;
+    } else if (stat(directory, &information) != 0) {
+        error = errno;
+    } else if (!S_ISDIR(information.st_mode)) {
+        error = ENOTDIR;
+    } else if (access(directory, W_OK | X_OK) != 0) {
+        error = errno;
+    }
+    if (error) {
+        fprintf(stderr, "%s: pictures cannot be written there: %s\n", directory, strerror(error));
+    }
+    return error == 0;
+}
+
+static bool parse_index(const char *text, uint64_t *index)
+{
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(text, &end, 10);
+    *index = value;
+    return text[0] >= '0' && text[0] <= '9' && *end == '\0' && errno == 0;
+}
+
+/* ---- one case ----------------------------------------------------------------------------- */
+
+/* Says how a trajectory comes about. */
+static void explain_recording(const struct results *r, uint64_t index)
+{
+    if (r->single) {
+        fprintf(stderr,
+                "%s: holds one case without a trajectory; run its scenario with "
+                "`--set record.cases=all --set record.every=0.01`, or with `--only %llu --trace`\n",
+                r->file, (unsigned long long)index);
+    } else {
+        fprintf(stderr,
+                "%s: has no trajectory of case %llu; `stance run SCENARIO --only %llu --trace` "
+                "records one\n",
+                r->file, (unsigned long long)index, (unsigned long long)index);
+    }
+}
+
+static int draw_case(const struct plot *plot, uint64_t index, bool given)
+{
+    const struct results *r = plot->r;
+    uint64_t *list;
+    size_t count, place = 0;
+    stance_message message;
+    char stem[400];
+
+    if (!r->single && index >= r->cases) {
+        fprintf(stderr, "%s: has no case %llu: the last is %llu\n", r->file,
+                (unsigned long long)index, (unsigned long long)r->cases - 1);
+        return EXIT_USAGE;
+    }
+    if (!results_recorded(r, &list, &count, &message)) {
+        fprintf(stderr, "%s\n", message.text);
+        return EXIT_IO;
+    }
+    while (place < count && list[place] != index) {
+        place++;
+    }
+    free(list);
+    if (place == count) {
+        explain_recording(r, index);
+        return EXIT_USAGE;
+    }
+    if (r->kind[r->single ? 0 : index] == RESULTS_PENDING) {
+        fprintf(stderr, "%s: case %llu has not been computed yet\n", r->file,
+                (unsigned long long)index);
+        return EXIT_USAGE;
+    }
+    struct plot own = *plot;
+    snprintf(stem, sizeof stem, "%.300s-case%llu", plot->stem, (unsigned long long)index);
+    own.stem = given && !r->single ? stem : plot->stem;
+    if (!plot_case(&own, place, index, &message)) {
+        fprintf(stderr, "%s\n", message.text);
+        return EXIT_IO;
+    }
+    return EXIT_DONE;
+}
+
+/* ---- a sweep ------------------------------------------------------------------------------ */
+
+static int draw_sweep(const struct plot *plot)
+{
+    const struct results *r = plot->r;
+    uint64_t *list;
+    size_t count;
+    stance_message message;
+
+    bool parameter = r->axes > 1 && !r->axis[0].offset;
+    bool good = (r->axes < 2 || plot_maps(plot, &message)) &&
+                ((r->axes > 1 && !parameter) || plot_curve(plot, &message)) &&
+                results_recorded(r, &list, &count, &message);
+    if (!good) {
+        fprintf(stderr, "%s\n", message.text);
+        return EXIT_IO;
+    }
+    if (count > 0) {
+        fprintf(stderr, "trajectories of %zu case%s are recorded: --case %llu draws %s\n", count,
+                count == 1 ? "" : "s", (unsigned long long)list[0],
+                count == 1 ? "it" : "the first");
+    }
+    free(list);
+    return EXIT_DONE;
+}
+
+/* ---- the command -------------------------------------------------------------------------- */
+
+static int draw(const char *file, const char *directory, const char *index_text)
+{
+    struct results r;
+    stance_message message;
+    char own_directory[1024];
+    uint64_t index = 0;
+    int code;
+
+    if (index_text && !parse_index(index_text, &index)) {
+        fprintf(stderr, "stance plot: --case takes the number of a case, not '%s'\n", index_text);
+        return EXIT_USAGE;
+    }
+    if (!results_open(&r, file, &message)) {
+        fprintf(stderr, "%s\n", message.text);
+        return EXIT_IO;
+    }
+    if (!directory) {
+        directory_of(file, own_directory, sizeof own_directory);
+        directory = own_directory;
+    }
+    const struct plot plot = {&r, directory, r.name};
+    if (!prepare_directory(directory)) {
+        code = EXIT_IO;
+    } else if (index_text || r.single) {
+        code = draw_case(&plot, index_text ? index : r.index, index_text != NULL);
+    } else {
+        code = draw_sweep(&plot);
+    }
+    results_close(&r);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    const char *file = NULL, *directory = NULL, *index = NULL;
+    size_t directories = 0, indices = 0, operands = 0;
+    bool help = false;
+    const struct option_spec specs[] = {
+        {"-o", true, &directory, 1, &directories},
+        {"--case", true, &index, 1, &indices},
+    };
+
+    if (!command_options(&command_plot, argc, argv, specs, sizeof specs / sizeof specs[0], &file, 1,
+                         &operands, &help)) {
+        return EXIT_USAGE;
+    }
+    if (help) {
+        return EXIT_DONE;
+    }
+    if (operands == 0 || (directory && !directory[0])) {
+        fprintf(stderr, "stance plot: %s is needed (stance plot -h explains)\n",
+                operands == 0 ? "a results file" : "a directory");
+        return EXIT_USAGE;
+    }
+    return draw(file, directory, index);
+}
+
+const struct command command_plot = {
+    "plot",
+    "plot FILE [-o DIR] [--case N]",
+    "pictures (SVG and PNG)",
+    run,
+    "Draws with gnuplot what the file calls for, into DIR (made when missing; default: where the\n"
+    "file is), and prints the path of every file written.\n"
+    "\n"
+    "  two axes or more    NAME-map: the outcome of every case over the last two axes of numbers,\n"
+    "                      one panel per point of the others; NAME-settle_time: when it settled\n"
+    "  one axis            NAME-curve: outcome, times and friction used along it\n"
+    "  a first axis that   NAME-curve: the share of stabilised cases against it, with Wilson's\n"
+    "  is not an offset    95 % band\n"
+    "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"
+    "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
+    "\n"
+    "  -o DIR     where the pictures go\n"
+    "  --case N   the trajectory of case N (flat index) instead of the sweep\n",
+};

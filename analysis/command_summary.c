@@ -1,0 +1,488 @@
+/* command_summary.c - `stance summary FILE`: what came out, as text or JSON. */
+#include "summary.h"
+
+#include "../runner/command.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TABLE_ROWS = 20, CHANGES_SHOWN = 10, WRAP = 100 };
+
+static double percent(uint64_t k, uint64_t n)
+{
+    return n ? 100 * (double)k / (double)n : 0;
+}
+
+/* ---- text: what the study was ------------------------------------------------------------- */
+
+static void print_head(const struct results *r)
+{
+    printf("%s\n%s: ", r->title[0] ? r->title : r->name, r->file);
+    if (r->single) {
+        printf("case %llu", (unsigned long long)r->index);
+    } else {
+        printf("%llu case%s", (unsigned long long)r->cases, r->cases == 1 ? "" : "s");
+    }
+    printf(", stance %s (%s), %s, %d rank%s\n", r->version, r->revision, r->date, r->ranks,
+           r->ranks == 1 ? "" : "s");
+}
+
+static void print_axes(const struct results *r)
+{
+    char first[128], last[128];
+    int width = 0;
+    for (int a = 0; a < r->axes; a++) {
+        int length = (int)strlen(r->axis[a].name);
+        width = length > width ? length : width;
+    }
+    puts("\nVaried");
+    for (int a = 0; a < r->axes; a++) {
+        const struct results_axis *axis = &r->axis[a];
+        results_value_text(axis, 0, false, first, sizeof first);
+        results_value_text(axis, axis->count - 1, true, last, sizeof last);
+        printf("  %-*s  %s ... %s, %zu value%s%s%s\n", width, axis->name, first, last, axis->count,
+               axis->count == 1 ? "" : "s", axis->text[0] ? "; " : "", axis->text);
+    }
+}
+
+/* One paragraph per group of fields: "robot: leg_length 0.535 m, ...", wrapped. */
+static void print_fields(const struct summary *summary)
+{
+    char group[96] = "", word[300];
+    int column = 0;
+    if (summary->fields > 0) {
+        fputs("\nFixed", stdout);
+    }
+    for (size_t i = 0; i < summary->fields; i++) {
+        const struct summary_field *field = &summary->field[i];
+        size_t length = strcspn(field->path, ".");
+        const char *name = field->path[length] ? field->path + length + 1 : field->path;
+        bool same = strncmp(group, field->path, length) == 0 && group[length] == '\0';
+        snprintf(word, sizeof word, "%s %s%s%s", name, field->text, field->unit[0] ? " " : "",
+                 field->unit);
+        if (!same) {
+            snprintf(group, sizeof group, "%.*s", (int)length, field->path);
+            column = printf("\n  %-11s", group);
+        } else if (column + 2 + (int)strlen(word) > WRAP) {
+            printf(",\n  %-11s", "");
+            column = 13;
+        } else {
+            column += printf(", ");
+        }
+        column += printf("%s", word);
+    }
+    if (summary->fields > 0) {
+        putchar('\n');
+    }
+}
+
+/* ---- text: outcomes ----------------------------------------------------------------------- */
+
+static void print_share(const char *name, uint64_t k, uint64_t n)
+{
+    double low, high;
+    statistics_wilson(k, n, &low, &high);
+    printf("  %-11s%12llu  %7.3f %%   (%.3f ... %.3f %%)\n", name, (unsigned long long)k,
+           percent(k, n), 100 * low, 100 * high);
+}
+
+static void print_outcomes(const struct summary *summary)
+{
+    const struct statistics_counts *counts = &summary->counts;
+    printf("\nOutcomes of %llu cases done, with 95 %% intervals (Wilson)\n",
+           (unsigned long long)counts->done);
+    for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
+        if (k != RESULTS_PENDING && k != RESULTS_FAILED &&
+            (counts->kind[k] > 0 || k != RESULTS_DONE)) {
+            print_share(results_kind_names[k], counts->kind[k], counts->done);
+        }
+    }
+    if (counts->kind[RESULTS_DONE] == counts->done && counts->done > 0) {
+        puts("  (the file does not store outcomes)");
+    }
+    if (counts->kind[RESULTS_PENDING] > 0) {
+        printf("  %-11s%12llu  not computed yet\n", "pending",
+               (unsigned long long)counts->kind[RESULTS_PENDING]);
+    }
+    for (int f = 0; f < SUMMARY_FAILURES; f++) {
+        if (summary->failures[f] > 0) {
+            printf("  %-11s%12llu  %s: %s\n", "failed", (unsigned long long)summary->failures[f],
+                   summary_failure_name(f), summary_failure_text(f));
+        }
+    }
+}
+
+/* ---- text: extents ------------------------------------------------------------------------ */
+
+static const char *end_note(bool open, bool unknown)
+{
+    return open ? " (end of the axis)" : unknown ? " (next case pending or failed)" : "";
+}
+
+static void print_extents(const struct summary *summary, const struct results *r)
+{
+    bool first = true;
+    char at[128];
+    for (int a = 0; a < r->axes; a++) {
+        const struct statistics_extent *extent = &summary->extent[a];
+        const struct results_axis *axis = &r->axis[a];
+        if (!summary->has_extent[a]) {
+            continue;
+        }
+        if (first) {
+            puts("\nExtent of the stabilised set through the equilibrium");
+            first = false;
+        }
+        printf("  %s", axis->name);
+        if (extent->any) {
+            printf("  %.6g%s ... %.6g%s %s", extent->low,
+                   end_note(extent->low_open, extent->low_unknown), extent->high,
+                   end_note(extent->high_open, extent->high_unknown), axis->unit);
+        } else {
+            results_value_text(axis, extent->point[a], true, at, sizeof at);
+            printf("  none: the case nearest to the equilibrium (%s) is not stabilised", at);
+        }
+        bool also = false;
+        for (int b = 0; b < r->axes; b++) {
+            if (b != a && r->axis[b].offset) {
+                results_value_text(&r->axis[b], extent->point[b], true, at, sizeof at);
+                printf("%s%s = %s", also ? ", " : ", at ", r->axis[b].name, at);
+                also = true;
+            }
+        }
+        putchar('\n');
+    }
+}
+
+/* ---- text: parameters --------------------------------------------------------------------- */
+
+/* "-0.09 ... 0.02", "*" where it reaches the end of the axis, "-" for none. */
+static void extent_text(const struct results *r, int offset, int axis, size_t i, char *buffer,
+                        size_t size)
+{
+    size_t point[SCENARIO_MAX_AXES] = {0};
+    struct statistics_extent extent;
+    point[axis] = i;
+    if (!statistics_extent(r, offset, point, &extent) || !extent.any) {
+        snprintf(buffer, size, "-");
+        return;
+    }
+    snprintf(buffer, size, "%.4g%s ... %.4g%s", extent.low, extent.low_open ? "*" : "", extent.high,
+             extent.high_open ? "*" : "");
+}
+
+/* Row k of `rows` out of `count`, both ends included. */
+static size_t spread(size_t k, size_t rows, size_t count)
+{
+    return rows >= count ? k : rows < 2 ? 0 : k * (count - 1) / (rows - 1);
+}
+
+static void print_parameter_head(const struct results *r, int axis, const int *offsets, int shown)
+{
+    const struct results_axis *along = &r->axis[axis];
+    printf("\nStabilised against %s%s%s%s%s%s\n", along->name, along->unit[0] ? " (" : "",
+           along->unit, along->unit[0] ? ")" : "", along->text[0] ? ": " : "", along->text);
+    printf("  %14s %10s %10s   %-19s", "value", "done", "share", "95 % interval");
+    for (int k = 0; k < shown; k++) {
+        printf("  %-24s", r->axis[offsets[k]].name);
+    }
+    putchar('\n');
+}
+
+static void print_parameter_row(const struct summary *summary, const struct results *r, int axis,
+                                size_t i, const int *offsets, int shown)
+{
+    const struct statistics_counts *counts = &summary->by_value[axis][i];
+    char text[128];
+    double low, high;
+    statistics_wilson(counts->kind[RESULTS_STABILISED], counts->done, &low, &high);
+    results_value_text(&r->axis[axis], i, false, text, sizeof text);
+    printf("  %14s %10llu", text, (unsigned long long)counts->done);
+    if (counts->done == 0) {
+        printf(" %10s   %-19s", "-", "none done");
+    } else {
+        snprintf(text, sizeof text, "%.3f ... %.3f %%", 100 * low, 100 * high);
+        printf(" %8.3f %%   %-19s", 100 * summary_share(counts), text);
+    }
+    for (int k = 0; k < shown; k++) {
+        extent_text(r, offsets[k], axis, i, text, sizeof text);
+        printf("  %-24s", text);
+    }
+    putchar('\n');
+}
+
+static void print_parameter(const struct summary *summary, const struct results *r, int axis)
+{
+    const struct results_axis *along = &r->axis[axis];
+    const struct statistics_counts *counts = summary->by_value[axis];
+    size_t rows = along->count < TABLE_ROWS ? along->count : TABLE_ROWS;
+    int offsets[2], shown = 0;
+    char from[128], to[128];
+
+    for (int a = 0; summary->parameters == 1 && a < r->axes && shown < 2; a++) {
+        if (r->axis[a].offset) {
+            offsets[shown++] = a;
+        }
+    }
+    print_parameter_head(r, axis, offsets, shown);
+    for (size_t k = 0; k < rows; k++) {
+        print_parameter_row(summary, r, axis, spread(k, rows, along->count), offsets, shown);
+    }
+    if (rows < along->count) {
+        printf("  (%zu of %zu values; --json has them all)\n", rows, along->count);
+    }
+    if (shown > 0) {
+        puts("  (the last columns: extent of the stabilised set through the equilibrium, * where "
+             "it reaches\n  the end of the axis)");
+    }
+    size_t i = summary->steepest[axis];
+    if (along->count > 1 && summary_share(&counts[i]) != summary_share(&counts[i + 1])) {
+        results_value_text(along, i, true, from, sizeof from);
+        results_value_text(along, i + 1, true, to, sizeof to);
+        printf("  changes most between %s (%.3f %%) and %s (%.3f %%)\n", from,
+               100 * summary_share(&counts[i]), to, 100 * summary_share(&counts[i + 1]));
+    }
+}
+
+/* Where the outcome changes along the only axis. */
+static void print_changes(const struct results *r)
+{
+    char from[128], to[128];
+    size_t changes = 0;
+    for (size_t i = 0; i + 1 < r->cases; i++) {
+        if (r->kind[i] == r->kind[i + 1]) {
+            continue;
+        }
+        if (changes == 0) {
+            puts("\nThe outcome changes");
+        }
+        if (changes++ < CHANGES_SHOWN) {
+            results_value_text(&r->axis[0], i, true, from, sizeof from);
+            results_value_text(&r->axis[0], i + 1, true, to, sizeof to);
+            printf("  between %s (%s) and %s (%s)\n", from, results_kind_names[r->kind[i]], to,
+                   results_kind_names[r->kind[i + 1]]);
+        }
+    }
+    if (changes > CHANGES_SHOWN) {
+        printf("  and at %zu more places\n", changes - CHANGES_SHOWN);
+    }
+}
+
+/* ---- text: numbers ------------------------------------------------------------------------ */
+
+static void print_numbers(const struct summary *summary)
+{
+    char name[64];
+    bool first = true;
+    for (int k = 0; k < SUMMARY_NUMBER_COUNT; k++) {
+        const struct summary_numbers *row = &summary->numbers[k];
+        if (!row->stored || row->numbers.n == 0) {
+            continue;
+        }
+        if (first) {
+            printf("\n%-30s %11s %11s %11s %11s  %s\n", "Numbers", "median", "90 %", "99 %",
+                   "largest", "cases");
+            first = false;
+        }
+        snprintf(name, sizeof name, "%s%s%s%s", row->name, row->unit[0] ? " (" : "", row->unit,
+                 row->unit[0] ? ")" : "");
+        printf("  %-28s %11.4g %11.4g %11.4g %11.4g  %zu %s\n", name, row->numbers.median,
+               row->numbers.q90, row->numbers.q99, row->numbers.high, row->numbers.n,
+               row->of == RESULTS_KIND_COUNT ? "done" : results_kind_names[row->of]);
+    }
+}
+
+static void print_cost(const struct summary *summary)
+{
+    const struct summary_count *steps = &summary->steps, *iterations = &summary->iterations;
+    puts("\nCost");
+    if (steps->stored) {
+        printf("  %.6g time steps", steps->sum);
+        if (iterations->stored && steps->sum > 0) {
+            printf(", %.4g Newton iterations per step", iterations->sum / steps->sum);
+        }
+        putchar('\n');
+    }
+    if (summary->subdivided.stored) {
+        printf("  %.6g subdivided steps in %llu cases\n", summary->subdivided.sum,
+               (unsigned long long)summary->subdivided.cases);
+    }
+    if (summary->ambiguous.stored) {
+        printf("  %.6g steps with several contact solutions in %llu cases\n",
+               summary->ambiguous.sum, (unsigned long long)summary->ambiguous.cases);
+    }
+    if (summary->timed) {
+        printf("  %.4g s of computing on %zu rank%s (%.4g s together): %.4g cases/s\n",
+               summary->longest, summary->ranks, summary->ranks == 1 ? "" : "s", summary->total,
+               summary->timed_cases / summary->longest);
+    } else {
+        puts("  no times are recorded");
+    }
+}
+
+/* ---- text: a single case ------------------------------------------------------------------ */
+
+static const struct {
+    const char *name, *text;
+} case_times[] = {
+    {"end_time", "ended at"}, {"settle_time", "settled at"}, {"fall_time", "fell at"}};
+enum { CASE_TIMES = sizeof case_times / sizeof case_times[0] };
+
+static size_t final_state(const struct results *r, char name[][32], double *state)
+{
+    size_t n = results_words(r, "state", name, SCENARIO_MAX_STATES);
+    return n > 0 && results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) == n ? n : 0;
+}
+
+static void print_case(const struct summary *summary, const struct results *r)
+{
+    char name[SCENARIO_MAX_STATES][32];
+    double state[SCENARIO_MAX_STATES], time;
+    int kind = r->kind[0];
+
+    printf("\nOutcome: %s\n",
+           kind == RESULTS_PENDING ? "not computed yet" : results_kind_names[kind]);
+    if (kind == RESULTS_FAILED) {
+        int failure = r->failure ? r->failure[0] : 0;
+        printf("  %s: %s\n", summary_failure_name(failure), summary_failure_text(failure));
+    }
+    if (kind == RESULTS_PENDING || kind == RESULTS_FAILED) {
+        return;
+    }
+    for (int k = 0; k < CASE_TIMES; k++) {
+        if (results_numbers(r, case_times[k].name, &time, 1) == 1 && !isnan(time)) {
+            printf("  %-12s %.6g s\n", case_times[k].text, time);
+        }
+    }
+    size_t n = final_state(r, name, state);
+    for (size_t i = 0; i < n; i++) {
+        printf("%s%s %.6g",
+               i == 0       ? "  final state  "
+               : i == n / 2 ? ",\n               "
+                            : ", ",
+               name[i], state[i]);
+    }
+    if (n > 0) {
+        putchar('\n');
+    }
+    puts("\nNumbers");
+    for (int k = 0; k < SUMMARY_NUMBER_COUNT; k++) {
+        const struct summary_numbers *row = &summary->numbers[k];
+        if (k != SUMMARY_settle_time && k != SUMMARY_fall_time &&
+            results_numbers(r, row->name, &time, 1) == 1 && !isnan(time)) {
+            printf("  %-18s %.6g %s\n", row->name, time, row->unit);
+        }
+    }
+}
+
+static void print_text(const struct summary *summary, const struct results *r)
+{
+    print_head(r);
+    if (!r->single) {
+        print_axes(r);
+    }
+    print_fields(summary);
+    if (r->single) {
+        print_case(summary, r);
+        print_cost(summary);
+        return;
+    }
+    print_outcomes(summary);
+    print_extents(summary, r);
+    for (int a = 0; a < r->axes; a++) {
+        if (summary->by_value[a]) {
+            print_parameter(summary, r, a);
+        }
+    }
+    if (r->axes == 1) {
+        print_changes(r);
+    }
+    print_numbers(summary);
+    print_cost(summary);
+}
+
+/* ---- the command -------------------------------------------------------------------------- */
+
+static int summarise(const char *file, bool json)
+{
+    struct results r;
+    stance_message message;
+    int code = EXIT_IO;
+    struct summary *summary = calloc(1, sizeof *summary);
+
+    if (!summary) {
+        fputs("stance summary: not enough memory\n", stderr);
+        return EXIT_IO;
+    }
+    if (!results_open(&r, file, &message)) {
+        fprintf(stderr, "%s\n", message.text);
+        free(summary);
+        return EXIT_IO;
+    }
+    if (!summary_make(summary, &r, &message)) {
+        fprintf(stderr, "%s\n", message.text);
+    } else if (json && !summary_print_json(summary, &r)) {
+        fputs("stance summary: the summary could not be written\n", stderr);
+    } else {
+        if (!json) {
+            print_text(summary, &r);
+        }
+        code = EXIT_DONE;
+    }
+    summary_free(summary);
+    results_close(&r);
+    free(summary);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    const char *file = NULL;
+    size_t json = 0, operands = 0;
+    bool help = false;
+    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json}};
+
+    if (!command_options(&command_summary, argc, argv, specs, 1, &file, 1, &operands, &help)) {
+        return EXIT_USAGE;
+    }
+    if (help) {
+        return EXIT_DONE;
+    }
+    if (operands == 0) {
+        fputs("stance summary: a results file is needed (stance summary -h explains)\n", stderr);
+        return EXIT_USAGE;
+    }
+    return summarise(file, json > 0);
+}
+
+const struct command command_summary = {
+    "summary",
+    "summary FILE [--json]",
+    "what came out: outcomes, extent of the stabilised set, extremes, cost",
+    run,
+    "Works on files that are not finished, too. Shares are of the cases that are done, with\n"
+    "Wilson's 95 % intervals. An extent is the unbroken stretch of stabilised cases through the\n"
+    "equilibrium along one axis of offsets, on the line where the other offsets are nearest to\n"
+    "zero; it ends midway between the last stabilised case and the next one.\n"
+    "\n"
+    "  --json   the same as JSON; what does not apply is left out or null. Keys\n"
+    "    file, title, version, revision, date, ranks\n"
+    "    axes         [{path, unit, long_name, count, first, last}]\n"
+    "    fixed        {path: value} of the fields that do not vary\n"
+    "    cases        total, done, failed, pending\n"
+    "    failures     {reason: count}\n"
+    "    outcomes     {name: {count, share, low, high}} of the cases done\n"
+    "    extents      [{path, unit, stabilised, low, high, low_at_end, high_at_end,\n"
+    "                 low_unknown, high_unknown, at: {path: value}}]\n"
+    "    parameters   [{path, unit, values: [{value, done, failed, pending, stabilised, share,\n"
+    "                 low, high, extents: {path: [low, high]}}], steepest: {from, to}}]\n"
+    "    changes      [{from, to, before, after}] along the axis of a sweep with one axis\n"
+    "    numbers      {answer: {of, unit, count, smallest, median, q90, q99, largest}}\n"
+    "    cost         steps, iterations, iterations_per_step, subdivided_steps,\n"
+    "                 subdivided_cases, ambiguous_steps, ambiguous_cases, wall_time (s, of the\n"
+    "                 slowest rank), total_time (s, all ranks), cases_per_second\n"
+    "    case         of a file of one case: index, outcome, failure, end_time, settle_time,\n"
+    "                 fall_time, final_state {name: value}\n",
+};

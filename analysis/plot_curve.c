@@ -1,0 +1,420 @@
+/* plot_curve.c - curves against one axis: what every case of a line did, or how the share of
+ * stabilised cases and the extent of their set depend on a parameter. */
+#include "plot.h"
+#include "statistics.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LEFT = 96, PLOT_WIDTH = 620, LEGEND = 180, BOTTOM = 78, GAP = 14, STRIP = 30 };
+
+/* A point of a curve. */
+struct sample {
+    double place;
+    size_t index; /* along the axis */
+};
+
+static int by_place(const void *a, const void *b)
+{
+    double x = ((const struct sample *)a)->place, y = ((const struct sample *)b)->place;
+    return (x > y) - (x < y);
+}
+
+/* The points of an axis from left to right; freed by the caller, NULL: no memory. */
+static struct sample *make_samples(const struct plot_axis *along)
+{
+    size_t n = along->axis->count;
+    struct sample *samples = malloc(n * sizeof *samples);
+    for (size_t i = 0; samples && i < n; i++) {
+        samples[i] = (struct sample){plot_axis_place(along, i), i};
+    }
+    if (samples) {
+        qsort(samples, n, sizeof *samples, by_place);
+    }
+    return samples;
+}
+
+static bool no_memory(stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "stance plot: not enough memory");
+    return false;
+}
+
+/* ---- pages -------------------------------------------------------------------------------- */
+
+struct page {
+    struct gnuplot g;
+    const struct plot *plot;
+    const struct plot_axis *along;
+    double top; /* of the next panel */
+};
+
+/* heights: of all panels together with the gaps between them. */
+static bool begin_page(struct page *page, const char *subtitle, double heights,
+                       stance_message *message)
+{
+    const struct results *r = page->plot->r;
+    const char *title = r->title[0] ? r->title : r->name;
+    int width = LEFT + PLOT_WIDTH + LEGEND;
+    page->top = gnuplot_title_height(width, title, subtitle);
+    double bottom = page->top + heights;
+    if (!gnuplot_begin(&page->g, width, (int)bottom + BOTTOM, message)) {
+        return false;
+    }
+    gnuplot_title(&page->g, title, subtitle);
+    plot_axis_label(page->along->axis, &page->g, LEFT + PLOT_WIDTH / 2.0, bottom + 40,
+                    PLOT_WIDTH + 80, false);
+    return true;
+}
+
+/* Axes of a panel; low ... high is the range of its values, tics along the bottom when `last`. */
+static void begin_panel(struct page *page, double height, double low, double high, bool last)
+{
+    gnuplot_panel(&page->g, LEFT, page->top, PLOT_WIDTH, height);
+    plot_axis_tics(page->along, page->g.script, 'x', 10, last);
+    fprintf(page->g.script, "set yrange [%.10g:%.10g]\nset format y '%%.10g'\n", low, high);
+    plot_value_tics(page->g.script, low, high, height);
+    fputs("set grid lc rgb '#e6e6e6' lw 0.8\n", page->g.script);
+    page->top += height + GAP;
+}
+
+/* Widens a range so that points do not sit on the frame, and where it is none. */
+static void widen(double *low, double *high)
+{
+    double margin = *high > *low ? 0.06 * (*high - *low) : 0.1 * fabs(*low) + 0.05;
+    *low -= margin;
+    *high += margin;
+}
+
+/* ---- every case of a line ----------------------------------------------------------------- */
+
+/* Runs of neighbours of the same kind as one box each: seams between boxes would show. */
+static void put_strip(struct page *page, const struct sample *samples)
+{
+    const struct results *r = page->plot->r;
+    const struct plot_axis *along = page->along;
+    size_t n = along->axis->count;
+    double low = along->low;
+    char name[32];
+
+    FILE *data = gnuplot_data(&page->g, name);
+    for (size_t i = 0; i < n; i++) {
+        uint8_t kind = r->kind[samples[i].index];
+        if (i + 1 < n && r->kind[samples[i + 1].index] == kind) {
+            continue;
+        }
+        double high = i + 1 < n ? 0.5 * (samples[i].place + samples[i + 1].place) : along->high;
+        fprintf(data, "%.17g 0.5 %.17g %.17g 0 1 %ld\n", 0.5 * (low + high), low, high,
+                strtol(plot_colours[kind] + 1, NULL, 16));
+        low = high;
+    }
+    gnuplot_close_data(&page->g, data);
+    begin_panel(page, STRIP, 0, 1, false);
+    fprintf(page->g.script,
+            "unset ytics; unset grid\n"
+            "plot '%s' using 1:2:3:4:5:6:7 with boxxyerror fillstyle solid noborder"
+            " lc rgb variable notitle\n",
+            name);
+}
+
+/* One answer of every case, its point coloured by what became of the case. */
+struct line_panel {
+    const char *name, *unit;
+    double *values;
+    double low, high;
+};
+enum { LINE_PANELS = 3, LINE_HEIGHT = 150 };
+
+static void put_line(struct page *page, const struct sample *samples, struct line_panel *panel,
+                     bool last)
+{
+    const struct results *r = page->plot->r;
+    size_t n = page->along->axis->count;
+    double size = n > 400 ? 0.25 : n > 100 ? 0.45 : 0.8;
+    char name[32];
+
+    FILE *data = gnuplot_data(&page->g, name);
+    for (size_t i = 0; i < n; i++) {
+        size_t index = samples[i].index;
+        fprintf(data, "%.17g ", samples[i].place);
+        gnuplot_number(data, panel->values[index]);
+        fprintf(data, " %ld\n", strtol(plot_colours[r->kind[index]] + 1, NULL, 16));
+    }
+    gnuplot_close_data(&page->g, data);
+    widen(&panel->low, &panel->high);
+    begin_panel(page, LINE_HEIGHT, panel->low, panel->high, last);
+    fprintf(page->g.script,
+            "plot '%s' using 1:2 with lines lc rgb '#b0b0b0' lw 1 notitle,"
+            " '' using 1:2:3 with points pt 7 ps %g lc rgb variable notitle\n",
+            name, size);
+}
+
+/* Reads an answer and its range; values stay NULL where there is nothing to draw. */
+static bool read_panel(const struct results *r, struct line_panel *panel, stance_message *message)
+{
+    if (!results_answer(r, panel->name, &panel->values, message)) {
+        return false;
+    }
+    panel->low = INFINITY;
+    panel->high = -INFINITY;
+    for (uint64_t i = 0; panel->values && i < r->cases; i++) {
+        if (isfinite(panel->values[i])) {
+            panel->low = fmin(panel->low, panel->values[i]);
+            panel->high = fmax(panel->high, panel->values[i]);
+        }
+    }
+    if (!(panel->low <= panel->high)) {
+        free(panel->values);
+        panel->values = NULL;
+    }
+    return true;
+}
+
+static bool draw_line_page(const struct plot *plot, const struct plot_axis *along,
+                           const struct sample *samples, struct line_panel *panels,
+                           stance_message *message)
+{
+    struct page page = {.plot = plot, .along = along};
+    char stem[512], what[96], label[64];
+    int left = 0;
+    for (int k = 0; k < LINE_PANELS; k++) {
+        left += panels[k].values != NULL;
+    }
+    snprintf(what, sizeof what, "What became of each of %llu cases",
+             (unsigned long long)plot->r->cases);
+    if (!begin_page(&page, what, STRIP + left * (LINE_HEIGHT + GAP), message)) {
+        return false;
+    }
+    gnuplot_label(&page.g, LEFT - 10, page.top + STRIP / 2.0, "outcome", "right", 12, false);
+    plot_kind_legend(plot, &page.g, LEFT + PLOT_WIDTH + 20, page.top + 10);
+    double y = page.top + STRIP + GAP;
+    for (int k = 0; k < LINE_PANELS; k++) {
+        if (panels[k].values) {
+            snprintf(label, sizeof label, "%s%s%s%s", panels[k].name, panels[k].unit[0] ? " (" : "",
+                     panels[k].unit, panels[k].unit[0] ? ")" : "");
+            gnuplot_label(&page.g, 24, y + LINE_HEIGHT / 2.0, label, "center", 12, true);
+            y += LINE_HEIGHT + GAP;
+        }
+    }
+    gnuplot_decorate(&page.g);
+    put_strip(&page, samples);
+    for (int k = 0; k < LINE_PANELS; k++) {
+        if (panels[k].values) {
+            put_line(&page, samples, &panels[k], --left == 0);
+        }
+    }
+    snprintf(stem, sizeof stem, "%s-curve", plot->stem);
+    return gnuplot_end(&page.g, plot->directory, stem, message);
+}
+
+static bool draw_line(const struct plot *plot, stance_message *message)
+{
+    struct line_panel panels[LINE_PANELS] = {{.name = "settle_time", .unit = "s"},
+                                             {.name = "end_time", .unit = "s"},
+                                             {.name = "friction_used", .unit = ""}};
+    struct plot_axis along;
+    plot_axis_make_curve(&along, &plot->r->axis[0]);
+    struct sample *samples = make_samples(&along);
+    bool good = samples || no_memory(message);
+    for (int k = 0; k < LINE_PANELS && good; k++) {
+        good = read_panel(plot->r, &panels[k], message);
+    }
+    good = good && draw_line_page(plot, &along, samples, panels, message);
+    for (int k = 0; k < LINE_PANELS; k++) {
+        free(panels[k].values);
+    }
+    free(samples);
+    return good;
+}
+
+/* ---- shares against a parameter ----------------------------------------------------------- */
+
+enum { SHARE_HEIGHT = 300, EXTENT_HEIGHT = 150, MAX_EXTENTS = 2 };
+
+/* Share of a kind with Wilson's interval, in per cent. Words have bars, numbers a band. */
+static double put_share_data(struct page *page, const struct sample *samples,
+                             const struct statistics_counts *counts, int kind, char name[32])
+{
+    double highest = 0;
+    FILE *data = gnuplot_data(&page->g, name);
+    for (size_t i = 0; i < page->along->axis->count; i++) {
+        const struct statistics_counts *c = &counts[samples[i].index];
+        double low, high;
+        statistics_wilson(c->kind[kind], c->done, &low, &high);
+        bool any = c->done > 0;
+        fprintf(data, "%.17g ", samples[i].place);
+        gnuplot_number(data, any ? 100 * (double)c->kind[kind] / (double)c->done : NAN);
+        putc(' ', data);
+        gnuplot_number(data, any ? 100 * low : NAN);
+        putc(' ', data);
+        gnuplot_number(data, any ? 100 * high : NAN);
+        putc('\n', data);
+        highest = any ? fmax(highest, 100 * high) : highest;
+    }
+    gnuplot_close_data(&page->g, data);
+    return highest;
+}
+
+static void put_shares(struct page *page, const struct sample *samples,
+                       const struct statistics_counts *counts, bool rested, bool last)
+{
+    char stabilised[32], other[32] = "";
+    double highest = put_share_data(page, samples, counts, RESULTS_STABILISED, stabilised);
+    if (rested) {
+        highest = fmax(highest, put_share_data(page, samples, counts, RESULTS_RESTED, other));
+    }
+    begin_panel(page, SHARE_HEIGHT, 0, fmin(100, 1.08 * highest), last);
+    const char *names[] = {stabilised, other};
+    const char *colours[] = {plot_colours[RESULTS_STABILISED], plot_colours[RESULTS_RESTED]};
+    bool words = page->along->axis->word != NULL;
+    fputs("plot ", page->g.script);
+    for (int k = 0; k < 1 + rested; k++) {
+        const char *shape =
+            words ? "'%s' using 1:2:3:4 with yerrorbars lc rgb '%s' pt 7 ps 1.1 lw 1.6"
+                    " notitle"
+                  : "'%s' using 1:3:4 with filledcurves lc rgb '%s' fillstyle"
+                    " transparent solid 0.22 notitle";
+        fputs(k ? ", " : "", page->g.script);
+        fprintf(page->g.script, shape, names[k], colours[k]);
+        if (!words) {
+            fprintf(page->g.script,
+                    ", '%s' using 1:2 with linespoints lc rgb '%s' lw 2 pt 7 ps 0.7 notitle",
+                    names[k], colours[k]);
+        }
+    }
+    fputc('\n', page->g.script);
+}
+
+/* The extent of the stabilised set along an axis of offsets, for every value of the first axis. */
+static void put_extent(struct page *page, const struct sample *samples, int axis, bool last)
+{
+    const struct results *r = page->plot->r;
+    size_t point[SCENARIO_MAX_AXES] = {0};
+    struct statistics_extent extent;
+    struct plot_axis range;
+    char name[32];
+
+    FILE *data = gnuplot_data(&page->g, name);
+    for (size_t i = 0; i < page->along->axis->count; i++) {
+        point[0] = samples[i].index;
+        bool any = statistics_extent(r, axis, point, &extent) && extent.any;
+        fprintf(data, "%.17g ", samples[i].place);
+        gnuplot_number(data, any ? extent.low : NAN);
+        putc(' ', data);
+        gnuplot_number(data, any ? extent.high : NAN);
+        putc('\n', data);
+    }
+    gnuplot_close_data(&page->g, data);
+    plot_axis_make_curve(&range, &r->axis[axis]);
+    begin_panel(page, EXTENT_HEIGHT, range.low, range.high, last);
+    fprintf(page->g.script, "set arrow 1 from graph 0, first 0 to graph 1, first 0 nohead"
+                            " dt 2 lc rgb '#909090'\n");
+    if (page->along->axis->word) {
+        fprintf(page->g.script,
+                "plot '%s' using 1:(0.5*($2+$3)):2:3 with yerrorbars lc rgb '%s' pt -1 lw 2"
+                " notitle\n",
+                name, PLOT_ACCENT);
+    } else {
+        fprintf(page->g.script,
+                "plot '%s' using 1:2:3 with filledcurves lc rgb '%s' fillstyle transparent solid"
+                " 0.22 notitle, '' using 1:2 with linespoints lc rgb '%s' lw 1.6 pt 7 ps 0.5"
+                " notitle, '' using 1:3 with linespoints lc rgb '%s' lw 1.6 pt 7 ps 0.5 notitle\n",
+                name, PLOT_ACCENT, PLOT_ACCENT, PLOT_ACCENT);
+    }
+    fputs("unset arrow 1\n", page->g.script);
+}
+
+/* Axes of offsets whose extents are drawn: none when a further parameter is varied. */
+static int choose_extents(const struct results *r, int *axes)
+{
+    int count = 0;
+    for (int a = 1; a < r->axes; a++) {
+        if (!r->axis[a].offset) {
+            return 0;
+        }
+        if (count < MAX_EXTENTS && r->axis[a].count > 1) {
+            axes[count++] = a;
+        }
+    }
+    return count;
+}
+
+static void label_share_page(struct page *page, const int *extents, int extent_count, bool rested)
+{
+    const struct results *r = page->plot->r;
+    double x = LEFT + PLOT_WIDTH + 20, y = page->top + 10;
+    char text[160];
+
+    gnuplot_label(&page->g, 24, page->top + SHARE_HEIGHT / 2.0, "share of the cases done (%)",
+                  "center", 12, true);
+    gnuplot_legend(&page->g, x, y, plot_colours[RESULTS_STABILISED], "stabilised");
+    if (rested) {
+        y += 24;
+        gnuplot_legend(&page->g, x, y, plot_colours[RESULTS_RESTED], "rested");
+    }
+    gnuplot_label(&page->g, x, y + 26,
+                  page->along->axis->word ? "bars: 95 % interval" : "band: 95 % interval", "left",
+                  11, false);
+    y = page->top + SHARE_HEIGHT + GAP;
+    for (int k = 0; k < extent_count; k++) {
+        const struct results_axis *axis = &r->axis[extents[k]];
+        const char *dot = strrchr(axis->name, '.');
+        snprintf(text, sizeof text, axis->unit[0] ? "%s (%s)" : "%s", dot ? dot + 1 : axis->name,
+                 axis->unit);
+        gnuplot_label(&page->g, 24, y + EXTENT_HEIGHT / 2.0, text, "center", 12, true);
+        gnuplot_label(&page->g, x, y + 12, "stabilised along", "left", 11, false);
+        gnuplot_label(&page->g, x, y + 28, axis->name, "left", 11, false);
+        gnuplot_label(&page->g, x, y + 44, "through the equilibrium", "left", 11, false);
+        y += EXTENT_HEIGHT + GAP;
+    }
+}
+
+static bool draw_share_page(const struct plot *plot, const struct plot_axis *along,
+                            const struct sample *samples, const struct statistics_counts *counts,
+                            stance_message *message)
+{
+    struct page page = {.plot = plot, .along = along};
+    char stem[512], what[128];
+    int extents[MAX_EXTENTS], extent_count = choose_extents(plot->r, extents);
+    bool rested = false;
+
+    for (size_t i = 0; i < along->axis->count; i++) {
+        rested = rested || counts[i].kind[RESULTS_RESTED] > 0;
+    }
+    snprintf(what, sizeof what, "Stabilised cases against %s, %llu cases per value",
+             along->axis->name, (unsigned long long)(plot->r->cases / along->axis->count));
+    if (!begin_page(&page, what, SHARE_HEIGHT + extent_count * (EXTENT_HEIGHT + GAP), message)) {
+        return false;
+    }
+    label_share_page(&page, extents, extent_count, rested);
+    gnuplot_decorate(&page.g);
+    put_shares(&page, samples, counts, rested, extent_count == 0);
+    for (int k = 0; k < extent_count; k++) {
+        put_extent(&page, samples, extents[k], k == extent_count - 1);
+    }
+    snprintf(stem, sizeof stem, "%s-curve", plot->stem);
+    return gnuplot_end(&page.g, plot->directory, stem, message);
+}
+
+static bool draw_shares(const struct plot *plot, stance_message *message)
+{
+    const struct results *r = plot->r;
+    struct plot_axis along;
+    plot_axis_make_curve(&along, &r->axis[0]);
+    struct sample *samples = make_samples(&along);
+    struct statistics_counts *counts = malloc(r->axis[0].count * sizeof *counts);
+    bool good = (samples && counts) || no_memory(message);
+    if (good) {
+        statistics_count_axis(r, 0, counts);
+        good = draw_share_page(plot, &along, samples, counts, message);
+    }
+    free(samples);
+    free(counts);
+    return good;
+}
+
+bool plot_curve(const struct plot *plot, stance_message *message)
+{
+    return plot->r->axes == 1 ? draw_line(plot, message) : draw_shares(plot, message);
+}

@@ -1,0 +1,766 @@
+/* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
+#include "results.h"
+
+#include <errno.h>
+#include <hdf5.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { FORMAT_VERSION = 1, MAX_SCENARIO_TEXT = 1 << 22 };
+
+const char *const results_kind_names[RESULTS_KIND_COUNT] = {
+#define RESULTS_KIND(name, text) [RESULTS_##name] = text,
+    RESULTS_KINDS(RESULTS_KIND)
+#undef RESULTS_KIND
+};
+
+/* ---- errors ------------------------------------------------------------------------------- */
+
+static herr_t innermost(unsigned n, const H5E_error2_t *error, void *reason)
+{
+    char *text = reason;
+    (void)n;
+    if (text[0] == '\0' && error->desc) {
+        snprintf(text, 100, "%.*s", (int)strcspn(error->desc, "\n"), error->desc);
+    }
+    return 0;
+}
+
+static bool failed(const struct results *r, const char *what, stance_message *message)
+{
+    char reason[100] = "";
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost, reason);
+    H5Eclear2(H5E_DEFAULT);
+    snprintf(message->text, sizeof message->text, "%.80s: cannot read %.40s%s%s", r->file, what,
+             reason[0] ? ": " : "", reason);
+    return false;
+}
+
+static bool damaged(const struct results *r, const char *what, stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "%.100s: damaged: %.100s", r->file, what);
+    return false;
+}
+
+static bool no_memory(const struct results *r, stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+    return false;
+}
+
+/* ---- attributes --------------------------------------------------------------------------- */
+
+/* Keeps one line: what a title or a unit is for. */
+static void one_line(char *text)
+{
+    for (; *text; text++) {
+        if ((unsigned char)*text < ' ' || *text == 0x7f) {
+            *text = ' ';
+        }
+    }
+}
+
+/* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
+static char *read_text(hid_t object, const char *name)
+{
+    if (H5Aexists(object, name) <= 0) {
+        return NULL;
+    }
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    char *text = NULL;
+    if (type >= 0 && space >= 0 && H5Tget_class(type) == H5T_STRING &&
+        H5Sget_simple_extent_npoints(space) == 1) {
+        if (H5Tis_variable_str(type) > 0) {
+            char *found = NULL;
+            if (H5Aread(attribute, type, &found) >= 0 && found) {
+                text = strdup(found);
+                H5free_memory(found);
+            }
+        } else if (H5Tget_size(type) <= MAX_SCENARIO_TEXT) {
+            text = calloc(H5Tget_size(type) + 1, 1);
+            if (text && H5Aread(attribute, type, text) < 0) {
+                free(text);
+                text = NULL;
+            }
+        }
+    }
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return text;
+}
+
+static void copy_text(hid_t object, const char *name, char *buffer, size_t size)
+{
+    char *text = read_text(object, name);
+    snprintf(buffer, size, "%s", text ? text : "");
+    one_line(buffer);
+    free(text);
+}
+
+static int read_int(hid_t object, const char *name, int fallback)
+{
+    if (H5Aexists(object, name) <= 0) {
+        return fallback;
+    }
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), space = H5Aget_space(attribute);
+    int value = fallback;
+    if (H5Sget_simple_extent_npoints(space) != 1 ||
+        H5Aread(attribute, H5T_NATIVE_INT, &value) < 0) {
+        value = fallback;
+    }
+    H5Sclose(space);
+    H5Aclose(attribute);
+    return value;
+}
+
+/* ---- datasets ----------------------------------------------------------------------------- */
+
+/* Every link of a path such as "trajectory/time" exists. */
+static bool exists(hid_t file, const char *path)
+{
+    char part[128];
+    for (const char *slash = strchr(path, '/'); slash; slash = strchr(slash + 1, '/')) {
+        snprintf(part, sizeof part, "%.*s", (int)(slash - path), path);
+        if (H5Lexists(file, part, H5P_DEFAULT) <= 0) {
+            return false;
+        }
+    }
+    return H5Lexists(file, path, H5P_DEFAULT) > 0;
+}
+
+/* Opens a dataset and its shape; -1 when it does not exist or is none. */
+static hid_t open_dataset(const struct results *r, const char *path, int *rank,
+                          hsize_t length[H5S_MAX_RANK])
+{
+    if (!exists(r->id, path)) {
+        return -1;
+    }
+    hid_t dataset = H5Dopen2(r->id, path, H5P_DEFAULT);
+    hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
+    *rank = space < 0 ? -1 : H5Sget_simple_extent_dims(space, length, NULL);
+    H5Sclose(space);
+    if (*rank < 0 && dataset >= 0) {
+        H5Dclose(dataset);
+        dataset = -1;
+    }
+    return dataset;
+}
+
+static H5T_class_t class_of(hid_t dataset)
+{
+    hid_t type = H5Dget_type(dataset);
+    H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+    H5Tclose(type);
+    return class;
+}
+
+static bool is_number(hid_t dataset)
+{
+    H5T_class_t class = class_of(dataset);
+    return class == H5T_INTEGER || class == H5T_FLOAT;
+}
+
+/* Product of lengths, 0 when it overflows. A damaged header must not make us ask for terabytes:
+ * no array of ours has more elements than its file has bytes. */
+static size_t elements(const struct results *r, int rank, const hsize_t *length)
+{
+    hsize_t size = 0, product = 1;
+    if (H5Fget_filesize((hid_t)r->id, &size) < 0) {
+        return 0;
+    }
+    for (int d = 0; d < rank; d++) {
+        if (length[d] == 0 || product > size / length[d]) {
+            return 0;
+        }
+        product *= length[d];
+    }
+    return (size_t)product;
+}
+
+static bool has_case_shape(const struct results *r, int rank, const hsize_t *length)
+{
+    bool same = rank == r->axes;
+    for (int d = 0; same && d < rank; d++) {
+        same = length[d] == r->axis[d].count;
+    }
+    return same;
+}
+
+size_t results_numbers(const struct results *r, const char *path, double *values, size_t room)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+    hid_t dataset = open_dataset(r, path, &rank, length);
+    if (dataset < 0) {
+        return 0;
+    }
+    size_t n = elements(r, rank, length);
+    if (n > room || !is_number(dataset) ||
+        (n && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)) {
+        n = 0;
+    }
+    H5Dclose(dataset);
+    return n;
+}
+
+/* Strings of a one-dimensional dataset, each freed by the caller as is the array; NULL: no. */
+static char **read_strings(hid_t dataset, size_t n)
+{
+    hid_t type = H5Dget_type(dataset);
+    char **words = calloc(n, sizeof *words);
+    bool good = words && type >= 0 && H5Tget_class(type) == H5T_STRING;
+    if (good && H5Tis_variable_str(type) > 0) {
+        good = H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, words) >= 0;
+        for (size_t i = 0; i < n; i++) {
+            char *own = good && words[i] ? strdup(words[i]) : calloc(1, 1);
+            H5free_memory(words[i]);
+            words[i] = own;
+            good = good && own;
+        }
+    } else if (good) {
+        size_t size = H5Tget_size(type);
+        char *block = size < 4096 ? calloc(n, size) : NULL;
+        good = block && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, block) >= 0;
+        for (size_t i = 0; good && i < n; i++) {
+            words[i] = strndup(block + i * size, size);
+            good = words[i];
+        }
+        free(block);
+    }
+    H5Tclose(type);
+    for (size_t i = 0; words && i < n; i++) {
+        if (good) {
+            one_line(words[i]);
+        } else {
+            free(words[i]);
+        }
+    }
+    if (!good) {
+        free(words);
+        return NULL;
+    }
+    return words;
+}
+
+size_t results_words(const struct results *r, const char *path, char word[][32], size_t room)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+    hid_t dataset = open_dataset(r, path, &rank, length);
+    if (dataset < 0) {
+        return 0;
+    }
+    size_t n = rank == 1 ? elements(r, rank, length) : 0;
+    char **words = n && n <= room ? read_strings(dataset, n) : NULL;
+    H5Dclose(dataset);
+    for (size_t i = 0; words && i < n; i++) {
+        snprintf(word[i], 32, "%s", words[i]);
+        free(words[i]);
+    }
+    n = words ? n : 0;
+    free(words);
+    return n;
+}
+
+/* ---- the axes ----------------------------------------------------------------------------- */
+
+static bool read_axis_values(const struct results *r, hid_t dataset, struct results_axis *axis,
+                             stance_message *message)
+{
+    axis->value = malloc(axis->count * sizeof *axis->value);
+    if (!axis->value) {
+        return no_memory(r, message);
+    }
+    if (class_of(dataset) == H5T_STRING) {
+        axis->word = read_strings(dataset, axis->count);
+        for (size_t i = 0; i < axis->count; i++) {
+            axis->value[i] = (double)i;
+        }
+        return axis->word || failed(r, axis->name, message);
+    }
+    if (!is_number(dataset) ||
+        H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, axis->value) < 0) {
+        return failed(r, axis->name, message);
+    }
+    for (size_t i = 0; i < axis->count; i++) {
+        if (!isfinite(axis->value[i])) {
+            return damaged(r, "an axis has values that are not finite", message);
+        }
+    }
+    return true;
+}
+
+static bool read_axis(struct results *r, const char *name, stance_message *message)
+{
+    struct results_axis *axis = &r->axis[r->axes];
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+
+    snprintf(axis->name, sizeof axis->name, "%s", name);
+    hid_t dataset = open_dataset(r, name, &rank, length);
+    if (dataset < 0) {
+        return failed(r, name, message);
+    }
+    r->axes++;
+    axis->count = rank == 1 ? elements(r, rank, length) : 0;
+    axis->offset = strncmp(name, "initial.offset.", strlen("initial.offset.")) == 0;
+    copy_text(dataset, "units", axis->unit, sizeof axis->unit);
+    copy_text(dataset, "long_name", axis->text, sizeof axis->text);
+    if (strcmp(axis->unit, "1") == 0) {
+        axis->unit[0] = '\0';
+    }
+    bool good = axis->count > 0 ? read_axis_values(r, dataset, axis, message)
+                                : damaged(r, "an axis has no values", message);
+    H5Dclose(dataset);
+    return good;
+}
+
+static bool read_axes(struct results *r, stance_message *message)
+{
+    char *names = read_text((hid_t)r->id, "axes"), *rest = NULL;
+    bool good = names != NULL;
+
+    for (char *name = names ? strtok_r(names, ",", &rest) : NULL; good && name;
+         name = strtok_r(NULL, ",", &rest)) {
+        good = r->axes < SCENARIO_MAX_AXES ? read_axis(r, name, message)
+                                           : damaged(r, "too many axes", message);
+    }
+    free(names);
+    if (!names || (good && r->axes == 0)) {
+        return damaged(r, "it does not name its axes", message);
+    }
+    if (!good) {
+        return false;
+    }
+    r->single = r->axes == 1 && strcmp(r->axis[0].name, "case") == 0 && r->axis[0].count == 1;
+    if (r->single && r->axis[0].value[0] > 0 && r->axis[0].value[0] < 0x1p53) {
+        r->index = (uint64_t)r->axis[0].value[0];
+    }
+    return true;
+}
+
+/* ---- status, outcome, failure ------------------------------------------------------------- */
+
+/* A byte per case; *bytes stays NULL when the variable is not stored. */
+static bool read_bytes(const struct results *r, const char *name, uint8_t **bytes,
+                       stance_message *message)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+    *bytes = NULL;
+    if (!exists((hid_t)r->id, name)) {
+        return true;
+    }
+    hid_t dataset = open_dataset(r, name, &rank, length);
+    if (dataset < 0) {
+        return failed(r, name, message);
+    }
+    bool good = false;
+    if (!has_case_shape(r, rank, length) || class_of(dataset) != H5T_INTEGER) {
+        damaged(r, "a variable is not as its axes say", message);
+    } else if (!(*bytes = malloc(r->cases))) {
+        no_memory(r, message);
+    } else {
+        good = H5Dread(dataset, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, *bytes) >= 0 ||
+               failed(r, name, message);
+    }
+    H5Dclose(dataset);
+    if (!good) {
+        free(*bytes);
+        *bytes = NULL;
+    }
+    return good;
+}
+
+/* The kind of a case from its status and outcome; RESULTS_KIND_COUNT when there is no such. */
+static uint8_t kind_of(uint8_t status, const uint8_t *outcome)
+{
+    static const uint8_t kinds[] = {
+        [STANCE_NONE] = RESULTS_DONE,           [STANCE_STABILISED] = RESULTS_STABILISED,
+        [STANCE_FELL] = RESULTS_FELL,           [STANCE_RESTED] = RESULTS_RESTED,
+        [STANCE_UNDECIDED] = RESULTS_UNDECIDED,
+    };
+    switch (status) {
+    case STANCE_PENDING:
+        return RESULTS_PENDING;
+    case STANCE_FAILED:
+        return RESULTS_FAILED;
+    case STANCE_DONE:
+        return !outcome                  ? RESULTS_DONE
+               : *outcome < sizeof kinds ? kinds[*outcome]
+                                         : RESULTS_KIND_COUNT;
+    default:
+        return RESULTS_KIND_COUNT;
+    }
+}
+
+static bool read_kinds(struct results *r, stance_message *message)
+{
+    hsize_t length[SCENARIO_MAX_AXES];
+    uint8_t *outcome = NULL;
+    for (int a = 0; a < r->axes; a++) {
+        length[a] = r->axis[a].count;
+    }
+    r->cases = elements(r, r->axes, length);
+    if (r->cases == 0) {
+        return damaged(r, "it is shorter than its axes say", message);
+    }
+    if (!read_bytes(r, "status", &r->kind, message) ||
+        !read_bytes(r, "outcome", &outcome, message) ||
+        !read_bytes(r, "failure", &r->failure, message)) {
+        free(outcome);
+        return false;
+    }
+    bool good = r->kind || damaged(r, "it has no variable 'status'", message);
+    for (uint64_t i = 0; good && i < r->cases; i++) {
+        r->kind[i] = kind_of(r->kind[i], outcome ? &outcome[i] : NULL);
+        good = r->kind[i] < RESULTS_KIND_COUNT ||
+               damaged(r, "a case has a status or an outcome that does not exist", message);
+    }
+    free(outcome);
+    return good;
+}
+
+bool results_answer(const struct results *r, const char *name, double **values,
+                    stance_message *message)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+    *values = NULL;
+    if (!exists((hid_t)r->id, name)) {
+        return true;
+    }
+    hid_t dataset = open_dataset(r, name, &rank, length);
+    if (dataset < 0) {
+        return failed(r, name, message);
+    }
+    bool good = false;
+    if (!has_case_shape(r, rank, length) || !is_number(dataset)) {
+        damaged(r, "a variable is not as its axes say", message);
+    } else if (!(*values = malloc(r->cases * sizeof **values))) {
+        no_memory(r, message);
+    } else {
+        good = H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values) >= 0 ||
+               failed(r, name, message);
+    }
+    H5Dclose(dataset);
+    for (uint64_t i = 0; good && i < r->cases; i++) {
+        if (r->kind[i] == RESULTS_PENDING || r->kind[i] == RESULTS_FAILED) {
+            (*values)[i] = NAN;
+        }
+    }
+    if (!good) {
+        free(*values);
+        *values = NULL;
+    }
+    return good;
+}
+
+bool results_timing(const struct results *r, double *longest, double *total, double *cases,
+                    size_t *ranks)
+{
+    enum { MOST_RANKS = 1 << 17 };
+    double *values = malloc(MOST_RANKS * sizeof *values);
+    *longest = *total = *cases = 0;
+    *ranks = values ? results_numbers(r, "timing/wall_time", values, MOST_RANKS) : 0;
+    for (size_t i = 0; i < *ranks; i++) {
+        *total += values[i];
+        *longest = fmax(*longest, values[i]);
+    }
+    size_t n = *ranks ? results_numbers(r, "timing/cases", values, MOST_RANKS) : 0;
+    for (size_t i = 0; i < n; i++) {
+        *cases += values[i];
+    }
+    free(values);
+    return n > 0 && isfinite(*total) && *longest > 0 && *cases > 0;
+}
+
+/* ---- opening ------------------------------------------------------------------------------ */
+
+static bool open_file(struct results *r, stance_message *message)
+{
+    struct stat information;
+    if (stat(r->file, &information) != 0) {
+        snprintf(message->text, sizeof message->text, "%.100s: %s", r->file, strerror(errno));
+        return false;
+    }
+    if (!S_ISREG(information.st_mode)) {
+        snprintf(message->text, sizeof message->text, "%.100s: %s", r->file,
+                 S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file");
+        return false;
+    }
+    FILE *readable = fopen(r->file, "rb");
+    if (!readable) {
+        snprintf(message->text, sizeof message->text, "%.100s: %s", r->file, strerror(errno));
+        return false;
+    }
+    fclose(readable);
+    /* Errors are told by our own messages, not by HDF5's on standard error. */
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+    H5Pset_file_locking(access, false, true);
+    if (H5Fis_hdf5(r->file) <= 0) {
+        H5Pclose(access);
+        H5Eclear2(H5E_DEFAULT);
+        snprintf(message->text, sizeof message->text, "%.100s: not an HDF5 file", r->file);
+        return false;
+    }
+    r->id = H5Fopen(r->file, H5F_ACC_RDONLY, access);
+    H5Pclose(access);
+    return r->id >= 0 || failed(r, "the file", message);
+}
+
+static bool read_provenance(struct results *r, stance_message *message)
+{
+    hid_t id = (hid_t)r->id;
+    int version = read_int(id, "format_version", -1);
+    r->scenario = read_text(id, "scenario");
+    if (version < 0 || H5Aexists(id, "axes") <= 0 || !r->scenario) {
+        snprintf(message->text, sizeof message->text, "%.100s: not a results file of stance",
+                 r->file);
+        return false;
+    }
+    if (version != FORMAT_VERSION) {
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: has format version %d; this program reads version %d", r->file, version,
+                 FORMAT_VERSION);
+        return false;
+    }
+    copy_text(id, "title", r->title, sizeof r->title);
+    copy_text(id, "program_version", r->version, sizeof r->version);
+    copy_text(id, "git_revision", r->revision, sizeof r->revision);
+    copy_text(id, "date", r->date, sizeof r->date);
+    copy_text(id, "hosts", r->hosts, sizeof r->hosts);
+    r->ranks = read_int(id, "ranks", 0);
+    return true;
+}
+
+bool results_open(struct results *r, const char *file, stance_message *message)
+{
+    *r = (struct results){.id = -1};
+    if (strlen(file) >= sizeof r->file) {
+        snprintf(message->text, sizeof message->text, "%.60s...: %s", file, strerror(ENAMETOOLONG));
+        return false;
+    }
+    snprintf(r->file, sizeof r->file, "%s", file);
+    const char *slash = strrchr(file, '/');
+    snprintf(r->name, sizeof r->name, "%s", slash ? slash + 1 : file);
+    char *dot = strrchr(r->name, '.');
+    if (dot && dot != r->name && strcmp(dot, ".h5") == 0) {
+        *dot = '\0';
+    }
+    bool good = open_file(r, message) && read_provenance(r, message) && read_axes(r, message) &&
+                read_kinds(r, message);
+    if (!good) {
+        results_close(r);
+    }
+    return good;
+}
+
+void results_close(struct results *r)
+{
+    for (int a = 0; a < r->axes; a++) {
+        for (size_t i = 0; r->axis[a].word && i < r->axis[a].count; i++) {
+            free(r->axis[a].word[i]);
+        }
+        free(r->axis[a].word);
+        free(r->axis[a].value);
+    }
+    free(r->scenario);
+    free(r->kind);
+    free(r->failure);
+    if (r->id >= 0) {
+        H5Fclose((hid_t)r->id);
+    }
+    *r = (struct results){.id = -1};
+}
+
+/* ---- cases -------------------------------------------------------------------------------- */
+
+void results_point(const struct results *r, uint64_t index, size_t *point)
+{
+    for (int a = r->axes - 1; a >= 0; a--) {
+        point[a] = (size_t)(index % r->axis[a].count);
+        index /= r->axis[a].count;
+    }
+}
+
+void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,
+                        size_t size)
+{
+    if (axis->word) {
+        snprintf(buffer, size, "%s", axis->word[i]);
+    } else {
+        snprintf(buffer, size, "%.6g%s%s", axis->value[i], unit && axis->unit[0] ? " " : "",
+                 unit ? axis->unit : "");
+    }
+}
+
+void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size)
+{
+    size_t point[SCENARIO_MAX_AXES], used = 0;
+    char text[128];
+
+    buffer[0] = '\0';
+    results_point(r, index, point);
+    for (int a = 0; !r->single && a < r->axes && used < size; a++) {
+        results_value_text(&r->axis[a], point[a], true, text, sizeof text);
+        used += (size_t)snprintf(buffer + used, size - used, "%s%s = %s", a ? ", " : "",
+                                 r->axis[a].name, text);
+    }
+}
+
+bool results_scenario(const struct results *r, struct scenario *s)
+{
+    char *said = NULL;
+    size_t length = 0;
+    FILE *errors = open_memstream(&said, &length);
+    if (!errors) {
+        return false;
+    }
+    bool good = scenario_read(s, r->file, r->scenario, NULL, 0, errors);
+    fclose(errors);
+    free(said);
+    return good;
+}
+
+/* ---- trajectories ------------------------------------------------------------------------- */
+
+bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
+                      stance_message *message)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+    *list = NULL;
+    *count = 0;
+    if (!exists((hid_t)r->id, "trajectory/case")) {
+        return true;
+    }
+    hid_t dataset = open_dataset(r, "trajectory/case", &rank, length);
+    if (dataset < 0) {
+        return failed(r, "trajectory/case", message);
+    }
+    size_t n = rank == 1 ? elements(r, rank, length) : 0;
+    *list = n ? malloc(n * sizeof **list) : NULL;
+    bool good = *list && class_of(dataset) == H5T_INTEGER &&
+                H5Dread(dataset, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, *list) >= 0;
+    H5Dclose(dataset);
+    if (!good) {
+        free(*list);
+        *list = NULL;
+        return failed(r, "trajectory/case", message);
+    }
+    *count = n;
+    return true;
+}
+
+/* One case of a variable (case, time, ...) of `width` numbers per instant; *values NULL when the
+ * variable does not exist. */
+static bool read_track(const struct results *r, const char *path, size_t place, size_t rows,
+                       size_t width, double **values, stance_message *message)
+{
+    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
+    int rank;
+    hid_t dataset = width ? open_dataset(r, path, &rank, length) : -1;
+    if (dataset < 0) {
+        return true;
+    }
+    size_t n = rank >= 3 && length[1] == rows && place < length[0] ? elements(r, rank, length) : 0;
+    bool good = n > 0 && n / length[0] == rows * width && is_number(dataset);
+    if (!good) {
+        H5Dclose(dataset);
+        return damaged(r, "a trajectory is not as its dimensions say", message);
+    }
+    hsize_t number = rows * width;
+    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &number, NULL);
+    start[0] = place;
+    length[0] = 1;
+    *values = malloc(rows * width * sizeof **values);
+    good = *values && H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, length, NULL) >= 0 &&
+           H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, *values) >= 0;
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    return good || failed(r, path, message);
+}
+
+static size_t count_instants(const struct results *r)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+    hid_t dataset = open_dataset(r, "trajectory/time", &rank, length);
+    if (dataset < 0) {
+        return 0;
+    }
+    H5Dclose(dataset);
+    return rank == 1 ? elements(r, rank, length) : 0;
+}
+
+static bool is_finite(const double *values, size_t n)
+{
+    for (size_t i = 0; values && i < n; i++) {
+        if (!isfinite(values[i])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Rows before the first that is not a number: a case ends there. */
+static size_t count_rows(const struct results_trajectory *t, size_t rows)
+{
+    size_t k = 0;
+    while (k < rows && isfinite(t->time[k]) &&
+           is_finite(t->position + k * t->coordinates, t->coordinates)) {
+        k++;
+    }
+    return k;
+}
+
+bool results_trajectory(const struct results *r, size_t place, uint64_t index,
+                        struct results_trajectory *t, stance_message *message)
+{
+    *t = (struct results_trajectory){.index = index};
+    size_t rows = count_instants(r);
+    t->coordinates =
+        results_words(r, "trajectory/coordinate", t->coordinate, STANCE_MAX_COORDINATES);
+    t->actuators = results_words(r, "trajectory/actuator", t->actuator, STANCE_MAX_ACTUATORS);
+    t->contacts = results_words(r, "trajectory/contact", t->contact, STANCE_MAX_CONTACTS);
+    t->time = rows ? malloc(rows * sizeof *t->time) : NULL;
+    bool good = t->time && t->coordinates > 0 &&
+                results_numbers(r, "trajectory/time", t->time, rows) == rows;
+    good = good || damaged(r, "the trajectories lack a dimension", message);
+    good =
+        good &&
+        read_track(r, "trajectory/position", place, rows, t->coordinates, &t->position, message) &&
+        read_track(r, "trajectory/velocity", place, rows, t->coordinates, &t->velocity, message) &&
+        read_track(r, "trajectory/torque", place, rows, t->actuators, &t->torque, message) &&
+        read_track(r, "trajectory/force", place, rows, 2 * t->contacts, &t->force, message) &&
+        read_track(r, "trajectory/gap", place, rows, t->contacts, &t->gap, message);
+    if (good && !t->position) {
+        good = damaged(r, "the trajectories have no positions", message);
+    }
+    if (good) {
+        t->rows = count_rows(t, rows);
+    } else {
+        results_trajectory_free(t);
+    }
+    return good;
+}
+
+void results_trajectory_free(struct results_trajectory *t)
+{
+    free(t->time);
+    free(t->position);
+    free(t->velocity);
+    free(t->torque);
+    free(t->force);
+    free(t->gap);
+    *t = (struct results_trajectory){0};
+}

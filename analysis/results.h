@@ -1,0 +1,115 @@
+/* results.h - a results file, opened for reading: axes, answers, trajectories, attributes.
+ *
+ * The layout is described in runner/store.h. Files may be incomplete (their job still runs or was
+ * killed), damaged, or not ours at all: every function that can fail returns false and writes one
+ * line into *message. Nothing is ever written to the file.
+ */
+#ifndef STANCE_ANALYSIS_RESULTS_H
+#define STANCE_ANALYSIS_RESULTS_H
+
+#include "../runner/scenario.h"
+
+/* What became of a case: its status and, where done, its outcome; in the order of legends. */
+#define RESULTS_KINDS(X)                                                                           \
+    X(STABILISED, "stabilised")                                                                    \
+    X(RESTED, "rested")                                                                            \
+    X(FELL, "fell")                                                                                \
+    X(UNDECIDED, "undecided")                                                                      \
+    X(DONE, "done") /* the outcome was not stored */                                               \
+    X(FAILED, "failed")                                                                            \
+    X(PENDING, "pending")
+
+enum results_kind {
+#define RESULTS_KIND(name, text) RESULTS_##name,
+    RESULTS_KINDS(RESULTS_KIND)
+#undef RESULTS_KIND
+        RESULTS_KIND_COUNT,
+};
+
+extern const char *const results_kind_names[RESULTS_KIND_COUNT];
+
+enum { RESULTS_TEXT = 160 };
+
+/* One dimension of the cases. */
+struct results_axis {
+    char name[96];           /* path of the field, or "case" */
+    char unit[24];           /* "" where it has none */
+    char text[RESULTS_TEXT]; /* long name, "" where it has none */
+    size_t count;
+    double *value; /* [count]; for words 0, 1, 2 ... */
+    char **word;   /* [count], or NULL: the axis lists numbers */
+    bool offset;   /* initial.offset.*: zero is the equilibrium */
+};
+
+struct results {
+    char file[1024];
+    char name[256]; /* file name without directory and .h5 */
+    char title[256], version[64], revision[96], date[40], hosts[256];
+    int ranks;
+    char *scenario; /* text */
+    bool single;    /* one case, no axes; `index` is its flat index in the sweep, 0 without one */
+    uint64_t index;
+    int axes;
+    struct results_axis axis[SCENARIO_MAX_AXES];
+    uint64_t cases;
+    uint8_t *kind;    /* [cases] enum results_kind, row-major over the axes */
+    uint8_t *failure; /* [cases] enum stance_failure, or NULL: not stored */
+    int64_t id;       /* of the open file, for results.c */
+};
+
+/* Opens and reads all but the answers. On failure nothing is left open. */
+bool results_open(struct results *r, const char *file, stance_message *message);
+void results_close(struct results *r);
+
+/* The numbers of a variable over the cases, NAN where a case is not done; *values[cases] is freed
+ * by the caller. A variable that is not stored gives *values = NULL and true. */
+bool results_answer(const struct results *r, const char *name, double **values,
+                    stance_message *message);
+
+/* A variable of at most `room` numbers, whatever its shape: `final_state` of a file of one case,
+ * `timing/wall_time`, a design that no axis changes. Returns how many were read, 0 when it does not
+ * exist, is larger or cannot be read. */
+size_t results_numbers(const struct results *r, const char *path, double *values, size_t room);
+
+/* Words of a dimension such as `state` or `trajectory/coordinate`; word[room]. Returns how many. */
+size_t results_words(const struct results *r, const char *path, char word[][32], size_t room);
+
+/* Group `timing`: seconds of computing of the rank that computed longest and of all ranks together,
+ * cases computed, number of ranks. false when there is none. */
+bool results_timing(const struct results *r, double *longest, double *total, double *cases,
+                    size_t *ranks);
+
+/* Coordinates of a case: point[axes]. */
+void results_point(const struct results *r, uint64_t index, size_t *point);
+/* Text of a value of an axis, with its unit when `unit`. */
+void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,
+                        size_t size);
+/* "initial.offset.theta = -0.04 rad, ..." of a case; "" in a file of one case. */
+void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size);
+
+/* The scenario of the file, read by the scenario's own reader; false when this version cannot. */
+bool results_scenario(const struct results *r, struct scenario *s);
+
+/* ---- trajectories ------------------------------------------------------------------------- */
+
+struct results_trajectory {
+    uint64_t index; /* flat index of the case */
+    size_t rows;    /* up to the end of the case */
+    size_t coordinates, actuators, contacts;
+    char coordinate[STANCE_MAX_COORDINATES][32], actuator[STANCE_MAX_ACTUATORS][32],
+        contact[STANCE_MAX_CONTACTS][32];
+    double *time;                /* [rows] */
+    double *position, *velocity; /* [rows][coordinates] */
+    double *torque;              /* [rows][actuators], or NULL */
+    double *force;               /* [rows][contacts][2]: normal, tangential */
+    double *gap;                 /* [rows][contacts] */
+};
+
+/* Number of recorded cases; place k holds case (*list)[k], freed by the caller. */
+bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
+                      stance_message *message);
+bool results_trajectory(const struct results *r, size_t place, uint64_t index,
+                        struct results_trajectory *t, stance_message *message);
+void results_trajectory_free(struct results_trajectory *t);
+
+#endif

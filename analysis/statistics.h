@@ -1,0 +1,54 @@
+/* statistics.h - numbers about the cases of a results file: counts, intervals, quantiles, extents.
+ *
+ * Counts that say nothing of cases that are pending or failed leave them out of the total.
+ */
+#ifndef STANCE_ANALYSIS_STATISTICS_H
+#define STANCE_ANALYSIS_STATISTICS_H
+
+#include "results.h"
+
+/* Wilson's score interval at 95 % for k of n, 0 <= k <= n; [0, 1] when n is 0.
+ * E. B. Wilson (1927), Probable inference, the law of succession, and statistical inference. */
+void statistics_wilson(uint64_t k, uint64_t n, double *low, double *high);
+
+struct statistics_counts {
+    uint64_t kind[RESULTS_KIND_COUNT];
+    uint64_t done; /* neither pending nor failed */
+};
+
+/* Cases of one value of an axis, or (axis < 0) all cases. */
+void statistics_count(const struct results *r, int axis, size_t point,
+                      struct statistics_counts *counts);
+/* The same for every value of an axis at once: counts[axis->count]. */
+void statistics_count_axis(const struct results *r, int axis, struct statistics_counts *counts);
+
+/* What the numbers of an answer look like; NANs are left out. */
+struct statistics_numbers {
+    size_t n;
+    double low, median, q90, q99, high, sum; /* NAN when n is 0, sum 0 */
+};
+/* Sorts values[n] in place. */
+void statistics_summarise(double *values, size_t n, struct statistics_numbers *numbers);
+/* Quantile p (0 ... 1) of sorted values[n], n > 0, linear between them. */
+double statistics_quantile(const double *sorted, size_t n, double p);
+
+/* How far the stabilised set reaches along one axis of offsets, on the line through the points
+ * nearest to zero of the other axes of offsets. */
+struct statistics_extent {
+    bool any;                        /* the point nearest to zero is stabilised */
+    double low, high;                /* unit of the axis, low <= high */
+    bool low_open, high_open;        /* reaches the end of the axis there: the set may go on */
+    bool low_unknown, high_unknown;  /* ends at a pending or failed case */
+    size_t point[SCENARIO_MAX_AXES]; /* of the line; along the axis itself the nearest to zero */
+};
+
+/* The line passes through `point` in all axes but those of offsets. False when the axis is not one
+ * of offsets, lists words, or goes up and down. The ends lie midway between the last stabilised
+ * case and the next. */
+bool statistics_extent(const struct results *r, int axis, const size_t *point,
+                       struct statistics_extent *extent);
+
+/* The point of an axis nearest to zero; the first of two equally near. */
+size_t statistics_nearest_zero(const struct results_axis *axis);
+
+#endif

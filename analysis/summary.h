@@ -1,0 +1,80 @@
+/* summary.h - what `stance summary` knows of a results file before it prints it. */
+#ifndef STANCE_ANALYSIS_SUMMARY_H
+#define STANCE_ANALYSIS_SUMMARY_H
+
+#include "statistics.h"
+
+/* The answers that are summarised: name, kind of the cases looked at (RESULTS_KIND_COUNT: all that
+ * are done), unit. */
+#define SUMMARY_NUMBERS(X)                                                                         \
+    X(settle_time, RESULTS_STABILISED, "s")                                                        \
+    X(friction_used, RESULTS_STABILISED, "")                                                       \
+    X(slip_distance, RESULTS_STABILISED, "m")                                                      \
+    X(fall_time, RESULTS_FELL, "s")                                                                \
+    X(peak_torque, RESULTS_KIND_COUNT, "N m")                                                      \
+    X(max_penetration, RESULTS_KIND_COUNT, "m")                                                    \
+    X(impact_energy, RESULTS_KIND_COUNT, "J")                                                      \
+    X(projection_energy, RESULTS_KIND_COUNT, "J")
+
+enum {
+#define SUMMARY_NUMBER(name, kind, unit) SUMMARY_##name,
+    SUMMARY_NUMBERS(SUMMARY_NUMBER)
+#undef SUMMARY_NUMBER
+        SUMMARY_NUMBER_COUNT,
+};
+
+struct summary_numbers {
+    const char *name, *unit;
+    enum results_kind of; /* RESULTS_KIND_COUNT: all that are done */
+    bool stored;
+    struct statistics_numbers numbers;
+};
+
+/* A count per case: its sum over the cases that are done, and how many cases have any. */
+struct summary_count {
+    bool stored;
+    double sum;
+    uint64_t cases;
+};
+
+/* A field that the sweep leaves alone. */
+struct summary_field {
+    char path[96], unit[16], text[160];
+    double number; /* where it is one, else NAN */
+};
+enum { SUMMARY_FIELDS = 64, SUMMARY_FAILURES = 16 };
+
+struct summary {
+    struct statistics_counts counts;
+    uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
+    struct summary_numbers numbers[SUMMARY_NUMBER_COUNT];
+    struct summary_count steps, iterations, ambiguous, subdivided;
+    bool timed;
+    double longest, total, timed_cases; /* s, s, 1 */
+    size_t ranks;
+    bool has_extent[SCENARIO_MAX_AXES];
+    struct statistics_extent extent[SCENARIO_MAX_AXES];
+    /* Axes that are not offsets: the counts of every value, and where the share of stabilised
+     * cases changes most: from `steepest` to the next value. */
+    struct statistics_counts *by_value[SCENARIO_MAX_AXES];
+    size_t steepest[SCENARIO_MAX_AXES];
+    int parameters; /* how many such axes */
+    size_t fields;
+    struct summary_field field[SUMMARY_FIELDS];
+};
+
+/* Reads what it needs. A failure leaves nothing allocated. */
+bool summary_make(struct summary *summary, const struct results *r, stance_message *message);
+void summary_free(struct summary *summary);
+
+/* Share of stabilised cases among those done; NAN when there are none. */
+double summary_share(const struct statistics_counts *counts);
+
+/* Name and text of a failure, from the engine's table. */
+const char *summary_failure_name(int failure);
+const char *summary_failure_text(int failure);
+
+/* Prints it as JSON; false when memory or the output fails. */
+bool summary_print_json(const struct summary *summary, const struct results *r);
+
+#endif

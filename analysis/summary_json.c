@@ -1,0 +1,323 @@
+/* summary_json.c - the summary for programs; the keys are listed in `stance summary -h`. */
+#include "summary.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+
+/* JSON knows no NAN and no infinity. */
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *whole(uint64_t value)
+{
+    return json_integer((json_int_t)value);
+}
+
+static json_t *axis_value(const struct results_axis *axis, size_t i)
+{
+    return axis->word ? json_string(axis->word[i]) : number(axis->value[i]);
+}
+
+static json_t *text_or_null(const char *text)
+{
+    return text[0] ? json_string(text) : json_null();
+}
+
+/* Takes over `value`; a NULL (out of memory, bad UTF-8) becomes null. */
+static void put(json_t *object, const char *key, json_t *value)
+{
+    json_object_set_new(object, key, value ? value : json_null());
+}
+
+static json_t *axes(const struct results *r)
+{
+    json_t *list = json_array();
+    for (int a = 0; !r->single && a < r->axes; a++) {
+        const struct results_axis *axis = &r->axis[a];
+        json_t *entry = json_object();
+        put(entry, "path", json_string(axis->name));
+        put(entry, "unit", text_or_null(axis->unit));
+        put(entry, "long_name", text_or_null(axis->text));
+        put(entry, "count", whole(axis->count));
+        put(entry, "first", axis_value(axis, 0));
+        put(entry, "last", axis_value(axis, axis->count - 1));
+        json_array_append_new(list, entry);
+    }
+    return list;
+}
+
+static json_t *fixed(const struct summary *summary)
+{
+    json_t *object = json_object();
+    for (size_t i = 0; i < summary->fields; i++) {
+        const struct summary_field *field = &summary->field[i];
+        put(object, field->path,
+            isnan(field->number) ? json_string(field->text) : number(field->number));
+    }
+    return object;
+}
+
+static json_t *cases(const struct statistics_counts *counts, const struct results *r)
+{
+    json_t *object = json_object();
+    put(object, "total", whole(r->cases));
+    put(object, "done", whole(counts->done));
+    put(object, "failed", whole(counts->kind[RESULTS_FAILED]));
+    put(object, "pending", whole(counts->kind[RESULTS_PENDING]));
+    return object;
+}
+
+static json_t *failures(const struct summary *summary)
+{
+    json_t *object = json_object();
+    for (int f = 0; f < SUMMARY_FAILURES; f++) {
+        if (summary->failures[f] > 0) {
+            put(object, summary_failure_name(f), whole(summary->failures[f]));
+        }
+    }
+    return object;
+}
+
+static void put_share(json_t *object, uint64_t k, uint64_t n)
+{
+    double low, high;
+    statistics_wilson(k, n, &low, &high);
+    put(object, "share", n ? number((double)k / (double)n) : json_null());
+    put(object, "low", number(low));
+    put(object, "high", number(high));
+}
+
+static json_t *outcomes(const struct statistics_counts *counts)
+{
+    json_t *object = json_object();
+    for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
+        if (k == RESULTS_PENDING || k == RESULTS_FAILED ||
+            (k == RESULTS_DONE && counts->kind[k] == 0)) {
+            continue;
+        }
+        json_t *entry = json_object();
+        put(entry, "count", whole(counts->kind[k]));
+        put_share(entry, counts->kind[k], counts->done);
+        put(object, results_kind_names[k], entry);
+    }
+    return object;
+}
+
+static json_t *extents(const struct summary *summary, const struct results *r)
+{
+    json_t *list = json_array();
+    for (int a = 0; a < r->axes; a++) {
+        const struct statistics_extent *extent = &summary->extent[a];
+        if (!summary->has_extent[a]) {
+            continue;
+        }
+        json_t *entry = json_object(), *at = json_object();
+        for (int b = 0; b < r->axes; b++) {
+            if (b != a) {
+                put(at, r->axis[b].name, axis_value(&r->axis[b], extent->point[b]));
+            }
+        }
+        put(entry, "path", json_string(r->axis[a].name));
+        put(entry, "unit", text_or_null(r->axis[a].unit));
+        put(entry, "stabilised", json_boolean(extent->any));
+        put(entry, "low", number(extent->low));
+        put(entry, "high", number(extent->high));
+        put(entry, "low_at_end", json_boolean(extent->low_open));
+        put(entry, "high_at_end", json_boolean(extent->high_open));
+        put(entry, "low_unknown", json_boolean(extent->low_unknown));
+        put(entry, "high_unknown", json_boolean(extent->high_unknown));
+        put(entry, "at", at);
+        json_array_append_new(list, entry);
+    }
+    return list;
+}
+
+/* The extents at one value of the only axis that is not an offset. */
+static json_t *extents_at(const struct results *r, int axis, size_t i)
+{
+    json_t *object = json_object();
+    size_t point[SCENARIO_MAX_AXES] = {0};
+    struct statistics_extent extent;
+    point[axis] = i;
+    for (int a = 0; a < r->axes; a++) {
+        if (statistics_extent(r, a, point, &extent)) {
+            json_t *ends = json_array();
+            json_array_append_new(ends, number(extent.low));
+            json_array_append_new(ends, number(extent.high));
+            put(object, r->axis[a].name, extent.any ? ends : json_null());
+            if (!extent.any) {
+                json_decref(ends);
+            }
+        }
+    }
+    return object;
+}
+
+static json_t *parameter(const struct summary *summary, const struct results *r, int a)
+{
+    const struct results_axis *axis = &r->axis[a];
+    json_t *object = json_object(), *list = json_array();
+    for (size_t i = 0; i < axis->count; i++) {
+        const struct statistics_counts *counts = &summary->by_value[a][i];
+        json_t *entry = json_object();
+        put(entry, "value", axis_value(axis, i));
+        put(entry, "done", whole(counts->done));
+        put(entry, "failed", whole(counts->kind[RESULTS_FAILED]));
+        put(entry, "pending", whole(counts->kind[RESULTS_PENDING]));
+        put(entry, "stabilised", whole(counts->kind[RESULTS_STABILISED]));
+        put_share(entry, counts->kind[RESULTS_STABILISED], counts->done);
+        if (summary->parameters == 1) {
+            put(entry, "extents", extents_at(r, a, i));
+        }
+        json_array_append_new(list, entry);
+    }
+    put(object, "path", json_string(axis->name));
+    put(object, "unit", text_or_null(axis->unit));
+    put(object, "values", list);
+    if (axis->count > 1) {
+        json_t *steepest = json_object();
+        put(steepest, "from", axis_value(axis, summary->steepest[a]));
+        put(steepest, "to", axis_value(axis, summary->steepest[a] + 1));
+        put(object, "steepest", steepest);
+    }
+    return object;
+}
+
+static json_t *parameters(const struct summary *summary, const struct results *r)
+{
+    json_t *list = json_array();
+    for (int a = 0; a < r->axes; a++) {
+        if (summary->by_value[a]) {
+            json_array_append_new(list, parameter(summary, r, a));
+        }
+    }
+    return list;
+}
+
+static json_t *changes(const struct results *r)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; r->axes == 1 && i + 1 < r->cases; i++) {
+        if (r->kind[i] != r->kind[i + 1]) {
+            json_t *entry = json_object();
+            put(entry, "from", axis_value(&r->axis[0], i));
+            put(entry, "to", axis_value(&r->axis[0], i + 1));
+            put(entry, "before", json_string(results_kind_names[r->kind[i]]));
+            put(entry, "after", json_string(results_kind_names[r->kind[i + 1]]));
+            json_array_append_new(list, entry);
+        }
+    }
+    return list;
+}
+
+static json_t *numbers(const struct summary *summary)
+{
+    json_t *object = json_object();
+    for (int k = 0; k < SUMMARY_NUMBER_COUNT; k++) {
+        const struct summary_numbers *row = &summary->numbers[k];
+        if (!row->stored) {
+            continue;
+        }
+        json_t *entry = json_object();
+        put(entry, "of",
+            json_string(row->of == RESULTS_KIND_COUNT ? "done" : results_kind_names[row->of]));
+        put(entry, "unit", text_or_null(row->unit));
+        put(entry, "count", whole(row->numbers.n));
+        put(entry, "smallest", number(row->numbers.low));
+        put(entry, "median", number(row->numbers.median));
+        put(entry, "q90", number(row->numbers.q90));
+        put(entry, "q99", number(row->numbers.q99));
+        put(entry, "largest", number(row->numbers.high));
+        put(object, row->name, entry);
+    }
+    return object;
+}
+
+static void put_count(json_t *object, const char *steps_key, const char *cases_key,
+                      const struct summary_count *count)
+{
+    if (count->stored) {
+        put(object, steps_key, json_integer((json_int_t)count->sum));
+        if (cases_key) {
+            put(object, cases_key, whole(count->cases));
+        }
+    }
+}
+
+static json_t *cost(const struct summary *summary)
+{
+    json_t *object = json_object();
+    put_count(object, "steps", NULL, &summary->steps);
+    put_count(object, "iterations", NULL, &summary->iterations);
+    if (summary->steps.stored && summary->iterations.stored) {
+        put(object, "iterations_per_step", number(summary->iterations.sum / summary->steps.sum));
+    }
+    put_count(object, "subdivided_steps", "subdivided_cases", &summary->subdivided);
+    put_count(object, "ambiguous_steps", "ambiguous_cases", &summary->ambiguous);
+    put(object, "wall_time", summary->timed ? number(summary->longest) : json_null());
+    put(object, "total_time", summary->timed ? number(summary->total) : json_null());
+    put(object, "cases_per_second",
+        summary->timed ? number(summary->timed_cases / summary->longest) : json_null());
+    return object;
+}
+
+static json_t *single_case(const struct results *r)
+{
+    static const char *const times[] = {"end_time", "settle_time", "fall_time"};
+    char name[SCENARIO_MAX_STATES][32];
+    double state[SCENARIO_MAX_STATES], time;
+    json_t *object = json_object(), *final = json_object();
+    bool done = r->kind[0] != RESULTS_PENDING && r->kind[0] != RESULTS_FAILED;
+
+    put(object, "index", whole(r->index));
+    put(object, "outcome", json_string(results_kind_names[r->kind[0]]));
+    put(object, "failure",
+        r->kind[0] == RESULTS_FAILED && r->failure
+            ? json_string(summary_failure_name(r->failure[0]))
+            : json_null());
+    for (size_t k = 0; k < sizeof times / sizeof times[0]; k++) {
+        bool stored = done && results_numbers(r, times[k], &time, 1) == 1;
+        put(object, times[k], stored ? number(time) : json_null());
+    }
+    size_t n = results_words(r, "state", name, SCENARIO_MAX_STATES);
+    if (!done || results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) != n) {
+        n = 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        put(final, name[i], number(state[i]));
+    }
+    put(object, "final_state", final);
+    return object;
+}
+
+bool summary_print_json(const struct summary *summary, const struct results *r)
+{
+    json_t *root = json_object();
+    put(root, "file", json_string(r->file));
+    put(root, "title", json_string(r->title));
+    put(root, "version", json_string(r->version));
+    put(root, "revision", json_string(r->revision));
+    put(root, "date", json_string(r->date));
+    put(root, "ranks", json_integer(r->ranks));
+    put(root, "axes", axes(r));
+    put(root, "fixed", fixed(summary));
+    put(root, "cases", cases(&summary->counts, r));
+    put(root, "failures", failures(summary));
+    put(root, "outcomes", outcomes(&summary->counts));
+    if (r->single) {
+        put(root, "case", single_case(r));
+    } else {
+        put(root, "extents", extents(summary, r));
+        put(root, "parameters", parameters(summary, r));
+        put(root, "changes", changes(r));
+    }
+    put(root, "numbers", numbers(summary));
+    put(root, "cost", cost(summary));
+    bool good = root && json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
+    json_decref(root);
+    putchar('\n');
+    return good;
+}

@@ -1,0 +1,56 @@
+/* reader.h - the state of reading a scenario, shared by scenario.c and sweep.c. */
+#ifndef STANCE_RUNNER_READER_H
+#define STANCE_RUNNER_READER_H
+
+#include "field.h"
+
+/* What is known of a field of the schema. */
+struct seen {
+    const struct tree_node *node; /* its value in the tree, NULL: not given */
+    struct mark key;              /* of its key there */
+    bool bad;                     /* given, but not good; already reported */
+    bool excused;                 /* not given, but some unknown key is nearly its name */
+    bool swept;
+    struct mark sweep; /* of the path in the axis */
+};
+
+/* A field that an axis varies. */
+struct swept_field {
+    const struct scenario_field *field;
+    size_t index[2];
+    struct mark mark;
+};
+
+struct reader {
+    struct scenario *s;
+    struct tree tree;
+    struct problems problems;
+    struct schema schema;
+    struct seen seen[SCHEMA_MAX_FIELDS];
+    struct seen nothing; /* of paths that the scene lacks */
+    struct swept_field swept[SCENARIO_MAX_AXES][SCENARIO_MAX_PATHS];
+    bool axes_bad; /* the number of cases is not known */
+};
+
+/* What is known of the field at a path of the schema ("[]" for indices); never NULL, for a path
+ * that the scene lacks something that is not given. */
+struct seen *reader_seen(struct reader *r, const char *path);
+
+static inline bool reader_given(const struct seen *seen)
+{
+    return seen->node || seen->swept;
+}
+
+/* Reports keys of a mapping that the schema does not have below `path`; `name` is the path as it
+ * stands in the file, with indices. */
+void reader_check_keys(struct reader *r, const struct tree_node *map, const char *path,
+                       const char *name);
+
+/* scenario_check.c: what the keys mean for each other; completes the base values. */
+void scenario_cross_check(struct reader *r);
+
+/* sweep.c: the axes from the value of sweep.grid, into r->s. */
+void sweep_read(struct reader *r, const struct tree_node *grid);
+void sweep_free(struct scenario_axis *axis);
+
+#endif

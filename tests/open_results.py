@@ -1,0 +1,157 @@
+#!/usr/bin/python3
+"""Opens results files with other people's readers, and finds in them what store.h promises.
+
+    open_results.py square FILE       a 5 x 5 grid over initial.offset.theta and .vtheta
+    open_results.py words FILE        method.name x ground.friction and restitution together
+    open_results.py trajectory FILE   no sweep, with a trajectory
+    open_results.py one FILE N        one case of a sweep, traced
+
+Each with h5py, xarray (netCDF-4 engine) and ncdump; says what it expected where it fails.
+"""
+import subprocess
+import sys
+
+import h5py
+import netCDF4
+import numpy
+import xarray
+
+COUNTS = ["steps", "iterations", "ambiguous_steps", "subdivided_steps"]
+MEASURES = {"end_time": "s", "settle_time": "s", "fall_time": "s", "max_penetration": "m",
+            "slip_distance": "m", "peak_torque": "N m", "friction_used": "1",
+            "impact_energy": "J", "projection_energy": "J"}
+FLAGS = {"status": "pending done failed",
+         "outcome": "none stabilised fell rested undecided",
+         "evidence": "none simulated inferred"}
+STATE = ["x", "z", "theta", "q1", "q2", "vx", "vz", "vtheta", "vq1", "vq2"]
+
+
+def equal(found, expected, what):
+    assert found == expected, f"{what}: found {found}, expected {expected}"
+
+
+def answers(data, dims):
+    """Every answer over the dimensions of the sweep, in their order, with its attributes."""
+    for name in [*COUNTS, *MEASURES, *FLAGS, "failure", "checksum"]:
+        equal(data[name].dims, dims, f"dimensions of {name}")
+        assert data[name].attrs["long_name"], name
+    equal(data["final_state"].dims, (*dims, "state"), "dimensions of final_state")
+    equal([str(s) for s in data["state"].values], STATE, "names of the state")
+    for name, unit in MEASURES.items():
+        equal(data[name].attrs["units"], unit, f"units of {name}")
+        assert numpy.isnan(data[name].attrs["_FillValue"]), name
+    for name, words in FLAGS.items():
+        equal(data[name].attrs["flag_meanings"], words, f"flags of {name}")
+        equal(list(data[name].attrs["flag_values"]), list(range(len(words.split()))), name)
+    assert set(numpy.unique(data["status"])) <= {1, 2}, "pending cases in a finished file"
+
+
+def provenance(data):
+    for key in ["title", "program_version", "git_revision", "compiler", "library_versions",
+                "hosts", "date", "scenario", "scenario_sha256", "axes"]:
+        assert data.attrs[key], key
+    equal(data.attrs["Conventions"], "CF-1.8", "Conventions")
+    equal(int(data.attrs["format_version"]), 1, "format_version")
+
+
+def scales(name):
+    """With h5py: every dimension of every dataset has one scale, with a netCDF number of its own."""
+    numbers = {}
+
+    def visit(path, node):
+        if not isinstance(node, h5py.Dataset):
+            return
+        if "_Netcdf4Dimid" in node.attrs:
+            number = int(numpy.ravel(node.attrs["_Netcdf4Dimid"])[0])
+            assert number not in numbers, f"{path} and {numbers[number]} share a dimension number"
+            numbers[number] = path
+        else:
+            for d in range(node.ndim):
+                equal(len(node.dims[d]), 1, f"scales of {path}, dimension {d}")
+                equal(node.dims[d][0].shape, (node.shape[d],), f"scale of {path}")
+
+    with h5py.File(name, "r") as file:
+        file.visititems(visit)
+        assert file["timing/cases"][...].sum() == file["status"].size
+    equal(sorted(numbers), list(range(len(numbers))), "dimension numbers")
+
+
+def header(name):
+    return subprocess.run(["ncdump", "-h", name], check=True, capture_output=True, text=True).stdout
+
+
+def square(name):
+    theta, vtheta = "initial.offset.theta", "initial.offset.vtheta"
+    with xarray.open_dataset(name, engine="netcdf4", mask_and_scale=False) as data:
+        answers(data, (theta, vtheta))
+        provenance(data)
+        equal(data.attrs["axes"], f"{theta},{vtheta}", "axes")
+        equal(data[theta].attrs["units"], "rad", "units of the first axis")
+        equal(data[vtheta].attrs["units"], "rad/s", "units of the second axis")
+        assert numpy.allclose(data[theta], numpy.linspace(-0.12, 0.06, 5), rtol=0, atol=1e-15)
+        assert numpy.allclose(data[vtheta], numpy.linspace(-0.6, 0.6, 5), rtol=0, atol=1e-15)
+    with xarray.open_dataset(name, group="design", mask_and_scale=False) as data:
+        equal(data["gain"].dims, ("actuator", "posture_state"), "dimensions of gain")
+        equal(data["gain"].shape, (2, 6), "shape of gain")
+        equal(data["equilibrium_position"].dims, ("coordinate",), "equilibrium_position")
+    text = header(name)
+    assert f"double end_time({theta}, {vtheta})" in text, text
+
+
+def words(name):
+    with xarray.open_dataset(name, engine="netcdf4", mask_and_scale=False) as data:
+        answers(data, ("method.name", "ground.friction"))
+        equal([str(m) for m in data["method.name"].values], ["implicit", "midpoint"], "methods")
+        equal(list(data["ground.friction"].values), [0.5, 0.8], "friction")
+        equal(data["ground.restitution"].dims, ("ground.friction",), "the axis's other path")
+        equal(list(data["ground.restitution"].values), [0.0, 0.1], "restitution")
+    assert "string method.name(method.name)" in header(name)
+
+
+def trajectory_group(name, case, case_count=1):
+    with xarray.open_dataset(name, group="trajectory", mask_and_scale=False) as data:
+        for variable in ["position", "velocity"]:
+            equal(data[variable].dims, ("case", "time", "coordinate"), variable)
+        equal(data["torque"].dims, ("case", "time", "actuator"), "torque")
+        equal(data["force"].dims, ("case", "time", "contact", "component"), "force")
+        equal(data["gap"].dims, ("case", "time", "contact"), "gap")
+        equal(data["case"].values.tolist(), [case], "recorded cases")
+        equal([str(c) for c in data["component"].values], ["normal", "tangential"], "components")
+        equal([str(c) for c in data["contact"].values], ["foot1", "foot2"], "contacts")
+        time, position = data["time"].values, data["position"].values
+        assert numpy.allclose(numpy.diff(time), time[1] - time[0], rtol=1e-9, atol=0) and time[0] == 0
+    with xarray.open_dataset(name, mask_and_scale=False) as data:
+        end = float(data["end_time"].values.ravel()[0])
+        final = data["final_state"].values.reshape(-1, 10)[0, :5]
+    there = numpy.isfinite(position[0]).all(axis=1)
+    assert there[0] and there[time < end - 1e-9].all() and not there[time > end + 1e-2].any(), end
+    last = numpy.flatnonzero(there)[-1]
+    if abs(time[last] - end) < 1e-9:
+        equal(position[0, last].tolist(), final.tolist(), "last instant and final state")
+
+
+def trajectory(name):
+    with xarray.open_dataset(name, engine="netcdf4", mask_and_scale=False) as data:
+        answers(data, ("case",))
+        equal(data["case"].values.tolist(), [0], "the only case")
+    trajectory_group(name, 0)
+    assert "group: trajectory" in header(name)
+
+
+def one(name, number):
+    with xarray.open_dataset(name, engine="netcdf4", mask_and_scale=False) as data:
+        answers(data, ("case",))
+        equal(data["case"].values.tolist(), [number], "the only case")
+        equal(data["initial.offset.theta"].dims, ("case",), "the axis's value")
+        step = [numpy.linspace(-0.12, 0.06, 5)[number // 5], numpy.linspace(-0.6, 0.6, 5)[number % 5]]
+        for axis, value in zip(["initial.offset.theta", "initial.offset.vtheta"], step):
+            assert abs(data[axis].values[0] - value) < 1e-15, axis
+    trajectory_group(name, number)
+
+
+if __name__ == "__main__":
+    kind, file = sys.argv[1:3]
+    scales(file)
+    netCDF4.Dataset(file).close()
+    {"square": square, "words": words, "trajectory": trajectory}.get(
+        kind, lambda name: one(name, int(sys.argv[3])))(file)

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""Looks into results files from outside, with h5py and numpy.
+
+    results_tools.py same A B        every dataset outside `timing` is equal to the bit, and every
+                                     attribute that is not provenance
+    results_tools.py whole FILE [N]  every case marked done or failed has a right checksum, worked
+                                     out here; at least N (default 1) are
+    results_tools.py damage FILE I   changes one answer of the case with flat index I
+"""
+import sys
+
+import h5py
+import numpy
+
+PROVENANCE = {"program_version", "git_revision", "compiler", "library_versions", "ranks", "hosts",
+              "date"}
+# The answers in the order in which the checksum takes them.
+ANSWERS = """outcome evidence failure end_time settle_time fall_time steps iterations
+    ambiguous_steps subdivided_steps max_penetration slip_distance peak_torque friction_used
+    impact_energy projection_energy final_state status""".split()
+
+
+def contents(name):
+    """Bits of every dataset outside `timing`, and of the attributes of the root."""
+    found = {}
+
+    def visit(path, node):
+        if isinstance(node, h5py.Dataset) and not path.startswith("timing/"):
+            # Text is kept as references into the file: take what they mean.
+            text = h5py.check_string_dtype(node.dtype) is not None
+            data = node[...]
+            found[path] = (str(node.dtype), node.shape, data.tolist() if text else data.tobytes())
+
+    with h5py.File(name, "r") as file:
+        file.visititems(visit)
+        for key, value in file.attrs.items():
+            if key not in PROVENANCE:
+                found["@" + key] = str(value)
+    return found
+
+
+def same(a, b):
+    one, two = contents(a), contents(b)
+    different = [k for k in sorted(one.keys() | two.keys()) if one.get(k) != two.get(k)]
+    assert len(one) > 20, one.keys()
+    assert not different, f"{a} and {b} differ in {different}"
+
+
+def crc32c(rows):
+    """CRC-32C of each row of a matrix of bytes, bit by bit from its definition."""
+    table = numpy.arange(256, dtype=numpy.uint32)
+    for _ in range(8):
+        table = numpy.where(table & 1, table >> 1 ^ numpy.uint32(0x82F63B78), table >> 1)
+    crc = numpy.full(len(rows), 0xFFFFFFFF, numpy.uint32)
+    for column in rows.T:
+        crc = table[(crc ^ column) & 0xFF] ^ crc >> numpy.uint32(8)
+    return ~crc
+
+
+def whole(name, least=1):
+    with h5py.File(name, "r") as file:
+        cases = file["status"].size
+        parts = [numpy.frombuffer(file[v][...].tobytes(), numpy.uint8).reshape(cases, -1)
+                 for v in ANSWERS if v in file]
+        status = file["status"][...].ravel()
+        wrong = crc32c(numpy.hstack(parts)) != file["checksum"][...].ravel()
+    marked = status > 0
+    assert set(status) <= {0, 1, 2}, set(status)
+    assert not (wrong & marked).any(), f"{(wrong & marked).sum()} checksums are wrong"
+    assert marked.sum() >= least, f"only {marked.sum()} of {cases} cases are marked"
+    return int(marked.sum()), cases
+
+
+def damage(name, index):
+    with h5py.File(name, "r+") as file:
+        data = file["end_time"][...]
+        data.flat[index] += 1
+        file["end_time"][...] = data
+
+
+if __name__ == "__main__":
+    task = sys.argv[1]
+    if task == "same":
+        same(sys.argv[2], sys.argv[3])
+    elif task == "whole":
+        print("# {} of {} cases are marked and whole".format(
+            *whole(sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 1)))
+    else:
+        damage(sys.argv[2], int(sys.argv[3]))

@@ -1,0 +1,390 @@
+/* test_runner.c - options, checksums, plan, results file and lock, each alone and on one rank. */
+#include "support.h"
+
+#include "../runner/checksum.h"
+#include "../runner/command.h"
+#include "../runner/lock.h"
+#include "../runner/plan.h"
+#include "../runner/store.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* ---- checksums ---------------------------------------------------------------------------- */
+
+/* RFC 3720, appendix B.4, and the check value of the CRC catalogues. */
+static void test_crc32c(void **state)
+{
+    (void)state;
+    uint8_t zeros[32] = {0}, ones[32], rising[32];
+    memset(ones, 0xff, sizeof ones);
+    for (int i = 0; i < 32; i++)
+        rising[i] = (uint8_t)i;
+    assert_int_equal(checksum_crc32c(0, zeros, 32), 0x8a9136aa);
+    assert_int_equal(checksum_crc32c(0, ones, 32), 0x62a8ab43);
+    assert_int_equal(checksum_crc32c(0, rising, 32), 0x46dd794e);
+    assert_int_equal(checksum_crc32c(0, "123456789", 9), 0xe3069283);
+    assert_int_equal(checksum_crc32c(checksum_crc32c(0, "1234", 4), "56789", 5), 0xe3069283);
+}
+
+/* FIPS 180-4's examples, and the lengths around a block's end by what they continue to. */
+static void test_sha256(void **state)
+{
+    (void)state;
+    char text[CHECKSUM_SHA256_TEXT], *million = malloc(1000000);
+    const char *two = "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq";
+    checksum_sha256("", 0, text);
+    assert_string_equal(text, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    checksum_sha256("abc", 3, text);
+    assert_string_equal(text, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    checksum_sha256(two, strlen(two), text);
+    assert_string_equal(text, "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+    assert_non_null(million);
+    memset(million, 'a', 1000000);
+    checksum_sha256(million, 1000000, text);
+    assert_string_equal(text, "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+    free(million);
+}
+
+/* ---- words and options -------------------------------------------------------------------- */
+
+static void test_nearest_word(void **state)
+{
+    (void)state;
+    const char *const known[] = {"check", "design", "run", "status", "summary", "sample_time"};
+    assert_string_equal(nearest_word("chekc", known, 6), "check"); /* a swap is one edit */
+    assert_string_equal(nearest_word("stats", known, 6), "status");
+    assert_string_equal(nearest_word("sampletime", known, 6), "sample_time");
+    assert_string_equal(nearest_word("ru", known, 6), "run");
+    assert_null(nearest_word("xyz", known, 6));
+    assert_null(nearest_word("", known, 6));
+    assert_null(nearest_word("telescope", known, 6));
+}
+
+static int nothing(int argc, char **argv)
+{
+    (void)argc, (void)argv;
+    return 0;
+}
+
+static void test_options(void **state)
+{
+    (void)state;
+    const struct command command = {"try", "try", "tries", nothing, ""};
+    const char *sets[2], *output = NULL, *operand[2];
+    size_t set_count, outputs, force, operands;
+    bool help;
+    const struct option_spec specs[] = {{"--set", true, sets, 2, &set_count},
+                                        {"-o", true, &output, 1, &outputs},
+                                        {"--force", false, NULL, 0, &force}};
+    char *good[] = {"try", "--set=a=1", "file", "--set", "b=2", "-o", "out", "--", "--force"};
+    assert_true(command_options(&command, 9, good, specs, 3, operand, 2, &operands, &help));
+    assert_int_equal(set_count, 2);
+    assert_string_equal(sets[0], "a=1");
+    assert_string_equal(sets[1], "b=2");
+    assert_string_equal(output, "out");
+    assert_int_equal(force, 0);
+    assert_int_equal(operands, 2);
+    assert_string_equal(operand[1], "--force");
+    char *bad[][4] = {{"try", "--st", "a"},
+                      {"try", "a", "b", "c"},
+                      {"try", "-o", "a", "-oa"},
+                      {"try", "a", "-o"},
+                      {"try", "a", "--force=1"}};
+    const int lengths[] = {3, 4, 4, 3, 3};
+    int silent = dup(STDERR_FILENO);
+    assert_non_null(freopen("/dev/null", "w", stderr));
+    for (int i = 0; i < 5; i++)
+        assert_false(
+            command_options(&command, lengths[i], bad[i], specs, 3, operand, 2, &operands, &help));
+    fflush(stderr);
+    dup2(silent, STDERR_FILENO);
+    close(silent);
+}
+
+/* ---- the plan ----------------------------------------------------------------------------- */
+
+/* Chunks tile the rows, in order, without overlap; none is larger than 4096; the first batch of
+ * chunks leaves about half; the last are small. */
+static void test_chunks(void **state)
+{
+    (void)state;
+    const uint64_t sizes[] = {1, 2, 7, 8, 63, 64, 65, 1000, 4096, 65536, 1000003, 40000000};
+    for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
+        for (int ranks = 1; ranks <= 1024; ranks = ranks * 3 + 1) {
+            uint64_t next = 0, first, count, k = 0, before = UINT64_MAX;
+            for (; plan_chunk(sizes[i], ranks, k, &first, &count); k++) {
+                assert_int_equal(first, next);
+                assert_in_range(count, 1, 4096);
+                assert_true(count <= before);
+                before = count;
+                next = first + count;
+                assert_true(k < 2 * sizes[i]);
+            }
+            assert_int_equal(next, sizes[i]);
+            assert_true(before <= 64);
+            assert_false(plan_chunk(sizes[i], ranks, k + 1, &first, &count));
+            assert_false(plan_chunk(sizes[i], ranks, UINT32_MAX, &first, &count));
+        }
+    }
+    uint64_t first, count;
+    assert_true(plan_chunk((uint64_t)1 << 40, 7, 1000003, &first, &count));
+    assert_int_equal(first, (uint64_t)1000003 * 4096);
+}
+
+static const char swept[] =
+    "stance: 1\nscene: biped\nground: {friction: 0.8, contacts: [foot1]}\n"
+    "initial:\n  equilibrium: {theta: -0.41, q2: 0.82}\n  support_foot: 1\n"
+    "controller: {kind: state-feedback, design: place, sample_time: 0.001, torque_limit: 10,\n"
+    "  poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]}\n"
+    "method: {name: implicit, step: 0.001}\nstop: {time: 0.5}\n"
+    "sweep:\n  grid:\n    - {path: initial.offset.theta, values: [0, 0.01, 0.02]}\n"
+    "    - {path: robot.trunk_mass, values: [1.7, 1.8]}\n"
+    "    - {path: initial.offset.vtheta, values: [0, 0.1, 0.2, 0.3, 0.4]}\n"
+    "    - {path: robot.trunk_length, values: [0.535, 9]}\n"
+    "record: {every: 0.1, cases: [3, 17, 59]}\n";
+
+struct fixture {
+    struct scenario scenario;
+    struct plan plan;
+    struct parallel alone;
+    char file[64];
+};
+
+static int make_fixture(void **state)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    struct plan_error error;
+    *state = f;
+    if (!f || !scenario_read(&f->scenario, "swept.yaml", swept, NULL, 0, stderr))
+        return -1;
+    f->alone = parallel_alone();
+    snprintf(f->file, sizeof f->file, "/tmp/stance-test-%d.h5", (int)getpid());
+    return plan_make(&f->plan, &f->scenario, false, 0, false, &error) &&
+                   plan_compute_designs(&f->plan, &f->alone, &error)
+               ? 0
+               : -1;
+}
+
+static int free_fixture(void **state)
+{
+    struct fixture *f = *state;
+    unlink(f->file);
+    plan_free(&f->plan);
+    scenario_free(&f->scenario);
+    free(f);
+    return 0;
+}
+
+/* Axes 1 and 3 decide on the design; robots with a trunk of 9 m have no such equilibrium. */
+static void test_designs(void **state)
+{
+    struct fixture *f = *state;
+    const struct plan *plan = &f->plan;
+    assert_int_equal(plan->rows, 60);
+    assert_int_equal(plan->designs, 4);
+    for (uint64_t a = 0, index = 0; a < 3; a++)
+        for (uint64_t b = 0; b < 2; b++)
+            for (uint64_t c = 0; c < 5; c++)
+                for (uint64_t d = 0; d < 2; d++, index++) {
+                    stance_case out;
+                    int method;
+                    assert_int_equal(plan_design(plan, index), 2 * b + d);
+                    assert_int_equal(plan_resolve(plan, index, &out, &method), d == 0);
+                    if (d == 0) {
+                        assert_true(out.robot[3] == (b ? 1.8 : 1.7));
+                        assert_true(fabs(out.velocity[2] - 0.1 * (double)c) < 1e-15);
+                    }
+                }
+    for (int d = 0; d < 4; d++)
+        assert_int_equal(plan->design_status[d], d % 2 ? STANCE_FAILED : STANCE_DONE);
+    /* Two robots, two different gains. */
+    assert_true(plan->design[0].gain[0][0] != plan->design[2].gain[0][0]);
+}
+
+static void test_recorded(void **state)
+{
+    struct fixture *f = *state;
+    uint64_t place;
+    assert_int_equal(f->plan.record_rows, 6);
+    assert_int_equal(f->plan.record_cases, 3);
+    for (uint64_t row = 0; row < 60; row++)
+        assert_int_equal(plan_recorded(&f->plan, row, &place), row == 3 || row == 17 || row == 59);
+    assert_true(plan_recorded(&f->plan, 17, &place));
+    assert_int_equal(place, 1);
+    assert_int_equal(plan_recorded_case(&f->plan, 2), 59);
+}
+
+static void test_checks(void **state)
+{
+    struct fixture *f = *state;
+    struct plan_error error = {0};
+    bool bound;
+    assert_true(plan_check_cases(&f->plan, &error));
+    assert_true(plan_cost(&f->plan, 0.05, &bound) > 0);
+    f->scenario.base.offset[1] = -0.2; /* under the ground */
+    assert_false(plan_check_cases(&f->plan, &error));
+    assert_int_equal(error.line, 4);
+    assert_non_null(strstr(error.message.text, "ground"));
+    f->scenario.base.offset[1] = 0;
+}
+
+/* ---- the results file --------------------------------------------------------------------- */
+
+/* A result whose numbers say which row it is of. */
+static stance_result numbered(uint64_t row)
+{
+    stance_result r = {.status = STANCE_DONE,
+                       .outcome = STANCE_FELL,
+                       .evidence = STANCE_SIMULATED,
+                       .end_time = (double)row,
+                       .settle_time = NAN,
+                       .fall_time = 0.5,
+                       .steps = (int64_t)row * 1000000007,
+                       .iterations = -1,
+                       .peak_torque = 1e-300};
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
+        r.position[i] = (double)row + 0.1 * i, r.velocity[i] = -(double)row;
+    return r;
+}
+
+static void write_rows(struct store *store, uint64_t first, size_t n)
+{
+    stance_result results[STORE_ROWS];
+    stance_message message;
+    for (size_t i = 0; i < n; i++)
+        results[i] = numbered(first + i);
+    assert_true(store_write(store, first, n, results, &message));
+}
+
+static void assert_whole(struct store *store, uint64_t first, size_t n, bool expected)
+{
+    stance_result results[STORE_ROWS];
+    stance_message message;
+    bool whole[STORE_ROWS];
+    assert_true(store_verify(store, first, n, results, whole, &message));
+    for (size_t i = 0; i < n; i++) {
+        assert_int_equal(whole[i], expected);
+        if (expected)
+            assert_int_equal(results[i].outcome, STANCE_FELL);
+    }
+}
+
+/* Ranges of all lengths over a grid of 3 x 2 x 5 x 2: written rows are whole, others stay pending
+ * (trajectories, which these rows lack, are tested from outside). */
+static void test_rows(void **state)
+{
+    struct fixture *f = *state;
+    struct store *store;
+    struct store_counts counts;
+    stance_message message;
+    struct plan plan = f->plan;
+    plan.record_rows = 0, plan.record_cases = 0;
+    for (uint64_t first = 0; first < 60; first++) {
+        const size_t n = 1 + (size_t)(first * 37 % (60 - first));
+        unlink(f->file);
+        assert_true(store_create(f->file, &plan, 1, "here", &message));
+        assert_true(store_open(&store, f->file, &plan, 1, &message));
+        assert_whole(store, 0, 60, false);
+        write_rows(store, first, n);
+        assert_whole(store, first, n, true);
+        assert_whole(store, 0, (size_t)first, false);
+        assert_whole(store, first + n, 60 - (size_t)first - n, false);
+        assert_true(store_close(store, &message));
+        assert_true(store_count(f->file, &counts, &message));
+        assert_int_equal(counts.cases, 60);
+        assert_int_equal(counts.done, n);
+        assert_int_equal(counts.failed, 0);
+    }
+}
+
+static void test_designs_stored(void **state)
+{
+    struct fixture *f = *state;
+    struct store *store;
+    stance_message message;
+    struct plan copy = f->plan;
+    unlink(f->file);
+    assert_true(store_create(f->file, &f->plan, 1, "here", &message));
+    copy.design = calloc(4, sizeof *copy.design);
+    copy.design_status = calloc(4, 1);
+    assert_true(store_open(&store, f->file, &f->plan, 1, &message));
+    assert_true(store_read_designs(store, &copy, &message));
+    assert_true(store_close(store, &message));
+    assert_memory_equal(copy.design_status, f->plan.design_status, 4);
+    for (int d = 0; d < 4; d += 2)
+        assert_memory_equal(&copy.design[d], &f->plan.design[d], sizeof copy.design[d]);
+    assert_true(isnan(copy.design[1].gain[0][0]));
+    plan_free(&copy);
+}
+
+static void test_origin(void **state)
+{
+    struct fixture *f = *state;
+    struct store_origin origin;
+    stance_message message;
+    FILE *file;
+    unlink(f->file);
+    assert_true(store_create(f->file, &f->plan, 3, "here", &message));
+    assert_false(store_create(f->file, &f->plan, 3, "here", &message)); /* ... and stays */
+    assert_true(store_read_origin(f->file, &origin, &message));
+    assert_string_equal(origin.scenario, f->scenario.text);
+    store_origin_free(&origin);
+    /* Cut short, or something else altogether. */
+    assert_int_equal(truncate(f->file, 3000), 0);
+    assert_false(store_read_origin(f->file, &origin, &message));
+    assert_non_null(strstr(message.text, f->file));
+    file = fopen(f->file, "w");
+    fputs("not HDF5", file);
+    fclose(file);
+    assert_false(store_read_origin(f->file, &origin, &message));
+    assert_false(store_read_origin("/nowhere/file.h5", &origin, &message));
+    assert_non_null(strstr(message.text, "No such file"));
+}
+
+/* ---- the lock ----------------------------------------------------------------------------- */
+
+static void test_lock(void **state)
+{
+    struct fixture *f = *state;
+    struct lock lock, second;
+    struct lock_note note = {1.5, 77}, found;
+    stance_message message;
+    assert_false(lock_is_held(f->file, &found));
+    assert_true(lock_take(&lock, f->file, &message));
+    lock_write_note(&lock, &note);
+    assert_true(lock_is_held(f->file, &found));
+    assert_true(found.start == 1.5 && found.finished == 77);
+    assert_false(lock_take(&second, f->file, &message));
+    assert_non_null(strstr(message.text, "another process"));
+    lock_release(&lock);
+    assert_false(lock_is_held(f->file, &found));
+    assert_int_not_equal(access(lock.file, F_OK), 0);
+    /* The death of its owner releases it. */
+    pid_t child = fork();
+    if (child == 0) {
+        lock_take(&lock, f->file, &message);
+        _exit(0);
+    }
+    waitpid(child, NULL, 0);
+    assert_int_equal(access(lock.file, F_OK), 0);
+    assert_false(lock_is_held(f->file, &found));
+    assert_true(lock_take(&lock, f->file, &message));
+    lock_release(&lock);
+    assert_false(lock_take(&lock, "/nowhere/file.h5", &message));
+    assert_non_null(strstr(message.text, "No such file"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_crc32c),       cmocka_unit_test(test_sha256),
+        cmocka_unit_test(test_nearest_word), cmocka_unit_test(test_options),
+        cmocka_unit_test(test_chunks),       cmocka_unit_test(test_designs),
+        cmocka_unit_test(test_recorded),     cmocka_unit_test(test_checks),
+        cmocka_unit_test(test_rows),         cmocka_unit_test(test_designs_stored),
+        cmocka_unit_test(test_origin),       cmocka_unit_test(test_lock),
+    };
+    store_prepare();
+    return cmocka_run_group_tests_name("runner", tests, make_fixture, free_fixture);
+}

@@ -1,0 +1,690 @@
+/* test_scenario.c - scenario files: what is read, what is refused and how, what is written back.
+ *
+ * Every file of tests/bad begins with "# LINE:COLUMN: MESSAGE", the one line that it must lead to.
+ */
+#include "support.h"
+
+#include "../runner/schema.h"
+#include "../runner/store.h"
+
+#include <dirent.h>
+
+/* ---- reading ----------------------------------------------------------------------------------
+ */
+
+enum { ERRORS_SIZE = 1 << 16 };
+static char errors[ERRORS_SIZE];
+
+#define assert_near(found, wanted, tolerance) assert_true(fabs((found) - (wanted)) <= (tolerance))
+
+/* Reads `text` (or the file, when NULL) under the name `file`; what it says goes to `errors`. */
+static bool read_as(struct scenario *s, const char *file, const char *text, const char *const *sets,
+                    size_t set_count)
+{
+    FILE *out = fmemopen(errors, sizeof errors, "w");
+    assert_non_null(out);
+    bool good = scenario_read(s, file, text, sets, set_count, out);
+    fputc('\0', out);
+    fclose(out);
+    return good;
+}
+
+static void read_good(struct scenario *s, const char *text, const char *const *sets,
+                      size_t set_count)
+{
+    if (!read_as(s, "good.yaml", text, sets, set_count)) {
+        fail_msg("refused: %s", errors);
+    }
+    assert_string_equal(errors, "");
+}
+
+static void refused(const char *text, const char *const *sets, size_t set_count, const char *wanted)
+{
+    struct scenario s, empty;
+    memset(&empty, 0, sizeof empty);
+    assert_false(read_as(&s, "bad.yaml", text, sets, set_count));
+    assert_string_equal(errors, wanted);
+    assert_memory_equal(&s, &empty, sizeof s);
+}
+
+static const char full[] =
+    "stance: 1\n"
+    "title: \"Every key: \\\"one\\\" of them\"\n"
+    "scene: biped\n"
+    "robot: {leg_length: 0.5, trunk_length: 0.6, foot_mass: 1.5, trunk_mass: 2, hip_mass: 5}\n"
+    "ground: {friction: 0.7, restitution: 0.25, contacts: [foot2]}\n"
+    "initial:\n"
+    "  equilibrium: {theta: -0.41, q1: .5, branch: lower}\n"
+    "  support_foot: 2\n"
+    "  offset: {x: 1, z: 2, theta: 0.1, q1: 0.2, q2: 0.3, vx: 3, vz: 4, vtheta: 5, vq1: 6, "
+    "vq2: 7e-1}\n"
+    "controller:\n"
+    "  kind: state-feedback\n"
+    "  design: place\n"
+    "  poles: [-3, -3.3, -4+1.5i, -5, -4-1.5i, -4.6e0]\n"
+    "  model: {leg_length: 0.51, hip_mass: 5.5}\n"
+    "  equilibrium: {theta: -0.4, q2: +0.8}\n"
+    "  sample_time: 0.002\n"
+    "  torque_limit: 10\n"
+    "  noise: 0.1\n"
+    "method: {name: midpoint, step: 5e-4}\n"
+    "stop: {time: 8.5, settle: {angle: 0.04, rate: 0.4, hold: 0.6}, fall_height: 0.3}\n"
+    "sweep:\n"
+    "  grid:\n"
+    "    - {path: ground.friction, from: 0.1, to: 0.7, count: 4}\n"
+    "    - {path: robot.hip_mass, from: 1, to: 100, count: 3, spacing: log}\n"
+    "    - {path: method.name, values: [midpoint, implicit]}\n"
+    "    - paths: [initial.offset.theta, 'controller.poles[1]']\n"
+    "      values: [[0.1, -3], [0.2, -4], [0.3, -5]]\n"
+    "    - {path: stop.time, from: 3, count: 1}\n"
+    "record: {every: 0.02, cases: [5, 3, 5], answers: [outcome, steps, final_state]}\n"
+    "seed: 9223372036854775807\n";
+
+static const char holds[] = "stance: 1\n"
+                            "scene: biped\n"
+                            "initial: {state: {z: 1.5, theta: -0.5, q1: 0.9, q2: -1, vx: 2}}\n"
+                            "controller: {kind: hold, kp: 500, kd: 50, target: {q2: -0.9}}\n"
+                            "stop: {time: 1.5, settle: off}\n"
+                            "record: {cases: all}\n";
+
+static const char gives_gains[] = "stance: 1\n"
+                                  "scene: biped\n"
+                                  "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
+                                  "controller:\n"
+                                  "  kind: state-feedback\n"
+                                  "  design: gains\n"
+                                  "  gains: [[1, 2, 3, 4, 5, 6], [-1, -2, -3, -4, -5, -6]]\n"
+                                  "  equilibrium: {theta: -0.41, q2: 0.82}\n"
+                                  "  sample_time: 0.001\n"
+                                  "stop: {time: 8}\n";
+
+static const char places[] = "stance: 1\n"
+                             "scene: biped\n"
+                             "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
+                             "controller:\n"
+                             "  kind: state-feedback\n"
+                             "  poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]\n"
+                             "stop: {time: 8}\n";
+
+static const char *const good_texts[] = {full, holds, gives_gains, places};
+enum { GOOD_TEXTS = sizeof good_texts / sizeof good_texts[0] };
+
+/* ---- good scenarios ---------------------------------------------------------------------------
+ */
+
+static void check_numbers(const double *found, const double *wanted, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (isnan(wanted[i])) {
+            assert_true(isnan(found[i]));
+        } else {
+            assert_near(found[i], wanted[i], 0);
+        }
+    }
+}
+
+static void every_key_is_read(void **state)
+{
+    static const double robot[] = {0.5, 0.6, 1.5, 2, 5}, model[] = {0.51, NAN, NAN, NAN, 5.5};
+    static const double offset[] = {1, 2, 0.1, 0.2, 0.3, 3, 4, 5, 6, 0.7};
+    static const double re[] = {-3, -3.3, -4, -5, -4, -4.6}, im[] = {0, 0, 1.5, 0, -1.5, 0};
+    static const double start[] = {-0.41, 0.5, NAN}, target[] = {-0.4, NAN, 0.8};
+    struct scenario s;
+    (void)state;
+    read_good(&s, full, NULL, 0);
+    const struct scenario_values *v = &s.base;
+
+    assert_string_equal(s.file, "good.yaml");
+    assert_string_equal(s.name, "good");
+    assert_string_equal(s.title, "Every key: \"one\" of them");
+    assert_ptr_equal(s.scene, stance_scene_find("biped"));
+    assert_true(s.seed == (uint64_t)INT64_MAX);
+    check_numbers(v->robot, robot, 5);
+    check_numbers(v->model, model, 5);
+    check_numbers(&v->friction, (double[]){0.7}, 1);
+    check_numbers(&v->restitution, (double[]){0.25}, 1);
+    assert_int_equal(v->contacts, 2);
+    assert_true(v->equilibrium.given && v->design_point.given && !v->state_given);
+    check_numbers(v->equilibrium.posture, start, 3);
+    check_numbers(v->design_point.posture, target, 3);
+    assert_int_equal(v->equilibrium.lower, 1);
+    assert_int_equal(v->design_point.lower, 0);
+    assert_int_equal(v->support_foot, 2);
+    check_numbers(v->offset, offset, 10);
+    assert_int_equal(v->law, LAW_STATE_FEEDBACK);
+    assert_int_equal(v->design, DESIGN_PLACE);
+    check_numbers(v->pole_re, re, 6);
+    check_numbers(v->pole_im, im, 6);
+    check_numbers((double[]){v->sample_time, v->torque_limit, v->noise}, (double[]){0.002, 10, 0.1},
+                  3);
+    assert_string_equal(stance_methods()[v->method]->name, "midpoint");
+    check_numbers((double[]){v->step, v->stop_time, v->fall_height}, (double[]){5e-4, 8.5, 0.3}, 3);
+    assert_int_equal(v->settle, 1);
+    check_numbers((double[]){v->settle_angle, v->settle_rate, v->settle_hold},
+                  (double[]){0.04, 0.4, 0.6}, 3);
+    check_numbers(&s.record_every, (double[]){0.02}, 1);
+    assert_int_equal(s.record_cases, RECORD_LIST);
+    assert_int_equal(s.record_count, 2);
+    assert_true(s.record_list[0] == 3 && s.record_list[1] == 5);
+    assert_int_equal(s.answers, 1u << STORE_BIT_outcome | 1u << STORE_BIT_steps |
+                                    1u << STORE_BIT_FINAL_STATE | 1u << 31);
+    assert_int_equal(s.initial_line, 6);
+    assert_int_equal(s.initial_column, 1);
+    assert_int_equal(s.controller_line, 10);
+    scenario_free(&s);
+}
+
+static void defaults_hold(void **state)
+{
+    struct scenario s;
+    (void)state;
+    read_good(&s,
+              "stance: 1\nscene: biped\ninitial: {equilibrium: {q1: 0.5, q2: 1}}\n"
+              "stop: {time: 2}\n",
+              NULL, 0);
+    const struct scenario_values *v = &s.base;
+    for (int i = 0; i < s.scene->robot_count; i++) {
+        assert_near(v->robot[i], s.scene->robot[i].fallback, 0);
+        assert_true(isnan(v->model[i]));
+    }
+    check_numbers((double[]){v->friction, v->restitution, v->step, v->sample_time, v->noise,
+                             v->settle_angle, v->settle_rate, v->settle_hold, v->fall_height},
+                  (double[]){0.8, 0, 0.001, 0, 0, 0.05, 0.5, 0.5, 0.2}, 9);
+    assert_true(isinf(v->torque_limit));
+    assert_int_equal(v->contacts, 3);
+    assert_int_equal(v->support_foot, 1);
+    assert_int_equal(v->law, LAW_NONE);
+    assert_int_equal(v->settle, 1);
+    assert_string_equal(stance_methods()[v->method]->name, "implicit");
+    assert_true(isnan(v->equilibrium.posture[0]));
+    assert_false(v->design_point.given);
+    assert_true(s.seed == 1 && s.cases == 1 && s.axes == 0);
+    assert_string_equal(s.title, "good");
+    assert_int_equal(s.record_cases, RECORD_NONE);
+    check_numbers(&s.record_every, (double[]){0}, 1);
+    assert_int_equal(s.answers, UINT32_MAX);
+    scenario_free(&s);
+
+    read_good(&s, holds, NULL, 0);
+    assert_int_equal(s.base.law, LAW_HOLD);
+    assert_int_equal(s.base.settle, 0);
+    assert_int_equal(s.base.support_foot, 0);
+    assert_true(s.base.state_given && !s.base.equilibrium.given);
+    check_numbers(s.base.state, (double[]){0, 1.5, -0.5, 0.9, -1, 2, 0, 0, 0, 0}, 10);
+    check_numbers(s.base.target, (double[]){NAN, NAN, -0.9}, 3);
+    check_numbers((double[]){s.base.kp, s.base.kd, s.record_every}, (double[]){500, 50, 0.01}, 3);
+    assert_int_equal(s.record_cases, RECORD_ALL);
+    scenario_free(&s);
+
+    read_good(&s, gives_gains, (const char *[]){"controller.torque_limit=none"}, 1);
+    assert_int_equal(s.base.design, DESIGN_GAINS);
+    check_numbers(s.base.gains, (double[]){1, 2, 3, 4, 5, 6, -1, -2, -3, -4, -5, -6}, 12);
+    assert_true(isinf(s.base.torque_limit));
+    scenario_free(&s);
+}
+
+static void axes_make_cases(void **state)
+{
+    struct scenario s;
+    struct scenario_values v;
+    char text[64];
+    uint64_t index = 0;
+    (void)state;
+    read_good(&s, full, NULL, 0);
+    assert_int_equal(s.axes, 5);
+    assert_int_equal(s.cases, 4 * 3 * 2 * 3);
+    assert_string_equal(s.axis[0].name, "ground.friction");
+    assert_string_equal(s.axis[0].unit, "1");
+    assert_string_equal(s.axis[0].text, "Coulomb coefficient of friction");
+    assert_string_equal(s.axis[3].name, "initial.offset.theta");
+    assert_string_equal(s.axis[3].path[1], "controller.poles[1]");
+    assert_string_equal(s.axis[3].unit, "rad");
+    assert_string_equal(s.axis[4].unit, "s");
+    assert_false(s.axis[0].design || s.axis[2].design || s.axis[4].design);
+    assert_true(s.axis[1].design && s.axis[3].design);
+    assert_true(s.axis[2].words && s.axis[2].enumeration[0] && !s.axis[3].words);
+    assert_int_equal(s.axis[1].line, 24);
+    assert_int_equal(s.axis[1].column, 7);
+    for (int f = 0; f < 4; f++) {
+        for (int m = 0; m < 3; m++) {
+            for (int method = 0; method < 2; method++) {
+                for (int t = 0; t < 3; t++, index++) {
+                    scenario_case_values(&s, index, &v);
+                    assert_near(v.friction, 0.1 + 0.2 * f, 1e-15);
+                    assert_near(v.robot[4], pow(10, m), 1e-13);
+                    assert_string_equal(stance_methods()[v.method]->name,
+                                        method ? "implicit" : "midpoint");
+                    assert_near(v.offset[2], (t + 1) / 10.0, 0);
+                    assert_near(v.pole_re[1], -3 - t, 0);
+                    assert_near(v.stop_time, 3, 0);
+                    assert_near(v.offset[3], 0.2, 0); /* as the base has it */
+                }
+            }
+        }
+    }
+    /* Ends are exact. */
+    assert_near(scenario_axis_value(&s.axis[0], 3, 0), 0.7, 0);
+    assert_near(scenario_axis_value(&s.axis[1], 0, 0), 1, 0);
+    assert_near(scenario_axis_value(&s.axis[1], 2, 0), 100, 0);
+    scenario_axis_text(&s.axis[2], 1, 0, text, sizeof text);
+    assert_string_equal(text, "implicit");
+    scenario_axis_text(&s.axis[3], 2, 1, text, sizeof text);
+    assert_string_equal(text, "-5");
+    scenario_free(&s);
+
+    /* Words and numbers together; a billion points take no memory. */
+    read_good(&s,
+              "stance: 1\nscene: biped\ninitial: {state: {z: 1}}\nstop: {time: 1}\nsweep:\n"
+              "  grid:\n"
+              "  - paths: [method.step, method.name]\n"
+              "    values: [[1e-3, implicit], [2e-3, midpoint]]\n"
+              "  - {path: initial.state.vx, from: -1, to: 1, count: 1000000000}\n",
+              NULL, 0);
+    assert_int_equal(s.cases, 2000000000);
+    assert_true(s.axis[0].words && !s.axis[0].enumeration[0] && s.axis[0].enumeration[1]);
+    assert_string_equal(s.axis[0].word[2], "2e-3");
+    scenario_case_values(&s, 1999999999, &v);
+    assert_true(v.step == 2e-3 && v.state[5] == 1);
+    assert_string_equal(stance_methods()[v.method]->name, "midpoint");
+    scenario_free(&s);
+}
+
+/* What only a sweep gives counts as given. */
+static void swept_fields_count_as_given(void **state)
+{
+    struct scenario s;
+    static const char *const design[] = {
+        "controller.poles=[-1, -2, -3, -4, -5, -6]",
+        "sweep.grid=[{path: controller.design, values: [gains, place]}]"};
+    (void)state;
+    read_good(&s,
+              "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: 0.1}}\n"
+              "controller: {kind: hold, kd: 1}\nsweep:\n  grid:\n"
+              "  - {path: initial.equilibrium.q2, from: 0, to: 1, count: 2}\n"
+              "  - {path: controller.kp, from: 0, to: 1, count: 2}\n"
+              "  - {path: stop.time, from: 1, to: 2, count: 2}\n",
+              NULL, 0);
+    assert_true(s.base.equilibrium.given);
+    scenario_free(&s);
+    read_good(&s, gives_gains, design, 2);
+    assert_true(s.axis[0].design);
+    scenario_free(&s);
+}
+
+/* ---- round trip -------------------------------------------------------------------------------
+ */
+
+static void same_scenario(const struct scenario *a, const struct scenario *b)
+{
+    assert_memory_equal(&a->base, &b->base, sizeof a->base);
+    assert_string_equal(a->title, b->title);
+    assert_ptr_equal(a->scene, b->scene);
+    assert_true(a->seed == b->seed && a->cases == b->cases && a->axes == b->axes);
+    assert_true(a->record_every == b->record_every && a->record_cases == b->record_cases &&
+                a->record_count == b->record_count && a->answers == b->answers);
+    if (a->record_count) {
+        assert_memory_equal(a->record_list, b->record_list,
+                            a->record_count * sizeof *a->record_list);
+    }
+    for (int i = 0; i < a->axes; i++) {
+        const struct scenario_axis *x = &a->axis[i], *y = &b->axis[i];
+        assert_true(x->count == y->count && x->paths == y->paths && x->log == y->log);
+        assert_true(x->design == y->design && x->words == y->words);
+        for (int k = 0; k < x->paths; k++) {
+            assert_string_equal(x->path[k], y->path[k]);
+            for (size_t p = 0; p < x->count && p < 100; p++) {
+                assert_true(scenario_axis_value(x, p, k) == scenario_axis_value(y, p, k));
+            }
+        }
+    }
+    assert_string_equal(a->text, b->text);
+}
+
+static void resolved_text_reads_back(void **state)
+{
+    static const char *const sets[] = {"title=\"caf\\u00e9 \\\"q\\\" \\\\ : # \\u2028\"",
+                                       "stop.time=3.25", "robot.hip_mass=6", "seed=5"};
+    DIR *directory = opendir("scenarios");
+    struct scenario a, b;
+    (void)state;
+    for (size_t i = 0; i < GOOD_TEXTS; i++) {
+        for (size_t n = 0; n <= 4; n += 4) {
+            read_good(&a, good_texts[i], sets, n);
+            read_good(&b, a.text, NULL, 0);
+            same_scenario(&a, &b);
+            scenario_free(&a);
+            scenario_free(&b);
+        }
+    }
+    assert_non_null(directory);
+    for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
+        char file[512];
+        snprintf(file, sizeof file, "scenarios/%s", entry->d_name);
+        if (!strstr(entry->d_name, ".yaml")) {
+            continue;
+        }
+        if (!read_as(&a, file, NULL, NULL, 0)) {
+            fail_msg("%s", errors);
+        }
+        read_good(&b, a.text, NULL, 0);
+        same_scenario(&a, &b);
+        scenario_free(&a);
+        scenario_free(&b);
+    }
+    closedir(directory);
+}
+
+/* Order and layout of the file do not matter, nor where a value comes from. */
+static void resolved_text_is_canonical(void **state)
+{
+    struct scenario a, b;
+    (void)state;
+    read_good(&a, places, (const char *[]){"ground.friction=0.5", "method.step=0.002"}, 2);
+    read_good(&b,
+              "# the same\nscene:   biped\nground: {friction: &f 0.5}\nstop:\n    time: 8\n"
+              "method: {step: 0.002}\ncontroller: {poles: [-3, -3.3, -3.6,\n  -3.9, -4.2, "
+              "-4.6], kind: state-feedback}\ninitial:\n  equilibrium:\n    q2: 0.82\n"
+              "    theta: -0.41\nstance: 1\n",
+              NULL, 0);
+    same_scenario(&a, &b);
+    scenario_free(&a);
+    scenario_free(&b);
+}
+
+/* ---- --set ------------------------------------------------------------------------------------
+ */
+
+static void sets_edit(void **state)
+{
+    struct scenario s;
+    (void)state;
+    read_good(&s, full,
+              (const char *[]){"sweep.grid[0].count=7", "controller.poles[0]=-3.1",
+                               "sweep.grid[2]={path: ground.restitution, values: [0]}",
+                               "sweep.grid[5].path=stop.fall_height",
+                               "sweep.grid[5].values=[0.1, 0.2]", "robot={}", "record.cases=none",
+                               "stop.settle=off"},
+              8);
+    assert_int_equal(s.axis[0].count, 7);
+    assert_true(s.base.pole_re[0] == -3.1 && s.base.robot[0] == 0.535);
+    assert_string_equal(s.axis[2].name, "ground.restitution");
+    assert_int_equal(s.axis[5].count, 2);
+    assert_int_equal(s.base.settle, 0);
+    scenario_free(&s);
+    read_good(&s, full, (const char *[]){"sweep={}", "record.cases=[0]"}, 2);
+    assert_true(s.axes == 0 && s.cases == 1);
+    scenario_free(&s);
+}
+
+static void bad_sets_are_refused(void **state)
+{
+    static const char *const wanted[][2] = {
+        {"stop.time=x", "stop.time: expected a number, found 'x'"},
+        {"stop.time=", "stop.time: expected a number, found nothing"},
+        {"stop.tim=1", "stop: unknown key 'tim'; did you mean 'time'? (known: time, settle, "
+                       "fall_height)"},
+        {"stop.time", "a value must follow, as in PATH=VALUE"},
+        {"=1", "'' is not a path such as sweep.grid[0].count"},
+        {"a[=1", "'a[' is not a path such as sweep.grid[0].count"},
+        {"a[01]=1", "'a[01]' is not a path such as sweep.grid[0].count"},
+        {"stop..time=1", "'stop..time' is not a path such as sweep.grid[0].count"},
+        {"stop[0]=1", "stop is not a list; set it as a whole"},
+        {"scene.x=1", "scene is not a mapping; set it as a whole"},
+        {"controller.poles[7]=1", "controller.poles has 6 items, so [7] is beyond its end"},
+        {"controller.poles[6]=-1", "controller.poles: expected 6 poles, found 7"},
+        {"ground={friction: 0.1, friction: 0.2}", "duplicate key 'friction' (first in line 1)"},
+        {"ground=[1", "not YAML: did not find expected ',' or ']'"},
+        {"title=\xff", "not UTF-8 text (byte 0xff)"},
+        {"sweep.grid=[{path: stop.time, from: 0, to: 1, count: 2}]",
+         "stop.time: 0 is out of range (more than 0, at most 1e+09 s)"},
+    };
+    char line[1024];
+    (void)state;
+    for (size_t i = 0; i < sizeof wanted / sizeof wanted[0]; i++) {
+        snprintf(line, sizeof line, "--set %s: %s\n", wanted[i][0], wanted[i][1]);
+        refused(places, &wanted[i][0], 1, line);
+    }
+}
+
+/* ---- bad scenarios ----------------------------------------------------------------------------
+ */
+
+static void bad_files_lead_to_one_line(void **state)
+{
+    DIR *directory = opendir("tests/bad");
+    int files = 0;
+    (void)state;
+    assert_non_null(directory);
+    for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
+        char file[512], head[1024], wanted[2048];
+        struct scenario s;
+        if (!strstr(entry->d_name, ".yaml")) {
+            continue;
+        }
+        snprintf(file, sizeof file, "tests/bad/%s", entry->d_name);
+        FILE *in = fopen(file, "r");
+        assert_non_null(in);
+        assert_non_null(fgets(head, sizeof head, in));
+        fclose(in);
+        snprintf(wanted, sizeof wanted, "%s:%s", file, head + 2);
+        assert_false(read_as(&s, file, NULL, NULL, 0));
+        assert_string_equal(errors, wanted);
+        files++;
+    }
+    closedir(directory);
+    assert_true(files >= 70);
+}
+
+static void unreadable_files_lead_to_one_line(void **state)
+{
+    struct scenario s;
+    (void)state;
+    assert_false(read_as(&s, "tests/bad/absent.yaml", NULL, NULL, 0));
+    assert_string_equal(errors, "tests/bad/absent.yaml: No such file or directory\n");
+    assert_false(read_as(&s, "tests/bad", NULL, NULL, 0));
+    assert_string_equal(errors, "tests/bad: is a directory, not a scenario file\n");
+    refused("", NULL, 0, "bad.yaml: nothing stands in this file\n");
+    refused("# a comment\n", NULL, 0, "bad.yaml: nothing stands in this file\n");
+    refused("stance: 1\ntitle: \xc3(\n", NULL, 0, "bad.yaml:2:8: not UTF-8 text (byte 0xc3)\n");
+    refused("stance: 1\n\x01\n", NULL, 0,
+            "bad.yaml:2:1: not text: the control character U+0001 stands here\n");
+
+    char *large = malloc((1 << 20) + 2);
+    assert_non_null(large);
+    memset(large, '#', (1 << 20) + 1);
+    large[(1 << 20) + 1] = '\0';
+    refused(large, NULL, 0, "bad.yaml: larger than 1 MiB\n");
+    free(large);
+}
+
+/* All errors, in order of position, those of --set last; at most 20. */
+static void several_errors_are_sorted(void **state)
+{
+    char text[4096] = "stance: 1\nscene: biped\n"
+                      "stop: {time: soon, fall_height: 2}\n"
+                      "initial: {state: {z: 1, x: y}}\n"
+                      "ground: {friction: 11, grip: 1}\n";
+    (void)state;
+    refused(text, (const char *[]){"method.step=1", "seed=-1"}, 2,
+            "bad.yaml:3:14: stop.time: expected a number, found 'soon'\n"
+            "bad.yaml:3:33: stop.fall_height: 2 is out of range (0 ... 1)\n"
+            "bad.yaml:4:28: initial.state.x: expected a number, found 'y'\n"
+            "bad.yaml:5:20: ground.friction: 11 is out of range (0 ... 10)\n"
+            "bad.yaml:5:24: ground: unknown key 'grip' (known: friction, restitution, contacts)\n"
+            "--set method.step=1: method.step: 1 is out of range (more than 0, at most 0.1 s)\n"
+            "--set seed=-1: seed: -1 is out of range (0 ... 9223372036854775807)\n");
+
+    strcpy(text, "stance: 1\nscene: biped\ninitial: {state: {z: 1}}\nstop: {time: 1}\nsweep:\n"
+                 "  grid:\n  - path: stop.time\n    values: [");
+    for (int i = 0; i < 300; i++) {
+        strcat(text, "x, ");
+    }
+    strcat(text, "y]\n");
+    struct scenario s;
+    int lines = 0;
+    assert_false(read_as(&s, "bad.yaml", text, NULL, 0));
+    for (const char *at = errors; (at = strchr(at, '\n')) != NULL; at++) {
+        lines++;
+    }
+    assert_int_equal(lines, 21);
+    assert_non_null(strstr(errors, "\nbad.yaml: 281 more errors\n"));
+}
+
+/* ---- every row of the table -------------------------------------------------------------------
+ */
+
+/* A scenario in which a field may be given. */
+static const char *text_for(enum field_use use)
+{
+    return use == USE_HOLD || use == USE_STATE ? holds : use == USE_GAINS ? gives_gains : places;
+}
+
+static void set_path(const struct scenario_field *field, char *path, size_t size)
+{
+    size_t n = 0;
+    for (const char *s = field->path; *s && n + 2 < size; s++) {
+        path[n++] = *s;
+        if (*s == '[') {
+            path[n++] = '1';
+        }
+    }
+    path[n] = '\0';
+}
+
+/* Sets and sweeps the field to a random value; both must arrive where the table says. */
+static void set_and_sweep(const struct scenario_field *field, uint64_t *random)
+{
+    char path[128], number[40], set[256], axis[512];
+    const bool real = field->type == FIELD_NUMBER;
+    double low = fmax(field->low, -1e6), high = fmin(field->high, 1e6), found;
+    struct scenario s;
+    struct scenario_values v;
+    int word = 0;
+
+    set_path(field, path, sizeof path);
+    snprintf(number, sizeof number, "%.17g", uniform(random, low, high));
+    if (field->type == FIELD_INTEGER) {
+        word = (int)field->low;
+        snprintf(number, sizeof number, "%d", word);
+    } else if (field->type == FIELD_WORD) {
+        word = field->use == USE_FEEDBACK ? (int)field->fallback : (int)field->word_count - 1;
+        snprintf(number, sizeof number, "%s", field->words[word]);
+    }
+    snprintf(set, sizeof set, "%s=%s", path, number);
+    snprintf(axis, sizeof axis, "sweep.grid=[{path: '%s', values: [%s]}]", path, number);
+    size_t offset = field->offset;
+    if (strchr(path, '[')) {
+        offset += (1 + field->columns) * sizeof(double);
+    }
+    for (int k = 0; k < 2; k++) {
+        const char *const sets[] = {k == 0 ? set : axis};
+        read_good(&s, text_for(field->use), sets, 1);
+        scenario_case_values(&s, 0, &v);
+        if (real) {
+            memcpy(&found, (const char *)&v + offset, sizeof found);
+            assert_near(found, strtod(number, NULL), 0);
+        } else {
+            int integer;
+            memcpy(&integer, (const char *)&v + offset, sizeof integer);
+            assert_int_equal(integer, word);
+        }
+        scenario_free(&s);
+    }
+}
+
+static void every_field_can_be_set_and_swept(void **state)
+{
+    struct schema *schema = malloc(sizeof *schema);
+    uint64_t random = 1;
+    int fields = 0;
+    (void)state;
+    assert_non_null(schema);
+    assert_true(schema_build(schema, stance_scene_find("biped")));
+    for (int round = 0; round < 20; round++) {
+        for (size_t i = 0; i < schema->count; i++) {
+            const struct scenario_field *field = &schema->field[i];
+            /* A third angle of an equilibrium is an error; noise asks for a sample time. */
+            if (field->sweep && !strstr(field->path, "equilibrium.") &&
+                !strstr(field->path, "noise")) {
+                set_and_sweep(field, &random);
+                fields++;
+            }
+        }
+    }
+    assert_true(fields > 20 * 40);
+    free(schema);
+}
+
+/* ---- damaged text -----------------------------------------------------------------------------
+ */
+
+/* Changes, removes, doubles some bytes. */
+static void damage(char *text, size_t size, uint64_t *random)
+{
+    static const char letters[] = " \n:-[]{},#&*!|>'\"%@`019.eE+xi~\t\\\xc3\xff";
+    for (int edits = (int)uniform(random, 0, 5); edits > 0 && text[0]; edits--) {
+        size_t length = strlen(text), at = (size_t)uniform(random, 0, (double)length);
+        size_t run = 1 + (size_t)uniform(random, 0, 12);
+        run = run < length - at ? run : length - at;
+        switch ((int)uniform(random, 0, 4)) {
+        case 0:
+            memmove(text + at, text + at + run, length - at - run + 1);
+            break;
+        case 1:
+            if (length + run < size) {
+                memmove(text + at + run, text + at, length - at + 1);
+            }
+            break;
+        default:
+            text[at] = letters[(size_t)uniform(random, 0, sizeof letters - 1)];
+        }
+    }
+}
+
+/* Whatever becomes of good scenarios, nothing crashes, and what is accepted reads back. */
+static void damaged_text_is_survived(void **state)
+{
+    static const char *const sets[] = {"sweep.grid[0].count=2", "controller.poles[2]=-3+1.5i",
+                                       "ground={friction: 0.5, contacts: [foot1]}", "seed=1"};
+    const long rounds = getenv("STANCE_TEST_LONG") ? 200000 : 20000;
+    uint64_t random = 7;
+    char text[4096], set[256];
+    (void)state;
+    for (long round = 0; round < rounds; round++) {
+        const char *const edits[] = {set};
+        struct scenario a, b;
+        snprintf(text, sizeof text, "%s", good_texts[round % GOOD_TEXTS]);
+        snprintf(set, sizeof set, "%s", sets[round / GOOD_TEXTS % 4]);
+        damage(text, sizeof text, &random);
+        damage(set, sizeof set, &random);
+        if (read_as(&a, "good.yaml", text, edits, round % 3 == 0)) {
+            read_good(&b, a.text, NULL, 0);
+            same_scenario(&a, &b);
+            scenario_free(&a);
+            scenario_free(&b);
+        } else {
+            assert_true(strncmp(errors, "good.yaml:", 10) == 0 ||
+                        strncmp(errors, "--set ", 6) == 0);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_key_is_read),
+        cmocka_unit_test(defaults_hold),
+        cmocka_unit_test(axes_make_cases),
+        cmocka_unit_test(swept_fields_count_as_given),
+        cmocka_unit_test(resolved_text_reads_back),
+        cmocka_unit_test(resolved_text_is_canonical),
+        cmocka_unit_test(sets_edit),
+        cmocka_unit_test(bad_sets_are_refused),
+        cmocka_unit_test(bad_files_lead_to_one_line),
+        cmocka_unit_test(unreadable_files_lead_to_one_line),
+        cmocka_unit_test(several_errors_are_sorted),
+        cmocka_unit_test(every_field_can_be_set_and_swept),
+        cmocka_unit_test(damaged_text_is_survived),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,150 @@
+/* test_schema.c - the documentation of the scenario format and its JSON Schema agree with the
+ * table, and misspelt words find their nearest.
+ */
+#include "support.h"
+
+#include "../runner/command.h"
+#include "../runner/schema.h"
+
+#define assert_near(found, wanted, tolerance) assert_true(fabs((found) - (wanted)) <= (tolerance))
+
+static char errors[1 << 12];
+
+/* ---- documentation ----------------------------------------------------------------------------
+ */
+
+static char described[1 << 17];
+
+static bool describe(const char *path, bool json_schema)
+{
+    FILE *out = fmemopen(described, sizeof described, "w"),
+         *failed = fmemopen(errors, sizeof errors, "w");
+    assert_non_null(out);
+    assert_non_null(failed);
+    bool good = scenario_describe(path, json_schema, out, failed);
+    fputc('\0', out);
+    fputc('\0', failed);
+    fclose(out);
+    fclose(failed);
+    return good;
+}
+
+static void every_path_is_described(void **state)
+{
+    struct schema *schema = malloc(sizeof *schema);
+    (void)state;
+    assert_non_null(schema);
+    assert_true(schema_build(schema, stance_scene_find("biped")));
+    for (size_t i = 0; i < schema->count; i++) {
+        const char *path = schema->field[i].path;
+        char first[32];
+        assert_true(describe(path, false));
+        assert_true(strncmp(described, path, strlen(path)) == 0 && described[strlen(path)] == '\n');
+        snprintf(first, sizeof first, "%.20s", schema->field[i].text);
+        assert_non_null(strstr(described, first));
+        assert_true(describe(NULL, false));
+        assert_non_null(strstr(described, path));
+    }
+    assert_true(describe("sweep.grid[3].count", false));
+    assert_false(describe("controler.kp", false));
+    assert_string_equal(errors, "stance describe: unknown path 'controler.kp'; did you mean "
+                                "'controller.kp'?\n");
+    free(schema);
+}
+
+/* The JSON Schema of a path without indices; for stop.settle the branch that is a mapping. */
+static json_t *json_at(json_t *root, const char *path)
+{
+    char name[64];
+    for (const char *at = path; *at;) {
+        size_t length = strcspn(at, ".");
+        json_t *branches = json_object_get(root, "anyOf");
+        snprintf(name, sizeof name, "%.*s", (int)length, at);
+        root =
+            branches && !json_object_get(root, "properties") ? json_array_get(branches, 1) : root;
+        root = json_object_get(json_object_get(root, "properties"), name);
+        at += length + (at[length] == '.');
+    }
+    return root;
+}
+
+static void check_number_schema(const struct scenario_field *field, json_t *object)
+{
+    if (field->words) {
+        object = json_array_get(json_object_get(object, "anyOf"), 0);
+    }
+    assert_string_equal(json_string_value(json_object_get(object, "type")),
+                        field->type == FIELD_INTEGER ? "integer" : "number");
+    json_t *low = json_object_get(object, field->low_open ? "exclusiveMinimum" : "minimum");
+    json_t *high = json_object_get(object, "maximum");
+    assert_near(json_number_value(low), field->low, 0);
+    assert_near(json_number_value(high), field->high, 0);
+}
+
+static void schema_agrees_with_the_table(void **state)
+{
+    struct schema *schema = malloc(sizeof *schema);
+    json_error_t problem;
+    const char *names[SCHEMA_MAX_FIELDS];
+    (void)state;
+    assert_non_null(schema);
+    assert_true(schema_build(schema, stance_scene_find("biped")));
+    assert_true(describe(NULL, true));
+    json_t *root = json_loads(described, JSON_REJECT_DUPLICATES, &problem);
+    assert_non_null(root);
+    assert_int_equal(json_object_size(json_object_get(root, "properties")),
+                     schema_children(schema, "", names, SCHEMA_MAX_FIELDS));
+    for (size_t i = 0; i < schema->count; i++) {
+        const struct scenario_field *field = &schema->field[i];
+        if (strchr(field->path, '[')) {
+            continue;
+        }
+        json_t *object = json_at(root, field->path);
+        assert_non_null(object);
+        const char *text = json_string_value(json_object_get(object, "description"));
+        assert_true(text && strncmp(text, field->text, strlen(field->text)) == 0);
+        if (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER) {
+            check_number_schema(field, object);
+        } else if (field->type == FIELD_WORD) {
+            assert_int_equal(json_array_size(json_object_get(object, "enum")), field->word_count);
+        } else if (field->type == FIELD_MAP) {
+            assert_true(json_is_false(json_object_get(object, "additionalProperties")));
+            assert_int_equal(json_object_size(json_object_get(object, "properties")),
+                             schema_children(schema, field->path, names, SCHEMA_MAX_FIELDS));
+        }
+        if (field->offset != NO_OFFSET && !field->fallback_text && !isnan(field->fallback)) {
+            json_t *fallback = json_object_get(object, "default");
+            assert_non_null(fallback);
+            if (field->type == FIELD_NUMBER) {
+                assert_near(json_number_value(fallback), field->fallback, 0);
+            }
+        }
+    }
+    json_decref(root);
+    free(schema);
+}
+
+/* ---- options and words ------------------------------------------------------------------------
+ */
+
+static void nearest_words(void **state)
+{
+    static const char *const known[] = {"friction", "restitution", "contacts", "x"};
+    (void)state;
+    assert_string_equal(nearest_word("fricton", known, 4), "friction");
+    assert_string_equal(nearest_word("rfiction", known, 4), "friction");
+    assert_string_equal(nearest_word("restituti", known, 4), "restitution");
+    assert_null(nearest_word("gravity", known, 4));
+    assert_null(nearest_word("z", known, 4));
+    assert_null(nearest_word("", known, 4));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_path_is_described),
+        cmocka_unit_test(schema_agrees_with_the_table),
+        cmocka_unit_test(nearest_words),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,277 @@
+#!/usr/bin/env bash
+# `stance run`, `status` and `check` from outside: ranks, kills, resumes, full disks, other readers.
+# Speaks TAP. Uses bin/stance, or the program that STANCE names.
+set -u
+cd "$(dirname "$0")/.."
+stance=${STANCE:-$PWD/bin/stance} python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
+scratch=$(mktemp -d)
+disk=$scratch/disk
+trap 'umount "$disk" 2>/dev/null; rm -rf "$scratch"' EXIT
+cd "$scratch" && mkdir "$disk" || exit 1
+count=0
+
+result() { # status, name
+    count=$((count + 1))
+    if (($1 == 0)); then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        sed 's/^/# /' log 2>/dev/null | tail -n 20
+    fi
+}
+# Runs a command within a minute; ok when it exits with this code.
+expect() { # name, code, command ...
+    local name=$1 code=$2 status
+    shift 2
+    timeout 60 "$@" >log 2>&1 </dev/null
+    status=$?
+    ((status == code)) || echo "exit code $status, expected $code" >>log
+    result $((status != code)) "$name"
+}
+# The log has exactly one line of the program, and it matches.
+says() { # name, pattern
+    [ "$(grep -c "$2" log)" = 1 ]
+    result $? "$1"
+}
+looks() { # name, kind ...
+    local name=$1
+    shift
+    "$python" "$tests/open_results.py" "$@" >log 2>&1
+    result $? "$name"
+}
+tool() { # name, task ...
+    local name=$1
+    shift
+    "$python" "$tests/results_tools.py" "$@" >log 2>&1
+    result $? "$name"
+}
+skip() { echo "ok $((++count)) - $1 # SKIP $2"; }
+
+# $1: sweep and other keys.
+scenario() {
+    cat <<END
+stance: 1
+title: "Balance, with \"quotes\" and Ümlaut"
+scene: biped
+ground: {friction: 0.8, contacts: [foot1]}
+initial:
+  equilibrium: {theta: -0.41, q2: 0.82}
+  support_foot: 1
+controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
+             sample_time: 0.001, torque_limit: 10, noise: 0.1}
+method: {name: implicit, step: 0.001}
+$1
+END
+}
+grid() { # count, count
+    echo "sweep:
+  grid:
+    - {path: initial.offset.theta, from: -0.12, to: 0.06, count: $1}
+    - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: $2}"
+}
+
+# ---- what other programs see -----------------------------------------------------------------
+scenario "$(grid 5 5)
+stop: {time: 1}" >square.yaml
+scenario "sweep:
+  grid:
+    - {path: method.name, values: [implicit, midpoint]}
+    - {paths: [ground.friction, ground.restitution], values: [[0.5, 0], [0.8, 0.1]]}
+stop: {time: 1}" >words.yaml
+scenario "record: {every: 0.01, cases: all}
+stop: {time: 1, settle: off}" >alone.yaml
+expect "a square grid" 0 "$stance" run square.yaml
+looks "h5py, xarray and ncdump open a square grid" square results/square.h5
+expect "an axis of strings, and two paths together" 0 "$stance" run words.yaml -o words.h5
+looks "h5py, xarray and ncdump open an axis of strings" words words.h5
+expect "no sweep, with a trajectory" 0 "$stance" run alone.yaml -o alone.h5
+looks "h5py, xarray and ncdump open a trajectory" trajectory alone.h5
+expect "one case, traced" 0 "$stance" run square.yaml --only 7 --trace
+looks "h5py, xarray and ncdump open the one case" one results/square-case7.h5 7
+"$python" - >log 2>&1 <<'END'
+import h5py
+with h5py.File("results/square.h5") as sweep, h5py.File("results/square-case7.h5") as one:
+    for name in ["end_time", "outcome", "iterations", "checksum"]:
+        assert sweep[name][1, 2] == one[name][0], name
+    assert (sweep["final_state"][1, 2] == one["final_state"][0]).all()
+END
+result $? "the case alone and in the sweep agree to the bit"
+
+# ---- any number of ranks ---------------------------------------------------------------------
+scenario "sweep:
+  grid:
+    - {path: robot.trunk_mass, from: 1.6, to: 2, count: 3, spacing: log}
+    - {path: method.name, values: [implicit, midpoint]}
+    - {path: initial.offset.theta, from: -0.12, to: 0.06, count: 11}
+    - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 7}
+record: {every: 0.02, cases: all}
+stop: {time: 1}" >ranks.yaml
+expect "one rank, no launcher" 0 "$stance" run ranks.yaml -o ranks0.h5
+tool "checksums are what an independent program makes of the answers" whole ranks0.h5 462
+for n in 1 2 3 5; do
+    expect "$n ranks" 0 mpirun -n $n "$stance" run ranks.yaml -o ranks$n.h5
+    tool "$n ranks give the same bits as none" same ranks0.h5 ranks$n.h5
+done
+for isa in scalar sse2; do
+    STANCE_ISA=$isa expect "instruction set $isa" 0 "$stance" run ranks.yaml -o $isa.h5
+    tool "$isa gives the same bits" same ranks0.h5 $isa.h5
+done
+scenario "sweep: {grid: [{path: initial.offset.theta, from: 0, to: 0.01, count: 9}]}
+stop: {time: 1}
+record: {answers: [outcome, end_time]}" >few.yaml
+expect "few answers" 0 "$stance" run few.yaml
+"$python" -c 'import h5py; f = h5py.File("results/few.h5")
+assert {k for k in f if k not in ("initial.offset.theta", "design", "timing")} == \
+    {"outcome", "end_time", "checksum", "status"}, list(f)' >log 2>&1
+result $? "a file of few answers holds those and no others"
+tool "checksums of few answers" whole results/few.h5 9
+
+# ---- killed, stopped, damaged, and gone on with ------------------------------------------------
+scenario "$(grid 250 250)
+stop: {time: 5, settle: off}
+record: {every: 0.1, cases: [0, 100, 62499]}" >long.yaml
+expect "the whole job" 0 mpirun -n 2 "$stance" run long.yaml -o long.h5
+expect "status of a finished file" 0 "$stance" status long.h5 --json
+says "status counts 62500 cases" '"done": 62500'
+
+# Waits until some cases of $1 are done.
+await() {
+    for _ in $(seq 200); do
+        "$stance" status "$1" 2>/dev/null | grep -q ': [1-9][0-9]* of .*running' && return 0
+        sleep 0.05
+    done
+    return 1
+}
+for n in 0 2; do
+    if ((n == 0)); then launch=() name="alone"; else launch=(mpirun -n $n) name="of $n ranks"; fi
+    rm -f killed.h5
+    "${launch[@]}" "$stance" run long.yaml -o killed.h5 --quiet >/dev/null 2>&1 &
+    job=$!
+    await killed.h5 2>log
+    result $? "status sees a run $name while it runs"
+    victim=$job
+    ((n > 0)) && victim=$(pgrep -P $job stance | tail -n 1)
+    [ -z "$victim" ] && victim=$(pgrep -P $job -x "$(basename "$stance")" | tail -n 1)
+    expect "a second writer is refused" 3 "$stance" run long.yaml -o killed.h5 --resume
+    says "... and told why" 'another process is writing it'
+    expect "... even with force" 3 "$stance" run long.yaml -o killed.h5 --force
+    kill -9 "$victim"
+    wait $job 2>/dev/null
+    tool "killed $name: every case marked done is whole" whole killed.h5
+    "$stance" status killed.h5 >log 2>&1
+    grep -q 'pending; not running' log
+    result $? "killed $name: status says so"
+    cp killed.h5 first.h5
+    expect "killed $name: another scenario is refused" 2 "$stance" run long.yaml --set seed=2 \
+        -o killed.h5 --resume
+    says "... and told what differs" "made from another scenario: line .*seed"
+    "$python" "$tests/results_tools.py" damage killed.h5 3
+    expect "killed $name, damaged, and resumed" 0 mpirun -n 3 "$stance" run long.yaml \
+        -o killed.h5 --resume
+    tool "killed $name and resumed: the same bits" same long.h5 killed.h5
+done
+expect "a time limit" 4 mpirun -n 2 "$stance" run long.yaml -o limited.h5 --time-limit 1s
+says "... says how to go on" 'go on with: mpirun -n 2 stance run long.yaml .*--resume'
+expect "... and it does" 0 "$stance" run long.yaml -o limited.h5 --resume
+tool "stopped and resumed: the same bits" same long.h5 limited.h5
+for signal in INT TERM USR1; do
+    rm -f signal.h5
+    "$stance" run long.yaml -o signal.h5 --quiet >log 2>&1 &
+    job=$!
+    await signal.h5
+    kill -$signal $job
+    wait $job
+    (($? == 4))
+    result $? "SIG$signal stops with code 4"
+    tool "SIG$signal: every case marked done is whole" whole signal.h5
+done
+rm -f signal.h5
+mpirun -n 2 "$stance" run long.yaml -o signal.h5 --quiet >log 2>&1 &
+job=$!
+await signal.h5
+kill -USR1 $job
+wait $job
+(($? == 4))
+result $? "SIGUSR1 to mpirun stops with code 4"
+tool "SIGUSR1 to mpirun: every case marked done is whole" whole signal.h5
+
+# ---- errors: one line, the right code, no hang -------------------------------------------------
+for launch in "" "mpirun -n 3"; do
+    with=${launch:+ ($launch)}
+    # shellcheck disable=SC2086
+    {
+        expect "an existing file$with" 3 $launch "$stance" run square.yaml
+        says "... says so once" 'results/square.h5 exists; --force replaces it'
+        expect "a missing directory$with" 3 $launch "$stance" run square.yaml -o no/where.h5
+        says "... says so once" 'no/where.h5.*No such file or directory'
+        expect "a missing scenario$with" 3 $launch "$stance" run nowhere.yaml
+        says "... says so once" 'nowhere.yaml.*No such file'
+        expect "an unknown key$with" 2 $launch "$stance" run square.yaml --set ground.frction=1
+        says "... says so once" 'friction'
+        expect "an unknown option$with" 2 $launch "$stance" run square.yaml --forse
+        says "... says so once" "did you mean '--force'"
+        expect "a case beyond the last$with" 2 $launch "$stance" run square.yaml --only 25
+        says "... says so once" 'cases are 0 ... 24'
+        expect "an initial state under the ground$with" 2 $launch "$stance" run square.yaml \
+            -o buried.h5 --set initial.offset.z=-0.1
+        says "... says so once, with its line" '^square.yaml:[0-9]*:[0-9]*: .*ground'
+        [ ! -e buried.h5 ]
+        result $? "... and makes no file"
+        expect "an equilibrium that does not exist$with" 2 $launch "$stance" run alone.yaml \
+            -o none.h5 --set robot.trunk_length=9
+        says "... says so once, with its line" '^alone.yaml:[0-9]*:[0-9]*: '
+        expect "a dry run$with" 0 $launch "$stance" run long.yaml -o dry.h5 --dry-run
+        [ ! -e dry.h5 ]
+        result $? "... makes no file"
+        if mount -t tmpfs -o size=1m tmpfs "$disk" 2>/dev/null; then
+            expect "a full disk$with" 3 $launch "$stance" run long.yaml -o disk/full.h5
+            says "... says so once" 'No space left on device'
+            [ -z "$(ls disk)" ]
+            result $? "... and leaves nothing"
+            mount -o remount,ro "$disk"
+            expect "a read-only disk$with" 3 $launch "$stance" run square.yaml -o disk/full.h5
+            says "... says so once" 'Read-only file system'
+            umount "$disk"
+        else
+            skip "a full disk$with" "cannot mount"
+            skip "a read-only disk$with" "cannot mount"
+        fi
+        rm -f limit.h5
+        expect "a limit on file sizes$with" 3 $launch bash -c \
+            "ulimit -f 2000; exec '$stance' run long.yaml -o limit.h5"
+        says "... says so once" 'limit.h5.*File too large'
+        # Taken away while it runs: the writes of one rank fail.
+        $launch "$stance" run long.yaml -o limit.h5 --quiet >log 2>&1 &
+        job=$!
+        await limit.h5
+        victim=$(pgrep -P "$(pgrep -P $job | head -n 1)" | tail -n 1)
+        [ -z "$launch" ] && victim=$job
+        [ -z "$victim" ] && victim=$(pgrep -P $job | tail -n 1)
+        prlimit --pid "$victim" --fsize=4096
+        wait $job
+        (($? == 3))
+        result $? "a write that fails in mid-run$with"
+        says "... says so once" 'stance run: limit.h5: cannot write'
+        tool "... and what is marked done is whole$with" whole limit.h5
+        rm -f limit.h5
+    }
+done
+expect "check prints cases, designs, size and cost" 0 "$stance" check ranks.yaml --json
+"$python" -c 'import json; d = json.load(open("log")); assert d["cases"] == 462 and \
+    d["designs"] == 3 and d["recorded_cases"] == 462 and d["file_bytes"] > 0 and \
+    d["seconds_on_one_rank"] > 0, d' 2>>log
+result $? "... as JSON with the keys of its help"
+scenario "sweep:
+  grid:
+    - {path: robot.trunk_length, values: [0.535, 9]}
+    - {path: initial.offset.theta, values: [0, 0.001, 0.002]}
+stop: {time: 1}" >designs.yaml
+expect "cases whose design does not exist fail" 1 mpirun -n 2 "$stance" run designs.yaml
+"$python" -c 'import h5py; f = h5py.File("results/designs.h5")
+assert f["status"][...].tolist() == [[1] * 3, [2] * 3], f["status"][...]
+assert f["failure"][...].tolist() == [[0] * 3, [5] * 3] and f["design/status"][...].tolist() == [1, 2]' \
+    >log 2>&1
+result $? "... with status failed, failure initial, and the others done"
+echo "1..$count"
