@@ -18,6 +18,8 @@ while len(problems) < 500:
     q = np.array([0, 0, th, q1, q2])
     v = np.concatenate([rng.uniform(-3, 3, 2), rng.uniform(-6, 6, 3)])
     low = min(p[1] for _, p, _, _ in robot.points(q, v)[2:])
+    if robot.points(q, v)[0][1][1] <= low:  # the trunk would lie on the ground: fallen
+        continue
     q[1] = -low
     M, _, feet = robot.dynamics(q, v)
     touching = [J for p, J, _ in feet if p[1] < 1e-9]
