@@ -264,7 +264,7 @@ static void put_shares(struct page *page, const struct sample *samples,
     if (rested) {
         highest = fmax(highest, put_share_data(page, samples, counts, RESULTS_RESTED, other));
     }
-    begin_panel(page, SHARE_HEIGHT, 0, fmin(100, 1.08 * highest), last);
+    begin_panel(page, SHARE_HEIGHT, 0, highest > 0 ? fmin(100, 1.08 * highest) : 100, last);
     const char *names[] = {stabilised, other};
     const char *colours[] = {plot_colours[RESULTS_STABILISED], plot_colours[RESULTS_RESTED]};
     bool words = page->along->axis->word != NULL;
@@ -365,7 +365,7 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
         gnuplot_label(&page->g, 24, y + EXTENT_HEIGHT / 2.0, text, "center", 12, true);
         gnuplot_label(&page->g, x, y + 12, "stabilised along", "left", 11, false);
         gnuplot_label(&page->g, x, y + 28, axis->name, "left", 11, false);
-        gnuplot_label(&page->g, x, y + 44, "through the equilibrium", "left", 11, false);
+        gnuplot_label(&page->g, x, y + 44, "at the equilibrium", "left", 11, false);
         y += EXTENT_HEIGHT + GAP;
     }
 }
@@ -375,7 +375,7 @@ static bool draw_share_page(const struct plot *plot, const struct plot_axis *alo
                             stance_message *message)
 {
     struct page page = {.plot = plot, .along = along};
-    char stem[512], what[128];
+    char stem[512], what[160];
     int extents[MAX_EXTENTS], extent_count = choose_extents(plot->r, extents);
     bool rested = false;
 

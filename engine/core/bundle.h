@@ -290,7 +290,10 @@ static inline struct verdict bundle_judge(struct bundle *b, mask live, const mas
     mask alone = LANES_ALL;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask mine = mask_less(lanes_abs(b->support - (double)c), lanes_of(0.5));
-        alone &= (mine & loaded[c]) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
+        lanes u[2];
+        scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, u);
+        const mask stands = loaded[c] & mask_less_equal(lanes_abs(u[1]), b->settle_rate);
+        alone &= (mine & stands) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
     }
     const lanes error = lanes_max(angle, speed), one = lanes_of(1);
     const mask at_target =

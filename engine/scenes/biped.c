@@ -65,7 +65,7 @@ static const stance_quantity robot_quantities[ROBOT_COUNT] = {
 static const stance_quantity coordinate_quantities[COORDINATES] = {
     [X] = {"x", "m", "horizontal position of the trunk's mass, forward", 0, -1e6, 1e6},
     [Z] = {"z", "m", "height of the trunk's mass above the ground", 0, -1e6, 1e6},
-    [THETA] = {"theta", "rad", "pitch of the trunk, counter-clockwise from upright", 0, -1e3, 1e3},
+    [THETA] = {"theta", "rad", "pitch of the trunk", 0, -1e3, 1e3},
     [Q1] = {"q1", "rad", "angle of leg 1 against the trunk, 0 when in line with it", 0, -1e3, 1e3},
     [Q2] = {"q2", "rad", "angle of leg 2 against the trunk, 0 when in line with it", 0, -1e3, 1e3},
 };
