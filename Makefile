@@ -32,6 +32,11 @@ LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson 
 PROGRAM_CFLAGS  = $(MPI_CFLAGS) $(LIBRARY_CFLAGS)
 LIBS            = $(LIBRARIES) -lhdf5_hl $(MPI_LIBS) -lslicot -llapack -lblas -lm
 
+# `make V=1` shows whole commands.
+ifneq ($(V),1)
+QUIET = @echo '  $(1) $(2)';
+endif
+
 ALLFLAGS = $(STRICT) $(WARNINGS) $(SANITIZE)
 
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
@@ -68,15 +73,15 @@ all: bin/stance
 
 bin/stance: $(program_objects) $(BUILD)/libstance.a
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LDFLAGS) $(LIBS)
+	$(call QUIET,link,$@)$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LDFLAGS) $(LIBS)
 
 $(BUILD)/libstance.a: $(engine_objects)
-	rm -f $@ && ar rcs $@ $^
+	$(call QUIET,ar,$@)rm -f $@ && ar rcs $@ $^
 
 define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
-	$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) \
+	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) \
 	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
@@ -84,13 +89,13 @@ $(eval $(call kernel_rule,$(s),$(m),$(i))))))
 
 $(BUILD)/engine/%.o: engine/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(LIBRARY_CFLAGS) -MMD -c -o $@ $<
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(LIBRARY_CFLAGS) -MMD -c -o $@ $<
 $(BUILD)/runner/%.o: runner/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -c -o $@ $<
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -c -o $@ $<
 $(BUILD)/analysis/%.o: analysis/%.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -c -o $@ $<
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -c -o $@ $<
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/build_info.o: $(BUILD)/revision
@@ -105,7 +110,7 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
 $(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MF $@.d -o $@ $< $(shared_objects) \
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MF $@.d -o $@ $< $(shared_objects) \
 	    $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
 
 # What Open MPI wants in a container, as root, on few cores.

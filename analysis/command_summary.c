@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TABLE_ROWS = 20, CHANGES_SHOWN = 10, WRAP = 100 };
+enum { TABLE_ROWS = 20, CHANGES_SHOWN = 10, WRAP = 100, INTERVAL = 21, EXTENT = 24 };
 
 static double percent(uint64_t k, uint64_t n)
 {
@@ -91,16 +91,16 @@ static void print_share(const char *name, uint64_t k, uint64_t n)
 static void print_outcomes(const struct summary *summary)
 {
     const struct statistics_counts *counts = &summary->counts;
-    printf("\nOutcomes of %llu cases done, with 95 %% intervals (Wilson)\n",
-           (unsigned long long)counts->done);
-    for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
+    printf("\nOutcomes of the %llu case%s done, with 95 %% intervals (Wilson)\n",
+           (unsigned long long)counts->done, counts->done == 1 ? "" : "s");
+    for (int k = 0; k < RESULTS_KIND_COUNT && summary_has_outcomes(summary); k++) {
         if (k != RESULTS_PENDING && k != RESULTS_FAILED &&
             (counts->kind[k] > 0 || k != RESULTS_DONE)) {
             print_share(results_kind_names[k], counts->kind[k], counts->done);
         }
     }
-    if (counts->kind[RESULTS_DONE] == counts->done && counts->done > 0) {
-        puts("  (the file does not store outcomes)");
+    if (!summary_has_outcomes(summary)) {
+        puts("  not stored in this file");
     }
     if (counts->kind[RESULTS_PENDING] > 0) {
         printf("  %-11s%12llu  not computed yet\n", "pending",
@@ -184,9 +184,10 @@ static void print_parameter_head(const struct results *r, int axis, const int *o
     const struct results_axis *along = &r->axis[axis];
     printf("\nStabilised against %s%s%s%s%s%s\n", along->name, along->unit[0] ? " (" : "",
            along->unit, along->unit[0] ? ")" : "", along->text[0] ? ": " : "", along->text);
-    printf("  %14s %10s %10s   %-19s", "value", "done", "share", "95 % interval");
+    printf("  %14s %10s %10s   %-*s", "value", "done", "share", shown ? INTERVAL : 0,
+           "95 % interval");
     for (int k = 0; k < shown; k++) {
-        printf("  %-24s", r->axis[offsets[k]].name);
+        printf("  %-*s", k + 1 < shown ? EXTENT : 0, r->axis[offsets[k]].name);
     }
     putchar('\n');
 }
@@ -201,14 +202,14 @@ static void print_parameter_row(const struct summary *summary, const struct resu
     results_value_text(&r->axis[axis], i, false, text, sizeof text);
     printf("  %14s %10llu", text, (unsigned long long)counts->done);
     if (counts->done == 0) {
-        printf(" %10s   %-19s", "-", "none done");
+        printf(" %10s   %-*s", "-", shown ? INTERVAL : 0, "none done");
     } else {
         snprintf(text, sizeof text, "%.3f ... %.3f %%", 100 * low, 100 * high);
-        printf(" %8.3f %%   %-19s", 100 * summary_share(counts), text);
+        printf(" %8.3f %%   %-*s", 100 * summary_share(counts), shown ? INTERVAL : 0, text);
     }
     for (int k = 0; k < shown; k++) {
         extent_text(r, offsets[k], axis, i, text, sizeof text);
-        printf("  %-24s", text);
+        printf("  %-*s", k + 1 < shown ? EXTENT : 0, text);
     }
     putchar('\n');
 }
@@ -238,7 +239,8 @@ static void print_parameter(const struct summary *summary, const struct results 
              "it reaches\n  the end of the axis)");
     }
     size_t i = summary->steepest[axis];
-    if (along->count > 1 && summary_share(&counts[i]) != summary_share(&counts[i + 1])) {
+    if (along->count > 1 &&
+        fabs(summary_share(&counts[i + 1]) - summary_share(&counts[i])) > 0) { /* false for NAN */
         results_value_text(along, i, true, from, sizeof from);
         results_value_text(along, i + 1, true, to, sizeof to);
         printf("  changes most between %s (%.3f %%) and %s (%.3f %%)\n", from,
@@ -306,11 +308,11 @@ static void print_cost(const struct summary *summary)
         putchar('\n');
     }
     if (summary->subdivided.stored) {
-        printf("  %.6g subdivided steps in %llu cases\n", summary->subdivided.sum,
-               (unsigned long long)summary->subdivided.cases);
+        printf("  steps that had to be subdivided: %.6g, in %llu of the cases\n",
+               summary->subdivided.sum, (unsigned long long)summary->subdivided.cases);
     }
     if (summary->ambiguous.stored) {
-        printf("  %.6g steps with several contact solutions in %llu cases\n",
+        printf("  steps with several contact solutions: %.6g, in %llu of the cases\n",
                summary->ambiguous.sum, (unsigned long long)summary->ambiguous.cases);
     }
     if (summary->timed) {
@@ -372,7 +374,7 @@ static void print_case(const struct summary *summary, const struct results *r)
         const struct summary_numbers *row = &summary->numbers[k];
         if (k != SUMMARY_settle_time && k != SUMMARY_fall_time &&
             results_numbers(r, row->name, &time, 1) == 1 && !isnan(time)) {
-            printf("  %-18s %.6g %s\n", row->name, time, row->unit);
+            printf("  %-18s %.6g%s%s\n", row->name, time, row->unit[0] ? " " : "", row->unit);
         }
     }
 }
@@ -390,8 +392,11 @@ static void print_text(const struct summary *summary, const struct results *r)
         return;
     }
     print_outcomes(summary);
-    print_extents(summary, r);
-    for (int a = 0; a < r->axes; a++) {
+    bool outcomes = summary_has_outcomes(summary);
+    if (outcomes) {
+        print_extents(summary, r);
+    }
+    for (int a = 0; a < r->axes && outcomes; a++) {
         if (summary->by_value[a]) {
             print_parameter(summary, r, a);
         }

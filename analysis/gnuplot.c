@@ -288,7 +288,7 @@ void gnuplot_decorate(struct gnuplot *g)
           "plot [0:1][0:1] 2 notitle\n" /* nothing of it is seen but what was set before */
           "unset label; unset object\n"
           "set border 31 lw 0.8 lc '#404040'; set tics nomirror out scale 0.6\n"
-          "set xtics; set ytics\n",
+          "set xtics nomirror; set ytics nomirror\n",
           g->script);
 }
 

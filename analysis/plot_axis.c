@@ -131,8 +131,8 @@ double plot_round_step(double low, double high, int tics)
 
 void plot_value_tics(FILE *script, double low, double high, double height)
 {
-    int tics = height < 120 ? 3 : (int)(height / 40);
-    fprintf(script, "set ytics %.10g\n", plot_round_step(low, high, tics));
+    int tics = height < 160 ? 4 : (int)(height / 36);
+    fprintf(script, "set ytics nomirror %.10g\n", plot_round_step(low, high, tics));
 }
 
 /* One tic with its text; a per cent sign would begin a format. */
@@ -222,16 +222,16 @@ void plot_axis_label(const struct results_axis *axis, struct gnuplot *g, double 
                      double length, bool turned)
 {
     char text[RESULTS_TEXT + 8], path[sizeof axis->name + sizeof axis->unit + 4];
-    size_t columns = (size_t)(length / 7.4);
+    size_t columns = (size_t)(length / 6.9);
 
     snprintf(text, sizeof text, "%s", axis->text);
     snprintf(path, sizeof path, axis->unit[0] ? "%s (%s)" : "%s", axis->name, axis->unit);
     cut(text, columns);
     cut(path, columns);
     double dx = turned ? 17 : 0, dy = turned ? 0 : 17;
-    gnuplot_label(g, x, y, text[0] ? text : path, "center", 12, turned);
+    gnuplot_label(g, x, y, text[0] ? text : path, "center", 11, turned);
     if (text[0]) {
-        gnuplot_label(g, x + dx, y + dy, path, "center", 12, turned);
+        gnuplot_label(g, x + dx, y + dy, path, "center", 11, turned);
     }
 }
 

@@ -10,8 +10,8 @@
 enum {
     LEFT = 96,
     PLOT_WIDTH = 700,
-    RIGHT = 150,
-    BOTTOM = 52,
+    RIGHT = 170,
+    BOTTOM = 56,
     HEADING = 24, /* above each panel */
     MOST_ROWS = 4000,
 };
@@ -230,11 +230,12 @@ static void begin_panel(struct page *page, const struct range *range)
     bool last = page->drawn == page->panels - 1;
     gnuplot_panel(&page->g, LEFT, page->top + page->drawn * (page->height + HEADING) + HEADING,
                   PLOT_WIDTH, page->height);
-    fprintf(page->g.script,
-            "set xrange [%.10g:%.10g]\nset xtics %.10g\nset format x '%s'\n"
-            "set yrange [%.10g:%.10g]\nset format y '%%.10g'\nset grid lc rgb '#e6e6e6' lw 0.8\n",
-            t->time[0], end, plot_round_step(t->time[0], end, 10), last ? "%.10g" : "", range->low,
-            range->high);
+    fprintf(
+        page->g.script,
+        "set xrange [%.10g:%.10g]\nset xtics %.10g\nset format x '%s'\n"
+        "set yrange [%.10g:%.10g]\nset format y '%%.10g'\nset grid lt 1 lc rgb '#e6e6e6' lw 0.8\n",
+        t->time[0], end, plot_round_step(t->time[0], end, 10), last ? "%.10g" : "", range->low,
+        range->high);
     plot_value_tics(page->g.script, range->low, range->high, page->height);
     page->drawn++;
 }
@@ -294,8 +295,8 @@ static bool draw_coordinates(const struct plot_case *c, stance_message *message)
         fprintf(page.g.script,
                 "set arrow from screen %.6f,%.6f to screen %.6f,%.6f nohead dt 2 lw 1.6"
                 " lc rgb '%s'\n",
-                x / page.g.width, y, (x + 18) / page.g.width, y, PLOT_SECOND);
-        gnuplot_label(&page.g, x + 24, page.top + HEADING + 8, "equilibrium", "left", 12, false);
+                x / page.g.width, y, (x + 32) / page.g.width, y, PLOT_SECOND);
+        gnuplot_label(&page.g, x + 40, page.top + HEADING + 8, "equilibrium", "left", 12, false);
     }
     gnuplot_decorate(&page.g);
     clear_levels(&page);

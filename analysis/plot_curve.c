@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEFT = 96, PLOT_WIDTH = 620, LEGEND = 180, BOTTOM = 78, GAP = 14, STRIP = 30 };
+enum { LEFT = 96, PLOT_WIDTH = 620, LEGEND = 200, BOTTOM = 84, GAP = 14, STRIP = 30 };
 
 /* A point of a curve. */
 struct sample {
@@ -63,7 +63,7 @@ static bool begin_page(struct page *page, const char *subtitle, double heights,
         return false;
     }
     gnuplot_title(&page->g, title, subtitle);
-    plot_axis_label(page->along->axis, &page->g, LEFT + PLOT_WIDTH / 2.0, bottom + 40,
+    plot_axis_label(page->along->axis, &page->g, LEFT + PLOT_WIDTH / 2.0, bottom + 46,
                     PLOT_WIDTH + 80, false);
     return true;
 }
@@ -75,7 +75,7 @@ static void begin_panel(struct page *page, double height, double low, double hig
     plot_axis_tics(page->along, page->g.script, 'x', 10, last);
     fprintf(page->g.script, "set yrange [%.10g:%.10g]\nset format y '%%.10g'\n", low, high);
     plot_value_tics(page->g.script, low, high, height);
-    fputs("set grid lc rgb '#e6e6e6' lw 0.8\n", page->g.script);
+    fputs("set grid lt 1 lc rgb '#e6e6e6' lw 0.8\n", page->g.script);
     page->top += height + GAP;
 }
 
@@ -312,8 +312,8 @@ static void put_extent(struct page *page, const struct sample *samples, int axis
                             " dt 2 lc rgb '#909090'\n");
     if (page->along->axis->word) {
         fprintf(page->g.script,
-                "plot '%s' using 1:(0.5*($2+$3)):2:3 with yerrorbars lc rgb '%s' pt -1 lw 2"
-                " notitle\n",
+                "plot '%s' using 1:2:($1-0.05):($1+0.05):2:3 with boxxyerror lc rgb '%s'"
+                " fillstyle solid noborder notitle\n",
                 name, PLOT_ACCENT);
     } else {
         fprintf(page->g.script,

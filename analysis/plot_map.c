@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_PANELS = 16, LEFT = 118, BOTTOM = 78, LEGEND = 190, GAP = 16, PANEL_TITLE = 22 };
+enum { MAX_PANELS = 16, LEFT = 118, BOTTOM = 84, LEGEND = 190, GAP = 16, PANEL_TITLE = 22 };
 
 /* Which axes are drawn, and which of the points of the others. */
 struct layout {
@@ -270,9 +270,10 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
         return false;
     }
     gnuplot_title(g, title, text);
-    plot_axis_label(layout->across.axis, g, LEFT + inner_width / 2, bottom + 40, inner_width + 80,
+    plot_axis_label(layout->across.axis, g, LEFT + inner_width / 2, bottom + 46, inner_width + 80,
                     false);
-    plot_axis_label(layout->up.axis, g, 22, 0.5 * (*top + bottom), bottom - *top + 40, true);
+    /* Long names may go on beside the labels under the map, but not into the title. */
+    plot_axis_label(layout->up.axis, g, 22, 0.5 * (*top + bottom) + 14, bottom - *top + 28, true);
     for (int p = 0; p < layout->panels && layout->panels > 1; p++) {
         panel_title(r, layout, p, text, sizeof text);
         panel_place(layout, p, *top, &x, &y);
@@ -356,7 +357,7 @@ static void settle_legend(struct gnuplot *g, const struct layout *layout, double
     fprintf(g->script,
             "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c',"
             " 1 '#fee838')\n"
-            "set cbrange [%.10g:%.10g]\nset cbtics %.10g nomirror out scale 0.6\n"
+            "set cbrange [%.10g:%.10g]\nset cbtics %.10g nomirror out scale 0\n"
             "set cblabel 'settle_time (s)' offset 0.5,0\n"
             "set colorbox user origin screen %.6f, screen %.6f size screen %.6f, screen %.6f\n",
             low, high, plot_round_step(low, high, 6), x / g->width, 1 - (y + 70 + 180) / g->height,

@@ -167,7 +167,7 @@ bool statistics_extent(const struct results *r, int axis, const size_t *point,
     bool first_open, first_unknown, second_open, second_unknown;
 
     *extent = (struct statistics_extent){.low = NAN, .high = NAN};
-    if (!along->offset || along->word || !is_monotone(along)) {
+    if (!along->offset || along->word || along->count < 2 || !is_monotone(along)) {
         return false;
     }
     for (int a = 0; a < r->axes; a++) {

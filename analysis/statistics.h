@@ -43,8 +43,8 @@ struct statistics_extent {
 };
 
 /* The line passes through `point` in all axes but those of offsets. False when the axis is not one
- * of offsets, lists words, or goes up and down. The ends lie midway between the last stabilised
- * case and the next. */
+ * of offsets, lists words, has a single value, or goes up and down. The ends lie midway between the
+ * last stabilised case and the next. */
 bool statistics_extent(const struct results *r, int axis, const size_t *point,
                        struct statistics_extent *extent);
 

@@ -11,6 +11,11 @@ double summary_share(const struct statistics_counts *counts)
     return counts->done ? (double)counts->kind[RESULTS_STABILISED] / (double)counts->done : NAN;
 }
 
+bool summary_has_outcomes(const struct summary *summary)
+{
+    return summary->counts.done == 0 || summary->counts.kind[RESULTS_DONE] < summary->counts.done;
+}
+
 const char *summary_failure_name(int failure)
 {
     static const char *const names[] = {

@@ -67,6 +67,9 @@ struct summary {
 bool summary_make(struct summary *summary, const struct results *r, stance_message *message);
 void summary_free(struct summary *summary);
 
+/* False when cases are done but the file stores no outcomes: record.answers left them out. */
+bool summary_has_outcomes(const struct summary *summary);
+
 /* Share of stabilised cases among those done; NAN when there are none. */
 double summary_share(const struct statistics_counts *counts);
 

@@ -306,13 +306,14 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
     put(root, "fixed", fixed(summary));
     put(root, "cases", cases(&summary->counts, r));
     put(root, "failures", failures(summary));
-    put(root, "outcomes", outcomes(&summary->counts));
+    bool known = summary_has_outcomes(summary);
+    put(root, "outcomes", known ? outcomes(&summary->counts) : json_null());
     if (r->single) {
         put(root, "case", single_case(r));
     } else {
-        put(root, "extents", extents(summary, r));
-        put(root, "parameters", parameters(summary, r));
-        put(root, "changes", changes(r));
+        put(root, "extents", known ? extents(summary, r) : json_null());
+        put(root, "parameters", known ? parameters(summary, r) : json_null());
+        put(root, "changes", known ? changes(r) : json_null());
     }
     put(root, "numbers", numbers(summary));
     put(root, "cost", cost(summary));

@@ -11,8 +11,8 @@ clang-format --dry-run --Werror "${sources[@]}" || complain "run clang-format -i
 grep -nE '#include *[<"](mpi|hdf5|yaml)\.h' $(git ls-files engine) && complain "the engine must not know MPI, HDF5 or YAML"
 [ "$(git ls-files runner analysis | xargs grep -lE '#include *<mpi\.h>' | sort | tr '\n' ' ')" = "runner/parallel.c " ] ||
     complain "only runner/parallel.c includes mpi.h"
-[ "$(git ls-files runner | xargs grep -lE '#include *<hdf5(_hl)?\.h>' | tr '\n' ' ')" = "runner/store.c " ] ||
-    complain "only runner/store.c includes hdf5.h for writing"
+[ "$(git ls-files runner | xargs grep -lE '#include *<hdf5(_hl)?\.h>' | tr '\n' ' ')" = "runner/store_private.h " ] ||
+    complain "only runner/store_private.h includes hdf5.h for writing"
 
 for f in "${sources[@]}"; do
     lines=$(wc -l <"$f")

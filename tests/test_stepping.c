@@ -5,8 +5,8 @@
 
 #define PENETRATION 1e-9
 #define CONE 1e-9
-#define GOLDEN_IMPLICIT 0x1u
-#define GOLDEN_MIDPOINT 0x1u
+#define GOLDEN_IMPLICIT 0x83347491c02d7b57u
+#define GOLDEN_MIDPOINT 0xdbfd61ac2be7cfadu
 
 static uint64_t hash(const void *data, size_t size, uint64_t h)
 {

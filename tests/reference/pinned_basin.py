@@ -34,12 +34,12 @@ THETA, Q2 = -0.41, 0.82
 POLES = [-3, -3.3, -3.6, -3.9, -4.2, -4.6]
 LIMIT, SAMPLE, HORIZON = 10.0, 1e-3, 8.0
 ANGLE, RATE, HOLD, FALL = 0.05, 0.5, 0.5, 0.2
-FLOOR = 1e-9  # an error that grows below this is rounding: at the equilibrium itself it must not count
+FLOOR = 1e-9  # an error that grows below this is rounding, as it does at the equilibrium itself
 POINTS, THETA_RANGE, RATE_RANGE = 64, (-0.12, 0.06), (-0.6, 0.6)
 
 
 def accelerate(q, v, torque):
-    """q, v [3][n] in (theta, q1, q2), torque [2][n]: q'' [3][n] and the pin's force (x, z) [2][n]."""
+    """q'' [3][n], force of the pin (x, z) [2][n]; q, v [3][n] in (theta, q1, q2), torque [2][n]."""
     a, b, c = q[0], q[0] + q[1], q[0] + q[2]
     va, vb, vc = v[0]**2, (v[0] + v[1])**2, (v[0] + v[2])**2
     upper = TRUNK_MASS + HIP_MASS + FOOT_MASS  # all that foot 1 carries
@@ -55,10 +55,12 @@ def accelerate(q, v, torque):
     ab = (fb - mab / maa * fa - mbc / mcc * fc) / (mbb - mab**2 / maa - mbc**2 / mcc)
     aa, ac = (fa - mab * ab) / maa, (fc - mbc * ab) / mcc
     # the pin carries the weight and accelerates the centre of mass
-    hip_x, hip_z = LEG * (np.sin(b) * vb - np.cos(b) * ab), -LEG * (np.cos(b) * vb + np.sin(b) * ab)
+    hip_x = LEG * (np.sin(b) * vb - np.cos(b) * ab)
+    hip_z = -LEG * (np.cos(b) * vb + np.sin(b) * ab)
     trunk_x = TRUNK * (np.sin(a) * va - np.cos(a) * aa)
     trunk_z = -TRUNK * (np.cos(a) * va + np.sin(a) * aa)
-    foot_x, foot_z = LEG * (np.cos(c) * ac - np.sin(c) * vc), LEG * (np.sin(c) * ac + np.cos(c) * vc)
+    foot_x = LEG * (np.cos(c) * ac - np.sin(c) * vc)
+    foot_z = LEG * (np.sin(c) * ac + np.cos(c) * vc)
     force = np.array([upper * hip_x + TRUNK_MASS * trunk_x + FOOT_MASS * foot_x,
                       upper * hip_z + TRUNK_MASS * trunk_z + FOOT_MASS * foot_z
                       + (upper + FOOT_MASS) * G])
