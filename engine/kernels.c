@@ -31,7 +31,8 @@ static const stance_kernel *const kernels[] = {
 #undef X
 };
 
-enum { KERNELS = sizeof kernels / sizeof *kernels };
+/* Number of them. */
+enum { KERNELS = sizeof kernels / sizeof kernels[0] }; // NOLINT(bugprone-sizeof-expression)
 
 const stance_method *const *stance_methods(void)
 {

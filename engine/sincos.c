@@ -1,4 +1,5 @@
 /* sincos.c - the kernels' sine and cosine for one angle. */
+#undef STANCE_LANES
 #define STANCE_LANES 1
 #include "stance.h"
 

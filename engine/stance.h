@@ -75,11 +75,12 @@ typedef struct stance_equilibrium_choice {
 typedef struct stance_scene {
     const char *name, *text;
     int coordinates, contacts, actuators, postures, robot_count;
-    const stance_quantity *robot;       /* [robot_count] */
-    const stance_quantity *coordinate;  /* [coordinates] name, unit, text; ranges of initial values */
-    const char *const *contact_name;    /* [contacts] */
-    const char *const *actuator_name;   /* [actuators] */
-    const int *posture;                 /* [postures] indices into the coordinates */
+    const stance_quantity *robot; /* [robot_count] */
+    const stance_quantity
+        *coordinate;                  /* [coordinates] name, unit, text; ranges of initial values */
+    const char *const *contact_name;  /* [contacts] */
+    const char *const *actuator_name; /* [actuators] */
+    const int *posture;               /* [postures] indices into the coordinates */
     /* Gap of each contact above the ground, m. position[coordinates], gap[contacts]. */
     void (*gaps)(const double *robot, const double *position, double *gap);
     /* Position (x, z) and velocity of a contact point. */
@@ -97,8 +98,8 @@ typedef struct stance_scene {
                                 stance_equilibrium *result, stance_message *message);
     /* Pinned at the support contact: d/dt (dp, dp') = A (dp, dp') + B dtorque, p the posture;
      * A[2p][2p], B[2p][actuators], exact derivatives. NULL where a scene has none. */
-    stance_error (*linearise)(const double *robot, const stance_equilibrium *equilibrium,
-                              double *A, double *B);
+    stance_error (*linearise)(const double *robot, const stance_equilibrium *equilibrium, double *A,
+                              double *B);
 } stance_scene;
 
 /* The scenes there are, NULL-terminated; and one by name, or NULL. */
@@ -127,7 +128,7 @@ typedef enum stance_evidence {
 /* Why a case has status FAILED: one table gives the enumeration, the name and the text. */
 #define STANCE_FAILURES(X)                                                                         \
     X(NONE, none, "the case did not fail")                                                         \
-    X(NEWTON, newton, "the implicit step did not converge, nor did any subdivision of it")        \
+    X(NEWTON, newton, "the implicit step did not converge, nor did any subdivision of it")         \
     X(NOT_FINITE, not_finite, "the state left the finite numbers")                                 \
     X(ANGLE, angle, "an angle left the range in which sine and cosine are defined (1e4 rad)")      \
     X(CONTACT, contact, "the contact problem of a step has no solution to tolerance")              \
@@ -142,19 +143,19 @@ typedef enum stance_failure {
 /* Trajectory buffers of one case, owned by the caller; rows beyond `rows` are left untouched.
  * Row k belongs to the step that ends nearest to k * interval. */
 typedef struct stance_trajectory {
-    double interval; /* s, > 0 */
-    int64_t rows;    /* number of rows that fit */
+    double interval;             /* s, > 0 */
+    int64_t rows;                /* number of rows that fit */
     double *position, *velocity; /* [rows][coordinates] */
     double *torque;              /* [rows][actuators] as applied in the step that ends there */
-    double *force;               /* [rows][contacts][2] N: normal, tangential; mean since the row before */
-    double *gap;                 /* [rows][contacts] m */
+    double *force; /* [rows][contacts][2] N: normal, tangential; mean since the row before */
+    double *gap;   /* [rows][contacts] m */
 } stance_trajectory;
 
 typedef struct stance_case {
     double robot[STANCE_MAX_ROBOT];
-    double friction;      /* Coulomb coefficient, >= 0 */
-    double restitution;   /* Newton's, 0 ... 1 */
-    uint32_t contacts;    /* bit c: contact c may touch the ground */
+    double friction;    /* Coulomb coefficient, >= 0 */
+    double restitution; /* Newton's, 0 ... 1 */
+    uint32_t contacts;  /* bit c: contact c may touch the ground */
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
 
     /* torque = clip(feedforward - gain * (posture - target, rates) + noise, +-torque_limit) */
@@ -181,20 +182,20 @@ typedef struct stance_case {
 } stance_case;
 
 typedef struct stance_result {
-    int32_t status;  /* stance_status */
-    int32_t outcome; /* stance_outcome */
-    int32_t evidence; /* stance_evidence */
-    int32_t failure; /* stance_failure */
+    int32_t status;                          /* stance_status */
+    int32_t outcome;                         /* stance_outcome */
+    int32_t evidence;                        /* stance_evidence */
+    int32_t failure;                         /* stance_failure */
     double end_time, settle_time, fall_time; /* s; NAN where not reached */
-    int64_t steps, iterations; /* steps taken; Newton iterations summed over them */
-    int64_t ambiguous_steps;   /* steps whose contact problem had several solutions */
-    int64_t subdivided_steps;  /* steps that converged only after being subdivided */
-    double max_penetration;    /* m, at the ends of steps */
-    double slip_distance;      /* m, summed over contacts */
-    double peak_torque;        /* N m */
-    double friction_used;      /* largest |rT|/rN */
-    double impact_energy;      /* J, largest kinetic energy that contact impulses added in one step */
-    double projection_energy;  /* J, sum of |energy| added by position projection */
+    int64_t steps, iterations;               /* steps taken; Newton iterations summed over them */
+    int64_t ambiguous_steps;                 /* steps whose contact problem had several solutions */
+    int64_t subdivided_steps;                /* steps that converged only after being subdivided */
+    double max_penetration;                  /* m, at the ends of steps */
+    double slip_distance;                    /* m, summed over contacts */
+    double peak_torque;                      /* N m */
+    double friction_used;                    /* largest |rT|/rN */
+    double impact_energy; /* J, largest kinetic energy that contact impulses added in one step */
+    double projection_energy; /* J, sum of |energy| added by position projection */
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
 } stance_result;
 
@@ -249,8 +250,8 @@ stance_error stance_place(int n, int m, const double *A, const double *B, const 
 stance_error stance_eigenvalues(int n, const double *A, double *re, double *im);
 
 /* Exact discretisation under a zero-order hold: Ad[n][n], Bd[n][m]. */
-stance_error stance_discretise(int n, int m, const double *A, const double *B, double T,
-                               double *Ad, double *Bd);
+stance_error stance_discretise(int n, int m, const double *A, const double *B, double T, double *Ad,
+                               double *Bd);
 
 /* Smallest sample time T* at which Ad(T) - Bd(T) K leaves the unit circle; 0 when the continuous
  * loop is unstable, INFINITY when none is found up to `longest` seconds. */

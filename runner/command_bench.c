@@ -111,7 +111,7 @@ static int ascending(const void *a, const void *b)
 static void measure(const stance_kernel *kernel, const stance_case *cases, stance_result *results,
                     int repeats, struct measurement *m)
 {
-    double time[MAX_REPEATS];
+    double time[MAX_REPEATS] = {0};
     for (int r = -1; r < repeats; r++) { /* the first warms up */
         const double begin = seconds();
         kernel->run(cases, results, CASES);

@@ -10,7 +10,7 @@ static void run(const char *method, const stance_case *cases, stance_result *res
         assert_int_equal(results[i].status, STANCE_DONE);
 }
 
-/* ---- section 3.2, tests 1 and 2 ------------------------------------------------------------------ */
+/* ---- section 3.2, tests 1 and 2 ---- */
 
 enum { SEEDS = 100 };
 
@@ -57,7 +57,7 @@ static void test_1_scuffs_with_both_feet(void **state)
     assert_int_equal(outcome[STANCE_STABILISED], 0);
 }
 
-/* ---- the domain ----------------------------------------------------------------------------------- */
+/* ---- the domain ---- */
 
 static void interval_at_rest(void **state)
 {
@@ -175,7 +175,7 @@ static void domain_against_pinned_robot(void **state)
     json_decref(root);
 }
 
-/* ---- the critical sample time ------------------------------------------------------------------------ */
+/* ---- the critical sample time ---- */
 
 /* Does an offset of 1e-7 rad grow between 10 s and 40 s with the torques held for T? */
 static bool grows(const char *method, double T, double step)

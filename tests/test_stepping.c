@@ -293,8 +293,8 @@ static void second_drop_converges(void **state)
             print_message("# %s h=%g: |q(0.4)| off %.2e, |q(1.2)| off %.2e, velocity L1 %.2e, "
                           "touchdowns %.6f %.6f\n",
                           methods[m], h[i], e.at04, e.at12, e.velocity_l1, e.touch1, e.touch2);
-            /* First order: the error constant stays below 10 per second; single steps are noisy, as the
-             * impact falls differently in each. */
+            /* First order: the error constant stays below 10 per second; single steps are noisy, as
+             * the impact falls differently in each. */
             assert_true(e.at04 < 10 * h[i] + 1e-6);
             assert_true(e.at12 < 10 * h[i] + 1e-6);
             assert_true(fabs(e.touch1 - 0.349946) <= 1.5 * h[i] + 1e-6);
