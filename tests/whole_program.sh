@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# Every shipped scenario, reduced, from file to picture; the commands' messages and exit codes;
+# equal results whatever the ranks; results opened by other programs' readers.
+set -u
+cd "$(dirname "$0")/.."
+stance=$PWD/bin/stance python=${PYTHON:-/usr/bin/python3}
+work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
+count=0
+check() { # description, command ...
+    local what=$1
+    shift
+    count=$((count + 1))
+    cat "$work/out" "$work/err" >"$work/last" 2>/dev/null # for a look at what came before
+    if "$@" >"$work/out" 2>"$work/err"; then
+        echo "ok $count - $what"
+    else
+        echo "not ok $count - $what"
+        sed 's/^/# /' "$work/out" "$work/err" | head -n 20
+    fi
+}
+exits() { # code, command ...
+    local code=$1
+    shift
+    "$@"
+    [ $? = "$code" ]
+}
+png() { # is it a picture of a sensible size?
+    [ "$(head -c 4 "$1" | tail -c 3)" = PNG ] && [ "$(stat -c %s "$1")" -gt 5000 ]
+}
+
+# ---- every shipped scenario ----
+for scenario in scenarios/*.yaml; do
+    name=$(basename "$scenario" .yaml) reduce=()
+    case $name in
+    basin_*) reduce=(--set 'sweep.grid[0].count=24' --set 'sweep.grid[1].count=24') ;;
+    *_sweep) reduce=(--set 'sweep.grid[1].count=9' --set 'sweep.grid[2].count=9') ;;
+    esac
+    check "$name: check" "$stance" check "$scenario"
+    check "$name: run" "$stance" run "$scenario" "${reduce[@]}" --quiet -o "$work/$name.h5"
+    check "$name: summary" "$stance" summary "$work/$name.h5"
+    check "$name: summary --json" sh -c "'$stance' summary --json '$work/$name.h5' | '$python' -m json.tool"
+    check "$name: plot" "$stance" plot "$work/$name.h5" -o "$work"
+    grep -E '\.png$' "$work/out" >"$work/pictures"
+    check "$name: draws pictures" test -s "$work/pictures"
+    while read -r picture; do check "$(basename "$picture")" png "$picture"; done <"$work/pictures"
+    check "$name: xarray opens it" "$python" -c "
+import sys, xarray
+d = xarray.open_dataset(sys.argv[1])
+assert (d.status == 1).all()
+assert d.status.dims == d.outcome.dims
+" "$work/$name.h5"
+done
+
+# ---- outcomes ----
+outcome() { "$python" -c "
+import sys, h5py
+f = h5py.File(sys.argv[1]); assert (f['outcome'][...] == int(sys.argv[2])).all(), f['outcome'][...]" "$1" "$2"; }
+check "section 3.2, test 1 recovers" outcome "$work/balance_recovers.h5" 1
+check "section 3.2, test 2 falls" outcome "$work/balance_falls.h5" 2
+check "section 2.4 ends at rest" outcome "$work/drop.h5" 3
+check "the scuffing free foot costs domain" "$python" -c "
+import sys, h5py
+one, both = (h5py.File(f)['outcome'][...] for f in sys.argv[1:])
+assert (both == 1).sum() < 0.5 * (one == 1).sum() and (both == 3).any()" \
+    "$work/basin_one_foot.h5" "$work/basin_both_feet.h5"
+
+# ---- ranks ----
+for ranks in 2 3 5; do
+    check "run on $ranks ranks" mpirun -n $ranks "$stance" run scenarios/basin_both_feet.yaml --quiet \
+        --set 'sweep.grid[0].count=24' --set 'sweep.grid[1].count=24' -o "$work/ranks$ranks.h5"
+    check "$ranks ranks: compare says identical" "$stance" compare "$work/basin_both_feet.h5" "$work/ranks$ranks.h5"
+done
+check "compare sees a difference" exits 1 "$stance" compare "$work/basin_both_feet.h5" "$work/basin_one_foot.h5"
+check "compare --json" sh -c "'$stance' compare --json '$work/drop.h5' '$work/drop.h5' | '$python' -m json.tool"
+
+# ---- one case again ----
+cd "$work" || exit 1
+check "--only --trace" "$stance" run "$OLDPWD/scenarios/basin_one_foot.yaml" --only 300 --trace \
+    --set 'sweep.grid[0].count=24' --set 'sweep.grid[1].count=24' --quiet
+check "--only gives the sweep's answers" "$python" -c "
+import h5py, numpy
+a, b = h5py.File('basin_one_foot.h5'), h5py.File('results/basin_one_foot-case300.h5')
+for k in ('outcome', 'end_time', 'steps', 'friction_used'):
+    assert a[k][...].ravel()[300] == b[k][...].ravel()[0], k
+assert numpy.isfinite(b['trajectory/position'][0, 0]).all()"
+cd "$OLDPWD" || exit 1
+
+# ---- design, describe, help, bad use ----
+check "design" "$stance" design scenarios/balance_recovers.yaml
+check "design prints T*" grep -q 0.1363 "$work/last"
+check "design --json" sh -c "'$stance' design --json scenarios/balance_recovers.yaml | '$python' -m json.tool"
+check "describe" "$stance" describe
+check "describe controller.poles" "$stance" describe controller.poles
+check "describe --schema" sh -c "'$stance' describe --schema | '$python' -m json.tool"
+check "bench" "$stance" bench --repeats 1
+for command in check design run status summary plot compare describe bench; do
+    check "$command -h" "$stance" $command -h
+    check "$command rejects nonsense" exits 2 "$stance" $command --nonsense
+done
+check "unknown command" exits 2 "$stance" sumary "$work/drop.h5"
+check "names the nearest" grep -q summary "$work/last"
+for command in summary plot status; do
+    check "$command: no such file" exits 3 "$stance" $command "$work/nothing.h5"
+    check "$command: not a results file" exits 3 "$stance" $command Makefile
+done
+head -c 3000 "$work/basin_one_foot.h5" >"$work/cut.h5"
+for command in summary plot status; do
+    check "$command: a cut file" exits 3 "$stance" $command "$work/cut.h5"
+done
+echo "1..$count"
