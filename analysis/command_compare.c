@@ -244,7 +244,7 @@ static bool compare_values(struct comparison *c, const char *name, const struct 
     hsize_t step = SLICE / (p->per_row ? p->per_row : 1), inner = 1, differing = 0, last_case = 0;
     const bool cases = over_cases(c->a, p, &inner);
     step = step ? step : 1;
-    char *buffer[2] = {malloc(step * p->per_row * size), malloc(step * p->per_row * size)};
+    char *buffer[2] = {malloc(step * p->per_row * size + 1), malloc(step * p->per_row * size + 1)};
     json_t *examples = json_array();
     bool good = buffer[0] && buffer[1] && size > 0;
     for (hsize_t row = 0; good && row < rows && p->elements; row += step) {

@@ -24,20 +24,17 @@ static void directory_of(const char *file, char *directory, size_t size)
 static bool prepare_directory(const char *directory)
 {
     struct stat information;
-    int error = 0;
-    if (mkdir(directory, 0777) != 0 && errno != EEXIST) {
-        error = errno;
-    } else if (stat(directory, &information) != 0) {
-        error = errno;
-    } else if (!S_ISDIR(information.st_mode)) {
-        error = ENOTDIR;
-    } else if (access(directory, W_OK | X_OK) != 0) {
-        error = errno;
+    bool good =
+        (mkdir(directory, 0777) == 0 || errno == EEXIST) && stat(directory, &information) == 0;
+    if (good && !S_ISDIR(information.st_mode)) {
+        errno = ENOTDIR;
+        good = false;
     }
-    if (error) {
-        fprintf(stderr, "%s: pictures cannot be written there: %s\n", directory, strerror(error));
+    good = good && access(directory, W_OK | X_OK) == 0;
+    if (!good) {
+        fprintf(stderr, "%s: pictures cannot be written there: %s\n", directory, strerror(errno));
     }
-    return error == 0;
+    return good;
 }
 
 static bool parse_index(const char *text, uint64_t *index)

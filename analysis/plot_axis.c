@@ -214,7 +214,7 @@ static void cut(char *text, size_t columns)
         while (end > 0 && ((unsigned char)text[end] & 0xc0) == 0x80) {
             end--; /* not within a letter */
         }
-        strcpy(text + end, "...");
+        memcpy(text + end, "...", sizeof "...");
     }
 }
 

@@ -341,13 +341,15 @@ static void put_forces(struct page *page, const char *name, int component)
             fprintf(page->g.script,
                     "%s'%s' using 1:(%.10g*$%zu) with lines dt 3 lw 1 lc rgb '%s'"
                     " notitle",
-                    separator, name, sign * friction, 2 * k + 2, plot_contact_colours[k]);
+                    separator, name, sign * friction, 2 * k + 2,
+                    plot_contact_colours[k % STANCE_MAX_CONTACTS]);
             separator = ", ";
         }
     }
     for (size_t k = 0; k < t->contacts; k++) {
         fprintf(page->g.script, "%s'%s' using 1:%zu with lines lw 1.6 lc rgb '%s' notitle",
-                separator, name, 2 * k + (size_t)component + 2, plot_contact_colours[k]);
+                separator, name, 2 * k + (size_t)component + 2,
+                plot_contact_colours[k % STANCE_MAX_CONTACTS]);
         separator = ", ";
     }
     fputc('\n', page->g.script);
@@ -376,7 +378,7 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
         widen(&range[k]);
     }
     for (size_t k = 0; k < t->contacts; k++) {
-        legend_at(&page, 0, (int)k, plot_contact_colours[k], t->contact[k]);
+        legend_at(&page, 0, (int)k, plot_contact_colours[k % STANCE_MAX_CONTACTS], t->contact[k]);
     }
     if (c->readable) {
         gnuplot_label(&page.g, LEFT + PLOT_WIDTH + 14, page.top + page.height + 2 * HEADING + 8,
@@ -413,7 +415,7 @@ static bool draw_torques(const struct plot_case *c, stance_message *message)
                sizeof text);
     head(&page, 0, text, "torque (N m)");
     for (size_t k = 0; k < t->actuators; k++) {
-        legend_at(&page, 0, (int)k, colours[k], t->actuator[k]);
+        legend_at(&page, 0, (int)k, colours[k % STANCE_MAX_ACTUATORS], t->actuator[k]);
     }
     if (isfinite(limit)) {
         snprintf(text, sizeof text, "%slimit %.4g N m", limited ? "dashed: " : "", limit);
@@ -451,7 +453,7 @@ static bool draw_gaps(const struct plot_case *c, stance_message *message)
     }
     head(&page, 0, "", "gap (m)");
     for (size_t k = 0; k < t->contacts; k++) {
-        legend_at(&page, 0, (int)k, plot_contact_colours[k], t->contact[k]);
+        legend_at(&page, 0, (int)k, plot_contact_colours[k % STANCE_MAX_CONTACTS], t->contact[k]);
     }
     gnuplot_decorate(&page.g);
     include(&range, 0);
@@ -461,7 +463,7 @@ static bool draw_gaps(const struct plot_case *c, stance_message *message)
     begin_panel(&page, &range);
     for (size_t k = 0; k < t->contacts; k++) {
         fprintf(page.g.script, "%s'%s' using 1:%zu with lines lw 1.6 lc rgb '%s' notitle",
-                k ? ", " : "plot ", name, k + 2, plot_contact_colours[k]);
+                k ? ", " : "plot ", name, k + 2, plot_contact_colours[k % STANCE_MAX_CONTACTS]);
     }
     fputc('\n', page.g.script);
     clear_levels(&page);

@@ -383,7 +383,8 @@ static bool draw_share_page(const struct plot *plot, const struct plot_axis *alo
         rested = rested || counts[i].kind[RESULTS_RESTED] > 0;
     }
     snprintf(what, sizeof what, "Stabilised cases against %s, %llu cases per value",
-             along->axis->name, (unsigned long long)(plot->r->cases / along->axis->count));
+             along->axis->name,
+             (unsigned long long)(plot->r->cases / (along->axis->count ? along->axis->count : 1)));
     if (!begin_page(&page, what, SHARE_HEIGHT + extent_count * (EXTENT_HEIGHT + GAP), message)) {
         return false;
     }

@@ -25,7 +25,7 @@ struct layout {
 /* The last two axes of numbers make the map; where there are fewer, axes of words join them. */
 static void choose_axes(const struct results *r, struct layout *layout)
 {
-    int chosen[2], count = 0;
+    int chosen[2] = {0, 0}, count = 0;
     for (int words = 0; words < 2 && count < 2; words++) {
         for (int a = r->axes - 1; a >= 0 && count < 2; a--) {
             if ((r->axis[a].word != NULL) == (words == 1)) {
@@ -120,8 +120,8 @@ static void arrange(struct layout *layout)
 static void panel_place(const struct layout *layout, int panel, double top, double *x, double *y)
 {
     *x = LEFT + panel % layout->columns * (layout->width + GAP);
-    *y = top + panel / layout->columns * (layout->height + GAP + PANEL_TITLE) +
-         (layout->panels > 1 ? PANEL_TITLE : 0);
+    const int row = panel / layout->columns;
+    *y = top + row * (layout->height + GAP + PANEL_TITLE) + (layout->panels > 1 ? PANEL_TITLE : 0);
 }
 
 /* ---- data --------------------------------------------------------------------------------- */

@@ -223,7 +223,8 @@ static void label_strip(struct gnuplot *g, const struct strip *strip, double top
     gnuplot_label(g, x + length + 8, y, text, "left", 12, false);
     for (int i = 0; i < strip->count; i++) {
         double left = SIDE + strip->scale * strip->spacing * (i % PER_ROW + 0.5);
-        double under = top + LEGEND + (i / PER_ROW + 1) * (strip->row_height + TIMES) - TIMES + 10;
+        const int row = i / PER_ROW;
+        double under = top + LEGEND + (row + 1) * (strip->row_height + TIMES) - TIMES + 10;
         snprintf(text, sizeof text, "%.3g s", strip->figure[i].time);
         gnuplot_label(g, left, under, text, "center", 12, false);
     }
