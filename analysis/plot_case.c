@@ -434,7 +434,7 @@ static bool draw_torques(const struct plot_case *c, stance_message *message)
     begin_panel(&page, &range);
     for (size_t k = 0; k < t->actuators; k++) {
         fprintf(page.g.script, "%s'%s' using 1:%zu with lines lw 1.5 lc rgb '%s' notitle",
-                k ? ", " : "plot ", name, k + 2, colours[k]);
+                k ? ", " : "plot ", name, k + 2, colours[k % STANCE_MAX_ACTUATORS]);
     }
     fputc('\n', page.g.script);
     clear_levels(&page);
