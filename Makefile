@@ -1,5 +1,6 @@
 # stance: build, test, demonstrate. `make help` lists the targets.
 .DEFAULT_GOAL := all
+MAKEFLAGS += --no-print-directory
 BUILD   ?= build
 PREFIX  ?= /usr/local
 CC       = gcc

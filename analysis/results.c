@@ -1,6 +1,8 @@
 /* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
 #include "results.h"
 
+#include "probe.h"
+
 #include <errno.h>
 #include <hdf5.h>
 #include <math.h>
@@ -511,9 +513,10 @@ static bool open_file(struct results *r, stance_message *message)
         snprintf(message->text, sizeof message->text, "%.100s: not an HDF5 file", r->file);
         return false;
     }
-    r->id = H5Fopen(r->file, H5F_ACC_RDONLY, access);
+    bool safe = probe_file(r->file, message);
+    r->id = safe ? H5Fopen(r->file, H5F_ACC_RDONLY, access) : -1;
     H5Pclose(access);
-    return r->id >= 0 || failed(r, "the file", message);
+    return safe && (r->id >= 0 || failed(r, "the file", message));
 }
 
 static bool read_provenance(struct results *r, stance_message *message)

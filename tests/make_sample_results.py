@@ -17,8 +17,12 @@ be compared with. Usage: make_sample_results.py DIRECTORY
   bare.h5        one case without a trajectory
   only.h5        one case of a sweep (run --only), with a trajectory
   title.h5       a title that gnuplot and XML could misread
+  changed.h5     basin.h5 with end_time of case 97 changed, and another host and timing
+  rubbish.h5     partial.h5 with other rubbish in the pending rows
+  foreign.h5     an HDF5 file that is not ours
 """
 import os
+import shutil
 import sys
 
 import h5py
@@ -289,6 +293,22 @@ def make_cases(where):
     file.close()
 
 
+def make_others(where):
+    """Copies that differ in a known way, and a file of somebody else."""
+    shutil.copy(where("basin"), where("changed"))
+    with h5py.File(where("changed"), "r+") as file:
+        file["end_time"][3, 4] += 1e-15
+        file["timing/wall_time"][0] = 99
+        file.attrs["hosts"] = "there"
+    shutil.copy(where("partial"), where("rubbish"))
+    with h5py.File(where("rubbish"), "r+") as file:
+        file["end_time"][8, 2] = 99
+        file["final_state"][9] = 3
+        file["outcome"][9, 1] = 200
+    with h5py.File(where("foreign"), "w") as file:
+        file["temperature"] = np.arange(5.0)
+
+
 def main():
     """Makes them all."""
     directory = sys.argv[1]
@@ -299,6 +319,7 @@ def main():
     make_maps(where)
     make_lines(where)
     make_cases(where)
+    make_others(where)
 
 
 if __name__ == "__main__":

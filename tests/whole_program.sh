@@ -85,6 +85,16 @@ for k in ('outcome', 'end_time', 'steps', 'friction_used'):
 assert numpy.isfinite(b['trajectory/position'][0, 0]).all()"
 cd "$OLDPWD" || exit 1
 
+# ---- bad scenarios: one line, exit code 2, no file ----
+refused() {
+    mkdir "$work/refused" && "$stance" run "$1" -o "$work/refused/out.h5" >"$work/o" 2>"$work/e"
+    local code=$? lines files
+    lines=$(wc -l <"$work/e") files=$(ls "$work/refused" | wc -l)
+    rm -rf "$work/refused"
+    [ $code = 2 ] && [ "$lines" = 1 ] && [ "$files" = 0 ] && grep -qE "^$1:[0-9]+:[0-9]+: ." "$work/e"
+}
+for bad in tests/bad/*.yaml; do check "refused: $(basename "$bad" .yaml)" refused "$bad"; done
+
 # ---- design, describe, help, bad use ----
 check "design" "$stance" design scenarios/balance_recovers.yaml
 check "design prints T*" grep -q 0.1363 "$work/last"
