@@ -76,8 +76,8 @@ static herr_t visit_link(hid_t file, const char *name, const H5L_info_t *link, v
     return 0;
 }
 
-/* The child: what it meets does not matter, only that it comes to its end. */
-static void walk(const char *file)
+/* Nobody is to hear a child die. */
+static void silence(void)
 {
     const struct rlimit none = {0, 0};
     int sink = open("/dev/null", O_WRONLY);
@@ -86,6 +86,11 @@ static void walk(const char *file)
         dup2(sink, STDOUT_FILENO);
         dup2(sink, STDERR_FILENO);
     }
+}
+
+/* What it meets does not matter, only that it comes to its end. */
+static void walk(const char *file)
+{
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
@@ -99,11 +104,14 @@ static void walk(const char *file)
     H5Pclose(access);
 }
 
-bool probe_file(const char *file, stance_message *message)
+bool probe_file(const char *file, void (*attempt)(void *context), void *context,
+                stance_message *message)
 {
     int status = 0;
     pid_t child = fork();
     if (child == 0) {
+        silence();
+        attempt(context);
         walk(file);
         _exit(0);
     }
