@@ -178,12 +178,23 @@ static enum value_kind kind_of(hid_t type)
     }
 }
 
+static uint64_t bits_of(double number)
+{
+    uint64_t bits;
+    memcpy(&bits, &number, sizeof bits);
+    return bits;
+}
+
 static void values_free(struct values *values)
 {
-    for (size_t i = 0; values->kind == VALUE_TEXT && values->data.text && i < values->count; i++) {
-        free(values->data.text[i]);
+    if (values->kind == VALUE_TEXT) {
+        for (size_t i = 0; values->data.text && i < values->count; i++) {
+            free(values->data.text[i]);
+        }
+        free(values->data.text);
+    } else {
+        free(values->data.any);
     }
-    free(values->data.any);
     values->data.any = NULL;
 }
 
@@ -204,9 +215,9 @@ static bool read_texts(hid_t object, hid_t from, hid_t type, struct values *valu
 {
     bool variable = H5Tis_variable_str(type) > 0, good = false;
     size_t size = variable ? sizeof(char *) : H5Tget_size(type);
-    char *raw = size <= (1 << 22) ? calloc(values->count, size) : NULL;
+    char *raw = size <= (1 << 22) ? calloc(values->count + 1, size + 1) : NULL;
 
-    values->data.text = calloc(values->count, sizeof(char *));
+    values->data.text = calloc(values->count + 1, sizeof(char *));
     if (raw && values->data.text && read_raw(object, from, type, values->count, raw)) {
         good = true;
         for (size_t i = 0; i < values->count; i++) {
@@ -251,7 +262,7 @@ static bool same_value(const struct values *a, const struct values *b, size_t i)
 {
     switch (a->kind) {
     case VALUE_REAL: /* of NANs alone the bits do not matter; 0 and -0 differ */
-        return memcmp(&a->data.real[i], &b->data.real[i], sizeof(double)) == 0 ||
+        return bits_of(a->data.real[i]) == bits_of(b->data.real[i]) ||
                (isnan(a->data.real[i]) && isnan(b->data.real[i]));
     case VALUE_TEXT:
         return strcmp(a->data.text[i], b->data.text[i]) == 0;
