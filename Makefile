@@ -83,20 +83,20 @@ define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
 	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) \
-	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -c -o $$@ $$<
+	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
 $(eval $(call kernel_rule,$(s),$(m),$(i))))))
 
 $(BUILD)/engine/%.o: engine/%.c Makefile
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(LIBRARY_CFLAGS) -MMD -c -o $@ $<
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(LIBRARY_CFLAGS) -MMD -MP -c -o $@ $<
 $(BUILD)/runner/%.o: runner/%.c Makefile
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -c -o $@ $<
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
 $(BUILD)/analysis/%.o: analysis/%.c Makefile
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -c -o $@ $<
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/build_info.o: $(BUILD)/revision
@@ -111,7 +111,7 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
 $(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MF $@.d -o $@ $< $(shared_objects) \
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< $(shared_objects) \
 	    $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
 
 # What Open MPI wants in a container, as root, on few cores.

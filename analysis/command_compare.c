@@ -1,5 +1,6 @@
 /* command_compare.c - `stance compare FILE FILE`: what differs, as text or JSON. */
 #include "compare.h"
+#include "supervise.h"
 
 #include "../runner/command.h"
 
@@ -116,15 +117,21 @@ static void print_text(const struct results r[2], const struct comparison *compa
     }
 }
 
-static int compare(const char *const *file, bool json)
+struct request {
+    const char *file[2];
+    bool json;
+};
+
+static int compare(void *context)
 {
+    const struct request *request = context;
     struct results r[2];
     struct comparison comparison;
-    stance_message message;
+    stance_message message = {""};
     int code = EXIT_IO;
 
     for (int f = 0; f < 2; f++) {
-        if (!results_open(&r[f], file[f], &message)) {
+        if (!results_open(&r[f], request->file[f], &message)) {
             fprintf(stderr, "%s\n", message.text);
             if (f == 1) {
                 results_close(&r[0]);
@@ -136,7 +143,7 @@ static int compare(const char *const *file, bool json)
         fprintf(stderr, "%s\n", message.text);
     } else {
         code = comparison.count == 0 ? EXIT_DONE : EXIT_CASES_FAILED;
-        if (!json) {
+        if (!request->json) {
             print_text(r, &comparison);
         } else if (!print_json(r, &comparison)) {
             fputs("stance compare: the comparison could not be written\n", stderr);
@@ -167,7 +174,10 @@ static int run(int argc, char **argv)
               stderr);
         return EXIT_USAGE;
     }
-    return compare(files, json > 0);
+    struct request request = {{files[0], files[1]}, json > 0};
+    char names[2100];
+    snprintf(names, sizeof names, "%s or %s", files[0], files[1]);
+    return supervise(compare, &request, names);
 }
 
 const struct command command_compare = {

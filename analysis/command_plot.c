@@ -1,5 +1,6 @@
 /* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
 #include "plot.h"
+#include "supervise.h"
 
 #include "../runner/command.h"
 
@@ -69,7 +70,7 @@ static int draw_case(const struct plot *plot, uint64_t index, bool given)
     const struct results *r = plot->r;
     uint64_t *list;
     size_t count, place = 0;
-    stance_message message;
+    stance_message message = {""};
     char stem[400];
 
     if (!r->single && index >= r->cases) {
@@ -111,7 +112,7 @@ static int draw_sweep(const struct plot *plot)
     const struct results *r = plot->r;
     uint64_t *list;
     size_t count;
-    stance_message message;
+    stance_message message = {""};
 
     bool parameter = r->axes > 1 && !r->axis[0].offset;
     bool good = (r->axes < 2 || plot_maps(plot, &message)) &&
@@ -132,10 +133,16 @@ static int draw_sweep(const struct plot *plot)
 
 /* ---- the command -------------------------------------------------------------------------- */
 
-static int draw(const char *file, const char *directory, const char *index_text)
+struct request {
+    const char *file, *directory, *index;
+};
+
+static int draw(void *context)
 {
+    const struct request *request = context;
+    const char *directory = request->directory, *index_text = request->index;
     struct results r;
-    stance_message message;
+    stance_message message = {""};
     char own_directory[1024];
     uint64_t index = 0;
     int code;
@@ -144,12 +151,12 @@ static int draw(const char *file, const char *directory, const char *index_text)
         fprintf(stderr, "stance plot: --case takes the number of a case, not '%s'\n", index_text);
         return EXIT_USAGE;
     }
-    if (!results_open(&r, file, &message)) {
+    if (!results_open(&r, request->file, &message)) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_IO;
     }
     if (!directory) {
-        directory_of(file, own_directory, sizeof own_directory);
+        directory_of(request->file, own_directory, sizeof own_directory);
         directory = own_directory;
     }
     const struct plot plot = {&r, directory, r.name};
@@ -186,7 +193,8 @@ static int run(int argc, char **argv)
                 operands == 0 ? "a results file" : "a directory");
         return EXIT_USAGE;
     }
-    return draw(file, directory, index);
+    struct request request = {file, directory, index};
+    return supervise(draw, &request, file);
 }
 
 const struct command command_plot = {

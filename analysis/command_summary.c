@@ -1,6 +1,8 @@
 /* command_summary.c - `stance summary FILE`: what came out, as text or JSON. */
 #include "summary.h"
 
+#include "supervise.h"
+
 #include "../runner/command.h"
 
 #include <math.h>
@@ -223,7 +225,7 @@ static void print_parameter(const struct summary *summary, const struct results 
     char from[128], to[128];
 
     for (int a = 0; summary->parameters == 1 && a < r->axes && shown < 2; a++) {
-        if (r->axis[a].offset) {
+        if (r->axis[a].offset && r->axis[a].count > 1) {
             offsets[shown++] = a;
         }
     }
@@ -410,10 +412,16 @@ static void print_text(const struct summary *summary, const struct results *r)
 
 /* ---- the command -------------------------------------------------------------------------- */
 
-static int summarise(const char *file, bool json)
+struct request {
+    const char *file;
+    bool json;
+};
+
+static int summarise(void *context)
 {
+    const struct request *request = context;
     struct results r;
-    stance_message message;
+    stance_message message = {""};
     int code = EXIT_IO;
     struct summary *summary = calloc(1, sizeof *summary);
 
@@ -421,17 +429,17 @@ static int summarise(const char *file, bool json)
         fputs("stance summary: not enough memory\n", stderr);
         return EXIT_IO;
     }
-    if (!results_open(&r, file, &message)) {
+    if (!results_open(&r, request->file, &message)) {
         fprintf(stderr, "%s\n", message.text);
         free(summary);
         return EXIT_IO;
     }
     if (!summary_make(summary, &r, &message)) {
         fprintf(stderr, "%s\n", message.text);
-    } else if (json && !summary_print_json(summary, &r)) {
+    } else if (request->json && !summary_print_json(summary, &r)) {
         fputs("stance summary: the summary could not be written\n", stderr);
     } else {
-        if (!json) {
+        if (!request->json) {
             print_text(summary, &r);
         }
         code = EXIT_DONE;
@@ -459,7 +467,8 @@ static int run(int argc, char **argv)
         fputs("stance summary: a results file is needed (stance summary -h explains)\n", stderr);
         return EXIT_USAGE;
     }
-    return summarise(file, json > 0);
+    struct request request = {file, json > 0};
+    return supervise(summarise, &request, file);
 }
 
 const struct command command_summary = {

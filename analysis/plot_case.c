@@ -475,7 +475,7 @@ static bool draw_gaps(const struct plot_case *c, stance_message *message)
 static double answer_of(const struct results *r, const char *name, uint64_t row)
 {
     double *values, value = NAN;
-    stance_message ignored;
+    stance_message ignored = {""};
     if (results_answer(r, name, &values, &ignored) && values) {
         value = values[row];
     }

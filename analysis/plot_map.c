@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_PANELS = 16, LEFT = 118, BOTTOM = 84, LEGEND = 190, GAP = 16, PANEL_TITLE = 22 };
+enum { MAX_PANELS = 16, LEFT = 118, BOTTOM = 84, LEGEND = 190, GAP = 28, PANEL_TITLE = 22 };
 
 /* Which axes are drawn, and which of the points of the others. */
 struct layout {
@@ -106,7 +106,10 @@ static void say_what_is_shown(const struct results *r, const struct layout *layo
 
 static void arrange(struct layout *layout)
 {
-    layout->columns = (int)ceil(sqrt(1.2 * layout->panels));
+    /* Two axes make a table; else the page is a little wider than it is high. */
+    layout->columns = layout->others == 2 && layout->shown[1] <= 6
+                          ? (int)layout->shown[1]
+                          : (int)ceil(sqrt(1.2 * layout->panels));
     if (layout->columns > layout->panels) {
         layout->columns = layout->panels;
     }
@@ -121,7 +124,7 @@ static void panel_place(const struct layout *layout, int panel, double top, doub
 {
     *x = LEFT + panel % layout->columns * (layout->width + GAP);
     const int row = panel / layout->columns;
-    *y = top + row * (layout->height + GAP + PANEL_TITLE) + (layout->panels > 1 ? PANEL_TITLE : 0);
+    *y = top + row * (layout->height + PANEL_TITLE + 12) + (layout->panels > 1 ? PANEL_TITLE : 0);
 }
 
 /* ---- data --------------------------------------------------------------------------------- */
@@ -277,7 +280,7 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
     for (int p = 0; p < layout->panels && layout->panels > 1; p++) {
         panel_title(r, layout, p, text, sizeof text);
         panel_place(layout, p, *top, &x, &y);
-        gnuplot_label(g, x + layout->width / 2, y - 11, text, "center", 11, false);
+        gnuplot_label(g, x + layout->width / 2, y - 11, text, "center", 10, false);
     }
     return true;
 }
@@ -285,6 +288,11 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
 static double legend_left(const struct layout *layout)
 {
     return LEFT + layout->columns * (layout->width + GAP) + 8;
+}
+
+static double legend_top(const struct layout *layout, double top)
+{
+    return top + (layout->panels > 1 ? PANEL_TITLE : 0) + 10;
 }
 
 /* The entry of the cross in a legend. */
@@ -310,7 +318,7 @@ static bool draw_outcomes(const struct plot *plot, const struct layout *layout,
     if (!begin_page(&g, plot, layout, what, &top, message)) {
         return false;
     }
-    double y = top + (layout->panels > 1 ? PANEL_TITLE : 0) + 10;
+    double y = legend_top(layout, top);
     y += plot_kind_legend(plot, &g, legend_left(layout), y);
     legend_cross(&g, layout, y);
     gnuplot_decorate(&g);
@@ -343,12 +351,11 @@ static bool settle_range(const struct results *r, double *values, double *low, d
     return *low <= *high;
 }
 
-static void settle_legend(struct gnuplot *g, const struct layout *layout, double top, double low,
-                          double high)
+/* Palette and colour bar; for the first panel. */
+static void put_palette(struct gnuplot *g, const struct layout *layout, double top, double low,
+                        double high)
 {
-    double x = legend_left(layout), y = top + (layout->panels > 1 ? PANEL_TITLE : 0) + 10;
-    gnuplot_legend(g, x, y, "#d9d9d9", "did not settle");
-    legend_cross(g, layout, y + 24);
+    double x = legend_left(layout), y = legend_top(layout, top);
     if (!(high > low)) { /* a range of nothing cannot be drawn */
         high = low + 0.5;
         low = low - 0.5;
@@ -374,8 +381,10 @@ static bool draw_settle_times(const struct plot *plot, const struct layout *layo
     if (!begin_page(&g, plot, layout, "Time from which the robot stayed settled", &top, message)) {
         return false;
     }
-    settle_legend(&g, layout, top, low, high);
+    gnuplot_legend(&g, legend_left(layout), legend_top(layout, top), "#d9d9d9", "did not settle");
+    legend_cross(&g, layout, legend_top(layout, top) + 24);
     gnuplot_decorate(&g);
+    put_palette(&g, layout, top, low, high);
     for (int p = 0; p < layout->panels; p++) {
         fputs("set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#d9d9d9' "
               "fillstyle solid noborder\n",

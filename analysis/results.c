@@ -1,7 +1,7 @@
 /* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
 #include "results.h"
 
-#include "probe.h"
+#include "supervise.h"
 
 #include <errno.h>
 #include <hdf5.h>
@@ -549,13 +549,6 @@ static bool read_all(struct results *r, stance_message *message)
            read_kinds(r, message);
 }
 
-/* What a child process does first, see probe.h. */
-static void attempt(void *results)
-{
-    stance_message ignored;
-    read_all(results, &ignored);
-}
-
 bool results_open(struct results *r, const char *file, stance_message *message)
 {
     *r = (struct results){.id = -1};
@@ -570,7 +563,9 @@ bool results_open(struct results *r, const char *file, stance_message *message)
     if (dot && dot != r->name && strcmp(dot, ".h5") == 0) {
         *dot = '\0';
     }
-    bool good = probe_file(r->file, attempt, r, message) && read_all(r, message);
+    supervise_limit(true);
+    bool good = read_all(r, message);
+    supervise_limit(false);
     if (!good) {
         results_close(r);
     }

@@ -1,41 +1,709 @@
-/* Statistics of the analysis: intervals and quantiles against values computed by hand. */
+/* test_analysis.c - statistics, reading of results, summary, comparison and pictures, against files
+ * that make_sample_results.py makes from formulas. */
 #include "support.h"
 
-#include "../analysis/statistics.h"
+#include "../analysis/compare.h"
+#include "../analysis/gnuplot.h"
+#include "../analysis/plot.h"
+#include "../analysis/summary.h"
+#include "../runner/command.h"
 
-static void wilson(void **state)
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- files and commands ------------------------------------------------------------------- */
+
+static char scratch[256];                     /* directory of everything that the tests write */
+static char output[1 << 18], errors[1 << 14]; /* of the last command */
+
+static const char *sample(const char *name)
 {
-    (void)state;
-    /* Wilson's score interval with z = 1.959964: centre (p + z^2/2n)/(1 + z^2/n). */
-    static const struct {
-        uint64_t k, n;
-        double low, high;
-    } known[] = {{0, 10, 0, 0.277533}, {5, 10, 0.236593, 0.763407}, {10, 10, 0.722467, 1}};
-    double low, high;
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        statistics_wilson(known[i].k, known[i].n, &low, &high);
-        assert_true(fabs(low - known[i].low) < 1e-5);
-        assert_true(fabs(high - known[i].high) < 1e-5);
-    }
-    statistics_wilson(0, 0, &low, &high);
-    assert_true(low == 0 && high == 1);
+    static char paths[4][400];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, 400, "%s/%s.h5", scratch, name);
+    return path;
 }
 
-static void quantiles(void **state)
+static int make_samples(void **state)
+{
+    char command[700];
+    const char *python = getenv("PYTHON");
+    (void)state;
+    snprintf(scratch, sizeof scratch, "/tmp/stance-test-XXXXXX");
+    if (!mkdtemp(scratch))
+        return -1;
+    snprintf(command, sizeof command, "%s tests/make_sample_results.py %s",
+             python ? python : "/usr/bin/python3", scratch);
+    return system(command);
+}
+
+static int remove_samples(void **state)
+{
+    char command[300];
+    (void)state;
+    snprintf(command, sizeof command, "rm -rf %s", scratch);
+    return system(command);
+}
+
+static void read_back(const char *path, char *text, size_t size)
+{
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    text[fread(text, 1, size - 1, file)] = '\0';
+    fclose(file);
+}
+
+/* Runs a command with what it prints going to `output` and `errors`; its exit code. */
+static int run_command(const struct command *command, const char *a, const char *b, const char *c,
+                       const char *d)
+{
+    char *argv[] = {(char *)command->name, (char *)a, (char *)b, (char *)c, (char *)d, NULL};
+    char out[300], err[300];
+    int argc = 1, kept[2] = {dup(1), dup(2)};
+    while (argv[argc])
+        argc++;
+    snprintf(out, sizeof out, "%s/stdout", scratch);
+    snprintf(err, sizeof err, "%s/stderr", scratch);
+    fflush(stdout);
+    fflush(stderr);
+    int files[2] = {open(out, O_CREAT | O_TRUNC | O_WRONLY, 0600),
+                    open(err, O_CREAT | O_TRUNC | O_WRONLY, 0600)};
+    for (int k = 0; k < 2; k++)
+        dup2(files[k], k + 1);
+    int code = command->run(argc, argv);
+    fflush(stdout);
+    fflush(stderr);
+    for (int k = 0; k < 2; k++) {
+        dup2(kept[k], k + 1);
+        close(kept[k]);
+        close(files[k]);
+    }
+    read_back(out, output, sizeof output);
+    read_back(err, errors, sizeof errors);
+    return code;
+}
+
+static void assert_contains(const char *text, const char *part)
+{
+    if (!strstr(text, part))
+        fail_msg("'%s' is not in\n%s", part, text);
+}
+
+static void assert_one_line(const char *text)
+{
+    const char *end = strchr(text, '\n');
+    if (!end || end == text || end[1] != '\0')
+        fail_msg("not one line: '%s'", text);
+}
+
+static void assert_near(double found, double wanted, double tolerance)
+{
+    if (!(fabs(found - wanted) <= tolerance))
+        fail_msg("%.17g is not %.17g +- %g", found, wanted, tolerance);
+}
+
+static void open_sample(struct results *r, const char *name)
+{
+    stance_message message = {""};
+    if (!results_open(r, sample(name), &message))
+        fail_msg("%s", message.text);
+}
+
+/* The formula behind the maps, as the sample script computes it. */
+static double level(double theta, double rate, double scale)
+{
+    return pow(scale * theta / 0.05, 2) + pow(scale * rate / 0.4, 2);
+}
+
+/* ---- statistics --------------------------------------------------------------------------- */
+
+/* The ends of Wilson's interval solve (k/n - p)^2 = z^2 p (1 - p) / n. */
+static void test_wilson(void **state)
+{
+    static const uint64_t counts[][2] = {{1, 10}, {5, 10}, {9, 10}, {30, 1000}, {65535, 65536}};
+    static const double z = 1.959963984540054;
+    double end[2];
+    (void)state;
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
+        double n = (double)counts[i][1], share = (double)counts[i][0] / n;
+        statistics_wilson(counts[i][0], counts[i][1], &end[0], &end[1]);
+        assert_true(0 < end[0] && end[0] < share && share < end[1] && end[1] < 1);
+        for (int k = 0; k < 2; k++)
+            assert_near(pow(share - end[k], 2), z * z * end[k] * (1 - end[k]) / n, 1e-15);
+    }
+    /* None of n: up to z^2 / (n + z^2), exactly from 0. */
+    statistics_wilson(0, 10, &end[0], &end[1]);
+    assert_true(end[0] == 0);
+    assert_near(end[1], z * z / (10 + z * z), 1e-15);
+    statistics_wilson(10, 10, &end[0], &end[1]);
+    assert_true(end[1] == 1);
+    statistics_wilson(0, 0, &end[0], &end[1]);
+    assert_true(end[0] == 0 && end[1] == 1);
+}
+
+static void test_quantiles(void **state)
+{
+    double values[] = {5, NAN, 1, 4, 2, 3, NAN}, none[] = {NAN, NAN};
+    double infinite[] = {1, 2, INFINITY};
+    struct statistics_numbers numbers;
+    (void)state;
+    statistics_summarise(values, 7, &numbers);
+    assert_int_equal(numbers.n, 5);
+    assert_true(numbers.low == 1 && numbers.median == 3 && numbers.high == 5 && numbers.sum == 15);
+    assert_near(numbers.q90, 4.6, 1e-15);
+    assert_near(numbers.q99, 4.96, 1e-15);
+    statistics_summarise(none, 2, &numbers);
+    assert_true(numbers.n == 0 && isnan(numbers.median));
+    statistics_summarise(infinite, 3, &numbers);
+    assert_true(numbers.median == 2 && isinf(numbers.high));
+}
+
+/* ---- reading ------------------------------------------------------------------------------ */
+
+static void test_reading(void **state)
+{
+    struct results r;
+    stance_message message;
+    double *settle, *missing;
+    size_t point[SCENARIO_MAX_AXES], stabilised = 0;
+    (void)state;
+    open_sample(&r, "basin");
+    assert_int_equal(r.axes, 2);
+    assert_int_equal(r.cases, 41 * 31);
+    assert_string_equal(r.name, "basin");
+    assert_string_equal(r.axis[1].name, "initial.offset.vtheta");
+    assert_string_equal(r.axis[1].unit, "rad/s");
+    assert_true(r.axis[0].offset && !r.single);
+    assert_true(results_answer(&r, "settle_time", &settle, &message));
+    assert_true(results_answer(&r, "no_such_answer", &missing, &message));
+    assert_null(missing);
+    for (uint64_t i = 0; i < r.cases; i++) {
+        results_point(&r, i, point);
+        double l = level(r.axis[0].value[point[0]], r.axis[1].value[point[1]], 1);
+        if (fabs(l - 1) < 1e-9) /* on the edge: either */
+            continue;
+        assert_int_equal(r.kind[i], l < 1 ? RESULTS_STABILISED : RESULTS_FELL);
+        if (l < 1)
+            assert_near(settle[i], 1 + l, 1e-12);
+        else
+            assert_true(isnan(settle[i]));
+        stabilised += r.kind[i] == RESULTS_STABILISED;
+    }
+    assert_true(stabilised > 250);
+    free(settle);
+    results_close(&r);
+}
+
+static void test_pending_and_failed(void **state)
+{
+    struct results r;
+    struct statistics_counts counts;
+    stance_message message;
+    double *end;
+    (void)state;
+    open_sample(&r, "partial");
+    statistics_count(&r, -1, 0, &counts);
+    assert_int_equal(counts.kind[RESULTS_PENDING], 18);
+    assert_int_equal(counts.kind[RESULTS_FAILED], 2);
+    assert_int_equal(counts.done, 40);
+    assert_int_equal(r.failure[2 * 6 + 1], STANCE_FAILURE_NEWTON);
+    assert_true(results_answer(&r, "end_time", &end, &message));
+    for (uint64_t i = 0; i < r.cases; i++) /* rubbish and failures never count as numbers */
+        assert_int_equal(isnan(end[i]),
+                         r.kind[i] == RESULTS_PENDING || r.kind[i] == RESULTS_FAILED);
+    free(end);
+    results_close(&r);
+}
+
+static void test_trajectory(void **state)
+{
+    struct results r;
+    struct results_trajectory t;
+    stance_message message;
+    uint64_t *list;
+    size_t count;
+    (void)state;
+    open_sample(&r, "only");
+    assert_true(r.single);
+    assert_int_equal(r.index, 17);
+    assert_true(results_recorded(&r, &list, &count, &message));
+    assert_int_equal(count, 1);
+    assert_int_equal(list[0], 17);
+    free(list);
+    assert_true(results_trajectory(&r, 0, 17, &t, &message));
+    assert_int_equal(t.rows, 81); /* 0.8 s in steps of 0.01 s, both ends; then NAN */
+    assert_string_equal(t.coordinate[2], "theta");
+    assert_string_equal(t.contact[1], "foot2");
+    for (size_t k = 0; k < t.rows; k++)
+        assert_near(t.position[k * 5 + 2], -0.41 + 0.1 * exp(-t.time[k]), 1e-14);
+    results_trajectory_free(&t);
+    assert_false(results_trajectory(&r, 5, 17, &t, &message));
+    results_close(&r);
+}
+
+/* ---- extents and shares ------------------------------------------------------------------- */
+
+/* The ellipse crosses the axes at 0.05 rad and 0.4 rad/s: the extent ends within half a cell. */
+static void test_extents(void **state)
+{
+    const size_t origin[SCENARIO_MAX_AXES] = {0};
+    struct statistics_extent extent;
+    struct results r;
+    (void)state;
+    open_sample(&r, "basin");
+    assert_true(statistics_extent(&r, 0, origin, &extent) && extent.any);
+    assert_near(extent.low, -0.05, 0.5 * 0.005 + 1e-12);
+    assert_near(extent.high, 0.05, 0.5 * 0.005 + 1e-12);
+    assert_false(extent.low_open || extent.high_open || extent.low_unknown);
+    assert_true(statistics_extent(&r, 1, origin, &extent) && extent.any);
+    assert_near(extent.high, 0.4, 0.5 * 0.04 + 1e-12);
+    assert_true(fabs(r.axis[0].value[extent.point[0]]) < 1e-12);
+    results_close(&r);
+
+    open_sample(&r, "nothing"); /* all of it stabilised: to both ends of the axis */
+    assert_true(statistics_extent(&r, 0, origin, &extent) && extent.any);
+    assert_true(extent.low_open && extent.high_open);
+    assert_near(extent.low, -0.1, 1e-15);
+    assert_near(extent.high, 0.1, 1e-15);
+    results_close(&r);
+
+    open_sample(&r, "partial"); /* theta >= 0.05 is pending, (-0.05, -0.12) failed */
+    assert_true(statistics_extent(&r, 0, origin, &extent) && extent.any);
+    assert_true(extent.high_unknown && extent.low_unknown);
+    assert_near(extent.high, 0.04, 1e-12);
+    results_close(&r);
+
+    open_sample(&r, "line"); /* not an axis of offsets */
+    assert_false(statistics_extent(&r, 0, origin, &extent));
+    results_close(&r);
+}
+
+static void test_parameter(void **state)
+{
+    static const double scales[] = {100, 3, 2, 1, 1};
+    struct summary *summary = malloc(sizeof *summary);
+    struct results r;
+    stance_message message;
+    (void)state;
+    assert_non_null(summary);
+    open_sample(&r, "friction");
+    assert_true(summary_make(summary, &r, &message));
+    assert_int_equal(summary->parameters, 1);
+    for (size_t f = 0; f < 5; f++) {
+        uint64_t inside = 0, edge = 0;
+        for (int i = 0; i < 21; i++)
+            for (int j = 0; j < 11; j++) {
+                double l = level(-0.1 + 0.01 * i, -0.6 + 0.12 * j, scales[f]);
+                inside += l < 1 - 1e-9;
+                edge += fabs(l - 1) <= 1e-9;
+            }
+        uint64_t found = summary->by_value[0][f].kind[RESULTS_STABILISED];
+        assert_true(inside <= found && found <= inside + edge);
+        assert_int_equal(summary->by_value[0][f].done, 231);
+    }
+    assert_int_equal(summary->steepest[0], 2); /* from scale 2 to scale 1 */
+    assert_null(summary->by_value[1]);
+    summary_free(summary);
+    results_close(&r);
+    free(summary);
+}
+
+/* ---- the commands ------------------------------------------------------------------------- */
+
+static void test_summary_text(void **state)
 {
     (void)state;
-    double values[] = {5, NAN, 1, 3, 2, 4};
-    struct statistics_numbers numbers;
-    statistics_summarise(values, 6, &numbers);
-    assert_int_equal(numbers.n, 5);
-    assert_true(numbers.low == 1 && numbers.high == 5 && numbers.median == 3 && numbers.sum == 15);
-    assert_true(fabs(numbers.q90 - 4.6) < 1e-12);
-    statistics_summarise(values, 0, &numbers);
-    assert_true(numbers.n == 0 && isnan(numbers.median));
+    assert_int_equal(run_command(&command_summary, sample("partial"), NULL, NULL, NULL), EXIT_DONE);
+    assert_string_equal(errors, "");
+    assert_contains(output, "Half done\n");
+    assert_contains(output, "Outcomes of the 40 cases done");
+    assert_contains(output, "not computed yet");
+    assert_contains(output, "newton: ");
+    assert_contains(output, "contact: ");
+    assert_contains(output, "torque_limit 10 N m");
+    assert_int_equal(run_command(&command_summary, sample("line"), NULL, NULL, NULL), EXIT_DONE);
+    assert_contains(output, "between 0.01 s (stabilised) and 0.0177828 s (fell)");
+    assert_int_equal(run_command(&command_summary, sample("only"), NULL, NULL, NULL), EXIT_DONE);
+    assert_contains(output, "Outcome: fell");
+    assert_contains(output, "offset.vtheta 0.08 rad/s");
+    assert_int_equal(run_command(&command_summary, sample("sparse"), NULL, NULL, NULL), EXIT_DONE);
+    assert_contains(output, "not stored in this file");
+    assert_null(strstr(output, "nan"));
+}
+
+static json_t *summary_of(const char *name)
+{
+    json_error_t error;
+    assert_int_equal(run_command(&command_summary, sample(name), "--json", NULL, NULL), EXIT_DONE);
+    json_t *root = json_loads(output, 0, &error);
+    if (!root)
+        fail_msg("%s: line %d: %s", name, error.line, error.text);
+    return root;
+}
+
+static double number_at(const json_t *root, const char *a, const char *b, const char *c)
+{
+    const json_t *at = json_object_get(root, a);
+    at = b ? json_object_get(at, b) : at;
+    at = c ? json_object_get(at, c) : at;
+    assert_true(json_is_number(at));
+    return json_number_value(at);
+}
+
+static void test_summary_json(void **state)
+{
+    static const char *const names[] = {"friction", "line",   "methods", "one",  "nothing",
+                                        "sparse",   "single", "bare",    "title"};
+    double low, high;
+    (void)state;
+    json_t *root = summary_of("basin");
+    assert_true(number_at(root, "cases", "total", NULL) == 1271);
+    double stabilised = number_at(root, "outcomes", "stabilised", "count");
+    statistics_wilson((uint64_t)stabilised, 1271, &low, &high);
+    assert_true(number_at(root, "outcomes", "stabilised", "share") == stabilised / 1271);
+    assert_true(number_at(root, "outcomes", "stabilised", "high") == high);
+    assert_near(number_at(root, "cost", "cases_per_second", NULL), 250.0 / 3, 1e-12);
+    assert_near(number_at(root, "cost", "iterations_per_step", NULL), 2.5, 1e-12);
+    assert_near(number_at(root, "numbers", "max_penetration", "largest"), 1.271e-6, 1e-18);
+    assert_true(number_at(root, "fixed", "controller.torque_limit", NULL) == 10);
+    const json_t *extents = json_object_get(root, "extents");
+    assert_int_equal(json_array_size(extents), 2);
+    json_decref(root);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        json_decref(summary_of(names[i]));
+    root = summary_of("only");
+    assert_true(number_at(root, "case", "index", NULL) == 17);
+    assert_near(number_at(root, "case", "final_state", "theta"), -0.41, 0);
+    assert_true(json_is_null(json_object_get(json_object_get(root, "case"), "settle_time")));
+    json_decref(root);
+}
+
+static void test_compare(void **state)
+{
+    (void)state;
+    assert_int_equal(run_command(&command_compare, sample("basin"), sample("basin"), NULL, NULL),
+                     EXIT_DONE);
+    assert_string_equal(output, "identical\n");
+    /* One number in its last bits; host and timing do not count. */
+    assert_int_equal(run_command(&command_compare, sample("basin"), sample("changed"), NULL, NULL),
+                     EXIT_CASES_FAILED);
+    assert_contains(output, "end_time: 1 of 1271 cases differ");
+    assert_contains(output, "case 97 (initial.offset.theta = -0.085 rad, ");
+    assert_null(strstr(output, "hosts"));
+    assert_null(strstr(output, "timing"));
+    /* Pending rows hold anything. */
+    assert_int_equal(
+        run_command(&command_compare, sample("partial"), sample("rubbish"), NULL, NULL), EXIT_DONE);
+    assert_int_equal(run_command(&command_compare, sample("single"), sample("bare"), NULL, NULL),
+                     EXIT_CASES_FAILED);
+    assert_contains(output, "trajectory: only in the first file");
+    assert_int_equal(
+        run_command(&command_compare, sample("basin"), sample("changed"), "--json", NULL),
+        EXIT_CASES_FAILED);
+    json_t *root = json_loads(output, 0, NULL);
+    assert_non_null(root);
+    assert_true(json_is_false(json_object_get(root, "identical")));
+    const json_t *difference = json_array_get(json_object_get(root, "differences"), 0);
+    assert_string_equal(json_string_value(json_object_get(difference, "name")), "end_time");
+    assert_true(number_at(difference, "differing", NULL, NULL) == 1);
+    json_decref(root);
+}
+
+/* ---- bad files ---------------------------------------------------------------------------- */
+
+static void expect_bad(const char *path)
+{
+    const struct command *const commands[] = {&command_summary, &command_plot};
+    for (int k = 0; k < 2; k++) {
+        assert_int_equal(run_command(commands[k], path, NULL, NULL, NULL), EXIT_IO);
+        assert_string_equal(output, "");
+        assert_one_line(errors);
+    }
+    assert_int_equal(run_command(&command_compare, sample("basin"), path, NULL, NULL), EXIT_IO);
+    assert_one_line(errors);
+}
+
+static void test_foreign_files(void **state)
+{
+    (void)state;
+    expect_bad(sample("foreign"));
+    expect_bad(sample("no_such_file"));
+    expect_bad("tests/test_analysis.c");
+    expect_bad(scratch);
+    expect_bad("/dev/null");
+    assert_int_equal(run_command(&command_summary, NULL, NULL, NULL, NULL), EXIT_USAGE);
+    assert_int_equal(run_command(&command_compare, sample("basin"), NULL, NULL, NULL), EXIT_USAGE);
+    assert_int_equal(run_command(&command_plot, sample("single"), "--case", "x", NULL), EXIT_USAGE);
+}
+
+static size_t load(const char *path, char **bytes)
+{
+    struct stat information;
+    assert_int_equal(stat(path, &information), 0);
+    FILE *file = fopen(path, "rb");
+    *bytes = malloc((size_t)information.st_size + 1);
+    assert_non_null(file);
+    assert_non_null(*bytes);
+    size_t size = fread(*bytes, 1, (size_t)information.st_size, file);
+    (*bytes)[size] = '\0';
+    fclose(file);
+    return size;
+}
+
+static void save(const char *path, const char *bytes, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+}
+
+/* Cut short or with bytes changed: a summary or one line, never a crash. */
+static void test_damaged_files(void **state)
+{
+    char *bytes, *copy, path[400];
+    size_t size = load(sample("partial"), &bytes);
+    uint64_t random = 1;
+    (void)state;
+    copy = malloc(size);
+    assert_non_null(copy);
+    snprintf(path, sizeof path, "%s", sample("damaged"));
+    for (int k = 0; k < 60; k++) {
+        memcpy(copy, bytes, size);
+        size_t length = size;
+        if (k % 3 == 0)
+            length = (size_t)uniform(&random, 0, (double)size);
+        for (int i = 0; k % 3 && i < 6 * (k % 3) - 5; i++)
+            copy[(size_t)uniform(&random, 0, (double)size)] = (char)uniform(&random, 0, 256);
+        save(path, copy, length);
+        int code = run_command(&command_summary, path, NULL, NULL, NULL);
+        if (code == EXIT_IO)
+            assert_one_line(errors);
+        else
+            assert_int_equal(code, EXIT_DONE);
+        assert_true(k % 3 || code == EXIT_IO);
+    }
+    free(bytes);
+    free(copy);
+}
+
+/* ---- pictures ----------------------------------------------------------------------------- */
+
+static void expect_picture(const char *directory, const char *name)
+{
+    char path[700], *bytes;
+    snprintf(path, sizeof path, "%s/%s.svg", directory, name);
+    assert_contains(output, path);
+    size_t size = load(path, &bytes);
+    assert_true(size > 2000 && strncmp(bytes, "<?xml", 5) == 0 && strstr(bytes, "</svg>"));
+    free(bytes);
+    snprintf(path, sizeof path, "%s/%s.png", directory, name);
+    assert_contains(output, path);
+    size = load(path, &bytes);
+    assert_true(size > 2000 && memcmp(bytes, "\x89PNG\r\n\x1a\n", 8) == 0);
+    free(bytes);
+}
+
+static void expect_plot(const char *name, const char *directory)
+{
+    if (run_command(&command_plot, sample(name), "-o", directory, NULL) != EXIT_DONE)
+        fail_msg("%s: %s", name, errors);
+}
+
+static void test_pictures(void **state)
+{
+    static const char *const maps[] = {"basin", "partial", "friction", "methods", "one", "title"};
+    static const char *const curves[] = {"friction", "methods", "line"};
+    static const char *const cases[] = {"coordinates", "forces", "torques", "gaps", "strip"};
+    char directory[400], name[64];
+    (void)state;
+    snprintf(directory, sizeof directory, "%s/it's a \"place\"", scratch);
+    for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
+        expect_plot(maps[i], directory);
+        snprintf(name, sizeof name, "%s-map", maps[i]);
+        expect_picture(directory, name);
+        snprintf(name, sizeof name, "%s-settle_time", maps[i]);
+        expect_picture(directory, name);
+    }
+    for (size_t i = 0; i < sizeof curves / sizeof curves[0]; i++) {
+        expect_plot(curves[i], directory);
+        snprintf(name, sizeof name, "%s-curve", curves[i]);
+        expect_picture(directory, name);
+    }
+    expect_plot("single", directory);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        snprintf(name, sizeof name, "single-%s", cases[i]);
+        expect_picture(directory, name);
+    }
+    expect_plot("nothing", directory); /* no times: a map alone, and a word about it */
+    expect_picture(directory, "nothing-map");
+    assert_null(strstr(output, "settle_time"));
+    assert_one_line(errors);
+}
+
+/* A title reaches the picture as it is; nothing in it is run. */
+static void test_title(void **state)
+{
+    char path[400], *bytes;
+    (void)state;
+    expect_plot("title", scratch);
+    snprintf(path, sizeof path, "%s/title-map.svg", scratch);
+    load(path, &bytes);
+    assert_contains(bytes, "a_b^{c} \\n `touch pwned` @x $y {/*3 z} \xce\xb8");
+    assert_contains(bytes, "&lt;b> &amp; ");
+    free(bytes);
+    assert_int_not_equal(access("pwned", F_OK), 0);
+}
+
+static void test_text(void **state)
+{
+    char text[200], path[400];
+    (void)state;
+    snprintf(path, sizeof path, "%s/text", scratch);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    assert_int_equal(gnuplot_text(file, "it's\ta\nbyte \xff \xc3\xa9", 0), 1);
+    assert_int_equal(gnuplot_text(file, "one two three", 8), 2);
+    fclose(file);
+    read_back(path, text, sizeof text);
+    assert_string_equal(text, "'it''s a byte ? \xc3\xa9''one two'.\"\\n\".'three'");
+}
+
+/* gnuplot is replaced by one that keeps the data: every cell has the colour and the time of its
+ * case, at its place. */
+static void test_cells(void **state)
+{
+    char path[400], script[700], old[4000], new[4400], *bytes;
+    struct results r;
+    (void)state;
+    snprintf(path, sizeof path, "%s/bin", scratch);
+    mkdir(path, 0700);
+    snprintf(path, sizeof path, "%s/bin/gnuplot", scratch);
+    snprintf(
+        script, sizeof script,
+        "#!/bin/sh\ncp data0 \"%s/script-$(wc -c <data1)\"\ncp data1 \"%s/cells-$(wc -c <data1)\"\n"
+        "echo '<?xml' >picture.svg\necho png >picture.png\n",
+        scratch, scratch);
+    save(path, script, strlen(script));
+    chmod(path, 0700);
+    snprintf(old, sizeof old, "%s", getenv("PATH"));
+    snprintf(new, sizeof new, "%s/bin:%s", scratch, old);
+    setenv("PATH", new, 1);
+    int code = run_command(&command_plot, sample("basin"), "-o", scratch, NULL);
+    setenv("PATH", old, 1);
+    assert_int_equal(code, EXIT_DONE);
+
+    open_sample(&r, "basin");
+    snprintf(path, sizeof path, "%s/cells-%d", scratch, 41 * 31 * 3);
+    assert_int_equal(load(path, &bytes), 41 * 31 * 3);
+    for (int j = 0; j < 31; j++)
+        for (int i = 0; i < 41; i++) {
+            const unsigned char *cell = (const unsigned char *)bytes + 3 * (j * 41 + i);
+            unsigned colour = (unsigned)cell[0] << 16 | (unsigned)cell[1] << 8 | cell[2];
+            const char *wanted = plot_colours[r.kind[i * 31 + j]] + 1;
+            assert_int_equal(colour, strtoul(wanted, NULL, 16));
+        }
+    free(bytes);
+    snprintf(path, sizeof path, "%s/cells-%d", scratch, 41 * 31 * 8);
+    assert_int_equal(load(path, &bytes), 41 * 31 * 8);
+    for (int j = 0; j < 31; j++)
+        for (int i = 0; i < 41; i++) {
+            double time, l = level(-0.1 + 0.005 * i, -0.6 + 0.04 * j, 1);
+            memcpy(&time, bytes + 8 * (j * 41 + i), 8);
+            if (fabs(l - 1) > 1e-9)
+                assert_true(l < 1 ? fabs(time - 1 - l) < 1e-12 : isnan(time));
+        }
+    free(bytes);
+    results_close(&r);
+    /* The map spans the outer edges of the cells. */
+    snprintf(path, sizeof path, "%s/script-%d", scratch, 41 * 31 * 3);
+    load(path, &bytes);
+    const char *range = strstr(bytes, "set xrange [");
+    double low, high;
+    assert_non_null(range);
+    assert_int_equal(sscanf(range, "set xrange [%lf:%lf]", &low, &high), 2);
+    assert_near(low, -0.1025, 1e-12);
+    assert_near(high, 0.1025, 1e-12);
+    free(bytes);
+}
+
+static void test_plot_errors(void **state)
+{
+    char old[4000];
+    (void)state;
+    snprintf(old, sizeof old, "%s", getenv("PATH"));
+    setenv("PATH", "/nowhere", 1);
+    int code = run_command(&command_plot, sample("basin"), "-o", scratch, NULL);
+    setenv("PATH", old, 1);
+    assert_int_equal(code, EXIT_IO);
+    assert_one_line(errors);
+    assert_contains(errors, "gnuplot-nox");
+    assert_int_equal(run_command(&command_plot, sample("basin"), "-o", "/dev/null/x", NULL),
+                     EXIT_IO);
+    assert_one_line(errors);
+    assert_int_equal(run_command(&command_plot, sample("basin"), "-o", sample("one"), NULL),
+                     EXIT_IO);
+    assert_one_line(errors);
+    assert_int_equal(run_command(&command_plot, sample("bare"), NULL, NULL, NULL), EXIT_USAGE);
+    assert_contains(errors, "--trace");
+    assert_int_equal(run_command(&command_plot, sample("basin"), "--case", "99999", NULL),
+                     EXIT_USAGE);
+    assert_one_line(errors);
+    assert_int_equal(run_command(&command_plot, sample("basin"), "--case", "5", NULL), EXIT_USAGE);
+    assert_contains(errors, "--only 5 --trace");
+}
+
+/* ---- scales ------------------------------------------------------------------------------- */
+
+static struct results_axis axis_of(double *values, size_t n)
+{
+    return (struct results_axis){.name = "ground.friction", .count = n, .value = values};
+}
+
+static void test_scales(void **state)
+{
+    double even[] = {0.3, 0.2, 0.1}, decades[] = {0.01, 0.1, 1, 10}, odd[] = {1, 2, 4, 5},
+           one[] = {7};
+    struct plot_axis along;
+    (void)state;
+    struct results_axis axis = axis_of(even, 3);
+    plot_axis_make(&along, &axis);
+    assert_int_equal(along.scale, PLOT_LINEAR);
+    assert_true(along.falling);
+    assert_int_equal(plot_axis_index(&along, 0), 2); /* the lowest cell is the last value */
+    assert_near(along.low, 0.05, 1e-15);
+    assert_near(along.high, 0.35, 1e-15);
+    axis = axis_of(decades, 4);
+    plot_axis_make(&along, &axis);
+    assert_int_equal(along.scale, PLOT_LOG);
+    assert_near(along.low, -2.5, 1e-12);
+    axis = axis_of(odd, 4);
+    plot_axis_make(&along, &axis);
+    assert_int_equal(along.scale, PLOT_LIST);
+    plot_axis_make_curve(&along, &axis);
+    assert_int_equal(along.scale, PLOT_LINEAR);
+    axis = axis_of(one, 1);
+    plot_axis_make(&along, &axis);
+    assert_int_equal(along.scale, PLOT_LIST);
+    assert_true(plot_round_step(0, 1, 5) == 0.2);
+    assert_near(plot_round_step(-0.12, 0.06, 5), 0.05, 1e-15);
+    assert_true(plot_round_step(3, 3, 5) > 0);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(wilson), cmocka_unit_test(quantiles)};
-    return cmocka_run_group_tests_name("analysis", tests, NULL, NULL);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_wilson),        cmocka_unit_test(test_quantiles),
+        cmocka_unit_test(test_reading),       cmocka_unit_test(test_pending_and_failed),
+        cmocka_unit_test(test_trajectory),    cmocka_unit_test(test_extents),
+        cmocka_unit_test(test_parameter),     cmocka_unit_test(test_summary_text),
+        cmocka_unit_test(test_summary_json),  cmocka_unit_test(test_compare),
+        cmocka_unit_test(test_foreign_files), cmocka_unit_test(test_damaged_files),
+        cmocka_unit_test(test_pictures),      cmocka_unit_test(test_title),
+        cmocka_unit_test(test_text),          cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_plot_errors),   cmocka_unit_test(test_scales),
+    };
+    return cmocka_run_group_tests(tests, make_samples, remove_samples);
 }

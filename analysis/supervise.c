@@ -1,0 +1,107 @@
+/* supervise.c - one child process per command that reads results files. */
+#include "supervise.h"
+
+#include "../runner/command.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { MOST_SECONDS = 10 };
+
+void supervise_limit(bool begin)
+{
+    struct rlimit limit;
+    struct rusage usage;
+    if (getrlimit(RLIMIT_CPU, &limit) != 0 || getrusage(RUSAGE_SELF, &usage) != 0) {
+        return; /* goes without */
+    }
+    limit.rlim_cur = limit.rlim_max;
+    rlim_t end = (rlim_t)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) + MOST_SECONDS;
+    if (begin && (limit.rlim_max == RLIM_INFINITY || end < limit.rlim_max)) {
+        limit.rlim_cur = end;
+    }
+    setrlimit(RLIMIT_CPU, &limit);
+}
+
+/* The child. What it says goes to `messages`, so that a dying library can be hushed. */
+static void work_and_exit(int (*work)(void *context), void *context, int messages, pid_t parent)
+{
+    const struct rlimit none = {0, 0};
+    prctl(PR_SET_PDEATHSIG, SIGKILL); /* no work goes on without the command */
+    if (getppid() != parent) {
+        _exit(EXIT_IO);
+    }
+    setrlimit(RLIMIT_CORE, &none);
+    if (messages >= 0) {
+        dup2(messages, STDERR_FILENO);
+    }
+    int code = work(context);
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_DONE) {
+        fputs("stance: cannot write to standard output\n", stderr);
+        code = EXIT_IO;
+    }
+    fflush(stderr);
+    _exit(code);
+}
+
+static void pass_on(int messages)
+{
+    char buffer[4096];
+    ssize_t n;
+    if (messages < 0 || lseek(messages, 0, SEEK_SET) != 0) {
+        return;
+    }
+    while ((n = read(messages, buffer, sizeof buffer)) > 0) {
+        fwrite(buffer, 1, (size_t)n, stderr);
+    }
+}
+
+static bool is_crash(int number)
+{
+    return number == SIGSEGV || number == SIGBUS || number == SIGABRT || number == SIGFPE ||
+           number == SIGILL || number == SIGXCPU;
+}
+
+int supervise(int (*work)(void *context), void *context, const char *files)
+{
+    int status = 0, messages = memfd_create("messages", MFD_CLOEXEC);
+    pid_t parent = getpid();
+
+    fflush(stdout);
+    fflush(stderr);
+    pid_t child = fork();
+    if (child == 0) {
+        work_and_exit(work, context, messages, parent);
+    }
+    if (child < 0) {
+        fprintf(stderr, "stance: no process can be started: %s\n", strerror(errno));
+        status = EXIT_IO;
+    }
+    while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    bool crashed = child > 0 && WIFSIGNALED(status) && is_crash(WTERMSIG(status));
+    if (crashed) {
+        fprintf(stderr, "%s: damaged: the HDF5 library cannot cope with it\n", files);
+    } else {
+        pass_on(messages);
+    }
+    if (messages >= 0) {
+        close(messages);
+    }
+    if (child < 0 || crashed) {
+        return EXIT_IO;
+    }
+    if (WIFSIGNALED(status)) { /* interrupted, or its reader has gone: so is this process */
+        signal(WTERMSIG(status), SIG_DFL);
+        raise(WTERMSIG(status));
+        return EXIT_IO;
+    }
+    return WEXITSTATUS(status);
+}
