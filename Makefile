@@ -42,7 +42,7 @@ ALLFLAGS = $(STRICT) $(WARNINGS) $(SANITIZE)
 
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
 SCENES  = biped
-METHODS = implicit midpoint
+METHODS = implicit midpoint capturing lagrange
 MACHINE := $(shell uname -m)
 ISAS_x86_64  = scalar sse2 avx2 avx512
 ISAS_aarch64 = scalar neon

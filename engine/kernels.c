@@ -4,9 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What there is: a method is a word here, a scene two lines below. STANCE_ISA_LIST comes
- * from the Makefile: X(scalar) X(sse2) ... in order of width. */
-#define STANCE_METHODS(X) X(implicit) X(midpoint)
+/* What there is: a method or a scene is a word here and in the Makefile. STANCE_ISA_LIST comes
+ * from there: X(scalar) X(sse2) ... in order of width. */
+#define STANCE_METHODS(X) X(implicit) X(midpoint) X(capturing) X(lagrange)
+#define STANCE_VECTOR_METHODS(K, scene, isa)                                                       \
+    K(scene, implicit, isa) K(scene, midpoint, isa) K(scene, capturing, isa) K(scene, lagrange, isa)
+#define STANCE_SCENES(EACH, K, isa) EACH(K, biped, isa)
 
 #ifndef STANCE_ISA_LIST
 #define STANCE_ISA_LIST X(scalar)
@@ -18,15 +21,16 @@ STANCE_METHODS(DECLARE_METHOD)
 #define ENTRY_METHOD(m) &stance_method_##m,
 static const stance_method *const methods[] = {STANCE_METHODS(ENTRY_METHOD) NULL};
 
-#define X(isa)                                                                                     \
-    extern const stance_kernel stance_kernel_biped_implicit_##isa;                                 \
-    extern const stance_kernel stance_kernel_biped_midpoint_##isa;
+#define DECLARE_KERNEL(scene, m, isa)                                                              \
+    extern const stance_kernel stance_kernel_##scene##_##m##_##isa;
+#define X(isa) STANCE_SCENES(STANCE_VECTOR_METHODS, DECLARE_KERNEL, isa)
 STANCE_ISA_LIST
 #undef X
 
 /* Narrow to wide. */
 static const stance_kernel *const kernels[] = {
-#define X(isa) &stance_kernel_biped_implicit_##isa, &stance_kernel_biped_midpoint_##isa,
+#define ENTRY_KERNEL(scene, m, isa) &stance_kernel_##scene##_##m##_##isa,
+#define X(isa) STANCE_SCENES(STANCE_VECTOR_METHODS, ENTRY_KERNEL, isa)
     STANCE_ISA_LIST
 #undef X
 };

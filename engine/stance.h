@@ -90,8 +90,10 @@ typedef struct stance_scene {
     void (*stand)(const double *robot, int support, double *position, double *velocity);
     /* Stick figure: a polyline of `n` points (x, z); returns n <= STANCE_MAX_POINTS. */
     int (*figure)(const double *robot, const double *position, double points[][2]);
-    /* Height (hip, m) that `fell` is judged by and the length that it is measured in. */
+    /* Height (hip, m) that `fell` is judged by and the length that it is measured in; NULL where
+     * nothing falls. */
     void (*height)(const double *robot, const double *position, double *height, double *length);
+    /* Kinetic and potential energy, J. */
     double (*energy)(const double *robot, const double *position, const double *velocity);
     /* NULL where a scene has none. */
     stance_error (*equilibrium)(const double *robot, const stance_equilibrium_choice *choice,
@@ -132,6 +134,9 @@ typedef enum stance_evidence {
     X(NOT_FINITE, not_finite, "the state left the finite numbers")                                 \
     X(ANGLE, angle, "an angle left the range in which sine and cosine are defined (1e4 rad)")      \
     X(CONTACT, contact, "the contact problem of a step has no solution to tolerance")              \
+    X(PAINLEVE, painleve, "no contact force, or several, fit the accelerations (Painleve)")        \
+    X(EVENTS, events, "too many events in one step: they accumulate (Zeno), or chatter")           \
+    X(TOLERANCE, tolerance, "the error estimate stayed above the tolerance at the smallest step")  \
     X(INITIAL, initial, "the initial state or the controller does not exist for this case")
 
 typedef enum stance_failure {
@@ -168,6 +173,8 @@ typedef struct stance_case {
 
     double step;   /* s */
     int64_t steps; /* length of the run */
+    double
+        tolerance; /* admitted error of a step (m, rad), > 0; read where the method controls it */
 
     bool settle;         /* judge `stabilised` and `rested` on the way and stop there */
     bool has_target;     /* without one nothing is ever `stabilised` */
@@ -190,12 +197,19 @@ typedef struct stance_result {
     int64_t steps, iterations;               /* steps taken; Newton iterations summed over them */
     int64_t ambiguous_steps;                 /* steps whose contact problem had several solutions */
     int64_t subdivided_steps;                /* steps that converged only after being subdivided */
+    int64_t events;                          /* changes of contact mode that the method handled */
+    int64_t evaluations;                     /* of the accelerations or of the implicit equation */
     double max_penetration;                  /* m, at the ends of steps */
     double slip_distance;                    /* m, summed over contacts */
     double peak_torque;                      /* N m */
     double friction_used;                    /* largest |rT|/rN */
     double impact_energy; /* J, largest kinetic energy that contact impulses added in one step */
     double projection_energy; /* J, sum of |energy| added by position projection */
+    double energy_gain;       /* J, largest rise of the energy above its start and the work done */
+    /* How far the ends of steps are from the contact laws, largest over the case: normal velocity
+     * (m/s) of a contact that carries, or with which one that does not penetrates; |rT|/rN - mu
+     * beyond the cone; slip (m/s) that full friction against it does not accompany. */
+    double signorini_residual, coulomb_residual, dissipation_residual;
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
 } stance_result;
 
@@ -204,6 +218,8 @@ typedef struct stance_result {
 typedef struct stance_method {
     const char *name, *text;
     int order_smooth; /* order of convergence while the contact mode lasts */
+    double
+        tolerance; /* default of stance_case.tolerance; 0: the method does not control its error */
 } stance_method;
 
 /* One compiled stepping core: a scene, a method, a number of lanes. */

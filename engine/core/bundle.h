@@ -1,18 +1,22 @@
 /* bundle.h - runs many cases, one in each lane: the time loop, the controller's sampling, the
  * outcome rules, recording, and the refilling of finished lanes.
  *
- * Included by each method after METHOD_THETA is defined; gives `bundle_run`.
+ * Included by each method after the header that says how it gets from the end of one step to the
+ * end of the next; gives `bundle_run`. That header defines
+ *
+ *   struct advance                        what it remembers of its lanes between steps,
+ *   void advance_load(a, lane, case)      at the start of a case,
+ *   mask advance(a, set, torque, h, live, coupled, now, report, failed)
+ *                                         moves *now towards the end of the step of length h;
+ * returns the lanes that are there, with *report about the whole step; the others go on at the next
+ * call, but for *failed, void advance_free(a)                  at the end of all.
  */
 #ifndef STANCE_CORE_BUNDLE_H
 #define STANCE_CORE_BUNDLE_H
 
-#include "step.h"
-
 #include <Random123/philox.h>
 
-#define BUNDLE_MAX_SUBDIVISION 6 /* a step is halved at most this often ... */
-#define BUNDLE_FREEZE_AFTER 6    /* ... and in the last attempt the geometry freezes here */
-#define BUNDLE_ERROR_FLOOR 1e-9  /* of settle.angle and settle.rate: smaller errors do not grow */
+#define BUNDLE_ERROR_FLOOR 1e-9 /* of settle.angle and settle.rate: smaller errors do not grow */
 
 /* A condition that must hold for a while without its measure growing. */
 struct window {
@@ -25,7 +29,7 @@ struct bundle {
     stance_result *result[LANES];
     struct setting set;
     struct motion now;
-    lanes torque[SCENE_ACTUATORS];
+    lanes torque[ACTUATORS];
     lanes h, n, steps; /* step length, steps done, steps wanted */
     lanes sample_every, next_sample;
     lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
@@ -37,8 +41,12 @@ struct bundle {
     lanes settle_angle, settle_rate, settle_steps, fall_height;
     struct window settled, resting;
 
-    lanes iterations, ambiguous, subdivided;
+    lanes iterations, evaluations, events, ambiguous, subdivided;
     lanes penetration, slip, peak_torque, friction_used, impact_energy, projection_energy;
+    lanes signorini, coulomb, dissipation;
+    lanes energy_bound, energy_gain; /* initial energy and the work since; excess over it */
+    lanes failure;
+    struct advance advance;
 };
 
 static inline void set_all(lanes *v, int n, int lane, const double *x)
@@ -67,10 +75,26 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
 
 static void bundle_clear_answers(struct bundle *b, int lane)
 {
-    lanes *const zero[] = {
-        &b->iterations,  &b->ambiguous,     &b->subdivided,    &b->penetration,       &b->slip,
-        &b->peak_torque, &b->friction_used, &b->impact_energy, &b->projection_energy, &b->n,
-        &b->recorded_at, &b->next_sample};
+    lanes *const zero[] = {&b->iterations,
+                           &b->evaluations,
+                           &b->events,
+                           &b->ambiguous,
+                           &b->subdivided,
+                           &b->penetration,
+                           &b->slip,
+                           &b->peak_torque,
+                           &b->friction_used,
+                           &b->impact_energy,
+                           &b->projection_energy,
+                           &b->signorini,
+                           &b->coulomb,
+                           &b->dissipation,
+                           &b->energy_gain,
+                           &b->failure,
+                           &b->n,
+                           &b->recorded_at,
+                           &b->next_sample,
+                           &b->now.t};
     for (size_t i = 0; i < sizeof zero / sizeof *zero; i++)
         lane_set(zero[i], lane, 0);
     for (int i = 0; i < SCENE_CONTACTS; i++)
@@ -94,6 +118,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         lane_set(&b->torque[i], lane, 0);
     bundle_clear_answers(b, lane);
+    advance_load(&b->advance, lane, c);
     lane_set(&b->h, lane, c->step);
     lane_set(&b->steps, lane, (double)c->steps);
     lane_set(&b->sample_every, lane, (double)c->sample_every);
@@ -125,6 +150,8 @@ static void bundle_begin(struct bundle *b, mask fresh)
         b->now.gap[c] = choose(fresh, scene_gap(&b->set.body, b->now.s, &trig, c), b->now.gap[c]);
         b->now.approach[c] = choose(fresh, u[0], b->now.approach[c]);
     }
+    b->energy_bound = choose(fresh, scene_energy(&b->set.body, b->now.s, b->now.w, &b->now.trig),
+                             b->energy_bound);
 }
 
 /* Uniform in [-1, 1): actuator i of sampling instant k, keyed as stance.h says. */
@@ -132,7 +159,7 @@ static inline double noise_value(uint64_t bits)
 {
     return (double)(int64_t)(bits >> 11) * 0x1p-52 - 1;
 }
-static void bundle_noise(const stance_case *c, double instant, double noise[SCENE_ACTUATORS])
+static void bundle_noise(const stance_case *c, double instant, double noise[ACTUATORS])
 {
     const philox4x64_key_t key = {{c->seed, 0}};
     const philox4x64_ctr_t counter = {{c->grid_index, c->sample_index, (uint64_t)instant, 0}};
@@ -147,13 +174,13 @@ static inline void bundle_sample(struct bundle *b, mask live)
     const mask due = live & mask_less_equal(b->next_sample, b->n);
     if (!mask_any(due))
         return;
-    lanes torque[SCENE_ACTUATORS];
+    lanes torque[ACTUATORS];
     law_torque(&b->set.law, b->now.s, b->now.w, torque);
     for (int lane = 0; lane < LANES; lane++) {
         const stance_case *const c = b->which[lane];
         if (!c || c->noise == 0 || !mask_get(due, lane))
             continue;
-        double noise[SCENE_ACTUATORS];
+        double noise[ACTUATORS];
         bundle_noise(c, lane_get(&b->n, lane) / (double)c->sample_every, noise);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             lane_set(&torque[i], lane, lane_get(&torque[i], lane) + noise[i]);
@@ -164,76 +191,23 @@ static inline void bundle_sample(struct bundle *b, mask live)
     b->next_sample = choose(due, b->next_sample + b->sample_every, b->next_sample);
 }
 
-/* Adds a part of a step to the whole. */
-static void report_add(struct step_report *sum, const struct step_report *part)
-{
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        sum->slip[c] += part->slip[c];
-        for (int a = 0; a < 2; a++)
-            sum->impulse[c][a] += part->impulse[c][a];
-    }
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        sum->torque[i] = part->torque[i];
-    sum->iterations += part->iterations;
-    sum->impact_energy = lanes_max(part->impact_energy, sum->impact_energy);
-    sum->projection_energy += part->projection_energy;
-    sum->ambiguous |= part->ambiguous;
-}
-
-/* Lanes that did not converge: the step again in 2, 4, ... equal parts. */
-static mask bundle_subdivide(struct bundle *b, mask run, bool coupled, struct motion *to,
-                             struct step_report *total)
-{
-    mask failed = run;
-    for (int level = 1; level <= BUNDLE_MAX_SUBDIVISION && mask_any(failed); level++) {
-        const int parts = 1 << level;
-        const int freeze =
-            level < BUNDLE_MAX_SUBDIVISION ? STEP_MAX_ITERATIONS : BUNDLE_FREEZE_AFTER;
-        struct motion here = b->now;
-        struct step_report sum;
-        memset(&sum, 0, sizeof sum);
-        sum.iterations = total->iterations;
-        mask good = failed;
-        for (int k = 0; k < parts && mask_any(good); k++) {
-            struct step_report part;
-            struct motion next = here;
-            good &= take_step(&b->set, &here, b->torque, b->h / parts, good, coupled, freeze, &next,
-                              &part);
-            here = next;
-            report_add(&sum, &part);
-        }
-        for (int i = 0; i < SCENE_COORDINATES; i++) {
-            to->s[i] = choose(good, here.s[i], to->s[i]);
-            to->w[i] = choose(good, here.w[i], to->w[i]);
-        }
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
-            to->gap[c] = choose(good, here.gap[c], to->gap[c]);
-            to->approach[c] = choose(good, here.approach[c], to->approach[c]);
-            total->slip[c] = choose(good, sum.slip[c], total->slip[c]);
-            for (int a = 0; a < 2; a++)
-                total->impulse[c][a] = choose(good, sum.impulse[c][a], total->impulse[c][a]);
-        }
-        for (int a = 0; a < SCENE_ANGLES; a++) {
-            to->trig.sine[a] = choose(good, here.trig.sine[a], to->trig.sine[a]);
-            to->trig.cosine[a] = choose(good, here.trig.cosine[a], to->trig.cosine[a]);
-        }
-        for (int i = 0; i < SCENE_ACTUATORS; i++)
-            total->torque[i] = choose(good, sum.torque[i], total->torque[i]);
-        total->iterations = choose(failed, sum.iterations, total->iterations);
-        total->impact_energy = choose(good, sum.impact_energy, total->impact_energy);
-        total->projection_energy = choose(good, sum.projection_energy, total->projection_energy);
-        total->ambiguous = (total->ambiguous & LANES_NOT(good)) | (sum.ambiguous & good);
-        failed &= LANES_NOT(good);
-    }
-    return run & LANES_NOT(failed);
-}
-
 static inline void bundle_account(struct bundle *b, mask ok, const struct step_report *report)
 {
     const lanes none = lanes_of(0);
     b->n = choose(ok, b->n + 1, b->n);
+    b->now.t = choose(ok, b->n * b->h, b->now.t);
     b->iterations += choose(ok, report->iterations, none);
-    b->ambiguous += choose(ok & report->ambiguous, lanes_of(1), none);
+    b->evaluations += choose(ok, report->evaluations, none);
+    b->events += choose(ok, report->events, none);
+    b->ambiguous += choose(ok, report->ambiguous, none);
+    b->subdivided += choose(ok, report->subdivided, none);
+    b->energy_bound += choose(ok, report->work, none);
+    const lanes energy = scene_energy(&b->set.body, b->now.s, b->now.w, &b->now.trig);
+    b->energy_gain =
+        choose(ok, lanes_max(energy - b->energy_bound, b->energy_gain), b->energy_gain);
+    b->signorini = choose(ok, lanes_max(report->signorini, b->signorini), b->signorini);
+    b->coulomb = choose(ok, lanes_max(report->coulomb, b->coulomb), b->coulomb);
+    b->dissipation = choose(ok, lanes_max(report->dissipation, b->dissipation), b->dissipation);
     b->impact_energy =
         choose(ok, lanes_max(report->impact_energy, b->impact_energy), b->impact_energy);
     b->projection_energy += choose(ok, report->projection_energy, none);
@@ -274,7 +248,7 @@ struct verdict {
 static inline struct verdict bundle_judge(struct bundle *b, mask live, const mask *loaded,
                                           mask last)
 {
-    lanes posture[SCENE_POSTURE], rate[SCENE_POSTURE];
+    lanes posture[POSTURES], rate[POSTURES];
     scene_posture(b->now.s, posture);
     scene_posture(b->now.w, rate);
     lanes angle = lanes_of(0), speed = lanes_of(0);
@@ -283,9 +257,7 @@ static inline struct verdict bundle_judge(struct bundle *b, mask live, const mas
         speed = lanes_max(lanes_abs(rate[i]), speed);
     }
     angle = angle / b->settle_angle;
-    const lanes all =
-        lanes_max(scene_translation_speed(&b->set.body, b->now.w, &b->now.trig), speed) /
-        b->settle_rate;
+    const lanes all = scene_largest_rate(&b->set.body, b->now.w, &b->now.trig) / b->settle_rate;
     speed = speed / b->settle_rate;
     mask alone = LANES_ALL;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -373,6 +345,12 @@ static void bundle_finish(struct bundle *b, int lane, stance_status status, stan
         .friction_used = lane_get(&b->friction_used, lane),
         .impact_energy = lane_get(&b->impact_energy, lane),
         .projection_energy = lane_get(&b->projection_energy, lane),
+        .energy_gain = lane_get(&b->energy_gain, lane),
+        .signorini_residual = lane_get(&b->signorini, lane),
+        .coulomb_residual = lane_get(&b->coulomb, lane),
+        .dissipation_residual = lane_get(&b->dissipation, lane),
+        .events = (int64_t)lane_get(&b->events, lane),
+        .evaluations = (int64_t)lane_get(&b->evaluations, lane),
     };
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
@@ -383,6 +361,9 @@ static void bundle_finish(struct bundle *b, int lane, stance_status status, stan
 /* Why a lane could not go on. */
 static stance_failure bundle_failure(const struct bundle *b, int lane)
 {
+    const double reason = lane_get(&b->failure, lane);
+    if (reason > 0)
+        return (stance_failure)reason;
     double sum = 0;
     for (int i = 0; i < SCENE_COORDINATES; i++)
         sum += lane_get(&b->now.s[i], lane) + lane_get(&b->now.w[i], lane);
@@ -439,7 +420,7 @@ static void bundle_start(struct bundle *b, mask fresh, bool coupled)
     const struct verdict v = bundle_judge(b, fresh, loaded, MASK_NONE);
     bundle_sample(b, fresh);
     if (coupled) {
-        lanes torque[SCENE_ACTUATORS];
+        lanes torque[ACTUATORS];
         law_torque(&b->set.law, b->now.s, b->now.w, torque);
         law_clip(&b->set.law, torque);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
@@ -453,17 +434,13 @@ static void bundle_start(struct bundle *b, mask fresh, bool coupled)
 static inline void bundle_step(struct bundle *b, mask live, bool coupled)
 {
     struct step_report report;
-    struct motion next = b->now;
+    mask failed;
     bundle_sample(b, live);
-    mask ok = take_step(&b->set, &b->now, b->torque, b->h, live, coupled, STEP_MAX_ITERATIONS,
-                        &next, &report);
-    const mask stuck = live & LANES_NOT(ok);
-    if (mask_any(stuck)) {
-        const mask saved = bundle_subdivide(b, stuck, coupled, &next, &report);
-        b->subdivided += choose(saved, lanes_of(1), lanes_of(0));
-        ok |= saved;
-    }
-    b->now = next;
+    const mask ok =
+        advance(&b->advance, &b->set, b->torque, b->h, live, coupled, &b->now, &report, &failed);
+    b->failure = choose(failed, report.failure, b->failure);
+    if (!mask_any(ok | failed))
+        return;
     if (coupled)
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             b->torque[i] = choose(ok, report.torque[i], b->torque[i]);
@@ -474,7 +451,7 @@ static inline void bundle_step(struct bundle *b, mask live, bool coupled)
     const mask last = ok & mask_less_equal(b->steps, b->n);
     const struct verdict v = bundle_judge(b, ok, loaded, last);
     bundle_record_due(b, ok);
-    bundle_end(b, live, live & LANES_NOT(ok), &v, last);
+    bundle_end(b, live, failed, &v, last);
 }
 
 /* A law that acts inside the step couples the angles: such cases run in bundles of their own, so
@@ -528,12 +505,14 @@ bundle_run_part(const stance_case *cases, stance_result *results, size_t n, bool
                 left += b.which[lane] != NULL;
         }
     }
+    advance_free(&b.advance);
 }
 
 static void bundle_run(const stance_case *cases, stance_result *results, size_t n)
 {
     bundle_run_part(cases, results, n, false);
-    bundle_run_part(cases, results, n, true);
+    if (SCENE_ACTUATORS > 0)
+        bundle_run_part(cases, results, n, true);
 }
 
 #endif

@@ -23,6 +23,7 @@
 #include "lanes.h"
 
 #define CONTACT_RANK_GUARD 1e-13
+#define CONTACT_ENDLESS 1e300
 #define CONTACT_TOLERANCE 1e-11 /* of the largest free velocity (at least 1 m/s) */
 
 /* The best solution found so far, in each lane. */
@@ -38,6 +39,9 @@ typedef struct contact_problem {
     const lanes (
         *D)[2][2][2]; /* D[i][j][a][b]: velocity a of contact i per impulse b of contact j */
     const lanes (*uf)[2];
+    /* NULL, or for each contact 0 or the sign of a slip that goes on whatever the impulse: for
+     * accelerations, where D and uf are those of the contacts and r are forces. */
+    const lanes *sliding;
     lanes friction;
     lanes tolerance; /* admitted violation, m/s */
     int contacts;    /* 1 or 2 */
@@ -67,9 +71,12 @@ static inline void contact_offer(const contact_problem *p, lanes r[2][2], contac
             lanes_max(lanes_min(lanes_abs(u[i][0]), lanes_abs(r[i][0] * normal)), violation);
         violation = lanes_max((lanes_abs(r[i][1]) - bound) * tangential, violation);
         /* Maximum dissipation: slip means an impulse at the edge of the cone, against it. */
-        const lanes room =
-            choose(mask_less(u[i][1], lanes_of(0)), bound - r[i][1], bound + r[i][1]);
-        violation = lanes_max(lanes_min(lanes_abs(u[i][1]), room * tangential), violation);
+        lanes slip = u[i][1];
+        if (p->sliding) /* no acceleration turns a slip around at once */
+            slip = choose(mask_less(lanes_of(0), lanes_abs(p->sliding[i])),
+                          CONTACT_ENDLESS * p->sliding[i], slip);
+        const lanes room = choose(mask_less(slip, lanes_of(0)), bound - r[i][1], bound + r[i][1]);
+        violation = lanes_max(lanes_min(lanes_abs(slip), room * tangential), violation);
     }
     const mask number = mask_finite(energy) & mask_finite(violation);
     const mask valid = number & mask_less_equal(violation, p->tolerance);

@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -17,6 +18,9 @@
 #endif
 
 enum { LANES = STANCE_LANES };
+
+/* Length of an array that may be empty: a scene without actuators, say. */
+#define SLOTS(n) ((n) > 0 ? (n) : 1)
 
 #if STANCE_LANES == 1
 
@@ -167,6 +171,15 @@ static inline lanes lanes_min(lanes a, lanes b)
 static inline mask mask_finite(lanes a)
 {
     return mask_less_equal(lanes_abs(a), lanes_of(1.7976931348623157e308));
+}
+
+/* Takes a struct that consists of lanes over, where m holds. */
+static inline void choose_all(mask m, const void *from, void *to, size_t size)
+{
+    const lanes *const a = from;
+    lanes *const b = to;
+    for (size_t i = 0; i < size / sizeof(lanes); i++)
+        b[i] = choose(m, a[i], b[i]);
 }
 
 /* One lane read and written: at loading, finishing and recording only. */

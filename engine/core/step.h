@@ -37,11 +37,18 @@
 #define STEP_FARTHEST 0.3     /* rad: a projection that turns the robot further is refused */
 #define STEP_APPROACH 1e-9    /* m/s: a closed contact that approaches faster is an impact */
 
+enum {
+    SECOND = SCENE_CONTACTS - 1, /* the other contact, where there are two */
+    FIRST_ANGLE = SCENE_COORDINATES - SCENE_ANGLES,
+    ACTUATORS = SLOTS(SCENE_ACTUATORS), /* lengths of arrays that may be empty */
+    POSTURES = SLOTS(SCENE_POSTURE),
+};
+
 /* torque = clip(feedforward - gain (posture - target, rate)), see stance_case. */
 struct law {
-    lanes feedforward[SCENE_ACTUATORS];
-    lanes gain[SCENE_ACTUATORS][2 * SCENE_POSTURE];
-    lanes target[SCENE_POSTURE];
+    lanes feedforward[ACTUATORS];
+    lanes gain[ACTUATORS][2 * POSTURES];
+    lanes target[POSTURES];
     lanes limit;
 };
 
@@ -53,20 +60,27 @@ struct setting {
     struct law law;
 };
 
+/* Where a system is; consists of lanes (choose_all). */
 struct motion {
     lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
     lanes gap[SCENE_CONTACTS];
     lanes approach[SCENE_CONTACTS]; /* normal velocity */
-    scene_trig trig;                /* at s, but for the last projection */
+    scene_trig trig;                /* at s */
+    lanes t;                        /* s */
 };
 
+/* What a step did; consists of lanes (choose_all). */
 struct step_report {
     lanes impulse[SCENE_CONTACTS][2]; /* N s */
     lanes slip[SCENE_CONTACTS];       /* m, where loaded */
-    lanes torque[SCENE_ACTUATORS];    /* N m, as applied at the end */
-    lanes iterations;
+    lanes torque[ACTUATORS];          /* N m, as applied at the end */
+    lanes iterations, evaluations;
     lanes impact_energy, projection_energy; /* J */
-    mask ambiguous;
+    lanes work;                             /* J, of actuators and other outer forces */
+    lanes signorini, coulomb, dissipation;  /* residuals of the contact laws, see stance_result */
+    lanes ambiguous, subdivided;            /* 0 or 1 */
+    lanes events;
+    lanes failure; /* stance_failure, or 0: the state tells */
 };
 
 /* The iterate of one step and what is frozen with it in each lane. */
@@ -76,7 +90,7 @@ struct iterate {
     lanes r[SCENE_CONTACTS][2], u[SCENE_CONTACTS][2];
     lanes gap[SCENE_CONTACTS];
     lanes lift[SCENE_CONTACTS][SCENE_COORDINATES]; /* response to a unit normal impulse */
-    lanes torque[SCENE_ACTUATORS];
+    lanes torque[ACTUATORS];
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
     mask active[SCENE_CONTACTS];
     mask ambiguous, unsolved;
@@ -84,7 +98,7 @@ struct iterate {
 
 static inline void law_torque(const struct law *law, const lanes *s, const lanes *w, lanes *torque)
 {
-    lanes posture[SCENE_POSTURE], rate[SCENE_POSTURE];
+    lanes posture[POSTURES], rate[POSTURES];
     scene_posture(s, posture);
     scene_posture(w, rate);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
@@ -102,9 +116,9 @@ static inline void law_clip(const struct law *law, lanes *torque)
 
 /* The law acting inside the step: torque and its derivative by the velocity at the end. */
 static inline void law_inside(const struct law *law, const lanes *s, const lanes *w, lanes lever,
-                              lanes *torque, lanes rate[SCENE_ACTUATORS][SCENE_POSTURE])
+                              lanes *torque, lanes rate[ACTUATORS][POSTURES])
 {
-    lanes command[SCENE_ACTUATORS];
+    lanes command[ACTUATORS];
     law_torque(law, s, w, command);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         torque[i] = command[i];
@@ -149,10 +163,11 @@ static inline void iterate_place(const struct setting *set, const struct motion 
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
 }
 
-/* Impulses of the active contacts for the linearised step; zero elsewhere. */
+/* Impulses of the active contacts for the linearised step; zero elsewhere. `sliding`: see
+ * contact_problem. */
 static inline void solve_contacts(const struct setting *set, const lanes D[2][2][2][2],
-                                  const lanes uf[2][2], const mask *active, lanes r[2][2],
-                                  mask *ambiguous, mask *unsolved)
+                                  const lanes uf[2][2], const lanes *sliding, const mask *active,
+                                  lanes r[2][2], mask *ambiguous, mask *unsolved)
 {
     lanes scale = lanes_of(1);
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -162,26 +177,30 @@ static inline void solve_contacts(const struct setting *set, const lanes D[2][2]
         }
     const lanes tolerance = CONTACT_TOLERANCE * scale;
     *ambiguous = *unsolved = MASK_NONE;
-    const mask both = active[0] & active[1];
-    const mask one = (active[0] | active[1]) & LANES_NOT(both);
+    const mask both = SCENE_CONTACTS > 1 ? active[0] & active[SECOND] : MASK_NONE;
+    const mask one = (active[0] | active[SECOND]) & LANES_NOT(both);
     contact_choice best;
     if (mask_any(one)) {
-        lanes D1[2][2][2][2], uf1[2][2];
+        lanes D1[2][2][2][2], uf1[2][2], sliding1[1];
+        if (sliding)
+            sliding1[0] = choose(active[0], sliding[0], sliding[SECOND]);
         for (int a = 0; a < 2; a++) {
-            uf1[0][a] = choose(active[0], uf[0][a], uf[1][a]);
+            uf1[0][a] = choose(active[0], uf[0][a], uf[SECOND][a]);
             for (int b = 0; b < 2; b++)
-                D1[0][0][a][b] = choose(active[0], D[0][0][a][b], D[1][1][a][b]);
+                D1[0][0][a][b] = choose(active[0], D[0][0][a][b], D[SECOND][SECOND][a][b]);
         }
-        contact_solve(&(contact_problem){D1, uf1, set->friction, tolerance, 1}, &best);
+        contact_solve(
+            &(contact_problem){D1, uf1, sliding ? sliding1 : NULL, set->friction, tolerance, 1},
+            &best);
         for (int a = 0; a < 2; a++) {
-            r[0][a] = choose(one & active[0], best.r[0][a], r[0][a]);
-            r[1][a] = choose(one & active[1], best.r[0][a], r[1][a]);
+            for (int c = 0; c < SCENE_CONTACTS; c++)
+                r[c][a] = choose(one & active[c], best.r[0][a], r[c][a]);
         }
         *ambiguous |= one & best.ambiguous;
         *unsolved |= one & LANES_NOT(mask_less_equal(best.violation, 1e3 * tolerance));
     }
-    if (mask_any(both)) {
-        contact_solve(&(contact_problem){D, uf, set->friction, tolerance, 2}, &best);
+    if (SCENE_CONTACTS > 1 && mask_any(both)) {
+        contact_solve(&(contact_problem){D, uf, sliding, set->friction, tolerance, 2}, &best);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(both, best.r[c][a], r[c][a]);
@@ -211,7 +230,7 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
         direction_lever = choose(impact, end_lever, lever);
     }
 
-    lanes torque[SCENE_ACTUATORS], torque_rate[SCENE_ACTUATORS][SCENE_POSTURE];
+    lanes torque[ACTUATORS], torque_rate[ACTUATORS][POSTURES];
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         torque[i] = it->torque[i];
     if (coupled) {
@@ -223,9 +242,9 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
 
     scene_matrix J;
     lanes dw[SCENE_COORDINATES];
-    scene_residual(&set->body, h, trig, v, change, torque, residual);
+    scene_residual(&set->body, h, from->t + METHOD_THETA * h, trig, v, change, torque, residual);
     scene_factor(&set->body, h, moves, lever, direction_lever, trig, &direction, v, change,
-                 (const lanes(*)[2])it->r, coupled, (const lanes(*)[SCENE_POSTURE])torque_rate, &J);
+                 (const lanes(*)[2])it->r, coupled, (const lanes(*)[POSTURES])torque_rate, &J);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         residual[i] = -residual[i];
     scene_solve(&J, coupled, residual, dw);
@@ -235,7 +254,7 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
         touching |= it->active[c] & running;
     if (mask_any(touching)) {
         lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES];
-        lanes D[SCENE_CONTACTS][SCENE_CONTACTS][2][2], uf[SCENE_CONTACTS][2];
+        lanes D[2][2][2][2], uf[2][2]; /* of SCENE_CONTACTS contacts */
         for (int c = 0; c < SCENE_CONTACTS; c++)
             scene_contact_response(&set->body, &J, coupled, &direction, c, response[c]);
         for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -253,9 +272,9 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
                     D[c][k][1][b] = moved[1];
                 }
         }
-        lanes r[SCENE_CONTACTS][2];
+        lanes r[2][2];
         mask ambiguous, unsolved;
-        solve_contacts(set, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, it->active, r,
+        solve_contacts(set, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, NULL, it->active, r,
                        &ambiguous, &unsolved);
         it->ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
         it->unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
@@ -282,6 +301,43 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
     return size / speed;
 }
 
+/* Multipliers of the normal directions `lift` that change the gaps of held contacts by `error`, to
+ * first order; where the two are dependent the first does the work. */
+static inline void project_multipliers(const struct setting *set, const scene_trig *trig,
+                                       const lanes lift[SCENE_CONTACTS][SCENE_COORDINATES],
+                                       const mask *held, const lanes *error, lanes *multiplier)
+{
+    lanes G[2][2];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int k = 0; k < SCENE_CONTACTS; k++) {
+            lanes u[2];
+            scene_contact_velocity(&set->body, trig, c, lift[k], u);
+            G[c][k] = choose(held[c] & held[k], u[0], lanes_of(c == k));
+        }
+    if (SCENE_CONTACTS == 1) {
+        multiplier[0] = error[0] / G[0][0];
+        return;
+    }
+    const lanes product = G[0][0] * G[1][1], determinant = product - G[0][1] * G[1][0];
+    const mask regular = mask_less(1e-12 * product, determinant);
+    const lanes reciprocal = 1 / choose(regular, determinant, G[0][0]);
+    multiplier[0] =
+        choose(regular, G[1][1] * error[0] - G[0][1] * error[SECOND], error[0]) * reciprocal;
+    multiplier[SECOND] =
+        choose(regular, G[0][0] * error[SECOND] - G[1][0] * error[0], lanes_of(0)) * reciprocal;
+}
+
+/* Sine and cosine after turning by small angles d, to third order. */
+static inline void trig_turn(scene_trig *trig, mask where, const lanes *d)
+{
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        const lanes x = d[FIRST_ANGLE + a], s = trig->sine[a], c = trig->cosine[a];
+        const lanes half = 0.5 * (x * x);
+        trig->sine[a] = choose(where, s + (x * c - half * s), s);
+        trig->cosine[a] = choose(where, c - (x * s + half * c), c);
+    }
+}
+
 /* Moves the end position until loaded contacts have their gap and no contact penetrates. Returns
  * the lanes where that needed no more than STEP_FARTHEST of turning: elsewhere the step is too
  * long for its velocity. */
@@ -302,8 +358,8 @@ static inline mask iterate_project(const struct setting *set, const struct motio
     for (int round = 0; round < 12; round++) {
         todo = MASK_NONE;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
-            const mask touching =
-                run & mask_less(lanes_of(0), set->may_touch[c]) & (it->active[0] | it->active[1]);
+            const mask touching = run & mask_less(lanes_of(0), set->may_touch[c]) &
+                                  (it->active[0] | it->active[SECOND]);
             held[c] |= touching & mask_less(it->gap[c], lanes_of(-STEP_PROJECTION));
             error[c] = choose(held[c],
                               choose(mask_less(lanes_of(0), it->r[c][0]), wanted[c], lanes_of(0)) -
@@ -313,27 +369,15 @@ static inline mask iterate_project(const struct setting *set, const struct motio
         }
         if (!mask_any(todo))
             break;
-        lanes G[2][2], multiplier[2];
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            for (int k = 0; k < SCENE_CONTACTS; k++) {
-                lanes u[2];
-                scene_contact_velocity(&set->body, &it->end, c, it->lift[k], u);
-                const mask in = held[c] & held[k];
-                G[c][k] = choose(in, u[0], lanes_of(c == k));
-            }
-        const lanes product = G[0][0] * G[1][1], determinant = product - G[0][1] * G[1][0];
-        const mask regular = mask_less(1e-12 * product, determinant);
-        const lanes reciprocal = 1 / choose(regular, determinant, G[0][0]);
-        multiplier[0] =
-            choose(regular, G[1][1] * error[0] - G[0][1] * error[1], error[0]) * reciprocal;
-        multiplier[1] =
-            choose(regular, G[0][0] * error[1] - G[1][0] * error[0], lanes_of(0)) * reciprocal;
-        lanes d[SCENE_COORDINATES], far = lanes_of(0);
+        lanes multiplier[SCENE_CONTACTS], d[SCENE_COORDINATES], far = lanes_of(0);
+        project_multipliers(set, &it->end, it->lift, held, error, multiplier);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
-            d[i] = choose(todo, it->lift[0][i] * multiplier[0] + it->lift[1][i] * multiplier[1],
-                          lanes_of(0));
+            lanes sum = it->lift[0][i] * multiplier[0];
+            if (SCENE_CONTACTS > 1)
+                sum += it->lift[SECOND][i] * multiplier[SECOND];
+            d[i] = choose(todo, sum, lanes_of(0));
             it->s1[i] = choose(todo, it->s1[i] + d[i], it->s1[i]);
-            if (i >= SCENE_COORDINATES - SCENE_ANGLES)
+            if (i >= FIRST_ANGLE)
                 turned += lanes_abs(d[i]);
         }
         *energy += lanes_abs(scene_energy_change(&set->body, &it->end, it->w, d));
@@ -342,6 +386,7 @@ static inline mask iterate_project(const struct setting *set, const struct motio
                 choose(todo, it->gap[c] + scene_gap_change(&set->body, &it->end, c, d), it->gap[c]);
             far = lanes_max(scene_gap_change_error(&set->body, c, d), far);
         }
+        trig_turn(&it->end, todo, d);
         const mask moved = todo & mask_less(lanes_of(0.1 * STEP_PROJECTION), far);
         if (mask_any(moved)) { /* too far for the expansion: the gaps anew */
             scene_trig trig = it->end;
@@ -362,13 +407,13 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
 {
     const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
     lanes nothing[SCENE_COORDINATES], no_impulse[SCENE_CONTACTS][2];
-    lanes no_rate[SCENE_ACTUATORS][SCENE_POSTURE];
+    lanes no_rate[ACTUATORS][POSTURES];
     memset(nothing, 0, sizeof nothing);
     memset(no_impulse, 0, sizeof no_impulse);
     memset(no_rate, 0, sizeof no_rate);
     scene_matrix A;
     scene_factor(&set->body, lanes_of(0), 0, lanes_of(0), lanes_of(0), trig, trig, nothing, nothing,
-                 (const lanes(*)[2])no_impulse, false, (const lanes(*)[SCENE_POSTURE])no_rate, &A);
+                 (const lanes(*)[2])no_impulse, false, (const lanes(*)[POSTURES])no_rate, &A);
     lanes x[SCENE_COORDINATES], work = lanes_of(0);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         x[i] = lanes_of(0);
@@ -381,6 +426,23 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
         work += u[0] * it->r[c][0] + u[1] * it->r[c][1];
     }
     return work - scene_kinetic(&set->body, trig, x);
+}
+
+/* Residuals of the contact laws at a contact with force (or impulse) r and velocity u, the normal
+ * one relative to what restitution asks for. */
+static inline void report_residuals(struct step_report *report, mask part, lanes friction,
+                                    const lanes r[2], const lanes u[2])
+{
+    const lanes none = lanes_of(0), bound = friction * r[0], along = lanes_abs(u[1]);
+    const mask loaded = part & mask_less(none, r[0]);
+    const lanes normal = choose(loaded, lanes_abs(u[0]), lanes_max(-u[0], none));
+    report->signorini = lanes_max(choose(part, normal, none), report->signorini);
+    const lanes beyond = (lanes_abs(r[1]) - bound) / choose(loaded, r[0], lanes_of(1));
+    report->coulomb = choose(loaded, lanes_max(beyond, report->coulomb), report->coulomb);
+    const mask opposed =
+        mask_less_equal((1 - 1e-9) * bound, lanes_abs(r[1])) & mask_less_equal(r[1] * u[1], none);
+    report->dissipation = choose(loaded & LANES_NOT(opposed), lanes_max(along, report->dissipation),
+                                 report->dissipation);
 }
 
 /* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
@@ -435,12 +497,16 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
     if (METHOD_THETA != 1)
         scene_trigonometry(it.s1, &it.end);
     lanes slip[SCENE_CONTACTS];
+    report->signorini = report->coulomb = report->dissipation = lanes_of(0);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         lanes u[2];
         scene_contact_velocity(&set->body, &it.end, c, it.w, u);
         to->approach[c] = choose(converged, u[0], to->approach[c]);
         slip[c] = h * lanes_abs(u[1]);
-        touching |= it.active[c] & converged;
+        const mask part = it.active[c] & converged;
+        touching |= part;
+        u[0] += set->restitution * lanes_min(from->approach[c], lanes_of(0));
+        report_residuals(report, part, set->friction, it.r[c], u);
     }
     lanes energy = lanes_of(0), projected = lanes_of(0);
     if (mask_any(touching & impact))
@@ -450,10 +516,15 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
         converged &= near | LANES_NOT(touching);
     }
 
-    report->iterations = iterations;
+    lanes moved[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        moved[i] = it.s1[i] - from->s[i];
+    report->work = scene_work(&set->body, h, from->t + METHOD_THETA * h, it.torque, moved);
+    report->iterations = report->evaluations = iterations;
     report->impact_energy = energy;
     report->projection_energy = projected;
-    report->ambiguous = it.ambiguous & converged;
+    report->ambiguous = choose(it.ambiguous & converged, lanes_of(1), lanes_of(0));
+    report->subdivided = report->events = report->failure = lanes_of(0);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask loaded = it.active[c] & mask_less(lanes_of(0), it.r[c][0]) & converged;
         report->slip[c] = choose(loaded, slip[c], lanes_of(0));
@@ -470,9 +541,34 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
         to->trig.sine[a] = choose(converged, it.end.sine[a], to->trig.sine[a]);
         to->trig.cosine[a] = choose(converged, it.end.cosine[a], to->trig.cosine[a]);
     }
+    to->t = choose(converged, from->t + h, to->t);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         report->torque[i] = it.torque[i];
     return converged;
+}
+
+/* Adds a part of a step to the whole. */
+static void report_add(struct step_report *sum, const struct step_report *part)
+{
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        sum->slip[c] += part->slip[c];
+        for (int a = 0; a < 2; a++)
+            sum->impulse[c][a] += part->impulse[c][a];
+    }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        sum->torque[i] = part->torque[i];
+    sum->iterations += part->iterations;
+    sum->evaluations += part->evaluations;
+    sum->events += part->events;
+    sum->work += part->work;
+    sum->impact_energy = lanes_max(part->impact_energy, sum->impact_energy);
+    sum->projection_energy += part->projection_energy;
+    sum->signorini = lanes_max(part->signorini, sum->signorini);
+    sum->coulomb = lanes_max(part->coulomb, sum->coulomb);
+    sum->dissipation = lanes_max(part->dissipation, sum->dissipation);
+    sum->ambiguous = lanes_max(part->ambiguous, sum->ambiguous);
+    sum->subdivided = lanes_max(part->subdivided, sum->subdivided);
+    sum->failure = part->failure;
 }
 
 #endif

@@ -7,12 +7,19 @@
 #define METHOD_THETA 1.0
 
 #include "../core/kernel.h"
+/* In this order. */
 #include STANCE_SCENE_LANES
+// clang-format off
+#include "../core/fixed.h"
 #include "../core/bundle.h"
+// clang-format on
 
 #if STANCE_LANES == 1
 const stance_method stance_method_implicit = {
-    "implicit", "Moreau's implicit step, theta = 1, exact contact: the paper's method", 1};
+    .name = "implicit",
+    .text = "Moreau's implicit step, theta = 1, exact contact: the paper's method",
+    .order_smooth = 1,
+};
 #endif
 
 STANCE_KERNEL(implicit);

@@ -7,12 +7,19 @@
 #define METHOD_THETA 0.5
 
 #include "../core/kernel.h"
+/* In this order. */
 #include STANCE_SCENE_LANES
+// clang-format off
+#include "../core/fixed.h"
 #include "../core/bundle.h"
+// clang-format on
 
 #if STANCE_LANES == 1
 const stance_method stance_method_midpoint = {
-    "midpoint", "implicit midpoint for smooth forces, implicit contact impulses", 2};
+    .name = "midpoint",
+    .text = "implicit midpoint for smooth forces, implicit contact impulses",
+    .order_smooth = 2,
+};
 #endif
 
 STANCE_KERNEL(midpoint);

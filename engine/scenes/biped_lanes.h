@@ -131,10 +131,11 @@ static inline void scene_posture(const lanes *s, lanes *posture)
 
 /* residual = A(u) change - h (forces without contact), evaluated at angles `trig` and velocity w;
  * change = velocity at the end minus velocity before the step. */
-static inline void scene_residual(const scene_body *b, lanes h, const scene_trig *trig,
+static inline void scene_residual(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
                                   const lanes *w, const lanes *change, const lanes *torque,
                                   lanes *residual)
 {
+    (void)t; /* no force depends on time */
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};
     const lanes tau[SCENE_ANGLES] = {-(torque[0] + torque[1]), torque[0], torque[1]};
@@ -310,6 +311,15 @@ static inline void scene_contact_velocity_change(const scene_body *b, const scen
     u[1] = change[0] + speed * (k - turn * s);
 }
 
+/* Acceleration of contact c (normal, tangential) when the coordinates do not accelerate. */
+static inline void scene_contact_curvature(const scene_body *b, const scene_trig *trig, int c,
+                                           const lanes *w, lanes a[2])
+{
+    const lanes turn = b->leg * (w[3 + c] * w[3 + c]);
+    a[0] = turn * trig->cosine[1 + c];
+    a[1] = -(turn * trig->sine[1 + c]);
+}
+
 static inline lanes scene_gap(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
 {
     return s[1] - b->leg * trig->cosine[1 + c];
@@ -352,6 +362,23 @@ static inline lanes scene_kinetic(const scene_body *b, const scene_trig *trig, c
     return sum;
 }
 
+/* Kinetic and potential energy at s with velocity w: the potential is that of each mass. */
+static inline lanes scene_energy(const scene_body *b, const lanes *s, const lanes *w,
+                                 const scene_trig *trig)
+{
+    lanes height = b->mass * s[1];
+    height -= b->coupling_trunk * trig->cosine[0];
+    height -= b->coupling_leg * (trig->cosine[1] + trig->cosine[2]);
+    return scene_kinetic(b, trig, w) + STANCE_GRAVITY * height;
+}
+/* Work of the torques over a displacement d. */
+static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const lanes *torque,
+                               const lanes *d)
+{
+    (void)b, (void)h, (void)t;
+    return torque[0] * (d[3] - d[2]) + torque[1] * (d[4] - d[2]);
+}
+
 /* Down: the hip below `fall_height` leg lengths, or the trunk on the ground. */
 static inline mask scene_fallen(const scene_body *b, const lanes *s, const scene_trig *trig,
                                 lanes fall_height)
@@ -359,13 +386,16 @@ static inline mask scene_fallen(const scene_body *b, const lanes *s, const scene
     return mask_less(s[1], fall_height * b->leg) |
            mask_less_equal(s[1] + b->trunk * trig->cosine[0], lanes_of(0));
 }
-/* Largest speed of the translation coordinates (the trunk's x and z). */
-static inline lanes scene_translation_speed(const scene_body *b, const lanes *w,
-                                            const scene_trig *trig)
+/* Largest of the rates: the trunk's x and z, its pitch, the joints. */
+static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, const scene_trig *trig)
 {
     const lanes turn = b->trunk * w[2];
-    return lanes_max(lanes_abs(w[0] - turn * trig->cosine[0]),
-                     lanes_abs(w[1] - turn * trig->sine[0]));
+    lanes largest =
+        lanes_max(lanes_abs(w[0] - turn * trig->cosine[0]), lanes_abs(w[1] - turn * trig->sine[0]));
+    largest = lanes_max(lanes_abs(w[2]), largest);
+    for (int i = 3; i < SCENE_COORDINATES; i++)
+        largest = lanes_max(lanes_abs(w[i] - w[2]), largest);
+    return largest;
 }
 
 #endif

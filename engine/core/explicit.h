@@ -1,0 +1,129 @@
+/* explicit.h - one explicit Runge-Kutta step of the smooth motion in a contact mode.
+ *
+ * The method's file gives its tableau before it includes this: METHOD_STAGES (the number of
+ * stages), tableau_a[][], tableau_b[], tableau_c[] and, with METHOD_EMBEDDED, tableau_e[], the
+ * difference between its weights and those of the embedded formula (one entry more: the last is
+ * that of the derivative at the end). Every stage solves the contact forces of the mode; at the end
+ * the state is put back onto the mode's constraints (smooth_project).
+ */
+#ifndef STANCE_CORE_EXPLICIT_H
+#define STANCE_CORE_EXPLICIT_H
+
+#include "smooth.h"
+
+/* What a step came to; the state and the report are defined where neither `violated` nor `bad`. */
+struct explicit_step {
+    struct motion end;
+    struct step_report report;
+    lanes error;   /* estimate: largest over coordinates (m, rad) and rates (m/s, rad/s) */
+    mask violated; /* the mode ended inside the step */
+    mask bad;      /* not finite, or an angle out of range ... */
+    lanes failure; /* ... as a stance_failure */
+};
+
+/* Adds k * x to sums of coordinates and rates. A weight of zero costs nothing: all are constants.
+ */
+static inline void explicit_add(lanes *s, lanes *w, lanes k, const lanes *ds, const lanes *dw)
+{
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        s[i] += k * ds[i];
+        w[i] += k * dw[i];
+    }
+}
+
+static inline void explicit_report(const struct setting *set, const struct contact_state *m,
+                                   const struct smooth *e, struct step_report *report)
+{
+    report->signorini = report->coulomb = report->dissipation = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        report_residuals(report, m->closed[c], set->friction, e->force[c], e->u[c]);
+}
+
+/* One step of length h from `from` in the mode `m` with `begin` evaluated and solved there. */
+static inline void explicit_take(const struct setting *set, const struct motion *from,
+                                 const lanes *torque, lanes h, mask run, bool coupled,
+                                 const struct contact_state *m, const struct smooth *begin,
+                                 struct explicit_step *out)
+{
+    lanes ks[METHOD_STAGES][SCENE_COORDINATES], kw[METHOD_STAGES][SCENE_COORDINATES];
+    mask touching = MASK_NONE;
+    struct smooth e = *begin;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        touching |= m->closed[c] & run;
+    const bool touches = mask_any(touching);
+    memset(&out->report, 0, sizeof out->report);
+    out->violated = MASK_NONE;
+    out->end = *from;
+#pragma GCC unroll 16
+    for (int k = 0; k < METHOD_STAGES; k++) {
+        lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            s[i] = from->s[i], w[i] = from->w[i];
+        if (k > 0) {
+#pragma GCC unroll 16
+            for (int j = 0; j < k; j++)
+                if (tableau_a[k][j] != 0)
+                    explicit_add(s, w, h * tableau_a[k][j], ks[j], kw[j]);
+            smooth_evaluate(set, from->t + h * tableau_c[k], s, w, torque, coupled, touches, &e);
+            if (touches)
+                smooth_solve(set, m, &e);
+            out->violated |= smooth_violated(set, m, &e);
+        }
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            ks[k][i] = w[i], kw[k][i] = e.acceleration[i];
+        if (tableau_b[k] != 0) {
+            lanes moved[SCENE_COORDINATES];
+            const lanes part = h * tableau_b[k];
+            for (int i = 0; i < SCENE_COORDINATES; i++)
+                moved[i] = part * w[i];
+            out->report.work +=
+                scene_work(&set->body, part, from->t + h * tableau_c[k], e.torque, moved);
+            explicit_add(out->end.s, out->end.w, part, ks[k], kw[k]);
+            for (int c = 0; c < SCENE_CONTACTS; c++) {
+                out->report.slip[c] +=
+                    choose(m->closed[c], part * lanes_abs(e.u[c][1]), lanes_of(0));
+                for (int a = 0; a < 2; a++)
+                    out->report.impulse[c][a] += part * e.force[c][a];
+            }
+        }
+    }
+    struct motion *const end = &out->end;
+    out->bad = run & LANES_NOT(scene_angles_in_range(end->s));
+    smooth_evaluate(set, from->t + h, end->s, end->w, torque, coupled, touches, &e);
+    if (touches)
+        smooth_solve(set, m, &e);
+    out->violated |= smooth_violated(set, m, &e);
+    out->error = lanes_of(0);
+#ifdef METHOD_EMBEDDED
+    lanes es[SCENE_COORDINATES], ew[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        es[i] = ew[i] = lanes_of(0);
+#pragma GCC unroll 16
+    for (int k = 0; k < METHOD_STAGES; k++)
+        if (tableau_e[k] != 0)
+            explicit_add(es, ew, h * tableau_e[k], ks[k], kw[k]);
+    explicit_add(es, ew, h * tableau_e[METHOD_STAGES], end->w, e.acceleration);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        out->error = lanes_max(lanes_max(lanes_abs(es[i]), lanes_abs(ew[i])), out->error);
+#endif
+    if (touches)
+        smooth_project(set, m, run, end->s, end->w, &e);
+    lanes sum = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        sum += end->s[i] + end->w[i];
+    out->failure = choose(mask_finite(sum), lanes_of(STANCE_FAILURE_ANGLE),
+                          lanes_of(STANCE_FAILURE_NOT_FINITE));
+    out->bad |= run & LANES_NOT(mask_finite(sum));
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        end->gap[c] = e.gap[c];
+        end->approach[c] = e.u[c][0];
+    }
+    end->trig = e.trig;
+    end->t = from->t + h;
+    explicit_report(set, m, &e, &out->report);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        out->report.torque[i] = e.torque[i];
+    out->report.evaluations = lanes_of(METHOD_STAGES);
+}
+
+#endif

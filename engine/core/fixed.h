@@ -1,0 +1,71 @@
+/* fixed.h - advances by fixed implicit steps; a step that does not converge is taken in parts.
+ *
+ * One of the ways to get from one step's end to the next (`advance`, see bundle.h).
+ */
+#ifndef STANCE_CORE_FIXED_H
+#define STANCE_CORE_FIXED_H
+
+#include "step.h"
+
+#define FIXED_MAX_SUBDIVISION 6 /* a step is halved at most this often ... */
+#define FIXED_FREEZE_AFTER 6    /* ... and in the last attempt the geometry freezes here */
+
+struct advance {
+    char nothing; /* to remember between steps */
+};
+
+static void advance_load(struct advance *a, int lane, const stance_case *c)
+{
+    (void)a, (void)lane, (void)c;
+}
+static void advance_free(struct advance *a)
+{
+    (void)a;
+}
+
+/* Lanes that did not converge: the step again in 2, 4, ... equal parts. */
+static mask fixed_subdivide(const struct setting *set, const struct motion *from,
+                            const lanes *torque, lanes h, mask run, bool coupled, struct motion *to,
+                            struct step_report *total)
+{
+    mask failed = run;
+    for (int level = 1; level <= FIXED_MAX_SUBDIVISION && mask_any(failed); level++) {
+        const int parts = 1 << level;
+        const int freeze = level < FIXED_MAX_SUBDIVISION ? STEP_MAX_ITERATIONS : FIXED_FREEZE_AFTER;
+        struct motion here = *from;
+        struct step_report sum;
+        memset(&sum, 0, sizeof sum);
+        sum.iterations = total->iterations;
+        mask good = failed;
+        for (int k = 0; k < parts && mask_any(good); k++) {
+            struct step_report part;
+            struct motion next = here;
+            good &= take_step(set, &here, torque, h / parts, good, coupled, freeze, &next, &part);
+            here = next;
+            report_add(&sum, &part);
+        }
+        sum.subdivided = lanes_of(1);
+        choose_all(good, &here, to, sizeof here);
+        choose_all(good, &sum, total, sizeof sum);
+        total->iterations = choose(failed, sum.iterations, total->iterations);
+        failed &= LANES_NOT(good);
+    }
+    return run & LANES_NOT(failed);
+}
+
+static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
+                           lanes h, mask live, bool coupled, struct motion *now,
+                           struct step_report *report, mask *failed)
+{
+    (void)a;
+    struct motion next = *now;
+    mask ok = take_step(set, now, torque, h, live, coupled, STEP_MAX_ITERATIONS, &next, report);
+    const mask stuck = live & LANES_NOT(ok);
+    if (mask_any(stuck))
+        ok |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, report);
+    *now = next;
+    *failed = live & LANES_NOT(ok);
+    return ok;
+}
+
+#endif

@@ -1,0 +1,247 @@
+/* capturing.c - high order while the contact mode lasts, the implicit law where an event falls.
+ *
+ * Between events the step is Dormand and Prince's explicit Runge-Kutta formula of order 5 with its
+ * embedded formula of order 4 (J. Comp. Appl. Math. 6, 1980), on the switched Lagrange equations of
+ * core/smooth.h: it may be as long as the controller's sample interval. When a stage or the end
+ * leaves the mode, somewhere in the interval there is an event. It is not located. The interval
+ * that holds it is crossed by the implicit law (core/step.h, theta = 1/2) once in one step and once
+ * in two; when the two differ by less than the tolerance the finer is taken, otherwise the interval
+ * is halved: the half without the event is a smooth step again. So an event costs one smooth and
+ * three implicit steps for each bit of accuracy, whatever it is: landing, lift-off, begin or end of
+ * slip, an impact of both feet, a state without accelerations (Painleve), an accumulation of
+ * bounces, which the implicit law takes in its stride once they are smaller than the tolerance.
+ *
+ * One agreement is not enough. The implicit step's error at an impact is made of a part in
+ * proportion to the time before the event and one to the time after it (where the directions of
+ * the impulse are taken). With the event in the first half of the interval the coarse and the fine
+ * solution have the same error of the former kind, in the second half of the latter. So both
+ * kinds of interval must have agreed in a hunt, unless the event is at the very beginning.
+ *
+ * Error of a smooth step: the embedded estimate, per coordinate and rate; of an event: the largest
+ * difference in coordinates and rates. Where the two solutions disagree about which contacts carry
+ * at the end, the event is at the end itself and only its time is uncertain: then the difference of
+ * the rates counts for the length of the interval only.
+ *
+ * Each lane has an interval of its own inside its step, so that what a case does depends on nothing
+ * but the case.
+ */
+#define METHOD_THETA 0.5
+#define METHOD_STAGES 6
+#define METHOD_EMBEDDED
+
+#include "../core/kernel.h"
+/* In this order. */
+#include STANCE_SCENE_LANES
+
+static const double tableau_c[METHOD_STAGES] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1};
+static const double tableau_a[METHOD_STAGES][METHOD_STAGES] = {
+    {0},
+    {1.0 / 5},
+    {3.0 / 40, 9.0 / 40},
+    {44.0 / 45, -56.0 / 15, 32.0 / 9},
+    {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+    {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+};
+static const double tableau_b[METHOD_STAGES] = {35.0 / 384,     0,        500.0 / 1113, 125.0 / 192,
+                                                -2187.0 / 6784, 11.0 / 84};
+static const double tableau_e[METHOD_STAGES + 1] = {
+    71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+
+// clang-format off
+#include "../core/explicit.h"
+// clang-format on
+
+#define CAPTURE_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
+#define CAPTURE_TINY 1e-2        /* s per tolerance: shorter intervals need no second agreement */
+#define CAPTURE_ATTEMPTS 20000   /* in one step, then the case fails */
+#define CAPTURE_GROWTH 64        /* an error this much smaller than the tolerance: twice as long */
+
+/* Where each lane is inside its step. */
+struct advance {
+    lanes tolerance;
+    lanes done; /* s, of the step */
+    lanes part; /* s, next smooth step or, in a hunt, the interval that holds the event; 0: all */
+    lanes hunting;                   /* 1: an event is known to lie within `part` ... */
+    lanes agreed_early, agreed_late; /* ... and both solutions agreed where it lies in the first, in
+                                        the second half of the interval */
+    lanes attempts;                  /* in this step */
+    struct step_report sum;
+};
+
+static void advance_load(struct advance *a, int lane, const stance_case *c)
+{
+    lane_set(&a->tolerance, lane, c->tolerance);
+    lane_set(&a->done, lane, 0);
+    lane_set(&a->part, lane, INFINITY);
+    lane_set(&a->hunting, lane, 0);
+    lane_set(&a->attempts, lane, 0);
+    lanes *const sum = (lanes *)&a->sum;
+    for (size_t i = 0; i < sizeof a->sum / sizeof(lanes); i++)
+        lane_set(&sum[i], lane, 0);
+}
+static void advance_free(struct advance *a)
+{
+    (void)a;
+}
+
+/* The interval of length h by the implicit law, in one step and in two. *next and *report are
+ * those of the two; returns the lanes where both agree to the tolerance. */
+static inline mask capture_implicit(const struct setting *set, const struct motion *now,
+                                    const lanes *torque, lanes h, mask run, bool coupled,
+                                    lanes tolerance, struct motion *next,
+                                    struct step_report *report)
+{
+    struct motion coarse = *now, middle = *now;
+    struct step_report whole, half;
+    memset(report, 0, sizeof *report);
+    *next = *now;
+    mask good = take_step(set, now, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
+    good &=
+        take_step(set, now, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, &middle, &half);
+    report_add(report, &half);
+    *next = middle;
+    good &=
+        take_step(set, &middle, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, next, &half);
+    report_add(report, &half);
+    report->evaluations += whole.evaluations;
+    lanes position = lanes_of(0), rate = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        position = lanes_max(lanes_abs(next->s[i] - coarse.s[i]), position);
+        rate = lanes_max(lanes_abs(next->w[i] - coarse.w[i]), rate);
+    }
+    mask apart = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask one = mask_less(lanes_of(0), whole.impulse[c][0]);
+        const mask two = mask_less(lanes_of(0), report->impulse[c][0]);
+        apart |= (one & LANES_NOT(two)) | (two & LANES_NOT(one));
+    }
+    rate = choose(apart, h * rate, rate);
+    return good & mask_less_equal(lanes_max(rate, position), tolerance);
+}
+
+/* Adds an attempt to the step's report: all of it where it was taken, its cost where it was not. */
+static inline void capture_add(struct advance *a, mask taken, mask tried,
+                               const struct step_report *part)
+{
+    struct step_report sum = a->sum;
+    report_add(&sum, part);
+    choose_all(taken, &sum, &a->sum, sizeof sum);
+    const mask wasted = tried & LANES_NOT(taken);
+    a->sum.evaluations += choose(wasted, part->evaluations, lanes_of(0));
+    a->sum.iterations += choose(wasted, part->iterations, lanes_of(0));
+}
+
+/* Angles stay in the range of sine and cosine during the next two steps. */
+static inline mask capture_in_range(const struct motion *now, lanes h)
+{
+    lanes ahead[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        ahead[i] = now->s[i] + 2 * h * now->w[i];
+    return scene_angles_in_range(ahead);
+}
+
+/* Smooth motion over `length` from *now in the lanes of `try`; *stuck: there is none. Returns the
+ * lanes where *step is defined and inside the mode; its error estimate is still to be judged. */
+static inline mask capture_smooth(const struct setting *set, const struct motion *now,
+                                  const lanes *torque, lanes length, mask try, bool coupled,
+                                  struct explicit_step *step, mask *stuck)
+{
+    struct smooth begin;
+    struct contact_state mode;
+    struct smooth_trouble trouble;
+    const bool touching = smooth_touching(set, now->gap);
+    smooth_evaluate(set, now->t, now->s, now->w, torque, coupled, touching, &begin);
+    smooth_mode(set, &begin, touching, &mode, &trouble);
+    if (touching)
+        smooth_solve(set, &mode, &begin);
+    explicit_take(set, now, torque, length, try, coupled, &mode, &begin, step);
+    *stuck = try & (trouble.impact | trouble.none | trouble.several |
+                    smooth_violated(set, &mode, &begin));
+    return try & LANES_NOT(*stuck | step->violated | step->bad);
+}
+
+/* Decides about the interval of a hunt: `agree`, both implicit solutions do; `early`, its first
+ * half holds the event; `stuck`, the event is at its beginning. */
+static inline mask capture_accept(struct advance *a, mask hunt, mask agree, mask early, mask stuck,
+                                  lanes interval)
+{
+    const lanes none = lanes_of(0), one = lanes_of(1);
+    a->agreed_early = choose(hunt & agree & early, one, a->agreed_early);
+    a->agreed_late = choose(hunt & agree & LANES_NOT(early), one, a->agreed_late);
+    const mask both = mask_less(none, a->agreed_early) & mask_less(none, a->agreed_late);
+    const mask tiny = mask_less_equal(interval, CAPTURE_TINY * a->tolerance);
+    return hunt & agree & (stuck | both | tiny);
+}
+
+/* One attempt in every lane: at a smooth step and, over an interval known to hold an event, at the
+ * implicit law. */
+static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
+                           lanes h, mask live, bool coupled, struct motion *now,
+                           struct step_report *report, mask *failed)
+{
+    const lanes none = lanes_of(0), one = lanes_of(1);
+    const lanes left = h - a->done, interval = lanes_min(a->part, left);
+    const mask hunt = live & mask_less(none, a->hunting);
+    const lanes length = choose(hunt, 0.5 * interval, interval);
+    struct explicit_step step;
+    mask stuck, crossed = MASK_NONE, arrived = MASK_NONE;
+    a->attempts += choose(live, one, none);
+    const mask inside = capture_smooth(set, now, torque, length, live, coupled, &step, &stuck);
+    const mask event = live & LANES_NOT(inside);
+    if (mask_any(hunt)) {
+        struct motion next;
+        struct step_report part;
+        const mask agree =
+            capture_implicit(set, now, torque, interval, hunt, coupled, a->tolerance, &next, &part);
+        crossed = capture_accept(a, hunt, agree, event, stuck, interval);
+        part.events = choose(crossed, one, none);
+        choose_all(crossed, &next, now, sizeof next);
+        capture_add(a, crossed, hunt, &part);
+        arrived = crossed & mask_less_equal(left, interval);
+    }
+    const mask smooth = live & LANES_NOT(crossed);
+    const mask good = inside & smooth & mask_less_equal(step.error, a->tolerance);
+    choose_all(good, &step.end, now, sizeof step.end);
+    capture_add(a, good, live, &step.report);
+    a->done = choose(crossed, a->done + interval, choose(good, a->done + length, a->done));
+
+    /* Next: all of the rest after an event; longer where the error was small; what is left of the
+     * interval with the event, or its first half; half as long where the error was too large. */
+    const mask on = good & LANES_NOT(hunt);
+    const mask easy = mask_less_equal(CAPTURE_GROWTH * step.error, a->tolerance);
+    const lanes longer = lanes_max(choose(easy, 2 * length, length), a->part);
+    lanes next = choose(on, longer, choose(good | event, length, 0.5 * length));
+    next = choose(crossed, lanes_of(INFINITY), next);
+    arrived |= on & mask_less_equal(left, length);
+    const mask hunts = smooth & (event | (good & hunt)), begins = hunts & LANES_NOT(hunt);
+    a->part = choose(live, next, a->part);
+    a->hunting = choose(live, choose(hunts, one, none), a->hunting);
+    a->agreed_early = choose(begins, none, a->agreed_early);
+    a->agreed_late = choose(begins, none, a->agreed_late);
+    *failed = smooth & LANES_NOT(good) &
+              (mask_less(next, CAPTURE_SMALLEST * h) |
+               mask_less(lanes_of(CAPTURE_ATTEMPTS), a->attempts));
+    *report = a->sum;
+    report->failure = choose(capture_in_range(now, h), lanes_of(STANCE_FAILURE_TOLERANCE), none);
+    struct step_report fresh;
+    memset(&fresh, 0, sizeof fresh);
+    choose_all(arrived, &fresh, &a->sum, sizeof fresh);
+    a->done = choose(arrived, none, a->done);
+    a->attempts = choose(arrived, none, a->attempts);
+    return arrived;
+}
+
+// clang-format off
+#include "../core/bundle.h"
+// clang-format on
+
+#if STANCE_LANES == 1
+const stance_method stance_method_capturing = {
+    .name = "capturing",
+    .text = "order 5 between events; the implicit law, refined to tolerance, across them",
+    .order_smooth = 5,
+    .tolerance = 1e-8,
+};
+#endif
+
+STANCE_KERNEL(capturing);

@@ -1,0 +1,127 @@
+/* lagrange.c - the explicit method that the paper compares with: its sections 2.1 and 2.3,
+ * figure 7.
+ *
+ * The switched Lagrange equations (core/smooth.h) are integrated by fixed steps of the classical
+ * Runge-Kutta formula of order 4, in the contact mode that holds at the beginning of the step. When
+ * the mode does not last to the end - a foot would be below the ground, a force pull, friction
+ * leave its cone, a slip turn around - the step is halved, and halved again, until the time of the
+ * switch is bracketed to LAGRANGE_BRACKET; then the state is initialised anew: feet are put onto
+ * the ground, the impact law of contact.h gives the velocities, the next mode follows from the
+ * state. The rest of the step is one step, unless another switch is found in it.
+ *
+ * Nothing else shortens a step: stiff servo gains need h |lambda| < 2.785, as for every explicit
+ * formula of this kind. Switches that accumulate (Zeno) end the case with a message, as does a
+ * state whose accelerations do not exist (Painleve). `events` and `evaluations` say what hunting
+ * for switches cost.
+ */
+#define METHOD_THETA 0.5 /* read by core/step.h, whose implicit step is not taken here */
+#define METHOD_STAGES 4
+
+#include "../core/kernel.h"
+/* In this order. */
+#include STANCE_SCENE_LANES
+
+static const double tableau_c[METHOD_STAGES] = {0, 0.5, 0.5, 1};
+static const double tableau_a[METHOD_STAGES][METHOD_STAGES] = {{0}, {0.5}, {0, 0.5}, {0, 0, 1}};
+static const double tableau_b[METHOD_STAGES] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+
+// clang-format off
+#include "../core/explicit.h"
+// clang-format on
+
+#define LAGRANGE_BRACKET 1e-12 /* s: a switch is known this well */
+#define LAGRANGE_EVENTS 200    /* in one step, then the case fails */
+
+/* Where each lane is inside its step. */
+struct advance {
+    lanes done;   /* s, of the step */
+    lanes part;   /* s, interval that holds a switch; INFINITY: none is known */
+    lanes events; /* in this step */
+    struct step_report sum;
+};
+
+static void advance_load(struct advance *a, int lane, const stance_case *c)
+{
+    (void)c;
+    lane_set(&a->done, lane, 0);
+    lane_set(&a->part, lane, INFINITY);
+    lane_set(&a->events, lane, 0);
+    lanes *const sum = (lanes *)&a->sum;
+    for (size_t i = 0; i < sizeof a->sum / sizeof(lanes); i++)
+        lane_set(&sum[i], lane, 0);
+}
+static void advance_free(struct advance *a)
+{
+    (void)a;
+}
+
+/* One attempt in every lane. */
+static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
+                           lanes h, mask live, bool coupled, struct motion *now,
+                           struct step_report *report, mask *failed)
+{
+    const lanes none = lanes_of(0), one = lanes_of(1);
+    const lanes left = h - a->done, interval = lanes_min(a->part, left);
+    const mask hunt = live & mask_less(a->part, lanes_of(INFINITY));
+    const mask found = hunt & mask_less_equal(interval, lanes_of(LAGRANGE_BRACKET));
+    const lanes length = choose(hunt & LANES_NOT(found), 0.5 * interval, interval);
+    struct smooth begin;
+    struct contact_state mode;
+    struct smooth_trouble trouble;
+    struct explicit_step step;
+    const bool touching = smooth_touching(set, now->gap);
+    smooth_evaluate(set, now->t, now->s, now->w, torque, coupled, touching, &begin);
+    smooth_mode(set, &begin, touching, &mode, &trouble);
+    if (touching)
+        smooth_solve(set, &mode, &begin);
+    explicit_take(set, now, torque, length, live, coupled, &mode, &begin, &step);
+
+    const mask painleve = live & (trouble.none | trouble.several) & LANES_NOT(trouble.impact);
+    const mask able = live & LANES_NOT(painleve | trouble.impact | step.bad);
+    const mask take = able & (LANES_NOT(step.violated) | found);
+    const mask switched = (take & found) | (live & trouble.impact);
+    struct step_report sum = a->sum;
+    report_add(&sum, &step.report);
+    choose_all(take, &sum, &a->sum, sizeof sum);
+    choose_all(take, &step.end, now, sizeof step.end);
+    a->sum.evaluations += choose(live & LANES_NOT(take), step.report.evaluations, none);
+    mask unsolved = MASK_NONE;
+    if (mask_any(switched)) {
+        unsolved = switched & LANES_NOT(smooth_impact(set, switched, now, &a->sum));
+        a->sum.events += choose(switched, one, none);
+        a->events += choose(switched, one, none);
+    }
+
+    const mask hunts = able & LANES_NOT(found) & (step.violated | hunt);
+    a->done = choose(take, a->done + length, a->done);
+    a->part = choose(live, choose(hunts, length, lanes_of(INFINITY)), a->part);
+    const mask arrived = take & mask_less_equal(left, length);
+    const mask zeno = mask_less(lanes_of(LAGRANGE_EVENTS), a->events);
+    *failed = live & (painleve | unsolved | step.bad | zeno) & LANES_NOT(arrived);
+
+    *report = a->sum;
+    report->failure = choose(painleve, lanes_of(STANCE_FAILURE_PAINLEVE), none);
+    report->failure = choose(unsolved, lanes_of(STANCE_FAILURE_CONTACT), report->failure);
+    report->failure = choose(zeno, lanes_of(STANCE_FAILURE_EVENTS), report->failure);
+    report->failure = choose(step.bad, step.failure, report->failure);
+    struct step_report fresh;
+    memset(&fresh, 0, sizeof fresh);
+    choose_all(arrived, &fresh, &a->sum, sizeof fresh);
+    a->done = choose(arrived, none, a->done);
+    a->events = choose(arrived, none, a->events);
+    return arrived;
+}
+
+// clang-format off
+#include "../core/bundle.h"
+// clang-format on
+
+#if STANCE_LANES == 1
+const stance_method stance_method_lagrange = {
+    .name = "lagrange",
+    .text = "switched Lagrange equations, Runge-Kutta of order 4, switches bracketed by halving",
+    .order_smooth = 4,
+};
+#endif
+
+STANCE_KERNEL(lagrange);
