@@ -100,6 +100,10 @@ $(BUILD)/analysis/%.o: analysis/%.c Makefile
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/build_info.o: $(BUILD)/revision
+# The table of kernels is made anew when the list of what it holds changes.
+$(BUILD)/engine/kernels.o: $(BUILD)/isas
+$(BUILD)/isas: FORCE
+	@mkdir -p $(@D); echo '$(ISAS)' | cmp -s - $@ || echo '$(ISAS)' > $@
 $(BUILD)/revision: FORCE
 	@mkdir -p $(@D); echo '$(REVISION)' | cmp -s - $@ || echo '$(REVISION)' > $@
 

@@ -25,7 +25,9 @@
 #include "step.h"
 
 #define SMOOTH_REST 1e-10 /* m/s: contact velocities below it are zero */
-#define SMOOTH_GAP 1e-12  /* m: penetration that does not count */
+#define SMOOTH_START                                                                               \
+    1e-12                /* of the accelerations: a slip that accelerates by less does not begin */
+#define SMOOTH_GAP 1e-12 /* m: penetration that does not count */
 
 struct contact_state {
     mask closed[SCENE_CONTACTS];
@@ -178,6 +180,24 @@ static inline bool smooth_touching(const struct setting *set, const lanes *gap)
     return mask_any(touching);
 }
 
+/* Lanes where a contact that should begin to slip would be pulled the other way: sticking is
+ * impossible and sliding too. */
+static inline mask smooth_jammed(const struct setting *set, const struct smooth *e,
+                                 const struct contact_state *m, const mask *starting)
+{
+    lanes r[2][2];
+    mask jammed = MASK_NONE;
+    smooth_forces(m, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, set->friction, r);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes along = e->free[c][1];
+        for (int k = 0; k < SCENE_CONTACTS; k++)
+            along += e->D[c][k][1][0] * r[k][0] + e->D[c][k][1][1] * r[k][1];
+        jammed |= starting[c] &
+                  (mask_less(along * m->slide[c], lanes_of(0)) | mask_less(r[c][0], lanes_of(0)));
+    }
+    return jammed;
+}
+
 /* The mode that follows from the state that *e was evaluated at. */
 static inline void smooth_mode(const struct setting *set, const struct smooth *e, bool touching,
                                struct contact_state *m, struct smooth_trouble *trouble)
@@ -201,7 +221,7 @@ static inline void smooth_mode(const struct setting *set, const struct smooth *e
     if (!touching)
         return;
     lanes r[2][2];
-    mask ambiguous, unsolved;
+    mask starting[SCENE_CONTACTS], ambiguous, unsolved, begins = MASK_NONE;
     solve_contacts(set, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, sliding, part, r,
                    &ambiguous, &unsolved);
     trouble->none = any & unsolved;
@@ -213,15 +233,24 @@ static inline void smooth_mode(const struct setting *set, const struct smooth *e
         lanes scale = lanes_max(lanes_abs(e->free[c][0]), one);
         scale = lanes_max(lanes_abs(e->free[c][1]), scale);
         m->closed[c] = part[c] & mask_less(none, r[c][0]);
-        const mask starts = mask_less(16 * CONTACT_TOLERANCE * scale, lanes_abs(along)) |
+        /* contact_solve clips to the cone: on its edge the slip begins, against the force, unless
+         * another contact prevents it. */
+        const mask edge = mask_less_equal(set->friction * r[c][0], lanes_abs(r[c][1]));
+        const mask starts = (edge & mask_less(SMOOTH_START * scale, lanes_abs(along))) |
                             mask_less_equal(set->friction, none);
-        const lanes direction = choose(mask_less(along, none), -one, one);
+        const lanes direction = choose(mask_less(none, r[c][1]), -one, one);
+        starting[c] = m->closed[c] & starts & mask_less_equal(lanes_abs(sliding[c]), none) &
+                      mask_less(none, set->friction);
+        begins |= starting[c];
         m->slide[c] = choose(mask_less(none, lanes_abs(sliding[c])), sliding[c],
                              choose(starts, direction, none));
     }
+    if (mask_any(begins))
+        trouble->none |= smooth_jammed(set, e, m, starting);
 }
 
-/* Lanes where the state that *e was solved at is outside the mode. */
+/* Lanes where the state that *e was solved at is outside the mode. A slip may be backward by what
+ * counts as zero. */
 static inline mask smooth_violated(const struct setting *set, const struct contact_state *m,
                                    const struct smooth *e)
 {
@@ -317,8 +346,10 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
         part[c] = where & mask_less(none, set->may_touch[c]) &
                   mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
     smooth_project_position(set, part, now->s, &e);
+    mask impact = MASK_NONE; /* else only rounding is left to remove */
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         scene_contact_velocity(&set->body, &e.trig, c, now->w, e.u[c]);
+        impact |= part[c] & mask_less(e.u[c][0], lanes_of(-SMOOTH_REST));
         uf[c][0] = e.u[c][0] + set->restitution * lanes_min(e.u[c][0], none);
         uf[c][1] = e.u[c][1];
     }
@@ -342,7 +373,7 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
         after[0] += set->restitution * lanes_min(e.u[c][0], none);
         struct step_report laws = *report;
         report_residuals(&laws, part[c], set->friction, r[c], after);
-        choose_all(where, &laws, report, sizeof laws);
+        choose_all(impact, &laws, report, sizeof laws);
     }
     for (int a = 0; a < SCENE_ANGLES; a++) {
         now->trig.sine[a] = choose(where, e.trig.sine[a], now->trig.sine[a]);

@@ -180,7 +180,9 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
                            struct step_report *report, mask *failed)
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
-    const lanes left = h - a->done, interval = lanes_min(a->part, left);
+    const lanes left = h - a->done;
+    /* Halves add up to the step but for rounding: what is left of it then is no interval. */
+    const lanes interval = choose(mask_less(a->part, (1 - 1e-9) * left), a->part, left);
     const mask hunt = live & mask_less(none, a->hunting);
     const lanes length = choose(hunt, 0.5 * interval, interval);
     struct explicit_step step;

@@ -61,7 +61,9 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
                            struct step_report *report, mask *failed)
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
-    const lanes left = h - a->done, interval = lanes_min(a->part, left);
+    const lanes left = h - a->done;
+    /* Halves add up to the step but for rounding: what is left of it then is no interval. */
+    const lanes interval = choose(mask_less(a->part, (1 - 1e-9) * left), a->part, left);
     const mask hunt = live & mask_less(a->part, lanes_of(INFINITY));
     const mask found = hunt & mask_less_equal(interval, lanes_of(LAGRANGE_BRACKET));
     const lanes length = choose(hunt & LANES_NOT(found), 0.5 * interval, interval);
@@ -80,6 +82,10 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const mask able = live & LANES_NOT(painleve | trouble.impact | step.bad);
     const mask take = able & (LANES_NOT(step.violated) | found);
     const mask switched = (take & found) | (live & trouble.impact);
+    /* At a bracket's end the forces are those of the mode that has just ended. */
+    step.report.signorini = choose(found, none, step.report.signorini);
+    step.report.coulomb = choose(found, none, step.report.coulomb);
+    step.report.dissipation = choose(found, none, step.report.dissipation);
     struct step_report sum = a->sum;
     report_add(&sum, &step.report);
     choose_all(take, &sum, &a->sum, sizeof sum);
