@@ -16,7 +16,7 @@ STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -fno-trappin
 # ---- libraries: found with pkg-config and mpicc; MPI=0 builds for one rank with serial HDF5 ------
 PKG_CONFIG ?= pkg-config
 PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
-                libslicot-dev librandom123-dev libjansson-dev gnuplot-nox fonts-dejavu-core
+                libslicot-dev libsundials-dev librandom123-dev libjansson-dev gnuplot-nox fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
 PACKAGES_LINT = clang-format clang-tidy cppcheck
 BUILD_TOOLS   = gcc make pkg-config
@@ -31,7 +31,8 @@ endif
 LIBRARY_CFLAGS := $(shell $(PKG_CONFIG) --cflags $(HDF5_PACKAGE) yaml-0.1 jansson lapacke 2>/dev/null)
 LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson lapacke 2>/dev/null)
 PROGRAM_CFLAGS  = $(MPI_CFLAGS) $(LIBRARY_CFLAGS)
-LIBS            = $(LIBRARIES) -lhdf5_hl $(MPI_LIBS) -lslicot -llapack -lblas -lm
+LIBS            = $(LIBRARIES) -lhdf5_hl $(MPI_LIBS) -lslicot -llapack -lblas \
+                  -lsundials_arkode -lsundials_nvecserial -lm
 
 # `make V=1` shows whole commands.
 ifneq ($(V),1)
@@ -41,8 +42,9 @@ endif
 ALLFLAGS = $(STRICT) $(WARNINGS) $(SANITIZE)
 
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
-SCENES  = biped
+SCENES  = ball block rod biped
 METHODS = implicit midpoint capturing lagrange
+SCALAR_METHODS = event_driven
 MACHINE := $(shell uname -m)
 ISAS_x86_64  = scalar sse2 avx2 avx512
 ISAS_aarch64 = scalar neon
@@ -53,7 +55,8 @@ isa_flags_neon   = -DSTANCE_LANES=2
 isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2
 isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl
 
-kernels := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i))))
+kernels := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i)))) \
+           $(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
 kernel_objects := $(kernels:%=$(BUILD)/kernel/%.o)
 engine_sources := $(wildcard engine/*.c engine/control/*.c engine/scenes/*.c)
 engine_objects := $(engine_sources:%.c=$(BUILD)/%.o) $(kernel_objects)
@@ -82,11 +85,12 @@ $(BUILD)/libstance.a: $(engine_objects)
 define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
-	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) \
+	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES))-scalar,$(1)-$(3)),-DSTANCE_DESCRIBE_METHOD) \
 	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
 $(eval $(call kernel_rule,$(s),$(m),$(i))))))
+$(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(eval $(call kernel_rule,$(s),$(m),scalar))))
 
 $(BUILD)/engine/%.o: engine/%.c Makefile
 	@mkdir -p $(@D)
@@ -103,7 +107,7 @@ $(BUILD)/runner/build_info.o: $(BUILD)/revision
 # The table of kernels is made anew when the list of what it holds changes.
 $(BUILD)/engine/kernels.o: $(BUILD)/isas
 $(BUILD)/isas: FORCE
-	@mkdir -p $(@D); echo '$(ISAS)' | cmp -s - $@ || echo '$(ISAS)' > $@
+	@mkdir -p $(@D); echo '$(SCENES) $(METHODS) $(ISAS)' | cmp -s - $@ || echo '$(SCENES) $(METHODS) $(ISAS)' > $@
 $(BUILD)/revision: FORCE
 	@mkdir -p $(@D); echo '$(REVISION)' | cmp -s - $@ || echo '$(REVISION)' > $@
 

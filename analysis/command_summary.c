@@ -181,11 +181,14 @@ static size_t spread(size_t k, size_t rows, size_t count)
     return rows >= count ? k : rows < 2 ? 0 : k * (count - 1) / (rows - 1);
 }
 
-static void print_parameter_head(const struct results *r, int axis, const int *offsets, int shown)
+static void print_parameter_head(const struct summary *summary, const struct results *r, int axis,
+                                 const int *offsets, int shown)
 {
     const struct results_axis *along = &r->axis[axis];
-    printf("\nStabilised against %s%s%s%s%s%s\n", along->name, along->unit[0] ? " (" : "",
-           along->unit, along->unit[0] ? ")" : "", along->text[0] ? ": " : "", along->text);
+    printf("\n%s against %s%s%s%s%s%s\n",
+           summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised", along->name,
+           along->unit[0] ? " (" : "", along->unit, along->unit[0] ? ")" : "",
+           along->text[0] ? ": " : "", along->text);
     printf("  %14s %10s %10s   %-*s", "value", "done", "share", shown ? INTERVAL : 0,
            "95 % interval");
     for (int k = 0; k < shown; k++) {
@@ -200,14 +203,15 @@ static void print_parameter_row(const struct summary *summary, const struct resu
     const struct statistics_counts *counts = &summary->by_value[axis][i];
     char text[128];
     double low, high;
-    statistics_wilson(counts->kind[RESULTS_STABILISED], counts->done, &low, &high);
+    statistics_wilson(counts->kind[summary->judged], counts->done, &low, &high);
     results_value_text(&r->axis[axis], i, false, text, sizeof text);
     printf("  %14s %10llu", text, (unsigned long long)counts->done);
     if (counts->done == 0) {
         printf(" %10s   %-*s", "-", shown ? INTERVAL : 0, "none done");
     } else {
         snprintf(text, sizeof text, "%.3f ... %.3f %%", 100 * low, 100 * high);
-        printf(" %8.3f %%   %-*s", 100 * summary_share(counts), shown ? INTERVAL : 0, text);
+        printf(" %8.3f %%   %-*s", 100 * summary_share(summary, counts), shown ? INTERVAL : 0,
+               text);
     }
     for (int k = 0; k < shown; k++) {
         extent_text(r, offsets[k], axis, i, text, sizeof text);
@@ -229,7 +233,7 @@ static void print_parameter(const struct summary *summary, const struct results 
             offsets[shown++] = a;
         }
     }
-    print_parameter_head(r, axis, offsets, shown);
+    print_parameter_head(summary, r, axis, offsets, shown);
     for (size_t k = 0; k < rows; k++) {
         print_parameter_row(summary, r, axis, spread(k, rows, along->count), offsets, shown);
     }
@@ -241,12 +245,13 @@ static void print_parameter(const struct summary *summary, const struct results 
              "it reaches\n  the end of the axis)");
     }
     size_t i = summary->steepest[axis];
-    if (along->count > 1 &&
-        fabs(summary_share(&counts[i + 1]) - summary_share(&counts[i])) > 0) { /* false for NAN */
+    if (along->count > 1 && fabs(summary_share(summary, &counts[i + 1]) -
+                                 summary_share(summary, &counts[i])) > 0) { /* false for NAN */
         results_value_text(along, i, true, from, sizeof from);
         results_value_text(along, i + 1, true, to, sizeof to);
         printf("  changes most between %s (%.3f %%) and %s (%.3f %%)\n", from,
-               100 * summary_share(&counts[i]), to, 100 * summary_share(&counts[i + 1]));
+               100 * summary_share(summary, &counts[i]), to,
+               100 * summary_share(summary, &counts[i + 1]));
     }
 }
 
@@ -280,7 +285,7 @@ static void print_numbers(const struct summary *summary)
 {
     char name[64];
     bool first = true;
-    for (int k = 0; k < SUMMARY_NUMBER_COUNT; k++) {
+    for (int k = 0; k < SUMMARY_FIRST_RESIDUAL; k++) {
         const struct summary_numbers *row = &summary->numbers[k];
         if (!row->stored || row->numbers.n == 0) {
             continue;
@@ -298,16 +303,42 @@ static void print_numbers(const struct summary *summary)
     }
 }
 
+/* The largest of all cases, in a line. */
+static void print_residuals(const struct summary *summary)
+{
+    static const char *const names[] = {"Signorini", "Coulomb", "dissipation", "energy gained"};
+    const char *separator = "\nLargest residuals: ";
+    for (int k = SUMMARY_FIRST_RESIDUAL; k < SUMMARY_NUMBER_COUNT; k++) {
+        const struct summary_numbers *row = &summary->numbers[k];
+        if (row->stored && row->numbers.n > 0) {
+            printf("%s%s %.3g%s%s", separator, names[k - SUMMARY_FIRST_RESIDUAL], row->numbers.high,
+                   row->unit[0] ? " " : "", row->unit);
+            separator = ", ";
+        }
+    }
+    if (separator[0] == ',') {
+        putchar('\n');
+    }
+}
+
 static void print_cost(const struct summary *summary)
 {
-    const struct summary_count *steps = &summary->steps, *iterations = &summary->iterations;
+    const struct summary_count *steps = &summary->steps, *iterations = &summary->iterations,
+                               *evaluations = &summary->evaluations;
     puts("\nCost");
     if (steps->stored) {
         printf("  %.6g time steps", steps->sum);
         if (iterations->stored && steps->sum > 0) {
             printf(", %.4g Newton iterations per step", iterations->sum / steps->sum);
         }
+        if (evaluations->stored && steps->sum > 0 && evaluations->sum != iterations->sum) {
+            printf(", %.4g evaluations per step", evaluations->sum / steps->sum);
+        }
         putchar('\n');
+    }
+    if (summary->events.sum > 0) {
+        printf("  events, changes of contact mode: %.6g, in %llu of the cases\n",
+               summary->events.sum, (unsigned long long)summary->events.cases);
     }
     if (summary->subdivided.stored) {
         printf("  steps that had to be subdivided: %.6g, in %llu of the cases\n",
@@ -372,7 +403,7 @@ static void print_case(const struct summary *summary, const struct results *r)
         putchar('\n');
     }
     puts("\nNumbers");
-    for (int k = 0; k < SUMMARY_NUMBER_COUNT; k++) {
+    for (int k = 0; k < SUMMARY_FIRST_RESIDUAL; k++) {
         const struct summary_numbers *row = &summary->numbers[k];
         if (k != SUMMARY_settle_time && k != SUMMARY_fall_time &&
             results_numbers(r, row->name, &time, 1) == 1 && !isnan(time)) {
@@ -390,6 +421,7 @@ static void print_text(const struct summary *summary, const struct results *r)
     print_fields(summary);
     if (r->single) {
         print_case(summary, r);
+        print_residuals(summary);
         print_cost(summary);
         return;
     }
@@ -407,6 +439,7 @@ static void print_text(const struct summary *summary, const struct results *r)
         print_changes(r);
     }
     print_numbers(summary);
+    print_residuals(summary);
     print_cost(summary);
 }
 
@@ -490,13 +523,16 @@ const struct command command_summary = {
     "    outcomes     {name: {count, share, low, high}} of the cases done\n"
     "    extents      [{path, unit, stabilised, low, high, low_at_end, high_at_end,\n"
     "                 low_unknown, high_unknown, at: {path: value}}]\n"
-    "    parameters   [{path, unit, values: [{value, done, failed, pending, stabilised, share,\n"
-    "                 low, high, extents: {path: [low, high]}}], steepest: {from, to}}]\n"
+    "    parameters   [{path, unit, share_of, values: [{value, done, failed, pending,\n"
+    "                 stabilised, rested, share, low, high, extents: {path: [low, high]}}],\n"
+    "                 steepest: {from, to}}]; share_of: stabilised, or without a controller\n"
+    "                 that has a target rested\n"
     "    changes      [{from, to, before, after}] along the axis of a sweep with one axis\n"
     "    numbers      {answer: {of, unit, count, smallest, median, q90, q99, largest}}\n"
-    "    cost         steps, iterations, iterations_per_step, subdivided_steps,\n"
-    "                 subdivided_cases, ambiguous_steps, ambiguous_cases, wall_time (s, of the\n"
-    "                 slowest rank), total_time (s, all ranks), cases_per_second\n"
+    "    cost         steps, iterations, iterations_per_step, evaluations, events, events_cases,\n"
+    "                 subdivided_steps, subdivided_cases, ambiguous_steps, ambiguous_cases,\n"
+    "                 wall_time (s, of the slowest rank), total_time (s, all ranks),\n"
+    "                 cases_per_second\n"
     "    case         of a file of one case: index, outcome, failure, end_time, settle_time,\n"
     "                 fall_time, final_state {name: value}\n",
 };

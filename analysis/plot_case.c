@@ -361,7 +361,8 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
     struct page page = {.c = c};
     struct range range[2];
     char name[32], text[300], what[80];
-    static const char *const components[] = {"Normal force, up", "Tangential force, forward"};
+    static const char *const components[] = {"Normal force, out of the ground",
+                                             "Tangential force, along +x"};
 
     if (!begin_page(&page, "Forces of the ground on the contacts", 2, 220, message)) {
         return false;

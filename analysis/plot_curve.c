@@ -1,5 +1,5 @@
-/* plot_curve.c - curves against one axis: what every case of a line did, or how the share of
- * stabilised cases and the extent of their set depend on a parameter. */
+/* plot_curve.c - curves against one axis: what every case of a line did, or how the shares of
+ * stabilised and rested cases and the extent of the stabilised set depend on a parameter. */
 #include "plot.h"
 #include "statistics.h"
 
@@ -256,31 +256,53 @@ static double put_share_data(struct page *page, const struct sample *samples,
     return highest;
 }
 
-static void put_shares(struct page *page, const struct sample *samples,
-                       const struct statistics_counts *counts, bool rested, bool last)
+/* Kinds whose shares are drawn: of stabilised and rested those that there are, or the first. */
+enum { SHARES = 2 };
+
+static int choose_shares(const struct statistics_counts *counts, size_t n, int kinds[SHARES])
 {
-    char stabilised[32], other[32] = "";
-    double highest = put_share_data(page, samples, counts, RESULTS_STABILISED, stabilised);
-    if (rested) {
-        highest = fmax(highest, put_share_data(page, samples, counts, RESULTS_RESTED, other));
+    static const int wanted[SHARES] = {RESULTS_STABILISED, RESULTS_RESTED};
+    int found = 0;
+    for (int k = 0; k < SHARES; k++) {
+        bool any = false;
+        for (size_t i = 0; i < n && !any; i++) {
+            any = counts[i].kind[wanted[k]] > 0;
+        }
+        if (any) {
+            kinds[found++] = wanted[k];
+        }
+    }
+    if (found == 0) {
+        kinds[found++] = wanted[0];
+    }
+    return found;
+}
+
+static void put_shares(struct page *page, const struct sample *samples,
+                       const struct statistics_counts *counts, const int *kinds, int shares,
+                       bool last)
+{
+    char name[SHARES][32];
+    double highest = 0;
+    for (int k = 0; k < shares; k++) {
+        highest = fmax(highest, put_share_data(page, samples, counts, kinds[k], name[k]));
     }
     begin_panel(page, SHARE_HEIGHT, 0, highest > 0 ? fmin(100, 1.08 * highest) : 100, last);
-    const char *names[] = {stabilised, other};
-    const char *colours[] = {plot_colours[RESULTS_STABILISED], plot_colours[RESULTS_RESTED]};
     bool words = page->along->axis->word != NULL;
     fputs("plot ", page->g.script);
-    for (int k = 0; k < 1 + rested; k++) {
+    for (int k = 0; k < shares; k++) {
+        const char *colour = plot_colours[kinds[k]];
         const char *shape =
             words ? "'%s' using 1:2:3:4 with yerrorbars lc rgb '%s' pt 7 ps 1.1 lw 1.6"
                     " notitle"
                   : "'%s' using 1:3:4 with filledcurves lc rgb '%s' fillstyle"
                     " transparent solid 0.22 notitle";
         fputs(k ? ", " : "", page->g.script);
-        fprintf(page->g.script, shape, names[k], colours[k]);
+        fprintf(page->g.script, shape, name[k], colour);
         if (!words) {
             fprintf(page->g.script,
                     ", '%s' using 1:2 with linespoints lc rgb '%s' lw 2 pt 7 ps 0.7 notitle",
-                    names[k], colours[k]);
+                    name[k], colour);
         }
     }
     fputc('\n', page->g.script);
@@ -340,7 +362,8 @@ static int choose_extents(const struct results *r, int *axes)
     return count;
 }
 
-static void label_share_page(struct page *page, const int *extents, int extent_count, bool rested)
+static void label_share_page(struct page *page, const int *extents, int extent_count,
+                             const int *kinds, int shares)
 {
     const struct results *r = page->plot->r;
     double x = LEFT + PLOT_WIDTH + 20, y = page->top + 10;
@@ -348,12 +371,11 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
 
     gnuplot_label(&page->g, 24, page->top + SHARE_HEIGHT / 2.0, "share of the cases done (%)",
                   "center", 12, true);
-    gnuplot_legend(&page->g, x, y, plot_colours[RESULTS_STABILISED], "stabilised");
-    if (rested) {
+    for (int k = 0; k < shares; k++) {
+        gnuplot_legend(&page->g, x, y, plot_colours[kinds[k]], results_kind_names[kinds[k]]);
         y += 24;
-        gnuplot_legend(&page->g, x, y, plot_colours[RESULTS_RESTED], "rested");
     }
-    gnuplot_label(&page->g, x, y + 26,
+    gnuplot_label(&page->g, x, y + 2,
                   page->along->axis->word ? "bars: 95 % interval" : "band: 95 % interval", "left",
                   11, false);
     y = page->top + SHARE_HEIGHT + GAP;
@@ -377,20 +399,20 @@ static bool draw_share_page(const struct plot *plot, const struct plot_axis *alo
     struct page page = {.plot = plot, .along = along};
     char stem[512], what[160];
     int extents[MAX_EXTENTS], extent_count = choose_extents(plot->r, extents);
-    bool rested = false;
+    int kinds[SHARES], shares = choose_shares(counts, along->axis->count, kinds);
 
-    for (size_t i = 0; i < along->axis->count; i++) {
-        rested = rested || counts[i].kind[RESULTS_RESTED] > 0;
-    }
-    snprintf(what, sizeof what, "Stabilised cases against %s, %llu cases per value",
+    snprintf(what, sizeof what, "%s cases against %s, %llu cases per value",
+             shares > 1                   ? "Stabilised and rested"
+             : kinds[0] == RESULTS_RESTED ? "Rested"
+                                          : "Stabilised",
              along->axis->name,
              (unsigned long long)(plot->r->cases / (along->axis->count ? along->axis->count : 1)));
     if (!begin_page(&page, what, SHARE_HEIGHT + extent_count * (EXTENT_HEIGHT + GAP), message)) {
         return false;
     }
-    label_share_page(&page, extents, extent_count, rested);
+    label_share_page(&page, extents, extent_count, kinds, shares);
     gnuplot_decorate(&page.g);
-    put_shares(&page, samples, counts, rested, extent_count == 0);
+    put_shares(&page, samples, counts, kinds, shares, extent_count == 0);
     for (int k = 0; k < extent_count; k++) {
         put_extent(&page, samples, extents[k], k == extent_count - 1);
     }

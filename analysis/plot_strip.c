@@ -32,7 +32,7 @@ struct strip {
     double spacing, low, high; /* m: between figures; heights shown */
     double scale;              /* px per m */
     double row_height;         /* px, figures alone */
-    bool follows;              /* places move with the robot */
+    bool follows;              /* places move with the figures */
 };
 
 /* ---- figures ------------------------------------------------------------------------------ */
@@ -56,7 +56,7 @@ static void make_figure(const struct plot_case *c, size_t row, struct figure *fi
     }
 }
 
-/* Places stay put unless the robot travels further than it is tall. */
+/* Places stay put unless the figures travel further than they are tall. */
 static void centre_figures(struct strip *strip)
 {
     double low = INFINITY, high = -INFINITY;
@@ -130,7 +130,22 @@ static double across(const struct strip *strip, int i, double x)
     return (i % PER_ROW + 0.5) * strip->spacing + x - strip->figure[i].centre;
 }
 
-/* Segments of one row that end in contact `group` (the body: in none); each a line of its own. */
+/* A line that ends where it begins is an outline: its corners are no joints, its sides belong to
+ * the body. */
+static bool is_outline(const struct figure *figure)
+{
+    const double *first = figure->point[0], *last = figure->point[figure->points - 1];
+    return figure->points > 1 && hypot(first[0] - last[0], first[1] - last[1]) < 1e-9;
+}
+
+/* Contact whose colour a segment has, or -1: the body's, as between two contacts. */
+static int contact_of_segment(const struct strip *strip, const struct figure *figure, int p)
+{
+    int first = contact_at(strip, figure, p), second = contact_at(strip, figure, p + 1);
+    return is_outline(figure) || (first >= 0 && second >= 0) ? -1 : first >= 0 ? first : second;
+}
+
+/* Segments of one row in the colour of contact `group` (last: the body); each a line of its own. */
 static void put_segments(struct gnuplot *g, const struct strip *strip, int row, int group,
                          char name[32])
 {
@@ -139,9 +154,8 @@ static void put_segments(struct gnuplot *g, const struct strip *strip, int row, 
     for (int i = row * PER_ROW; i < strip->count && i < (row + 1) * PER_ROW; i++) {
         const struct figure *figure = &strip->figure[i];
         for (int p = 0; p + 1 < figure->points; p++) {
-            int first = contact_at(strip, figure, p), second = contact_at(strip, figure, p + 1);
-            int belongs = first >= 0 ? first : second >= 0 ? second : contacts;
-            if (belongs == group) {
+            int contact = contact_of_segment(strip, figure, p);
+            if ((contact < 0 ? contacts : contact) == group) {
                 for (int end = p; end <= p + 1; end++) {
                     fprintf(data, "%.10g %.10g\n", across(strip, i, figure->point[end][0]),
                             figure->point[end][1]);
@@ -154,7 +168,7 @@ static void put_segments(struct gnuplot *g, const struct strip *strip, int row, 
     gnuplot_close_data(g, data);
 }
 
-/* Contact points of one row (the body: the other points). */
+/* Contact points of one row (the body: the other points, but for an outline's corners). */
 static void put_points(struct gnuplot *g, const struct strip *strip, int row, int group,
                        char name[32])
 {
@@ -164,7 +178,7 @@ static void put_points(struct gnuplot *g, const struct strip *strip, int row, in
         const struct figure *figure = &strip->figure[i];
         for (int p = 0; p < figure->points; p++) {
             int contact = contact_at(strip, figure, p);
-            if ((contact < 0 ? contacts : contact) == group) {
+            if (contact == group || (contact < 0 && group == contacts && !is_outline(figure))) {
                 fprintf(data, "%.10g %.10g\n", across(strip, i, figure->point[p][0]),
                         figure->point[p][1]);
             }
@@ -219,7 +233,7 @@ static void label_strip(struct gnuplot *g, const struct strip *strip, double top
             " lc rgb '#404040'\n",
             x / g->width, 1 - y / g->height, (x + length) / g->width, 1 - y / g->height);
     snprintf(text, sizeof text, "%g m%s", bar,
-             strip->follows ? "; each figure is centred: the robot travels" : "");
+             strip->follows ? "; each figure is centred: it travels" : "");
     gnuplot_label(g, x + length + 8, y, text, "left", 12, false);
     for (int i = 0; i < strip->count; i++) {
         double left = SIDE + strip->scale * strip->spacing * (i % PER_ROW + 0.5);

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-double summary_share(const struct statistics_counts *counts)
+double summary_share(const struct summary *summary, const struct statistics_counts *counts)
 {
-    return counts->done ? (double)counts->kind[RESULTS_STABILISED] / (double)counts->done : NAN;
+    return counts->done ? (double)counts->kind[summary->judged] / (double)counts->done : NAN;
 }
 
 bool summary_has_outcomes(const struct summary *summary)
@@ -53,6 +53,7 @@ static bool collect_numbers(struct summary *summary, const struct results *r,
         struct summary_numbers *numbers = &summary->numbers[k];
         double *values;
         *numbers = wanted[k];
+        numbers->of = numbers->of == RESULTS_STABILISED ? summary->judged : numbers->of;
         if (!results_answer(r, numbers->name, &values, message)) {
             return false;
         }
@@ -119,7 +120,8 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
         statistics_count_axis(r, a, counts);
         double largest = 0;
         for (size_t i = 0; i + 1 < axis->count; i++) {
-            double change = fabs(summary_share(&counts[i + 1]) - summary_share(&counts[i]));
+            double change =
+                fabs(summary_share(summary, &counts[i + 1]) - summary_share(summary, &counts[i]));
             if (change > largest) {
                 largest = change;
                 summary->steepest[a] = i;
@@ -262,51 +264,64 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
     add_text(c, "method.name",
              v->method >= 0 && v->method < count ? methods[v->method]->name : "unknown");
     add_number(c, "method.step", v->step, "s");
+    if (v->method >= 0 && v->method < count && methods[v->method]->tolerance > 0) {
+        add_number(c, "method.tolerance",
+                   isnan(v->tolerance) ? methods[v->method]->tolerance : v->tolerance, "m, rad");
+    }
     add_number(c, "stop.time", v->stop_time, "s");
     if (v->settle) {
-        add_number(c, "stop.settle.angle", v->settle_angle, "rad");
+        add_number(c, "stop.settle.angle", scene->postures ? v->settle_angle : NAN, "rad");
         add_number(c, "stop.settle.rate", v->settle_rate, "rad/s");
         add_number(c, "stop.settle.hold", v->settle_hold, "s");
     }
-    add_number(c, "stop.fall_height", v->fall_height, "");
+    add_number(c, "stop.fall_height", scene->height ? v->fall_height : NAN, "");
 }
 
-static void collect_fields(struct summary *summary, const struct results *r)
+static void collect_fields(struct summary *summary, const struct results *r,
+                           const struct scenario *s)
 {
-    struct scenario s;
-    struct collection collection = {summary, r, &s};
-    if (!results_scenario(r, &s)) {
-        return; /* a scenario of another version: the summary goes without */
-    }
-    struct scenario_values values = s.base;
-    if (r->single && s.axes > 0 && r->index < s.cases) {
-        scenario_case_values(&s, r->index, &values);
+    struct collection collection = {summary, r, s};
+    struct scenario_values values = s->base;
+    if (r->single && s->axes > 0 && r->index < s->cases) {
+        scenario_case_values(s, r->index, &values);
     }
     add_fields(&collection, &values);
-    scenario_free(&s);
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
 bool summary_make(struct summary *summary, const struct results *r, stance_message *message)
 {
-    *summary = (struct summary){0};
+    struct scenario s;
+    /* A scenario of another version cannot be read: the summary goes without. */
+    const bool readable = results_scenario(r, &s);
+    *summary = (struct summary){.judged = RESULTS_STABILISED};
+    if (readable && s.base.law != LAW_STATE_FEEDBACK) {
+        summary->judged = RESULTS_RESTED;
+    }
     statistics_count(r, -1, 0, &summary->counts);
     collect_failures(summary, r);
     bool good = collect_numbers(summary, r, message) &&
                 collect_count(&summary->steps, r, "steps", message) &&
                 collect_count(&summary->iterations, r, "iterations", message) &&
+                collect_count(&summary->evaluations, r, "evaluations", message) &&
+                collect_count(&summary->events, r, "events", message) &&
                 collect_count(&summary->ambiguous, r, "ambiguous_steps", message) &&
                 collect_count(&summary->subdivided, r, "subdivided_steps", message) &&
                 collect_axes(summary, r, message);
-    if (!good) {
+    if (good) {
+        summary->timed = results_timing(r, &summary->longest, &summary->total,
+                                        &summary->timed_cases, &summary->ranks);
+        if (readable) {
+            collect_fields(summary, r, &s);
+        }
+    } else {
         summary_free(summary);
-        return false;
     }
-    summary->timed = results_timing(r, &summary->longest, &summary->total, &summary->timed_cases,
-                                    &summary->ranks);
-    collect_fields(summary, r);
-    return true;
+    if (readable) {
+        scenario_free(&s);
+    }
+    return good;
 }
 
 void summary_free(struct summary *summary)

@@ -5,7 +5,7 @@
 #include "statistics.h"
 
 /* The answers that are summarised: name, kind of the cases looked at (RESULTS_KIND_COUNT: all that
- * are done), unit. */
+ * are done; RESULTS_STABILISED: those that the study judges by, see struct summary), unit. */
 #define SUMMARY_NUMBERS(X)                                                                         \
     X(settle_time, RESULTS_STABILISED, "s")                                                        \
     X(friction_used, RESULTS_STABILISED, "")                                                       \
@@ -14,13 +14,22 @@
     X(peak_torque, RESULTS_KIND_COUNT, "N m")                                                      \
     X(max_penetration, RESULTS_KIND_COUNT, "m")                                                    \
     X(impact_energy, RESULTS_KIND_COUNT, "J")                                                      \
-    X(projection_energy, RESULTS_KIND_COUNT, "J")
+    X(projection_energy, RESULTS_KIND_COUNT, "J")                                                  \
+    SUMMARY_RESIDUALS(X)
+
+/* How far the cases are from the laws that they ought to obey: of these the largest matters. */
+#define SUMMARY_RESIDUALS(X)                                                                       \
+    X(signorini_residual, RESULTS_KIND_COUNT, "m/s")                                               \
+    X(coulomb_residual, RESULTS_KIND_COUNT, "")                                                    \
+    X(dissipation_residual, RESULTS_KIND_COUNT, "m/s")                                             \
+    X(energy_gain, RESULTS_KIND_COUNT, "J")
 
 enum {
 #define SUMMARY_NUMBER(name, kind, unit) SUMMARY_##name,
     SUMMARY_NUMBERS(SUMMARY_NUMBER)
 #undef SUMMARY_NUMBER
         SUMMARY_NUMBER_COUNT,
+    SUMMARY_FIRST_RESIDUAL = SUMMARY_signorini_residual,
 };
 
 struct summary_numbers {
@@ -46,16 +55,18 @@ enum { SUMMARY_FIELDS = 64, SUMMARY_FAILURES = 16 };
 
 struct summary {
     struct statistics_counts counts;
+    /* What the cases are judged by: STABILISED, or where no controller has a target RESTED. */
+    enum results_kind judged;
     uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
     struct summary_numbers numbers[SUMMARY_NUMBER_COUNT];
-    struct summary_count steps, iterations, ambiguous, subdivided;
+    struct summary_count steps, iterations, evaluations, events, ambiguous, subdivided;
     bool timed;
     double longest, total, timed_cases; /* s, s, 1 */
     size_t ranks;
     bool has_extent[SCENARIO_MAX_AXES];
     struct statistics_extent extent[SCENARIO_MAX_AXES];
-    /* Axes that are not offsets: the counts of every value, and where the share of stabilised
-     * cases changes most: from `steepest` to the next value. */
+    /* Axes that are not offsets: the counts of every value, and where the share of cases of the
+     * kind judged by changes most: from `steepest` to the next value. */
     struct statistics_counts *by_value[SCENARIO_MAX_AXES];
     size_t steepest[SCENARIO_MAX_AXES];
     int parameters; /* how many such axes */
@@ -70,8 +81,8 @@ void summary_free(struct summary *summary);
 /* False when cases are done but the file stores no outcomes: record.answers left them out. */
 bool summary_has_outcomes(const struct summary *summary);
 
-/* Share of stabilised cases among those done; NAN when there are none. */
-double summary_share(const struct statistics_counts *counts);
+/* Share of the cases of the kind judged by among those done; NAN when there are none. */
+double summary_share(const struct summary *summary, const struct statistics_counts *counts);
 
 /* Name and text of a failure, from the engine's table. */
 const char *summary_failure_name(int failure);

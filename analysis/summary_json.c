@@ -168,7 +168,8 @@ static json_t *parameter(const struct summary *summary, const struct results *r,
         put(entry, "failed", whole(counts->kind[RESULTS_FAILED]));
         put(entry, "pending", whole(counts->kind[RESULTS_PENDING]));
         put(entry, "stabilised", whole(counts->kind[RESULTS_STABILISED]));
-        put_share(entry, counts->kind[RESULTS_STABILISED], counts->done);
+        put(entry, "rested", whole(counts->kind[RESULTS_RESTED]));
+        put_share(entry, counts->kind[summary->judged], counts->done);
         if (summary->parameters == 1) {
             put(entry, "extents", extents_at(r, a, i));
         }
@@ -176,6 +177,7 @@ static json_t *parameter(const struct summary *summary, const struct results *r,
     }
     put(object, "path", json_string(axis->name));
     put(object, "unit", text_or_null(axis->unit));
+    put(object, "share_of", json_string(results_kind_names[summary->judged]));
     put(object, "values", list);
     if (axis->count > 1) {
         json_t *steepest = json_object();
@@ -255,6 +257,8 @@ static json_t *cost(const struct summary *summary)
     if (summary->steps.stored && summary->iterations.stored) {
         put(object, "iterations_per_step", number(summary->iterations.sum / summary->steps.sum));
     }
+    put_count(object, "evaluations", NULL, &summary->evaluations);
+    put_count(object, "events", "events_cases", &summary->events);
     put_count(object, "subdivided_steps", "subdivided_cases", &summary->subdivided);
     put_count(object, "ambiguous_steps", "ambiguous_cases", &summary->ambiguous);
     put(object, "wall_time", summary->timed ? number(summary->longest) : json_null());

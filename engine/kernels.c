@@ -6,10 +6,13 @@
 
 /* What there is: a method or a scene is a word here and in the Makefile. STANCE_ISA_LIST comes
  * from there: X(scalar) X(sse2) ... in order of width. */
-#define STANCE_METHODS(X) X(implicit) X(midpoint) X(capturing) X(lagrange)
+#define STANCE_METHODS(X) X(implicit) X(midpoint) X(capturing) X(lagrange) X(event_driven)
 #define STANCE_VECTOR_METHODS(K, scene, isa)                                                       \
     K(scene, implicit, isa) K(scene, midpoint, isa) K(scene, capturing, isa) K(scene, lagrange, isa)
-#define STANCE_SCENES(EACH, K, isa) EACH(K, biped, isa)
+/* One case at a time, whatever the processor. */
+#define STANCE_SCALAR_METHODS(K, scene, isa) K(scene, event_driven, isa)
+#define STANCE_SCENES(EACH, K, isa)                                                                \
+    EACH(K, ball, isa) EACH(K, block, isa) EACH(K, rod, isa) EACH(K, biped, isa)
 
 #ifndef STANCE_ISA_LIST
 #define STANCE_ISA_LIST X(scalar)
@@ -26,6 +29,7 @@ static const stance_method *const methods[] = {STANCE_METHODS(ENTRY_METHOD) NULL
 #define X(isa) STANCE_SCENES(STANCE_VECTOR_METHODS, DECLARE_KERNEL, isa)
 STANCE_ISA_LIST
 #undef X
+STANCE_SCENES(STANCE_SCALAR_METHODS, DECLARE_KERNEL, scalar)
 
 /* Narrow to wide. */
 static const stance_kernel *const kernels[] = {
@@ -34,9 +38,15 @@ static const stance_kernel *const kernels[] = {
     STANCE_ISA_LIST
 #undef X
 };
+static const stance_kernel *const scalar_kernels[] = {
+    STANCE_SCENES(STANCE_SCALAR_METHODS, ENTRY_KERNEL, scalar)};
 
-/* Number of them. */
-enum { KERNELS = sizeof kernels / sizeof kernels[0] }; // NOLINT(bugprone-sizeof-expression)
+/* Numbers of them. */
+enum {
+    KERNELS = sizeof kernels / sizeof kernels[0], // NOLINT(bugprone-sizeof-expression)
+    SCALAR_KERNELS =
+        sizeof scalar_kernels / sizeof scalar_kernels[0] // NOLINT(bugprone-sizeof-expression)
+};
 
 const stance_method *const *stance_methods(void)
 {
@@ -75,6 +85,9 @@ const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_
         if (!isa || strcmp(isa, k->isa) == 0)
             return k;
     }
+    for (int i = 0; i < SCALAR_KERNELS; i++)
+        if (scalar_kernels[i]->scene == scene && scalar_kernels[i]->method == method)
+            return scalar_kernels[i];
     return NULL;
 }
 

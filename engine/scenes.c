@@ -3,11 +3,13 @@
 
 #include <string.h>
 
-extern const stance_scene stance_scene_biped;
+extern const stance_scene stance_scene_biped, stance_scene_ball, stance_scene_block,
+    stance_scene_rod;
 
 const stance_scene *const *stance_scenes(void)
 {
-    static const stance_scene *const scenes[] = {&stance_scene_biped, NULL};
+    static const stance_scene *const scenes[] = {&stance_scene_biped, &stance_scene_ball,
+                                                 &stance_scene_block, &stance_scene_rod, NULL};
     return scenes;
 }
 

@@ -18,7 +18,7 @@ enum {
     STANCE_MAX_ACTUATORS = 2,
     STANCE_MAX_POSTURE = 3, /* coordinates that a posture law acts on */
     STANCE_MAX_ROBOT = 8,   /* parameters of a scene's body */
-    STANCE_MAX_POINTS = 8,  /* points of a stick figure */
+    STANCE_MAX_POINTS = 24, /* points of a stick figure */
 };
 
 #define STANCE_GRAVITY 9.81 /* m/s^2 */

@@ -169,6 +169,8 @@ static int bench(const stance_scene *scene, int repeats, json_t *rows)
             make_case(scene, &base, regime, i, &cases[i]);
         for (const stance_method *const *method = stance_methods(); *method; method++) {
             double scalar_ns = NAN;
+            for (int i = 0; i < CASES; i++)
+                cases[i].tolerance = (*method)->tolerance;
             for (size_t i = 0; i < sizeof isas / sizeof *isas; i++) {
                 const stance_kernel *const k = stance_kernel_find(scene, *method, isas[i]);
                 struct measurement m;

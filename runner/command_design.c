@@ -445,6 +445,11 @@ static int design(const struct scenario *s, bool json)
         .scenario = s, .states = 2 * s->scene->postures, .inputs = s->scene->actuators};
     stance_message message = {""};
 
+    if (s->scene->actuators == 0) {
+        fprintf(stderr, "%s: the scene %s has no controller to design: nothing in it is actuated\n",
+                s->file, s->scene->name);
+        return EXIT_USAGE;
+    }
     if (!open_loop(&report, &message) || !closed_loop(&report, &message)) {
         return complain(s, message.text);
     }

@@ -166,19 +166,33 @@ static void print_field(FILE *out, const struct schema *schema, const struct sce
     }
 }
 
+/* Whether a path stands for the same in every scene. */
+static bool is_common(const struct schema *schemas, size_t count,
+                      const struct scenario_field *field)
+{
+    bool common = !field->by_scene;
+    for (size_t k = 0; common && k < count; k++) {
+        common = schema_find(&schemas[k], field->path) != NULL;
+    }
+    return common;
+}
+
 static void print_all(FILE *out, const struct schema *schemas, size_t count)
 {
     fputs("The scenario format, version 1. Units are SI; [] stands for an index from 0.\n"
-          "stance describe PATH tells more; stance describe --schema prints JSON Schema.\n\n",
+          "stance describe PATH tells more; stance describe --schema prints JSON Schema.\n",
           out);
-    for (size_t k = 0; k < count; k++) {
-        if (count > 1) {
-            fprintf(out, "%sscene: %s\n\n", k > 0 ? "\n" : "", schemas[k].scene->name);
+    /* What is the same in every scene is said once, before what each brings. */
+    for (size_t k = 0; k <= count; k++) {
+        const struct schema *schema = &schemas[k > 0 ? k - 1 : 0];
+        if (k == 0) {
+            fputs("\nIn every scene\n\n", out);
+        } else {
+            fprintf(out, "\nscene: %s (%s)\n\n", schema->scene->name, schema->scene->text);
         }
-        for (size_t i = 0; i < schemas[k].count; i++) {
-            /* What no scene changes is said once. */
-            if (k == 0 || schemas[k].field[i].by_scene) {
-                print_row(out, &schemas[k].field[i]);
+        for (size_t i = 0; i < schema->count; i++) {
+            if (is_common(schemas, count, &schema->field[i]) == (k == 0)) {
+                print_row(out, &schema->field[i]);
             }
         }
     }
@@ -401,25 +415,51 @@ static bool print_schema(FILE *out, const struct schema *schemas, size_t count)
 
 /* ---- which of them --------------------------------------------------------------------------- */
 
+/* What a path that no scene has may have meant, or NULL. */
+static const char *nearest_path(const char *path, const struct schema *schemas, size_t count)
+{
+    const char **known = malloc(count * SCHEMA_MAX_FIELDS * sizeof *known), *near = NULL;
+    size_t n = 0;
+    for (size_t k = 0; known && k < count; k++) {
+        for (size_t i = 0; i < schemas[k].count; i++) {
+            known[n++] = schemas[k].field[i].path;
+        }
+    }
+    if (known) {
+        near = nearest_word(path, known, n);
+    }
+    free(known);
+    return near;
+}
+
+/* A path, for every scene where it stands for something else. */
 static bool print_path(const char *path, FILE *out, FILE *errors, const struct schema *schemas,
                        size_t count)
 {
-    const char *known[SCHEMA_MAX_FIELDS], *near;
     char word[SHOWN_SIZE];
-    size_t index[2], n = 0;
+    size_t index[2];
+    bool found = false;
 
     for (size_t k = 0; k < count; k++) {
         const struct scenario_field *field = schema_find(&schemas[k], path);
         field = field ? field : schema_find_concrete(&schemas[k], path, index);
-        if (field) {
-            print_field(out, &schemas[k], field);
-            return true;
+        if (!field) {
+            continue;
+        }
+        bool common = is_common(schemas, count, field);
+        if (!common) {
+            fprintf(out, "%sscene: %s\n", found ? "\n" : "", schemas[k].scene->name);
+        }
+        print_field(out, &schemas[k], field);
+        found = true;
+        if (common) {
+            break;
         }
     }
-    for (; n < schemas[0].count; n++) {
-        known[n] = schemas[0].field[n].path;
+    if (found) {
+        return true;
     }
-    near = nearest_word(path, known, n);
+    const char *near = nearest_path(path, schemas, count);
     fprintf(errors, "stance describe: unknown path '%s'%s%s%s\n", shown(word, path),
             near ? "; did you mean '" : "", near ? near : "",
             near ? "'?" : " (stance describe lists them)");

@@ -44,8 +44,8 @@ static bool solve_equilibrium(const stance_scene *scene, const double *robot,
                               stance_equilibrium *result, stance_message *message)
 {
     stance_equilibrium_choice choice = {.support = support, .lower = wanted->lower != 0};
-    if (!scene->equilibrium) {
-        return refuse(message, "the scene %s has no equilibria", scene->name);
+    if (!scene->equilibrium || !scene->stand) {
+        return refuse(message, "the scene %s has no equilibria: give initial.state", scene->name);
     }
     memcpy(choice.posture, wanted->posture, sizeof choice.posture);
     return scene->equilibrium(robot, &choice, result, message) == STANCE_OK;
@@ -290,7 +290,12 @@ static bool resolve_time(const struct scenario_values *values, stance_case *out,
         return refuse(message, "controller.sample_time and stop.time must be finite and not "
                                "negative");
     }
+    const stance_method *method = stance_methods()[values->method];
     out->step = values->step;
+    out->tolerance = isnan(values->tolerance) ? method->tolerance : values->tolerance;
+    if (method->tolerance > 0 && !(out->tolerance > 0)) {
+        return refuse(message, "method.tolerance must be positive");
+    }
     if (interval > 0) {
         const double pieces = fmax(1, ceil(interval / values->step - 1e-9));
         if (pieces > MOST_STEPS) {

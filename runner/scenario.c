@@ -95,10 +95,19 @@ static const struct scenario_field *elsewhere(const struct schema *schema, const
 static void unknown_key(struct reader *r, const struct tree_key *key, const char *path,
                         const char *name, const char *const *known, size_t count)
 {
-    char near_path[PATH_SIZE], word[SHOWN_SIZE];
+    char near_path[PATH_SIZE], word[SHOWN_SIZE], list[500];
     const char *near = nearest_word(key->name, known, count);
     const struct scenario_field *other = elsewhere(&r->schema, key->name);
 
+    if (!near && r->s->scene) {
+        snprintf(near_path, sizeof near_path, "%s%s%.64s", path, path[0] ? "." : "", key->name);
+        if (schema_scene_with(near_path)) {
+            problem_add(&r->problems, key->mark, "%s%sthe scene %s has no key '%s' (known: %s)",
+                        name, name[0] ? ": " : "", r->s->scene->name, shown(word, key->name),
+                        word_list(list, sizeof list, known, count));
+            return;
+        }
+    }
     if (!near && other) {
         problem_add(&r->problems, key->mark, "%s%sunknown key '%s'; did you mean '%s'?", name,
                     name[0] ? ": " : "", shown(word, key->name), other->path);

@@ -56,7 +56,7 @@ struct scenario_values {
     double noise;
 
     int method; /* index into stance_methods() */
-    double step;
+    double step, tolerance; /* tolerance: NAN: the method's own */
 
     double stop_time;
     int settle; /* 1: judge on the way (default), 0: `off` */

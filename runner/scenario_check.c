@@ -287,7 +287,9 @@ static void check_start(struct reader *r, const struct situation *is)
     }
     if (!is->from_state && !is->from_equilibrium) {
         problem_add(&r->problems, initial->node ? initial->key : r->tree.root->mark,
-                    "initial: give an equilibrium or a state");
+                    schema_find(&r->schema, "initial.equilibrium")
+                        ? "initial: give an equilibrium or a state"
+                        : "initial: give a state");
         return;
     }
     base->state_given = is->from_state;

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- words ----------------------------------------------------------------------------------- */
@@ -44,6 +45,7 @@ enum family {
     FAMILY_MATRIX,   /* actuators x 2 postures */
     FAMILY_SCENES,
     FAMILY_METHODS,
+    FAMILY_TOLERANCE, /* the text names the methods that read it */
 };
 
 struct row {
@@ -89,27 +91,30 @@ static const struct row rows[] = {
     {0, {.path = "initial.equilibrium", .type = FIELD_MAP, .by_scene = true,
          .use = USE_EQUILIBRIUM, BY_HAND,
          .text = "the position of rest that the run begins at",
-         .more = "Give all but one of the angles; the last follows. Excludes initial.state."}},
+         .more = "Give all but one of the angles; the last follows. Excludes initial.state.",
+         .need = NEED_EQUILIBRIUM}},
     {FAMILY_POSTURE, {.path = "initial.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
                       .use = USE_EQUILIBRIUM, .design = true, .sweep = true,
                       VALUE(equilibrium.posture), .fallback_text = "follows from the others",
-                      .text = "equilibrium: %s"}},
+                      .text = "equilibrium: %s", .need = NEED_EQUILIBRIUM}},
     {0, {.path = "initial.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
          .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.lower),
          .fallback = 0, WORDS(branch_words),
-         .text = "which of the two solutions: hip above or below the foot"}},
+         .text = "which of the two solutions: hip above or below the foot",
+         .need = NEED_EQUILIBRIUM}},
     {FAMILY_FOOT, {.path = "initial.support_foot", .type = FIELD_INTEGER, .by_scene = true,
                    .design = true, .sweep = true, VALUE(support_foot), .unit = "1",
                    .fallback_text = "1 with an equilibrium, else none",
                    .text = "number of the foot that the robot stands on",
                    .more = "With an equilibrium this foot stands at rest at the origin: offsets of "
                            "angles and their rates apply first, the translation follows from the "
-                           "foot, offsets of the translation come last."}},
+                           "foot, offsets of the translation come last.",
+         .need = NEED_EQUILIBRIUM}},
     {0, {.path = "initial.offset", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
-         BY_HAND, .text = "how far from the equilibrium the run begins"}},
+         BY_HAND, .text = "how far from the equilibrium the run begins", .need = NEED_EQUILIBRIUM}},
     {FAMILY_OFFSET, {.path = "initial.offset.*", .type = FIELD_NUMBER, .by_scene = true,
                      .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset),
-                     .text = "initial offset: %s"}},
+                     .text = "initial offset: %s", .need = NEED_EQUILIBRIUM}},
     {0, {.path = "initial.state", .type = FIELD_MAP, .by_scene = true, .use = USE_STATE, BY_HAND,
          .text = "the whole initial state by hand", .more = "Excludes initial.equilibrium."}},
     {FAMILY_STATE, {.path = "initial.state.*", .type = FIELD_NUMBER, .by_scene = true,
@@ -124,62 +129,70 @@ static const struct row rows[] = {
     {0, {.path = "controller.design", .type = FIELD_WORD, .use = USE_FEEDBACK, .design = true,
          .sweep = true, VALUE(design), .fallback = 0, WORDS(design_words),
          .text = "where the gains come from",
-         .more = "place: robust pole placement; gains: they are given."}},
+         .more = "place: robust pole placement; gains: they are given.", .need = NEED_ACTUATORS}},
     {FAMILY_POLES, {.path = "controller.poles", .type = FIELD_POLES, .by_scene = true,
                     .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",
                     .text = "poles of the closed loop",
-                    .more = "Real, or complex as -3+1.5i with -3-1.5i beside it."}},
+                    .more = "Real, or complex as -3+1.5i with -3-1.5i beside it.",
+         .need = NEED_ACTUATORS}},
     {FAMILY_POLES, {.path = "controller.poles[]", .type = FIELD_NUMBER, .by_scene = true,
                     .use = USE_PLACE, .design = true, .sweep = true, VALUE(pole_re),
                     .unit = "1/s", .fallback = NAN, .low = -1e6, .high = 1e6,
-                    .text = "pole of the closed loop", .more = "Only a real pole can be swept."}},
+                    .text = "pole of the closed loop", .more = "Only a real pole can be swept.",
+         .need = NEED_ACTUATORS}},
     {FAMILY_MATRIX, {.path = "controller.gains", .type = FIELD_MATRIX, .by_scene = true,
                      .use = USE_GAINS, .required = true, .design = true, BY_HAND,
                      .unit = "N m/rad, N m s/rad",
-                     .text = "gains: a row for each actuator; angles, then rates"}},
+                     .text = "gains: a row for each actuator; angles, then rates",
+         .need = NEED_ACTUATORS}},
     {FAMILY_MATRIX, {.path = "controller.gains[][]", .type = FIELD_NUMBER, .by_scene = true,
                      .use = USE_GAINS, .design = true, .sweep = true, VALUE(gains),
                      .unit = "N m/rad, N m s/rad", .fallback = NAN, .low = -LARGE, .high = LARGE,
-                     .text = "gain of an actuator on an angle or a rate"}},
+                     .text = "gain of an actuator on an angle or a rate", .need = NEED_ACTUATORS}},
     {0, {.path = "controller.model", .type = FIELD_MAP, .by_scene = true, .use = USE_FEEDBACK,
-         BY_HAND, .text = "the robot that the design believes in"}},
+         BY_HAND, .text = "the robot that the design believes in", .need = NEED_ACTUATORS}},
     {FAMILY_ROBOT, {.path = "controller.model.*", .type = FIELD_NUMBER, .by_scene = true,
                     .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model),
-                    .fallback_text = "as the robot", .text = "model of the design: %s"}},
+                    .fallback_text = "as the robot", .text = "model of the design: %s",
+         .need = NEED_ACTUATORS}},
     {0, {.path = "controller.equilibrium", .type = FIELD_MAP, .by_scene = true,
          .use = USE_FEEDBACK, BY_HAND, .fallback_text = "initial.equilibrium",
-         .text = "the equilibrium that the controller is designed at"}},
+         .text = "the equilibrium that the controller is designed at", .need = NEED_ACTUATORS}},
     {FAMILY_POSTURE, {.path = "controller.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
                       .use = USE_FEEDBACK, .design = true, .sweep = true,
                       VALUE(design_point.posture), .fallback_text = "follows from the others",
-                      .text = "equilibrium of the controller: %s"}},
+                      .text = "equilibrium of the controller: %s", .need = NEED_ACTUATORS}},
     {0, {.path = "controller.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
          .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.lower),
          .fallback = 0, WORDS(branch_words),
-         .text = "which of the two solutions: hip above or below the foot"}},
+         .text = "which of the two solutions: hip above or below the foot",
+         .need = NEED_ACTUATORS}},
     {0, {.path = "controller.kp", .type = FIELD_NUMBER, .use = USE_HOLD, .required = true,
          .sweep = true, VALUE(kp), .unit = "N m/rad", .fallback = NAN, .low = 0, .high = LARGE,
-         .text = "stiffness of the servo"}},
+         .text = "stiffness of the servo", .need = NEED_ACTUATORS}},
     {0, {.path = "controller.kd", .type = FIELD_NUMBER, .use = USE_HOLD, .required = true,
          .sweep = true, VALUE(kd), .unit = "N m s/rad", .fallback = NAN, .low = 0, .high = LARGE,
-         .text = "damping of the servo"}},
+         .text = "damping of the servo", .need = NEED_ACTUATORS}},
     {0, {.path = "controller.target", .type = FIELD_MAP, .by_scene = true, .use = USE_HOLD, BY_HAND,
-         .text = "the joint angles that the servo holds"}},
+         .text = "the joint angles that the servo holds", .need = NEED_ACTUATORS}},
     {FAMILY_ACTUATED, {.path = "controller.target.*", .type = FIELD_NUMBER, .by_scene = true,
                        .use = USE_HOLD, .sweep = true, VALUE(target),
-                       .fallback_text = "as the run begins", .text = "angle to hold: %s"}},
+                       .fallback_text = "as the run begins", .text = "angle to hold: %s",
+         .need = NEED_ACTUATORS}},
     {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(sample_time), .unit = "s", .fallback = 0, .low = 0, .high = LARGE,
          .text = "time between samples of the controller",
-         .more = "Torques are held in between; 0: it acts continuously, inside the implicit step."}},
+         .more = "Torques are held in between; 0: it acts continuously, inside the implicit step.",
+         .need = NEED_ACTUATORS}},
     {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL,
          .sweep = true, VALUE(torque_limit), .unit = "N m", .fallback = INFINITY,
          .fallback_text = "none", .low = 0, .high = LARGE, .low_open = true, WORDS(limit_words),
-         .text = "largest torque of each actuator"}},
+         .text = "largest torque of each actuator", .need = NEED_ACTUATORS}},
     {0, {.path = "controller.noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(noise), .unit = "N m", .fallback = 0, .low = 0, .high = LARGE,
          .text = "half-width of uniform noise on the torques",
-         .more = "White, new at each sample, added before the limit; needs sample_time > 0."}},
+         .more = "White, new at each sample, added before the limit; needs sample_time > 0.",
+         .need = NEED_ACTUATORS}},
 
     {0, {.path = "method", .type = FIELD_MAP, BY_HAND, .text = "how time is stepped"}},
     {FAMILY_METHODS, {.path = "method.name", .type = FIELD_WORD, .sweep = true, VALUE(method),
@@ -187,6 +200,10 @@ static const struct row rows[] = {
     {0, {.path = "method.step", .type = FIELD_NUMBER, .sweep = true, VALUE(step), .unit = "s",
          .fallback = 0.001, .low = 0, .high = 0.1, .low_open = true, .text = "time step",
          .more = "An upper bound: a sample interval is cut into equal steps no longer than this."}},
+    {FAMILY_TOLERANCE, {.path = "method.tolerance", .type = FIELD_NUMBER, .sweep = true,
+                        VALUE(tolerance), .unit = "m, rad", .fallback = NAN,
+                        .fallback_text = "the method's own", .low = 0, .high = 1, .low_open = true,
+                        .text = "admitted error of a step"}},
 
     {0, {.path = "stop", .type = FIELD_MAP, .required = true, BY_HAND,
          .text = "when a run ends and what it counts as"}},
@@ -198,7 +215,8 @@ static const struct row rows[] = {
          .more = "off: every run lasts its whole time and is judged at its end."}},
     {0, {.path = "stop.settle.angle", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
          VALUE(settle_angle), .unit = "rad", .fallback = 0.05, .low = 0, .high = LARGE,
-         .low_open = true, .text = "largest deviation of an angle that counts as settled"}},
+         .low_open = true, .text = "largest deviation of an angle that counts as settled",
+         .need = NEED_POSTURE}},
     {0, {.path = "stop.settle.rate", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
          VALUE(settle_rate), .unit = "rad/s", .fallback = 0.5, .low = 0, .high = LARGE,
          .low_open = true, .text = "largest rate that counts as settled, in m/s for the translation"}},
@@ -207,7 +225,8 @@ static const struct row rows[] = {
          .text = "how long the robot must stay settled"}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
          .unit = "1", .fallback = 0.2, .low = 0, .high = 1,
-         .text = "height of the hip, in leg lengths, below which the robot has fallen"}},
+         .text = "height of the hip, in leg lengths, below which the robot has fallen",
+         .need = NEED_HEIGHT}},
 
     {0, {.path = "sweep", .type = FIELD_MAP, BY_HAND, .text = "what varies between cases"}},
     {0, {.path = "sweep.grid", .type = FIELD_AXES, BY_HAND,
@@ -317,6 +336,8 @@ static bool add_states(struct schema *schema, const struct row *row)
         if (rate) {
             field->low = -1e6;
             field->high = 1e6;
+        } else if (row->family == FAMILY_STATE) {
+            field->fallback = quantity->fallback;
         } else if (row->family == FAMILY_OFFSET) {
             field->low = quantity->low - quantity->high;
             field->high = quantity->high - quantity->low;
@@ -342,6 +363,27 @@ static bool add_postures(struct schema *schema, const struct row *row)
     return true;
 }
 
+/* Which methods read method.tolerance, and what it is by default there. */
+static const char *describe_tolerance(char *text, size_t size)
+{
+    size_t used = 0, count = 0;
+    for (const stance_method *const *method = stance_methods(); *method && used < size; method++) {
+        if ((*method)->tolerance > 0) {
+            used += (size_t)snprintf(text + used, size - used, "%s%s (default %.3g)",
+                                     count++ ? ", "
+                                             : "Read by the methods that control their "
+                                               "error: ",
+                                     (*method)->name, (*method)->tolerance);
+        }
+    }
+    if (used < size) {
+        snprintf(text + used, size - used,
+                 count ? ". It has no effect with the others."
+                       : "No method of this build reads it.");
+    }
+    return text;
+}
+
 /* Rows that stay one field, whose words or sizes are the scene's. */
 static bool add_single(struct schema *schema, const struct row *row)
 {
@@ -356,6 +398,8 @@ static bool add_single(struct schema *schema, const struct row *row)
     } else if (row->family == FAMILY_METHODS) {
         field->words = schema->methods;
         field->word_count = schema->method_count;
+    } else if (row->family == FAMILY_TOLERANCE) {
+        field->more = describe_tolerance(schema->tolerance, sizeof schema->tolerance);
     } else if (row->family == FAMILY_CONTACTS) {
         field->words = scene->contact_name;
         field->word_count = (size_t)scene->contacts;
@@ -372,8 +416,27 @@ static bool add_single(struct schema *schema, const struct row *row)
     return true;
 }
 
+static bool scene_has(const stance_scene *scene, enum field_need need)
+{
+    switch (need) {
+    case NEED_EQUILIBRIUM:
+        return scene->equilibrium && scene->stand;
+    case NEED_ACTUATORS:
+        return scene->actuators > 0;
+    case NEED_POSTURE:
+        return scene->postures > 0;
+    case NEED_HEIGHT:
+        return scene->height != NULL;
+    default:
+        return true;
+    }
+}
+
 static bool add_row(struct schema *schema, const struct row *row)
 {
+    if (schema->scene && !scene_has(schema->scene, row->field.need)) {
+        return true;
+    }
     if (row->field.by_scene && !schema->scene) {
         /* The key is known all the same; what stands below it is not looked at. */
         return strpbrk(row->field.path, "*[") || add_field(schema, row, "", "") != NULL;
@@ -405,6 +468,11 @@ bool schema_build(struct schema *schema, const stance_scene *scene)
         if (!add_row(schema, &rows[i])) {
             return false;
         }
+    }
+    /* Where there is neither an equilibrium nor a controller no design depends on anything. */
+    for (size_t i = 0; scene && !scene->equilibrium && scene->actuators == 0 && i < schema->count;
+         i++) {
+        schema->field[i].design = false;
     }
     return true;
 }
@@ -447,6 +515,21 @@ const struct scenario_field *schema_find_concrete(const struct schema *schema, c
         }
     }
     return schema_find(schema, general);
+}
+
+const stance_scene *schema_scene_with(const char *path)
+{
+    const stance_scene *found = NULL;
+    struct schema *schema = malloc(sizeof *schema);
+    size_t index[2];
+    for (size_t i = 0; schema && !found && stance_scenes()[i]; i++) {
+        if (schema_build(schema, stance_scenes()[i]) &&
+            (schema_find(schema, path) || schema_find_concrete(schema, path, index))) {
+            found = stance_scenes()[i];
+        }
+    }
+    free(schema);
+    return found;
 }
 
 const char *schema_last_name(const char *path)

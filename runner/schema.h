@@ -2,7 +2,8 @@
  * JSON Schema.
  *
  * Rows with a '*' in their path stand for the names that a scene brings; schema_build writes them
- * out. "[]" in a path stands for any index of a list.
+ * out, and leaves out what the scene has no use for (a controller where nothing acts). "[]" in a
+ * path stands for any index of a list.
  */
 #ifndef STANCE_RUNNER_SCHEMA_H
 #define STANCE_RUNNER_SCHEMA_H
@@ -39,11 +40,21 @@ enum field_use {
     USE_SETTLE,      /* stop.settle is not off */
 };
 
+/* What a scene must have, or it lacks the row. */
+enum field_need {
+    NEED_NOTHING,
+    NEED_EQUILIBRIUM, /* positions of rest, and a way to stand there */
+    NEED_ACTUATORS,
+    NEED_POSTURE, /* angles that a controller brings to a target */
+    NEED_HEIGHT,  /* something that falls */
+};
+
 /* One row, written out for a scene. */
 struct scenario_field {
     char path[96];
     enum field_type type;
     enum field_use use;
+    enum field_need need;
     bool required;             /* must stand in the file where `use` allows it, unless swept */
     bool design;               /* what the design depends on, see resolve.h */
     bool sweep;                /* may vary along an axis */
@@ -72,6 +83,7 @@ struct schema {
     struct scenario_field field[SCHEMA_MAX_FIELDS];
     const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
     size_t scene_count, method_count;
+    char tolerance[400]; /* what there is to know of method.tolerance */
 };
 
 /* Writes the table out for a scene. False: it has more rows than fit (a scene that is too large).
@@ -85,6 +97,9 @@ const struct scenario_field *schema_find(const struct schema *schema, const char
  * there is none). NULL: no such row, or malformed. */
 const struct scenario_field *schema_find_concrete(const struct schema *schema, const char *path,
                                                   size_t index[2]);
+
+/* A scene whose format has a path (general, or with indices); NULL: none has. */
+const stance_scene *schema_scene_with(const char *path);
 
 /* Last names of the paths right below `path` ("" is the top); returns how many, at most `room`. */
 size_t schema_children(const struct schema *schema, const char *path, const char **names,

@@ -55,7 +55,18 @@
     X(impact_energy, double, impact_energy, NAN, "J",                                              \
       "largest kinetic energy added by contact impulses in one step")                              \
     X(projection_energy, double, projection_energy, NAN, "J",                                      \
-      "sum of |energy| added by position projection")
+      "sum of |energy| added by position projection")                                              \
+    X(events, int64_t, events, 0, "1", "changes of contact mode that the method handled")          \
+    X(evaluations, int64_t, evaluations, 0, "1",                                                   \
+      "evaluations of the accelerations or of the implicit equation")                              \
+    X(energy_gain, double, energy_gain, NAN, "J",                                                  \
+      "largest rise of the energy above its start and the work done")                              \
+    X(signorini_residual, double, signorini_residual, NAN, "m/s",                                  \
+      "largest normal velocity of a contact that carries, or into the ground")                     \
+    X(coulomb_residual, double, coulomb_residual, NAN, "1",                                        \
+      "largest excess of |rT|/rN over the coefficient of friction")                                \
+    X(dissipation_residual, double, dissipation_residual, NAN, "m/s",                              \
+      "largest slip that full friction against it does not accompany")
 
 /* Bit of `scenario.answers` that stands for `final_state`: the one after the table's. */
 enum {

@@ -53,7 +53,11 @@ static bool unknown_path(struct axis_reader *a, const struct tree_node *node)
     }
     near = nearest_word(node->text, known, n);
     shown(word, node->text);
-    if (near) {
+    if (schema->scene && schema_scene_with(node->text)) {
+        problem_add(&a->r->problems, node->mark,
+                    "%s: the scene %s has no field '%s' (stance describe lists them)", a->name,
+                    schema->scene->name, word);
+    } else if (near) {
         problem_add(&a->r->problems, node->mark,
                     "%s: unknown field '%s'; did you mean '%s'? (stance describe lists them)",
                     a->name, word, near);

@@ -29,27 +29,92 @@ static bool describe(const char *path, bool json_schema)
     return good;
 }
 
-static void every_path_is_described(void **state)
+/* The schema of a scene; freed by the caller. */
+static struct schema *schema_of(const stance_scene *scene)
 {
     struct schema *schema = malloc(sizeof *schema);
-    (void)state;
     assert_non_null(schema);
-    assert_true(schema_build(schema, stance_scene_find("biped")));
-    for (size_t i = 0; i < schema->count; i++) {
-        const char *path = schema->field[i].path;
-        char first[32];
-        assert_true(describe(path, false));
-        assert_true(strncmp(described, path, strlen(path)) == 0 && described[strlen(path)] == '\n');
-        snprintf(first, sizeof first, "%.20s", schema->field[i].text);
-        assert_non_null(strstr(described, first));
-        assert_true(describe(NULL, false));
-        assert_non_null(strstr(described, path));
+    assert_true(schema_build(schema, scene));
+    return schema;
+}
+
+static bool begins(const char *text, const char *path)
+{
+    return strncmp(text, path, strlen(path)) == 0 && text[strlen(path)] == '\n';
+}
+
+static void every_path_is_described(void **state)
+{
+    (void)state;
+    for (int k = 0; stance_scenes()[k]; k++) {
+        struct schema *schema = schema_of(stance_scenes()[k]);
+        char head[64], first[32];
+        snprintf(head, sizeof head, "scene: %.40s\n", schema->scene->name);
+        for (size_t i = 0; i < schema->count; i++) {
+            const char *path = schema->field[i].path;
+            assert_true(describe(path, false));
+            const char *at = strstr(described, head);
+            assert_true(begins(at ? at + strlen(head) : described, path));
+            snprintf(first, sizeof first, "%.20s", schema->field[i].text);
+            assert_non_null(strstr(at ? at : described, first));
+            assert_true(describe(NULL, false));
+            snprintf(head, sizeof head, "scene: %.40s (", schema->scene->name);
+            at = schema->field[i].by_scene ? strstr(described, head) : described;
+            assert_true(at && strstr(at, path));
+            snprintf(head, sizeof head, "scene: %.40s\n", schema->scene->name);
+        }
+        free(schema);
     }
     assert_true(describe("sweep.grid[3].count", false));
     assert_false(describe("controler.kp", false));
     assert_string_equal(errors, "stance describe: unknown path 'controler.kp'; did you mean "
                                 "'controller.kp'?\n");
+}
+
+/* A scene's own keys are described for every scene that has them, and for no other. */
+static void scenes_have_their_own_keys(void **state)
+{
+    (void)state;
+    assert_true(describe("robot", false));
+    assert_non_null(strstr(described, "scene: biped\n"));
+    assert_non_null(strstr(described, "Keys: leg_length, "));
+    assert_non_null(strstr(described, "scene: ball\nrobot\n"));
+    assert_non_null(strstr(described, "Keys: mass, radius\n"));
+    assert_non_null(strstr(described, "Keys: mass, slope, pull, pull_frequency\n"));
+    assert_non_null(strstr(described, "Keys: length, mass, inertia_ratio\n"));
+    assert_true(describe("stop.fall_height", false));
+    assert_non_null(strstr(described, "scene: biped\nstop.fall_height\n"));
+    assert_null(strstr(described, "scene: ball\n"));
+    assert_ptr_equal(schema_scene_with("robot.hip_mass"), stance_scene_find("biped"));
+    assert_ptr_equal(schema_scene_with("controller.poles[2]"), stance_scene_find("biped"));
+    assert_ptr_equal(schema_scene_with("robot.slope"), stance_scene_find("block"));
+    assert_null(schema_scene_with("robot.hipmass"));
+    struct schema *schema = schema_of(stance_scene_find("rod"));
+    static const char *const missing[] = {
+        "initial.equilibrium",    "initial.offset",   "initial.support_foot", "controller.poles",
+        "controller.sample_time", "stop.fall_height", "stop.settle.angle"};
+    for (size_t i = 0; i < sizeof missing / sizeof missing[0]; i++) {
+        assert_null(schema_find(schema, missing[i]));
+        assert_non_null(schema_scene_with(missing[i]));
+    }
+    assert_false(schema_find(schema, "robot.length")->design);
     free(schema);
+}
+
+/* What reads method.tolerance is named, with what it reads by default. */
+static void tolerance_names_its_methods(void **state)
+{
+    (void)state;
+    assert_true(describe("method.tolerance", false));
+    assert_non_null(strstr(described, "default: the method's own"));
+    for (int i = 0; described[i]; i++) {
+        described[i] = described[i] == '\n' ? ' ' : described[i];
+    }
+    for (int m = 0; stance_methods()[m]; m++) {
+        char wanted[64];
+        snprintf(wanted, sizeof wanted, "%.32s (default", stance_methods()[m]->name);
+        assert_int_equal(strstr(described, wanted) != NULL, stance_methods()[m]->tolerance > 0);
+    }
 }
 
 /* The JSON Schema of a path without indices; for stop.settle the branch that is a mapping. */
@@ -81,16 +146,10 @@ static void check_number_schema(const struct scenario_field *field, json_t *obje
     assert_near(json_number_value(high), field->high, 0);
 }
 
-static void schema_agrees_with_the_table(void **state)
+static void check_scene_schema(json_t *root, const stance_scene *scene)
 {
-    struct schema *schema = malloc(sizeof *schema);
-    json_error_t problem;
+    struct schema *schema = schema_of(scene);
     const char *names[SCHEMA_MAX_FIELDS];
-    (void)state;
-    assert_non_null(schema);
-    assert_true(schema_build(schema, stance_scene_find("biped")));
-    assert_true(describe(NULL, true));
-    json_t *root = json_loads(described, JSON_REJECT_DUPLICATES, &problem);
     assert_non_null(root);
     assert_int_equal(json_object_size(json_object_get(root, "properties")),
                      schema_children(schema, "", names, SCHEMA_MAX_FIELDS));
@@ -120,8 +179,21 @@ static void schema_agrees_with_the_table(void **state)
             }
         }
     }
-    json_decref(root);
     free(schema);
+}
+
+static void schema_agrees_with_the_table(void **state)
+{
+    json_error_t problem;
+    (void)state;
+    assert_true(describe(NULL, true));
+    json_t *root = json_loads(described, JSON_REJECT_DUPLICATES, &problem);
+    json_t *scenes = json_object_get(root, "oneOf");
+    assert_non_null(root);
+    for (size_t k = 0; stance_scenes()[k]; k++) {
+        check_scene_schema(scenes ? json_array_get(scenes, k) : root, stance_scenes()[k]);
+    }
+    json_decref(root);
 }
 
 /* ---- options and words ------------------------------------------------------------------------
@@ -143,6 +215,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_path_is_described),
+        cmocka_unit_test(scenes_have_their_own_keys),
+        cmocka_unit_test(tolerance_names_its_methods),
         cmocka_unit_test(schema_agrees_with_the_table),
         cmocka_unit_test(nearest_words),
     };

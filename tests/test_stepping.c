@@ -7,8 +7,8 @@
 #define CONE 1e-9
 #define GOLDEN_IMPLICIT 0x1d6cfe37a1f809ffu
 #define GOLDEN_MIDPOINT 0xc28466f2ba9fcc3au
-#define GOLDEN_CAPTURING 0x4342bb1dec7e64aau
-#define GOLDEN_LAGRANGE 0x5cbb0be5d5a03af5u
+#define GOLDEN_CAPTURING 0xad82947830a0d976u
+#define GOLDEN_LAGRANGE 0x909819266f9dd651u
 
 static uint64_t hash(const void *data, size_t size, uint64_t h)
 {

@@ -548,7 +548,7 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
 }
 
 /* Adds a part of a step to the whole. */
-static void report_add(struct step_report *sum, const struct step_report *part)
+static inline void report_add(struct step_report *sum, const struct step_report *part)
 {
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         sum->slip[c] += part->slip[c];

@@ -3,24 +3,22 @@
  * Between events the step is Dormand and Prince's explicit Runge-Kutta formula of order 5 with its
  * embedded formula of order 4 (J. Comp. Appl. Math. 6, 1980), on the switched Lagrange equations of
  * core/smooth.h: it may be as long as the controller's sample interval. When a stage or the end
- * leaves the mode, somewhere in the interval there is an event. It is not located. The interval
- * that holds it is crossed by the implicit law (core/step.h, theta = 1/2) once in one step and once
- * in two; when the two differ by less than the tolerance the finer is taken, otherwise the interval
- * is halved: the half without the event is a smooth step again. So an event costs one smooth and
- * three implicit steps for each bit of accuracy, whatever it is: landing, lift-off, begin or end of
- * slip, an impact of both feet, a state without accelerations (Painleve), an accumulation of
- * bounces, which the implicit law takes in its stride once they are smaller than the tolerance.
+ * leaves the mode, somewhere in the interval there is an event. It is not located: the interval is
+ * halved, the half without the event is a smooth step again, and once what is left is so short that
+ * the accelerations change no velocity by more than the tolerance in it, the implicit law
+ * (core/step.h, theta = 1/2) crosses it, whatever the event is: landing, lift-off, begin, end or
+ * turn of a slip, an impact of both feet. An accumulation of bounces ends when they are too small
+ * to count. Where there is no smooth motion to begin with - a closed contact approaches, several
+ * sets of forces fit the laws or none (Painleve), both feet stand redundantly on the edge of
+ * their cones - the implicit law takes the interval as long as it can.
  *
- * One agreement is not enough. The implicit step's error at an impact is made of a part in
- * proportion to the time before the event and one to the time after it (where the directions of
- * the impulse are taken). With the event in the first half of the interval the coarse and the fine
- * solution have the same error of the former kind, in the second half of the latter. So both
- * kinds of interval must have agreed in a hunt, unless the event is at the very beginning.
- *
- * Error of a smooth step: the embedded estimate, per coordinate and rate; of an event: the largest
- * difference in coordinates and rates. Where the two solutions disagree about which contacts carry
- * at the end, the event is at the end itself and only its time is uncertain: then the difference of
- * the rates counts for the length of the interval only.
+ * Error of a smooth step: the embedded estimate, per coordinate and rate. Error of a crossing: one
+ * step and two half ones must agree to the tolerance. That alone would not do: with the event in
+ * the first half both make the same error in proportion to the time before it, in the second half
+ * the one in proportion to the time after it, and a slip that turns looks like one that sticks to
+ * both. The bound on the length does not depend on such chance. Where the two disagree about which
+ * contacts carry at the end, the event is at the end itself and only its time is uncertain: then
+ * the difference of the rates counts for the length of the interval only.
  *
  * Each lane has an interval of its own inside its step, so that what a case does depends on nothing
  * but the case.
@@ -52,7 +50,7 @@ static const double tableau_e[METHOD_STAGES + 1] = {
 // clang-format on
 
 #define CAPTURE_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
-#define CAPTURE_TINY 1e-2        /* s per tolerance: shorter intervals need no second agreement */
+#define CAPTURE_REBOUND 1e-5     /* m/s: slower impacts do not rebound, by 5e-12 m at the most */
 #define CAPTURE_ATTEMPTS 20000   /* in one step, then the case fails */
 #define CAPTURE_GROWTH 64        /* an error this much smaller than the tolerance: twice as long */
 
@@ -61,10 +59,8 @@ struct advance {
     lanes tolerance;
     lanes done; /* s, of the step */
     lanes part; /* s, next smooth step or, in a hunt, the interval that holds the event; 0: all */
-    lanes hunting;                   /* 1: an event is known to lie within `part` ... */
-    lanes agreed_early, agreed_late; /* ... and both solutions agreed where it lies in the first, in
-                                        the second half of the interval */
-    lanes attempts;                  /* in this step */
+    lanes hunting;  /* 1: an event is known to lie within `part` ... */
+    lanes attempts; /* in this step */
     struct step_report sum;
 };
 
@@ -84,6 +80,19 @@ static void advance_free(struct advance *a)
     (void)a;
 }
 
+/* Lanes where a contact that may meet the ground within h is fast enough to rebound. */
+static inline mask capture_rebounds(const struct setting *set, const struct motion *now, lanes h)
+{
+    mask fast = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask near =
+            mask_less_equal(now->gap[c], lanes_of(1e-9) + 2 * h * lanes_abs(now->approach[c]));
+        fast |= near & mask_less(lanes_of(0), set->may_touch[c]) &
+                mask_less(now->approach[c], lanes_of(-CAPTURE_REBOUND));
+    }
+    return fast;
+}
+
 /* The interval of length h by the implicit law, in one step and in two. *next and *report are
  * those of the two; returns the lanes where both agree to the tolerance. */
 static inline mask capture_implicit(const struct setting *set, const struct motion *now,
@@ -93,15 +102,17 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
 {
     struct motion coarse = *now, middle = *now;
     struct step_report whole, half;
+    struct setting law = *set;
+    law.restitution = choose(capture_rebounds(set, now, h), set->restitution, lanes_of(0));
     memset(report, 0, sizeof *report);
     *next = *now;
-    mask good = take_step(set, now, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
+    mask good = take_step(&law, now, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
     good &=
-        take_step(set, now, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, &middle, &half);
+        take_step(&law, now, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, &middle, &half);
     report_add(report, &half);
     *next = middle;
     good &=
-        take_step(set, &middle, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, next, &half);
+        take_step(&law, &middle, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, next, &half);
     report_add(report, &half);
     report->evaluations += whole.evaluations;
     lanes position = lanes_of(0), rate = lanes_of(0);
@@ -140,11 +151,19 @@ static inline mask capture_in_range(const struct motion *now, lanes h)
     return scene_angles_in_range(ahead);
 }
 
+static inline lanes capture_largest(const struct smooth *e)
+{
+    lanes largest = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        largest = lanes_max(lanes_abs(e->acceleration[i]), largest);
+    return largest;
+}
+
 /* Smooth motion over `length` from *now in the lanes of `try`; *stuck: there is none. Returns the
  * lanes where *step is defined and inside the mode; its error estimate is still to be judged. */
 static inline mask capture_smooth(const struct setting *set, const struct motion *now,
                                   const lanes *torque, lanes length, mask try, bool coupled,
-                                  struct explicit_step *step, mask *stuck)
+                                  struct explicit_step *step, mask *stuck, lanes *acceleration)
 {
     struct smooth begin;
     struct contact_state mode;
@@ -152,25 +171,14 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
     const bool touching = smooth_touching(set, now->gap);
     smooth_evaluate(set, now->t, now->s, now->w, torque, coupled, touching, &begin);
     smooth_mode(set, &begin, touching, &mode, &trouble);
+    *acceleration = capture_largest(&begin);
     if (touching)
         smooth_solve(set, &mode, &begin);
+    *acceleration = lanes_max(capture_largest(&begin), *acceleration);
     explicit_take(set, now, torque, length, try, coupled, &mode, &begin, step);
     *stuck = try & (trouble.impact | trouble.none | trouble.several |
                     smooth_violated(set, &mode, &begin));
     return try & LANES_NOT(*stuck | step->violated | step->bad);
-}
-
-/* Decides about the interval of a hunt: `agree`, both implicit solutions do; `early`, its first
- * half holds the event; `stuck`, the event is at its beginning. */
-static inline mask capture_accept(struct advance *a, mask hunt, mask agree, mask early, mask stuck,
-                                  lanes interval)
-{
-    const lanes none = lanes_of(0), one = lanes_of(1);
-    a->agreed_early = choose(hunt & agree & early, one, a->agreed_early);
-    a->agreed_late = choose(hunt & agree & LANES_NOT(early), one, a->agreed_late);
-    const mask both = mask_less(none, a->agreed_early) & mask_less(none, a->agreed_late);
-    const mask tiny = mask_less_equal(interval, CAPTURE_TINY * a->tolerance);
-    return hunt & agree & (stuck | both | tiny);
 }
 
 /* One attempt in every lane: at a smooth step and, over an interval known to hold an event, at the
@@ -188,17 +196,19 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     struct explicit_step step;
     mask stuck, crossed = MASK_NONE, arrived = MASK_NONE;
     a->attempts += choose(live, one, none);
-    const mask inside = capture_smooth(set, now, torque, length, live, coupled, &step, &stuck);
+    lanes acceleration;
+    const mask inside =
+        capture_smooth(set, now, torque, length, live, coupled, &step, &stuck, &acceleration);
     const mask event = live & LANES_NOT(inside);
-    if (mask_any(hunt)) {
+    const mask cross = hunt & (stuck | mask_less_equal(acceleration * interval, a->tolerance));
+    if (mask_any(cross)) {
         struct motion next;
         struct step_report part;
-        const mask agree =
-            capture_implicit(set, now, torque, interval, hunt, coupled, a->tolerance, &next, &part);
-        crossed = capture_accept(a, hunt, agree, event, stuck, interval);
+        crossed = capture_implicit(set, now, torque, interval, cross, coupled, a->tolerance, &next,
+                                   &part);
         part.events = choose(crossed, one, none);
         choose_all(crossed, &next, now, sizeof next);
-        capture_add(a, crossed, hunt, &part);
+        capture_add(a, crossed, cross, &part);
         arrived = crossed & mask_less_equal(left, interval);
     }
     const mask smooth = live & LANES_NOT(crossed);
@@ -215,11 +225,9 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     lanes next = choose(on, longer, choose(good | event, length, 0.5 * length));
     next = choose(crossed, lanes_of(INFINITY), next);
     arrived |= on & mask_less_equal(left, length);
-    const mask hunts = smooth & (event | (good & hunt)), begins = hunts & LANES_NOT(hunt);
+    const mask hunts = smooth & (event | (good & hunt));
     a->part = choose(live, next, a->part);
     a->hunting = choose(live, choose(hunts, one, none), a->hunting);
-    a->agreed_early = choose(begins, none, a->agreed_early);
-    a->agreed_late = choose(begins, none, a->agreed_late);
     *failed = smooth & LANES_NOT(good) &
               (mask_less(next, CAPTURE_SMALLEST * h) |
                mask_less(lanes_of(CAPTURE_ATTEMPTS), a->attempts));
@@ -237,7 +245,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 #include "../core/bundle.h"
 // clang-format on
 
-#if STANCE_LANES == 1
+#ifdef STANCE_DESCRIBE_METHOD
 const stance_method stance_method_capturing = {
     .name = "capturing",
     .text = "order 5 between events; the implicit law, refined to tolerance, across them",

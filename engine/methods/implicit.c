@@ -14,7 +14,7 @@
 #include "../core/bundle.h"
 // clang-format on
 
-#if STANCE_LANES == 1
+#ifdef STANCE_DESCRIBE_METHOD
 const stance_method stance_method_implicit = {
     .name = "implicit",
     .text = "Moreau's implicit step, theta = 1, exact contact: the paper's method",

@@ -122,7 +122,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 #include "../core/bundle.h"
 // clang-format on
 
-#if STANCE_LANES == 1
+#ifdef STANCE_DESCRIBE_METHOD
 const stance_method stance_method_lagrange = {
     .name = "lagrange",
     .text = "switched Lagrange equations, Runge-Kutta of order 4, switches bracketed by halving",

@@ -14,7 +14,7 @@
 #include "../core/bundle.h"
 // clang-format on
 
-#if STANCE_LANES == 1
+#ifdef STANCE_DESCRIBE_METHOD
 const stance_method stance_method_midpoint = {
     .name = "midpoint",
     .text = "implicit midpoint for smooth forces, implicit contact impulses",

@@ -1,0 +1,204 @@
+/* ball_lanes.h - the ball's algebra for the stepping core, one ball in each lane.
+ *
+ * s = q = (x, z): see ball.c for the equations. The inertia matrix is m I, no angle appears, and
+ * contact directions do not turn, so everything that other scenes expand is exact here.
+ */
+#ifndef STANCE_SCENES_BALL_LANES_H
+#define STANCE_SCENES_BALL_LANES_H
+
+#include "../core/lanes.h"
+#include "../stance.h"
+
+enum {
+    SCENE_COORDINATES = 2,
+    SCENE_CONTACTS = 1,
+    SCENE_ACTUATORS = 0,
+    SCENE_POSTURE = 0,
+    SCENE_ANGLES = 0,
+};
+
+typedef struct scene_body {
+    lanes mass, radius;
+} scene_body;
+
+typedef struct scene_trig {
+    lanes sine[SLOTS(SCENE_ANGLES)], cosine[SLOTS(SCENE_ANGLES)]; /* of no angle: 0 and 1 */
+} scene_trig;
+
+/* The step's matrix J = d(residual)/d(velocity), inverted. */
+typedef struct scene_matrix {
+    lanes inverse_mass;
+} scene_matrix;
+
+static inline void scene_load_body(scene_body *b, int lane, const double *robot)
+{
+    lane_set(&b->mass, lane, robot[0]);
+    lane_set(&b->radius, lane, robot[1]);
+}
+
+static inline void scene_enter(const double *robot, const double *q, const double *v, double *s,
+                               double *w)
+{
+    (void)robot;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        s[i] = q[i], w[i] = v[i];
+}
+static inline void scene_leave(const double *robot, const double *s, const double *w, double *q,
+                               double *v)
+{
+    (void)robot;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        q[i] = s[i], v[i] = w[i];
+}
+
+static inline void scene_trigonometry(const lanes *s, scene_trig *trig)
+{
+    (void)s;
+    trig->sine[0] = lanes_of(0);
+    trig->cosine[0] = lanes_of(1);
+}
+static inline void scene_contact_trigonometry(const lanes *s, scene_trig *trig)
+{
+    scene_trigonometry(s, trig);
+}
+static inline void scene_choose_trig(mask m, const scene_trig *a, const scene_trig *b,
+                                     scene_trig *trig)
+{
+    (void)m, (void)b;
+    *trig = *a;
+}
+static inline mask scene_angles_in_range(const lanes *s)
+{
+    (void)s;
+    return LANES_ALL;
+}
+
+static inline void scene_posture(const lanes *s, lanes *posture)
+{
+    (void)s, (void)posture;
+}
+
+/* residual = A change - h (forces without contact). */
+static inline void scene_residual(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
+                                  const lanes *w, const lanes *change, const lanes *torque,
+                                  lanes *residual)
+{
+    (void)t, (void)trig, (void)w, (void)torque;
+    residual[0] = b->mass * change[0];
+    residual[1] = b->mass * (change[1] + h * STANCE_GRAVITY);
+}
+
+/* Factors J = d residual / d velocity: the mass. */
+static inline void
+scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes contact_lever,
+             const scene_trig *trig, const scene_trig *contact_trig, const lanes *w,
+             const lanes *change, const lanes r[SCENE_CONTACTS][2], bool coupled,
+             const lanes torque_rate[SLOTS(SCENE_ACTUATORS)][SLOTS(SCENE_POSTURE)], scene_matrix *m)
+{
+    (void)h, (void)rate, (void)lever, (void)contact_lever, (void)trig, (void)contact_trig;
+    (void)w, (void)change, (void)r, (void)coupled, (void)torque_rate;
+    m->inverse_mass = 1 / b->mass;
+}
+
+/* x = J^-1 b. */
+static inline void scene_solve(const scene_matrix *m, bool coupled, const lanes *b, lanes *x)
+{
+    (void)coupled;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        x[i] = m->inverse_mass * b[i];
+}
+
+/* x[direction] = J^-1 H_c^T e_direction for normal (0) and tangential (1) impulses. */
+static inline void scene_contact_response(const scene_body *b, const scene_matrix *m, bool coupled,
+                                          const scene_trig *trig, int c,
+                                          lanes x[2][SCENE_COORDINATES])
+{
+    (void)b, (void)coupled, (void)trig, (void)c;
+    x[0][0] = x[1][1] = lanes_of(0);
+    x[0][1] = x[1][0] = m->inverse_mass;
+}
+
+/* Velocity of the contact: normal, tangential. */
+static inline void scene_contact_velocity(const scene_body *b, const scene_trig *trig, int c,
+                                          const lanes *w, lanes u[2])
+{
+    (void)b, (void)trig, (void)c;
+    u[0] = w[1];
+    u[1] = w[0];
+}
+/* (H + lever dH/ds w) change, with H constant. */
+static inline void scene_contact_velocity_change(const scene_body *b, const scene_trig *trig, int c,
+                                                 const lanes *w, lanes lever, const lanes *change,
+                                                 lanes u[2])
+{
+    (void)w, (void)lever;
+    scene_contact_velocity(b, trig, c, change, u);
+}
+/* Acceleration of the contact when the coordinates do not accelerate. */
+static inline void scene_contact_curvature(const scene_body *b, const scene_trig *trig, int c,
+                                           const lanes *w, lanes a[2])
+{
+    (void)b, (void)trig, (void)c, (void)w;
+    a[0] = a[1] = lanes_of(0);
+}
+
+static inline lanes scene_gap(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+{
+    (void)trig, (void)c;
+    return s[1] - b->radius;
+}
+/* What a displacement d adds to the gap; exact. */
+static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c,
+                                     const lanes *d)
+{
+    (void)b, (void)trig, (void)c;
+    return d[1];
+}
+static inline lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
+{
+    (void)b, (void)c, (void)d;
+    return lanes_of(0);
+}
+
+/* Mechanical energy that a displacement d adds. */
+static inline lanes scene_energy_change(const scene_body *b, const scene_trig *trig, const lanes *w,
+                                        const lanes *d)
+{
+    (void)trig, (void)w;
+    return b->mass * (STANCE_GRAVITY * d[1]);
+}
+/* Kinetic energy of a velocity change x. */
+static inline lanes scene_kinetic(const scene_body *b, const scene_trig *trig, const lanes *x)
+{
+    (void)trig;
+    return 0.5 * (b->mass * (x[0] * x[0] + x[1] * x[1]));
+}
+/* Kinetic and potential energy at s with velocity w. */
+static inline lanes scene_energy(const scene_body *b, const lanes *s, const lanes *w,
+                                 const scene_trig *trig)
+{
+    return scene_kinetic(b, trig, w) + b->mass * (STANCE_GRAVITY * s[1]);
+}
+/* Nothing but gravity and contact acts. */
+static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const lanes *torque,
+                               const lanes *d)
+{
+    (void)b, (void)h, (void)t, (void)torque, (void)d;
+    return lanes_of(0);
+}
+
+/* A ball has nothing to fall from. */
+static inline mask scene_fallen(const scene_body *b, const lanes *s, const scene_trig *trig,
+                                lanes fall_height)
+{
+    (void)b, (void)s, (void)trig, (void)fall_height;
+    return MASK_NONE;
+}
+/* Largest of the rates. */
+static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, const scene_trig *trig)
+{
+    (void)b, (void)trig;
+    return lanes_max(lanes_abs(w[0]), lanes_abs(w[1]));
+}
+
+#endif
