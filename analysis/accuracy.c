@@ -111,8 +111,8 @@ static bool read_answers(struct accuracy *a, const struct results *r, stance_mes
         for (size_t i = 0; i < n; i++) {
             const uint64_t index = k * n + i;
             if (r->kind[index] == RESULTS_FAILED) {
-                a->row[k].failure = a->row[k].failed++ == 0 && r->failure ? r->failure[index]
-                                                                          : a->row[k].failure;
+                a->row[k].failure =
+                    a->row[k].failed++ == 0 && r->failure ? r->failure[index] : a->row[k].failure;
             }
         }
     }
@@ -130,7 +130,8 @@ static void compare_trajectories(const struct results_trajectory *truth,
     for (size_t i = 0; i < rows; i++) {
         double largest = 0;
         for (size_t c = 0; c < m; c++) {
-            position = fmax(position, fabs(truth->position[i * m + c] - other->position[i * m + c]));
+            position =
+                fmax(position, fabs(truth->position[i * m + c] - other->position[i * m + c]));
             largest = fmax(largest, fabs(truth->velocity[i * m + c] - other->velocity[i * m + c]));
         }
         velocity += largest / (double)rows;

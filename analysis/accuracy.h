@@ -24,15 +24,15 @@ struct accuracy_row {
     uint64_t inside;        /* ... in cells whose neighbours all have the truth's own outcome */
     struct measure_cost cost;
     double signorini, coulomb, dissipation, penetration, energy_gain; /* largest of the cases */
-    double events, evaluations;                                      /* per simulated second */
+    double events, evaluations;                                       /* per simulated second */
 };
 
 /* Order of convergence of a method: slope of log error over log step (or tolerance). */
 struct accuracy_order {
     const stance_method *method;
     bool by_tolerance;
-    size_t rows;       /* of the ladder that it was fitted on; below 2 there is no slope */
-    double from, to;   /* ends of the ladder: s, or tolerance */
+    size_t rows;               /* of the ladder that it was fitted on; below 2 there is no slope */
+    double from, to;           /* ends of the ladder: s, or tolerance */
     double position, velocity; /* slopes; NAN: none */
 };
 

@@ -287,7 +287,8 @@ static void print_numbers(const struct summary *summary)
     bool first = true;
     for (int k = 0; k < SUMMARY_FIRST_RESIDUAL; k++) {
         const struct summary_numbers *row = &summary->numbers[k];
-        if (!row->stored || row->numbers.n == 0) {
+        if (!row->stored || row->numbers.n == 0 ||
+            (k == SUMMARY_peak_torque && row->numbers.high == 0)) { /* nothing is actuated */
             continue;
         }
         if (first) {

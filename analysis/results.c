@@ -401,6 +401,26 @@ static uint8_t kind_of(uint8_t status, const uint8_t *outcome)
     }
 }
 
+/* Files number the failures as their program did: into our numbers, by the names they bring. */
+static void translate_failures(struct results *r)
+{
+#define FAILURE_NAME(NAME, name, text) #name,
+    static const char *const names[] = {STANCE_FAILURES(FAILURE_NAME)};
+#undef FAILURE_NAME
+    uint8_t now[UINT8_MAX + 1] = {0};
+    hid_t dataset = H5Dopen2((hid_t)r->id, "failure", H5P_DEFAULT);
+    char *words = read_text(dataset, "flag_meanings"), *rest = words;
+    for (size_t k = 0; rest && k < sizeof now; k++) {
+        const char *word = strsep(&rest, " ");
+        for (size_t f = 0; f < sizeof names / sizeof names[0]; f++)
+            now[k] = strcmp(word, names[f]) == 0 ? (uint8_t)f : now[k];
+    }
+    for (uint64_t i = 0; words && i < r->cases; i++)
+        r->failure[i] = now[r->failure[i]];
+    free(words);
+    H5Dclose(dataset);
+}
+
 static bool read_kinds(struct results *r, stance_message *message)
 {
     hsize_t length[SCENARIO_MAX_AXES];
@@ -417,6 +437,9 @@ static bool read_kinds(struct results *r, stance_message *message)
         !read_bytes(r, "failure", &r->failure, message)) {
         free(outcome);
         return false;
+    }
+    if (r->failure) {
+        translate_failures(r);
     }
     bool good = r->kind || damaged(r, "it has no variable 'status'", message);
     for (uint64_t i = 0; good && i < r->cases; i++) {

@@ -192,6 +192,8 @@ done:
 static int run(int argc, char **argv)
 {
     bool help;
+    if (argc > 1 && strcmp(argv[1], "accuracy") == 0)
+        return command_accuracy.run(argc - 1, argv + 1);
     const char *operand[1], *repeat_text[1];
     size_t operands, json_count = 0, repeat_count = 0;
     const struct option_spec specs[] = {{"--json", false, NULL, 0, &json_count},

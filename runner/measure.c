@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { LEAST_REPETITIONS = 3, MOST_REPETITIONS = 101 };
+enum { LEAST_REPETITIONS = 3, MOST_REPETITIONS = 101, LONG = 20 };
 
 static int ascending(const void *a, const void *b)
 {
@@ -22,13 +22,28 @@ static double simulated(const stance_result *results, size_t n)
     return sum;
 }
 
+/* Runs the cases once; *time is what that took. */
+static bool run_quickly(const stance_kernel *kernel, const stance_case *cases,
+                        stance_result *results, size_t n, double budget, double *time)
+{
+    const double begin = plan_clock();
+    kernel->run(cases, results, n);
+    *time = plan_clock() - begin;
+    return *time < LONG * budget;
+}
+
 static void repeat(const stance_kernel *kernel, const stance_case *cases, stance_result *results,
                    size_t n, double budget, struct measure_cost *cost)
 {
     double time[MOST_REPETITIONS], spent = 0;
     int k = 0;
-    kernel->run(cases, results, n); /* warms up */
-    while (k < LEAST_REPETITIONS || (k < MOST_REPETITIONS && spent < budget)) {
+    if (run_quickly(kernel, cases, results, n, budget, &time[0])) {
+        spent = 0; /* that was the warming up */
+    } else {
+        spent = time[k++];
+    }
+    while (k < 1 || (k < LEAST_REPETITIONS && spent < LONG * budget) ||
+           (k < MOST_REPETITIONS && spent < budget)) {
         const double begin = plan_clock();
         kernel->run(cases, results, n);
         time[k] = plan_clock() - begin;

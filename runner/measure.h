@@ -1,4 +1,5 @@
-/* measure.h - what a group of cases costs on one core, measured without reading or writing files. */
+/* measure.h - what a group of cases costs on one core, measured without reading or writing files.
+ */
 #ifndef STANCE_RUNNER_MEASURE_H
 #define STANCE_RUNNER_MEASURE_H
 
@@ -10,8 +11,9 @@ struct measure_cost {
     int repetitions;
 };
 
-/* Runs the `count` rows from `first` on, all of one method, at least three times and on for about
- * `budget` seconds, whole lanes at a time as in a sweep. Needs the designs. false: no memory. */
+/* Runs the `count` rows from `first` on, all of one method, for about `budget` seconds and at
+ * least three times - once when that takes more than twenty times the budget - whole lanes at a
+ * time as in a sweep. Needs the designs. false: no memory. */
 bool measure_rows(const struct plan *plan, uint64_t first, size_t count, double budget,
                   struct measure_cost *cost, stance_message *message);
 

@@ -105,6 +105,9 @@ static void unknown_key(struct reader *r, const struct tree_key *key, const char
             problem_add(&r->problems, key->mark, "%s%sthe scene %s has no key '%s' (known: %s)",
                         name, name[0] ? ": " : "", r->s->scene->name, shown(word, key->name),
                         word_list(list, sizeof list, known, count));
+            if (strcmp(path, "initial") == 0) {
+                reader_seen(r, path)->excused = true; /* that there is no start is said already */
+            }
             return;
         }
     }
@@ -233,6 +236,12 @@ static void set_defaults(struct reader *r)
             int word = (int)field->fallback;
             memcpy(place, &word, sizeof word);
         }
+    }
+    if (r->s->scene && r->s->scene->actuators == 0) {
+        base->torque_limit = INFINITY;
+    }
+    if (r->s->scene && r->s->scene->postures == 0) {
+        base->settle_angle = 1; /* of no angle */
     }
     base->settle = 1;
     base->contacts = r->s->scene ? (1 << r->s->scene->contacts) - 1 : 0;

@@ -17,7 +17,8 @@ PROVENANCE = {"program_version", "git_revision", "compiler", "library_versions",
 # The answers in the order in which the checksum takes them.
 ANSWERS = """outcome evidence failure end_time settle_time fall_time steps iterations
     ambiguous_steps subdivided_steps max_penetration slip_distance peak_torque friction_used
-    impact_energy projection_energy final_state status""".split()
+    impact_energy projection_energy events evaluations energy_gain signorini_residual
+    coulomb_residual dissipation_residual final_state status""".split()
 
 
 def contents(name):

@@ -272,6 +272,59 @@ static void refusals(void **state)
                        "1");
 }
 
+/* The method's own tolerance unless one is given; what reads none is content without. */
+static void tolerance(void **state)
+{
+    (void)state;
+    struct scenario_values v = balance_values();
+    for (v.method = 0; stance_methods()[v.method]; v.method++) {
+        const double own = stance_methods()[v.method]->tolerance;
+        v.tolerance = NAN;
+        assert_true(resolved(&v).tolerance == own);
+        v.tolerance = 1e-5;
+        assert_true(resolved(&v).tolerance == 1e-5);
+        v.tolerance = 0;
+        if (own > 0) {
+            assert_refused(&v, "method.tolerance must be positive");
+        } else {
+            resolved(&v);
+        }
+    }
+}
+
+/* Scenes that have no equilibrium begin at a state. */
+static void scenes_without_equilibrium(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"ball", "block", "rod"};
+    for (int k = 0; k < 3; k++) {
+        const stance_scene *scene = stance_scene_find(names[k]);
+        struct scenario_values v = balance_values();
+        struct resolved_design design;
+        stance_message message;
+        stance_case c;
+        v.law = LAW_NONE;
+        v.tolerance = NAN;
+        for (int i = 0; i < scene->robot_count; i++) {
+            v.robot[i] = scene->robot[i].fallback;
+        }
+        assert_false(resolve_design(scene, &v, &design, &message));
+        assert_non_null(strstr(message.text, "has no equilibria: give initial.state"));
+        v.state_given = 1;
+        v.equilibrium.given = false;
+        v.support_foot = 0;
+        v.state[1] = 2;
+        v.state[scene->coordinates] = -3; /* vx */
+        assert_true(resolve_design(scene, &v, &design, &message));
+        assert_true(resolve_case(scene, &v, &design, 1, 2, &c, &message));
+        assert_true(c.position[1] == 2 && c.velocity[0] == -3);
+        assert_true(!c.has_target && c.support == -1 && c.sample_every == 1);
+        v.state[1] = -1;
+        assert_false(resolve_case(scene, &v, &design, 1, 2, &c, &message));
+        assert_non_null(strstr(message.text, "inside the ground"));
+    }
+}
+
 /* A case that failed leaves the same bits everywhere: nothing half done. */
 static void failed_design_is_clear(void **state)
 {
@@ -298,6 +351,7 @@ int main(void)
         cmocka_unit_test(no_law),      cmocka_unit_test(hold_law),
         cmocka_unit_test(wrong_model), cmocka_unit_test(own_equilibrium_and_gains),
         cmocka_unit_test(refusals),    cmocka_unit_test(failed_design_is_clear),
+        cmocka_unit_test(tolerance),   cmocka_unit_test(scenes_without_equilibrium),
     };
     return cmocka_run_group_tests_name("resolve", tests, NULL, NULL);
 }

@@ -242,7 +242,13 @@ static stance_result numbered(uint64_t row)
                        .fall_time = 0.5,
                        .steps = (int64_t)row * 1000000007,
                        .iterations = -1,
-                       .peak_torque = 1e-300};
+                       .peak_torque = 1e-300,
+                       .events = (int64_t)row - 7,
+                       .evaluations = (int64_t)row << 40,
+                       .energy_gain = 1e300,
+                       .signorini_residual = 0.5,
+                       .coulomb_residual = -0.0,
+                       .dissipation_residual = INFINITY};
     for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
         r.position[i] = (double)row + 0.1 * i, r.velocity[i] = -(double)row;
     return r;
@@ -318,6 +324,60 @@ static void test_designs_stored(void **state)
     plan_free(&copy);
 }
 
+/* A scene without actuators and designs: rows with trajectories, whole when both are. */
+static void test_plain_scene(void **state)
+{
+    static const char ball[] =
+        "stance: 1\nscene: ball\nground: {restitution: 0.5}\ninitial: {state: {z: 0.6}}\n"
+        "stop: {time: 0.5, settle: off}\n"
+        "sweep: {grid: [{path: robot.radius, values: [0, 0.1, 0.2]}]}\n"
+        "record: {every: 0.1, cases: all}\n";
+    const struct fixture *f = *state;
+    struct scenario s;
+    struct plan plan;
+    struct plan_error error;
+    struct store *store;
+    stance_message message;
+    bool whole[3];
+    stance_result results[3], read[3];
+    const double nothing = NAN;
+    double data[6 * 7];
+    assert_true(scenario_read(&s, "ball.yaml", ball, NULL, 0, stderr));
+    assert_true(plan_make(&plan, &s, false, 0, false, &error));
+    assert_true(plan_compute_designs(&plan, &f->alone, &error));
+    assert_int_equal(plan.designs, 1);
+    assert_true(plan_check_cases(&plan, &error));
+    unlink(f->file);
+    assert_true(store_create(f->file, &plan, 1, "here", &message));
+    assert_true(store_open(&store, f->file, &plan, 1, &message));
+    for (int i = 0; i < 42; i++)
+        data[i] = nothing;
+    for (uint64_t row = 0; row < 3; row++) {
+        stance_trajectory t = {0.1, 6, data, data + 12, NULL, data + 24, data + 36};
+        stance_case c;
+        int method;
+        assert_true(plan_resolve(&plan, row, &c, &method));
+        c.trajectory = &t;
+        stance_kernel_find(s.scene, stance_methods()[method], NULL)->run(&c, &results[row], 1);
+        assert_int_equal(results[row].status, STANCE_DONE);
+        assert_true(data[1] == 0.6 && data[36] == 0.6 - c.robot[1]); /* z and the gap at 0 */
+        assert_true(store_write_trajectory(store, row, &t, &message));
+    }
+    assert_true(store_write(store, 0, 2, results, &message));
+    assert_true(store_verify(store, 0, 3, read, whole, &message));
+    assert_true(whole[0] && whole[1] && !whole[2]);
+    data[41] += 1;
+    assert_true(store_write_trajectory(
+        store, 2, &(stance_trajectory){0.1, 6, data, data + 12, NULL, data + 24, data + 36},
+        &message));
+    assert_true(store_write(store, 2, 1, &results[2], &message));
+    assert_true(store_verify(store, 0, 3, read, whole, &message));
+    assert_true(whole[2]); /* its checksum is of what was written */
+    assert_true(store_close(store, &message));
+    plan_free(&plan);
+    scenario_free(&s);
+}
+
 static void test_origin(void **state)
 {
     struct fixture *f = *state;
@@ -384,6 +444,7 @@ int main(void)
         cmocka_unit_test(test_recorded),     cmocka_unit_test(test_checks),
         cmocka_unit_test(test_rows),         cmocka_unit_test(test_designs_stored),
         cmocka_unit_test(test_origin),       cmocka_unit_test(test_lock),
+        cmocka_unit_test(test_plain_scene),
     };
     store_prepare();
     return cmocka_run_group_tests_name("runner", tests, make_fixture, free_fixture);

@@ -67,7 +67,7 @@ static const char full[] =
     "  sample_time: 0.002\n"
     "  torque_limit: 10\n"
     "  noise: 0.1\n"
-    "method: {name: midpoint, step: 5e-4}\n"
+    "method: {name: midpoint, step: 5e-4, tolerance: 1e-7}\n"
     "stop: {time: 8.5, settle: {angle: 0.04, rate: 0.4, hold: 0.6}, fall_height: 0.3}\n"
     "sweep:\n"
     "  grid:\n"
@@ -106,7 +106,21 @@ static const char places[] = "stance: 1\n"
                              "  poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]\n"
                              "stop: {time: 8}\n";
 
-static const char *const good_texts[] = {full, holds, gives_gains, places};
+static const char bounces[] = "stance: 1\n"
+                              "scene: ball\n"
+                              "robot: {radius: 0}\n"
+                              "ground: {restitution: 0.5}\n"
+                              "initial: {state: {vx: 1}}\n"
+                              "method: {name: capturing}\n"
+                              "stop: {time: 3, settle: {rate: 0.01, hold: 0.1}}\n"
+                              "sweep:\n"
+                              "  grid:\n"
+                              "    - {path: method.tolerance, from: 1e-9, to: 1e-5, count: 5, "
+                              "spacing: log}\n"
+                              "    - {path: robot.mass, values: [1, 2]}\n"
+                              "record: {answers: [events, energy_gain, dissipation_residual]}\n";
+
+static const char *const good_texts[] = {full, holds, gives_gains, places, bounces};
 enum { GOOD_TEXTS = sizeof good_texts / sizeof good_texts[0] };
 
 /* ---- good scenarios ---------------------------------------------------------------------------
@@ -158,7 +172,8 @@ static void every_key_is_read(void **state)
     check_numbers((double[]){v->sample_time, v->torque_limit, v->noise}, (double[]){0.002, 10, 0.1},
                   3);
     assert_string_equal(stance_methods()[v->method]->name, "midpoint");
-    check_numbers((double[]){v->step, v->stop_time, v->fall_height}, (double[]){5e-4, 8.5, 0.3}, 3);
+    check_numbers((double[]){v->step, v->tolerance, v->stop_time, v->fall_height},
+                  (double[]){5e-4, 1e-7, 8.5, 0.3}, 4);
     assert_int_equal(v->settle, 1);
     check_numbers((double[]){v->settle_angle, v->settle_rate, v->settle_hold},
                   (double[]){0.04, 0.4, 0.6}, 3);
@@ -191,6 +206,7 @@ static void defaults_hold(void **state)
                              v->settle_angle, v->settle_rate, v->settle_hold, v->fall_height},
                   (double[]){0.8, 0, 0.001, 0, 0, 0.05, 0.5, 0.5, 0.2}, 9);
     assert_true(isinf(v->torque_limit));
+    assert_true(isnan(v->tolerance)); /* the method's own */
     assert_int_equal(v->contacts, 3);
     assert_int_equal(v->support_foot, 1);
     assert_int_equal(v->law, LAW_NONE);
@@ -289,6 +305,55 @@ static void axes_make_cases(void **state)
     scenario_free(&s);
 }
 
+/* Scenes without controller: their own keys and defaults, and no designs. */
+static void other_scenes_are_read(void **state)
+{
+    static const struct {
+        const char *text;
+        const char *scene;
+        double robot[4], start[3];
+    } plain[] = {
+        {"stance: 1\nscene: ball\ninitial: {state: {}}\nstop: {time: 1}\n",
+         "ball",
+         {1, 0.1},
+         {0, 1}},
+        {"stance: 1\nscene: block\nrobot: {slope: -0.5}\ninitial: {state: {x: 2}}\n"
+         "stop: {time: 1}\n",
+         "block",
+         {1, -0.5, 0, 1},
+         {2, 0}},
+        {"stance: 1\nscene: rod\ninitial: {state: {theta: 1}}\ncontroller: {kind: none}\n"
+         "stop: {time: 1}\n",
+         "rod",
+         {1, 1, 1. / 12},
+         {0, 1, 1}},
+    };
+    struct scenario s;
+    struct scenario_values v;
+    (void)state;
+    read_good(&s, bounces, NULL, 0);
+    assert_ptr_equal(s.scene, stance_scene_find("ball"));
+    assert_int_equal(s.base.contacts, 1);
+    assert_int_equal(s.base.support_foot, 0);
+    check_numbers(s.base.state, (double[]){0, 1, 1, 0}, 4);
+    check_numbers(s.base.robot, (double[]){1, 0}, 2);
+    assert_string_equal(s.axis[0].unit, "m, rad");
+    assert_false(s.axis[0].design || s.axis[1].design);
+    scenario_case_values(&s, 9, &v);
+    assert_true(v.tolerance == 1e-5 && v.robot[0] == 2);
+    assert_int_equal(s.answers, 1u << STORE_BIT_events | 1u << STORE_BIT_energy_gain |
+                                    1u << STORE_BIT_dissipation_residual);
+    scenario_free(&s);
+    for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
+        read_good(&s, plain[i].text, NULL, 0);
+        assert_string_equal(s.scene->name, plain[i].scene);
+        assert_true(s.base.state_given && s.base.law == LAW_NONE);
+        check_numbers(s.base.robot, plain[i].robot, (size_t)s.scene->robot_count);
+        check_numbers(s.base.state, plain[i].start, (size_t)s.scene->coordinates);
+        scenario_free(&s);
+    }
+}
+
 /* What only a sweep gives counts as given. */
 static void swept_fields_count_as_given(void **state)
 {
@@ -343,7 +408,7 @@ static void same_scenario(const struct scenario *a, const struct scenario *b)
 static void resolved_text_reads_back(void **state)
 {
     static const char *const sets[] = {"title=\"caf\\u00e9 \\\"q\\\" \\\\ : # \\u2028\"",
-                                       "stop.time=3.25", "robot.hip_mass=6", "seed=5"};
+                                       "stop.time=3.25", "ground.restitution=0.25", "seed=5"};
     DIR *directory = opendir("scenarios");
     struct scenario a, b;
     (void)state;
@@ -675,6 +740,7 @@ int main(void)
         cmocka_unit_test(every_key_is_read),
         cmocka_unit_test(defaults_hold),
         cmocka_unit_test(axes_make_cases),
+        cmocka_unit_test(other_scenes_are_read),
         cmocka_unit_test(swept_fields_count_as_given),
         cmocka_unit_test(resolved_text_reads_back),
         cmocka_unit_test(resolved_text_is_canonical),

@@ -164,6 +164,9 @@ static void check_scene_schema(json_t *root, const stance_scene *scene)
         assert_true(text && strncmp(text, field->text, strlen(field->text)) == 0);
         if (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER) {
             check_number_schema(field, object);
+        } else if (strcmp(field->path, "scene") == 0) {
+            json_t *word = json_array_get(json_object_get(object, "enum"), 0);
+            assert_string_equal(json_string_value(word), scene->name);
         } else if (field->type == FIELD_WORD) {
             assert_int_equal(json_array_size(json_object_get(object, "enum")), field->word_count);
         } else if (field->type == FIELD_MAP) {
@@ -175,7 +178,8 @@ static void check_scene_schema(json_t *root, const stance_scene *scene)
             json_t *fallback = json_object_get(object, "default");
             assert_non_null(fallback);
             if (field->type == FIELD_NUMBER) {
-                assert_near(json_number_value(fallback), field->fallback, 0);
+                assert_near(json_number_value(fallback), field->fallback,
+                            1e-14 * fabs(field->fallback));
             }
         }
     }
