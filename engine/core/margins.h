@@ -4,9 +4,9 @@
  * A mode lasts while its margins are not negative: the gap of an open contact; the normal force of
  * a closed one; both edges of the cone where it sticks, the slip in its direction where it slides;
  * the room to the torque limit, or beyond it, where the controller acts inside the step. Forces are
- * scaled to accelerations. Margins that a mode starts from zero are shifted by their `depth`, a
- * multiple of what counts as zero: no root is at the beginning of an interval, and the state behind
- * an event is clearly inside the next mode.
+ * scaled to accelerations; where a contact slides they must be unique. Margins that a mode starts
+ * from zero are shifted by their `depth`, a multiple of what counts as zero: no root is at the
+ * beginning of an interval, and the state behind an event is clearly inside the next mode.
  */
 #ifndef STANCE_CORE_MARGINS_H
 #define STANCE_CORE_MARGINS_H
@@ -15,10 +15,11 @@
 
 #include <float.h>
 
-#define EVENT_SHORTEST 1e-7 /* s: nothing dips unseen in a step that is shorter */
+#define EVENT_SHORTEST 1e-8 /* s: nothing dips unseen in a step that is shorter */
 #define EVENT_FORCE 1e-9    /* of the accelerations: a force may pull, or leave the cone, by this */
 #define EVENT_CLIP 1e-10    /* of the torque limit: a command beyond it by this is clipped */
 #define EVENT_SLIP 1e-12    /* m/s: a slip this small has ended */
+#define EVENT_JAM 1e-6      /* determinant of the forces at which a slide ends */
 #define EVENT_SINGULAR 1e-11 /* of the operator's largest element: a pivot that counts as zero */
 #define EVENT_LOWEST 1e-11   /* m: rebounds lower than this accumulate */
 
@@ -183,6 +184,42 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
     problem->evaluations++;
 }
 
+/* Determinant of the equations for the contact forces, 1 without coupling of contacts and of
+ * directions. Where friction at a sliding contact brings it to zero the forces are unbounded or not
+ * unique (Painleve). */
+static double event_determinant(const struct event_problem *problem, const struct smooth *e)
+{
+    const struct contact_state *const state = &problem->mode.contact;
+    double m[4][4], scale = 1;
+    int of[4], axis[4], n = 0;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        if (!state->closed[c])
+            continue;
+        const bool sticks = state->slide[c] == 0;
+        const double normal = e->D[c][c][0][0], cross = e->D[c][c][0][1];
+        scale *= sticks ? normal * e->D[c][c][1][1] - cross * cross : normal;
+        of[n] = c, axis[n++] = 0;
+        if (sticks)
+            of[n] = c, axis[n++] = 1;
+    }
+    for (int j = 0; j < n; j++) {
+        const double edge =
+            axis[j] == 0 ? -(problem->set->friction * state->slide[of[j]]) : 0; /* 0: sticks */
+        for (int i = 0; i < n; i++)
+            m[i][j] = e->D[of[i]][of[j]][axis[i]][axis[j]] + edge * e->D[of[i]][of[j]][axis[i]][1];
+    }
+    if (n == 1)
+        return m[0][0] / scale;
+    if (n == 2)
+        return (m[0][0] * m[1][1] - m[0][1] * m[1][0]) / scale;
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        sum += m[0][k] * (m[1][i] * m[2][j] - m[1][j] * m[2][i]);
+    }
+    return sum / scale;
+}
+
 /* Margins of the contact laws and of the torque limits; 1 where there is none. */
 static void event_margins(const struct event_problem *problem, const double *y,
                           const struct smooth *e, double *margin)
@@ -200,6 +237,7 @@ static void event_margins(const struct event_problem *problem, const double *y,
         own[0] = e->force[c][0] * e->D[c][c][0][0];
         if (problem->set->friction > 0 && m->slide[c] != 0) {
             own[1] = m->slide[c] * e->u[c][1];
+            own[2] = event_determinant(problem, e) - 2 * EVENT_JAM;
         } else if (problem->set->friction > 0) {
             own[1] = (bound - e->force[c][1]) * mobility;
             own[2] = (bound + e->force[c][1]) * mobility;
@@ -254,6 +292,8 @@ static void event_set_depths(struct event_problem *problem, const struct event_p
             rises[1] = raw[3 * c + 1] <= 2 * SMOOTH_REST;
             depth[1] = rises[1] ? SMOOTH_REST : 0;
             window[1] = EVENT_SLIP;
+            depth[2] = EVENT_JAM; /* where this ends a mode, none begins */
+            window[2] = 0.25 * EVENT_JAM;
         }
         m->mobility[c] = m->contact.closed[c] ? p->e.D[c][c][0][0] : 1;
     }

@@ -50,11 +50,7 @@ static inline void smooth_evaluate(const struct setting *set, lanes t, const lan
                                    const lanes *w, const lanes *torque, bool coupled, bool touching,
                                    struct smooth *e)
 {
-    lanes nothing[SCENE_COORDINATES], no_impulse[SCENE_CONTACTS][2], no_rate[ACTUATORS][POSTURES];
     lanes load[SCENE_COORDINATES];
-    memset(nothing, 0, sizeof nothing);
-    memset(no_impulse, 0, sizeof no_impulse);
-    memset(no_rate, 0, sizeof no_rate);
     scene_trigonometry(s, &e->trig);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->torque[i] = torque[i];
@@ -63,12 +59,8 @@ static inline void smooth_evaluate(const struct setting *set, lanes t, const lan
         law_clip(&set->law, e->torque);
     }
     scene_matrix A;
-    scene_residual(&set->body, lanes_of(1), t, &e->trig, w, nothing, e->torque, load);
-    scene_factor(&set->body, lanes_of(0), 0, lanes_of(0), lanes_of(0), &e->trig, &e->trig, nothing,
-                 nothing, (const lanes(*)[2])no_impulse, false, (const lanes(*)[POSTURES])no_rate,
-                 &A);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        load[i] = -load[i];
+    scene_forces(&set->body, t, &e->trig, w, e->torque, load);
+    scene_inertia(&set->body, &e->trig, &A);
     scene_solve(&A, false, load, e->acceleration);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         e->gap[c] = scene_gap(&set->body, s, &e->trig, c);

@@ -47,16 +47,18 @@
 #error "SUNDIALS of double precision is needed"
 #endif
 
-#define EVENT_LIMIT 1000    /* in one step, then the case fails */
-#define EVENT_ATTEMPTS 5000 /* internal steps in one step, then the case fails */
-#define EVENT_LONGEST 1e-3  /* s: no internal step is longer */
+#define EVENT_LIMIT 1000       /* in one step, then the case fails */
+#define EVENT_ATTEMPTS 5000    /* internal steps in one step, then the case fails */
+#define EVENT_TINY 1e-13       /* s: where a shorter internal step fails there is none */
+#define EVENT_RESOLUTION 1e-13 /* of the time: of the root finder, 100 roundings */
+#define EVENT_LONGEST 1e-3     /* s: no internal step is longer */
 
 /* What is remembered between steps, and what the functions that ARKODE calls see. */
 struct advance {
     double tolerance;
     double next; /* s, internal step to try */
     struct event_problem problem;
-    double attempts; /* in this step */
+    double attempts, most; /* internal steps in this step; then it fails */
     SUNContext context;
     void *arkode;
     N_Vector y;
@@ -209,7 +211,7 @@ static enum event_result event_step(struct advance *a, double target, struct eve
                                     double *root)
 {
     double tau, length;
-    if (a->attempts++ > EVENT_ATTEMPTS)
+    if (a->attempts++ > a->most)
         return EVENT_FAILED;
     const int flag = ERKStepEvolve(a->arkode, target, a->y, &tau, ARK_ONE_STEP);
     if (flag < 0)
@@ -230,6 +232,18 @@ static enum event_result event_step(struct advance *a, double target, struct eve
 
 /* ---- from event to event ----------------------------------------------------------------------*/
 
+/* Earliest time at which a margin vanishes on a straight line from *low to *high. */
+static double event_secant(const struct event_point *low, const struct event_point *high)
+{
+    double first = high->tau;
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        if (high->margin[k] < 0)
+            first = fmin(high->tau + (high->tau - low->tau) * high->margin[k] /
+                                         (low->margin[k] - high->margin[k]),
+                         first);
+    return first;
+}
+
 /* Moves *low, where all margins are kept, to the zero that lies before *high, where one is not;
  * `guess`: about there. EVENT_ON: there was none, *low has moved on. */
 static enum event_result event_locate(struct advance *a, struct event_point *low,
@@ -241,8 +255,12 @@ static enum event_result event_locate(struct advance *a, struct event_point *low
             return EVENT_FOUND;
         }
         const double width = high->tau - low->tau;
-        if (width <= 4 * DBL_EPSILON * high->tau)
-            return EVENT_FAILED;
+        if (width <= 4 * DBL_EPSILON * high->tau) {
+            *low = *high; /* there is no time between */
+            return EVENT_FOUND;
+        }
+        if (round > 1 && guess > (1 - EVENT_RESOLUTION) * high->tau)
+            guess = fmin(guess, event_secant(low, high));
         if (round % 8 == 0 || !(guess > low->tau && guess <= high->tau))
             guess = low->tau + 0.5 * width;
         const double target = guess;
@@ -282,8 +300,13 @@ static enum event_result event_march(struct advance *a, struct event_point *here
             return EVENT_FAILED;
         fresh = false;
         const enum event_result result = event_step(a, target, &to, &root);
-        if (result == EVENT_FAILED)
-            return EVENT_FAILED;
+        if (result == EVENT_FAILED) { /* a stage may have been where there is no motion */
+            a->next = 0.1 * fmin(a->next, target - here->tau);
+            fresh = true;
+            if (a->next < EVENT_TINY)
+                return EVENT_FAILED;
+            continue;
+        }
         const double dip = event_dip(&a->problem, here, &to);
         if (dip < (result == EVENT_FOUND ? root : to.tau)) {
             target = dip;
@@ -366,6 +389,9 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         m->touches = false;
         for (int c = 0; c < SCENE_CONTACTS; c++)
             m->touches |= m->contact.closed[c];
+        if (m->touches) /* a slip that has ended leaves what counts as zero */
+            smooth_project(a->problem.set, &m->contact, true, p->y, p->y + SCENE_COORDINATES,
+                           &p->e);
         event_evaluate(&a->problem, p->tau, p->y, &p->e);
         event_set_depths(&a->problem, p);
         event_margins(&a->problem, p->y, &p->e, p->margin);
@@ -419,6 +445,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     a->problem.begin = now->t;
     a->problem.coupled = coupled;
     a->problem.evaluations = a->attempts = 0;
+    a->most = EVENT_ATTEMPTS + 4 * h / EVENT_LONGEST;
     enum event_result result = EVENT_ON;
     for (int events = 0; failure == STANCE_FAILURE_NONE && result != EVENT_ARRIVED; events++) {
         bool impact;

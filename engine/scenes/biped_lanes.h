@@ -39,7 +39,8 @@ typedef struct scene_body {
     lanes mass;                         /* M */
     lanes coupling_trunk, coupling_leg; /* k_theta, k_phi */
     lanes inertia_trunk, inertia_leg;
-    lanes leg, trunk; /* lengths */
+    lanes inverse_trunk, inverse_leg; /* of the inertias */
+    lanes leg, trunk;                 /* lengths */
 } scene_body;
 
 typedef struct scene_trig {
@@ -62,6 +63,8 @@ static inline void scene_load_body(scene_body *b, int lane, const double *robot)
     lane_set(&b->coupling_leg, lane, m * l);
     lane_set(&b->inertia_trunk, lane, mt * lt * lt);
     lane_set(&b->inertia_leg, lane, m * l * l);
+    lane_set(&b->inverse_trunk, lane, 1 / (mt * lt * lt));
+    lane_set(&b->inverse_leg, lane, 1 / (m * l * l));
     lane_set(&b->leg, lane, l);
     lane_set(&b->trunk, lane, lt);
 }
@@ -215,8 +218,11 @@ static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes
             (b->leg * (contact_trig->cosine[a] * r[c][1] - contact_trig->sine[a] * r[c][0]));
     }
     if (!coupled) {
-        for (int a = 0; a < SCENE_ANGLES; a++)
+        for (int a = 0; a < SCENE_ANGLES; a++) {
+            for (int j = 0; j < SCENE_ANGLES; j++)
+                m->inverse[a][j] = lanes_of(0);
             m->inverse[a][a] = 1 / diagonal[a];
+        }
     } else {
         lanes block[3][3];
         for (int j = 0; j < 3; j++)
@@ -257,6 +263,46 @@ static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes
     m->schur[0][1] = -xz * reciprocal;
     m->schur[1][0] = -zx * reciprocal;
     m->schur[1][1] = xx * reciprocal;
+}
+
+/* J = A, the inertia alone: symmetric, its angles' block constant. */
+static inline void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix *m)
+{
+    const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
+    const lanes inverse[SCENE_ANGLES] = {b->inverse_trunk, b->inverse_leg, b->inverse_leg};
+    lanes xx = b->mass, xz = lanes_of(0), zz = b->mass;
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        const lanes x = k[a] * trig->cosine[a], z = k[a] * trig->sine[a];
+        const lanes scaled = inverse[a] * x;
+        m->row[a][0] = m->column[a][0] = x;
+        m->row[a][1] = m->column[a][1] = z;
+        m->inverse[a][a] = inverse[a];
+        xx -= scaled * x;
+        xz -= scaled * z;
+        zz -= inverse[a] * (z * z);
+    }
+    const lanes reciprocal = 1 / (xx * zz - xz * xz);
+    m->schur[0][0] = zz * reciprocal;
+    m->schur[0][1] = m->schur[1][0] = -xz * reciprocal;
+    m->schur[1][1] = xx * reciprocal;
+}
+
+/* Generalised forces without contact: centrifugal, gravity, torques. */
+static inline void scene_forces(const scene_body *b, lanes t, const scene_trig *trig,
+                                const lanes *w, const lanes *torque, lanes *force)
+{
+    (void)t; /* no force depends on time */
+    const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
+    const lanes tau[SCENE_ANGLES] = {-(torque[0] + torque[1]), torque[0], torque[1]};
+    lanes x = lanes_of(0), z = -(b->mass * STANCE_GRAVITY);
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        const lanes centrifugal = k[a] * (w[2 + a] * w[2 + a]);
+        x += centrifugal * trig->sine[a];
+        z -= centrifugal * trig->cosine[a];
+        force[2 + a] = tau[a] - STANCE_GRAVITY * (k[a] * trig->sine[a]);
+    }
+    force[0] = x;
+    force[1] = z;
 }
 
 /* x = J^-1 b. */

@@ -120,6 +120,22 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
     m->inverse_mass = 1 / b->mass;
 }
 
+/* J = A, the mass alone. */
+static inline void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix *m)
+{
+    (void)trig;
+    m->inverse_mass = 1 / b->mass;
+}
+
+/* Generalised forces without contact. */
+static inline void scene_forces(const scene_body *b, lanes t, const scene_trig *trig,
+                                const lanes *w, const lanes *torque, lanes *force)
+{
+    (void)trig, (void)w, (void)torque;
+    force[0] = b->mass * b->along + scene_pull(b, t);
+    force[1] = -(b->mass * b->across);
+}
+
 /* x = J^-1 b. */
 static inline void scene_solve(const scene_matrix *m, bool coupled, const lanes *b, lanes *x)
 {

@@ -116,6 +116,23 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
     m->inverse_inertia = 1 / turned;
 }
 
+/* J = A, the inertia alone. */
+static inline void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix *m)
+{
+    (void)trig;
+    m->inverse_mass = 1 / b->mass;
+    m->inverse_inertia = 1 / b->inertia;
+}
+
+/* Generalised forces without contact. */
+static inline void scene_forces(const scene_body *b, lanes t, const scene_trig *trig,
+                                const lanes *w, const lanes *torque, lanes *force)
+{
+    (void)t, (void)trig, (void)w, (void)torque;
+    force[0] = force[2] = lanes_of(0);
+    force[1] = -(b->mass * STANCE_GRAVITY);
+}
+
 /* x = J^-1 b. */
 static inline void scene_solve(const scene_matrix *m, bool coupled, const lanes *b, lanes *x)
 {
