@@ -6,9 +6,9 @@
 #define PENETRATION 1e-9
 #define CONE 1e-9
 #define GOLDEN_IMPLICIT 0x1d6cfe37a1f809ffu
-#define GOLDEN_MIDPOINT 0xc28466f2ba9fcc3au
-#define GOLDEN_CAPTURING 0xad82947830a0d976u
-#define GOLDEN_LAGRANGE 0x909819266f9dd651u
+#define GOLDEN_MIDPOINT 0xcdd0b5537eaba859u
+#define GOLDEN_CAPTURING 0xf906c75c04242484u
+#define GOLDEN_LAGRANGE 0x6cc28523050b30f3u
 
 static uint64_t hash(const void *data, size_t size, uint64_t h)
 {

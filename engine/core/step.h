@@ -35,7 +35,8 @@
 #define STEP_CLOSED 1e-12 /* m: a contact this close counts as closed */
 #define STEP_PROJECTION 1e-13 /* m: gap error left by the projection */
 #define STEP_FARTHEST 0.3     /* rad: a projection that turns the robot further is refused */
-#define STEP_MOST_GAIN 0.03 /* share of kinetic energies and work; a step that gains more is refused */
+#define STEP_MOST_GAIN                                                                             \
+    0.03 /* share of kinetic energies and work; a step that gains more is refused */
 #define STEP_APPROACH 1e-9 /* m/s: a closed contact that approaches faster is an impact */
 
 enum {
@@ -429,12 +430,14 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
 static inline mask step_balances(const struct setting *set, const struct motion *from,
                                  const struct iterate *it, lanes work, lanes impact)
 {
-    const lanes before = scene_kinetic(&set->body, &from->trig, from->w);
-    const lanes after = scene_kinetic(&set->body, &it->end, it->w);
-    const lanes gain = scene_energy(&set->body, it->s1, it->w, &it->end) -
-                       scene_energy(&set->body, from->s, from->w, &from->trig) - work;
-    const lanes scale = before + after + lanes_abs(work);
-    return mask_less_equal(gain - lanes_max(impact, lanes_of(0)), STEP_MOST_GAIN * scale);
+    const lanes before = scene_energy(&set->body, from->s, from->w, &from->trig);
+    const lanes after = scene_energy(&set->body, it->s1, it->w, &it->end);
+    const lanes kinetic = scene_kinetic(&set->body, &from->trig, from->w) +
+                          scene_kinetic(&set->body, &it->end, it->w);
+    /* At rest there is rounding: a share of the potential energy, of whatever size. */
+    const lanes admitted = STEP_MOST_GAIN * (kinetic + lanes_abs(work)) +
+                           1e-9 * (lanes_abs(before) + lanes_abs(after)) + 1e-12;
+    return mask_less_equal(after - before - work - lanes_max(impact, lanes_of(0)), admitted);
 }
 
 /* Residuals of the contact laws at a contact with force (or impulse) r and velocity u, the normal
