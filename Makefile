@@ -2,6 +2,7 @@
 .DEFAULT_GOAL := all
 MAKEFLAGS += --no-print-directory
 BUILD   ?= build
+PROGRAM  = bin/stance
 PREFIX  ?= /usr/local
 CC       = gcc
 MPI     ?= 1
@@ -73,9 +74,9 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
 .PHONY: all help packages demo test test-long bench lint sanitize install clean FORCE
-all: bin/stance
+all: $(PROGRAM)
 
-bin/stance: $(program_objects) $(BUILD)/libstance.a
+$(PROGRAM): $(program_objects) $(BUILD)/libstance.a
 	@mkdir -p $(@D)
 	$(call QUIET,link,$@)$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LDFLAGS) $(LIBS)
 
@@ -125,14 +126,15 @@ $(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
 # What Open MPI wants in a container, as root, on few cores.
 MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
                   OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
+TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(abspath $(PROGRAM))
 
 test: packages-test
-	$(MAKE) bin/stance check
-check: $(test_programs)
-	@$(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) bash tests/run.sh
+	$(MAKE) check
+check: $(PROGRAM) $(test_programs)
+	@$(TEST_ENVIRONMENT) bash tests/run.sh
 test-long: packages-test
-	$(MAKE) bin/stance $(test_programs)
-	@$(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE_TEST_LONG=1 bash tests/run.sh
+	$(MAKE) $(PROGRAM) $(test_programs)
+	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
@@ -161,7 +163,7 @@ lint: packages-test
 	@bash tests/lint.sh
 
 sanitize:
-	$(MAKE) BUILD=build/sanitize CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g' \
+	$(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g' \
 	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' check
 
 install: bin/stance

@@ -11,7 +11,7 @@ enum { LEFT = 92, PANEL_WIDTH = 400, PANEL_HEIGHT = 380, GAP = 92, LEGEND = 300,
 /* After Okabe and Ito (2008); the markers differ too. In the order of stance_methods(). */
 static const char *const colours[] = {"#0072b2", "#56b4e9", "#009e73", "#d55e00",
                                       "#cc79a7", "#e69f00", "#000000"};
-static const int markers[] = {7, 5, 9, 11, 13, 15, 2};
+static const int markers[] = {7, 5, 9, 11, 13, 15, 2}; /* filled; one less is the open one */
 enum { STYLES = sizeof markers / sizeof markers[0] };
 
 static size_t style_of(const stance_method *method)
@@ -82,7 +82,7 @@ static void put_method(struct gnuplot *g, const struct accuracy *a, const stance
             gnuplot_number(data, low);
             putc(' ', data);
             gnuplot_number(data, high);
-            putc('\n', data);
+            fprintf(data, " %d\n", !isnan(value)); /* 0: none found, shown at the bound */
         }
         gnuplot_close_data(g, data);
     }
@@ -132,17 +132,23 @@ static void put_panel(struct gnuplot *g, const struct accuracy *a, enum shown sh
         if (!occurs(a, stance_methods()[m])) {
             continue;
         }
+        const char *const data = name[m][0], *const colour = colours[m];
+        fprintf(g->script, "%s'%s' using 1:2 with lines lc rgb '%s' lw 1.6 notitle",
+                drawn++ ? ", " : "", data, colour);
+        if (shown == LABELS) {
+            fprintf(g->script,
+                    ", '%s' using 1:2:3:4 with yerrorbars lc rgb '%s' pt -1 lw 1 notitle", data,
+                    colour);
+            fprintf(g->script,
+                    ", '%s' using 1:($5 > 0 ? NaN : $2) with points lc rgb '%s' pt %d ps 1 notitle",
+                    data, colour, markers[m] - 1);
+        }
         fprintf(g->script,
-                "%s'%s' using 1:2 with linespoints lc rgb '%s' pt %d ps 0.9 lw 1.6 notitle",
-                drawn++ ? ", " : "", name[m][0], colours[m], markers[m]);
+                ", '%s' using 1:($5 > 0 ? $2 : NaN) with points lc rgb '%s' pt %d ps 0.9 notitle",
+                data, colour, markers[m]);
         fprintf(g->script,
                 ", '%s' using 1:2 with points lc rgb '#b00000' pt 2 ps 1.6 lw 1.6 notitle",
                 name[m][1]);
-        if (shown == LABELS) {
-            fprintf(g->script,
-                    ", '%s' using 1:2:3:4 with yerrorbars lc rgb '%s' pt %d ps 0.9 lw 1 notitle",
-                    name[m][0], colours[m], markers[m]);
-        }
     }
     fputs(drawn ? "\n" : "NaN notitle\n", g->script);
     fputs("unset logscale; unset grid; unset xlabel; unset ylabel\n", g->script);
@@ -174,7 +180,11 @@ static double put_legend(struct gnuplot *g, const struct accuracy *a, const stan
             y += 14;
         }
     }
-    snprintf(text, sizeof text, "contact laws broken by at most %.0e", residual);
+    if (residual > 0) {
+        snprintf(text, sizeof text, "contact laws broken by at most %.0e", residual);
+    } else {
+        snprintf(text, sizeof text, "contact laws never broken");
+    }
     gnuplot_label(g, x + 22, y, text, "left", 9, false);
     y += 14;
     if (failed > 0) {
@@ -197,8 +207,12 @@ bool accuracy_plot(const struct accuracy *a, const struct results *r, const char
 
     snprintf(subtitle, sizeof subtitle,
              "Error against cost. Reference: %s, tolerance %g. %llu cases per point; a cross marks "
-             "points where cases were given up.",
-             truth->method->name, truth->tolerance, (unsigned long long)truth->cases);
+             "points where cases were given up%s. Errors of exactly zero are not drawn.",
+             truth->method->name, truth->tolerance, (unsigned long long)truth->cases,
+             a->labels ? "; open symbols: none unlike, shown at the bound" : "");
+    if (a->labels) {
+        *strstr(subtitle, " Errors of exactly") = '\0';
+    }
     const int top = gnuplot_title_height(width, r->title, subtitle);
     if (!gnuplot_begin(&g, width, top + PANEL_HEIGHT + BOTTOM, message)) {
         return false;

@@ -7,6 +7,7 @@
 #include <gnu/libc-version.h>
 #include <jansson.h>
 #include <stdio.h>
+#include <sundials/sundials_version.h>
 #include <yaml.h>
 
 #ifndef STANCE_REVISION
@@ -39,14 +40,15 @@ const char *build_flags(void)
 
 void build_libraries(char text[BUILD_LIBRARIES_SIZE])
 {
-    char mpi[64], hdf5[32];
+    char mpi[64], hdf5[32], sundials[32] = "?";
     int major = 0, minor = 0, patch = 0;
 
     parallel_library(mpi, sizeof mpi);
     store_library(hdf5, sizeof hdf5);
     ilaver_(&major, &minor, &patch);
+    (void)SUNDIALSGetVersion(sundials, sizeof sundials);
     snprintf(text, BUILD_LIBRARIES_SIZE,
-             "%s, %s, libyaml %s, jansson %s, LAPACK %d.%d.%d, glibc %s", hdf5, mpi,
-             yaml_get_version_string(), JANSSON_VERSION, major, minor, patch,
+             "%s, %s, libyaml %s, jansson %s, LAPACK %d.%d.%d, SUNDIALS %s, glibc %s", hdf5, mpi,
+             yaml_get_version_string(), JANSSON_VERSION, major, minor, patch, sundials,
              gnu_get_libc_version());
 }

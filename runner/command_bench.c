@@ -174,7 +174,7 @@ static int bench(const stance_scene *scene, int repeats, json_t *rows)
             for (size_t i = 0; i < sizeof isas / sizeof *isas; i++) {
                 const stance_kernel *const k = stance_kernel_find(scene, *method, isas[i]);
                 struct measurement m;
-                if (!k)
+                if (!k || strcmp(k->isa, isas[i]) != 0) /* else the scalar one again */
                     continue;
                 measure(k, cases, results, repeats, &m);
                 if (i == 0)

@@ -51,11 +51,11 @@ static inline void explicit_take(const struct setting *set, const struct motion 
                                  struct explicit_step *out)
 {
     lanes ks[METHOD_STAGES][SCENE_COORDINATES], kw[METHOD_STAGES][SCENE_COORDINATES];
-    mask touching = MASK_NONE;
+    contact_set touches = 0;
     struct smooth e = *begin;
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        touching |= m->closed[c] & run;
-    const bool touches = mask_any(touching);
+        if (mask_any(m->closed[c] & run))
+            touches |= 1u << c;
     memset(&out->report, 0, sizeof out->report);
     out->violated = MASK_NONE;
     out->end = *from;

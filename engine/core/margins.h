@@ -35,7 +35,7 @@ enum {
 
 struct event_mode {
     struct contact_state contact;
-    bool touches;                                       /* some contact is closed */
+    contact_set touches;                                /* the closed contacts */
     double clipped[ACTUATORS];                          /* -1, 0, 1: the torque is at a limit */
     double depth[EVENT_MARGINS], window[EVENT_MARGINS]; /* shift; what counts as zero then */
     bool rises[EVENT_MARGINS];                          /* a gap or a slip that begins at zero */
@@ -386,10 +386,30 @@ static bool event_of_contact(const struct event_problem *problem, const struct e
 
 /* ---- between the ends of an internal step -----------------------------------------------------*/
 
-/* Margins at the fraction x of the internal step: position through both ends' positions,
- * velocities and accelerations, velocity through both ends' velocities and accelerations. */
+/* Rates of the margins that are gaps and slips; NAN for the others. */
+static void event_slopes(const struct event_problem *problem, const double *y,
+                         const struct smooth *e, double *slope)
+{
+    const struct contact_state *const m = &problem->mode.contact;
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        slope[k] = NAN;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        double forced[2], curvature[2];
+        if (!m->closed[c])
+            slope[3 * c] = problem->set->may_touch[c] > 0 ? e->u[c][0] : 0;
+        if (!m->closed[c] || m->slide[c] == 0 || problem->set->friction <= 0)
+            continue;
+        scene_contact_velocity(&problem->set->body, &e->trig, c, e->acceleration, forced);
+        scene_contact_curvature(&problem->set->body, &e->trig, c, y + SCENE_COORDINATES, curvature);
+        slope[3 * c + 1] = m->slide[c] * (forced[1] + curvature[1]);
+    }
+}
+
+/* Margins and their rates at the fraction x of the internal step: position through both ends'
+ * positions, velocities and accelerations, velocity through both ends' velocities and
+ * accelerations. */
 static void event_between(struct event_problem *problem, const struct event_point *from,
-                          const struct event_point *to, double x, double *margin)
+                          const struct event_point *to, double x, double *margin, double *slope)
 {
     const double h = to->tau - from->tau, x2 = x * x, x3 = x2 * x;
     double y[EVENT_SIZE] = {0};
@@ -407,20 +427,26 @@ static void event_between(struct event_problem *problem, const struct event_poin
     }
     event_evaluate(problem, from->tau + x * h, y, &e);
     event_margins(problem, y, &e, margin);
+    event_slopes(problem, y, &e, slope);
 }
 
 /* Where one margin, known at equal distances, dips so low that it may be negative: a fraction of
- * the internal step; INFINITY: nowhere. A sign change that lasts is left to the root finder. */
-static double event_dip_of(const double *g)
+ * the internal step; INFINITY: nowhere. A sign change that lasts is left to the root finder.
+ * slope: differences per distance, NAN where not known. */
+static double event_dip_of(const double *g, double *slope)
 {
     const int n = EVENT_SAMPLES;
-    double slope[EVENT_SAMPLES + 1], low = g[0], high = g[0];
-    slope[0] = -1.5 * g[0] + 2 * g[1] - 0.5 * g[2];
-    slope[n] = 1.5 * g[n] - 2 * g[n - 1] + 0.5 * g[n - 2];
+    double low = g[0], high = g[0];
     for (int j = 0; j <= n; j++) {
-        if (j > 0 && j < n)
-            slope[j] = 0.5 * (g[j + 1] - g[j - 1]);
         low = fmin(g[j], low), high = fmax(g[j], high);
+        if (!isnan(slope[j]))
+            continue;
+        if (j == 0)
+            slope[j] = -1.5 * g[0] + 2 * g[1] - 0.5 * g[2];
+        else if (j == n)
+            slope[j] = 1.5 * g[n] - 2 * g[n - 1] + 0.5 * g[n - 2];
+        else
+            slope[j] = 0.5 * (g[j + 1] - g[j - 1]);
     }
     for (int j = 0; j < n; j++) {
         if (g[j + 1] < 0)
@@ -445,26 +471,32 @@ static double event_dip(struct event_problem *problem, const struct event_point 
                         const struct event_point *to)
 {
     const double h = to->tau - from->tau;
-    double g[EVENT_MARGINS][EVENT_SAMPLES + 1], middle[EVENT_MARGINS], first = INFINITY;
+    double g[EVENT_MARGINS][EVENT_SAMPLES + 1], rate[EVENT_MARGINS][EVENT_SAMPLES + 1];
+    double margin[EVENT_MARGINS], slope[EVENT_MARGINS], first = INFINITY;
     bool near = false;
     if (h < EVENT_SHORTEST)
         return INFINITY;
-    event_between(problem, from, to, 0.5, middle);
+    event_between(problem, from, to, 0.5, margin, slope);
     for (int k = 0; k < EVENT_MARGINS; k++) {
-        const double low = fmin(fmin(from->margin[k], to->margin[k]), middle[k]);
-        const double high = fmax(fmax(from->margin[k], to->margin[k]), middle[k]);
+        const double low = fmin(fmin(from->margin[k], to->margin[k]), margin[k]);
+        const double high = fmax(fmax(from->margin[k], to->margin[k]), margin[k]);
         near |= low < high - low;
     }
     if (!near)
         return INFINITY;
-    for (int j = 1; j < EVENT_SAMPLES; j++) {
-        event_between(problem, from, to, (double)j / EVENT_SAMPLES, middle);
-        for (int k = 0; k < EVENT_MARGINS; k++)
-            g[k][j] = middle[k];
+    for (int j = 0; j <= EVENT_SAMPLES; j++) {
+        const struct event_point *const end = j == 0 ? from : to;
+        if (j == 0 || j == EVENT_SAMPLES)
+            event_slopes(problem, end->y, &end->e, slope);
+        else
+            event_between(problem, from, to, (double)j / EVENT_SAMPLES, margin, slope);
+        for (int k = 0; k < EVENT_MARGINS; k++) {
+            g[k][j] = j == 0 || j == EVENT_SAMPLES ? end->margin[k] : margin[k];
+            rate[k][j] = slope[k] * (h / EVENT_SAMPLES);
+        }
     }
     for (int k = 0; k < EVENT_MARGINS; k++) {
-        g[k][0] = from->margin[k], g[k][EVENT_SAMPLES] = to->margin[k];
-        const double x = event_dip_of(g[k]);
+        const double x = event_dip_of(g[k], rate[k]);
         if (x > 1e-6 && x < 1 - 1e-6)
             first = fmin(from->tau + x * h, first);
     }

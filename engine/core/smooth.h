@@ -45,10 +45,13 @@ struct smooth {
     lanes force[2][2];                                    /* N */
 };
 
-/* Everything that does not depend on the mode; contact terms where `touching` in any lane. */
+/* Contacts that matter in any lane: bit c. What an open contact would respond costs nothing. */
+typedef unsigned contact_set;
+
+/* Everything that does not depend on the mode; contact terms of the contacts in `touching`. */
 static inline void smooth_evaluate(const struct setting *set, lanes t, const lanes *s,
-                                   const lanes *w, const lanes *torque, bool coupled, bool touching,
-                                   struct smooth *e)
+                                   const lanes *w, const lanes *torque, bool coupled,
+                                   contact_set touching, struct smooth *e)
 {
     lanes load[SCENE_COORDINATES];
     scene_trigonometry(s, &e->trig);
@@ -67,18 +70,19 @@ static inline void smooth_evaluate(const struct setting *set, lanes t, const lan
         scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
         e->force[c][0] = e->force[c][1] = lanes_of(0);
     }
-    if (!touching)
-        return;
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        scene_contact_response(&set->body, &A, false, &e->trig, c, e->response[c]);
+        if (touching >> c & 1)
+            scene_contact_response(&set->body, &A, false, &e->trig, c, e->response[c]);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         lanes curvature[2], forced[2];
+        if (!(touching >> c & 1))
+            continue;
         scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
         scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, forced);
         for (int a = 0; a < 2; a++)
             e->free[c][a] = forced[a] + curvature[a];
         for (int k = 0; k < SCENE_CONTACTS; k++)
-            for (int b = 0; b < 2; b++) {
+            for (int b = 0; b < 2 && touching >> k & 1; b++) {
                 lanes u[2];
                 scene_contact_velocity(&set->body, &e->trig, c, e->response[k][b], u);
                 e->D[c][k][0][b] = u[0];
@@ -163,13 +167,14 @@ struct smooth_trouble {
 };
 
 /* Contacts that are closed in any lane: is there anything to solve? */
-static inline bool smooth_touching(const struct setting *set, const lanes *gap)
+static inline contact_set smooth_touching(const struct setting *set, const lanes *gap)
 {
-    mask touching = MASK_NONE;
+    contact_set touching = 0;
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        touching |= mask_less(lanes_of(0), set->may_touch[c]) &
-                    mask_less_equal(gap[c], lanes_of(STEP_CLOSED));
-    return mask_any(touching);
+        if (mask_any(mask_less(lanes_of(0), set->may_touch[c]) &
+                     mask_less_equal(gap[c], lanes_of(STEP_CLOSED))))
+            touching |= 1u << c;
+    return touching;
 }
 
 /* Lanes where a contact that should begin to slip would be pulled the other way: sticking is
@@ -191,8 +196,9 @@ static inline mask smooth_jammed(const struct setting *set, const struct smooth 
 }
 
 /* The mode that follows from the state that *e was evaluated at. */
-static inline void smooth_mode(const struct setting *set, const struct smooth *e, bool touching,
-                               struct contact_state *m, struct smooth_trouble *trouble)
+static inline void smooth_mode(const struct setting *set, const struct smooth *e,
+                               contact_set touching, struct contact_state *m,
+                               struct smooth_trouble *trouble)
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
     mask part[SCENE_CONTACTS], any = MASK_NONE, slides = MASK_NONE;
@@ -227,7 +233,8 @@ static inline void smooth_mode(const struct setting *set, const struct smooth *e
         m->closed[c] = part[c] & mask_less(none, r[c][0]);
         /* contact_solve clips to the cone: on its edge the slip begins, against the force, unless
          * another contact prevents it. */
-        const mask edge = mask_less_equal(set->friction * r[c][0], lanes_abs(r[c][1]));
+        const mask edge =
+            mask_less_equal((1 - 1e-10) * (set->friction * r[c][0]), lanes_abs(r[c][1]));
         const mask starts = (edge & mask_less(SMOOTH_START * scale, lanes_abs(along))) |
                             mask_less_equal(set->friction, none);
         const lanes direction = choose(mask_less(none, r[c][1]), -one, one);
@@ -271,7 +278,7 @@ static inline void smooth_project_position(const struct setting *set, const mask
     lanes lift[SCENE_CONTACTS][SCENE_COORDINATES];
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int i = 0; i < SCENE_COORDINATES; i++)
-            lift[c][i] = e->response[c][0][i];
+            lift[c][i] = choose(held[c], e->response[c][0][i], none);
     for (int round = 0; round < 4; round++) {
         mask todo = MASK_NONE;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -333,7 +340,7 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
     lanes torque[ACTUATORS], uf[2][2], r[2][2], energy = none;
     for (int i = 0; i < ACTUATORS; i++)
         torque[i] = none;
-    smooth_evaluate(set, now->t, now->s, now->w, torque, false, true, &e);
+    smooth_evaluate(set, now->t, now->s, now->w, torque, false, (1u << SCENE_CONTACTS) - 1, &e);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         part[c] = where & mask_less(none, set->may_touch[c]) &
                   mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));

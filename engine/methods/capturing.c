@@ -168,7 +168,7 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
     struct smooth begin;
     struct contact_state mode;
     struct smooth_trouble trouble;
-    const bool touching = smooth_touching(set, now->gap);
+    const contact_set touching = smooth_touching(set, now->gap);
     smooth_evaluate(set, now->t, now->s, now->w, torque, coupled, touching, &begin);
     smooth_mode(set, &begin, touching, &mode, &trouble);
     *acceleration = capture_largest(&begin);

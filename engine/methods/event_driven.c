@@ -2,11 +2,9 @@
  *
  * Between events the switched Lagrange equations of core/smooth.h are integrated by SUNDIALS'
  * ARKODE (Hindmarsh et al., ACM TOMS 31, 2005; Reynolds et al., ACM TOMS 49, 2023) with Verner's
- * explicit Runge-Kutta pair of order 6(5) under error control. A mode lasts while its margins are
- * not negative: the gap of an open contact; the normal force of a closed one; both edges of the
- * cone where it sticks, the slip in its direction where it slides; the room to the torque limit,
- * or beyond it, where the controller acts inside the step. Time inside the step counts from the
- * step's beginning, so that it resolves more than the positions do.
+ * explicit Runge-Kutta pair of order 6(5) under error control. A mode lasts while its margins
+ * (core/margins.h) are not negative. Time inside the step counts from the step's beginning, so that
+ * it resolves more than the positions do.
  *
  * ARKODE's root finder sees a margin that changes its sign from one end of an internal step to the
  * other. What dips and comes back is searched for between the ends, on a polynomial through
@@ -16,10 +14,7 @@
  * rounding. Nothing is ever accepted from an interpolant.
  *
  * At an event the state is put back onto the constraints, closed contacts that approach get the
- * impulses of contact.h at once, and the next mode follows from the state (smooth_mode). Margins
- * that this starts from zero are shifted by their `depth`, a multiple of what counts as zero, so
- * that no root is at the beginning of an interval and the state behind an event is clearly inside
- * the next mode.
+ * impulses of contact.h at once, and the next mode follows from the state (smooth_mode).
  *
  * Impulses, slip and work are integrated with the motion, under the same error control: a contact
  * that sticks while a force oscillates does not move, but its impulse does.
@@ -48,7 +43,7 @@
 #endif
 
 #define EVENT_LIMIT 1000       /* in one step, then the case fails */
-#define EVENT_ATTEMPTS 5000    /* internal steps in one step, then the case fails */
+#define EVENT_ATTEMPTS 5000    /* internal steps in one step, beyond 4 times the needed ones */
 #define EVENT_TINY 1e-13       /* s: where a shorter internal step fails there is none */
 #define EVENT_RESOLUTION 1e-13 /* of the time: of the root finder, 100 roundings */
 #define EVENT_LONGEST 1e-3     /* s: no internal step is longer */
@@ -294,8 +289,8 @@ static enum event_result event_march(struct advance *a, struct event_point *here
 {
     double target = end, root;
     bool fresh = true, split = false;
+    struct event_point to = *here;
     while (here->tau < end) {
-        struct event_point to;
         if (fresh && !event_restart(a, here, target, a->next))
             return EVENT_FAILED;
         fresh = false;
@@ -365,7 +360,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         const double *const s = p->y, *const w = p->y + SCENE_COORDINATES;
         struct smooth_trouble trouble;
         bool below = false;
-        const bool touching = smooth_touching(a->problem.set, now->gap);
+        const contact_set touching = smooth_touching(a->problem.set, now->gap);
         smooth_evaluate(a->problem.set, a->problem.begin + p->tau, s, w, a->problem.torque,
                         a->problem.coupled, touching, &p->e);
         smooth_mode(a->problem.set, &p->e, touching, &m->contact, &trouble);
@@ -386,9 +381,9 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         law_torque(law, s, w, command);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             m->clipped[i] = command[i] > law->limit ? 1 : command[i] < -law->limit ? -1 : 0;
-        m->touches = false;
+        m->touches = 0;
         for (int c = 0; c < SCENE_CONTACTS; c++)
-            m->touches |= m->contact.closed[c];
+            m->touches |= m->contact.closed[c] ? 1u << c : 0;
         if (m->touches) /* a slip that has ended leaves what counts as zero */
             smooth_project(a->problem.set, &m->contact, true, p->y, p->y + SCENE_COORDINATES,
                            &p->e);

@@ -71,7 +71,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     struct contact_state mode;
     struct smooth_trouble trouble;
     struct explicit_step step;
-    const bool touching = smooth_touching(set, now->gap);
+    const contact_set touching = smooth_touching(set, now->gap);
     smooth_evaluate(set, now->t, now->s, now->w, torque, coupled, touching, &begin);
     smooth_mode(set, &begin, touching, &mode, &trouble);
     if (touching)

@@ -1,0 +1,407 @@
+/* The event-driven reference: independent figures, conserved quantities, closed forms, agreement
+ * with the method that never locates an event, and events that are easy to miss. */
+#include "support.h"
+
+#include <unistd.h>
+
+static stance_result run_case(const char *scene, const stance_case *c)
+{
+    stance_result r;
+    stance_kernel_find(stance_scene_find(scene), stance_method_find("event-driven"), NULL)
+        ->run(c, &r, 1);
+    return r;
+}
+
+/* A case of any scene with its default body, all contacts, friction 0.5. */
+static stance_case scene_case(const char *name, double step, double time)
+{
+    const stance_scene *scene = stance_scene_find(name);
+    stance_case c = {.friction = 0.5,
+                     .contacts = (1u << scene->contacts) - 1,
+                     .torque_limit = INFINITY,
+                     .step = step,
+                     .steps = (int64_t)lround(time / step),
+                     .tolerance = 1e-12,
+                     .support = -1,
+                     .settle_angle = 0.05,
+                     .settle_rate = 0.5,
+                     .settle_hold = 0.5,
+                     .fall_height = -1e9};
+    for (int i = 0; i < scene->robot_count; i++)
+        c.robot[i] = scene->robot[i].fallback;
+    return c;
+}
+
+/* The drop of tests/reference/drop.json: position to 1e-11 wherever it is given in full digits,
+ * velocity too, events as many as there. */
+static void drop_against_reference(void **state)
+{
+    (void)state;
+    static const double robot[5] = {0.5, 0.5, 1, 1, 3}, q[5] = {0, 1.5, -0.5, 0.9, -1};
+    json_t *root = reference_load("tests/reference/drop.json"), *row;
+    json_t *second = json_object_get(root, "second");
+    const char *at;
+    for (double step = 1e-2; step > 5e-4; step /= 10) {
+        stance_case c = plain_case();
+        double position = 0, velocity = 0;
+        memcpy(c.robot, robot, sizeof robot);
+        memcpy(c.position, q, sizeof q);
+        c.velocity[0] = 1;
+        c.friction = 0.3;
+        hold_legs(&c, 200, 20);
+        c.step = step;
+        c.steps = (int64_t)lround(1.2 / step);
+        c.tolerance = 1e-12;
+        stance_trajectory t = trajectory_new(13, 0.1);
+        c.trajectory = &t;
+        const stance_result r = run_case("biped", &c);
+        assert_int_equal(r.status, STANCE_DONE);
+        json_object_foreach(json_object_get(second, "states"), at, row)
+        {
+            const long k = lround(atof(at) / 0.1);
+            for (int i = 0; i < 5; i++) {
+                const json_t *wanted = json_array_get(json_object_get(row, "q"), (size_t)i);
+                const json_t *rate = json_array_get(json_object_get(row, "v"), (size_t)i);
+                position = fmax(position, fabs(t.position[k * 5 + i] - json_number_value(wanted)));
+                velocity = fmax(velocity, fabs(t.velocity[k * 5 + i] - json_number_value(rate)));
+            }
+        }
+        print_message("# h = %g: position off %.1e, velocity off %.1e, energy gained %.1e J\n",
+                      step, position, velocity, r.energy_gain);
+        assert_true(position < 1e-11 && velocity < 1e-10);
+        assert_true(r.max_penetration < 1e-12 && r.energy_gain < 1e-11);
+        assert_true(r.signorini_residual < 1e-12 && r.coulomb_residual < 1e-12 &&
+                    r.dissipation_residual < 1e-10);
+        size_t contact_events = json_array_size(json_object_get(second, "events"));
+        assert_int_equal(r.events, contact_events);
+        trajectory_free(&t);
+    }
+    json_decref(root);
+}
+
+/* Any posture near the ground, any rates, any servo: what test_stepping asks the others for. */
+static stance_case random_case(uint64_t *seed, int i)
+{
+    stance_case c = plain_case();
+    c.friction = uniform(seed, 0, 2);
+    for (int k = 2; k < 5; k++) {
+        c.position[k] = uniform(seed, -M_PI, M_PI);
+        c.velocity[k] = i % 3 == 0 ? uniform(seed, -20, 20) : uniform(seed, -5, 5);
+    }
+    for (int k = 0; k < 2; k++)
+        c.velocity[k] = uniform(seed, -3, 3);
+    double gap[2];
+    stance_scene_find("biped")->gaps(c.robot, c.position, gap);
+    c.position[1] += 1e-13 - fmin(gap[0], gap[1]) + (i % 2 ? 0 : uniform(seed, 0, 0.2));
+    const double stiffness = uniform(seed, 0, 200);
+    hold_legs(&c, stiffness, stiffness / 20);
+    c.torque_limit = i % 5 ? 50 : INFINITY;
+    c.sample_every = i % 4 ? 1 : 0;
+    c.steps = 250;
+    c.fall_height = -1e9;
+    return c;
+}
+
+/* Did both feet stand on one spot? Then their forces are not unique, nor may the motion be. */
+static bool feet_meet(const stance_trajectory *t, double end)
+{
+    for (int64_t row = 0; row < t->rows && (double)row * t->interval <= end; row++) {
+        const double *const q = t->position + row * 5, *const gap = t->gap + row * 2;
+        if (fmax(gap[0], gap[1]) < 1e-6 && fabs(sin(0.5 * (q[3] - q[4]))) < 1e-4)
+            return true;
+    }
+    return false;
+}
+
+/* Two methods that have the equations of motion in common but neither how they integrate them nor
+ * how they find and cross events: where both come to the end they agree. */
+static void agrees_with_capturing(void **state)
+{
+    (void)state;
+    enum { N = 300 };
+    uint64_t seed = 2024;
+    int both = 0, gave_up[2] = {0}, meet = 0;
+    double worst = 0;
+    for (int i = 0; i < N; i++) {
+        stance_case c = random_case(&seed, i);
+        c.restitution = i % 7 == 0 ? 0.5 : 0;
+        c.tolerance = 1e-12;
+        stance_trajectory t = trajectory_new(c.steps + 1, c.step);
+        c.trajectory = &t;
+        const stance_result a = run_case("biped", &c);
+        c.trajectory = NULL;
+        c.tolerance = 1e-10;
+        stance_result b;
+        kernel_of("capturing", NULL)->run(&c, &b, 1);
+        const bool compare = !feet_meet(&t, a.end_time);
+        trajectory_free(&t);
+        gave_up[0] += a.status != STANCE_DONE;
+        gave_up[1] += b.status != STANCE_DONE;
+        /* Rebounds and rocking that accumulate, and states without a motion, end a case. */
+        if (a.status == STANCE_FAILED)
+            assert_true(a.failure == STANCE_FAILURE_EVENTS || a.failure == STANCE_FAILURE_PAINLEVE);
+        assert_true(a.max_penetration < 1e-11);
+        assert_true(c.restitution > 0 || a.impact_energy < 1e-12);
+        if (a.status != STANCE_DONE || b.status != STANCE_DONE)
+            continue;
+        meet += !compare;
+        both += compare;
+        for (int k = 0; k < 5 && compare; k++)
+            worst = fmax(worst, fabs(a.position[k] - b.position[k]));
+        if (compare)
+            assert_int_equal(a.outcome, b.outcome);
+    }
+    print_message("# %d of %d cases by both, positions off %.1e; feet on one spot in %d; given up: "
+                  "event-driven %d, capturing %d\n",
+                  both, N, worst, meet, gave_up[0], gave_up[1]);
+    assert_true(both > 0.85 * N);
+    assert_true(worst < 1e-7);
+}
+
+/* Momentum in x and z, and angular momentum about the origin, of the biped's four masses. */
+static void momenta(const double *robot, const double *q, const double *v, double p[3])
+{
+    const double l = robot[0], lt = robot[1], m = robot[2], mt = robot[3], mh = robot[4];
+    const double hip[2] = {q[0] + lt * sin(q[2]), q[1] - lt * cos(q[2])};
+    const double hip_v[2] = {v[0] + lt * cos(q[2]) * v[2], v[1] + lt * sin(q[2]) * v[2]};
+    double mass[4] = {mt, mh, m, m}, x[4][2] = {{q[0], q[1]}, {hip[0], hip[1]}};
+    double u[4][2] = {{v[0], v[1]}, {hip_v[0], hip_v[1]}};
+    for (int i = 0; i < 2; i++) {
+        const double phi = q[2] + q[3 + i], rate = v[2] + v[3 + i];
+        x[2 + i][0] = hip[0] + l * sin(phi), x[2 + i][1] = hip[1] - l * cos(phi);
+        u[2 + i][0] = hip_v[0] + l * cos(phi) * rate, u[2 + i][1] = hip_v[1] + l * sin(phi) * rate;
+    }
+    p[0] = p[1] = p[2] = 0;
+    for (int i = 0; i < 4; i++) {
+        p[0] += mass[i] * u[i][0];
+        p[1] += mass[i] * u[i][1];
+        p[2] += mass[i] * (x[i][0] * u[i][1] - x[i][1] * u[i][0]);
+    }
+}
+
+/* In flight without torques: energy and the momenta, less what gravity adds, stay. With a servo
+ * the momenta stay, and the energy changes by the work. */
+static void flight_conserves(void **state)
+{
+    (void)state;
+    uint64_t seed = 5;
+    double worst = 0;
+    for (int i = 0; i < 40; i++) {
+        stance_case c = random_case(&seed, i);
+        const stance_scene *biped = stance_scene_find("biped");
+        const bool passive = i % 2 == 0;
+        if (passive)
+            memset(c.gain, 0, sizeof c.gain);
+        c.sample_every = passive ? 1 : 0;
+        c.contacts = 0;
+        c.step = i % 3 ? 1e-3 : 1e-2;
+        c.steps = (int64_t)lround(1 / c.step);
+        c.tolerance = 1e-13;
+        const stance_result r = run_case("biped", &c);
+        double before[3], after[3];
+        assert_int_equal(r.status, STANCE_DONE);
+        assert_int_equal(r.events == 0 || !passive, 1);
+        momenta(c.robot, c.position, c.velocity, before);
+        momenta(c.robot, r.position, r.velocity, after);
+        const double M = 2 * c.robot[2] + c.robot[3] + c.robot[4];
+        const double weight = M * STANCE_GRAVITY;
+        /* The weight's moment about the origin grows with the way of the centre of mass. */
+        double centre = 0;
+        const double l = c.robot[0], lt = c.robot[1], *q = c.position;
+        centre += c.robot[3] * q[0] + c.robot[4] * (q[0] + lt * sin(q[2]));
+        for (int k = 0; k < 2; k++)
+            centre += c.robot[2] * (q[0] + lt * sin(q[2]) + l * sin(q[2] + q[3 + k]));
+        before[1] -= weight * r.end_time;
+        before[2] -= STANCE_GRAVITY * r.end_time * (centre + 0.5 * r.end_time * before[0]);
+        for (int k = 0; k < 3; k++)
+            worst = fmax(worst, fabs(after[k] - before[k]) / (weight + fabs(before[k])));
+        if (passive) {
+            const double e0 = biped->energy(c.robot, c.position, c.velocity);
+            const double e1 = biped->energy(c.robot, r.position, r.velocity);
+            worst = fmax(worst, fabs(e1 - e0) / (1 + fabs(e0)));
+        } else {
+            worst = fmax(worst, r.energy_gain / (weight + fabs(before[2])));
+        }
+    }
+    print_message("# energy and momenta off %.1e, relative\n", worst);
+    assert_true(worst < 1e-11);
+}
+
+/* A ball at e < 1 comes to the instant at which its bounces accumulate and not beyond; every bounce
+ * before that is where it belongs. */
+static void zeno_fails(void **state)
+{
+    (void)state;
+    for (double e = 0.1; e < 0.95; e += 0.2)
+        for (double step = 1e-4; step < 0.05; step *= 10) {
+            stance_case c = scene_case("ball", step, 30);
+            c.restitution = e;
+            c.position[1] = 1.1;
+            const double zeno = sqrt(2 / STANCE_GRAVITY) * (1 + e) / (1 - e);
+            const stance_result r = run_case("ball", &c);
+            assert_int_equal(r.status, STANCE_FAILED);
+            assert_int_equal(r.failure, STANCE_FAILURE_EVENTS);
+            assert_true(fabs(r.end_time - zeno) < 1.01 * step + 1e-3);
+        }
+}
+
+/* A rod that slides on one end: refused where no force, or several, fit the accelerations. */
+static void painleve_fails(void **state)
+{
+    (void)state;
+    json_t *root = reference_load("tests/reference/known.json"), *row;
+    size_t i, refused = 0;
+    json_array_foreach(json_object_get(json_object_get(root, "painleve"), "cases"), i, row)
+    {
+        double x[5];
+        for (size_t k = 0; k < 5; k++)
+            x[k] = json_number_value(json_array_get(row, k));
+        const char *kind = json_string_value(json_array_get(row, 7));
+        stance_case c = scene_case("rod", 1e-4, 1e-4);
+        c.robot[2] = x[0], c.friction = x[2], c.contacts = 1;
+        c.position[0] = 0.5 * cos(x[1]), c.position[1] = 0.5 * sin(x[1]), c.position[2] = x[1];
+        c.velocity[0] = x[4] - 0.5 * sin(x[1]) * x[3], c.velocity[1] = 0.5 * cos(x[1]) * x[3];
+        c.velocity[2] = x[3];
+        const stance_result r = run_case("rod", &c);
+        const bool paradox = strcmp(kind, "none") == 0 || strcmp(kind, "two") == 0;
+        assert_int_equal(r.status, paradox ? STANCE_FAILED : STANCE_DONE);
+        assert_int_equal(r.failure, paradox ? STANCE_FAILURE_PAINLEVE : STANCE_FAILURE_NONE);
+        refused += paradox;
+    }
+    json_decref(root);
+    assert_true(refused > 20);
+}
+
+/* Height of the rod's end 1 at time t of free flight; the rod is 1 m long. */
+static double end_height(const stance_case *c, double t)
+{
+    return c->position[1] + (c->velocity[1] - 0.5 * STANCE_GRAVITY * t) * t -
+           0.5 * sin(c->position[2] + c->velocity[2] * t);
+}
+
+/* Its least value between two times, of which there is one. */
+static double lowest(const stance_case *c, double from, double to)
+{
+    for (int round = 0; round < 100; round++) {
+        const double a = from + (to - from) / 3, b = to - (to - from) / 3;
+        if (end_height(c, a) < end_height(c, b))
+            to = b;
+        else
+            from = a;
+    }
+    return end_height(c, 0.5 * (from + to));
+}
+
+/* An end of a spinning rod comes down to within a hair of the ground, or a hair below it, and goes
+ * up again, all inside one internal step. */
+static void grazing_is_seen(void **state)
+{
+    (void)state;
+    static const double depths[] = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 3e-12};
+    uint64_t seed = 11;
+    for (int i = 0; i < 100; i++) {
+        const double spin = uniform(&seed, 30, 300), when = uniform(&seed, 0.5, 2.5) / spin;
+        stance_case c = scene_case("rod", i % 2 ? 1e-2 : 1e-3, 1);
+        c.contacts = 1;
+        c.velocity[0] = 1, c.velocity[1] = uniform(&seed, -1, 1), c.velocity[2] = spin;
+        c.position[2] = M_PI / 2 - spin * when;
+        c.steps = (int64_t)ceil((when + 0.4 / spin) / c.step);
+        c.position[1] = 0;
+        const double low = lowest(&c, when - 0.3 / spin, when + 0.3 / spin);
+        for (size_t d = 0; d < sizeof depths / sizeof *depths; d++)
+            for (int side = -1; side <= 1; side += 2) {
+                c.position[1] = side * depths[d] - low;
+                const stance_result r = run_case("rod", &c);
+                assert_int_equal(r.status, STANCE_DONE);
+                assert_int_equal(r.events > 0, side < 0);
+            }
+    }
+}
+
+/* A block on level ground under a pull that exceeds friction for an instant, by a little: it slips
+ * as far as the closed form says. Where the pull falls short of friction by as little it stays. */
+static void short_slip_is_seen(void **state)
+{
+    (void)state;
+    static const double excesses[] = {1e-1, 1e-2, 1e-3, 1e-5, 1e-7};
+    for (double frequency = 0.7; frequency < 2000; frequency *= 3)
+        for (size_t k = 0; k < sizeof excesses / sizeof *excesses; k++)
+            for (int side = -1; side <= 1; side += 2) {
+                const double mu = 0.3, drag = mu * STANCE_GRAVITY;
+                const double pull = drag * (1 + side * excesses[k]), w = 2 * M_PI * frequency;
+                stance_case c = scene_case("block", 0.6 / frequency, 0.6 / frequency);
+                c.friction = mu;
+                c.robot[2] = pull, c.robot[3] = frequency;
+                const stance_result r = run_case("block", &c);
+                assert_int_equal(r.status, STANCE_DONE);
+                if (side < 0) {
+                    assert_true(r.position[0] == 0 && r.velocity[0] == 0 && r.events == 0);
+                    continue;
+                }
+                /* v(t) = (pull / w) (cos w t1 - cos w t) - drag (t - t1), zero at t1 and t2. */
+                const long double t1 = asinl((long double)drag / pull) / w;
+                long double a = 0.25L / frequency, b = 0.5L / frequency;
+                for (int round = 0; round < 100; round++) {
+                    const long double t = 0.5L * (a + b);
+                    const long double v = pull / w * (cosl(w * t1) - cosl(w * t)) - drag * (t - t1);
+                    if (v > 0)
+                        a = t;
+                    else
+                        b = t;
+                }
+                const long double wanted = pull / w * cosl(w * t1) * (a - t1) -
+                                           pull / (w * w) * (sinl(w * a) - sinl(w * t1)) -
+                                           0.5L * drag * (a - t1) * (a - t1);
+                assert_true(excesses[k] < 1e-4 ? r.events >= 2 : r.events == 2);
+                assert_true(r.velocity[0] == 0);
+                assert_true(fabs(r.position[0] - (double)wanted) < 1e-6 * (double)wanted + 1e-14);
+            }
+}
+
+/* What a case gives depends on nothing but the case, and SUNDIALS says nothing. */
+static void cases_are_independent(void **state)
+{
+    (void)state;
+    enum { N = 60 };
+    stance_case cases[N], reversed[N];
+    stance_result results[N], back[N];
+    uint64_t seed = 3;
+    for (int i = 0; i < N; i++) {
+        cases[i] = random_case(&seed, i);
+        cases[i].tolerance = i % 2 ? 1e-12 : 1e-9;
+        if (i % 10 == 9)
+            cases[i].tolerance = 1e-18; /* cannot be met */
+        reversed[N - 1 - i] = cases[i];
+    }
+    const stance_kernel *const kernel = kernel_of("event-driven", NULL);
+    FILE *const heard = tmpfile();
+    assert_non_null(heard);
+    fflush(stderr);
+    const int saved = dup(STDERR_FILENO);
+    dup2(fileno(heard), STDERR_FILENO);
+    kernel->run(cases, results, N);
+    kernel->run(reversed, back, N);
+    fflush(stderr);
+    dup2(saved, STDERR_FILENO);
+    close(saved);
+    fseek(heard, 0, SEEK_END);
+    assert_int_equal(ftell(heard), 0);
+    fclose(heard);
+    for (int i = 0; i < N; i++) {
+        assert_memory_equal(&results[i], &back[N - 1 - i], sizeof results[i]);
+        if (i % 10 == 9 && results[i].end_time > 0) /* else it has fallen at once */
+            assert_int_equal(results[i].failure, STANCE_FAILURE_TOLERANCE);
+    }
+    assert_ptr_equal(kernel_of("event-driven", "avx2"), kernel);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(drop_against_reference), cmocka_unit_test(agrees_with_capturing),
+        cmocka_unit_test(flight_conserves),       cmocka_unit_test(zeno_fails),
+        cmocka_unit_test(painleve_fails),         cmocka_unit_test(grazing_is_seen),
+        cmocka_unit_test(short_slip_is_seen),     cmocka_unit_test(cases_are_independent),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
