@@ -142,6 +142,9 @@ static inline void smooth_forces(const struct contact_state *m, const lanes D[2]
         r[0][a] = choose(both, alone[a] + push[a][0] * r2[0] + push[a][1] * r2[1], r[0][a]);
         r[SECOND][a] = choose(both, r2[a], r[SECOND][a]);
     }
+    /* On the edge of the cone exactly, whatever the elimination has lost by cancellation. */
+    const mask slides = both & mask_less(lanes_of(0), lanes_abs(m->slide[0]));
+    r[0][1] = choose(slides, -(friction * m->slide[0]) * r[0][0], r[0][1]);
 }
 
 /* Contact forces in the mode, and the accelerations with them. */
