@@ -426,9 +426,10 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
 
 /* Lanes where the energy gained is what discretisation may gain. The equation of a long step has
  * further roots, at which the robot has turned around several times and is much too fast: such a
- * step is as good as not converged. What Newton's restitution adds by impacts is not meant. */
+ * step is as good as not converged. Not for steps with a rebound: there the place of the impact
+ * inside the step decides on the energy, and Newton's restitution may add some. */
 static inline mask step_balances(const struct setting *set, const struct motion *from,
-                                 const struct iterate *it, lanes work, lanes impact)
+                                 const struct iterate *it, lanes work)
 {
     const lanes before = scene_energy(&set->body, from->s, from->w, &from->trig);
     const lanes after = scene_energy(&set->body, it->s1, it->w, &it->end);
@@ -437,7 +438,7 @@ static inline mask step_balances(const struct setting *set, const struct motion 
     /* At rest there is rounding: a share of the potential energy, of whatever size. */
     const lanes admitted = STEP_MOST_GAIN * (kinetic + lanes_abs(work)) +
                            1e-9 * (lanes_abs(before) + lanes_abs(after)) + 1e-12;
-    return mask_less_equal(after - before - work - lanes_max(impact, lanes_of(0)), admitted);
+    return mask_less_equal(after - before - work, admitted);
 }
 
 /* Residuals of the contact laws at a contact with force (or impulse) r and velocity u, the normal
@@ -527,11 +528,12 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
     lanes energy = lanes_of(0), projected = lanes_of(0);
     if (mask_any(touching & impact))
         energy = choose(touching & impact, impact_energy(set, &it), lanes_of(0));
-    converged &= step_balances(set, from, &it, report->work, energy);
     if (mask_any(touching)) {
         const mask near = iterate_project(set, from, h, touching, &it, &projected);
         converged &= near | LANES_NOT(touching);
     }
+    const mask rebounds = touching & mask_less(lanes_of(0), set->restitution);
+    converged &= rebounds | step_balances(set, from, &it, report->work);
 
     report->iterations = report->evaluations = iterations;
     report->impact_energy = energy;
