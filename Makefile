@@ -163,12 +163,12 @@ lint: packages-test
 	@bash tests/lint.sh
 
 sanitize:
-	$(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g' \
+	STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g' \
 	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' check
 
 install: bin/stance
 	install -D -m 755 bin/stance $(DESTDIR)$(PREFIX)/bin/stance
-	for f in scenarios/*.yaml; do install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/stance/$$f; done
+	for f in scenarios/*.yaml scenarios/*/*.yaml; do install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/stance/$$f; done
 
 clean:
 	rm -rf build bin

@@ -1,11 +1,12 @@
 /* command_compare.c - `stance compare FILE FILE`: what differs, as text or JSON. */
 #include "compare.h"
-#include "supervise.h"
 
 #include "../runner/command.h"
+#include "../runner/supervise.h"
 
 #include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Where a place is: "case 17 (initial.offset.theta = -0.1 rad, ...), component 2". */
@@ -46,6 +47,18 @@ static void print_difference(const struct results *r, const struct compare_diffe
         place_text(r, difference, place, where, sizeof where);
         printf("  %s: %s | %s\n", where, place->value[0], place->value[1]);
     }
+}
+
+/* Of a name that may not be UTF-8, which JSON asks for. */
+static json_t *json_name(const char *name)
+{
+    char *clean = strdup(name);
+    if (clean) {
+        results_clean(clean);
+    }
+    json_t *text = clean ? json_string(clean) : NULL;
+    free(clean);
+    return text ? text : json_null();
 }
 
 static json_t *json_places(const struct results *r, const struct compare_difference *difference)
@@ -93,8 +106,8 @@ static bool print_json(const struct results r[2], const struct comparison *compa
         json_array_append_new(differences, entry);
     }
     json_t *files = json_array();
-    json_array_append_new(files, json_string(r[0].file));
-    json_array_append_new(files, json_string(r[1].file));
+    json_array_append_new(files, json_name(r[0].file));
+    json_array_append_new(files, json_name(r[1].file));
     json_t *root = json_object();
     json_object_set_new(root, "files", files);
     json_object_set_new(root, "identical", json_boolean(comparison->count == 0));

@@ -1,8 +1,8 @@
 /* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
 #include "plot.h"
-#include "supervise.h"
 
 #include "../runner/command.h"
+#include "../runner/supervise.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -1,9 +1,8 @@
 /* command_summary.c - `stance summary FILE`: what came out, as text or JSON. */
 #include "summary.h"
 
-#include "supervise.h"
-
 #include "../runner/command.h"
+#include "../runner/supervise.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -123,6 +122,14 @@ static const char *end_note(bool open, bool unknown)
     return open ? " (end of the axis)" : unknown ? " (next case pending or failed)" : "";
 }
 
+/* What became of the case from which an extent would be measured. */
+static const char *start_text(enum results_kind kind)
+{
+    return kind == RESULTS_PENDING  ? "is not computed yet"
+           : kind == RESULTS_FAILED ? "failed"
+                                    : "is not stabilised";
+}
+
 static void print_extents(const struct summary *summary, const struct results *r)
 {
     bool first = true;
@@ -144,7 +151,8 @@ static void print_extents(const struct summary *summary, const struct results *r
                    end_note(extent->high_open, extent->high_unknown), axis->unit);
         } else {
             results_value_text(axis, extent->point[a], true, at, sizeof at);
-            printf("  none: the case nearest to the equilibrium (%s) is not stabilised", at);
+            printf("  %s: the case nearest to the equilibrium (%s) %s",
+                   extent->low_unknown ? "unknown" : "none", at, start_text(extent->kind));
         }
         bool also = false;
         for (int b = 0; b < r->axes; b++) {
@@ -160,7 +168,13 @@ static void print_extents(const struct summary *summary, const struct results *r
 
 /* ---- text: parameters --------------------------------------------------------------------- */
 
-/* "-0.09 ... 0.02", "*" where it reaches the end of the axis, "-" for none. */
+static const char *end_mark(bool open, bool unknown)
+{
+    return open ? "*" : unknown ? "?" : "";
+}
+
+/* "-0.09 ... 0.02*", with the marks that print_parameter explains; "-" for none, "?" for unknown.
+ */
 static void extent_text(const struct results *r, int offset, int axis, size_t i, char *buffer,
                         size_t size)
 {
@@ -168,11 +182,12 @@ static void extent_text(const struct results *r, int offset, int axis, size_t i,
     struct statistics_extent extent;
     point[axis] = i;
     if (!statistics_extent(r, offset, point, &extent) || !extent.any) {
-        snprintf(buffer, size, "-");
+        snprintf(buffer, size, extent.low_unknown ? "?" : "-");
         return;
     }
-    snprintf(buffer, size, "%.4g%s ... %.4g%s", extent.low, extent.low_open ? "*" : "", extent.high,
-             extent.high_open ? "*" : "");
+    snprintf(buffer, size, "%.4g%s ... %.4g%s", extent.low,
+             end_mark(extent.low_open, extent.low_unknown), extent.high,
+             end_mark(extent.high_open, extent.high_unknown));
 }
 
 /* Row k of `rows` out of `count`, both ends included. */
@@ -220,6 +235,19 @@ static void print_parameter_row(const struct summary *summary, const struct resu
     putchar('\n');
 }
 
+/* The share is the same at every value. */
+static bool is_even(const struct summary *summary, const struct results *r, int axis)
+{
+    const struct statistics_counts *counts = summary->by_value[axis];
+    for (size_t i = 0; i < r->axis[axis].count; i++) {
+        /* false for NAN, too */
+        if (!(summary_share(summary, &counts[i]) == summary_share(summary, &counts[0]))) {
+            return false;
+        }
+    }
+    return true;
+}
+
 static void print_parameter(const struct summary *summary, const struct results *r, int axis)
 {
     const struct results_axis *along = &r->axis[axis];
@@ -233,6 +261,12 @@ static void print_parameter(const struct summary *summary, const struct results 
             offsets[shown++] = a;
         }
     }
+    if (shown == 0 && along->count > 1 && is_even(summary, r, axis)) {
+        printf("\n%s against %s: %.3f %% at each of its %zu values\n",
+               summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised", along->name,
+               100 * summary_share(summary, &counts[0]), along->count);
+        return;
+    }
     print_parameter_head(summary, r, axis, offsets, shown);
     for (size_t k = 0; k < rows; k++) {
         print_parameter_row(summary, r, axis, spread(k, rows, along->count), offsets, shown);
@@ -241,8 +275,8 @@ static void print_parameter(const struct summary *summary, const struct results 
         printf("  (%zu of %zu values; --json has them all)\n", rows, along->count);
     }
     if (shown > 0) {
-        puts("  (the last columns: extent of the stabilised set through the equilibrium, * where "
-             "it reaches\n  the end of the axis)");
+        puts("  (the last columns: extent of the stabilised set through the equilibrium; * where "
+             "it reaches\n  the end of the axis, ? where the next case is pending or failed)");
     }
     size_t i = summary->steepest[axis];
     if (along->count > 1 && fabs(summary_share(summary, &counts[i + 1]) -
@@ -329,7 +363,7 @@ static void print_cost(const struct summary *summary)
     puts("\nCost");
     if (steps->stored) {
         printf("  %.6g time steps", steps->sum);
-        if (iterations->stored && steps->sum > 0) {
+        if (iterations->sum > 0 && steps->sum > 0) {
             printf(", %.4g Newton iterations per step", iterations->sum / steps->sum);
         }
         if (evaluations->stored && steps->sum > 0 && evaluations->sum != iterations->sum) {
@@ -522,12 +556,13 @@ const struct command command_summary = {
     "    cases        total, done, failed, pending\n"
     "    failures     {reason: count}\n"
     "    outcomes     {name: {count, share, low, high}} of the cases done\n"
-    "    extents      [{path, unit, stabilised, low, high, low_at_end, high_at_end,\n"
-    "                 low_unknown, high_unknown, at: {path: value}}]\n"
+    "    extents      [{path, unit, outcome, stabilised, low, high, low_at_end, high_at_end,\n"
+    "                 low_unknown, high_unknown, at: {path: value}}]; outcome of the case nearest\n"
+    "                 to the equilibrium; where that is pending or failed stabilised is null\n"
     "    parameters   [{path, unit, share_of, values: [{value, done, failed, pending,\n"
     "                 stabilised, rested, share, low, high, extents: {path: [low, high]}}],\n"
     "                 steepest: {from, to}}]; share_of: stabilised, or without a controller\n"
-    "                 that has a target rested\n"
+    "                 that has a target rested; an extent is [] for none, null for unknown\n"
     "    changes      [{from, to, before, after}] along the axis of a sweep with one axis\n"
     "    numbers      {answer: {of, unit, count, smallest, median, q90, q99, largest}}\n"
     "    cost         steps, iterations, iterations_per_step, evaluations, events, events_cases,\n"

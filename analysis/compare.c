@@ -1,6 +1,7 @@
 /* compare.c - walks through two results files and compares variables and attributes. */
 #include "compare.h"
 
+#include "../runner/seal.h"
 #include "../runner/store.h"
 
 #include <hdf5.h>
@@ -94,8 +95,10 @@ static bool is_listed(const char *name, const char *const *list)
 
 static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *info, void *names)
 {
-    /* What ties dimensions together holds addresses within the file. */
-    static const char *const structure[] = {"DIMENSION_LIST", "REFERENCE_LIST", NULL};
+    /* What ties dimensions together holds addresses within the file; checksums say what the values
+     * say. */
+    static const char *const structure[] = {"DIMENSION_LIST", "REFERENCE_LIST", SEAL_ATTRIBUTE,
+                                            NULL};
     (void)object, (void)info;
     if (!is_listed(name, structure)) {
         names_add(names, name);
@@ -121,6 +124,7 @@ static struct compare_difference *add_difference(struct comparison *comparison, 
     struct compare_difference *difference = &comparison->difference[comparison->count++];
     *difference = (struct compare_difference){.differing = 0};
     snprintf(difference->name, sizeof difference->name, "%s", name);
+    results_clean(difference->name);
     snprintf(difference->reason, sizeof difference->reason, "%s", reason);
     return difference;
 }
@@ -274,6 +278,23 @@ static bool same_value(const struct values *a, const struct values *b, size_t i)
     }
 }
 
+/* The beginning of a text in quotation marks, in whole letters; damaged bytes are no letters. */
+static void quote(const char *before, const char *letters, char text[COMPARE_TEXT])
+{
+    enum { SHOWN = 60 };
+    int shown = 0;
+    while (letters[shown]) {
+        int length = results_letter(letters + shown);
+        length = length > 0 ? length : 1;
+        if (shown + length > SHOWN) {
+            break;
+        }
+        shown += length;
+    }
+    snprintf(text, COMPARE_TEXT, "%s'%.*s'", before, shown, letters);
+    results_clean(text);
+}
+
 static void value_text(const struct values *values, size_t i, char text[COMPARE_TEXT])
 {
     switch (values->kind) {
@@ -287,10 +308,7 @@ static void value_text(const struct values *values, size_t i, char text[COMPARE_
         snprintf(text, COMPARE_TEXT, "%llu", (unsigned long long)values->data.natural[i]);
         break;
     default:
-        snprintf(text, COMPARE_TEXT, "'%.64s'", values->data.text[i]);
-        for (char *c = text; *c; c++) {
-            *c = (unsigned char)*c < ' ' ? ' ' : *c;
-        }
+        quote("", values->data.text[i], text);
     }
 }
 
@@ -304,13 +322,11 @@ static void show_texts(struct compare_place *place, const char *a, const char *b
         same++;
     }
     size_t from = same > 20 ? same - 20 : 0;
-    const char *texts[] = {a + from, b + from};
-    for (int f = 0; f < 2; f++) {
-        snprintf(place->value[f], COMPARE_TEXT, "%s'%.60s'", from ? "..." : "", texts[f]);
-        for (char *c = place->value[f]; *c; c++) {
-            *c = (unsigned char)*c < ' ' ? ' ' : *c;
-        }
+    while (from > 0 && ((unsigned char)a[from] & 0xc0) == 0x80) { /* within a letter */
+        from--;
     }
+    quote(from ? "..." : "", a + from, place->value[0]);
+    quote(from ? "..." : "", b + from, place->value[1]);
 }
 
 static bool open_attribute(hid_t object, const char *name, hid_t *attribute, hid_t *type,

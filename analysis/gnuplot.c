@@ -1,6 +1,8 @@
 /* gnuplot.c - writes gnuplot scripts and data, runs gnuplot, fetches the pictures. */
 #include "gnuplot.h"
 
+#include "results.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -145,28 +147,6 @@ void gnuplot_number(FILE *out, double value)
     }
 }
 
-/* Length of the UTF-8 sequence at `text`, 0 when it is none. */
-static int utf8_length(const char *text)
-{
-    const unsigned char *c = (const unsigned char *)text;
-    int length = c[0] < 0x80                    ? 1
-                 : c[0] >= 0xc2 && c[0] < 0xe0  ? 2
-                 : (c[0] & 0xf0) == 0xe0        ? 3
-                 : c[0] >= 0xf0 && c[0] <= 0xf4 ? 4
-                                                : 0;
-    for (int i = 1; i < length; i++) {
-        if ((c[i] & 0xc0) != 0x80) {
-            return 0;
-        }
-    }
-    /* Overlong forms, surrogates and what lies beyond Unicode. */
-    if ((c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xed && c[1] > 0x9f) ||
-        (c[0] == 0xf0 && c[1] < 0x90) || (c[0] == 0xf4 && c[1] > 0x8f)) {
-        return 0;
-    }
-    return length;
-}
-
 /* Columns up to the next blank. */
 static int word_columns(const char *text)
 {
@@ -190,7 +170,7 @@ int gnuplot_text(FILE *out, const char *text, int columns)
     int lines = 1, column = 0;
     put(out, "'", 1);
     while (*text) {
-        int length = utf8_length(text);
+        int length = results_letter(text);
         bool blank = (unsigned char)*text <= ' ' || *text == 0x7f;
         if (blank && columns > 0 && column > 0 && column + 1 + word_columns(text + 1) > columns) {
             put(out, "'.\"\\n\".'", 8);
@@ -394,37 +374,106 @@ static bool write_svg(FILE *out, const char *text, size_t size)
     return fwrite(text, 1, (size_t)(end - text), out) == (size_t)(end - text) && !ferror(out);
 }
 
-static bool fetch(const struct gnuplot *g, const char *extension, const char *directory,
-                  const char *stem, stance_message *message)
+static void join_path(const char *directory, const char *name, char *path, size_t size)
 {
-    char from[320], name[32], to[2048];
-    size_t size = 0;
+    snprintf(path, size, "%s%s%s", directory, directory[strlen(directory) - 1] == '/' ? "" : "/",
+             name);
+}
 
-    snprintf(name, sizeof name, "picture.%s", extension);
-    scratch_path(g, name, from);
-    snprintf(to, sizeof to, "%s%s%s.%s", directory,
-             directory[strlen(directory) - 1] == '/' ? "" : "/", stem, extension);
-    char *text = read_file(from, &size);
-    if (!text) {
-        snprintf(message->text, sizeof message->text, "gnuplot drew nothing for %.150s", to);
+static bool not_written(const char *path, stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "%.150s: cannot be written: %s", path,
+             strerror(errno));
+    return false;
+}
+
+/* One file of a picture: drawn at `from`, belongs to `to`; complete at `part`, beside it, it takes
+ * that place at once. No reader ever sees half a picture, and none is left by a full disk. */
+struct product {
+    const char *scratch; /* directory in which it was drawn */
+    char from[320], part[2048], to[2048];
+    bool parted; /* there is something at `part` */
+};
+
+static void name_product(struct product *product, const struct gnuplot *g, const char *extension,
+                         const char *directory, const char *stem)
+{
+    char drawn[32], name[600];
+    snprintf(drawn, sizeof drawn, "picture.%s", extension);
+    scratch_path(g, drawn, product->from);
+    snprintf(name, sizeof name, "%s.%s", stem, extension);
+    join_path(directory, name, product->to, sizeof product->to);
+    snprintf(name, sizeof name, ".stance-%ld.%s", (long)getpid(), extension);
+    join_path(directory, name, product->part, sizeof product->part);
+    product->scratch = g->scratch;
+    product->parted = false;
+}
+
+/* gnuplot does not tell when the disk that it draws on is full: the last words of a file do. */
+static bool is_complete(const char *text, size_t size, bool svg)
+{
+    static const char last_tag[] = "</svg>", last_chunk[] = "IEND";
+    if (!svg) { /* before the four bytes of its checksum */
+        return size >= 8 && memcmp(text + size - 8, last_chunk, sizeof last_chunk - 1) == 0;
+    }
+    while (size > 0 && isspace((unsigned char)text[size - 1])) {
+        size--;
+    }
+    size_t length = sizeof last_tag - 1;
+    return size >= length && memcmp(text + size - length, last_tag, length) == 0;
+}
+
+static bool copy_product(struct product *product, bool svg, stance_message *message)
+{
+    size_t size = 0;
+    char *text = read_file(product->from, &size);
+    if (!text || !is_complete(text, size, svg)) {
+        snprintf(message->text, sizeof message->text,
+                 "gnuplot drew %s for %.100s; is there room in %.60s?",
+                 text ? "half a picture" : "nothing", product->to, product->scratch);
+        free(text);
         return false;
     }
-    FILE *out = fopen(to, "wb");
-    bool good = out && (strcmp(extension, "svg") == 0 ? write_svg(out, text, size)
-                                                      : fwrite(text, 1, size, out) == size);
+    unlink(product->part); /* of a process of that number that was killed */
+    FILE *out = fopen(product->part, "wbx");
+    product->parted = out != NULL;
+    bool good = out && (svg ? write_svg(out, text, size) : fwrite(text, 1, size, out) == size);
     int error = errno;
     if (out && fclose(out) != 0 && good) {
         error = errno;
         good = false;
     }
     free(text);
-    if (!good) {
-        snprintf(message->text, sizeof message->text, "%.150s: cannot be written: %s", to,
-                 strerror(error));
-        return false;
+    errno = error;
+    return good || not_written(product->to, message);
+}
+
+static bool place_product(struct product *product, stance_message *message)
+{
+    if (rename(product->part, product->to) != 0) {
+        return not_written(product->to, message);
     }
-    puts(strncmp(to, "./", 2) == 0 ? to + 2 : to);
+    product->parted = false;
+    puts(strncmp(product->to, "./", 2) == 0 ? product->to + 2 : product->to);
     return true;
+}
+
+/* Brings the pictures to where they belong: both, or where one cannot be written neither. */
+static bool fetch(const struct gnuplot *g, const char *directory, const char *stem,
+                  stance_message *message)
+{
+    struct product product[2];
+    name_product(&product[0], g, "svg", directory, stem);
+    name_product(&product[1], g, "png", directory, stem);
+    bool good = copy_product(&product[0], true, message) &&
+                copy_product(&product[1], false, message) && place_product(&product[0], message) &&
+                place_product(&product[1], message);
+    for (int k = 0; k < 2; k++) {
+        if (product[k].parted) {
+            unlink(product[k].part);
+        }
+    }
+    return good;
 }
 
 bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
@@ -451,8 +500,7 @@ bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
             read_complaint(g, complaint);
             snprintf(message->text, sizeof message->text, "gnuplot failed: %s", complaint);
         } else {
-            good = fetch(g, "svg", directory, stem, message) &&
-                   fetch(g, "png", directory, stem, message);
+            good = fetch(g, directory, stem, message);
         }
     }
     remove_scratch(g);

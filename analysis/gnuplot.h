@@ -25,7 +25,7 @@ struct gnuplot {
 /* Begins a picture. False: no scratch directory; nothing is left behind. */
 bool gnuplot_begin(struct gnuplot *g, int width, int height, stance_message *message);
 /* Runs gnuplot, writes DIRECTORY/STEM.svg and .png and prints both paths. Ends the picture in any
- * case. False: a write failed, gnuplot is missing or complains. */
+ * case. False: a write failed, gnuplot is missing or complains; the files are as they were. */
 bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
                  stance_message *message);
 /* Ends a picture without drawing it. */

@@ -124,6 +124,27 @@ struct page {
     int panels, drawn;
 };
 
+/* Value i of the first path of an axis, for people. */
+static void swept_value(const struct scenario_axis *axis, size_t i, char *text, size_t size)
+{
+    char number[32];
+    double value = scenario_axis_value(axis, i, 0), gap = INFINITY;
+    if (axis->words || isinf(value)) {
+        scenario_axis_text(axis, i, 0, text, size);
+        return;
+    }
+    if (i > 0) {
+        gap = fmin(gap, fabs(value - scenario_axis_value(axis, i - 1, 0)));
+    }
+    if (i + 1 < axis->count) {
+        gap = fmin(gap, fabs(scenario_axis_value(axis, i + 1, 0) - value));
+    }
+    results_number_text(value, isinf(gap) ? 0 : gap, number, sizeof number);
+    bool unit = strcmp(axis->unit, "1") != 0;
+    snprintf(text, size, "%s%s%s", number, unit && axis->unit[0] ? " " : "",
+             unit ? axis->unit : "");
+}
+
 /* "ground.friction = 0.3, ..." of a case of a sweep, from its scenario. */
 static void swept_text(const struct scenario *s, uint64_t index, char *text, size_t size)
 {
@@ -135,7 +156,7 @@ static void swept_text(const struct scenario *s, uint64_t index, char *text, siz
     }
     text[0] = '\0';
     for (int a = 0; a < s->axes && used < size; a++) {
-        scenario_axis_text(&s->axis[a], point[a], 0, value, sizeof value);
+        swept_value(&s->axis[a], point[a], value, sizeof value);
         used += (size_t)snprintf(text + used, size - used, "%s%s = %s", a ? ", " : "",
                                  s->axis[a].name, value);
     }

@@ -378,7 +378,7 @@ static bool draw_settle_times(const struct plot *plot, const struct layout *layo
     struct gnuplot g;
     double top;
     char stem[512];
-    if (!begin_page(&g, plot, layout, "Time from which the robot stayed settled", &top, message)) {
+    if (!begin_page(&g, plot, layout, "Time from which each case stayed settled", &top, message)) {
         return false;
     }
     gnuplot_legend(&g, legend_left(layout), legend_top(layout, top), "#d9d9d9", "did not settle");

@@ -1,7 +1,8 @@
 /* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
 #include "results.h"
 
-#include "supervise.h"
+#include "../runner/seal.h"
+#include "../runner/supervise.h"
 
 #include <errno.h>
 #include <hdf5.h>
@@ -55,16 +56,6 @@ static bool no_memory(const struct results *r, stance_message *message)
 
 /* ---- attributes --------------------------------------------------------------------------- */
 
-/* Keeps one line: what a title or a unit is for. */
-static void one_line(char *text)
-{
-    for (; *text; text++) {
-        if ((unsigned char)*text < ' ' || *text == 0x7f) {
-            *text = ' ';
-        }
-    }
-}
-
 /* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
 static char *read_text(hid_t object, const char *name)
 {
@@ -100,7 +91,7 @@ static void copy_text(hid_t object, const char *name, char *buffer, size_t size)
 {
     char *text = read_text(object, name);
     snprintf(buffer, size, "%s", text ? text : "");
-    one_line(buffer);
+    results_clean(buffer);
     free(text);
 }
 
@@ -237,7 +228,7 @@ static char **read_strings(hid_t dataset, size_t n)
     H5Tclose(type);
     for (size_t i = 0; words && i < n; i++) {
         if (good) {
-            one_line(words[i]);
+            results_clean(words[i]);
         } else {
             free(words[i]);
         }
@@ -311,6 +302,7 @@ static bool read_axis(struct results *r, const char *name, stance_message *messa
     r->axes++;
     axis->count = rank == 1 ? elements(r, rank, length) : 0;
     axis->offset = strncmp(name, "initial.offset.", strlen("initial.offset.")) == 0;
+    results_clean(axis->name);
     copy_text(dataset, "units", axis->unit, sizeof axis->unit);
     copy_text(dataset, "long_name", axis->text, sizeof axis->text);
     if (strcmp(axis->unit, "1") == 0) {
@@ -566,10 +558,20 @@ static bool read_provenance(struct results *r, stance_message *message)
     return true;
 }
 
+/* What the file says of itself is as its checksums say, where it has any. */
+static bool verify(const struct results *r, stance_message *message)
+{
+    char *hash = read_text((hid_t)r->id, "scenario_sha256");
+    bool good = seal_verify(r->id, r->file, r->scenario, hash, false, message);
+    H5Eclear2(H5E_DEFAULT);
+    free(hash);
+    return good;
+}
+
 static bool read_all(struct results *r, stance_message *message)
 {
-    return open_file(r, message) && read_provenance(r, message) && read_axes(r, message) &&
-           read_kinds(r, message);
+    return open_file(r, message) && read_provenance(r, message) && verify(r, message) &&
+           read_axes(r, message) && read_kinds(r, message);
 }
 
 bool results_open(struct results *r, const char *file, stance_message *message)
@@ -611,55 +613,6 @@ void results_close(struct results *r)
         H5Fclose((hid_t)r->id);
     }
     *r = (struct results){.id = -1};
-}
-
-/* ---- cases -------------------------------------------------------------------------------- */
-
-void results_point(const struct results *r, uint64_t index, size_t *point)
-{
-    for (int a = r->axes - 1; a >= 0; a--) {
-        point[a] = (size_t)(index % r->axis[a].count);
-        index /= r->axis[a].count;
-    }
-}
-
-void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,
-                        size_t size)
-{
-    if (axis->word) {
-        snprintf(buffer, size, "%s", axis->word[i]);
-    } else {
-        snprintf(buffer, size, "%.6g%s%s", axis->value[i], unit && axis->unit[0] ? " " : "",
-                 unit ? axis->unit : "");
-    }
-}
-
-void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size)
-{
-    size_t point[SCENARIO_MAX_AXES], used = 0;
-    char text[128];
-
-    buffer[0] = '\0';
-    results_point(r, index, point);
-    for (int a = 0; !r->single && a < r->axes && used < size; a++) {
-        results_value_text(&r->axis[a], point[a], true, text, sizeof text);
-        used += (size_t)snprintf(buffer + used, size - used, "%s%s = %s", a ? ", " : "",
-                                 r->axis[a].name, text);
-    }
-}
-
-bool results_scenario(const struct results *r, struct scenario *s)
-{
-    char *said = NULL;
-    size_t length = 0;
-    FILE *errors = open_memstream(&said, &length);
-    if (!errors) {
-        return false;
-    }
-    bool good = scenario_read(s, r->file, r->scenario, NULL, 0, errors);
-    fclose(errors);
-    free(said);
-    return good;
 }
 
 /* ---- trajectories ------------------------------------------------------------------------- */

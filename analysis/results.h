@@ -57,7 +57,8 @@ struct results {
     int64_t id;       /* of the open file, for results.c */
 };
 
-/* Opens and reads all but the answers. On failure nothing is left open. */
+/* Opens and reads all but the answers; verifies the checksums that the file has over its axes, its
+ * designs and its scenario. On failure nothing is left open. */
 bool results_open(struct results *r, const char *file, stance_message *message);
 void results_close(struct results *r);
 
@@ -81,11 +82,20 @@ bool results_timing(const struct results *r, double *longest, double *total, dou
 
 /* Coordinates of a case: point[axes]. */
 void results_point(const struct results *r, uint64_t index, size_t *point);
-/* Text of a value of an axis, with its unit when `unit`. */
+/* A number for people: six significant digits, more only where `gap`, the distance from the nearest
+ * number that it must not be taken for (0: there is none), asks for them. */
+void results_number_text(double value, double gap, char *buffer, size_t size);
+/* Text of a value of an axis, with its unit when `unit`; no other of the axis has the same. */
 void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,
                         size_t size);
 /* "initial.offset.theta = -0.04 rad, ..." of a case; "" in a file of one case. */
 void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size);
+
+/* Bytes of the UTF-8 letter at `text`, 0 when there is none: what a damaged file holds is not
+ * printed as it is. A file's titles, units, words and names of axes have been cleaned: bytes that
+ * are no letters are '?', control characters blanks. */
+int results_letter(const char *text);
+void results_clean(char *text);
 
 /* The scenario of the file, read by the scenario's own reader; false when this version cannot. */
 bool results_scenario(const struct results *r, struct scenario *s);

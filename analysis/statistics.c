@@ -175,8 +175,11 @@ bool statistics_extent(const struct results *r, int axis, const size_t *point,
         base += a == axis ? 0 : extent->point[a] * stride_of(r, a);
     }
     size_t start = extent->point[axis];
-    extent->any = r->kind[base + start * stride] == RESULTS_STABILISED;
+    extent->kind = (enum results_kind)r->kind[base + start * stride];
+    extent->any = extent->kind == RESULTS_STABILISED;
     if (!extent->any) {
+        extent->low_unknown = extent->high_unknown =
+            extent->kind == RESULTS_PENDING || extent->kind == RESULTS_FAILED;
         return true;
     }
     double first = walk(r, along, base, stride, start, false, &first_open, &first_unknown);

@@ -36,6 +36,7 @@ double statistics_quantile(const double *sorted, size_t n, double p);
  * nearest to zero of the other axes of offsets. */
 struct statistics_extent {
     bool any;                        /* the point nearest to zero is stabilised */
+    enum results_kind kind;          /* of that point; pending, failed: both ends are unknown */
     double low, high;                /* unit of the axis, low <= high */
     bool low_open, high_open;        /* reaches the end of the axis there: the set may go on */
     bool low_unknown, high_unknown;  /* ends at a pending or failed case */

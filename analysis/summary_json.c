@@ -122,7 +122,9 @@ static json_t *extents(const struct summary *summary, const struct results *r)
         }
         put(entry, "path", json_string(r->axis[a].name));
         put(entry, "unit", text_or_null(r->axis[a].unit));
-        put(entry, "stabilised", json_boolean(extent->any));
+        bool known = extent->any || !extent->low_unknown;
+        put(entry, "outcome", json_string(results_kind_names[extent->kind]));
+        put(entry, "stabilised", known ? json_boolean(extent->any) : json_null());
         put(entry, "low", number(extent->low));
         put(entry, "high", number(extent->high));
         put(entry, "low_at_end", json_boolean(extent->low_open));
@@ -135,7 +137,8 @@ static json_t *extents(const struct summary *summary, const struct results *r)
     return list;
 }
 
-/* The extents at one value of the only axis that is not an offset. */
+/* The extents at one value of the only axis that is not an offset: both ends, [] where the set does
+ * not hold the point nearest to zero, null where that is not known. */
 static json_t *extents_at(const struct results *r, int axis, size_t i)
 {
     json_t *object = json_object();
@@ -144,13 +147,13 @@ static json_t *extents_at(const struct results *r, int axis, size_t i)
     point[axis] = i;
     for (int a = 0; a < r->axes; a++) {
         if (statistics_extent(r, a, point, &extent)) {
-            json_t *ends = json_array();
-            json_array_append_new(ends, number(extent.low));
-            json_array_append_new(ends, number(extent.high));
-            put(object, r->axis[a].name, extent.any ? ends : json_null());
-            if (!extent.any) {
-                json_decref(ends);
+            bool known = extent.any || !extent.low_unknown;
+            json_t *ends = known ? json_array() : json_null();
+            if (extent.any) {
+                json_array_append_new(ends, number(extent.low));
+                json_array_append_new(ends, number(extent.high));
             }
+            put(object, r->axis[a].name, ends);
         }
     }
     return object;

@@ -19,8 +19,10 @@ static int run_describe(int argc, char **argv)
         fputs("stance describe: --schema takes no PATH\n", stderr);
         return EXIT_USAGE;
     }
-    return scenario_describe(operands ? path : NULL, schema > 0, stdout, stderr) ? EXIT_DONE
-                                                                                 : EXIT_USAGE;
+    if (scenario_describe(operands ? path : NULL, schema > 0, stdout, stderr)) {
+        return EXIT_DONE;
+    }
+    return operands ? EXIT_USAGE : EXIT_IO;
 }
 
 const struct command command_describe = {

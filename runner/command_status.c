@@ -3,6 +3,7 @@
 #include "lock.h"
 #include "report.h"
 #include "store.h"
+#include "supervise.h"
 
 #include <inttypes.h>
 #include <jansson.h>
@@ -26,7 +27,7 @@ static bool read_state(const char *file, struct state *state, stance_message *me
 {
     struct lock_note note;
     *state = (struct state){.running = lock_is_held(file, &note), .rate = -1, .left = -1};
-    if (!store_count(file, &state->counts, message)) {
+    if (!store_count(file, &state->counts, message) || !store_check(file, false, message)) {
         return false;
     }
     uint64_t finished = state->counts.done + state->counts.failed;
@@ -70,14 +71,39 @@ static void print_text(const char *file, const struct state *state)
     putchar('\n');
 }
 
+struct request {
+    const char *file;
+    bool json;
+};
+
+static int say(void *context)
+{
+    const struct request *request = context;
+    struct state state;
+    stance_message message = {""};
+
+    store_prepare();
+    supervise_limit(true);
+    bool good = read_state(request->file, &state, &message);
+    supervise_limit(false);
+    if (!good) {
+        fprintf(stderr, "stance status: %s\n", message.text);
+        return EXIT_IO;
+    }
+    if (request->json) {
+        print_json(request->file, &state);
+    } else {
+        print_text(request->file, &state);
+    }
+    return EXIT_DONE;
+}
+
 static int run_status(int argc, char **argv)
 {
     const char *file;
     size_t json = 0, operands;
     bool help;
     const struct option_spec specs[] = {{"--json", false, NULL, 0, &json}};
-    struct state state;
-    stance_message message = {""};
 
     if (!command_options(&command_status, argc, argv, specs, 1, &file, 1, &operands, &help)) {
         return EXIT_USAGE;
@@ -90,17 +116,8 @@ static int run_status(int argc, char **argv)
                         "explains)\n");
         return EXIT_USAGE;
     }
-    store_prepare();
-    if (!read_state(file, &state, &message)) {
-        fprintf(stderr, "stance status: %s\n", message.text);
-        return EXIT_IO;
-    }
-    if (json > 0) {
-        print_json(file, &state);
-    } else {
-        print_text(file, &state);
-    }
-    return EXIT_DONE;
+    struct request request = {file, json > 0};
+    return supervise(say, &request, file);
 }
 
 const struct command command_status = {

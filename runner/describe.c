@@ -483,9 +483,9 @@ bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *erro
     } else if (path) {
         good = print_path(path, out, errors, schemas, count);
     } else if (json_schema) {
-        good = print_schema(out, schemas, count);
+        good = print_schema(out, schemas, count) || ferror(out);
         if (!good) {
-            fputs("stance describe: cannot write the schema\n", errors);
+            fputs("stance describe: out of memory\n", errors);
         }
     } else {
         print_all(out, schemas, count);

@@ -2,9 +2,12 @@
 #include "build_info.h"
 #include "command.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static const struct command *const commands[] = {
     &command_check, &command_design,  &command_run,      &command_status, &command_summary,
@@ -50,12 +53,25 @@ static int unknown_command(const char *word)
     return EXIT_USAGE;
 }
 
+/* A caller may have closed standard streams: the next files to be opened would take their places,
+ * and what is printed would end in them. What stands there instead can be read and is empty, so
+ * that to print is an error. */
+static bool hold_standard_streams(void)
+{
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
+        if (fcntl(stream, F_GETFD) < 0 && errno == EBADF && open("/dev/null", O_RDONLY) != stream) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* What was printed must have arrived, or the exit code says so. */
 static int checked_output(int code)
 {
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fputs("stance: cannot write to standard output\n", stderr);
-        return code == EXIT_DONE ? EXIT_IO : code;
+        return code == EXIT_DONE || code == EXIT_CASES_FAILED ? EXIT_IO : code;
     }
     return code;
 }
@@ -64,6 +80,9 @@ int main(int argc, char **argv)
 {
     /* A write beyond the file size limit is to fail with an error, not to kill the process. */
     signal(SIGXFSZ, SIG_IGN);
+    if (!hold_standard_streams()) {
+        return EXIT_IO; /* nowhere to say why */
+    }
     if (argc < 2) {
         print_usage(stderr);
         return EXIT_USAGE;

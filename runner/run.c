@@ -9,6 +9,7 @@
 #include "lock.h"
 #include "report.h"
 #include "store.h"
+#include "supervise.h"
 #include "work.h"
 
 #include <errno.h>
@@ -292,6 +293,19 @@ static bool same_scenario(struct run *run, const struct store_origin *origin)
     }
 }
 
+/* In a process of its own: see store_check. */
+static int check_file(void *file)
+{
+    stance_message message = {""};
+    supervise_limit(true);
+    bool good = store_check(file, true, &message);
+    supervise_limit(false);
+    if (!good) {
+        fprintf(stderr, "stance run: %s\n", message.text);
+    }
+    return good ? EXIT_DONE : EXIT_IO;
+}
+
 /* An existing file that is to be gone on with. */
 static void look_into_file(struct run *run)
 {
@@ -299,6 +313,10 @@ static void look_into_file(struct run *run)
     struct store_counts counts = {0};
     stance_message message = {""};
 
+    run->failure.code = supervise(check_file, run->file, run->file);
+    if (run->failure.code != EXIT_DONE) {
+        return; /* it has been said why */
+    }
     if (!store_read_origin(run->file, &origin, &message)) {
         fail_io(run, &message);
         return;
@@ -686,7 +704,8 @@ const struct command command_run = {
     "  -o FILE            results file; default results/<scenario name>.h5 (one case: with\n"
     "                     -case<N>). An existing file is left alone and the exit code is 3\n"
     "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
-    "  --force            replace an existing file\n"
+    "  --force            replace the file of that name, whatever it holds; of a symbolic link\n"
+    "                     the link, not the file that it names\n"
     "  --resume           go on with an existing file of the same scenario: cases that it holds\n"
     "                     whole, as their checksums say, are kept. Begins when there is no file\n"
     "  --time-limit TIME  stop in time to be done after 90s, 55m, 1h30m ...; resumable\n"

@@ -55,7 +55,7 @@ struct scenario_values {
     double torque_limit;               /* INFINITY: none */
     double noise;
 
-    int method; /* index into stance_methods() */
+    int method;             /* index into stance_methods() */
     double step, tolerance; /* tolerance: NAN: the method's own */
 
     double stop_time;
@@ -129,7 +129,7 @@ void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char 
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);
 
 /* Documentation of the format from the table: all of it, one path, or JSON Schema.
- * false: no such path (a message with the nearest one on `errors`). */
+ * false: no such path, or no memory (a message on `errors`); errors of `out` are the caller's. */
 bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *errors);
 
 #endif

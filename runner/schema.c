@@ -70,7 +70,7 @@ static const struct row rows[] = {
                      .fallback = NAN, .text = "what is simulated"}},
 
     {0, {.path = "robot", .type = FIELD_MAP, .by_scene = true, BY_HAND,
-         .text = "the robot that is simulated"}},
+         .text = "the body that is simulated"}},
     {FAMILY_ROBOT, {.path = "robot.*", .type = FIELD_NUMBER, .by_scene = true, .design = true,
                     .sweep = true, VALUE(robot)}},
 
@@ -182,7 +182,7 @@ static const struct row rows[] = {
     {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(sample_time), .unit = "s", .fallback = 0, .low = 0, .high = LARGE,
          .text = "time between samples of the controller",
-         .more = "Torques are held in between; 0: it acts continuously, inside the implicit step.",
+         .more = "Torques are held in between; 0: it acts continuously, inside the step.",
          .need = NEED_ACTUATORS}},
     {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL,
          .sweep = true, VALUE(torque_limit), .unit = "N m", .fallback = INFINITY,
@@ -211,7 +211,7 @@ static const struct row rows[] = {
          VALUE(stop_time), .unit = "s", .fallback = NAN, .low = 0, .high = LARGE, .low_open = true,
          .text = "longest duration of a run"}},
     {0, {.path = "stop.settle", .type = FIELD_MAP_OR_WORD, BY_HAND, WORDS(settle_words),
-         .text = "when the robot counts as stabilised or at rest",
+         .text = "when a run counts as stabilised or at rest",
          .more = "off: every run lasts its whole time and is judged at its end."}},
     {0, {.path = "stop.settle.angle", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
          VALUE(settle_angle), .unit = "rad", .fallback = 0.05, .low = 0, .high = LARGE,
@@ -222,7 +222,7 @@ static const struct row rows[] = {
          .low_open = true, .text = "largest rate that counts as settled, in m/s for the translation"}},
     {0, {.path = "stop.settle.hold", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
          VALUE(settle_hold), .unit = "s", .fallback = 0.5, .low = 0, .high = LARGE,
-         .text = "how long the robot must stay settled"}},
+         .text = "how long it must stay settled"}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
          .unit = "1", .fallback = 0.2, .low = 0, .high = 1,
          .text = "height of the hip, in leg lengths, below which the robot has fallen",
@@ -398,6 +398,9 @@ static bool add_single(struct schema *schema, const struct row *row)
     } else if (row->family == FAMILY_METHODS) {
         field->words = schema->methods;
         field->word_count = schema->method_count;
+        while (strcmp(schema->methods[(int)field->fallback], "capturing") != 0) {
+            field->fallback++; /* the one that the charts of scenarios/accuracy recommend */
+        }
     } else if (row->family == FAMILY_TOLERANCE) {
         field->more = describe_tolerance(schema->tolerance, sizeof schema->tolerance);
     } else if (row->family == FAMILY_CONTACTS) {
@@ -522,10 +525,10 @@ const stance_scene *schema_scene_with(const char *path)
     const stance_scene *found = NULL;
     struct schema *schema = malloc(sizeof *schema);
     size_t index[2];
-    for (size_t i = 0; schema && !found && stance_scenes()[i]; i++) {
-        if (schema_build(schema, stance_scenes()[i]) &&
+    for (const stance_scene *const *scene = stance_scenes(); schema && !found && *scene; scene++) {
+        if (schema_build(schema, *scene) &&
             (schema_find(schema, path) || schema_find_concrete(schema, path, index))) {
-            found = stance_scenes()[i];
+            found = *scene;
         }
     }
     free(schema);

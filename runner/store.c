@@ -226,8 +226,7 @@ static hid_t open_for_ranks(const char *file, int ranks)
     return id;
 }
 
-/* The dataset has exactly the shape that the plan asks for. */
-static bool has_shape(hid_t dataset, int rank, const hsize_t *length)
+bool store_has_shape(hid_t dataset, int rank, const hsize_t *length)
 {
     hsize_t found[H5S_MAX_RANK];
     hid_t space = H5Dget_space(dataset);
@@ -257,7 +256,7 @@ static bool open_columns(struct store *store, stance_message *message)
         store->column[c] = H5Dopen2(store->id, store_columns[c].name, H5P_DEFAULT);
         length[store->rank] = width;
         if (store->column[c] < 0 ||
-            !has_shape(store->column[c], store->rank + (width > 1), length)) {
+            !store_has_shape(store->column[c], store->rank + (width > 1), length)) {
             snprintf(message->text, sizeof message->text,
                      "%.100s: variable '%s' is not as this scenario needs it", store->file,
                      store_columns[c].name);
@@ -348,11 +347,8 @@ bool store_close(struct store *store, stance_message *message)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-/* Selects the flat, row-major range [first, last) below dimension `level` of a grid: a part of a
- * row, whole rows, and a part of a row again, each a hyperslab at its level. start[] is fixed
- * above `level`. */
-static bool select_range(hid_t space, int rank, const hsize_t *length, int level, hsize_t *start,
-                         hsize_t first, hsize_t last)
+bool store_select_range(hid_t space, int rank, const hsize_t *length, int level, hsize_t *start,
+                        hsize_t first, hsize_t last)
 {
     hsize_t inner = 1, count[H5S_MAX_RANK];
     for (int d = level + 1; d < rank; d++) {
@@ -361,13 +357,13 @@ static bool select_range(hid_t space, int rank, const hsize_t *length, int level
     hsize_t whole = (first + inner - 1) / inner, end = last / inner;
     if (whole > end) { /* within one row */
         start[level] = end;
-        return select_range(space, rank, length, level + 1, start, first - end * inner,
-                            last - end * inner);
+        return store_select_range(space, rank, length, level + 1, start, first - end * inner,
+                                  last - end * inner);
     }
     if (first < whole * inner) {
         start[level] = whole - 1;
-        if (!select_range(space, rank, length, level + 1, start, first - (whole - 1) * inner,
-                          inner)) {
+        if (!store_select_range(space, rank, length, level + 1, start, first - (whole - 1) * inner,
+                                inner)) {
             return false;
         }
     }
@@ -383,7 +379,7 @@ static bool select_range(hid_t space, int rank, const hsize_t *length, int level
     }
     if (end * inner < last) {
         start[level] = end;
-        return select_range(space, rank, length, level + 1, start, 0, last - end * inner);
+        return store_select_range(space, rank, length, level + 1, start, 0, last - end * inner);
     }
     return true;
 }
@@ -398,7 +394,7 @@ static hid_t select_rows(const struct store *store, size_t width, uint64_t first
     hid_t space = H5Screate_simple(rank, length, NULL);
     if (space >= 0 &&
         (H5Sselect_none(space) < 0 ||
-         !select_range(space, rank, length, 0, start, first * width, (first + n) * width))) {
+         !store_select_range(space, rank, length, 0, start, first * width, (first + n) * width))) {
         H5Sclose(space);
         return -1;
     }
@@ -652,135 +648,4 @@ bool store_add_timing(struct store *store, int ranks, const double *wall_time, c
     H5Dclose(wall);
     H5Dclose(drawn);
     return good || store_failed(message, store->file, "write the timing");
-}
-
-/* ---- looking into a file ------------------------------------------------------------------ */
-
-static hid_t open_to_read(const char *file)
-{
-    hid_t access = store_serial_access();
-    hid_t id = H5Fopen(file, H5F_ACC_RDONLY, access);
-    H5Pclose(access);
-    return id;
-}
-
-/* A text attribute of fixed length, as this program writes them; NULL when there is none. */
-static char *read_text(hid_t object, const char *name)
-{
-    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = H5Aget_type(attribute);
-    size_t size = H5Tget_size(type);
-    char *text = NULL;
-    if (type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
-        text = calloc(size + 1, 1);
-        if (text && H5Aread(attribute, type, text) < 0) {
-            free(text);
-            text = NULL;
-        }
-    }
-    H5Tclose(type);
-    H5Aclose(attribute);
-    return text;
-}
-
-bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message)
-{
-    *origin = (struct store_origin){0};
-    hid_t id = open_to_read(file);
-    if (id < 0) {
-        return store_failed(message, file, "open");
-    }
-    /* The last attribute written says that the creation came to its end. */
-    char *hash = read_text(id, "scenario_sha256"), found[CHECKSUM_SHA256_TEXT];
-    char *revision = read_text(id, "git_revision");
-    origin->scenario = read_text(id, "scenario");
-    snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
-    H5Fclose(id);
-    bool good = hash && origin->scenario;
-    if (good) {
-        checksum_sha256(origin->scenario, strlen(origin->scenario), found);
-        good = strcmp(hash, found) == 0;
-    }
-    free(hash);
-    free(revision);
-    if (!good) {
-        store_origin_free(origin);
-        snprintf(message->text, sizeof message->text,
-                 "%.120s: not a results file that can be resumed; --force replaces it", file);
-    }
-    return good;
-}
-
-void store_origin_free(struct store_origin *origin)
-{
-    free(origin->scenario);
-    origin->scenario = NULL;
-}
-
-bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
-{
-    if (!axis->log) {
-        return true;
-    }
-    hid_t id = open_to_read(file), dataset = H5Dopen2(id, axis->name, H5P_DEFAULT);
-    hsize_t length = axis->count;
-    double *value = malloc(axis->count * sizeof *value);
-    bool good =
-        value && has_shape(dataset, 1, &length) &&
-        H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
-    H5Dclose(dataset);
-    H5Fclose(id);
-    if (!good) {
-        free(value);
-        return store_failed(message, file, "read an axis");
-    }
-    free(axis->value);
-    axis->value = value;
-    return true;
-}
-
-/* Reads the status variable, whatever its shape, in pieces. */
-static bool count_status(hid_t dataset, struct store_counts *counts)
-{
-    enum { PIECE = 1 << 20 };
-    uint8_t *status = malloc(PIECE);
-    hid_t space = H5Dget_space(dataset);
-    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
-    int rank = H5Sget_simple_extent_dims(space, length, NULL);
-    hssize_t total = H5Sget_simple_extent_npoints(space);
-    bool good = status && rank >= 1 && rank <= SCENARIO_MAX_AXES && total > 0;
-
-    counts->cases = good ? (uint64_t)total : 0;
-    for (uint64_t at = 0; good && at < counts->cases; at += PIECE) {
-        hsize_t n = counts->cases - at < PIECE ? counts->cases - at : PIECE;
-        hid_t memory = H5Screate_simple(1, &n, NULL);
-        good = H5Sselect_none(space) >= 0 &&
-               select_range(space, rank, length, 0, start, at, at + n) &&
-               H5Dread(dataset, store_memory_type(KIND_uint8_t), memory, space, H5P_DEFAULT,
-                       status) >= 0;
-        H5Sclose(memory);
-        for (hsize_t i = 0; good && i < n; i++) {
-            counts->done += status[i] == STANCE_DONE;
-            counts->failed += status[i] == STANCE_FAILED;
-        }
-    }
-    H5Sclose(space);
-    free(status);
-    return good;
-}
-
-bool store_count(const char *file, struct store_counts *counts, stance_message *message)
-{
-    *counts = (struct store_counts){0};
-    hid_t id = open_to_read(file);
-    if (id < 0) {
-        return store_failed(message, file, "open");
-    }
-    hid_t dataset = H5Dopen2(id, "status", H5P_DEFAULT);
-    bool good = dataset >= 0 && count_status(dataset, counts);
-    if (!good) {
-        snprintf(message->text, sizeof message->text, "%.120s: not a results file of stance", file);
-    }
-    H5Dclose(dataset);
-    H5Fclose(id);
-    return good;
 }

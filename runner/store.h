@@ -21,6 +21,8 @@
  *   root attributes: Conventions "CF-1.8", title, format_version (int 1), program_version,
  *     git_revision, compiler (with flags), library_versions, ranks, hosts, date, seed, scenario
  *     (text), axes (comma-separated dimension names, in order), scenario_sha256.
+ *   every variable but the answers, the trajectories' own and those of `timing` has an attribute
+ *     `checksum` over its values (seal.h), which whoever reads the file verifies.
  * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as
  * its value, and over it one variable per path of the axes.
  *
@@ -39,7 +41,7 @@
     X(evidence, uint8_t, evidence, 0, "1", "what the outcome rests on")                            \
     X(failure, uint8_t, failure, 0, "1", "why a case has status failed")                           \
     X(end_time, double, end_time, NAN, "s", "time at which the simulation stopped")                \
-    X(settle_time, double, settle_time, NAN, "s", "time from which the robot stayed settled")      \
+    X(settle_time, double, settle_time, NAN, "s", "time from which the case stayed settled")       \
     X(fall_time, double, fall_time, NAN, "s", "time at which the robot had fallen")                \
     X(steps, int64_t, steps, 0, "1", "time steps taken")                                           \
     X(iterations, int64_t, iterations, 0, "1", "Newton iterations over all steps")                 \
@@ -95,6 +97,11 @@ uint64_t store_size(const struct plan *plan, int ranks);
  * reserves its space. On failure nothing is left behind. Designs must have been computed. */
 bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
                   stance_message *message);
+
+/* Whether axes, designs and scenario of a file are as their checksums say (seal.h). To `resume`
+ * asks for more: that there are checksums, and that nothing in the file is out of order. Damage may
+ * crash the HDF5 library: call it where that does no harm (supervise.h). */
+bool store_check(const char *file, bool resume, stance_message *message);
 
 /* What a file was made from, for a resume; release with store_origin_free. */
 struct store_origin {

@@ -9,6 +9,7 @@
 #include "build_info.h"
 #include "checksum.h"
 #include "command.h"
+#include "seal.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -123,7 +124,8 @@ static hid_t make_group(hid_t parent, const char *name)
 }
 
 /* Contiguous, its place in the file given at once; nothing is written, so that large files start
- * fast. No times are kept, so that equal runs give equal bytes. */
+ * fast. No times are kept, so that equal runs give equal bytes. Attributes in the order of their
+ * making are netCDF's, and the header that this takes has a checksum of HDF5's own. */
 static hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank,
                           const hsize_t *length)
 {
@@ -133,6 +135,8 @@ static hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank,
     if (space >= 0 && H5Pset_layout(properties, H5D_CONTIGUOUS) >= 0 &&
         H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY) >= 0 &&
         H5Pset_fill_time(properties, string ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER) >= 0 &&
+        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
+            0 &&
         H5Pset_obj_track_times(properties, false) >= 0) {
         dataset = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
     }
@@ -158,7 +162,7 @@ static hid_t make_variable(hid_t parent, const char *name, hid_t type,
 {
     hsize_t length[SCENARIO_MAX_AXES + 2];
     for (int d = 0; d < rank; d++) {
-        length[d] = dimension[d]->length;
+        length[d] = dimension[d] ? dimension[d]->length : 0;
     }
     hid_t dataset = make_dataset(parent, name, type, rank, length);
     if (dataset >= 0 && !(put_meaning(dataset, unit, text) && attach(dataset, dimension, rank))) {
@@ -388,7 +392,7 @@ static bool put_answers(struct layout *layout)
 {
     const struct scenario *s = layout->plan->scenario;
     struct dimension state = {-1, 0};
-    const struct dimension *over[SCENARIO_MAX_AXES + 1];
+    const struct dimension *over[SCENARIO_MAX_AXES + 1] = {NULL};
     for (int d = 0; d < layout->rank; d++) {
         over[d] = &layout->axis[d];
     }
@@ -494,7 +498,7 @@ static bool put_designs(struct layout *layout)
     const struct plan *plan = layout->plan;
     const struct scenario *s = plan->scenario;
     struct dimension coordinate = {-1, 0}, actuator = {-1, 0}, posture = {-1, 0};
-    const struct dimension *over[SCENARIO_MAX_AXES + 2];
+    const struct dimension *over[SCENARIO_MAX_AXES + 2] = {NULL};
     int rank = 0;
     hid_t group = make_group(layout->file, "design");
 
@@ -774,7 +778,8 @@ bool store_create(const char *file, const struct plan *plan, int ranks, const ch
         return store_failed(message, file, "create");
     }
     bool good = put_axes(&layout) && put_answers(&layout) && put_designs(&layout) &&
-                put_trajectories(&layout) && put_timing(&layout) && put_provenance(&layout);
+                put_trajectories(&layout) && put_timing(&layout) && seal_put(layout.file) &&
+                put_provenance(&layout);
     good = good || store_failed(message, file, "lay out");
     if (H5Fclose(layout.file) < 0 && good) {
         good = store_failed(message, file, "write the layout");

@@ -1,5 +1,5 @@
-/* store_private.h - shared by store.c (rows) and store_layout.c (creation); nothing else includes
- * it, so that HDF5 stays between the two. */
+/* store_private.h - shared by store.c (rows), store_layout.c (creation), store_look.c (questions)
+ * and seal.c (checksums); nothing else includes it, so that HDF5 stays between them. */
 #ifndef STANCE_RUNNER_STORE_PRIVATE_H
 #define STANCE_RUNNER_STORE_PRIVATE_H
 
@@ -71,6 +71,14 @@ struct store_design_column {
 enum { DESIGN_COLUMNS = 4 };
 void store_design_columns(const stance_scene *scene,
                           struct store_design_column columns[DESIGN_COLUMNS]);
+
+/* The dataset has exactly this shape. */
+bool store_has_shape(hid_t dataset, int rank, const hsize_t *length);
+/* Adds to a selection the flat, row-major range [first, last) below dimension `level` of a grid: a
+ * part of a row, whole rows, and a part of a row again, each a hyperslab at its level. start[] is
+ * fixed above `level`. */
+bool store_select_range(hid_t space, int rank, const hsize_t *length, int level, hsize_t *start,
+                        hsize_t first, hsize_t last);
 
 hid_t store_file_type(enum store_kind kind);
 hid_t store_memory_type(enum store_kind kind);

@@ -16,11 +16,17 @@ be compared with. Usage: make_sample_results.py DIRECTORY
   single.h5      one case with a trajectory: z falls to the ground, theta = 0.1 exp(-t) - 0.41
   bare.h5        one case without a trajectory
   only.h5        one case of a sweep (run --only), with a trajectory
+  ball.h5        another scene, without actuators: ground.restitution, 5 values; three cases rested,
+                 one undecided, one failed, its reason numbered as program 0.1 did
   title.h5       a title that gnuplot and XML could misread
   changed.h5     basin.h5 with end_time of case 97 changed, and another host and timing
   rubbish.h5     partial.h5 with other rubbish in the pending rows
+  unfinished.h5  partial.h5 with the case nearest to the equilibrium pending
+  unlucky.h5     friction.h5 with that case failed at the friction 0.3, pending at 0.5
+  bytes.h5       basin.h5 with a damaged byte in its title, which is then no UTF-8
   foreign.h5     an HDF5 file that is not ours
 """
+import hashlib
 import os
 import shutil
 import sys
@@ -45,6 +51,13 @@ method: {{name: implicit, step: 0.001}}
 stop: {{time: 8}}
 seed: 1
 """
+BALL = """stance: 1
+title: {title}
+scene: ball
+initial: {{state: {{z: 0.6}}}}
+method: {{name: capturing}}
+stop: {{time: 8}}
+"""
 STATES = ["x", "z", "theta", "q1", "q2", "vx", "vz", "vtheta", "vq1", "vq2"]
 EQUILIBRIUM = [0.1, 1.0, -0.41, 0.5701271, 0.82]
 WORDS = h5py.string_dtype("utf-8")
@@ -60,17 +73,17 @@ UNITS = {"end_time": "s", "settle_time": "s", "fall_time": "s", "max_penetration
 class File:
     """One results file under construction."""
 
-    def __init__(self, path, title, axes, extra=""):
+    def __init__(self, path, title, axes, extra="", scenario=SCENARIO):
         self.file = h5py.File(path, "w", track_order=True)
         self.dimensions = 0
         attributes = self.file.attrs
-        text = SCENARIO.format(title="'" + title.replace("'", "''") + "'") + extra
+        text = scenario.format(title="'" + title.replace("'", "''") + "'") + extra
         names = ",".join(name for name, *_ in axes)
         for name, value in {
                 "Conventions": "CF-1.8", "title": title, "program_version": "0.1.0",
                 "git_revision": "sample", "compiler": "none", "library_versions": "h5py",
                 "hosts": "here", "date": "2024-01-01T00:00:00Z", "axes": names, "scenario": text,
-                "scenario_sha256": "0" * 64}.items():
+                "scenario_sha256": hashlib.sha256(text.encode()).hexdigest()}.items():
             attributes[name] = value
         attributes["format_version"] = np.int32([1])
         attributes["ranks"] = np.int32([2])
@@ -271,6 +284,22 @@ def make_lines(where):
     file.close()
 
 
+def make_ball(where):
+    """A scene without a controller, with the answers that came after program 0.1."""
+    file = File(where("ball"), "A ball", [
+        ("ground.restitution", np.linspace(0, 1, 5), "1", "coefficient of restitution")],
+        scenario=BALL)
+    file.answers(np.zeros(5, bool), status=np.array([1, 1, 1, 1, 2], "u1"),
+                 failure=np.array([0, 0, 0, 0, 5], "u1"),
+                 without=("outcome", "final_state", "peak_torque"))
+    file.variable("outcome", np.array([3, 3, 3, 4, 0], "u1"), file.axes)
+    file.variable("events", np.array([0, 2, 4, 8, 100]), file.axes)
+    file.variable("evaluations", np.array([2500, 2500, 2500, 3300, 9]), file.axes)
+    file.variable("energy_gain", np.array([1e-9, 3e-9, 2e-9, 0, 7]), file.axes)
+    file.variable("signorini_residual", np.array([1e-12, 0, 0, 4e-12, 7]), file.axes)
+    file.close()
+
+
 def make_cases(where):
     """Single cases."""
     case = [("case", np.array([0], dtype="i8"), "1", "flat index of the case")]
@@ -305,6 +334,17 @@ def make_others(where):
         file["end_time"][8, 2] = 99
         file["final_state"][9] = 3
         file["outcome"][9, 1] = 200
+    shutil.copy(where("partial"), where("unfinished"))
+    with h5py.File(where("unfinished"), "r+") as file:
+        file["status"][4, 2] = 0
+    shutil.copy(where("friction"), where("unlucky"))
+    with h5py.File(where("unlucky"), "r+") as file:
+        file["status"][2, 10, 5] = 2
+        file["status"][3, 10, 5] = 0
+    shutil.copy(where("basin"), where("bytes"))
+    with h5py.File(where("bytes"), "r+") as file:
+        del file.attrs["title"]
+        file.attrs["title"] = np.bytes_(b"An \xffellipse")
     with h5py.File(where("foreign"), "w") as file:
         file["temperature"] = np.arange(5.0)
 
@@ -318,6 +358,7 @@ def main():
 
     make_maps(where)
     make_lines(where)
+    make_ball(where)
     make_cases(where)
     make_others(where)
 

@@ -6,6 +6,10 @@
     results_tools.py whole FILE [N]  every case marked done or failed has a right checksum, worked
                                      out here; at least N (default 1) are
     results_tools.py damage FILE I   changes one answer of the case with flat index I
+    results_tools.py sealed FILE     every variable that is no answer, trajectory or time has a right
+                                     checksum, worked out here
+    results_tools.py flip FILE NAME COPY  copies the file with one bit changed in variable NAME, or
+                                     in the text of attribute @NAME
 """
 import sys
 
@@ -79,6 +83,47 @@ def damage(name, index):
         file["end_time"][...] = data
 
 
+def sealed(name):
+    """The attribute `checksum` of axes, designs, names and instants."""
+    rows = set(ANSWERS) | {"checksum"} | {
+        "trajectory/" + v for v in ("position", "velocity", "torque", "force", "gap", "checksum")}
+    found = 0
+
+    def visit(path, node):
+        nonlocal found
+        if not isinstance(node, h5py.Dataset) or path in rows or path.startswith("timing/"):
+            return
+        if h5py.check_string_dtype(node.dtype) is not None:
+            data = b"".join(word + b"\0" for word in node[...].ravel())
+        else:
+            data = node[...].astype("<f8" if node.dtype.kind == "f" else "<i8").tobytes()
+        data = path.split("/")[-1].encode() + b"\0" + data
+        crc = crc32c(numpy.frombuffer(data, numpy.uint8).reshape(1, -1))[0]
+        assert node.attrs["checksum"] == [crc], path
+        found += 1
+
+    with h5py.File(name, "r") as file:
+        file.visititems(visit)
+    return found
+
+
+def flip(name, variable, copy):
+    """Changes a bit in the middle of the bytes of a variable or of an attribute's text."""
+    with open(name, "rb") as file:
+        data = bytearray(file.read())
+    with h5py.File(name, "r") as file:
+        if variable.startswith("@"):
+            text = file.attrs[variable[1:]]
+            text = text if isinstance(text, bytes) else text.encode()
+            at = data.index(text) + len(text) // 2
+        else:
+            dataset = file[variable]
+            at = dataset.id.get_offset() + dataset.id.get_storage_size() // 2
+    data[at] ^= 1
+    with open(copy, "wb") as file:
+        file.write(data)
+
+
 if __name__ == "__main__":
     task = sys.argv[1]
     if task == "same":
@@ -86,5 +131,9 @@ if __name__ == "__main__":
     elif task == "whole":
         print("# {} of {} cases are marked and whole".format(
             *whole(sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 1)))
+    elif task == "sealed":
+        print(f"# {sealed(sys.argv[2])} variables have right checksums")
+    elif task == "flip":
+        flip(*sys.argv[2:5])
     else:
         damage(sys.argv[2], int(sys.argv[3]))

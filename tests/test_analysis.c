@@ -243,6 +243,26 @@ static void test_trajectory(void **state)
     results_close(&r);
 }
 
+/* Six digits, and more only where neighbours are nearer than that; letters whole or '?'. */
+static void test_texts(void **state)
+{
+    double values[] = {-0.026086956521739119, 1, 1.0000001, 1.0000002, 2e9};
+    struct results_axis axis = {.unit = "rad", .count = 5, .value = values};
+    static const char *const wanted[] = {"-0.026087 rad", "1 rad", "1.0000001 rad", "1.0000002 rad",
+                                         "2e+09 rad"};
+    char text[64] = "\xc3\xa9\tb\xff\xe2\x82";
+    (void)state;
+    results_clean(text);
+    assert_string_equal(text, "\xc3\xa9 b???");
+    for (size_t i = 0; i < 5; i++) {
+        results_value_text(&axis, i, true, text, sizeof text);
+        assert_string_equal(text, wanted[i]);
+    }
+    axis.count = 1;
+    results_value_text(&axis, 0, false, text, sizeof text);
+    assert_string_equal(text, "-0.026087");
+}
+
 /* ---- extents and shares ------------------------------------------------------------------- */
 
 /* The ellipse crosses the axes at 0.05 rad and 0.4 rad/s: the extent ends within half a cell. */
@@ -273,6 +293,17 @@ static void test_extents(void **state)
     assert_true(statistics_extent(&r, 0, origin, &extent) && extent.any);
     assert_true(extent.high_unknown && extent.low_unknown);
     assert_near(extent.high, 0.04, 1e-12);
+    results_close(&r);
+
+    open_sample(&r, "unfinished"); /* the case where they begin is pending, then failed */
+    for (int k = 0; k < 2; k++) {
+        assert_true(statistics_extent(&r, 0, origin, &extent) && !extent.any);
+        assert_true(extent.high_unknown && extent.low_unknown && isnan(extent.low));
+        assert_int_equal(extent.kind, k ? RESULTS_FAILED : RESULTS_PENDING);
+        r.kind[4 * 6 + 2] = RESULTS_FAILED;
+    }
+    r.kind[4 * 6 + 2] = RESULTS_FELL;
+    assert_true(statistics_extent(&r, 0, origin, &extent) && !extent.any && !extent.low_unknown);
     results_close(&r);
 
     open_sample(&r, "line"); /* not an axis of offsets */
@@ -331,6 +362,13 @@ static void test_summary_text(void **state)
     assert_int_equal(run_command(&command_summary, sample("sparse"), NULL, NULL, NULL), EXIT_DONE);
     assert_contains(output, "not stored in this file");
     assert_null(strstr(output, "nan"));
+    run_command(&command_summary, sample("unfinished"), NULL, NULL, NULL);
+    assert_contains(output,
+                    "theta  unknown: the case nearest to the equilibrium (-0.01 rad) is not "
+                    "computed yet");
+    assert_null(strstr(output, "stabilised,"));
+    run_command(&command_summary, sample("unlucky"), NULL, NULL, NULL);
+    assert_contains(output, "?                         ?\n");
 }
 
 static json_t *summary_of(const char *name)
@@ -371,6 +409,12 @@ static void test_summary_json(void **state)
     const json_t *extents = json_object_get(root, "extents");
     assert_int_equal(json_array_size(extents), 2);
     json_decref(root);
+    root = summary_of("unfinished");
+    const json_t *extent = json_array_get(json_object_get(root, "extents"), 0);
+    assert_true(json_is_null(json_object_get(extent, "stabilised")));
+    assert_true(json_is_true(json_object_get(extent, "low_unknown")));
+    assert_string_equal(json_string_value(json_object_get(extent, "outcome")), "pending");
+    json_decref(root);
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         json_decref(summary_of(names[i]));
     root = summary_of("only");
@@ -378,6 +422,38 @@ static void test_summary_json(void **state)
     assert_near(number_at(root, "case", "final_state", "theta"), -0.41, 0);
     assert_true(json_is_null(json_object_get(json_object_get(root, "case"), "settle_time")));
     json_decref(root);
+}
+
+/* Without a controller the share is that of cases at rest, and what the scene lacks is not told. */
+static void test_summary_of_a_plain_scene(void **state)
+{
+    (void)state;
+    assert_int_equal(run_command(&command_summary, sample("ball"), NULL, NULL, NULL), EXIT_DONE);
+    assert_string_equal(errors, "");
+    assert_contains(output, "Rested against ground.restitution");
+    assert_null(strstr(output, "Stabilised against"));
+    assert_null(strstr(output, "fall_height"));
+    assert_contains(output, "tolerance 1e-08 m, rad");
+    assert_contains(output, "initial: the initial state or the controller does not exist");
+    assert_contains(output, "\nLargest residuals: Signorini 4e-12 m/s, energy gained 3e-09 J\n");
+    assert_contains(output, "2.7 evaluations per step");
+    assert_contains(output, "events, changes of contact mode: 14, in 3 of the cases");
+    json_t *root = summary_of("ball");
+    assert_true(number_at(root, "failures", "initial", NULL) == 1);
+    assert_true(number_at(root, "cost", "events", NULL) == 14);
+    assert_true(number_at(root, "cost", "events_cases", NULL) == 3);
+    assert_near(number_at(root, "numbers", "energy_gain", "largest"), 3e-9, 0);
+    assert_true(number_at(root, "numbers", "settle_time", "count") == 0);
+    const json_t *parameter = json_array_get(json_object_get(root, "parameters"), 0);
+    assert_string_equal(json_string_value(json_object_get(parameter, "share_of")), "rested");
+    const json_t *first = json_array_get(json_object_get(parameter, "values"), 0);
+    assert_true(number_at(first, "rested", NULL, NULL) == 1);
+    assert_true(number_at(first, "share", NULL, NULL) == 1);
+    json_decref(root);
+    /* Files of before know nothing of residuals and events. */
+    assert_int_equal(run_command(&command_summary, sample("basin"), NULL, NULL, NULL), EXIT_DONE);
+    assert_null(strstr(output, "residual"));
+    assert_null(strstr(output, "events"));
 }
 
 static void test_compare(void **state)
@@ -399,6 +475,12 @@ static void test_compare(void **state)
     assert_int_equal(run_command(&command_compare, sample("single"), sample("bare"), NULL, NULL),
                      EXIT_CASES_FAILED);
     assert_contains(output, "trajectory: only in the first file");
+    run_command(&command_compare, sample("basin"), sample("bytes"), NULL, NULL);
+    assert_contains(output, "attribute title: 'An ellipse' | 'An ?ellipse'\n");
+    run_command(&command_compare, sample("bytes"), sample("basin"), "--json", NULL);
+    assert_contains(output, "'An ?ellipse'");
+    run_command(&command_summary, sample("bytes"), NULL, NULL, NULL);
+    assert_true(strncmp(output, "An ?ellipse\n", 12) == 0);
     assert_int_equal(
         run_command(&command_compare, sample("basin"), sample("changed"), "--json", NULL),
         EXIT_CASES_FAILED);
@@ -584,7 +666,7 @@ static void test_cells(void **state)
     snprintf(
         script, sizeof script,
         "#!/bin/sh\ncp data0 \"%s/script-$(wc -c <data1)\"\ncp data1 \"%s/cells-$(wc -c <data1)\"\n"
-        "echo '<?xml' >picture.svg\necho png >picture.png\n",
+        "echo '<?xml </svg>' >picture.svg\nprintf 'png IEND....' >picture.png\n",
         scratch, scratch);
     save(path, script, strlen(script));
     chmod(path, 0700);
@@ -697,9 +779,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_wilson),        cmocka_unit_test(test_quantiles),
         cmocka_unit_test(test_reading),       cmocka_unit_test(test_pending_and_failed),
-        cmocka_unit_test(test_trajectory),    cmocka_unit_test(test_extents),
-        cmocka_unit_test(test_parameter),     cmocka_unit_test(test_summary_text),
-        cmocka_unit_test(test_summary_json),  cmocka_unit_test(test_compare),
+        cmocka_unit_test(test_trajectory),    cmocka_unit_test(test_texts),
+        cmocka_unit_test(test_extents),       cmocka_unit_test(test_parameter),
+        cmocka_unit_test(test_summary_text),  cmocka_unit_test(test_summary_json),
+        cmocka_unit_test(test_compare),       cmocka_unit_test(test_summary_of_a_plain_scene),
         cmocka_unit_test(test_foreign_files), cmocka_unit_test(test_damaged_files),
         cmocka_unit_test(test_pictures),      cmocka_unit_test(test_title),
         cmocka_unit_test(test_text),          cmocka_unit_test(test_cells),

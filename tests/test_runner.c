@@ -6,7 +6,10 @@
 #include "../runner/lock.h"
 #include "../runner/plan.h"
 #include "../runner/store.h"
+#include "../runner/supervise.h"
 
+#include <fcntl.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -402,6 +405,64 @@ static void test_origin(void **state)
     assert_non_null(strstr(message.text, "No such file"));
 }
 
+/* A file as it was made passes; a bit of the scenario's text or of an axis does not. */
+static void test_check(void **state)
+{
+    struct fixture *f = *state;
+    stance_message message;
+    static char bytes[1 << 21];
+    const double value = 1.8; /* of an axis, and of nothing else */
+    unlink(f->file);
+    assert_true(store_create(f->file, &f->plan, 1, "here", &message));
+    assert_true(store_check(f->file, true, &message));
+    FILE *file = fopen(f->file, "r+b");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    char *place = memmem(bytes, size, &value, sizeof value);
+    assert_non_null(place);
+    fseek(file, place - bytes, SEEK_SET);
+    fputc(place[0] ^ 1, file);
+    fclose(file);
+    for (int resume = 0; resume < 2; resume++) {
+        assert_false(store_check(f->file, resume, &message));
+        assert_non_null(strstr(message.text, ": damaged: robot.trunk_mass is not as"));
+    }
+    assert_false(store_check("/nowhere/file.h5", true, &message));
+}
+
+/* ---- supervision -------------------------------------------------------------------------- */
+
+static int work_of(void *signal_number)
+{
+    fputs("said\n", stderr);
+    if (*(int *)signal_number)
+        raise(*(int *)signal_number);
+    return EXIT_CASES_FAILED;
+}
+
+/* What a child says comes out, unless it crashes: whoever handles the signal in the parent. */
+static void test_supervise(void **state)
+{
+    const struct fixture *f = *state;
+    int numbers[] = {0, SIGSEGV, SIGABRT, SIGXCPU};
+    char text[200], path[80];
+    snprintf(path, sizeof path, "%s.said", f->file);
+    for (int k = 0; k < 4; k++) {
+        int kept = dup(STDERR_FILENO), file = open(path, O_CREAT | O_TRUNC | O_RDWR, 0600);
+        dup2(file, STDERR_FILENO);
+        int code = supervise(work_of, &numbers[k], "FILE");
+        fflush(stderr);
+        dup2(kept, STDERR_FILENO);
+        close(kept);
+        text[pread(file, text, sizeof text - 1, 0)] = '\0';
+        close(file);
+        assert_int_equal(code, k ? EXIT_IO : EXIT_CASES_FAILED);
+        assert_string_equal(text,
+                            k ? "FILE: damaged: the HDF5 library cannot cope with it\n" : "said\n");
+    }
+    unlink(path);
+}
+
 /* ---- the lock ----------------------------------------------------------------------------- */
 
 static void test_lock(void **state)
@@ -444,7 +505,8 @@ int main(void)
         cmocka_unit_test(test_recorded),     cmocka_unit_test(test_checks),
         cmocka_unit_test(test_rows),         cmocka_unit_test(test_designs_stored),
         cmocka_unit_test(test_origin),       cmocka_unit_test(test_lock),
-        cmocka_unit_test(test_plain_scene),
+        cmocka_unit_test(test_plain_scene),  cmocka_unit_test(test_check),
+        cmocka_unit_test(test_supervise),
     };
     store_prepare();
     return cmocka_run_group_tests_name("runner", tests, make_fixture, free_fixture);

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Every shipped scenario, reduced, from file to picture; the commands' messages and exit codes;
 # equal results whatever the ranks; results opened by other programs' readers.
+# Uses bin/stance, or the program that STANCE names.
 set -u
 cd "$(dirname "$0")/.."
-stance=$PWD/bin/stance python=${PYTHON:-/usr/bin/python3}
+stance=${STANCE:-$PWD/bin/stance} python=${PYTHON:-/usr/bin/python3}
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 count=0
 check() { # description, command ...
@@ -83,6 +84,10 @@ a, b = h5py.File('basin_one_foot.h5'), h5py.File('results/basin_one_foot-case300
 for k in ('outcome', 'end_time', 'steps', 'friction_used'):
     assert a[k][...].ravel()[300] == b[k][...].ravel()[0], k
 assert numpy.isfinite(b['trajectory/position'][0, 0]).all()"
+check "plot of one case" "$stance" plot results/basin_one_foot-case300.h5 -o .
+check "... says which" grep -q 'initial.offset.theta = -0.026087 rad' \
+    basin_one_foot-case300-coordinates.svg
+check "... in six digits" sh -c "! grep -hE '<text>.*[0-9.]{9,}' basin_one_foot-case300-*.svg"
 cd "$OLDPWD" || exit 1
 
 # ---- bad scenarios: one line, exit code 2, no file ----
@@ -117,4 +122,28 @@ head -c 3000 "$work/basin_one_foot.h5" >"$work/cut.h5"
 for command in summary plot status; do
     check "$command: a cut file" exits 3 "$stance" $command "$work/cut.h5"
 done
+
+# ---- output that goes nowhere ----
+unheard() { # where, command ...: exit code 3 and one line
+    local where=$1
+    shift
+    if [ "$where" = closed ]; then "$@" >&- 2>"$work/heard"; else "$@" >/dev/full 2>"$work/heard"; fi
+    local code=$?
+    [ $code = 3 ] && [ "$(wc -l <"$work/heard")" = 1 ]
+}
+for where in closed full; do
+    check "summary, output $where" unheard $where "$stance" summary "$work/drop.h5"
+    check "summary --json, output $where" unheard $where "$stance" summary --json "$work/drop.h5"
+    check "compare, output $where" unheard $where "$stance" compare "$work/drop.h5" "$work/drop.h5"
+    check "compare that differs, output $where" \
+        unheard $where "$stance" compare "$work/drop.h5" "$work/basin_one_foot.h5"
+    check "plot, output $where" unheard $where "$stance" plot "$work/drop.h5" -o "$work"
+    check "status, output $where" unheard $where "$stance" status "$work/drop.h5"
+    check "describe --schema, output $where" unheard $where "$stance" describe --schema
+    check "run, output $where" unheard $where "$stance" run scenarios/drop.yaml -o "$work/unheard.h5" --force
+done
+quiet() { "$stance" run scenarios/drop.yaml -o "$work/unheard.h5" --force --quiet >&- 2>&- <&-; }
+check "run --quiet needs no streams" quiet
+check "... and writes what it should" "$stance" compare "$work/drop.h5" "$work/unheard.h5"
+check "run -h tells of symbolic links" sh -c "'$stance' run -h | grep -q 'symbolic link'"
 echo "1..$count"

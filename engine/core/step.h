@@ -35,6 +35,8 @@
 #define STEP_CLOSED 1e-12 /* m: a contact this close counts as closed */
 #define STEP_PROJECTION 1e-13 /* m: gap error left by the projection */
 #define STEP_FARTHEST 0.3     /* rad: a projection that turns the robot further is refused */
+#define STEP_FROZEN_RESIDUAL                                                                       \
+    1e-6 /* m/s: a step with frozen geometry that is further off is refused */
 #define STEP_MOST_GAIN                                                                             \
     0.03 /* share of kinetic energies and work; a step that gains more is refused */
 #define STEP_APPROACH 1e-9 /* m/s: a closed contact that approaches faster is an impact */
@@ -174,7 +176,7 @@ static inline void solve_contacts(const struct setting *set, const lanes D[2][2]
     lanes scale = lanes_of(1);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int a = 0; a < 2; a++) {
-            scale = lanes_max(lanes_abs(uf[c][a]), scale);
+            scale = lanes_max(choose(active[c], lanes_abs(uf[c][a]), lanes_of(0)), scale);
             r[c][a] = lanes_of(0);
         }
     const lanes tolerance = CONTACT_TOLERANCE * scale;
@@ -528,6 +530,9 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
     lanes energy = lanes_of(0), projected = lanes_of(0);
     if (mask_any(touching & impact))
         energy = choose(touching & impact, impact_energy(set, &it), lanes_of(0));
+    if (freeze_after < STEP_MAX_ITERATIONS) /* what the frozen geometry made of the contact laws */
+        converged &= mask_less_equal(lanes_max(report->signorini, report->dissipation),
+                                     lanes_of(STEP_FROZEN_RESIDUAL));
     if (mask_any(touching)) {
         const mask near = iterate_project(set, from, h, touching, &it, &projected);
         converged &= near | LANES_NOT(touching);

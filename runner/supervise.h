@@ -2,8 +2,8 @@
  *
  * HDF5 1.10 reports most damage, but some damaged headers and string heaps make it run past its
  * own buffers or in circles. A user's command is to end with a message even then. */
-#ifndef STANCE_ANALYSIS_SUPERVISE_H
-#define STANCE_ANALYSIS_SUPERVISE_H
+#ifndef STANCE_RUNNER_SUPERVISE_H
+#define STANCE_RUNNER_SUPERVISE_H
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
-/* supervise.c - one child process per command that reads results files. */
+/* supervise.c - one child process per command that reads a results file. */
 #include "supervise.h"
 
-#include "../runner/command.h"
+#include "command.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -30,6 +30,19 @@ void supervise_limit(bool begin)
     setrlimit(RLIMIT_CPU, &limit);
 }
 
+static const int crashes[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGSYS, SIGXCPU};
+enum { CRASHES = sizeof crashes / sizeof crashes[0] };
+
+static bool is_crash(int number)
+{
+    for (int k = 0; k < CRASHES; k++) {
+        if (crashes[k] == number) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* The child. What it says goes to `messages`, so that a dying library can be hushed. */
 static void work_and_exit(int (*work)(void *context), void *context, int messages, pid_t parent)
 {
@@ -39,11 +52,15 @@ static void work_and_exit(int (*work)(void *context), void *context, int message
         _exit(EXIT_IO);
     }
     setrlimit(RLIMIT_CORE, &none);
+    for (int k = 0; k < CRASHES; k++) {
+        signal(crashes[k], SIG_DFL); /* handlers of MPI or of a test would go on in the child */
+    }
     if (messages >= 0) {
         dup2(messages, STDERR_FILENO);
     }
     int code = work(context);
-    if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_DONE) {
+    if ((fflush(stdout) != 0 || ferror(stdout)) &&
+        (code == EXIT_DONE || code == EXIT_CASES_FAILED)) {
         fputs("stance: cannot write to standard output\n", stderr);
         code = EXIT_IO;
     }
@@ -61,12 +78,6 @@ static void pass_on(int messages)
     while ((n = read(messages, buffer, sizeof buffer)) > 0) {
         fwrite(buffer, 1, (size_t)n, stderr);
     }
-}
-
-static bool is_crash(int number)
-{
-    return number == SIGSEGV || number == SIGBUS || number == SIGABRT || number == SIGFPE ||
-           number == SIGILL || number == SIGXCPU;
 }
 
 int supervise(int (*work)(void *context), void *context, const char *files)
