@@ -175,7 +175,7 @@ static bool compare_case(struct accuracy *a, const struct results *r, const uint
  * along at least one of the axes after the first. */
 static bool is_inside(const struct results *r, const uint8_t *truth, size_t cell)
 {
-    size_t point[SCENARIO_MAX_AXES], rest = cell;
+    size_t point[SCENARIO_MAX_AXES] = {0}, rest = cell;
     for (int axis = r->axes - 1; axis >= 1; axis--) {
         point[axis] = rest % r->axis[axis].count;
         rest /= r->axis[axis].count;

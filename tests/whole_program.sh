@@ -52,6 +52,20 @@ assert d.status.dims == d.outcome.dims
 " "$work/$name.h5"
 done
 
+# ---- studies of the methods ----
+for scenario in scenarios/accuracy/*.yaml scenarios/failure/*.yaml; do
+    check "$(basename "$(dirname "$scenario")"), $(basename "$scenario" .yaml): check" "$stance" check "$scenario"
+done
+check "bench accuracy" "$stance" bench accuracy scenarios/accuracy/block.yaml -o "$work/accuracy"
+check "bench accuracy: picture" png "$work/accuracy/block.png"
+check "bench accuracy --json" sh -c "'$stance' bench accuracy --reuse --json scenarios/accuracy/block.yaml \
+    -o '$work/accuracy' >'$work/accuracy.json'"
+check "observed orders" "$python" -c "
+import json, sys
+orders = {o['method']: o['position'] for o in json.load(open(sys.argv[1]))['studies'][0]['orders']}
+assert 0.8 < orders['implicit'] < 1.2 and orders['midpoint'] > 0.9, orders
+assert orders['lagrange'] > 3.5 and 0.6 < orders['capturing'] < 1.3, orders" "$work/accuracy.json"
+
 # ---- outcomes ----
 outcome() { "$python" -c "
 import sys, h5py
