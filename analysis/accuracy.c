@@ -83,25 +83,19 @@ static bool gather(struct accuracy *a, const struct results *r, const char *name
 static bool read_answers(struct accuracy *a, const struct results *r, stance_message *message)
 {
     double *column = malloc(a->rows * sizeof *column), *time = malloc(a->rows * sizeof *time);
-    const struct {
-        const char *name;
-        size_t offset;
-        bool per_second;
-    } wanted[] = {
-        {"signorini_residual", offsetof(struct accuracy_row, signorini), false},
-        {"coulomb_residual", offsetof(struct accuracy_row, coulomb), false},
-        {"dissipation_residual", offsetof(struct accuracy_row, dissipation), false},
-        {"max_penetration", offsetof(struct accuracy_row, penetration), false},
-        {"energy_gain", offsetof(struct accuracy_row, energy_gain), false},
-        {"events", offsetof(struct accuracy_row, events), true},
-        {"evaluations", offsetof(struct accuracy_row, evaluations), true},
-    };
+    static const char *const names[] = {
+        "signorini_residual", "coulomb_residual", "dissipation_residual", "max_penetration",
+        "energy_gain",        "events",           "evaluations"};
+    const size_t rates = 5; /* the first that is wanted per simulated second */
     bool good = column && time && gather(a, r, "end_time", true, time, message);
-    for (size_t w = 0; good && w < sizeof wanted / sizeof *wanted; w++) {
-        good = gather(a, r, wanted[w].name, wanted[w].per_second, column, message);
+    for (size_t w = 0; good && w < sizeof names / sizeof *names; w++) {
+        good = gather(a, r, names[w], w >= rates, column, message);
         for (size_t k = 0; good && k < a->rows; k++) {
-            double *field = (double *)((char *)&a->row[k] + wanted[w].offset);
-            *field = wanted[w].per_second ? column[k] / time[k] : column[k];
+            struct accuracy_row *const row = &a->row[k];
+            double *const field[] = {&row->signorini,   &row->coulomb,     &row->dissipation,
+                                     &row->penetration, &row->energy_gain, &row->events,
+                                     &row->evaluations};
+            *field[w] = w >= rates ? column[k] / time[k] : column[k];
         }
     }
     free(column);
