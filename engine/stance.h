@@ -173,8 +173,9 @@ typedef struct stance_case {
 
     double step;   /* s */
     int64_t steps; /* length of the run */
-    double
-        tolerance; /* admitted error of a step (m, rad), > 0; read where the method controls it */
+    /* Admitted error of a step (m, rad, m/s, rad/s; of the largest rate where that is above 1), >
+     * 0; read where the method controls it. */
+    double tolerance;
 
     bool settle;         /* judge `stabilised` and `rested` on the way and stop there */
     bool has_target;     /* without one nothing is ever `stabilised` */

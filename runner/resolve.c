@@ -304,6 +304,9 @@ static bool resolve_time(const struct scenario_values *values, stance_case *out,
         out->sample_every = (int64_t)pieces;
         out->step = interval / pieces;
     }
+    if (values->stop_time > 0 && values->stop_time < out->step) {
+        out->step = values->stop_time; /* then there is one step, and no second sample */
+    }
     const double steps = fmax(1, nearbyint(values->stop_time / out->step));
     if (!(steps <= MOST_STEPS)) {
         return refuse(message, "stop.time has more than %g steps", MOST_STEPS);

@@ -212,7 +212,7 @@ static const struct row rows[] = {
          .text = "longest duration of a run"}},
     {0, {.path = "stop.settle", .type = FIELD_MAP_OR_WORD, BY_HAND, WORDS(settle_words),
          .text = "when a run counts as stabilised or at rest",
-         .more = "off: every run lasts its whole time and is judged at its end."}},
+         .more = "off: a run lasts its whole time, unless the robot falls, and is judged at its end."}},
     {0, {.path = "stop.settle.angle", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
          VALUE(settle_angle), .unit = "rad", .fallback = 0.05, .low = 0, .high = LARGE,
          .low_open = true, .text = "largest deviation of an angle that counts as settled",

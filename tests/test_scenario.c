@@ -211,7 +211,7 @@ static void defaults_hold(void **state)
     assert_int_equal(v->support_foot, 1);
     assert_int_equal(v->law, LAW_NONE);
     assert_int_equal(v->settle, 1);
-    assert_string_equal(stance_methods()[v->method]->name, "implicit");
+    assert_string_equal(stance_methods()[v->method]->name, "capturing");
     assert_true(isnan(v->equilibrium.posture[0]));
     assert_false(v->design_point.given);
     assert_true(s.seed == 1 && s.cases == 1 && s.axes == 0);

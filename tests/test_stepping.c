@@ -7,7 +7,7 @@
 #define CONE 1e-9
 #define GOLDEN_IMPLICIT 0x1d6cfe37a1f809ffu
 #define GOLDEN_MIDPOINT 0xcdd0b5537eaba859u
-#define GOLDEN_CAPTURING 0x8b8830f383633283u
+#define GOLDEN_CAPTURING 0xd99d7d2a0904adbbu
 #define GOLDEN_LAGRANGE 0x274c19f478ec4d62u
 
 static uint64_t hash(const void *data, size_t size, uint64_t h)

@@ -3,13 +3,14 @@
  * The method's file gives its tableau before it includes this: METHOD_STAGES (the number of
  * stages), tableau_a[][], tableau_b[], tableau_c[] and, with METHOD_EMBEDDED, tableau_e[], the
  * difference between its weights and those of the embedded formula (one entry more: the last is
- * that of the derivative at the end). Every stage solves the contact forces of the mode; at the end
- * the state is put back onto the mode's constraints (smooth_project).
+ * that of the derivative at the end) and tableau_dip[], for each stage which of the forces of
+ * dips.h it gives, or -1. Every stage solves the contact forces of the mode; at the end the state
+ * is put back onto the mode's constraints (smooth_project).
  */
 #ifndef STANCE_CORE_EXPLICIT_H
 #define STANCE_CORE_EXPLICIT_H
 
-#include "smooth.h"
+#include "dips.h"
 
 /* What a step came to; the state and the report are defined where neither `violated` nor `bad`. */
 struct explicit_step {
@@ -17,6 +18,7 @@ struct explicit_step {
     struct step_report report;
     lanes error;   /* estimate: largest over coordinates (m, rad) and rates (m/s, rad/s) */
     mask violated; /* the mode ended inside the step */
+    mask dipped;   /* it may have ended and begun again between the stages */
     mask bad;      /* not finite, or an angle out of range ... */
     lanes failure; /* ... as a stance_failure */
 };
@@ -57,8 +59,11 @@ static inline void explicit_take(const struct setting *set, const struct motion 
         if (mask_any(m->closed[c] & run))
             touches |= 1u << c;
     memset(&out->report, 0, sizeof out->report);
-    out->violated = MASK_NONE;
+    out->violated = out->dipped = MASK_NONE;
     out->end = *from;
+#ifdef METHOD_EMBEDDED
+    struct dip_forces forces;
+#endif
 #pragma GCC unroll 16
     for (int k = 0; k < METHOD_STAGES; k++) {
         lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
@@ -76,6 +81,10 @@ static inline void explicit_take(const struct setting *set, const struct motion 
         }
         for (int i = 0; i < SCENE_COORDINATES; i++)
             ks[k][i] = w[i], kw[k][i] = e.acceleration[i];
+#ifdef METHOD_EMBEDDED
+        if (tableau_dip[k] >= 0)
+            dip_note(&e, tableau_dip[k], &forces);
+#endif
         if (tableau_b[k] != 0) {
             lanes moved[SCENE_COORDINATES];
             const lanes part = h * tableau_b[k];
@@ -110,6 +119,8 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     explicit_add(es, ew, h * tableau_e[METHOD_STAGES], end->w, e.acceleration);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         out->error = lanes_max(lanes_max(lanes_abs(es[i]), lanes_abs(ew[i])), out->error);
+    dip_note(&e, 3, &forces);
+    out->dipped = dip_between(set, m, begin, &e, from->w, end->w, h, &forces);
 #endif
     if (touches)
         smooth_project(set, m, run, end->s, end->w, &e);

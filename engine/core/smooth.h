@@ -48,6 +48,23 @@ struct smooth {
 /* Contacts that matter in any lane: bit c. What an open contact would respond costs nothing. */
 typedef unsigned contact_set;
 
+/* Contact terms of the contacts that are not in `touching`: zero, so that sums may run over all. */
+static inline void smooth_clear(contact_set touching, struct smooth *e)
+{
+    for (int c = 0; c < 2; c++)
+        for (int a = 0; a < 2; a++) {
+            for (int k = 0; k < 2; k++)
+                for (int b = 0; b < 2; b++)
+                    if (!(touching >> c & touching >> k & 1))
+                        e->D[c][k][a][b] = lanes_of(0);
+            if (touching >> c & 1)
+                continue;
+            e->free[c][a] = lanes_of(0);
+            for (int i = 0; i < SCENE_COORDINATES && c < SCENE_CONTACTS; i++)
+                e->response[c][a][i] = lanes_of(0);
+        }
+}
+
 /* Everything that does not depend on the mode; contact terms of the contacts in `touching`. */
 static inline void smooth_evaluate(const struct setting *set, lanes t, const lanes *s,
                                    const lanes *w, const lanes *torque, bool coupled,
@@ -70,6 +87,7 @@ static inline void smooth_evaluate(const struct setting *set, lanes t, const lan
         scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
         e->force[c][0] = e->force[c][1] = lanes_of(0);
     }
+    smooth_clear(touching, e);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         if (touching >> c & 1)
             scene_contact_response(&set->body, &A, false, &e->trig, c, e->response[c]);

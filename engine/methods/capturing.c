@@ -20,6 +20,9 @@
  * contacts carry at the end, the event is at the end itself and only its time is uncertain: then
  * the difference of the rates counts for the length of the interval only.
  *
+ * Tolerances are absolute (m, rad, m/s, rad/s) where no rate is larger than 1, else they are of the
+ * largest rate.
+ *
  * Each lane has an interval of its own inside its step, so that what a case does depends on nothing
  * but the case.
  */
@@ -44,15 +47,16 @@ static const double tableau_b[METHOD_STAGES] = {35.0 / 384,     0,        500.0 
                                                 -2187.0 / 6784, 11.0 / 84};
 static const double tableau_e[METHOD_STAGES + 1] = {
     71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 
 // clang-format off
 #include "../core/explicit.h"
 // clang-format on
 
 #define CAPTURE_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
-#define CAPTURE_REBOUND 1e-5     /* m/s: slower impacts do not rebound, by 5e-12 m at the most */
-#define CAPTURE_ATTEMPTS 20000   /* in one step, then the case fails */
-#define CAPTURE_GROWTH 64        /* an error this much smaller than the tolerance: twice as long */
+#define CAPTURE_LOWEST 1e-11   /* m: an impact after a fall from less than this does not rebound */
+#define CAPTURE_ATTEMPTS 20000 /* in one step, then the case fails */
+#define CAPTURE_GROWTH 64      /* an error this much smaller than the tolerance: twice as long */
 
 /* Where each lane is inside its step. */
 struct advance {
@@ -80,15 +84,19 @@ static void advance_free(struct advance *a)
     (void)a;
 }
 
-/* Lanes where a contact that may meet the ground within h is fast enough to rebound. */
-static inline mask capture_rebounds(const struct setting *set, const struct motion *now, lanes h)
+/* Lanes where a contact that may meet the ground within h is fast enough to rebound: faster than
+ * after a fall from CAPTURE_LOWEST. Gaps are known to SMOOTH_GAP only, which is less. */
+static inline mask capture_rebounds(const struct setting *set, const struct motion *now, lanes h,
+                                    lanes acceleration)
 {
+    const lanes slow = 2 * lanes_max(acceleration, lanes_of(STANCE_GRAVITY)) * CAPTURE_LOWEST;
     mask fast = MASK_NONE;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask near =
             mask_less_equal(now->gap[c], lanes_of(1e-9) + 2 * h * lanes_abs(now->approach[c]));
         fast |= near & mask_less(lanes_of(0), set->may_touch[c]) &
-                mask_less(now->approach[c], lanes_of(-CAPTURE_REBOUND));
+                mask_less(now->approach[c], lanes_of(0)) &
+                mask_less(slow, now->approach[c] * now->approach[c]);
     }
     return fast;
 }
@@ -97,13 +105,14 @@ static inline mask capture_rebounds(const struct setting *set, const struct moti
  * those of the two; returns the lanes where both agree to the tolerance. */
 static inline mask capture_implicit(const struct setting *set, const struct motion *now,
                                     const lanes *torque, lanes h, mask run, bool coupled,
-                                    lanes tolerance, struct motion *next,
+                                    lanes tolerance, lanes acceleration, struct motion *next,
                                     struct step_report *report)
 {
     struct motion coarse = *now, middle = *now;
     struct step_report whole, half;
     struct setting law = *set;
-    law.restitution = choose(capture_rebounds(set, now, h), set->restitution, lanes_of(0));
+    law.restitution =
+        choose(capture_rebounds(set, now, h, acceleration), set->restitution, lanes_of(0));
     memset(report, 0, sizeof *report);
     *next = *now;
     mask good = take_step(&law, now, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
@@ -181,6 +190,15 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
     return try & LANES_NOT(*stuck | step->violated | step->bad);
 }
 
+/* What errors are measured by: the largest rate, at least 1 m/s or rad/s. */
+static inline lanes capture_size(const struct motion *now)
+{
+    lanes size = lanes_of(1);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        size = lanes_max(lanes_abs(now->w[i]), size);
+    return size;
+}
+
 /* One attempt in every lane: at a smooth step and, over an interval known to hold an event, at the
  * implicit law. */
 static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
@@ -188,10 +206,12 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
                            struct step_report *report, mask *failed)
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
+    const lanes tolerance = a->tolerance * capture_size(now);
     const lanes left = h - a->done;
     /* Halves add up to the step but for rounding: what is left of it then is no interval. */
-    const lanes interval = choose(mask_less(a->part, (1 - 1e-9) * left), a->part, left);
     const mask hunt = live & mask_less(none, a->hunting);
+    const lanes part = choose(hunt, a->part, lanes_min(dip_longest(set, now->w), a->part));
+    const lanes interval = choose(mask_less(part, (1 - 1e-9) * left), part, left);
     const lanes length = choose(hunt, 0.5 * interval, interval);
     struct explicit_step step;
     mask stuck, crossed = MASK_NONE, arrived = MASK_NONE;
@@ -200,27 +220,30 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const mask inside =
         capture_smooth(set, now, torque, length, live, coupled, &step, &stuck, &acceleration);
     const mask event = live & LANES_NOT(inside);
-    const mask cross = hunt & (stuck | mask_less_equal(acceleration * interval, a->tolerance));
+    const mask cross = hunt & (stuck | mask_less_equal(acceleration * interval, tolerance));
     if (mask_any(cross)) {
         struct motion next;
-        struct step_report part;
-        crossed = capture_implicit(set, now, torque, interval, cross, coupled, a->tolerance, &next,
-                                   &part);
-        part.events = choose(crossed, one, none);
+        struct step_report over;
+        crossed = capture_implicit(set, now, torque, interval, cross, coupled, tolerance,
+                                   acceleration, &next, &over);
+        over.events = choose(crossed, one, none);
         choose_all(crossed, &next, now, sizeof next);
-        capture_add(a, crossed, cross, &part);
+        capture_add(a, crossed, cross, &over);
         arrived = crossed & mask_less_equal(left, interval);
     }
     const mask smooth = live & LANES_NOT(crossed);
-    const mask good = inside & smooth & mask_less_equal(step.error, a->tolerance);
+    /* What a dip hides in so short a step changes no velocity by more than the tolerance. */
+    const mask seen = LANES_NOT(step.dipped) | mask_less_equal(acceleration * length, tolerance);
+    const mask good = inside & smooth & seen & mask_less_equal(step.error, tolerance);
     choose_all(good, &step.end, now, sizeof step.end);
     capture_add(a, good, live, &step.report);
     a->done = choose(crossed, a->done + interval, choose(good, a->done + length, a->done));
 
     /* Next: all of the rest after an event; longer where the error was small; what is left of the
-     * interval with the event, or its first half; half as long where the error was too large. */
+     * interval with the event, or its first half; half as long where the error was too large or
+     * something may have passed unseen. */
     const mask on = good & LANES_NOT(hunt);
-    const mask easy = mask_less_equal(CAPTURE_GROWTH * step.error, a->tolerance);
+    const mask easy = mask_less_equal(CAPTURE_GROWTH * step.error, tolerance);
     const lanes longer = lanes_max(choose(easy, 2 * length, length), a->part);
     lanes next = choose(on, longer, choose(good | event, length, 0.5 * length));
     next = choose(crossed, lanes_of(INFINITY), next);

@@ -152,7 +152,8 @@ static void advance_free(struct advance *a)
     a->context = NULL;
 }
 
-static bool event_create(struct advance *a)
+/* longest: s, the longest internal step. */
+static bool event_create(struct advance *a, double longest)
 {
     if (a->arkode)
         return true;
@@ -174,18 +175,19 @@ static bool event_create(struct advance *a)
            ERKStepRootInit(a->arkode, EVENT_MARGINS, event_roots) == 0 &&
            ERKStepSetRootDirection(a->arkode, falling) == 0 &&
            ERKStepSetInterpolantDegree(a->arkode, 3) == 0 &&
-           ERKStepSetMaxStep(a->arkode, EVENT_LONGEST) == 0 &&
-           /* As fast as ever: what a case does must not depend on the cases before it. */
-           ERKStepSetMaxFirstGrowth(a->arkode, 20) == 0;
+           ERKStepSetMaxStep(a->arkode, longest) == 0 &&
+           ERKStepSetMaxFirstGrowth(a->arkode, 20) == 0; /* restarts are frequent */
     ARKodeButcherTable_Free(table);
     if (!good)
         advance_free(a);
     return good;
 }
 
+/* A case begins with a fresh integrator: what it does depends on nothing but the case. */
 static void advance_load(struct advance *a, int lane, const stance_case *c)
 {
     (void)lane;
+    advance_free(a);
     a->tolerance = c->tolerance;
     a->next = EVENT_LONGEST;
 }
@@ -430,7 +432,9 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     *failed = false;
     if (!live)
         return false;
-    stance_failure failure = event_create(a) ? STANCE_FAILURE_NONE : STANCE_FAILURE_TOLERANCE;
+    const double longest = fmin(EVENT_LONGEST, scene_longest_step(&set->body));
+    stance_failure failure =
+        event_create(a, longest) ? STANCE_FAILURE_NONE : STANCE_FAILURE_TOLERANCE;
     struct event_point here;
     memset(&here, 0, sizeof here);
     memcpy(here.y, now->s, sizeof now->s);
@@ -440,7 +444,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     a->problem.begin = now->t;
     a->problem.coupled = coupled;
     a->problem.evaluations = a->attempts = 0;
-    a->most = EVENT_ATTEMPTS + 4 * h / EVENT_LONGEST;
+    a->most = EVENT_ATTEMPTS + 4 * h / longest;
     enum event_result result = EVENT_ON;
     for (int events = 0; failure == STANCE_FAILURE_NONE && result != EVENT_ARRIVED; events++) {
         bool impact;

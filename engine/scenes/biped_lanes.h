@@ -444,4 +444,11 @@ static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, cons
     return largest;
 }
 
+/* The longest step, s, that resolves how forces change with time: they do not. */
+static inline lanes scene_longest_step(const scene_body *b)
+{
+    (void)b;
+    return lanes_of(INFINITY);
+}
+
 #endif

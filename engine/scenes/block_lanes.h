@@ -237,4 +237,11 @@ static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, cons
     return lanes_max(lanes_abs(w[0]), lanes_abs(w[1]));
 }
 
+/* The longest step, s, that resolves how forces change with time: an eighth of a period. */
+static inline lanes scene_longest_step(const scene_body *b)
+{
+    const lanes forever = lanes_of(INFINITY);
+    return choose(mask_less(lanes_of(0), lanes_abs(b->pull)), 0.125 / b->frequency, forever);
+}
+
 #endif
