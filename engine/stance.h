@@ -156,6 +156,22 @@ typedef struct stance_trajectory {
     double *gap;   /* [rows][contacts] m */
 } stance_trajectory;
 
+/* torque = feedforward - gain * (posture - target, rates). */
+typedef struct stance_linear_law {
+    double feedforward[STANCE_MAX_ACTUATORS];
+    double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
+    double target[STANCE_MAX_POSTURE];
+} stance_linear_law;
+
+/* One coordinate that a decoupling law controls: acceleration kp (r - q) + kd (r' - q') + ki times
+ * the integral of r - q, r = setpoint + ramp min(t, duration). */
+typedef struct stance_servo {
+    int coordinate;
+    double setpoint, ramp, duration; /* its unit; per s; s, may be INFINITY */
+    double kp, ki, kd;               /* 1/s^2, 1/s^3, 1/s */
+    double integral_limit;           /* of the integral, its unit times s; may be INFINITY */
+} stance_servo;
+
 typedef struct stance_case {
     double robot[STANCE_MAX_ROBOT];
     double friction;    /* Coulomb coefficient, >= 0 */
@@ -163,12 +179,21 @@ typedef struct stance_case {
     uint32_t contacts;  /* bit c: contact c may touch the ground */
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
 
-    /* torque = clip(feedforward - gain * (posture - target, rates) + noise, +-torque_limit) */
+    /* torque = clip(feedforward - gain * (posture - target, rates) + noise, +-torque_limit).
+     * `decouples`: by the servos instead (where sample_every is 0: continuously with methods that
+     * integrate between events, else once a step). `switches`: by this inside the ellipsoid
+     * sum(((posture - target), rates) / switch_axis)^2 <= 1, and outside it by the servos or,
+     * where the case does not decouple, by `far`; needs sample_every > 0. */
     double feedforward[STANCE_MAX_ACTUATORS];
     double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
     double target[STANCE_MAX_POSTURE];
-    double torque_limit;  /* N m, > 0, may be INFINITY */
+    stance_linear_law far;
+    bool decouples, switches;
+    stance_servo servo[STANCE_MAX_ACTUATORS];
+    double switch_axis[2 * STANCE_MAX_POSTURE]; /* rad, rad/s, > 0 */
+    double torque_limit;                        /* N m, > 0, may be INFINITY */
     double noise;         /* N m, half-width of uniform noise, 0 when continuous */
+    int64_t delay;        /* samples from measuring to acting: 0 or 1 */
     int64_t sample_every; /* steps per sample, held between; 0: acts continuously inside the step */
 
     double step;   /* s */
@@ -198,13 +223,19 @@ typedef struct stance_result {
     int64_t steps, iterations;               /* steps taken; Newton iterations summed over them */
     int64_t ambiguous_steps;                 /* steps whose contact problem had several solutions */
     int64_t subdivided_steps;                /* steps that converged only after being subdivided */
-    int64_t events;                          /* changes of contact mode that the method handled */
-    int64_t evaluations;                     /* of the accelerations or of the implicit equation */
-    double max_penetration;                  /* m, at the ends of steps */
-    double slip_distance;                    /* m, summed over contacts */
-    double peak_torque;                      /* N m */
-    double friction_used;                    /* largest |rT|/rN */
-    double impact_energy; /* J, largest kinetic energy that contact impulses added in one step */
+    /* Samples (steps, of a law that acts continuously) at which a decoupling law was near a
+     * singularity, or no reactions fitted what it wants: see core/decoupling.h. */
+    int64_t degraded_samples;
+    /* Smallest normal force on the support contact (of all, where there is none), N; mean over a
+     * step, or where the method knows it, inside. */
+    double least_normal_force;
+    int64_t events;         /* changes of contact mode that the method handled */
+    int64_t evaluations;    /* of the accelerations or of the implicit equation */
+    double max_penetration; /* m, at the ends of steps */
+    double slip_distance;   /* m, summed over contacts */
+    double peak_torque;     /* N m */
+    double friction_used;   /* largest |rT|/rN */
+    double impact_energy;   /* J, largest kinetic energy that contact impulses added in one step */
     double projection_energy; /* J, sum of |energy| added by position projection */
     double energy_gain;       /* J, largest rise of the energy above its start and the work done */
     /* How far the ends of steps are from the contact laws, largest over the case: normal velocity

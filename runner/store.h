@@ -49,11 +49,15 @@
       "steps whose contact problem had several solutions")                                         \
     X(subdivided_steps, int64_t, subdivided_steps, 0, "1",                                         \
       "steps that converged only after being subdivided")                                          \
+    X(degraded_samples, int64_t, degraded_samples, 0, "1",                                         \
+      "samples at which a decoupling law could not do what it promises")                           \
     X(max_penetration, double, max_penetration, NAN, "m",                                          \
       "deepest penetration at the end of a step")                                                  \
     X(slip_distance, double, slip_distance, NAN, "m", "distance slipped, summed over contacts")    \
     X(peak_torque, double, peak_torque, NAN, "N m", "largest torque applied")                      \
     X(friction_used, double, friction_used, NAN, "1", "largest ratio |rT|/rN of a contact")        \
+    X(least_normal_force, double, least_normal_force, NAN, "N",                                    \
+      "smallest normal force on the support foot")                                                 \
     X(impact_energy, double, impact_energy, NAN, "J",                                              \
       "largest kinetic energy added by contact impulses in one step")                              \
     X(projection_energy, double, projection_energy, NAN, "J",                                      \

@@ -14,6 +14,8 @@
 #ifndef STANCE_CORE_BUNDLE_H
 #define STANCE_CORE_BUNDLE_H
 
+#include "smooth.h"
+
 #include <Random123/philox.h>
 
 #define BUNDLE_ERROR_FLOOR 1e-9 /* of settle.angle and settle.rate: smaller errors do not grow */
@@ -29,8 +31,10 @@ struct bundle {
     stance_result *result[LANES];
     struct setting set;
     struct motion now;
-    lanes torque[ACTUATORS];
-    lanes h, n, steps; /* step length, steps done, steps wanted */
+    lanes torque[ACTUATORS];  /* in force */
+    lanes pending[ACTUATORS]; /* computed at the last sample, in force from the next one on ... */
+    lanes delayed;            /* ... where this is 1 */
+    lanes h, n, steps;        /* step length, steps done, steps wanted */
     lanes sample_every, next_sample;
     lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
     int64_t row[LANES];
@@ -41,7 +45,8 @@ struct bundle {
     lanes settle_angle, settle_rate, settle_steps, fall_height;
     struct window settled, resting;
 
-    lanes iterations, evaluations, events, ambiguous, subdivided;
+    lanes iterations, evaluations, events, ambiguous, subdivided, degraded;
+    lanes least_normal; /* N, on the support contact */
     lanes penetration, slip, peak_torque, friction_used, impact_energy, projection_energy;
     lanes signorini, coulomb, dissipation;
     lanes energy_bound, energy_gain; /* initial energy and the work since; excess over it */
@@ -49,10 +54,76 @@ struct bundle {
     struct advance advance;
 };
 
+/* Steps per sample; 0: the law acts inside the step. */
+static int64_t case_samples(const stance_case *c)
+{
+#ifdef ADVANCE_SAMPLES_LAWS
+    if (c->sample_every == 0 && c->decouples)
+        return 1;
+#endif
+    return c->sample_every;
+}
+
+/* A law that acts inside the step couples the angles: such cases run in bundles of their own, so
+ * that a case's arithmetic depends on nothing but the case. */
+static bool case_is_coupled(const stance_case *c)
+{
+    if (case_samples(c) > 0)
+        return false;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        for (int j = 0; j < 2 * SCENE_POSTURE; j++)
+            if (c->gain[i][j] != 0)
+                return true;
+    return SCENE_ACTUATORS > 0 && c->decouples;
+}
+
 static inline void set_all(lanes *v, int n, int lane, const double *x)
 {
     for (int i = 0; i < n; i++)
         lane_set(&v[i], lane, x[i]);
+}
+
+static void bundle_load_linear(struct linear_law *law, int lane, const stance_linear_law *c)
+{
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        lane_set(&law->feedforward[i], lane, c->feedforward[i]);
+        for (int j = 0; j < SCENE_POSTURE; j++) {
+            lane_set(&law->gain[i][j], lane, c->gain[i][j]);
+            lane_set(&law->gain[i][SCENE_POSTURE + j], lane, c->gain[i][SCENE_POSTURE + j]);
+        }
+    }
+    set_all(law->target, SCENE_POSTURE, lane, c->target);
+}
+
+static void bundle_load_law(struct law *law, int lane, const stance_case *c)
+{
+    stance_linear_law linear;
+    memcpy(linear.feedforward, c->feedforward, sizeof linear.feedforward);
+    memcpy(linear.gain, c->gain, sizeof linear.gain);
+    memcpy(linear.target, c->target, sizeof linear.target);
+    bundle_load_linear(&law->linear, lane, &linear);
+    bundle_load_linear(&law->far, lane, &c->far);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        struct servo *const servo = &law->servo[i];
+        const stance_servo *const from = &c->servo[i];
+        for (int k = 0; k < SCENE_COORDINATES; k++)
+            lane_set(&servo->pick[k], lane, k == from->coordinate);
+        lane_set(&servo->setpoint, lane, from->setpoint);
+        lane_set(&servo->ramp, lane, from->ramp);
+        lane_set(&servo->duration, lane, from->duration);
+        lane_set(&servo->kp, lane, from->kp);
+        lane_set(&servo->ki, lane, from->ki);
+        lane_set(&servo->kd, lane, from->kd);
+        lane_set(&servo->integral_limit, lane, from->integral_limit);
+    }
+    lane_set(&law->decouples, lane, c->decouples);
+    lane_set(&law->switches, lane, c->switches);
+    for (int j = 0; j < SCENE_POSTURE; j++) {
+        lane_set(&law->inverse_axis[j], lane, c->switches ? 1 / c->switch_axis[j] : 0);
+        lane_set(&law->inverse_axis[SCENE_POSTURE + j], lane,
+                 c->switches ? 1 / c->switch_axis[SCENE_POSTURE + j] : 0);
+    }
+    lane_set(&law->limit, lane, c->torque_limit);
 }
 
 static void bundle_load_setting(struct setting *set, int lane, const stance_case *c)
@@ -62,41 +133,20 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
     lane_set(&set->restitution, lane, c->restitution);
     for (int i = 0; i < SCENE_CONTACTS; i++)
         lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
-    for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        lane_set(&set->law.feedforward[i], lane, c->feedforward[i]);
-        for (int j = 0; j < SCENE_POSTURE; j++) {
-            lane_set(&set->law.gain[i][j], lane, c->gain[i][j]);
-            lane_set(&set->law.gain[i][SCENE_POSTURE + j], lane, c->gain[i][SCENE_POSTURE + j]);
-        }
-    }
-    set_all(set->law.target, SCENE_POSTURE, lane, c->target);
-    lane_set(&set->law.limit, lane, c->torque_limit);
+    bundle_load_law(&set->law, lane, c);
 }
 
 static void bundle_clear_answers(struct bundle *b, int lane)
 {
-    lanes *const zero[] = {&b->iterations,
-                           &b->evaluations,
-                           &b->events,
-                           &b->ambiguous,
-                           &b->subdivided,
-                           &b->penetration,
-                           &b->slip,
-                           &b->peak_torque,
-                           &b->friction_used,
-                           &b->impact_energy,
-                           &b->projection_energy,
-                           &b->signorini,
-                           &b->coulomb,
-                           &b->dissipation,
-                           &b->energy_gain,
-                           &b->failure,
-                           &b->n,
-                           &b->recorded_at,
-                           &b->next_sample,
-                           &b->now.t};
+    lanes *const zero[] = {
+        &b->iterations,    &b->evaluations,       &b->events,    &b->ambiguous,   &b->subdivided,
+        &b->degraded,      &b->penetration,       &b->slip,      &b->peak_torque, &b->friction_used,
+        &b->impact_energy, &b->projection_energy, &b->signorini, &b->coulomb,     &b->dissipation,
+        &b->energy_gain,   &b->failure,           &b->n,         &b->recorded_at, &b->next_sample,
+        &b->now.t};
     for (size_t i = 0; i < sizeof zero / sizeof *zero; i++)
         lane_set(zero[i], lane, 0);
+    lane_set(&b->least_normal, lane, INFINITY);
     for (int i = 0; i < SCENE_CONTACTS; i++)
         lane_set(&b->impulse[i][0], lane, 0), lane_set(&b->impulse[i][1], lane, 0);
     lane_set(&b->settled.begin, lane, -1);
@@ -115,14 +165,18 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     scene_enter(c->robot, c->position, c->velocity, s, w);
     set_all(b->now.s, SCENE_COORDINATES, lane, s);
     set_all(b->now.w, SCENE_COORDINATES, lane, w);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
         lane_set(&b->torque[i], lane, 0);
+        lane_set(&b->pending[i], lane, 0);
+        lane_set(&b->now.integral[i], lane, 0);
+    }
+    lane_set(&b->delayed, lane, c->delay > 0);
     bundle_clear_answers(b, lane);
     advance_load(&b->advance, lane, c);
     lane_set(&b->h, lane, c->step);
     lane_set(&b->steps, lane, (double)c->steps);
-    lane_set(&b->sample_every, lane, (double)c->sample_every);
-    if (c->sample_every == 0)
+    lane_set(&b->sample_every, lane, (double)case_samples(c));
+    if (case_samples(c) == 0)
         lane_set(&b->next_sample, lane, INFINITY);
     lane_set(&b->next_record, lane, c->trajectory && c->trajectory->rows > 0 ? 0 : INFINITY);
     b->row[lane] = 0;
@@ -168,6 +222,36 @@ static void bundle_noise(const stance_case *c, double instant, double noise[ACTU
         noise[i] = c->noise * noise_value(random.v[i]);
 }
 
+/* What a law that is not linear commands at a sampling instant, in the lanes of `due`; the errors
+ * that it sums count for the interval that begins. */
+static void bundle_decouple(struct bundle *b, mask due, lanes *command)
+{
+    const struct law *const law = &b->set.law;
+    const mask switches = mask_less(lanes_of(0), law->switches);
+    const mask decouples = mask_less(lanes_of(0), law->decouples);
+    lanes posture[POSTURES], rate[POSTURES], far[ACTUATORS], none[ACTUATORS];
+    scene_posture(b->now.s, posture);
+    scene_posture(b->now.w, rate);
+    const mask inside = switches & law_near(law, posture, rate);
+    linear_torque(&law->far, posture, rate, far);
+    const mask servos = due & decouples & LANES_NOT(inside);
+    const mask other = due & switches & LANES_NOT(inside | decouples);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        command[i] = choose(other, far[i], command[i]);
+        none[i] = lanes_of(0);
+    }
+    if (!mask_any(servos))
+        return;
+    struct dynamics e;
+    const struct drive drive = {none, true, NULL};
+    smooth_evaluate(&b->set, b->now.t, b->now.s, b->now.w, b->now.integral, &drive,
+                    smooth_touching(&b->set, b->now.gap), &e);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        command[i] = choose(servos, e.command[i], command[i]);
+    law_integrate(law, servos, b->sample_every * b->h, e.integral_rate, b->now.integral);
+    b->degraded += choose(servos, e.degraded, lanes_of(0));
+}
+
 /* New torques in the lanes whose sampling instant it is. */
 static inline void bundle_sample(struct bundle *b, mask live)
 {
@@ -176,6 +260,9 @@ static inline void bundle_sample(struct bundle *b, mask live)
         return;
     lanes torque[ACTUATORS];
     law_torque(&b->set.law, b->now.s, b->now.w, torque);
+    if (SCENE_ACTUATORS > 0 &&
+        mask_any(due & mask_less(lanes_of(0), b->set.law.decouples + b->set.law.switches)))
+        bundle_decouple(b, due, torque);
     for (int lane = 0; lane < LANES; lane++) {
         const stance_case *const c = b->which[lane];
         if (!c || c->noise == 0 || !mask_get(due, lane))
@@ -186,8 +273,12 @@ static inline void bundle_sample(struct bundle *b, mask live)
             lane_set(&torque[i], lane, lane_get(&torque[i], lane) + noise[i]);
     }
     law_clip(&b->set.law, torque);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        b->torque[i] = choose(due, torque[i], b->torque[i]);
+    /* With a delay the command of the sample before comes into force, at the start its own. */
+    const mask late = due & mask_less(lanes_of(0), b->delayed) & mask_less(lanes_of(0), b->n);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        b->torque[i] = choose(due, choose(late, b->pending[i], torque[i]), b->torque[i]);
+        b->pending[i] = choose(due, torque[i], b->pending[i]);
+    }
     b->next_sample = choose(due, b->next_sample + b->sample_every, b->next_sample);
 }
 
@@ -201,10 +292,12 @@ static inline void bundle_account(struct bundle *b, mask ok, const struct step_r
     b->events += choose(ok, report->events, none);
     b->ambiguous += choose(ok, report->ambiguous, none);
     b->subdivided += choose(ok, report->subdivided, none);
+    b->degraded += choose(ok, report->degraded, none);
     b->energy_bound += choose(ok, report->work, none);
     const lanes energy = scene_energy(&b->set.body, b->now.s, b->now.w, &b->now.trig);
     b->energy_gain =
         choose(ok, lanes_max(energy - b->energy_bound, b->energy_gain), b->energy_gain);
+    b->friction_used = choose(ok, lanes_max(report->friction, b->friction_used), b->friction_used);
     b->signorini = choose(ok, lanes_max(report->signorini, b->signorini), b->signorini);
     b->coulomb = choose(ok, lanes_max(report->coulomb, b->coulomb), b->coulomb);
     b->dissipation = choose(ok, lanes_max(report->dissipation, b->dissipation), b->dissipation);
@@ -218,10 +311,9 @@ static inline void bundle_account(struct bundle *b, mask ok, const struct step_r
         const mask may = ok & mask_less(none, b->set.may_touch[c]);
         b->penetration = choose(may, lanes_max(-b->now.gap[c], b->penetration), b->penetration);
         b->slip += choose(ok, report->slip[c], none);
-        const mask loaded = ok & mask_less(none, report->impulse[c][0]);
-        const lanes ratio =
-            lanes_abs(report->impulse[c][1]) / choose(loaded, report->impulse[c][0], lanes_of(1));
-        b->friction_used = choose(loaded, lanes_max(ratio, b->friction_used), b->friction_used);
+        const mask support = ok & mask_less(lanes_abs(b->support - (double)c), lanes_of(0.5));
+        b->least_normal =
+            choose(support, lanes_min(report->least[c], b->least_normal), b->least_normal);
         for (int a = 0; a < 2; a++)
             b->impulse[c][a] += choose(ok, report->impulse[c][a], none);
     }
@@ -253,7 +345,7 @@ static inline struct verdict bundle_judge(struct bundle *b, mask live, const mas
     scene_posture(b->now.w, rate);
     lanes angle = lanes_of(0), speed = lanes_of(0);
     for (int i = 0; i < SCENE_POSTURE; i++) {
-        angle = lanes_max(lanes_abs(posture[i] - b->set.law.target[i]), angle);
+        angle = lanes_max(lanes_abs(posture[i] - b->set.law.linear.target[i]), angle);
         speed = lanes_max(lanes_abs(rate[i]), speed);
     }
     angle = angle / b->settle_angle;
@@ -325,6 +417,7 @@ static void bundle_finish(struct bundle *b, int lane, stance_status status, stan
     const stance_case *const c = b->which[lane];
     const double n = lane_get(&b->n, lane), h = c->step;
     double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    const double least = lane_get(&b->least_normal, lane);
     const double begin = outcome == STANCE_RESTED ? lane_get(&b->resting.begin, lane)
                                                   : lane_get(&b->settled.begin, lane);
     const bool calm = outcome == STANCE_RESTED || outcome == STANCE_STABILISED;
@@ -339,6 +432,8 @@ static void bundle_finish(struct bundle *b, int lane, stance_status status, stan
         .iterations = (int64_t)lane_get(&b->iterations, lane),
         .ambiguous_steps = (int64_t)lane_get(&b->ambiguous, lane),
         .subdivided_steps = (int64_t)lane_get(&b->subdivided, lane),
+        .least_normal_force = isfinite(least) ? least : NAN,
+        .degraded_samples = (int64_t)lane_get(&b->degraded, lane),
         .max_penetration = lane_get(&b->penetration, lane),
         .slip_distance = lane_get(&b->slip, lane),
         .peak_torque = lane_get(&b->peak_torque, lane),
@@ -420,11 +515,12 @@ static void bundle_start(struct bundle *b, mask fresh, bool coupled)
     const struct verdict v = bundle_judge(b, fresh, loaded, MASK_NONE);
     bundle_sample(b, fresh);
     if (coupled) {
-        lanes torque[ACTUATORS];
-        law_torque(&b->set.law, b->now.s, b->now.w, torque);
-        law_clip(&b->set.law, torque);
+        struct dynamics e;
+        const struct drive drive = {b->torque, true, NULL};
+        smooth_evaluate(&b->set, b->now.t, b->now.s, b->now.w, b->now.integral, &drive,
+                        smooth_touching(&b->set, b->now.gap), &e);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
-            b->torque[i] = choose(fresh, torque[i], b->torque[i]);
+            b->torque[i] = choose(fresh, e.torque[i], b->torque[i]);
     }
     bundle_record_due(b, fresh);
     bundle_end(b, fresh, MASK_NONE, &v, mask_less_equal(b->steps, lanes_of(0)));
@@ -452,19 +548,6 @@ static inline void bundle_step(struct bundle *b, mask live, bool coupled)
     const struct verdict v = bundle_judge(b, ok, loaded, last);
     bundle_record_due(b, ok);
     bundle_end(b, live, failed, &v, last);
-}
-
-/* A law that acts inside the step couples the angles: such cases run in bundles of their own, so
- * that a case's arithmetic depends on nothing but the case. */
-static bool case_is_coupled(const stance_case *c)
-{
-    if (c->sample_every > 0)
-        return false;
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        for (int j = 0; j < 2 * SCENE_POSTURE; j++)
-            if (c->gain[i][j] != 0)
-                return true;
-    return false;
 }
 
 static inline __attribute__((always_inline)) void

@@ -15,7 +15,8 @@
  * kinetic energy, r.(uf + u)/2 added by the impulses; ties go to the earlier mode in the order
  * open, stick, forward, backward. Where legs are parallel the operator is singular with both feet
  * sticking (rank 3 of 4): the redundant impulse is set to zero, velocities stay unique, guard
- * 1e-13. D need not be symmetric (an exact Newton linearisation is not).
+ * 1e-13. D need not be symmetric (an exact Newton linearisation is not) nor positive (where a law
+ * answers contact forces at once it is not).
  */
 #ifndef STANCE_CORE_CONTACT_H
 #define STANCE_CORE_CONTACT_H
@@ -45,6 +46,7 @@ typedef struct contact_problem {
     lanes friction;
     lanes tolerance; /* admitted violation, m/s */
     int contacts;    /* 1 or 2 */
+    bool indefinite; /* D is neither symmetric nor positive */
 } contact_problem;
 
 enum contact_mode { CONTACT_OPEN, CONTACT_STICK, CONTACT_FORWARD, CONTACT_BACKWARD, CONTACT_MODES };
@@ -62,7 +64,8 @@ static inline void contact_offer(const contact_problem *p, lanes r[2][2], contac
             energy += 0.5 * (r[i][a] * (p->uf[i][a] + u[i][a]));
             apart = lanes_max(lanes_abs(u[i][a] - best->u[i][a]), apart);
         }
-        const lanes normal = p->D[i][i][0][0], tangential = p->D[i][i][1][1];
+        const lanes normal = lanes_abs(p->D[i][i][0][0]);
+        const lanes tangential = lanes_abs(p->D[i][i][1][1]);
         const lanes bound = p->friction * r[i][0];
         violation = lanes_max(-u[i][0], violation);
         violation = lanes_max(-(r[i][0] * normal), violation);
@@ -96,15 +99,17 @@ static inline void contact_offer(const contact_problem *p, lanes r[2][2], contac
 }
 
 /* Impulse that one contact with operator D and free velocity uf needs in a mode. */
-static inline void contact_impulse(enum contact_mode mode, const lanes D[2][2], const lanes uf[2],
-                                   lanes friction, lanes r[2])
+static inline void contact_impulse(enum contact_mode mode, bool indefinite, const lanes D[2][2],
+                                   const lanes uf[2], lanes friction, lanes r[2])
 {
     if (mode == CONTACT_OPEN) {
         r[0] = r[1] = lanes_of(0);
     } else if (mode == CONTACT_STICK) {
         const lanes product = D[0][0] * D[1][1];
         const lanes determinant = product - D[0][1] * D[1][0];
-        const mask regular = mask_less(CONTACT_RANK_GUARD * lanes_abs(product), determinant);
+        /* Of a positive operator a negative determinant is a rounding of zero. */
+        const mask regular = mask_less(CONTACT_RANK_GUARD * lanes_abs(product),
+                                       indefinite ? lanes_abs(determinant) : determinant);
         const lanes reciprocal = 1 / choose(regular, determinant, lanes_of(1));
         /* Singular: the larger diagonal alone does the work, the other row follows. */
         const mask normal = mask_less_equal(lanes_abs(D[1][1]), lanes_abs(D[0][0]));
@@ -128,11 +133,11 @@ static inline void contact_eliminate(const contact_problem *p, enum contact_mode
 {
     lanes D[2][2], uf[2], push[2][2], alone[2];
     /* Impulse of contact 0 in its mode, affine in that of contact 1: alone + push r1. */
-    contact_impulse(mode, p->D[0][0], p->uf[0], p->friction, alone);
+    contact_impulse(mode, p->indefinite, p->D[0][0], p->uf[0], p->friction, alone);
     for (int b = 0; b < 2; b++) {
         const lanes coupling[2] = {p->D[0][1][0][b], p->D[0][1][1][b]};
         lanes column[2];
-        contact_impulse(mode, p->D[0][0], coupling, p->friction, column);
+        contact_impulse(mode, p->indefinite, p->D[0][0], coupling, p->friction, column);
         push[0][b] = column[0], push[1][b] = column[1];
     }
     for (int a = 0; a < 2; a++) {
@@ -143,7 +148,7 @@ static inline void contact_eliminate(const contact_problem *p, enum contact_mode
     }
     for (enum contact_mode other = CONTACT_OPEN; other < CONTACT_MODES; other++) {
         lanes r[2][2];
-        contact_impulse(other, D, uf, p->friction, r[1]);
+        contact_impulse(other, p->indefinite, D, uf, p->friction, r[1]);
         for (int a = 0; a < 2; a++)
             r[0][a] = alone[a] + push[a][0] * r[1][0] + push[a][1] * r[1][1];
         contact_offer(p, r, best);
@@ -165,7 +170,7 @@ static inline void contact_solve(const contact_problem *p, contact_choice *best)
             contact_eliminate(p, mode, best);
         } else {
             lanes r[2][2] = {{lanes_of(0), lanes_of(0)}, {lanes_of(0), lanes_of(0)}};
-            contact_impulse(mode, p->D[0][0], p->uf[0], p->friction, r[0]);
+            contact_impulse(mode, p->indefinite, p->D[0][0], p->uf[0], p->friction, r[0]);
             contact_offer(p, r, best);
         }
     }

@@ -28,7 +28,7 @@ struct dip_forces {
     lanes normal[4][SCENE_CONTACTS], tangential[4][SCENE_CONTACTS];
 };
 
-static inline void dip_note(const struct smooth *e, int k, struct dip_forces *forces)
+static inline void dip_note(const struct dynamics *e, int k, struct dip_forces *forces)
 {
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         forces->normal[k][c] = e->force[c][0];
@@ -46,7 +46,7 @@ static inline lanes dip_longest(const struct setting *set, const lanes *w)
 }
 
 /* Acceleration of a contact in a state that was evaluated and solved. */
-static inline void dip_acceleration(const struct setting *set, const struct smooth *e,
+static inline void dip_acceleration(const struct setting *set, const struct dynamics *e,
                                     const lanes *w, int c, lanes *a)
 {
     lanes curvature[2];
@@ -91,7 +91,7 @@ static inline mask dip_of_forces(lanes friction, mask sticks, const struct dip_f
 /* Lanes where the mode may have been left between `begin` and `end`, both solved in it, with the
  * velocities w0 and w1, a time h apart. */
 static inline mask dip_between(const struct setting *set, const struct contact_state *m,
-                               const struct smooth *begin, const struct smooth *end,
+                               const struct dynamics *begin, const struct dynamics *end,
                                const lanes *w0, const lanes *w1, lanes h,
                                const struct dip_forces *forces)
 {

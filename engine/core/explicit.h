@@ -21,6 +21,8 @@ struct explicit_step {
     mask dipped;   /* it may have ended and begun again between the stages */
     mask bad;      /* not finite, or an angle out of range ... */
     lanes failure; /* ... as a stance_failure */
+    /* At the beginning: torques in force, and how fast the law sums. */
+    lanes torque[ACTUATORS], integral_rate[ACTUATORS];
 };
 
 /* Adds k * x to sums of coordinates and rates. A weight of zero costs nothing: all are constants.
@@ -33,8 +35,15 @@ static inline void explicit_add(lanes *s, lanes *w, lanes k, const lanes *ds, co
     }
 }
 
+/* The same for what the law sums, where it does. */
+static inline void explicit_sum(bool sums, lanes *z, lanes k, const lanes *dz)
+{
+    for (int i = 0; i < SCENE_ACTUATORS && sums; i++)
+        z[i] += k * dz[i];
+}
+
 static inline void explicit_report(const struct setting *set, const struct contact_state *m,
-                                   const struct smooth *e, struct step_report *report)
+                                   const struct dynamics *e, struct step_report *report)
 {
     lanes load = lanes_of(0);
     report->signorini = report->coulomb = report->dissipation = lanes_of(0);
@@ -49,16 +58,23 @@ static inline void explicit_report(const struct setting *set, const struct conta
 /* One step of length h from `from` in the mode `m` with `begin` evaluated and solved there. */
 static inline void explicit_take(const struct setting *set, const struct motion *from,
                                  const lanes *torque, lanes h, mask run, bool coupled,
-                                 const struct contact_state *m, const struct smooth *begin,
+                                 const struct contact_state *m, const struct dynamics *begin,
                                  struct explicit_step *out)
 {
     lanes ks[METHOD_STAGES][SCENE_COORDINATES], kw[METHOD_STAGES][SCENE_COORDINATES];
+    lanes kz[METHOD_STAGES][ACTUATORS];
+    const bool sums = law_sums(&set->law, coupled);
+    const struct drive drive = {torque, coupled, m};
     contact_set touches = 0;
-    struct smooth e = *begin;
+    struct dynamics e = *begin;
     for (int c = 0; c < SCENE_CONTACTS; c++)
         if (mask_any(m->closed[c] & run))
             touches |= 1u << c;
-    memset(&out->report, 0, sizeof out->report);
+    report_clear(&out->report);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        out->torque[i] = begin->torque[i];
+        out->integral_rate[i] = begin->integral_rate[i];
+    }
     out->violated = out->dipped = MASK_NONE;
     out->end = *from;
 #ifdef METHOD_EMBEDDED
@@ -66,25 +82,32 @@ static inline void explicit_take(const struct setting *set, const struct motion 
 #endif
 #pragma GCC unroll 16
     for (int k = 0; k < METHOD_STAGES; k++) {
-        lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+        lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES], z[ACTUATORS];
         for (int i = 0; i < SCENE_COORDINATES; i++)
             s[i] = from->s[i], w[i] = from->w[i];
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            z[i] = from->integral[i];
         if (k > 0) {
 #pragma GCC unroll 16
             for (int j = 0; j < k; j++)
-                if (tableau_a[k][j] != 0)
+                if (tableau_a[k][j] != 0) {
                     explicit_add(s, w, h * tableau_a[k][j], ks[j], kw[j]);
-            smooth_evaluate(set, from->t + h * tableau_c[k], s, w, torque, coupled, touches, &e);
+                    explicit_sum(sums, z, h * tableau_a[k][j], kz[j]);
+                }
+            smooth_evaluate(set, from->t + h * tableau_c[k], s, w, z, &drive, touches, &e);
             if (touches)
                 smooth_solve(set, m, &e);
             out->violated |= smooth_violated(set, m, &e);
         }
         for (int i = 0; i < SCENE_COORDINATES; i++)
             ks[k][i] = w[i], kw[k][i] = e.acceleration[i];
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            kz[k][i] = e.integral_rate[i];
 #ifdef METHOD_EMBEDDED
         if (tableau_dip[k] >= 0)
             dip_note(&e, tableau_dip[k], &forces);
 #endif
+        report_forces(&out->report, m->closed, (const lanes(*)[2])e.force);
         if (tableau_b[k] != 0) {
             lanes moved[SCENE_COORDINATES];
             const lanes part = h * tableau_b[k];
@@ -93,6 +116,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
             out->report.work +=
                 scene_work(&set->body, part, from->t + h * tableau_c[k], e.torque, moved);
             explicit_add(out->end.s, out->end.w, part, ks[k], kw[k]);
+            explicit_sum(sums, out->end.integral, part, kz[k]);
             for (int c = 0; c < SCENE_CONTACTS; c++) {
                 out->report.slip[c] +=
                     choose(m->closed[c], part * lanes_abs(e.u[c][1]), lanes_of(0));
@@ -103,7 +127,8 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     }
     struct motion *const end = &out->end;
     out->bad = run & LANES_NOT(scene_angles_in_range(end->s));
-    smooth_evaluate(set, from->t + h, end->s, end->w, torque, coupled, touches, &e);
+    smooth_evaluate(set, from->t + h, end->s, end->w, end->integral, &drive, touches, &e);
+    out->report.degraded = e.degraded;
     if (touches)
         smooth_solve(set, m, &e);
     out->violated |= smooth_violated(set, m, &e);
@@ -117,6 +142,12 @@ static inline void explicit_take(const struct setting *set, const struct motion 
         if (tableau_e[k] != 0)
             explicit_add(es, ew, h * tableau_e[k], ks[k], kw[k]);
     explicit_add(es, ew, h * tableau_e[METHOD_STAGES], end->w, e.acceleration);
+    for (int i = 0; i < SCENE_ACTUATORS && sums; i++) {
+        lanes ez = h * (tableau_e[METHOD_STAGES] * e.integral_rate[i]);
+        for (int k = 0; k < METHOD_STAGES; k++)
+            ez += h * (tableau_e[k] * kz[k][i]);
+        out->error = lanes_max(lanes_abs(ez), out->error);
+    }
     for (int i = 0; i < SCENE_COORDINATES; i++)
         out->error = lanes_max(lanes_max(lanes_abs(es[i]), lanes_abs(ew[i])), out->error);
     dip_note(&e, 3, &forces);
@@ -136,6 +167,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     }
     end->trig = e.trig;
     end->t = from->t + h;
+    report_forces(&out->report, m->closed, (const lanes(*)[2])e.force);
     explicit_report(set, m, &e, &out->report);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         out->report.torque[i] = e.torque[i];

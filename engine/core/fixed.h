@@ -7,6 +7,9 @@
 
 #include "step.h"
 
+/* A law that is not linear acts once a step, on the state at its beginning. */
+#define ADVANCE_SAMPLES_LAWS
+
 #define FIXED_MAX_SUBDIVISION 6 /* a step is halved at most this often ... */
 #define FIXED_FREEZE_AFTER 6    /* ... and in the last attempt the geometry freezes here */
 
@@ -34,7 +37,7 @@ static mask fixed_subdivide(const struct setting *set, const struct motion *from
         const int freeze = level < FIXED_MAX_SUBDIVISION ? STEP_MAX_ITERATIONS : FIXED_FREEZE_AFTER;
         struct motion here = *from;
         struct step_report sum;
-        memset(&sum, 0, sizeof sum);
+        report_clear(&sum);
         sum.iterations = total->iterations;
         mask good = failed;
         for (int k = 0; k < parts && mask_any(good); k++) {

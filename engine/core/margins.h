@@ -28,7 +28,8 @@ enum {
     EVENT_IMPULSE = 2 * SCENE_COORDINATES, /* normal, tangential of each contact, N s */
     EVENT_SLIDE = EVENT_IMPULSE + 2 * SCENE_CONTACTS,
     EVENT_WORK = EVENT_SLIDE + SCENE_CONTACTS,
-    EVENT_SIZE,
+    EVENT_INTEGRAL, /* what a law sums */
+    EVENT_SIZE = EVENT_INTEGRAL + SCENE_ACTUATORS,
     EVENT_MARGINS = 3 * SCENE_CONTACTS + 2 * SCENE_ACTUATORS,
     EVENT_SAMPLES = 8, /* parts of an internal step that is searched for dips */
 };
@@ -57,7 +58,7 @@ struct event_problem {
 struct event_point {
     double tau; /* s, of the step */
     double y[EVENT_SIZE];
-    struct smooth e;
+    struct dynamics e;
     double margin[EVENT_MARGINS];
 };
 
@@ -118,7 +119,7 @@ static bool event_stick(const double D[2][2][2][2], const double free[2][2], dou
 
 /* Both contacts stick and their forces are not unique, but the motion is: of all such forces those
  * that keep farthest away from pulling and from the edges of the cones. */
-static void event_share(double friction, struct smooth *e)
+static void event_share(double friction, struct dynamics *e)
 {
     double n[4], value[6], slope[6], best = -INFINITY, shift = 0;
     if (!event_stick((const double(*)[2][2][2])e->D, (const double(*)[2])e->free, &e->force[0][0],
@@ -151,7 +152,7 @@ static void event_share(double friction, struct smooth *e)
 }
 
 /* Both contacts stick: forces, and accelerations with them. */
-static void event_hold(double friction, struct smooth *e)
+static void event_hold(double friction, struct dynamics *e)
 {
     event_share(friction, e);
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -161,20 +162,22 @@ static void event_hold(double friction, struct smooth *e)
 }
 
 static void event_evaluate(struct event_problem *problem, double tau, const double *y,
-                           struct smooth *e)
+                           struct dynamics *e)
 {
     const double *const s = y, *const w = y + SCENE_COORDINATES;
+    const bool servos = problem->coupled && problem->set->law.decouples > 0;
     double torque[ACTUATORS];
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         torque[i] = problem->torque[i];
-    if (problem->coupled) {
+    if (problem->coupled && !servos) {
         law_torque(&problem->set->law, s, w, torque);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             if (problem->mode.clipped[i] != 0)
                 torque[i] = problem->mode.clipped[i] * problem->set->law.limit;
     }
-    smooth_evaluate(problem->set, problem->begin + tau, s, w, torque, false, problem->mode.touches,
-                    e);
+    const struct drive drive = {torque, servos, &problem->mode.contact};
+    smooth_evaluate(problem->set, problem->begin + tau, s, w, y + EVENT_INTEGRAL, &drive,
+                    problem->mode.touches, e);
     const struct contact_state *const m = &problem->mode.contact;
     if (SCENE_CONTACTS > 1 && m->closed[0] && m->closed[SECOND] && m->slide[0] == 0 &&
         m->slide[SECOND] == 0)
@@ -187,7 +190,7 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
 /* Determinant of the equations for the contact forces, 1 without coupling of contacts and of
  * directions. Where friction at a sliding contact brings it to zero the forces are unbounded or not
  * unique (Painleve). */
-static double event_determinant(const struct event_problem *problem, const struct smooth *e)
+static double event_determinant(const struct event_problem *problem, const struct dynamics *e)
 {
     const struct contact_state *const state = &problem->mode.contact;
     double m[4][4], scale = 1;
@@ -222,7 +225,7 @@ static double event_determinant(const struct event_problem *problem, const struc
 
 /* Margins of the contact laws and of the torque limits; 1 where there is none. */
 static void event_margins(const struct event_problem *problem, const double *y,
-                          const struct smooth *e, double *margin)
+                          const struct dynamics *e, double *margin)
 {
     const struct contact_state *const m = &problem->mode.contact;
     for (int k = 0; k < EVENT_MARGINS; k++)
@@ -388,7 +391,7 @@ static bool event_of_contact(const struct event_problem *problem, const struct e
 
 /* Rates of the margins that are gaps and slips; NAN for the others. */
 static void event_slopes(const struct event_problem *problem, const double *y,
-                         const struct smooth *e, double *slope)
+                         const struct dynamics *e, double *slope)
 {
     const struct contact_state *const m = &problem->mode.contact;
     for (int k = 0; k < EVENT_MARGINS; k++)
@@ -413,7 +416,7 @@ static void event_between(struct event_problem *problem, const struct event_poin
 {
     const double h = to->tau - from->tau, x2 = x * x, x3 = x2 * x;
     double y[EVENT_SIZE] = {0};
-    struct smooth e;
+    struct dynamics e;
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         const double v0 = from->y[SCENE_COORDINATES + i], v1 = to->y[SCENE_COORDINATES + i];
         const double a0 = from->e.acceleration[i], a1 = to->e.acceleration[i];

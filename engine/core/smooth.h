@@ -22,91 +22,46 @@
 #ifndef STANCE_CORE_SMOOTH_H
 #define STANCE_CORE_SMOOTH_H
 
-#include "step.h"
+#include "decoupling.h"
 
 #define SMOOTH_REST 1e-10 /* m/s: contact velocities below it are zero */
 #define SMOOTH_START                                                                               \
     1e-12                /* of the accelerations: a slip that accelerates by less does not begin */
 #define SMOOTH_GAP 1e-12 /* m: penetration that does not count */
 
-struct contact_state {
-    mask closed[SCENE_CONTACTS];
-    lanes slide[SCENE_CONTACTS]; /* sign of the slip; 0: sticks */
+/* What drives the robot in a step: torques that are held or, `coupled`, a law that acts all the
+ * time, and in which mode; NULL: as it follows from the state. */
+struct drive {
+    const lanes *torque;
+    bool coupled;
+    const struct contact_state *mode;
 };
 
-/* The equations at one state. */
-struct smooth {
-    scene_trig trig;
-    lanes gap[SCENE_CONTACTS], u[SCENE_CONTACTS][2];
-    lanes torque[ACTUATORS];
-    lanes acceleration[SCENE_COORDINATES]; /* without contact forces, until smooth_solve */
-    lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES]; /* A^-1 H^T */
-    lanes D[2][2][2][2], free[2][2];                      /* of SCENE_CONTACTS contacts */
-    lanes force[2][2];                                    /* N */
-};
-
-/* Contacts that matter in any lane: bit c. What an open contact would respond costs nothing. */
-typedef unsigned contact_set;
-
-/* Contact terms of the contacts that are not in `touching`: zero, so that sums may run over all. */
-static inline void smooth_clear(contact_set touching, struct smooth *e)
-{
-    for (int c = 0; c < 2; c++)
-        for (int a = 0; a < 2; a++) {
-            for (int k = 0; k < 2; k++)
-                for (int b = 0; b < 2; b++)
-                    if (!(touching >> c & touching >> k & 1))
-                        e->D[c][k][a][b] = lanes_of(0);
-            if (touching >> c & 1)
-                continue;
-            e->free[c][a] = lanes_of(0);
-            for (int i = 0; i < SCENE_COORDINATES && c < SCENE_CONTACTS; i++)
-                e->response[c][a][i] = lanes_of(0);
-        }
-}
-
-/* Everything that does not depend on the mode; contact terms of the contacts in `touching`. */
+/* Everything that does not depend on the mode but for what a law makes of it; contact terms of the
+ * contacts in `touching`. */
 static inline void smooth_evaluate(const struct setting *set, lanes t, const lanes *s,
-                                   const lanes *w, const lanes *torque, bool coupled,
-                                   contact_set touching, struct smooth *e)
+                                   const lanes *w, const lanes *integral, const struct drive *drive,
+                                   contact_set touching, struct dynamics *e)
 {
-    lanes load[SCENE_COORDINATES];
-    scene_trigonometry(s, &e->trig);
+    const mask decouples = mask_less(lanes_of(0), set->law.decouples);
+    const bool servos = SCENE_ACTUATORS > 0 && drive->coupled && mask_any(decouples);
+    lanes torque[ACTUATORS];
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        e->torque[i] = torque[i];
-    if (coupled) {
-        law_torque(&set->law, s, w, e->torque);
-        law_clip(&set->law, e->torque);
+        torque[i] = drive->torque[i];
+    if (drive->coupled) {
+        law_torque(&set->law, s, w, torque);
+        law_clip(&set->law, torque);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            torque[i] = choose(decouples, lanes_of(0), torque[i]);
     }
-    scene_matrix A;
-    scene_forces(&set->body, t, &e->trig, w, e->torque, load);
-    scene_inertia(&set->body, &e->trig, &A);
-    scene_solve(&A, false, load, e->acceleration);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        e->gap[c] = scene_gap(&set->body, s, &e->trig, c);
-        scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
-        e->force[c][0] = e->force[c][1] = lanes_of(0);
-    }
-    smooth_clear(touching, e);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (touching >> c & 1)
-            scene_contact_response(&set->body, &A, false, &e->trig, c, e->response[c]);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        lanes curvature[2], forced[2];
-        if (!(touching >> c & 1))
-            continue;
-        scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
-        scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, forced);
-        for (int a = 0; a < 2; a++)
-            e->free[c][a] = forced[a] + curvature[a];
-        for (int k = 0; k < SCENE_CONTACTS; k++)
-            for (int b = 0; b < 2 && touching >> k & 1; b++) {
-                lanes u[2];
-                scene_contact_velocity(&set->body, &e->trig, c, e->response[k][b], u);
-                e->D[c][k][0][b] = u[0];
-                e->D[c][k][1][b] = u[1];
-            }
-    }
+    dynamics_evaluate(set, t, s, w, torque, touching, servos, e);
+    if (!servos)
+        return;
+    struct contact_state now;
+    if (!drive->mode)
+        decoupling_contacts(set, e, &now);
+    decouple(set, decouples, t, s, w, integral, touching, drive->mode ? drive->mode : &now, e);
+    decoupling_apply(set, decouples, touching, e);
 }
 
 /* Force of one contact in its state that brings free[] to rest; friction 0: slides freely. */
@@ -114,7 +69,7 @@ static inline void smooth_one(mask closed, lanes slide, const lanes D[2][2], con
                               lanes friction, lanes r[2])
 {
     lanes stick[2];
-    contact_impulse(CONTACT_STICK, D, free, friction, stick);
+    contact_impulse(CONTACT_STICK, false, D, free, friction, stick);
     const mask slides = mask_less(lanes_of(0), lanes_abs(slide));
     const lanes edge = -(friction * slide);
     const lanes normal = -free[0] / (D[0][0] + edge * D[0][1]);
@@ -167,7 +122,7 @@ static inline void smooth_forces(const struct contact_state *m, const lanes D[2]
 
 /* Contact forces in the mode, and the accelerations with them. */
 static inline void smooth_solve(const struct setting *set, const struct contact_state *m,
-                                struct smooth *e)
+                                struct dynamics *e)
 {
     smooth_forces(m, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, set->friction,
                   e->force);
@@ -200,7 +155,7 @@ static inline contact_set smooth_touching(const struct setting *set, const lanes
 
 /* Lanes where a contact that should begin to slip would be pulled the other way: sticking is
  * impossible and sliding too. */
-static inline mask smooth_jammed(const struct setting *set, const struct smooth *e,
+static inline mask smooth_jammed(const struct setting *set, const struct dynamics *e,
                                  const struct contact_state *m, const mask *starting)
 {
     lanes r[2][2];
@@ -217,7 +172,7 @@ static inline mask smooth_jammed(const struct setting *set, const struct smooth 
 }
 
 /* The mode that follows from the state that *e was evaluated at. */
-static inline void smooth_mode(const struct setting *set, const struct smooth *e,
+static inline void smooth_mode(const struct setting *set, const struct dynamics *e,
                                contact_set touching, struct contact_state *m,
                                struct smooth_trouble *trouble)
 {
@@ -241,8 +196,8 @@ static inline void smooth_mode(const struct setting *set, const struct smooth *e
         return;
     lanes r[2][2];
     mask starting[SCENE_CONTACTS], ambiguous, unsolved, begins = MASK_NONE;
-    solve_contacts(set, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, sliding, part, r,
-                   &ambiguous, &unsolved);
+    solve_contacts(set, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, sliding, false,
+                   part, r, &ambiguous, &unsolved);
     trouble->none = any & unsolved;
     trouble->several = any & ambiguous & slides;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -272,7 +227,7 @@ static inline void smooth_mode(const struct setting *set, const struct smooth *e
 /* Lanes where the state that *e was solved at is outside the mode. A slip may be backward by what
  * counts as zero. */
 static inline mask smooth_violated(const struct setting *set, const struct contact_state *m,
-                                   const struct smooth *e)
+                                   const struct dynamics *e)
 {
     const lanes none = lanes_of(0);
     mask out = MASK_NONE;
@@ -292,7 +247,7 @@ static inline mask smooth_violated(const struct setting *set, const struct conta
 /* Moves s along A^-1 H_N^T until the gaps of the contacts in `held` are zero; *e, evaluated near s,
  * follows. */
 static inline void smooth_project_position(const struct setting *set, const mask *held, lanes *s,
-                                           struct smooth *e)
+                                           struct dynamics *e)
 {
     const lanes none = lanes_of(0);
     lanes error[SCENE_CONTACTS], multiplier[SCENE_CONTACTS];
@@ -327,7 +282,7 @@ static inline void smooth_project_position(const struct setting *set, const mask
 /* Puts s, w back onto what the mode holds, in the lanes of `where`: gaps of closed contacts, normal
  * velocities, slip of sticking ones; *e, evaluated near s, follows. Both move along A^-1 H^T. */
 static inline void smooth_project(const struct setting *set, const struct contact_state *m,
-                                  mask where, lanes *s, lanes *w, struct smooth *e)
+                                  mask where, lanes *s, lanes *w, struct dynamics *e)
 {
     mask held[SCENE_CONTACTS];
     lanes velocity[2][2], r[2][2];
@@ -356,12 +311,12 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
                                  struct step_report *report)
 {
     const lanes none = lanes_of(0);
-    struct smooth e;
+    struct dynamics e;
     mask part[SCENE_CONTACTS], ambiguous, unsolved;
     lanes torque[ACTUATORS], uf[2][2], r[2][2], energy = none;
     for (int i = 0; i < ACTUATORS; i++)
         torque[i] = none;
-    smooth_evaluate(set, now->t, now->s, now->w, torque, false, (1u << SCENE_CONTACTS) - 1, &e);
+    dynamics_evaluate(set, now->t, now->s, now->w, torque, (1u << SCENE_CONTACTS) - 1, false, &e);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         part[c] = where & mask_less(none, set->may_touch[c]) &
                   mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
@@ -373,7 +328,7 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
         uf[c][0] = e.u[c][0] + set->restitution * lanes_min(e.u[c][0], none);
         uf[c][1] = e.u[c][1];
     }
-    solve_contacts(set, (const lanes(*)[2][2][2])e.D, (const lanes(*)[2])uf, NULL, part, r,
+    solve_contacts(set, (const lanes(*)[2][2][2])e.D, (const lanes(*)[2])uf, NULL, false, part, r,
                    &ambiguous, &unsolved);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int i = 0; i < SCENE_COORDINATES; i++)

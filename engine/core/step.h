@@ -28,6 +28,7 @@
 #define STANCE_CORE_STEP_H
 
 #include "contact.h"
+#include "law.h"
 
 #define STEP_MAX_ITERATIONS 25
 #define STEP_TOLERANCE                                                                             \
@@ -40,21 +41,6 @@
 #define STEP_MOST_GAIN                                                                             \
     0.03 /* share of kinetic energies and work; a step that gains more is refused */
 #define STEP_APPROACH 1e-9 /* m/s: a closed contact that approaches faster is an impact */
-
-enum {
-    SECOND = SCENE_CONTACTS - 1, /* the other contact, where there are two */
-    FIRST_ANGLE = SCENE_COORDINATES - SCENE_ANGLES,
-    ACTUATORS = SLOTS(SCENE_ACTUATORS), /* lengths of arrays that may be empty */
-    POSTURES = SLOTS(SCENE_POSTURE),
-};
-
-/* torque = clip(feedforward - gain (posture - target, rate)), see stance_case. */
-struct law {
-    lanes feedforward[ACTUATORS];
-    lanes gain[ACTUATORS][2 * POSTURES];
-    lanes target[POSTURES];
-    lanes limit;
-};
 
 /* What does not change during a case. */
 struct setting {
@@ -71,6 +57,7 @@ struct motion {
     lanes approach[SCENE_CONTACTS]; /* normal velocity */
     scene_trig trig;                /* at s */
     lanes t;                        /* s */
+    lanes integral[ACTUATORS];      /* what the law has summed, see law.h */
 };
 
 /* What a step did; consists of lanes (choose_all). */
@@ -82,9 +69,12 @@ struct step_report {
     lanes impact_energy, projection_energy; /* J */
     lanes work;                             /* J, of actuators and other outer forces */
     lanes signorini, coulomb, dissipation;  /* residuals of the contact laws, see stance_result */
+    lanes friction;                         /* largest |rT| / rN */
+    lanes least[SCENE_CONTACTS];            /* smallest normal force, N */
     lanes ambiguous, subdivided;            /* 0 or 1 */
     lanes events;
-    lanes failure; /* stance_failure, or 0: the state tells */
+    lanes degraded; /* 1: the law acting inside the step was degraded, see decoupling.h */
+    lanes failure;  /* stance_failure, or 0: the state tells */
 };
 
 /* The iterate of one step and what is frozen with it in each lane. */
@@ -99,43 +89,6 @@ struct iterate {
     mask active[SCENE_CONTACTS];
     mask ambiguous, unsolved;
 };
-
-static inline void law_torque(const struct law *law, const lanes *s, const lanes *w, lanes *torque)
-{
-    lanes posture[POSTURES], rate[POSTURES];
-    scene_posture(s, posture);
-    scene_posture(w, rate);
-    for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        torque[i] = law->feedforward[i];
-        for (int j = 0; j < SCENE_POSTURE; j++)
-            torque[i] -= law->gain[i][j] * (posture[j] - law->target[j]) +
-                         law->gain[i][SCENE_POSTURE + j] * rate[j];
-    }
-}
-static inline void law_clip(const struct law *law, lanes *torque)
-{
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        torque[i] = lanes_max(lanes_min(torque[i], law->limit), -law->limit);
-}
-
-/* The law acting inside the step: torque and its derivative by the velocity at the end. */
-static inline void law_inside(const struct law *law, const lanes *s, const lanes *w, lanes lever,
-                              lanes *torque, lanes rate[ACTUATORS][POSTURES])
-{
-    lanes command[ACTUATORS];
-    law_torque(law, s, w, command);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        torque[i] = command[i];
-    law_clip(law, torque);
-    for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        const mask free = mask_less(lanes_abs(command[i]), law->limit);
-        for (int j = 0; j < SCENE_POSTURE; j++) {
-            const lanes slope =
-                law->gain[i][j] * lever + law->gain[i][SCENE_POSTURE + j] * METHOD_THETA;
-            rate[i][j] = choose(free, -slope, lanes_of(0));
-        }
-    }
-}
 
 /* The velocity that forces and positions see: (1 - theta) w0 + theta w. */
 static inline lanes step_velocity(lanes w0, lanes w)
@@ -170,8 +123,9 @@ static inline void iterate_place(const struct setting *set, const struct motion 
 /* Impulses of the active contacts for the linearised step; zero elsewhere. `sliding`: see
  * contact_problem. */
 static inline void solve_contacts(const struct setting *set, const lanes D[2][2][2][2],
-                                  const lanes uf[2][2], const lanes *sliding, const mask *active,
-                                  lanes r[2][2], mask *ambiguous, mask *unsolved)
+                                  const lanes uf[2][2], const lanes *sliding, bool indefinite,
+                                  const mask *active, lanes r[2][2], mask *ambiguous,
+                                  mask *unsolved)
 {
     lanes scale = lanes_of(1);
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -193,9 +147,9 @@ static inline void solve_contacts(const struct setting *set, const lanes D[2][2]
             for (int b = 0; b < 2; b++)
                 D1[0][0][a][b] = choose(active[0], D[0][0][a][b], D[SECOND][SECOND][a][b]);
         }
-        contact_solve(
-            &(contact_problem){D1, uf1, sliding ? sliding1 : NULL, set->friction, tolerance, 1},
-            &best);
+        contact_solve(&(contact_problem){D1, uf1, sliding ? sliding1 : NULL, set->friction,
+                                         tolerance, 1, indefinite},
+                      &best);
         for (int a = 0; a < 2; a++) {
             for (int c = 0; c < SCENE_CONTACTS; c++)
                 r[c][a] = choose(one & active[c], best.r[0][a], r[c][a]);
@@ -204,7 +158,8 @@ static inline void solve_contacts(const struct setting *set, const lanes D[2][2]
         *unsolved |= one & LANES_NOT(mask_less_equal(best.violation, 1e3 * tolerance));
     }
     if (SCENE_CONTACTS > 1 && mask_any(both)) {
-        contact_solve(&(contact_problem){D, uf, sliding, set->friction, tolerance, 2}, &best);
+        contact_solve(&(contact_problem){D, uf, sliding, set->friction, tolerance, 2, indefinite},
+                      &best);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(both, best.r[c][a], r[c][a]);
@@ -241,7 +196,8 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
         lanes u[SCENE_COORDINATES];
         for (int i = 0; i < SCENE_COORDINATES; i++)
             u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
-        law_inside(&set->law, u, v, h * (METHOD_THETA * METHOD_THETA), torque, torque_rate);
+        law_inside(&set->law, u, v, h * (METHOD_THETA * METHOD_THETA), METHOD_THETA, it->torque,
+                   torque, torque_rate);
     }
 
     scene_matrix J;
@@ -278,8 +234,8 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
         }
         lanes r[2][2];
         mask ambiguous, unsolved;
-        solve_contacts(set, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, NULL, it->active, r,
-                       &ambiguous, &unsolved);
+        solve_contacts(set, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, NULL, false,
+                       it->active, r, &ambiguous, &unsolved);
         it->ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
         it->unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
         for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -460,6 +416,35 @@ static inline void report_residuals(struct step_report *report, mask part, lanes
                                  report->dissipation);
 }
 
+/* A report of nothing, to add others to. */
+static inline void report_clear(struct step_report *report)
+{
+    memset(report, 0, sizeof *report);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        report->least[c] = lanes_of(INFINITY);
+}
+/* The same in one lane. */
+static inline void report_clear_lane(struct step_report *report, int lane)
+{
+    lanes *const all = (lanes *)report;
+    for (size_t i = 0; i < sizeof *report / sizeof(lanes); i++)
+        lane_set(&all[i], lane, 0);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        lane_set(&report->least[c], lane, INFINITY);
+}
+/* Forces of the contacts in `part`, N. */
+static inline void report_forces(struct step_report *report, const mask *part,
+                                 const lanes force[SCENE_CONTACTS][2])
+{
+    const lanes none = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask loaded = part[c] & mask_less(none, force[c][0]);
+        const lanes ratio = lanes_abs(force[c][1]) / choose(loaded, force[c][0], lanes_of(1));
+        report->friction = choose(loaded, lanes_max(ratio, report->friction), report->friction);
+        report->least[c] = lanes_min(choose(loaded, force[c][0], none), report->least[c]);
+    }
+}
+
 /* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
  * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
  * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
@@ -544,13 +529,20 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
     report->impact_energy = energy;
     report->projection_energy = projected;
     report->ambiguous = choose(it.ambiguous & converged, lanes_of(1), lanes_of(0));
-    report->subdivided = report->events = report->failure = lanes_of(0);
+    report->subdivided = report->events = report->degraded = report->failure = lanes_of(0);
+    report->friction = lanes_of(0);
+    lanes mean[SCENE_CONTACTS][2];
+    mask carries[SCENE_CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask loaded = it.active[c] & mask_less(lanes_of(0), it.r[c][0]) & converged;
         report->slip[c] = choose(loaded, slip[c], lanes_of(0));
         for (int a = 0; a < 2; a++)
             report->impulse[c][a] = choose(loaded, it.r[c][a], lanes_of(0));
+        carries[c] = loaded;
+        mean[c][0] = it.r[c][0] / h, mean[c][1] = it.r[c][1] / h;
+        report->least[c] = lanes_of(INFINITY);
     }
+    report_forces(report, carries, (const lanes(*)[2])mean);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         to->s[i] = choose(converged, it.s1[i], to->s[i]);
         to->w[i] = choose(converged, it.w[i], to->w[i]);
@@ -586,8 +578,12 @@ static inline void report_add(struct step_report *sum, const struct step_report 
     sum->signorini = lanes_max(part->signorini, sum->signorini);
     sum->coulomb = lanes_max(part->coulomb, sum->coulomb);
     sum->dissipation = lanes_max(part->dissipation, sum->dissipation);
+    sum->friction = lanes_max(part->friction, sum->friction);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        sum->least[c] = lanes_min(part->least[c], sum->least[c]);
     sum->ambiguous = lanes_max(part->ambiguous, sum->ambiguous);
     sum->subdivided = lanes_max(part->subdivided, sum->subdivided);
+    sum->degraded = lanes_max(part->degraded, sum->degraded);
     sum->failure = part->failure;
 }
 

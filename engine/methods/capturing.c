@@ -75,9 +75,7 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->part, lane, INFINITY);
     lane_set(&a->hunting, lane, 0);
     lane_set(&a->attempts, lane, 0);
-    lanes *const sum = (lanes *)&a->sum;
-    for (size_t i = 0; i < sizeof a->sum / sizeof(lanes); i++)
-        lane_set(&sum[i], lane, 0);
+    report_clear_lane(&a->sum, lane);
 }
 static void advance_free(struct advance *a)
 {
@@ -113,7 +111,7 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
     struct setting law = *set;
     law.restitution =
         choose(capture_rebounds(set, now, h, acceleration), set->restitution, lanes_of(0));
-    memset(report, 0, sizeof *report);
+    report_clear(report);
     *next = *now;
     mask good = take_step(&law, now, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
     good &=
@@ -160,7 +158,7 @@ static inline mask capture_in_range(const struct motion *now, lanes h)
     return scene_angles_in_range(ahead);
 }
 
-static inline lanes capture_largest(const struct smooth *e)
+static inline lanes capture_largest(const struct dynamics *e)
 {
     lanes largest = lanes_of(0);
     for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -174,11 +172,12 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
                                   const lanes *torque, lanes length, mask try, bool coupled,
                                   struct explicit_step *step, mask *stuck, lanes *acceleration)
 {
-    struct smooth begin;
+    struct dynamics begin;
     struct contact_state mode;
     struct smooth_trouble trouble;
     const contact_set touching = smooth_touching(set, now->gap);
-    smooth_evaluate(set, now->t, now->s, now->w, torque, coupled, touching, &begin);
+    const struct drive drive = {torque, coupled, NULL};
+    smooth_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
     smooth_mode(set, &begin, touching, &mode, &trouble);
     *acceleration = capture_largest(&begin);
     if (touching)
@@ -224,9 +223,12 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     if (mask_any(cross)) {
         struct motion next;
         struct step_report over;
+        if (coupled) /* a decoupling law is held over the crossing */
+            torque = step.torque;
         crossed = capture_implicit(set, now, torque, interval, cross, coupled, tolerance,
                                    acceleration, &next, &over);
         over.events = choose(crossed, one, none);
+        law_integrate(&set->law, crossed, interval, step.integral_rate, next.integral);
         choose_all(crossed, &next, now, sizeof next);
         capture_add(a, crossed, cross, &over);
         arrived = crossed & mask_less_equal(left, interval);
@@ -257,7 +259,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     *report = a->sum;
     report->failure = choose(capture_in_range(now, h), lanes_of(STANCE_FAILURE_TOLERANCE), none);
     struct step_report fresh;
-    memset(&fresh, 0, sizeof fresh);
+    report_clear(&fresh);
     choose_all(arrived, &fresh, &a->sum, sizeof fresh);
     a->done = choose(arrived, none, a->done);
     a->attempts = choose(arrived, none, a->attempts);

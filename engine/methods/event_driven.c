@@ -54,6 +54,7 @@ struct advance {
     double next; /* s, internal step to try */
     struct event_problem problem;
     double attempts, most; /* internal steps in this step; then it fails */
+    struct step_report *report;
     SUNContext context;
     void *arkode;
     N_Vector y;
@@ -68,7 +69,7 @@ static int event_rates(realtype tau, N_Vector y, N_Vector rate, void *data)
     struct advance *const a = data;
     const double *const from = NV_DATA_S(y), *const w = from + SCENE_COORDINATES;
     double *const to = NV_DATA_S(rate), sum = 0;
-    struct smooth e;
+    struct dynamics e;
     event_evaluate(&a->problem, tau, from, &e);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         to[i] = w[i];
@@ -80,6 +81,8 @@ static int event_rates(realtype tau, N_Vector y, N_Vector rate, void *data)
         to[EVENT_IMPULSE + 2 * c + 1] = e.force[c][1];
         to[EVENT_SLIDE + c] = a->problem.mode.contact.closed[c] ? fabs(e.u[c][1]) : 0;
     }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        to[EVENT_INTEGRAL + i] = e.integral_rate[i];
     to[EVENT_WORK] = scene_work(&a->problem.set->body, 1, a->problem.begin + tau, e.torque, w);
     return isfinite(sum) ? 0 : -1;
 }
@@ -87,7 +90,7 @@ static int event_rates(realtype tau, N_Vector y, N_Vector rate, void *data)
 static int event_roots(realtype tau, N_Vector y, realtype *margin, void *data)
 {
     struct advance *const a = data;
-    struct smooth e;
+    struct dynamics e;
     event_evaluate(&a->problem, tau, NV_DATA_S(y), &e);
     event_margins(&a->problem, NV_DATA_S(y), &e, margin);
     return 0;
@@ -327,6 +330,8 @@ static enum event_result event_march(struct advance *a, struct event_point *here
             continue;
         }
         *here = to;
+        report_forces(a->report, a->problem.mode.contact.closed, (const double(*)[2])here->e.force);
+        a->report->degraded = fmax(here->e.degraded, a->report->degraded);
         split &= !event_rise(&a->problem, here);
         if (here->tau >= target)
             target = end, fresh = true;
@@ -347,6 +352,8 @@ static void event_enter(const struct advance *a, const struct event_point *p, st
         now->gap[c] = p->e.gap[c];
         now->approach[c] = p->e.u[c][0];
     }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        now->integral[i] = p->y[EVENT_INTEGRAL + i];
     now->trig = p->e.trig;
     now->t = a->problem.begin + p->tau;
 }
@@ -363,8 +370,9 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         struct smooth_trouble trouble;
         bool below = false;
         const contact_set touching = smooth_touching(a->problem.set, now->gap);
-        smooth_evaluate(a->problem.set, a->problem.begin + p->tau, s, w, a->problem.torque,
-                        a->problem.coupled, touching, &p->e);
+        const struct drive drive = {a->problem.torque, a->problem.coupled, NULL};
+        smooth_evaluate(a->problem.set, a->problem.begin + p->tau, s, w, p->y + EVENT_INTEGRAL,
+                        &drive, touching, &p->e);
         smooth_mode(a->problem.set, &p->e, touching, &m->contact, &trouble);
         a->problem.evaluations++;
         for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -392,6 +400,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         event_evaluate(&a->problem, p->tau, p->y, &p->e);
         event_set_depths(&a->problem, p);
         event_margins(&a->problem, p->y, &p->e, p->margin);
+        report_forces(a->report, m->contact.closed, (const double(*)[2])p->e.force);
         if (*impact && event_accumulates(&a->problem, p))
             return STANCE_FAILURE_EVENTS;
         return event_consistent(&a->problem, p) ? STANCE_FAILURE_NONE : STANCE_FAILURE_PAINLEVE;
@@ -428,7 +437,8 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
                            lanes h, mask live, bool coupled, struct motion *now,
                            struct step_report *report, mask *failed)
 {
-    memset(report, 0, sizeof *report);
+    report_clear(report);
+    a->report = report;
     *failed = false;
     if (!live)
         return false;
@@ -439,6 +449,8 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     memset(&here, 0, sizeof here);
     memcpy(here.y, now->s, sizeof now->s);
     memcpy(here.y + SCENE_COORDINATES, now->w, sizeof now->w);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        here.y[EVENT_INTEGRAL + i] = now->integral[i];
     a->problem.set = set;
     a->problem.torque = torque;
     a->problem.begin = now->t;

@@ -46,9 +46,7 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->done, lane, 0);
     lane_set(&a->part, lane, INFINITY);
     lane_set(&a->events, lane, 0);
-    lanes *const sum = (lanes *)&a->sum;
-    for (size_t i = 0; i < sizeof a->sum / sizeof(lanes); i++)
-        lane_set(&sum[i], lane, 0);
+    report_clear_lane(&a->sum, lane);
 }
 static void advance_free(struct advance *a)
 {
@@ -67,12 +65,13 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const mask hunt = live & mask_less(a->part, lanes_of(INFINITY));
     const mask found = hunt & mask_less_equal(interval, lanes_of(LAGRANGE_BRACKET));
     const lanes length = choose(hunt & LANES_NOT(found), 0.5 * interval, interval);
-    struct smooth begin;
+    struct dynamics begin;
     struct contact_state mode;
     struct smooth_trouble trouble;
     struct explicit_step step;
     const contact_set touching = smooth_touching(set, now->gap);
-    smooth_evaluate(set, now->t, now->s, now->w, torque, coupled, touching, &begin);
+    const struct drive drive = {torque, coupled, NULL};
+    smooth_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
     smooth_mode(set, &begin, touching, &mode, &trouble);
     if (touching)
         smooth_solve(set, &mode, &begin);
@@ -111,7 +110,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     report->failure = choose(zeno, lanes_of(STANCE_FAILURE_EVENTS), report->failure);
     report->failure = choose(step.bad, step.failure, report->failure);
     struct step_report fresh;
-    memset(&fresh, 0, sizeof fresh);
+    report_clear(&fresh);
     choose_all(arrived, &fresh, &a->sum, sizeof fresh);
     a->done = choose(arrived, none, a->done);
     a->events = choose(arrived, none, a->events);

@@ -33,6 +33,8 @@ enum {
     SCENE_POSTURE = 3,
     SCENE_ANGLES = 3,
 };
+/* The two torques can drive two coordinates: see core/decoupling.h. */
+#define SCENE_SERVOS
 
 /* Constants of a robot. Arrays over (theta, phi1, phi2) where indexed by an angle. */
 typedef struct scene_body {
@@ -130,6 +132,36 @@ static inline void scene_posture(const lanes *s, lanes *posture)
     posture[0] = s[2];
     posture[1] = s[3] - s[2];
     posture[2] = s[4] - s[2];
+}
+
+/* The paper's q and its rates: what scene_leave gives, without sines of its own. */
+static inline void scene_coordinates(const scene_body *b, const scene_trig *trig, const lanes *s,
+                                     const lanes *w, lanes *q, lanes *v)
+{
+    q[0] = s[0] - b->trunk * trig->sine[0];
+    q[1] = s[1] + b->trunk * trig->cosine[0];
+    q[2] = s[2], q[3] = s[3] - s[2], q[4] = s[4] - s[2];
+    v[0] = w[0] - b->trunk * (trig->cosine[0] * w[2]);
+    v[1] = w[1] - b->trunk * (trig->sine[0] * w[2]);
+    v[2] = w[2], v[3] = w[3] - w[2], v[4] = w[4] - w[2];
+}
+/* How q moves with s: dq/ds x. */
+static inline void scene_coordinate_rates(const scene_body *b, const scene_trig *trig,
+                                          const lanes *x, lanes *rate)
+{
+    const lanes turn = b->trunk * x[2];
+    rate[0] = x[0] - turn * trig->cosine[0];
+    rate[1] = x[1] - turn * trig->sine[0];
+    rate[2] = x[2], rate[3] = x[3] - x[2], rate[4] = x[4] - x[2];
+}
+/* q'' where s'' = 0. */
+static inline void scene_coordinate_curvature(const scene_body *b, const scene_trig *trig,
+                                              const lanes *w, lanes *curvature)
+{
+    const lanes turn = b->trunk * (w[2] * w[2]);
+    curvature[0] = turn * trig->sine[0];
+    curvature[1] = -(turn * trig->cosine[0]);
+    curvature[2] = curvature[3] = curvature[4] = lanes_of(0);
 }
 
 /* residual = A(u) change - h (forces without contact), evaluated at angles `trig` and velocity w;
@@ -319,6 +351,17 @@ static inline void scene_solve(const scene_matrix *m, bool coupled, const lanes 
     for (int a = 0; a < SCENE_ANGLES; a++)
         rest[a] = b[2 + a] - (m->row[a][0] * x[0] + m->row[a][1] * x[1]);
     scene_solve_angles(m, coupled, rest, x + 2);
+}
+
+/* x = A^-1 B e_i for a unit of torque i, of m from scene_inertia. */
+static inline void scene_actuator_response(const scene_body *b, const scene_matrix *m, int i,
+                                           lanes *x)
+{
+    (void)b;
+    const lanes zero = lanes_of(0), one = lanes_of(1);
+    lanes load[SCENE_COORDINATES] = {zero, zero, -one, zero, zero};
+    load[3 + i] = one;
+    scene_solve(m, false, load, x);
 }
 
 /* x[direction] = J^-1 H_c^T e_direction for normal (0) and tangential (1) impulses at contact c. */
