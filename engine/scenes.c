@@ -23,6 +23,23 @@ const stance_scene *stance_scene_find(const char *name)
     return NULL;
 }
 
+bool stance_pair(const stance_scene *scene, int index, int *first, int *second)
+{
+    if (scene->actuators != 2 || index < 0) {
+        return false;
+    }
+    for (int i = 0; i < scene->coordinates; i++) {
+        const int rest = scene->coordinates - 1 - i;
+        if (index < rest) {
+            *first = i;
+            *second = i + 1 + index;
+            return true;
+        }
+        index -= rest;
+    }
+    return false;
+}
+
 const char *stance_error_text(stance_error error)
 {
     static const char *const texts[] = {

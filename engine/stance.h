@@ -95,6 +95,8 @@ typedef struct stance_scene {
     void (*height)(const double *robot, const double *position, double *height, double *length);
     /* Kinetic and potential energy, J. */
     double (*energy)(const double *robot, const double *position, const double *velocity);
+    /* Inertia matrix A[n][n] in these coordinates, n = coordinates; NULL where nothing needs it. */
+    void (*inertia)(const double *robot, const double *position, double *A);
     /* NULL where a scene has none. */
     stance_error (*equilibrium)(const double *robot, const stance_equilibrium_choice *choice,
                                 stance_equilibrium *result, stance_message *message);
@@ -103,6 +105,10 @@ typedef struct stance_scene {
     stance_error (*linearise)(const double *robot, const stance_equilibrium *equilibrium, double *A,
                               double *B);
 } stance_scene;
+
+/* The pairs of coordinates that two actuators can control, in order: (0, 1), (0, 2), ... False:
+ * there is no such pair, or the scene has not two actuators. */
+bool stance_pair(const stance_scene *scene, int index, int *first, int *second);
 
 /* The scenes there are, NULL-terminated; and one by name, or NULL. */
 const stance_scene *const *stance_scenes(void);
@@ -294,6 +300,25 @@ stance_error stance_kalman(int n, int m, const double *A, const double *B, doubl
 stance_error stance_place(int n, int m, const double *A, const double *B, const double *re,
                           const double *im, double *K, int *sweeps, double *condition,
                           stance_message *message);
+
+/* Condition number (2-norm, SI units) of the matrix that takes torques to the accelerations of a
+ * pair of coordinates, without reactions; INFINITY where it is singular: there the decoupling law
+ * has no torques. position[coordinates]. */
+stance_error stance_pair_condition(const stance_scene *scene, const double *robot,
+                                   const double *position, int pair, double *condition);
+
+enum { STANCE_MAX_PAIRS = 10 };
+#define STANCE_ILL_CONDITIONED 1e4 /* condition number from which on the law is damped */
+
+/* One pair over all postures, resolution^postures of them in -pi ... pi. */
+typedef struct stance_pair_report {
+    bool singular;          /* the determinant changes sign: singular on a surface of postures */
+    double ill_conditioned; /* share of the postures with a condition number above
+                             * STANCE_ILL_CONDITIONED */
+    double best;            /* smallest condition number */
+} stance_pair_report;
+stance_error stance_pair_survey(const stance_scene *scene, const double *robot, int resolution,
+                                int pairs, stance_pair_report *report);
 
 /* Eigenvalues of A[n][n], sorted by real then imaginary part. */
 stance_error stance_eigenvalues(int n, const double *A, double *re, double *im);

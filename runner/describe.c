@@ -118,7 +118,9 @@ static const char *use_text(enum field_use use)
     static const char *const text[] = {
         [USE_ALWAYS] = "",
         [USE_CONTROL] = "Only with a controller.kind other than none.",
-        [USE_HOLD] = "Only with controller.kind hold.",
+        [USE_HOLD] = "Only with controller.kind hold, or controller.far hold.",
+        [USE_DECOUPLING] = "Only with controller.kind decoupling, or controller.far decoupling.",
+        [USE_FAR] = "Only with a controller.far other than none.",
         [USE_FEEDBACK] = "Only with controller.kind state-feedback.",
         [USE_PLACE] = "Only with controller.kind state-feedback and controller.design place.",
         [USE_GAINS] = "Only with controller.kind state-feedback and controller.design gains.",

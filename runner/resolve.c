@@ -253,6 +253,57 @@ static void feed_back(const stance_scene *scene, const struct scenario_values *v
     out->support = support_of(values);
 }
 
+/* The law outside the ellipsoid, where state-feedback acts inside it: hold brings the joints to
+ * those of the equilibrium unless told others. */
+static void set_far(const stance_scene *scene, const struct scenario_values *values,
+                    stance_case *out)
+{
+    if (values->far == FAR_NONE) {
+        return;
+    }
+    out->switches = true;
+    for (int k = 0; k < scene->postures; k++) {
+        out->switch_axis[k] = values->near_angle;
+        out->switch_axis[scene->postures + k] = values->near_rate;
+        out->far.target[k] = isnan(values->target[k]) ? out->target[k] : values->target[k];
+    }
+    for (int i = 0; values->far == FAR_HOLD && i < scene->actuators; i++) {
+        const int joint = scene->postures - scene->actuators + i;
+        out->far.gain[i][joint] = values->kp;
+        out->far.gain[i][scene->postures + joint] = values->kd;
+    }
+}
+
+static bool decouple(const stance_scene *scene, const struct scenario_values *values,
+                     stance_case *out, stance_message *message)
+{
+    int controlled[2];
+    if (!stance_pair(scene, values->controlled, &controlled[0], &controlled[1])) {
+        return refuse(message, "controller.controlled is no pair of coordinates");
+    }
+    out->decouples = true;
+    for (int i = 0; i < scene->actuators; i++) {
+        const int k = controlled[i];
+        const double setpoint = values->setpoint[k];
+        out->servo[i] = (stance_servo){
+            .coordinate = k,
+            .setpoint = isnan(setpoint) ? out->position[k] : setpoint,
+            .ramp = values->ramp[k],
+            .duration = values->ramp_time[k],
+            .kp = values->proportional[k],
+            .ki = values->integral[k],
+            .kd = values->derivative[k],
+            .integral_limit = values->integral_limit[k],
+        };
+        if (!isfinite(out->servo[i].setpoint + out->servo[i].ramp + out->servo[i].kp +
+                      out->servo[i].ki + out->servo[i].kd) ||
+            !(out->servo[i].duration >= 0 && out->servo[i].integral_limit >= 0)) {
+            return refuse(message, "a gain or set-point of the decoupling law is not finite");
+        }
+    }
+    return true;
+}
+
 static bool check_law(const stance_scene *scene, const stance_case *out, stance_message *message)
 {
     bool finite = isfinite(out->noise);
@@ -273,6 +324,9 @@ static bool check_law(const stance_scene *scene, const stance_case *out, stance_
     }
     if (out->noise != 0 && out->sample_every == 0) {
         return refuse(message, "controller.noise needs a controller.sample_time above 0");
+    }
+    if (out->switches && out->sample_every == 0) {
+        return refuse(message, "controller.far needs a controller.sample_time above 0");
     }
     return true;
 }
@@ -348,6 +402,11 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         hold(scene, values, out);
     } else if (values->law == LAW_STATE_FEEDBACK) {
         feed_back(scene, values, design, out);
+        set_far(scene, values, out);
+    }
+    if ((values->law == LAW_DECOUPLING || (out->switches && values->far == FAR_DECOUPLING)) &&
+        !decouple(scene, values, out, message)) {
+        return false;
     }
     return resolve_time(values, out, message) && check_law(scene, out, message);
 }

@@ -233,7 +233,7 @@ static void set_defaults(struct reader *r)
         if (field->type == FIELD_NUMBER) {
             memcpy(place, &field->fallback, sizeof field->fallback);
         } else if (field->type == FIELD_WORD) {
-            int word = (int)field->fallback;
+            int word = isnan(field->fallback) ? 0 : (int)field->fallback;
             memcpy(place, &word, sizeof word);
         }
     }

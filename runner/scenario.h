@@ -19,7 +19,8 @@ enum {
     SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
 };
 
-enum scenario_law { LAW_NONE, LAW_HOLD, LAW_STATE_FEEDBACK };
+enum scenario_law { LAW_NONE, LAW_HOLD, LAW_STATE_FEEDBACK, LAW_DECOUPLING };
+enum scenario_far { FAR_NONE, FAR_HOLD, FAR_DECOUPLING };
 enum scenario_design { DESIGN_PLACE, DESIGN_GAINS };
 enum scenario_record { RECORD_NONE, RECORD_ALL, RECORD_LIST };
 
@@ -51,8 +52,16 @@ struct scenario_values {
     double gains[SCENARIO_MAX_GAINS];  /* [actuators][2 postures] */
     double kp, kd;                     /* hold */
     double target[STANCE_MAX_POSTURE]; /* hold: controller.target; NAN: the initial angles */
-    double sample_time;                /* 0: continuous */
-    double torque_limit;               /* INFINITY: none */
+    /* decoupling, over the scene's coordinates; NAN: the initial value */
+    int controlled; /* which pair: stance_pair */
+    double proportional[STANCE_MAX_COORDINATES], integral[STANCE_MAX_COORDINATES];
+    double derivative[STANCE_MAX_COORDINATES], integral_limit[STANCE_MAX_COORDINATES];
+    double setpoint[STANCE_MAX_COORDINATES], ramp[STANCE_MAX_COORDINATES];
+    double ramp_time[STANCE_MAX_COORDINATES];
+    int far;                      /* enum scenario_far: what acts far from the target */
+    double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
+    double sample_time;           /* 0: continuous */
+    double torque_limit;          /* INFINITY: none */
     double noise;
 
     int method;             /* index into stance_methods() */

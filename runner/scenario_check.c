@@ -12,7 +12,7 @@
 
 struct situation {
     bool law_known, design_known;
-    int law;
+    int law, far;
     bool places, gives_gains;          /* controller.design, base or swept */
     bool from_equilibrium, from_state; /* at most one, or the start is in doubt */
     bool start_known;
@@ -73,6 +73,8 @@ static struct situation find_situation(struct reader *r)
                       *initial = reader_seen(r, "initial");
     struct situation is = {.law = r->s->base.law};
 
+    is.far = is.law == LAW_STATE_FEEDBACK ? r->s->base.far : FAR_NONE;
+
     is.law_known = !controller->bad && !controller->excused &&
                    !reader_seen(r, "controller.kind")->bad &&
                    !reader_seen(r, "controller.kind")->excused;
@@ -109,7 +111,14 @@ static const char *obstacle(const struct reader *r, const struct situation *is, 
     case USE_CONTROL:
         return is->law_known && is->law == LAW_NONE ? "a controller.kind" : NULL;
     case USE_HOLD:
-        return is->law_known && is->law != LAW_HOLD ? "controller.kind hold" : NULL;
+        return is->law_known && is->law != LAW_HOLD && is->far != FAR_HOLD ? "controller.kind hold"
+                                                                           : NULL;
+    case USE_DECOUPLING:
+        return is->law_known && is->law != LAW_DECOUPLING && is->far != FAR_DECOUPLING
+                   ? "controller.kind decoupling"
+                   : NULL;
+    case USE_FAR:
+        return is->law_known && is->far == FAR_NONE ? "a controller.far" : NULL;
     case USE_FEEDBACK:
         return is->law_known && !feedback ? "controller.kind state-feedback" : NULL;
     case USE_PLACE:
@@ -206,7 +215,9 @@ static void check_required(struct reader *r, const struct situation *is)
 {
     static const char *const reason[] = {
         [USE_ALWAYS] = "",
-        [USE_HOLD] = " (controller.kind hold needs it)",
+        [USE_HOLD] = " (hold needs it)",
+        [USE_DECOUPLING] = " (decoupling needs it)",
+        [USE_FAR] = " (controller.far needs it)",
         [USE_PLACE] = " (controller.design place needs it)",
         [USE_GAINS] = " (controller.design gains needs it)",
     };
@@ -387,6 +398,24 @@ static void check_noise(struct reader *r, const struct situation *is)
     }
 }
 
+/* What acts far from the target is decided at samples. */
+static void check_far(struct reader *r, const struct situation *is)
+{
+    double shortest, longest;
+
+    if (!is->law_known || is->far == FAR_NONE || r->axes_bad ||
+        reader_seen(r, "controller.far")->bad || reader_seen(r, "controller.sample_time")->bad ||
+        reader_seen(r, "controller.sample_time")->excused) {
+        return;
+    }
+    extent(r, offsetof(struct scenario_values, sample_time), &shortest, &longest);
+    if (shortest <= 0) {
+        problem_add(&r->problems, where(r, "controller.far"),
+                    "controller.far needs controller.sample_time > 0: which law acts is decided at "
+                    "each sample");
+    }
+}
+
 static void check_steps(struct reader *r)
 {
     double least_time, time, step, largest_step;
@@ -434,5 +463,6 @@ void scenario_cross_check(struct reader *r)
     check_start(r, &is);
     check_controller(r, &is);
     check_noise(r, &is);
+    check_far(r, &is);
     check_support(r, &is);
 }

@@ -12,7 +12,8 @@
 /* ---- words ----------------------------------------------------------------------------------- */
 
 /* In the order of the enumerations in scenario.h. */
-static const char *const kind_words[] = {"none", "hold", "state-feedback"};
+static const char *const kind_words[] = {"none", "hold", "state-feedback", "decoupling"};
+static const char *const far_words[] = {"none", "hold", "decoupling"};
 static const char *const design_words[] = {"place", "gains"};
 static const char *const branch_words[] = {"upper", "lower"};
 static const char *const spacing_words[] = {"linear", "log"};
@@ -34,15 +35,17 @@ static const char *const answer_words[] = {
 /* What the '*' of a path stands for, or what else of a row is the scene's. */
 enum family {
     FAMILY_NONE,
-    FAMILY_ROBOT,    /* parameters of the body */
-    FAMILY_STATE,    /* coordinates, then their rates with a "v" before the name */
-    FAMILY_OFFSET,   /* the same, as differences */
-    FAMILY_POSTURE,  /* angles that a posture law acts on */
-    FAMILY_ACTUATED, /* the last of these, one for each actuator */
-    FAMILY_CONTACTS, /* the words are names of contacts */
-    FAMILY_FOOT,     /* the range is 1 ... contacts */
-    FAMILY_POLES,    /* 2 postures items */
-    FAMILY_MATRIX,   /* actuators x 2 postures */
+    FAMILY_ROBOT,       /* parameters of the body */
+    FAMILY_STATE,       /* coordinates, then their rates with a "v" before the name */
+    FAMILY_OFFSET,      /* the same, as differences */
+    FAMILY_POSTURE,     /* angles that a posture law acts on */
+    FAMILY_COORDINATES, /* the unit is the coordinate's where it says %s */
+    FAMILY_PAIRS,       /* the words are pairs of coordinates */
+    FAMILY_ACTUATED,    /* the last of these, one for each actuator */
+    FAMILY_CONTACTS,    /* the words are names of contacts */
+    FAMILY_FOOT,        /* the range is 1 ... contacts */
+    FAMILY_POLES,       /* 2 postures items */
+    FAMILY_MATRIX,      /* actuators x 2 postures */
     FAMILY_SCENES,
     FAMILY_METHODS,
     FAMILY_TOLERANCE, /* the text names the methods that read it */
@@ -125,7 +128,8 @@ static const struct row rows[] = {
     {0, {.path = "controller.kind", .type = FIELD_WORD, .design = true, VALUE(law), .fallback = 0,
          WORDS(kind_words), .text = "control law",
          .more = "hold: a servo in each joint. state-feedback: torque = equilibrium torque - gains "
-                 "times the deviation of angles and rates from an equilibrium."}},
+                 "times the deviation of angles and rates from an equilibrium. decoupling: torques and "
+                 "reactions solved together so that two coordinates follow set-points."}},
     {0, {.path = "controller.design", .type = FIELD_WORD, .use = USE_FEEDBACK, .design = true,
          .sweep = true, VALUE(design), .fallback = 0, WORDS(design_words),
          .text = "where the gains come from",
@@ -179,6 +183,71 @@ static const struct row rows[] = {
                        .use = USE_HOLD, .sweep = true, VALUE(target),
                        .fallback_text = "as the run begins", .text = "angle to hold: %s",
          .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
+         .fallback = 0, WORDS(far_words),
+         .text = "law that acts outside an ellipsoid about the target",
+         .more = "state-feedback acts inside it, where sum((angle/near.angle)^2) + "
+                 "sum((rate/near.rate)^2) <= 1 for the deviations from the target. Decided at "
+                 "each sample: needs sample_time > 0.",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.near", .type = FIELD_MAP, .use = USE_FAR, BY_HAND,
+         .text = "the ellipsoid inside which state-feedback acts", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.near.angle", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
+         .sweep = true, VALUE(near_angle), .unit = "rad", .fallback = NAN, .low = 0, .high = LARGE,
+         .low_open = true, .text = "its semi-axis in each angle", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.near.rate", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
+         .sweep = true, VALUE(near_rate), .unit = "rad/s", .fallback = NAN, .low = 0,
+         .high = LARGE, .low_open = true, .text = "its semi-axis in each rate",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_PAIRS, {.path = "controller.controlled", .type = FIELD_WORD, .by_scene = true,
+                    .use = USE_DECOUPLING, .required = true, .sweep = true, VALUE(controlled),
+                    .fallback = NAN, .text = "the two coordinates that the law controls",
+                    .more = "The others move as they must. Where the law would need a ground that "
+                            "pulls, or is near a singular posture, it degrades: see the answer "
+                            "degraded_samples.",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.proportional", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "proportional gains: acceleration per error of a coordinate", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.proportional.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(proportional),
+                          .unit = "1/s^2", .fallback = 100, .low = 0, .high = LARGE,
+                          .text = "proportional gain on %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.derivative", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "derivative gains: acceleration per rate of the error", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.derivative.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(derivative),
+                          .unit = "1/s", .fallback = 20, .low = 0, .high = LARGE,
+                          .text = "derivative gain on %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.integral", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "integral gains: acceleration per integral of the error", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.integral.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(integral),
+                          .unit = "1/s^3", .fallback = 0, .low = 0, .high = LARGE,
+                          .text = "integral gain on %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.integral_limit", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "bounds of the integrals (anti-windup; they also rest while a torque is at its limit)", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.integral_limit.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(integral_limit),
+                          .unit = "%s s", .fallback = INFINITY, .fallback_text = "none", .low = 0, .high = LARGE, WORDS(limit_words),
+                          .text = "largest integral of the error of %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.setpoint", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "set-points of the coordinates", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.setpoint.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(setpoint),
+                          .unit = "%s", .fallback = NAN, .fallback_text = "as the run begins", .low = -LARGE, .high = LARGE,
+                          .text = "set-point of %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.ramp", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "rates at which the set-points move", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.ramp.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(ramp),
+                          .unit = "%s/s", .fallback = 0, .low = -LARGE, .high = LARGE,
+                          .text = "rate at which the set-point moves: %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.ramp_time", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "how long the set-points move", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.ramp_time.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(ramp_time),
+                          .unit = "s", .fallback = INFINITY, .fallback_text = "none", .low = 0, .high = LARGE, WORDS(limit_words),
+                          .text = "time after which the set-point stays: %s", .need = NEED_ACTUATORS}},
     {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(sample_time), .unit = "s", .fallback = 0, .low = 0, .high = LARGE,
          .text = "time between samples of the controller",
@@ -346,6 +415,48 @@ static bool add_states(struct schema *schema, const struct row *row)
     return true;
 }
 
+/* Rows over the coordinates that keep their own range and default. */
+static bool add_coordinates(struct schema *schema, const struct row *row)
+{
+    for (int i = 0; i < schema->scene->coordinates; i++) {
+        const stance_quantity *quantity = &schema->scene->coordinate[i];
+        struct scenario_field *field = add_field(schema, row, "", quantity->name);
+        if (!field) {
+            return false;
+        }
+        const double low = field->low, high = field->high;
+        char unit[sizeof field->unit];
+        memcpy(unit, row->field.unit, sizeof unit);
+        describe_quantity(field, row, quantity, "");
+        const char *place = strstr(unit, "%s");
+        if (place) {
+            snprintf(field->unit, sizeof field->unit, "%.*s%.12s%s", (int)(place - unit), unit,
+                     quantity->unit, place + 2);
+        } else {
+            memcpy(field->unit, unit, sizeof unit);
+        }
+        field->low = low;
+        field->high = high;
+        field->offset += (size_t)i * sizeof(double);
+    }
+    return true;
+}
+
+/* Names of the pairs of coordinates, in stance_pair's order. */
+static size_t name_pairs(struct schema *schema)
+{
+    const stance_scene *scene = schema->scene;
+    int first, second;
+    size_t count = 0;
+    while (count < SCHEMA_MAX_WORDS && stance_pair(scene, (int)count, &first, &second)) {
+        snprintf(schema->pair[count], sizeof schema->pair[count], "%s-%s",
+                 scene->coordinate[first].name, scene->coordinate[second].name);
+        schema->pairs[count] = schema->pair[count];
+        count++;
+    }
+    return count;
+}
+
 static bool add_postures(struct schema *schema, const struct row *row)
 {
     const stance_scene *scene = schema->scene;
@@ -401,6 +512,9 @@ static bool add_single(struct schema *schema, const struct row *row)
         while (strcmp(schema->methods[(int)field->fallback], "capturing") != 0) {
             field->fallback++; /* the one that the charts of scenarios/accuracy recommend */
         }
+    } else if (row->family == FAMILY_PAIRS) {
+        field->words = schema->pairs;
+        field->word_count = name_pairs(schema);
     } else if (row->family == FAMILY_TOLERANCE) {
         field->more = describe_tolerance(schema->tolerance, sizeof schema->tolerance);
     } else if (row->family == FAMILY_CONTACTS) {
@@ -450,6 +564,8 @@ static bool add_row(struct schema *schema, const struct row *row)
     case FAMILY_STATE:
     case FAMILY_OFFSET:
         return add_states(schema, row);
+    case FAMILY_COORDINATES:
+        return add_coordinates(schema, row);
     case FAMILY_POSTURE:
     case FAMILY_ACTUATED:
         return add_postures(schema, row);

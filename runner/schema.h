@@ -33,6 +33,8 @@ enum field_use {
     USE_CONTROL, /* controller.kind is not none */
     USE_HOLD,
     USE_FEEDBACK,
+    USE_DECOUPLING,
+    USE_FAR, /* controller.far is not none */
     USE_PLACE,
     USE_GAINS,
     USE_EQUILIBRIUM, /* the scenario starts from initial.equilibrium */
@@ -75,7 +77,7 @@ struct scenario_field {
 
 #define NO_OFFSET ((size_t)-1)
 
-enum { SCHEMA_MAX_FIELDS = 160, SCHEMA_MAX_WORDS = 32 };
+enum { SCHEMA_MAX_FIELDS = 256, SCHEMA_MAX_WORDS = 32 };
 
 struct schema {
     const stance_scene *scene; /* NULL: unknown; fields by scene are left out then */
@@ -83,6 +85,8 @@ struct schema {
     struct scenario_field field[SCHEMA_MAX_FIELDS];
     const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
     size_t scene_count, method_count;
+    char pair[SCHEMA_MAX_WORDS][24]; /* "x-theta" */
+    const char *pairs[SCHEMA_MAX_WORDS];
     char tolerance[400]; /* what there is to know of method.tolerance */
 };
 

@@ -32,7 +32,7 @@
 
 #include "dynamics.h"
 
-#define DECOUPLING_CONDITION 1e4 /* of G: beyond it the inverse is damped */
+#define DECOUPLING_CONDITION STANCE_ILL_CONDITIONED /* of G: beyond it the inverse is damped */
 #define DECOUPLING_REST 1e-6     /* m/s: contact velocities below it are zero to the law */
 
 /* What each contact does in the state that *e belongs to. */

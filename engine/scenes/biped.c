@@ -176,6 +176,38 @@ static double energy(const double *robot, const double *position, const double *
     return sum;
 }
 
+/* Sum over the masses of m J^T J, J their Jacobians by (x, z, theta, q1, q2). */
+static void inertia(const double *robot, const double *position, double *A)
+{
+    const double mass[] = {robot[TRUNK_MASS], robot[HIP_MASS], robot[FOOT_MASS], robot[FOOT_MASS]};
+    double J[4][2][COORDINATES] = {0}, sine, cosine;
+    for (int k = 0; k < 4; k++) {
+        J[k][0][X] = J[k][1][Z] = 1;
+        if (k == 0)
+            continue;
+        stance_sincos(position[THETA], &sine, &cosine);
+        J[k][0][THETA] = robot[TRUNK_LENGTH] * cosine;
+        J[k][1][THETA] = robot[TRUNK_LENGTH] * sine;
+        if (k == 1)
+            continue;
+        stance_sincos(position[THETA] + position[Q1 + k - 2], &sine, &cosine);
+        const int turned[] = {THETA, Q1 + k - 2};
+        for (int j = 0; j < 2; j++) {
+            J[k][0][turned[j]] += robot[LEG_LENGTH] * cosine;
+            J[k][1][turned[j]] += robot[LEG_LENGTH] * sine;
+        }
+    }
+    for (int i = 0; i < COORDINATES; i++) {
+        for (int j = 0; j < COORDINATES; j++) {
+            A[i * COORDINATES + j] = 0;
+            for (int k = 0; k < 4; k++) {
+                A[i * COORDINATES + j] +=
+                    mass[k] * (J[k][0][i] * J[k][0][j] + J[k][1][i] * J[k][1][j]);
+            }
+        }
+    }
+}
+
 /* ---- equilibrium ----------------------------------------------------------------------------- */
 
 static stance_error refuse(stance_message *message, stance_error error, const char *format, ...)
@@ -385,6 +417,7 @@ const stance_scene stance_scene_biped = {
     .figure = figure,
     .height = height,
     .energy = energy,
+    .inertia = inertia,
     .equilibrium = equilibrium,
     .linearise = linearise,
 };
