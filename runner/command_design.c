@@ -128,8 +128,8 @@ static bool closed_loop(struct report *r, stance_message *message)
     }
     stance_error error = stance_eigenvalues(n, loop, r->closed_re, r->closed_im);
     if (error == STANCE_OK) {
-        error =
-            stance_critical_sample_time(n, m, r->A, r->B, r->K, LONGEST_SAMPLE_TIME, &r->critical);
+        error = stance_critical_sample_time(n, m, r->A, r->B, r->K, 0, LONGEST_SAMPLE_TIME,
+                                            &r->critical);
     }
     return error == STANCE_OK || refuse(message, "closed loop", error);
 }
