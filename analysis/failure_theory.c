@@ -170,7 +170,10 @@ static double critical_sample_time(const struct scenario *s, const struct scenar
             K[i * n + j] = c->gain[i][j];
         }
     }
-    return stance_critical_sample_time(n, scene->actuators, A, B, K, 10, &T) == STANCE_OK ? T : NAN;
+    return stance_critical_sample_time(n, scene->actuators, A, B, K, (int)c->delay, 10, &T) ==
+                   STANCE_OK
+               ? T
+               : NAN;
 }
 
 /* ---- Painleve ------------------------------------------------------------------------------- */

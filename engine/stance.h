@@ -104,6 +104,11 @@ typedef struct stance_scene {
      * A[2p][2p], B[2p][actuators], exact derivatives. NULL where a scene has none. */
     stance_error (*linearise)(const double *robot, const stance_equilibrium *equilibrium, double *A,
                               double *B);
+    /* Force of the ground on the support contact, pinned there: force[2] = (normal, tangential) at
+     * rest, N; its exact first derivatives by_state[2][2p] by (dp, dp'), N/rad and N s/rad, and
+     * by_torque[2][actuators], N/(N m). Errors as `linearise`. NULL where a scene has none. */
+    stance_error (*contact_force)(const double *robot, const stance_equilibrium *equilibrium,
+                                  double *force, double *by_state, double *by_torque);
 } stance_scene;
 
 /* The pairs of coordinates that two actuators can control, in order: (0, 1), (0, 2), ... False:
@@ -199,8 +204,8 @@ typedef struct stance_case {
     double switch_axis[2 * STANCE_MAX_POSTURE]; /* rad, rad/s, > 0 */
     double torque_limit;                        /* N m, > 0, may be INFINITY */
     double noise;         /* N m, half-width of uniform noise, 0 when continuous */
-    int64_t delay;        /* samples from measuring to acting: 0 or 1 */
     int64_t sample_every; /* steps per sample, held between; 0: acts continuously inside the step */
+    int64_t delay;        /* whole samples between measuring and acting: 0, or 1 when sampled */
 
     double step;   /* s */
     int64_t steps; /* length of the run */
@@ -319,6 +324,34 @@ typedef struct stance_pair_report {
 } stance_pair_report;
 stance_error stance_pair_survey(const stance_scene *scene, const double *robot, int resolution,
                                 int pairs, stance_pair_report *report);
+/* Pole assignment by Varga's Schur method (SLICOT SB01BD): K[m][n] with eig(A - B K) = re + i im.
+ * Poles: n values, conjugate pairs complete, of any multiplicity. What it minimises is the gain of
+ * each of its steps, not the sensitivity of the whole. */
+stance_error stance_place_schur(int n, int m, const double *A, const double *B, const double *re,
+                                const double *im, double *K, stance_message *message);
+
+typedef enum stance_placement { STANCE_ROBUST, STANCE_SCHUR } stance_placement;
+
+/* Pole assignment for a controller that samples every T seconds (T > 0) and holds: the eigenvalues
+ * of Ad(T) - Bd(T) K are exp(s T) of the poles s = re + i im (1/s). Pairs must turn less than half
+ * a turn in T. sweeps, condition: as stance_place, 0 and NAN from STANCE_SCHUR; may be NULL. */
+stance_error stance_place_sampled(stance_placement how, int n, int m, const double *A,
+                                  const double *B, double T, const double *re, const double *im,
+                                  double *K, int *sweeps, double *condition,
+                                  stance_message *message);
+
+/* Linear quadratic regulator: the K[m][n] for which u = -K x minimises the integral of
+ * sum states[i] x_i^2 + sum torques[j] u_j^2 over all time. states[n] >= 0, torques[m] > 0.
+ * Errors: BAD_ARGUMENT (also: the weights do not see a mode that does not decay by itself),
+ * UNCONTROLLABLE (no input reaches such a mode), NUMERICAL. */
+stance_error stance_lqr(int n, int m, const double *A, const double *B, const double *states,
+                        const double *torques, double *K, stance_message *message);
+
+/* The same integral minimised over inputs that change only every T seconds (T > 0): plant and cost
+ * are discretised exactly, with the cross term that this brings. */
+stance_error stance_lqr_sampled(int n, int m, const double *A, const double *B, double T,
+                                const double *states, const double *torques, double *K,
+                                stance_message *message);
 
 /* Eigenvalues of A[n][n], sorted by real then imaginary part. */
 stance_error stance_eigenvalues(int n, const double *A, double *re, double *im);
@@ -327,9 +360,29 @@ stance_error stance_eigenvalues(int n, const double *A, double *re, double *im);
 stance_error stance_discretise(int n, int m, const double *A, const double *B, double T, double *Ad,
                                double *Bd);
 
-/* Smallest sample time T* at which Ad(T) - Bd(T) K leaves the unit circle; 0 when the continuous
- * loop is unstable, INFINITY when none is found up to `longest` seconds. */
+/* Eigenvalues z of the loop that samples every T seconds and holds, sorted as by
+ * stance_eigenvalues: of Ad(T) - Bd(T) K, n of them (delay 0), or with the torques of a sample
+ * acting one sample later (delay 1) of [Ad Bd; -K 0], n + m of them. */
+stance_error stance_sampled_loop(int n, int m, const double *A, const double *B, const double *K,
+                                 double T, int delay, double *re, double *im);
+
+/* Smallest sample time T* at which the sampled loop, with `delay` 0 or 1 samples, leaves the unit
+ * circle; 0 when the continuous loop is unstable, INFINITY when none is found up to `longest`
+ * seconds. */
 stance_error stance_critical_sample_time(int n, int m, const double *A, const double *B,
-                                         const double *K, double longest, double *T);
+                                         const double *K, int delay, double longest, double *T);
+
+/* P[n][n] of the Lyapunov function V = x' P x of a stable loop: for x' = F x with
+ * dV/dt = -sum weight[i] x_i^2, or (sampled) for x+ = F x with V(x+) - V(x) equal to that.
+ * weight[n] > 0. BAD_ARGUMENT when the loop is not stable. */
+stance_error stance_lyapunov(int n, const double *loop, bool sampled, const double *weight,
+                             double *P, stance_message *message);
+
+/* Largest sublevel set x' P x <= level inside the half spaces a_k' x <= d_k, a[count][n], d[count]:
+ * level = min d_k^2 / (a_k' P^-1 a_k), 0 where some d_k <= 0, INFINITY where nothing binds.
+ * binding: the k that does, or -1. alone[n]: how far x_i reaches when all else is 0;
+ * extent[n]: when all else is free. P symmetric, positive definite. */
+stance_error stance_sublevel(int n, const double *P, int count, const double *a, const double *d,
+                             double *level, int *binding, double *alone, double *extent);
 
 #endif

@@ -128,8 +128,8 @@ static bool closed_loop(struct report *r, stance_message *message)
     }
     stance_error error = stance_eigenvalues(n, loop, r->closed_re, r->closed_im);
     if (error == STANCE_OK) {
-        error =
-            stance_critical_sample_time(n, m, r->A, r->B, r->K, LONGEST_SAMPLE_TIME, &r->critical);
+        error = stance_critical_sample_time(n, m, r->A, r->B, r->K, 0, LONGEST_SAMPLE_TIME,
+                                            &r->critical);
     }
     return error == STANCE_OK || refuse(message, "closed loop", error);
 }
@@ -355,7 +355,7 @@ static json_t *json_equilibrium(const struct report *r)
 
 static json_t *json_controller(const struct report *r)
 {
-    static const char *const laws[] = {"none", "hold", "state-feedback"};
+    static const char *const laws[] = {"none", "hold", "state-feedback", "decoupling"};
     static const char *const designs[] = {"place", "gains"};
     const struct scenario_values *values = &r->scenario->base;
     const int n = r->states;

@@ -174,7 +174,7 @@ static stance_case sampled_case(const struct balance *b, double *critical)
     assert_int_equal(scene->linearise(c.robot, &equilibrium, A, B), STANCE_OK);
     assert_int_equal(stance_place(6, 2, A, B, re, im, &c.gain[0][0], NULL, NULL, &message),
                      STANCE_OK);
-    assert_int_equal(stance_critical_sample_time(6, 2, A, B, &c.gain[0][0], 2, critical),
+    assert_int_equal(stance_critical_sample_time(6, 2, A, B, &c.gain[0][0], 0, 2, critical),
                      STANCE_OK);
     memcpy(c.position, equilibrium.position, sizeof c.position);
     memcpy(c.feedforward, equilibrium.torque, sizeof c.feedforward);

@@ -9,6 +9,11 @@
 /* Singular values below this part of the largest do not count towards the Kalman rank: far above
  * what rounding leaves of a zero (1e-15), far below those of robots that can be balanced (1e-4). */
 #define KALMAN_TOLERANCE 1e-10
+/* The same for the matrix of one mode, relative to its largest singular value. */
+#define HAUTUS_TOLERANCE 1e-10
+#define RANK_TOLERANCE 1e-12
+/* A product A^k B this small, against what its factors could make, is rounding. */
+#define BLOCK_ROUNDING 1e-14
 
 stance_error stance_refuse(stance_message *message, stance_error error, const char *format, ...)
 {
@@ -19,6 +24,16 @@ stance_error stance_refuse(stance_message *message, stance_error error, const ch
         va_end(arguments);
     }
     return error;
+}
+
+const char *stance_complex_text(double _Complex number, char text[64])
+{
+    if (cimag(number) == 0) {
+        snprintf(text, 64, "%.6g", creal(number));
+    } else {
+        snprintf(text, 64, "%.6g%+.6gi", creal(number), cimag(number));
+    }
+    return text;
 }
 
 typedef struct eigenvalue {
@@ -69,19 +84,36 @@ stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
     return error;
 }
 
+static double frobenius(int count, const double *x)
+{
+    double norm = 0;
+    for (int i = 0; i < count; i++) {
+        norm = hypot(norm, x[i]);
+    }
+    return norm;
+}
+
 /* Column block k of the Kalman matrix [n][n m], scaled to unit Frobenius norm. A change of the
  * unit of time multiplies each block, or its position and rate halves, by a power of the ratio:
  * scaled blocks, and so the rank, do not notice. */
 static void store_block(int n, int m, int k, const double *block, double *kalman)
 {
-    double norm = 0;
-    for (int i = 0; i < n * m; i++) {
-        norm = hypot(norm, block[i]);
-    }
+    const double norm = frobenius(n * m, block);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < m; j++) {
             kalman[(i * n + k) * m + j] = norm > 0 ? block[i * m + j] / norm : 0;
         }
+    }
+}
+
+/* next = A block; exactly zero where it is nothing but the rounding of a product that vanishes,
+ * which scaling would blow up to directions of its own. */
+static void next_block(int n, int m, const double *A, const double *block, double *next)
+{
+    matrix_multiply(n, n, m, A, block, next);
+    const double size = frobenius(n * n, A) * frobenius(n * m, block);
+    if (frobenius(n * m, next) <= BLOCK_ROUNDING * size) {
+        memset(next, 0, (size_t)(n * m) * sizeof *next);
     }
 }
 
@@ -101,7 +133,7 @@ stance_error stance_kalman(int n, int m, const double *A, const double *B, doubl
         memcpy(block, B, size * sizeof *B);
         for (int k = 0; k < n; k++) {
             store_block(n, m, k, block, kalman);
-            matrix_multiply(n, n, m, A, block, next);
+            next_block(n, m, A, block, next);
             double *swap = block;
             block = next;
             next = swap;
@@ -121,5 +153,85 @@ stance_error stance_kalman(int n, int m, const double *A, const double *B, doubl
     free(next);
     free(block);
     free(kalman);
+    return error;
+}
+
+/* ---- modes that the inputs do not reach ------------------------------------------------------ */
+
+/* What rounding makes of a mode on the border counts as not decaying; `norm` is that of A. */
+static bool passes(enum mode_filter filter, double norm, double re, double im)
+{
+    const double slack = 1e-10;
+    return filter == EVERY_MODE ||
+           (filter == GROWING_MODES ? re >= -slack * norm : hypot(re, im) >= 1 - slack);
+}
+
+/* Orthonormal basis of the range of B in the first *rank columns of U[n][n] (column-major). */
+static stance_error input_range(int n, int m, const double *B, double *U, int *rank)
+{
+    const int k = n < m ? n : m;
+    double *copy = matrix_room((size_t)n * (size_t)m + 2 * (size_t)k);
+    if (!copy) {
+        return STANCE_NO_MEMORY;
+    }
+    double *sv = copy + n * m;
+    matrix_transpose(n, m, B, copy);
+    const int info =
+        LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', n, m, copy, n, sv, U, n, NULL, 1, sv + k);
+    for (*rank = 0; info == 0 && *rank < k && sv[*rank] > RANK_TOLERANCE * sv[0];) {
+        ++*rank;
+    }
+    free(copy);
+    return info == 0 ? STANCE_OK : STANCE_NUMERICAL;
+}
+
+/* Whether (A - s I, U) has full rank. matrix [n][n + r] and sv [2 n] are scratch. The range of B
+ * stands in for B, at the size of A: the unit of the inputs does not matter. */
+static stance_error mode_reached(int n, int r, const double *A, const double *U, double norm,
+                                 double _Complex mode, double _Complex *matrix, double *sv,
+                                 bool *reached)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            matrix[j * n + i] = A[i * n + j] - (i == j ? mode : 0);
+        }
+        for (int j = 0; j < r; j++) {
+            matrix[(n + j) * n + i] = norm * U[j * n + i];
+        }
+    }
+    const int info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n + r, matrix, n, sv, NULL, 1,
+                                    NULL, 1, sv + n);
+    *reached = sv[n - 1] > HAUTUS_TOLERANCE * sv[0];
+    return info == 0 ? STANCE_OK : STANCE_NUMERICAL;
+}
+
+stance_error stance_hautus(int n, int m, const double *A, const double *B, enum mode_filter filter,
+                           double _Complex *mode, bool *reached)
+{
+    const size_t side = (size_t)n, nn = side * side;
+    double *re = matrix_room(4 * side + nn);
+    double _Complex *matrix = calloc(side * (side + (size_t)m), sizeof *matrix);
+    const double norm = frobenius(n * n, A);
+    int rank = 0;
+
+    *reached = true;
+    if (!re || !matrix) {
+        free(matrix);
+        free(re);
+        return STANCE_NO_MEMORY;
+    }
+    double *im = re + n, *sv = im + n, *U = sv + 2 * n;
+    stance_error error = stance_eigenvalues(n, A, re, im);
+    if (error == STANCE_OK) {
+        error = input_range(n, m, B, U, &rank);
+    }
+    for (int i = 0; error == STANCE_OK && *reached && i < n; i++) {
+        if (passes(filter, norm, re[i], im[i])) {
+            *mode = CMPLX(re[i], im[i]);
+            error = mode_reached(n, rank, A, U, norm, *mode, matrix, sv, reached);
+        }
+    }
+    free(matrix);
+    free(re);
     return error;
 }

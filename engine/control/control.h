@@ -9,12 +9,38 @@
 
 #include "../stance.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 
 /* Writes a sentence to `message`, which may be NULL, and returns `error`. */
 stance_error stance_refuse(stance_message *message, stance_error error, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* A complex number as people write it: no imaginary part where there is none. */
+const char *stance_complex_text(double _Complex number, char text[64]);
+
+/* Puts the poles re + i im in an order in which a pair stands in two places in a row, the one with
+ * im > 0 first. BAD_POLES when one is not finite or lacks its conjugate. */
+stance_error stance_pair_poles(int n, const double *re, const double *im, double _Complex *pole,
+                               stance_message *message);
+
+/* The eigenvalues of A that a Hautus test looks at: all, those with real part >= 0, those of
+ * modulus
+ * >= 1. */
+enum mode_filter { EVERY_MODE, GROWING_MODES, EXPANDING_MODES };
+
+/* Hautus: (A - s I, B) has full rank for every eigenvalue s of A that passes the filter. *reached
+ * is false where one has not, and *mode that eigenvalue. */
+stance_error stance_hautus(int n, int m, const double *A, const double *B, enum mode_filter filter,
+                           double _Complex *mode, bool *reached);
+
+/* X of F' X + X F = C, or (discrete) F' X F - X = C; C symmetric, X may be C. */
+stance_error stance_solve_lyapunov(int n, const double *F, bool discrete, const double *C,
+                                   double *X);
+
+/* E = exp(A T) and, unless NULL, integral = that of exp(A t) over 0 ... T; all [n][n]. */
+stance_error stance_exponential(int n, const double *A, double T, double *E, double *integral);
 
 /* C[n][p] = A[n][m] B[m][p]; C is neither of the others. */
 static inline void matrix_multiply(int n, int m, int p, const double *A, const double *B, double *C)
@@ -27,6 +53,26 @@ static inline void matrix_multiply(int n, int m, int p, const double *A, const d
             }
             C[i * p + j] = sum;
         }
+    }
+}
+
+/* B[m][n] = A[n][m] transposed: what Fortran reads as A. */
+static inline void matrix_transpose(int n, int m, const double *A, double *B)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < m; j++) {
+            B[j * n + i] = A[i * m + j];
+        }
+    }
+}
+
+/* loop[n][n] = A - B K. */
+static inline void matrix_close(int n, int m, const double *A, const double *B, const double *K,
+                                double *loop)
+{
+    matrix_multiply(n, m, n, B, K, loop);
+    for (int i = 0; i < n * n; i++) {
+        loop[i] = A[i] - loop[i];
     }
 }
 

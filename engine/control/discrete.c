@@ -3,7 +3,8 @@
  * x' = A x + B u with u held over T gives x+ = Ad x + Bd u, Ad = exp(A T) and
  * Bd = (integral of exp(A t) over 0 ... T) B. SLICOT's MB05ND computes both by Pade approximation
  * with scaling and squaring. A gain K designed for continuous time keeps the sampled loop stable
- * as long as the spectral radius of Ad(T) - Bd(T) K stays below 1.
+ * as long as the spectral radius of Ad(T) - Bd(T) K stays below 1. Where the torques computed from
+ * a sample act one sample later, (x, u) moves as [Ad Bd; -K 0], and its spectral radius counts.
  *
  * The spectral radius has corners where eigenvalues meet, and may exceed 1 in windows of T as
  * narrow as one likes. The search therefore watches three smooth functions of T made of the
@@ -25,9 +26,30 @@ void mb05nd_(const int *n, const double *delta, const double *a, const int *lda,
              const int *ldex, double *exint, const int *ldexint, const double *tol, int *iwork,
              double *dwork, const int *ldwork, int *info);
 
+stance_error stance_exponential(int n, const double *A, double T, double *E, double *integral)
+{
+    const size_t nn = (size_t)n * (size_t)n;
+    const int room = 2 * n * n;
+    const double tolerance = DBL_EPSILON;
+    double *work = matrix_room(3 * nn);
+    int *integers = calloc((size_t)n, sizeof *integers), info = 0;
+    stance_error error = work && integers ? STANCE_OK : STANCE_NO_MEMORY;
+
+    if (error == STANCE_OK) {
+        /* The transposes that Fortran sees have transposed exponentials. */
+        mb05nd_(&n, &T, A, &n, E, &n, integral ? integral : work + room, &n, &tolerance, integers,
+                work, &room, &info);
+        error = info == 0 && matrix_finite(nn, E) ? STANCE_OK : STANCE_NUMERICAL;
+    }
+    free(integers);
+    free(work);
+    return error;
+}
+
 /* Room for one pair (n, m), so that a scan over T allocates once. */
 typedef struct sampled {
     int n, m;
+    int side; /* of the loop: n, or n + m with a delay */
     const double *A, *B, *K;
     double *Ad, *Bd, *integral, *loop, *re, *im, *work;
     int *integers;
@@ -40,17 +62,18 @@ static void sampled_free(sampled *s)
 }
 
 static stance_error sampled_make(sampled *s, int n, int m, const double *A, const double *B,
-                                 const double *K)
+                                 const double *K, int delay)
 {
-    if (n < 1 || m < 1) {
+    if (n < 1 || m < 1 || delay < 0 || delay > 1 || (delay && !K)) {
         return STANCE_BAD_ARGUMENT;
     }
     const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
     if (!matrix_finite(nn, A) || !matrix_finite(nm, B) || (K && !matrix_finite(nm, K))) {
         return STANCE_BAD_ARGUMENT;
     }
-    *s = (sampled){.n = n, .m = m, .A = A, .B = B, .K = K};
-    double *room = matrix_room(5 * nn + nm + 2 * (size_t)n);
+    *s = (sampled){.n = n, .m = m, .side = delay ? n + m : n, .A = A, .B = B, .K = K};
+    const size_t side = (size_t)s->side;
+    double *room = matrix_room(4 * nn + side * side + nm + 2 * side);
     s->Ad = room;
     s->integers = calloc((size_t)n, sizeof *s->integers);
     if (!room || !s->integers) {
@@ -58,11 +81,11 @@ static stance_error sampled_make(sampled *s, int n, int m, const double *A, cons
         return STANCE_NO_MEMORY;
     }
     s->integral = room + nn;
-    s->loop = room + 2 * nn;
-    s->work = room + 3 * nn; /* two matrices */
-    s->Bd = room + 5 * nn;
-    s->re = s->Bd + nm;
-    s->im = s->re + n;
+    s->work = room + 2 * nn; /* two matrices */
+    s->Bd = room + 4 * nn;
+    s->loop = s->Bd + nm;
+    s->re = s->loop + side * side;
+    s->im = s->re + side;
     return STANCE_OK;
 }
 
@@ -89,7 +112,7 @@ stance_error stance_discretise(int n, int m, const double *A, const double *B, d
     if (!isfinite(T) || T < 0) {
         return STANCE_BAD_ARGUMENT;
     }
-    stance_error error = sampled_make(&s, n, m, A, B, NULL);
+    stance_error error = sampled_make(&s, n, m, A, B, NULL, 0);
     if (error != STANCE_OK) {
         return error;
     }
@@ -97,6 +120,49 @@ stance_error stance_discretise(int n, int m, const double *A, const double *B, d
     if (error == STANCE_OK) {
         memcpy(Ad, s.Ad, (size_t)n * (size_t)n * sizeof *Ad);
         memcpy(Bd, s.Bd, (size_t)n * (size_t)m * sizeof *Bd);
+    }
+    sampled_free(&s);
+    return error;
+}
+
+/* Of the loop at T, into s->re and s->im. */
+static stance_error sampled_eigenvalues(sampled *s, double T)
+{
+    const int n = s->n, m = s->m, side = s->side;
+    const stance_error error = sampled_discretise(s, T);
+    if (error != STANCE_OK) {
+        return error;
+    }
+    if (side == n) {
+        matrix_close(n, m, s->Ad, s->Bd, s->K, s->loop);
+    } else {
+        memset(s->loop, 0, (size_t)side * (size_t)side * sizeof *s->loop);
+        for (int i = 0; i < n; i++) {
+            memcpy(s->loop + i * side, s->Ad + i * n, (size_t)n * sizeof *s->Ad);
+            memcpy(s->loop + i * side + n, s->Bd + i * m, (size_t)m * sizeof *s->Bd);
+            for (int j = 0; j < m; j++) {
+                s->loop[(n + j) * side + i] = -s->K[j * n + i];
+            }
+        }
+    }
+    return stance_eigenvalues(side, s->loop, s->re, s->im);
+}
+
+stance_error stance_sampled_loop(int n, int m, const double *A, const double *B, const double *K,
+                                 double T, int delay, double *re, double *im)
+{
+    sampled s;
+    if (!isfinite(T) || T < 0) {
+        return STANCE_BAD_ARGUMENT;
+    }
+    stance_error error = sampled_make(&s, n, m, A, B, K, delay);
+    if (error != STANCE_OK) {
+        return error;
+    }
+    error = sampled_eigenvalues(&s, T);
+    if (error == STANCE_OK) {
+        memcpy(re, s.re, (size_t)s.side * sizeof *re);
+        memcpy(im, s.im, (size_t)s.side * sizeof *im);
     }
     sampled_free(&s);
     return error;
@@ -112,21 +178,13 @@ typedef struct sample {
 
 static stance_error sampled_look(sampled *s, double T, sample *look)
 {
-    stance_error error = sampled_discretise(s, T);
-    if (error != STANCE_OK) {
-        return error;
-    }
-    matrix_multiply(s->n, s->m, s->n, s->Bd, s->K, s->loop);
-    for (int i = 0; i < s->n * s->n; i++) {
-        s->loop[i] = s->Ad[i] - s->loop[i];
-    }
-    error = stance_eigenvalues(s->n, s->loop, s->re, s->im);
+    const stance_error error = sampled_eigenvalues(s, T);
     if (error != STANCE_OK) {
         return error;
     }
     double radius = 0;
     double complex below = 1, above = 1, pairs = 1;
-    for (int i = 0; i < s->n; i++) {
+    for (int i = 0; i < s->side; i++) {
         const double complex z = CMPLX(s->re[i], s->im[i]);
         radius = fmax(radius, cabs(z));
         below *= 1 - z;
@@ -246,23 +304,20 @@ static stance_error sampled_scan(sampled *s, double interval, double longest, do
 }
 
 stance_error stance_critical_sample_time(int n, int m, const double *A, const double *B,
-                                         const double *K, double longest, double *T)
+                                         const double *K, int delay, double longest, double *T)
 {
     sampled s;
     if (!isfinite(longest) || longest <= 0) {
         return STANCE_BAD_ARGUMENT;
     }
-    stance_error error = sampled_make(&s, n, m, A, B, K);
+    stance_error error = sampled_make(&s, n, m, A, B, K, delay);
     if (error != STANCE_OK) {
         return error;
     }
     double fastest = 0, growth;
     error = spectrum(&s, A, &fastest, &growth);
     if (error == STANCE_OK) {
-        matrix_multiply(n, m, n, B, K, s.loop);
-        for (int i = 0; i < n * n; i++) {
-            s.loop[i] = A[i] - s.loop[i];
-        }
+        matrix_close(n, m, A, B, K, s.loop);
         error = spectrum(&s, s.loop, &fastest, &growth);
     }
     if (error == STANCE_OK && growth >= 0) {
@@ -270,6 +325,86 @@ stance_error stance_critical_sample_time(int n, int m, const double *A, const do
     } else if (error == STANCE_OK) {
         /* Sixty points to a turn of the fastest mode, open or closed. */
         error = sampled_scan(&s, fmin(longest, 2 * M_PI / (60 * fastest)), longest, T);
+    }
+    sampled_free(&s);
+    return error;
+}
+
+/* ---- pole assignment for the sampled model --------------------------------------------------- */
+
+/* (exp(s T) - 1) / T, exact for small T too. */
+static double complex delta_pole(double complex pole, double T)
+{
+    const double re = creal(pole) * T, im = cimag(pole) * T, half = sin(im / 2);
+    const double grown = expm1(re);
+    return CMPLX(grown * cos(im) - 2 * half * half, (1 + grown) * sin(im)) / T;
+}
+
+static stance_error check_pairs(int n, const double *re, const double *im, double T,
+                                stance_message *message)
+{
+    for (int i = 0; i < n; i++) {
+        if (fabs(im[i]) * T >= M_PI) {
+            char text[64];
+            return stance_refuse(message, STANCE_BAD_POLES,
+                                 "the pole %s turns %.3g times in a sample of %.6g s: less than "
+                                 "half a turn can be told from its mirror image",
+                                 stance_complex_text(CMPLX(re[i], im[i]), text),
+                                 fabs(im[i]) * T / (2 * M_PI), T);
+        }
+    }
+    return STANCE_OK;
+}
+
+/* Ad - Bd K = I + T (D - E K) with D = (Ad - I)/T = phi A, E = Bd/T = phi B and phi the integral
+ * over T: the same gain places (exp(s T) - 1)/T for (D, E), which tend to s, A and B as T goes to
+ * 0, where Ad alone would lose its digits to the identity. */
+stance_error stance_place_sampled(stance_placement how, int n, int m, const double *A,
+                                  const double *B, double T, const double *re, const double *im,
+                                  double *K, int *sweeps, double *condition,
+                                  stance_message *message)
+{
+    sampled s;
+    if (!isfinite(T) || T <= 0) {
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "a design for a sampled model needs a sample time above 0, not %.6g s",
+                             T);
+    }
+    stance_error error = sampled_make(&s, n, m, A, B, NULL, 0);
+    if (error != STANCE_OK) {
+        return stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
+    }
+    error = sampled_discretise(&s, T);
+    if (error != STANCE_OK) {
+        stance_refuse(message, error, "discretisation over %.6g s: %s", T,
+                      stance_error_text(error));
+    } else {
+        error = check_pairs(n, re, im, T, message);
+    }
+    if (error == STANCE_OK) {
+        matrix_multiply(n, n, n, s.integral, A, s.loop);
+        for (int i = 0; i < n * n; i++) {
+            s.loop[i] /= T;
+        }
+        for (int i = 0; i < n * m; i++) {
+            s.Bd[i] /= T;
+        }
+        for (int i = 0; i < n; i++) {
+            const double complex pole = delta_pole(CMPLX(re[i], im[i]), T);
+            s.re[i] = creal(pole);
+            s.im[i] = cimag(pole);
+        }
+        error = how == STANCE_SCHUR
+                    ? stance_place_schur(n, m, s.loop, s.Bd, s.re, s.im, K, message)
+                    : stance_place(n, m, s.loop, s.Bd, s.re, s.im, K, sweeps, condition, message);
+    }
+    if (error == STANCE_OK && how == STANCE_SCHUR) {
+        if (sweeps) {
+            *sweeps = 0;
+        }
+        if (condition) {
+            *condition = NAN;
+        }
     }
     sampled_free(&s);
     return error;

@@ -114,61 +114,50 @@ static bool same_pole(double complex a, double complex b)
     return cabs(a - b) <= SAME_POLE * fmax(1, cabs(a));
 }
 
-/* A number as people write it: no imaginary part where there is none. */
-static const char *pole_text(double complex pole, char text[64])
-{
-    if (cimag(pole) == 0) {
-        snprintf(text, 64, "%.6g", creal(pole));
-    } else {
-        snprintf(text, 64, "%.6g%+.6gi", creal(pole), cimag(pole));
-    }
-    return text;
-}
-
 static stance_error unpaired(stance_message *message, double complex pole)
 {
     char text[64], conjugate[64];
-    return stance_refuse(message, STANCE_BAD_POLES,
-                         "the pole %s has no conjugate %s among the poles", pole_text(pole, text),
-                         pole_text(conj(pole), conjugate));
+    return stance_refuse(
+        message, STANCE_BAD_POLES, "the pole %s has no conjugate %s among the poles",
+        stance_complex_text(pole, text), stance_complex_text(conj(pole), conjugate));
 }
 
-/* Brings pairs together; p->vector serves as the list of poles not yet placed in the order. */
-static stance_error order_poles(problem *p, const double *re, const double *im,
-                                stance_message *message)
+stance_error stance_pair_poles(int n, const double *re, const double *im, double complex *pole,
+                               stance_message *message)
 {
-    const int n = p->n;
-    number *left = p->vector;
+    bool *taken = calloc((size_t)n, sizeof *taken);
+    stance_error error = taken ? STANCE_OK : STANCE_NO_MEMORY;
     int placed = 0;
 
-    for (int j = 0; j < n; j++) {
+    for (int j = 0; j < n && error == STANCE_OK; j++) {
         if (!isfinite(re[j]) || !isfinite(im[j])) {
-            return stance_refuse(message, STANCE_BAD_POLES,
-                                 "%d poles are needed, all of them finite", n);
+            error = stance_refuse(message, STANCE_BAD_POLES,
+                                  "%d poles are needed, all of them finite", n);
         }
-        left[j] = CMPLX(re[j], im[j]);
     }
-    for (int j = 0; j < n; j++) {
-        if (isnan(creal(left[j]))) {
-            continue; /* taken as a conjugate */
+    for (int j = 0; j < n && error == STANCE_OK; j++) {
+        if (taken[j]) {
+            continue;
         }
-        const double complex pole = left[j];
-        p->pole[placed++] = pole;
-        if (cimag(pole) == 0) {
+        const double complex wanted = CMPLX(re[j], im[j]);
+        pole[placed++] = wanted;
+        if (im[j] == 0) {
             continue;
         }
         int k = j + 1;
-        while (k < n && (isnan(creal(left[k])) || !same_pole(left[k], conj(pole)))) {
+        while (k < n && (taken[k] || !same_pole(CMPLX(re[k], im[k]), conj(wanted)))) {
             k++;
         }
         if (k == n) {
-            return unpaired(message, pole);
+            error = unpaired(message, wanted);
+            break;
         }
-        left[k] = NAN;
-        p->pole[placed - 1] = CMPLX(creal(pole), fabs(cimag(pole)));
-        p->pole[placed++] = CMPLX(creal(pole), -fabs(cimag(pole)));
+        taken[k] = true;
+        pole[placed - 1] = CMPLX(re[j], fabs(im[j]));
+        pole[placed++] = CMPLX(re[j], -fabs(im[j]));
     }
-    return STANCE_OK;
+    free(taken);
+    return error;
 }
 
 static stance_error check_multiplicity(const problem *p, stance_message *message)
@@ -183,7 +172,7 @@ static stance_error check_multiplicity(const problem *p, stance_message *message
             return stance_refuse(message, STANCE_BAD_POLES,
                                  "the pole %s is wanted %d times, but the number of independent "
                                  "inputs, %d, is the most that one pole can be repeated",
-                                 pole_text(p->pole[j], text), times, p->r);
+                                 stance_complex_text(p->pole[j], text), times, p->r);
         }
     }
     return STANCE_OK;
@@ -220,38 +209,17 @@ static stance_error split_inputs(problem *p, stance_message *message)
     return STANCE_OK;
 }
 
-/* Hautus: every eigenvalue s of A must leave (A - s I, B) of full rank. */
 static stance_error check_controllable(const problem *p, stance_message *message)
 {
-    const int n = p->n, width = n + p->r;
-    double *re = p->real, *im = re + n, *sv = im + n, *unused = sv + n;
-    number *matrix = p->small;
-    double norm = 0;
-
-    stance_error error = stance_eigenvalues(n, p->A, re, im);
-    for (int i = 0; i < n * n; i++) {
-        norm = hypot(norm, p->A[i]);
-    }
-    for (int e = 0; error == STANCE_OK && e < n; e++) {
-        for (int i = 0; i < n; i++) {
-            for (int j = 0; j < width; j++) {
-                /* The range of B in place of B: the unit of the inputs does not matter. */
-                matrix[j * n + i] = j >= n   ? norm * p->range[(j - n) * n + i]
-                                    : i == j ? p->A[i * n + j] - CMPLX(re[e], im[e])
-                                             : p->A[i * n + j];
-            }
-        }
-        if (LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, width, matrix, n, sv, NULL, 1, NULL, 1,
-                           unused) != 0) {
-            return STANCE_NUMERICAL;
-        }
-        if (sv[n - 1] <= 1e-10 * sv[0]) {
-            char text[64];
-            return stance_refuse(message, STANCE_UNCONTROLLABLE,
-                                 "the pair (A, B) is not controllable: no input reaches the mode "
-                                 "with eigenvalue %s",
-                                 pole_text(CMPLX(re[e], im[e]), text));
-        }
+    double complex mode = 0;
+    bool reached = true;
+    const stance_error error = stance_hautus(p->n, p->m, p->A, p->B, EVERY_MODE, &mode, &reached);
+    if (error == STANCE_OK && !reached) {
+        char text[64];
+        return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                             "the pair (A, B) is not controllable: no input reaches the mode "
+                             "with eigenvalue %s",
+                             stance_complex_text(mode, text));
     }
     return error;
 }
@@ -739,7 +707,7 @@ stance_error stance_place(int n, int m, const double *A, const double *B, const 
     candidate c = {0};
     stance_error error = problem_make(&p, n, m, A, B);
     if (error == STANCE_OK) {
-        error = order_poles(&p, re, im, message);
+        error = stance_pair_poles(n, re, im, p.pole, message);
     }
     if (error == STANCE_OK) {
         error = split_inputs(&p, message);

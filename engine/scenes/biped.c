@@ -37,6 +37,15 @@
  * Eliminating theta and phi_f leaves the pivot
  *
  *   (M - m) l^2 - mt l^2 cos^2(theta - phi_s) - m l^2 cos^2(phi_f - phi_s) >= mh l^2 > 0.
+ *
+ * The ground carries what moves the centre of mass, r = (sum of m_i r_i)'' + (0, M g), and with the
+ * foot at the origin
+ *
+ *   sum of m_i r_i = (M - m) l (-sin phi_s, cos phi_s) + mt lt (-sin theta, cos theta)
+ *                    - m l (-sin phi_f, cos phi_f).
+ *
+ * Its second derivative is that sum's Jacobian times a'' plus squares of rates: about rest, to
+ * first order and exactly, the Jacobian at the equilibrium times the da'' above.
  */
 #include "../stance.h"
 
@@ -398,6 +407,58 @@ static stance_error linearise(const double *robot, const stance_equilibrium *equ
     return STANCE_OK;
 }
 
+/* Rows of the Jacobian of sum m_i r_i by (theta, phi_s, phi_f): heights, then horizontals. */
+static void momentum(const double *robot, const stance_equilibrium *equilibrium,
+                     double jacobian[2][POSTURES])
+{
+    double weight[POSTURES];
+    const double *q = equilibrium->position;
+    const int s = equilibrium->support, legs[POSTURES - 1] = {Q1 + s, Q2 - s};
+
+    balance(robot, s, weight);
+    jacobian[0][0] = -weight[0] * sin(q[THETA]);
+    jacobian[1][0] = -weight[0] * cos(q[THETA]);
+    for (int i = 1; i < POSTURES; i++) {
+        const int leg = legs[i - 1];
+        jacobian[0][i] = -weight[1 + leg - Q1] * sin(q[THETA] + q[leg]);
+        jacobian[1][i] = -weight[1 + leg - Q1] * cos(q[THETA] + q[leg]);
+    }
+}
+
+static stance_error contact_force(const double *robot, const stance_equilibrium *equilibrium,
+                                  double *force, double *by_state, double *by_torque)
+{
+    enum { STATES = 2 * POSTURES };
+    double A[STATES * STATES], B[STATES * TORQUES], jacobian[2][POSTURES];
+    const stance_error error = linearise(robot, equilibrium, A, B);
+    if (error != STANCE_OK) {
+        return error;
+    }
+    const int s = 1 + equilibrium->support, f = 2 - equilibrium->support;
+    momentum(robot, equilibrium, jacobian);
+    force[0] = STANCE_GRAVITY * (2 * robot[FOOT_MASS] + robot[TRUNK_MASS] + robot[HIP_MASS]);
+    force[1] = 0;
+    for (int c = 0; c < 2; c++) {
+        /* The accelerations are those of (theta, q1, q2): phi_i'' = theta'' + q_i''. */
+        double by[POSTURES] = {jacobian[c][0] + jacobian[c][1] + jacobian[c][2]};
+        by[s] = jacobian[c][1];
+        by[f] = jacobian[c][2];
+        for (int j = 0; j < STATES; j++) {
+            by_state[c * STATES + j] = 0;
+            for (int i = 0; i < POSTURES; i++) {
+                by_state[c * STATES + j] += by[i] * A[(POSTURES + i) * STATES + j];
+            }
+        }
+        for (int j = 0; j < TORQUES; j++) {
+            by_torque[c * TORQUES + j] = 0;
+            for (int i = 0; i < POSTURES; i++) {
+                by_torque[c * TORQUES + j] += by[i] * B[(POSTURES + i) * TORQUES + j];
+            }
+        }
+    }
+    return STANCE_OK;
+}
+
 const stance_scene stance_scene_biped = {
     .name = "biped",
     .text = "planar biped: trunk, hip and two legs with point feet, torques at the hip",
@@ -420,4 +481,5 @@ const stance_scene stance_scene_biped = {
     .inertia = inertia,
     .equilibrium = equilibrium,
     .linearise = linearise,
+    .contact_force = contact_force,
 };

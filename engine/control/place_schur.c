@@ -1,0 +1,93 @@
+/* place_schur.c - pole assignment by the Schur method.
+ *
+ * Varga, "A Schur method for pole assignment", IEEE Trans. Automatic Control 26 (1981) 517-519, as
+ * SLICOT's SB01BD has it: A is brought to real Schur form, and one real pole or pair after the
+ * other is assigned to the last block by the feedback of smallest norm that does so. Stable
+ * numerically and quick; but with several inputs the gain is one of many, and which one decides how
+ * far the nonlinear robot may be from its equilibrium.
+ */
+#include "control.h"
+
+#include <string.h>
+
+/* SLICOT, Fortran: F with the wanted eigenvalues of A + B F; those of A with a real part below
+ * alpha (`dico` C) stay as they are. */
+void sb01bd_(const char *dico, const int *n, const int *m, const int *np, const double *alpha,
+             double *a, const int *lda, double *b, const int *ldb, double *wr, double *wi, int *nfp,
+             int *nap, int *nup, double *f, const int *ldf, double *z, const int *ldz,
+             const double *tol, double *dwork, const int *ldwork, int *iwarn, int *info,
+             size_t dico_length);
+
+static stance_error uncontrollable(stance_message *message, double complex mode)
+{
+    char text[64];
+    return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                         "the pair (A, B) is not controllable: no input reaches the mode with "
+                         "eigenvalue %s",
+                         stance_complex_text(mode, text));
+}
+
+/* K from paired poles. */
+static stance_error assign(int n, int m, const double *A, const double *B,
+                           const double complex *pole, double *K, stance_message *message)
+{
+    const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
+    const int work = 10 * (n > m ? n : m) + 16;
+    double *a = matrix_room(2 * nn + 2 * nm + 2 * (size_t)n + (size_t)work);
+    if (!a) {
+        return STANCE_NO_MEMORY;
+    }
+    double *z = a + nn, *b = z + nn, *f = b + nm, *re = f + nm, *im = re + n, *dwork = im + n;
+    const double none_stays = -1e300, tolerance = 0;
+    int stay = 0, assigned = 0, unreached = 0, warnings = 0, info = 0;
+
+    matrix_transpose(n, n, A, a);
+    matrix_transpose(n, m, B, b);
+    for (int i = 0; i < n; i++) {
+        re[i] = creal(pole[i]);
+        im[i] = cimag(pole[i]);
+    }
+    sb01bd_("C", &n, &m, &n, &none_stays, a, &n, b, &n, re, im, &stay, &assigned, &unreached, f, &m,
+            z, &n, &tolerance, dwork, &work, &warnings, &info, 1);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < m; j++) {
+            K[j * n + i] = -f[i * m + j];
+        }
+    }
+    stance_error error = info == 0 && matrix_finite(nm, K) ? STANCE_OK : STANCE_NUMERICAL;
+    if (error == STANCE_OK && assigned < n) {
+        error = stance_refuse(message, STANCE_BAD_POLES,
+                              "the Schur method placed %d of the %d poles only", assigned, n);
+    }
+    free(a);
+    return error;
+}
+
+stance_error stance_place_schur(int n, int m, const double *A, const double *B, const double *re,
+                                const double *im, double *K, stance_message *message)
+{
+    if (n < 1 || m < 1) {
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "pole placement needs at least one state and one input");
+    }
+    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite((size_t)n * (size_t)m, B)) {
+        return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
+    }
+    double complex *pole = calloc((size_t)n, sizeof *pole), mode = 0;
+    bool reached = true;
+    stance_error error = pole ? STANCE_OK : STANCE_NO_MEMORY;
+    if (error == STANCE_OK) {
+        error = stance_pair_poles(n, re, im, pole, message);
+    }
+    if (error == STANCE_OK) {
+        error = stance_hautus(n, m, A, B, EVERY_MODE, &mode, &reached);
+    }
+    if (error == STANCE_OK) {
+        error = reached ? assign(n, m, A, B, pole, K, message) : uncontrollable(message, mode);
+    }
+    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL) {
+        stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
+    }
+    free(pole);
+    return error;
+}

@@ -1,0 +1,378 @@
+/* riccati.c - linear quadratic regulators, continuous and sampled.
+ *
+ * Continuous: X of  Q + A' X + X A - X B R^-1 B' X = 0, then K = R^-1 B' X.
+ *
+ * Sampled: x' = A x + B u with u held over T. With F = [A B; 0 0], (x, u) moves as exp(F t), and
+ * the cost of one interval is (x, u)' W (x, u),
+ *
+ *   W = integral over 0 ... T of exp(F' t) diag(Q, R) exp(F t) dt = [Qd Sd; Sd' Rd],
+ *
+ * exactly. Van Loan (IEEE Trans. Automatic Control 23 (1978) 395-404) reads it off one exponential:
+ *
+ *   exp([-F' diag(Q, R); 0 F] T) = [. G; 0 E],   W = E' G,   E = [Ad Bd; 0 I].
+ *
+ * Then X = Ad' X Ad - (Sd + Ad' X Bd) (Rd + Bd' X Bd)^-1 (Sd + Ad' X Bd)' + Qd and
+ * K = (Rd + Bd' X Bd)^-1 (Sd + Ad' X Bd)'. SLICOT's SB02OD solves both equations by deflating
+ * subspaces of the extended pencil, which inverts neither R nor Ad. What rounding leaves there (the
+ * pencil mixes weights of very different size) Newton's method on X takes away: with F = A - B K, X
+ * solves the Lyapunov equation of the loop under that K, F' X + X F + Q + K' R K = 0 or
+ * F' X F - X + Qd + K' Rd K - Sd K - K' Sd' = 0, and gives a better K (Kleinman, IEEE Trans.
+ * Automatic Control 13 (1968) 114-115).
+ */
+#include "control.h"
+
+#include <lapacke.h>
+#include <string.h>
+
+#define NEWTON_STEPS 2
+
+/* SLICOT, Fortran. */
+void sb02od_(const char *dico, const char *jobb, const char *fact, const char *uplo,
+             const char *jobl, const char *sort, const int *n, const int *m, const int *p,
+             const double *a, const int *lda, const double *b, const int *ldb, double *q,
+             const int *ldq, double *r, const int *ldr, double *l, const int *ldl, double *rcond,
+             double *x, const int *ldx, double *alfar, double *alfai, double *beta, double *s,
+             const int *lds, double *t, const int *ldt, double *u, const int *ldu,
+             const double *tol, int *iwork, double *dwork, const int *ldwork, int *bwork, int *info,
+             size_t dico_length, size_t jobb_length, size_t fact_length, size_t uplo_length,
+             size_t jobl_length, size_t sort_length);
+
+/* The regulator of one model: continuous (S all zero), or discrete. */
+typedef struct regulator {
+    int n, m;
+    bool discrete;
+    double *A, *B;     /* [n][n], [n][m] */
+    double *Q, *R, *S; /* [n][n], [m][m], [n][m] */
+    double *X;         /* [n][n] */
+    double *scratch;
+    int *integers;
+} regulator;
+
+static void regulator_free(regulator *g)
+{
+    free(g->A);
+    free(g->integers);
+}
+
+static int work_size(int n, int m)
+{
+    return 16 * (2 * n + m + 1) + 32;
+}
+
+static stance_error regulator_make(regulator *g, int n, int m, bool discrete)
+{
+    const size_t N = (size_t)n, M = (size_t)m, side = 2 * N + M;
+    *g = (regulator){.n = n, .m = m, .discrete = discrete};
+    g->A = matrix_room(3 * N * N + 2 * N * M + M * M + 2 * side * side + 4 * N * N + 6 * N +
+                       2 * (N * N + N * M) + (size_t)work_size(n, m));
+    g->integers = calloc(4 * N + M, sizeof *g->integers);
+    if (!g->A || !g->integers) {
+        regulator_free(g);
+        return STANCE_NO_MEMORY;
+    }
+    g->B = g->A + N * N;
+    g->Q = g->B + N * M;
+    g->R = g->Q + N * N;
+    g->S = g->R + M * M;
+    g->X = g->S + N * M;
+    g->scratch = g->X + N * N;
+    return STANCE_OK;
+}
+
+/* X; a failure of the library means that the pencil has eigenvalues on the border of stability, or
+ * so near that rounding cannot tell. */
+static stance_error solve_riccati(regulator *g)
+{
+    const int n = g->n, m = g->m, side = 2 * n + m, two = 2 * n, work = work_size(n, m), none = 0;
+    double *s = g->scratch, *t = s + side * side, *u = t + side * side, *alpha = u + two * two,
+           *a = alpha + 6 * n, *b = a + n * n, *l = b + n * m, *dwork = l + n * m;
+    double rcond = 0;
+    const double tolerance = 0;
+    int info = 0;
+
+    matrix_transpose(n, n, g->A, a);
+    matrix_transpose(n, m, g->B, b);
+    matrix_transpose(n, m, g->S, l);
+    sb02od_(g->discrete ? "D" : "C", "B", "N", "U", g->discrete ? "N" : "Z", "S", &n, &m, &none, a,
+            &n, b, &n, g->Q, &n, g->R, &m, l, &n, &rcond, g->X, &n, alpha, alpha + two,
+            alpha + 2 * two, s, &side, t, &side, u, &two, &tolerance, g->integers, dwork, &work,
+            g->integers + two + m, &info, 1, 1, 1, 1, 1, 1);
+    const bool good = info == 0 && matrix_finite((size_t)n * (size_t)n, g->X);
+    return good ? STANCE_OK : STANCE_NUMERICAL;
+}
+
+/* K = (R + B' X B)^-1 (S + A' X B)', or R^-1 (X B)' where time is continuous. */
+static stance_error feedback(regulator *g, double *K)
+{
+    const int n = g->n, m = g->m;
+    double *XB = g->scratch, *left = XB + n * m, *right = left + m * m, *BT = right + n * m;
+
+    matrix_multiply(n, n, m, g->X, g->B, XB);
+    matrix_transpose(n, m, g->B, BT);
+    memcpy(left, g->R, (size_t)(m * m) * sizeof *left);
+    if (g->discrete) {
+        matrix_multiply(m, n, m, BT, XB, left);
+        for (int i = 0; i < m * m; i++) {
+            left[i] += g->R[i];
+        }
+        double *AT = BT + n * m;
+        matrix_transpose(n, n, g->A, AT);
+        matrix_multiply(n, n, m, AT, XB, right);
+        for (int i = 0; i < n * m; i++) {
+            right[i] += g->S[i];
+        }
+    } else {
+        memcpy(right, XB, (size_t)(n * m) * sizeof *right);
+    }
+    /* Row-major [n][m] is the right-hand side, column-major [m][n], that Fortran wants; and so is
+     * the answer K', row-major [n][m]. */
+    if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', m, n, left, m, right, m) != 0) {
+        return STANCE_NUMERICAL;
+    }
+    matrix_transpose(n, m, right, K);
+    return matrix_finite((size_t)n * (size_t)m, K) ? STANCE_OK : STANCE_NUMERICAL;
+}
+
+static stance_error is_stable(regulator *g, const double *K, bool *stable)
+{
+    const int n = g->n;
+    double *loop = g->scratch, *re = loop + n * n, *im = re + n;
+    matrix_close(n, g->m, g->A, g->B, K, loop);
+    const stance_error error = stance_eigenvalues(n, loop, re, im);
+    *stable = true;
+    for (int i = 0; error == STANCE_OK && i < n; i++) {
+        *stable = *stable && (g->discrete ? hypot(re[i], im[i]) < 1 : re[i] < 0);
+    }
+    return error;
+}
+
+/* One step of Newton's method: X of the loop under K. */
+static stance_error refine(regulator *g, const double *K)
+{
+    const int n = g->n, m = g->m;
+    double *F = g->scratch, *C = F + n * n, *RK = C + n * n;
+
+    matrix_close(n, m, g->A, g->B, K, F);
+    matrix_multiply(m, m, n, g->R, K, RK);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++) {
+            double sum = -g->Q[i * n + j];
+            for (int k = 0; k < m; k++) {
+                sum -= K[k * n + i] * RK[k * n + j] - g->S[i * m + k] * K[k * n + j] -
+                       g->S[j * m + k] * K[k * n + i];
+            }
+            C[i * n + j] = C[j * n + i] = sum;
+        }
+    }
+    return stance_solve_lyapunov(n, F, g->discrete, C, g->X);
+}
+
+static stance_error check_stabilisable(const regulator *g, stance_message *message)
+{
+    double complex mode = 0;
+    bool reached = true;
+    char text[64];
+    const stance_error error = stance_hautus(
+        g->n, g->m, g->A, g->B, g->discrete ? EXPANDING_MODES : GROWING_MODES, &mode, &reached);
+    if (error != STANCE_OK || reached) {
+        return error;
+    }
+    return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                         "the %s is not stabilisable: no input reaches the mode with eigenvalue %s",
+                         g->discrete ? "sampled system" : "system",
+                         stance_complex_text(mode, text));
+}
+
+/* The whole, for the model and weights in g. */
+static stance_error regulate(regulator *g, double *K, stance_message *message)
+{
+    bool stable = false;
+    stance_error error = check_stabilisable(g, message);
+    if (error != STANCE_OK) {
+        return error;
+    }
+    error = solve_riccati(g);
+    if (error == STANCE_OK) {
+        error = feedback(g, K);
+    }
+    if (error == STANCE_OK) {
+        error = is_stable(g, K, &stable);
+    }
+    for (int i = 0; i < NEWTON_STEPS && error == STANCE_OK && stable; i++) {
+        error = refine(g, K);
+        if (error == STANCE_OK) {
+            error = feedback(g, K);
+        }
+    }
+    if (error == STANCE_NO_MEMORY || (error == STANCE_OK && stable)) {
+        return error;
+    }
+    return stance_refuse(message, STANCE_NUMERICAL,
+                         "the Riccati equation of the regulator has no stabilising solution to "
+                         "working accuracy: the weights differ too much in size");
+}
+
+/* Detectability of the cost: every mode that does not decay must cost something. */
+static stance_error check_seen(int n, const double *A, const double *states,
+                               stance_message *message)
+{
+    const size_t nn = (size_t)n * (size_t)n;
+    double *transposed = matrix_room(2 * nn);
+    double complex mode = 0;
+    bool seen = true;
+    char text[64];
+
+    if (!transposed) {
+        return STANCE_NO_MEMORY;
+    }
+    double *root = transposed + nn;
+    matrix_transpose(n, n, A, transposed);
+    for (int i = 0; i < n; i++) {
+        root[i * n + i] = sqrt(states[i]);
+    }
+    const stance_error error = stance_hautus(n, n, transposed, root, GROWING_MODES, &mode, &seen);
+    free(transposed);
+    return error != STANCE_OK || seen
+               ? error
+               : stance_refuse(message, STANCE_BAD_ARGUMENT,
+                               "the weights of the states do not see the mode with eigenvalue %s, "
+                               "which does not decay by itself",
+                               stance_complex_text(mode, text));
+}
+
+static stance_error check_weights(int n, int m, const double *A, const double *B,
+                                  const double *states, const double *torques,
+                                  stance_message *message)
+{
+    if (n < 1 || m < 1 || !matrix_finite((size_t)n * (size_t)n, A) ||
+        !matrix_finite((size_t)n * (size_t)m, B)) {
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "a regulator needs finite A and B with at least one state and input");
+    }
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(states[i]) || states[i] < 0) {
+            return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                 "weight %d of the states is %.6g: it must be finite and not "
+                                 "negative",
+                                 i, states[i]);
+        }
+    }
+    for (int j = 0; j < m; j++) {
+        if (!isfinite(torques[j]) || torques[j] <= 0) {
+            return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                 "weight %d of the torques is %.6g: it must be finite and "
+                                 "positive",
+                                 j, torques[j]);
+        }
+    }
+    return check_seen(n, A, states, message);
+}
+
+static stance_error finish(stance_error error, stance_message *message)
+{
+    if (error == STANCE_NO_MEMORY) {
+        stance_refuse(message, error, "linear quadratic regulator: %s", stance_error_text(error));
+    }
+    return error;
+}
+
+stance_error stance_lqr(int n, int m, const double *A, const double *B, const double *states,
+                        const double *torques, double *K, stance_message *message)
+{
+    regulator g;
+    stance_error error = check_weights(n, m, A, B, states, torques, message);
+    if (error != STANCE_OK) {
+        return finish(error, message);
+    }
+    error = regulator_make(&g, n, m, false);
+    if (error != STANCE_OK) {
+        return finish(error, message);
+    }
+    memcpy(g.A, A, (size_t)(n * n) * sizeof *A);
+    memcpy(g.B, B, (size_t)(n * m) * sizeof *B);
+    for (int i = 0; i < n; i++) {
+        g.Q[i * n + i] = states[i];
+    }
+    for (int j = 0; j < m; j++) {
+        g.R[j * m + j] = torques[j];
+    }
+    error = regulate(&g, K, message);
+    regulator_free(&g);
+    return finish(error, message);
+}
+
+/* Fills g with Ad, Bd, Qd, Sd, Rd. */
+static stance_error sample_cost(regulator *g, const double *A, const double *B, double T,
+                                const double *states, const double *torques)
+{
+    const int n = g->n, m = g->m, side = n + m, twice = 2 * side;
+    const size_t block = (size_t)side * (size_t)side;
+    double *pencil = matrix_room(8 * block + 2 * block);
+    if (!pencil) {
+        return STANCE_NO_MEMORY;
+    }
+    double *E = pencil + 4 * block, *transposed = E + 4 * block, *W = transposed + block;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < side; j++) {
+            const double f = j < n ? A[i * n + j] : B[i * m + j - n];
+            pencil[j * twice + i] = -f;
+            pencil[(side + i) * twice + side + j] = f;
+        }
+    }
+    for (int i = 0; i < side; i++) {
+        pencil[i * twice + side + i] = i < n ? states[i] : torques[i - n];
+    }
+    const stance_error error = stance_exponential(twice, pencil, T, E, NULL);
+    double *G = pencil; /* not needed any more */
+    for (int i = 0; i < side; i++) {
+        for (int j = 0; j < side; j++) {
+            G[i * side + j] = E[i * twice + side + j];
+            transposed[j * side + i] = E[(side + i) * twice + side + j];
+        }
+    }
+    matrix_multiply(side, side, side, transposed, G, W);
+    for (int i = 0; i < side; i++) {
+        for (int j = 0; j < side; j++) {
+            const double w = 0.5 * (W[i * side + j] + W[j * side + i]);
+            if (i < n && j < n) {
+                g->Q[i * n + j] = w;
+                g->A[i * n + j] = transposed[j * side + i];
+            } else if (i < n) {
+                g->S[i * m + j - n] = w;
+                g->B[i * m + j - n] = transposed[j * side + i];
+            } else if (j >= n) {
+                g->R[(i - n) * m + j - n] = w;
+            }
+        }
+    }
+    free(pencil);
+    return error;
+}
+
+stance_error stance_lqr_sampled(int n, int m, const double *A, const double *B, double T,
+                                const double *states, const double *torques, double *K,
+                                stance_message *message)
+{
+    regulator g;
+    stance_error error = check_weights(n, m, A, B, states, torques, message);
+    if (error != STANCE_OK) {
+        return finish(error, message);
+    }
+    if (!isfinite(T) || T <= 0) {
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "a sampled regulator needs a sample time above 0, not %.6g s", T);
+    }
+    error = regulator_make(&g, n, m, true);
+    if (error != STANCE_OK) {
+        return finish(error, message);
+    }
+    error = sample_cost(&g, A, B, T, states, torques);
+    if (error == STANCE_OK) {
+        error = regulate(&g, K, message);
+    } else {
+        stance_refuse(message, error, "discretisation over %.6g s: %s", T,
+                      stance_error_text(error));
+    }
+    regulator_free(&g);
+    return finish(error, message);
+}
