@@ -219,7 +219,7 @@ static void add_controller(struct collection *c, const struct scenario_values *v
 {
     static const char *const laws[] = {"none", "hold", "state-feedback", "decoupling"};
     static const char *const designs[] = {"place", "gains"};
-    add_text(c, "controller.kind", v->law >= 0 && v->law < 3 ? laws[v->law] : "unknown");
+    add_text(c, "controller.kind", v->law >= 0 && v->law < 4 ? laws[v->law] : "unknown");
     if (v->law == LAW_NONE) {
         return;
     }
