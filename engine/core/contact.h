@@ -13,8 +13,9 @@
  *
  * Choice among several solutions (frictional impacts have them): the one that leaves the least
  * kinetic energy, r.(uf + u)/2 added by the impulses; ties go to the earlier mode in the order
- * open, stick, forward, backward. Where legs are parallel the operator is singular with both feet
- * sticking (rank 3 of 4): the redundant impulse is set to zero, velocities stay unique, guard
+ * open, stick, forward, backward. Where the operator is indefinite the solution with the most
+ * contacts that carry, ties as before. Where legs are parallel the operator is singular with both
+ * feet sticking (rank 3 of 4): the redundant impulse is set to zero, velocities stay unique, guard
  * 1e-13. D need not be symmetric (an exact Newton linearisation is not) nor positive (where a law
  * answers contact forces at once it is not).
  */
@@ -80,6 +81,12 @@ static inline void contact_offer(const contact_problem *p, lanes r[2][2], contac
                           CONTACT_ENDLESS * p->sliding[i], slip);
         const lanes room = choose(mask_less(slip, lanes_of(0)), bound - r[i][1], bound + r[i][1]);
         violation = lanes_max(lanes_min(lanes_abs(slip), room * tangential), violation);
+    }
+    if (p->indefinite) { /* no energy to compare: stay on the ground where that is possible */
+        const lanes size = lanes_abs(energy);
+        energy = 0 * size;
+        for (int i = 0; i < p->contacts; i++)
+            energy -= choose(mask_less(lanes_of(0), r[i][0]), lanes_of(1), lanes_of(0));
     }
     const mask number = mask_finite(energy) & mask_finite(violation);
     const mask valid = number & mask_less_equal(violation, p->tolerance);

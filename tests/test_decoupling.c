@@ -1,0 +1,343 @@
+/* The decoupling law: every pair of coordinates follows the error dynamics that it promises, in
+ * flight and on a foot; singular postures, torque limits, delays, switching; lanes. */
+#include "support.h"
+
+enum { PAIRS = 10, HORIZON = 20 };
+
+/* Postures (theta, q1, q2) from which a pair is tracked for HORIZON steps of 10 ms without coming
+ * near a singular posture, in flight, and with foot 1 on the ground; NAN: none is known. */
+static const double flight[PAIRS][3] = {
+    {1.489, -1.580, 1.490},  {1.077, -1.261, 1.554},  {0.641, -1.460, 1.593},
+    {-0.697, -1.556, 1.518}, {1.475, 1.580, 0.561},   {1.497, -1.508, 1.445},
+    {-1.485, -1.376, 1.005}, {-0.702, -1.596, 0.774}, {0.894, -0.590, 1.596},
+    {1.068, 1.100, -1.600},
+};
+static const double standing[PAIRS][3] = {
+    {-0.689, 0.662, -1.486}, {-0.689, 0.662, -1.486}, {-0.729, 0.783, -1.225},
+    {-0.354, -0.750, 1.482}, {NAN, NAN, NAN},         {-0.689, 0.662, -1.486},
+    {-0.689, 0.662, -1.486}, {-0.468, 0.686, -1.502}, {-0.660, -0.190, -0.295},
+    {-0.662, 0.376, 1.229},
+};
+
+/* Continuous, no torque limit; set-points 5 cm or 0.05 rad away that move. */
+static stance_case pair_case(int pair, const double *posture, bool stands, double ki)
+{
+    const stance_scene *scene = stance_scene_find("biped");
+    static const double rates[5] = {0.1, 0.05, 0.1, -0.2, 0.15};
+    stance_case c = plain_case();
+    int controlled[2];
+    c.decouples = true;
+    c.contacts = stands;
+    c.friction = 50;
+    c.support = stands ? 0 : -1;
+    c.fall_height = -1e9;
+    c.step = 0.01;
+    c.steps = HORIZON;
+    c.position[1] = 3;
+    memcpy(&c.position[2], posture, 3 * sizeof *posture);
+    memcpy(c.velocity, rates, sizeof rates);
+    if (stands)
+        scene->stand(c.robot, 0, c.position, c.velocity);
+    assert_true(stance_pair(scene, pair, &controlled[0], &controlled[1]));
+    for (int i = 0; i < 2; i++)
+        c.servo[i] = (stance_servo){.coordinate = controlled[i],
+                                    .setpoint = c.position[controlled[i]] + (i ? -0.05 : 0.05),
+                                    .ramp = 0.1,
+                                    .duration = INFINITY,
+                                    .kp = 100,
+                                    .ki = ki,
+                                    .kd = 12,
+                                    .integral_limit = INFINITY};
+    return c;
+}
+
+/* Where the error dynamics e''' + kd e'' + kp e' + ki e = 0 (e the integral's rate; of order two
+ * where ki is 0) bring a coordinate: exp of the companion matrix by scaling and squaring of its
+ * Taylor series. */
+static double promised(const stance_case *c, int i)
+{
+    const stance_servo *const s = &c->servo[i];
+    const double T = c->step * (double)c->steps;
+    double x[3] = {0, s->setpoint - c->position[s->coordinate],
+                   s->ramp - c->velocity[s->coordinate]}; /* integral, error, its rate */
+    const int parts = 1000;
+    for (int k = 0; k < parts; k++) {
+        const double h = T / parts;
+        double term[3] = {x[0], x[1], x[2]};
+        for (int n = 1; n < 12; n++) {
+            const double next[3] = {term[1], term[2],
+                                    -s->ki * term[0] - s->kp * term[1] - s->kd * term[2]};
+            for (int j = 0; j < 3; j++) {
+                term[j] = next[j] * h / n;
+                x[j] += term[j];
+            }
+        }
+    }
+    return s->setpoint + s->ramp * T - x[1];
+}
+
+static double worst_error(const char *method, bool stands, double ki)
+{
+    double worst = 0;
+    for (int pair = 0; pair < PAIRS; pair++) {
+        const double *const posture = stands ? standing[pair] : flight[pair];
+        if (isnan(posture[0]))
+            continue;
+        stance_case c = pair_case(pair, posture, stands, ki);
+        stance_result r;
+        c.tolerance = 1e-10;
+        if (stands)
+            c.steps /= 2;
+        if (strcmp(method, "lagrange") == 0)
+            c.step = 1e-3, c.steps *= 10;
+        kernel_of(method, NULL)->run(&c, &r, 1);
+        assert_int_equal(r.status, STANCE_DONE);
+        assert_int_equal(r.degraded_samples, 0);
+        assert_int_equal(r.steps, c.steps);
+        assert_true(!stands || r.least_normal_force > 0);
+        for (int i = 0; i < 2; i++)
+            worst = fmax(fabs(r.position[c.servo[i].coordinate] - promised(&c, i)), worst);
+    }
+    return worst;
+}
+
+static void pairs_follow(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"event-driven", "capturing", "lagrange"};
+    for (int m = 0; m < 3; m++)
+        for (int stands = 0; stands < 2; stands++) {
+            const double pd = worst_error(methods[m], stands, 0);
+            const double pid = worst_error(methods[m], stands, 300);
+            print_message("# %s, %s: off the promised motion by %.1e (PD), %.1e (PID)\n",
+                          methods[m], stands ? "on one foot" : "in flight", pd, pid);
+            assert_true(pd < 1e-6 && pid < 1e-6);
+        }
+}
+
+/* Sampled, and once a step with implicit methods, the law converges to the continuous one. */
+static void sampling_converges(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"capturing", "implicit", "midpoint"};
+    for (int m = 0; m < 3; m++) {
+        double error[2];
+        for (int fine = 0; fine < 2; fine++) {
+            error[fine] = 0;
+            for (int pair = 0; pair < PAIRS; pair++) {
+                stance_case c = pair_case(pair, flight[pair], false, 300);
+                stance_result r;
+                c.step = fine ? 1e-4 : 1e-3;
+                c.steps = lround(0.05 / c.step);
+                c.tolerance = 1e-10;
+                c.sample_every = m == 0;
+                kernel_of(methods[m], NULL)->run(&c, &r, 1);
+                assert_int_equal(r.status, STANCE_DONE);
+                for (int i = 0; i < 2; i++)
+                    error[fine] = fmax(fabs(r.position[c.servo[i].coordinate] - promised(&c, i)),
+                                       error[fine]);
+            }
+        }
+        print_message("# %s: off by %.1e at 1 ms, %.1e at 0.1 ms\n", methods[m], error[0],
+                      error[1]);
+        assert_true(error[0] < 5e-3 && error[1] < 0.15 * error[0]);
+    }
+}
+
+/* The inertia matrix against the kinetic energy. */
+static void inertia_is_energy(void **state)
+{
+    (void)state;
+    const stance_scene *scene = stance_scene_find("biped");
+    const stance_case c = plain_case();
+    uint64_t seed = 4;
+    for (int k = 0; k < 100; k++) {
+        double q[5], v[5], A[25], zero[5] = {0}, sum = 0;
+        for (int i = 0; i < 5; i++)
+            q[i] = uniform(&seed, -3, 3), v[i] = uniform(&seed, -3, 3);
+        scene->inertia(c.robot, q, A);
+        for (int i = 0; i < 5; i++)
+            for (int j = 0; j < 5; j++)
+                sum += 0.5 * v[i] * A[5 * i + j] * v[j];
+        const double kinetic = scene->energy(c.robot, q, v) - scene->energy(c.robot, q, zero);
+        assert_true(fabs(sum - kinetic) < 1e-11 * (1 + kinetic));
+    }
+}
+
+/* Driven into a singular posture the law goes on with finite torques and says so; with a limit it
+ * stays within it. */
+static void singular_is_survived(void **state)
+{
+    (void)state;
+    for (int limited = 0; limited < 2; limited++) {
+        static const double upright[3] = {0, 0, 0}; /* no torque lifts the trunk here */
+        stance_case c = pair_case(0, upright, false, 0);
+        stance_result r;
+        c.steps = 100;
+        c.sample_every = 1;
+        c.tolerance = 1e-8;
+        if (limited)
+            c.torque_limit = 20;
+        kernel_of("capturing", NULL)->run(&c, &r, 1);
+        print_message("# x-z from upright, %s: %d of %d samples degraded, torque up to %.3g N m\n",
+                      limited ? "20 N m" : "no limit", (int)r.degraded_samples, (int)r.steps,
+                      r.peak_torque);
+        assert_true(isfinite(r.peak_torque) && r.peak_torque > 0);
+        assert_true(r.status == STANCE_DONE || !limited);
+        assert_true(!limited || r.peak_torque <= 20);
+        assert_true(r.degraded_samples > 0);
+    }
+}
+
+/* Errors that cannot be driven away do not pile up: not while a torque is at its limit, and not
+ * beyond the integral's own. */
+static void integrals_are_bounded(void **state)
+{
+    (void)state;
+    stance_case c = pair_case(9, flight[9], false, 50);
+    stance_trajectory t = {.interval = 0.01, .rows = 601};
+    double position[601 * 5], velocity[601 * 5], torque[601 * 2], force[601 * 4], gap[601 * 2];
+    stance_result r;
+    t.position = position, t.velocity = velocity, t.torque = torque, t.force = force, t.gap = gap;
+    c.trajectory = &t;
+    c.steps = 600;
+    c.sample_every = 1;
+    c.position[1] = 1000; /* long enough a fall */
+    c.tolerance = 1e-8;
+    c.torque_limit = 4; /* at its limit for most of the way */
+    for (int i = 0; i < 2; i++) {
+        c.servo[i].kp = 16, c.servo[i].kd = 8, c.servo[i].ki = 8;
+        c.servo[i].ramp = 0;
+        c.servo[i].setpoint = c.position[3 + i] + (i ? -1 : 1);
+    }
+    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    double beyond = 0;
+    for (int k = 0; k < 601; k++)
+        beyond = fmax(position[5 * k + 3] - c.servo[0].setpoint, beyond);
+    const double settled = fabs(r.position[3] - c.servo[0].setpoint);
+    print_message("# weak robot: overshoots 1 rad by %.3f, %.1e off at the end\n", beyond, settled);
+    assert_true(settled < 0.02 && beyond < 0.5);
+}
+
+/* A one-sample delay: the linear loop with it loses its stability where the spectral radius of
+ * [[Ad, Bd], [-K, 0]] reaches 1. */
+static void delay_shortens(void **state)
+{
+    (void)state;
+    const stance_scene *scene = stance_scene_find("biped");
+    stance_case c = balance_case(1e-6, 0);
+    const stance_equilibrium_choice choice = {0, {-0.41, NAN, 0.82}, false};
+    stance_equilibrium equilibrium;
+    double A[36], B[12], Ad[36], Bd[12], loop[64], re[8], im[8], low = 1e-3, high = 0.3;
+    assert_int_equal(scene->equilibrium(c.robot, &choice, &equilibrium, NULL), STANCE_OK);
+    assert_int_equal(scene->linearise(c.robot, &equilibrium, A, B), STANCE_OK);
+    for (int round = 0; round < 50; round++) {
+        const double T = 0.5 * (low + high);
+        double radius = 0;
+        memset(loop, 0, sizeof loop);
+        assert_int_equal(stance_discretise(6, 2, A, B, T, Ad, Bd), STANCE_OK);
+        for (int i = 0; i < 6; i++) {
+            for (int j = 0; j < 6; j++)
+                loop[8 * i + j] = Ad[6 * i + j];
+            for (int j = 0; j < 2; j++) {
+                loop[8 * i + 6 + j] = Bd[2 * i + j];
+                loop[8 * (6 + j) + i] = -c.gain[j][i];
+            }
+        }
+        assert_int_equal(stance_eigenvalues(8, loop, re, im), STANCE_OK);
+        for (int i = 0; i < 8; i++)
+            radius = fmax(hypot(re[i], im[i]), radius);
+        if (radius < 1)
+            low = T;
+        else
+            high = T;
+    }
+    c.settle = false;
+    c.delay = 1;
+    c.torque_limit = INFINITY;
+    c.tolerance = 1e-10;
+    double size[2];
+    for (int side = 0; side < 2; side++) {
+        stance_result r;
+        c.step = low * (side ? 1.01 : 0.99);
+        c.sample_every = 1;
+        c.steps = 500;
+        kernel_of("capturing", NULL)->run(&c, &r, 1);
+        assert_int_equal(r.status, STANCE_DONE);
+        size[side] = fabs(r.position[2] - c.target[0]);
+    }
+    print_message("# with a delay T* = %.6f s; 1e-6 rad became %.1e just below, %.1e just above\n",
+                  low, size[0], size[1]);
+    assert_true(low < 0.13 && size[0] < 3e-6 && size[1] > 3e-6);
+}
+
+/* Inside the ellipsoid a switching law is the linear one, outside it is the other: one sample from
+ * either side equals the run with that law alone. */
+static void switching_is_either(void **state)
+{
+    (void)state;
+    for (int far = 0; far < 2; far++) {
+        stance_case alone = balance_case(-0.02, 0), c;
+        stance_result a, b;
+        alone.step = 0.01, alone.steps = 1, alone.sample_every = 1, alone.tolerance = 1e-10;
+        alone.settle = false;
+        c = alone;
+        c.switches = true;
+        for (int j = 0; j < 6; j++)
+            c.switch_axis[j] = far ? 0.019 : 0.021;
+        memcpy(c.far.target, c.target, sizeof c.far.target);
+        for (int i = 0; i < 2; i++)
+            c.far.gain[i][1 + i] = 100, c.far.gain[i][4 + i] = 10;
+        if (far) {
+            memcpy(alone.gain, c.far.gain, sizeof alone.gain);
+            memset(alone.feedforward, 0, sizeof alone.feedforward);
+        }
+        kernel_of("capturing", NULL)->run(&alone, &a, 1);
+        kernel_of("capturing", NULL)->run(&c, &b, 1);
+        assert_memory_equal(a.position, b.position, sizeof a.position);
+        assert_memory_equal(a.velocity, b.velocity, sizeof a.velocity);
+    }
+}
+
+/* The same bits in every lane of every width, sampled and continuous, falling and standing. */
+static void lanes_agree(void **state)
+{
+    (void)state;
+    enum { N = 120 };
+    static const char *const methods[] = {"implicit", "capturing", "lagrange"};
+    stance_case cases[N];
+    stance_result first[N], other[N];
+    uint64_t seed = 21;
+    for (int i = 0; i < N; i++) {
+        const double posture[3] = {uniform(&seed, -1, 1), uniform(&seed, -1, 1),
+                                   uniform(&seed, -1, 1)};
+        cases[i] = pair_case(i % PAIRS, posture, i % 3 > 0, i % 4 ? 0 : 100);
+        cases[i].sample_every = i % 5 > 0;
+        cases[i].torque_limit = i % 7 ? 10 : INFINITY;
+        cases[i].friction = 0.5;
+        cases[i].step = 1e-3;
+        cases[i].steps = 60;
+        cases[i].tolerance = 1e-6;
+        cases[i].delay = i % 5 > 0 && i % 2;
+    }
+    for (int m = 0; m < 3; m++) {
+        kernel_of(methods[m], "scalar")->run(cases, first, N);
+        for (int rank = 0; stance_isa(rank); rank++) {
+            const stance_kernel *const kernel = kernel_of(methods[m], stance_isa(rank));
+            kernel->run(cases, other, N);
+            for (int i = 0; i < N; i++)
+                assert_memory_equal(&first[i], &other[i], sizeof first[i]);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pairs_follow),          cmocka_unit_test(sampling_converges),
+        cmocka_unit_test(inertia_is_energy),     cmocka_unit_test(singular_is_survived),
+        cmocka_unit_test(integrals_are_bounded), cmocka_unit_test(delay_shortens),
+        cmocka_unit_test(switching_is_either),   cmocka_unit_test(lanes_agree),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
