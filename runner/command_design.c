@@ -98,12 +98,11 @@ static bool gains(struct report *r, stance_message *message)
         }
         return true;
     }
-    if (values->design == DESIGN_GAINS) {
-        memcpy(r->K, values->gains, bytes);
-        return true;
-    }
-    return stance_place(r->states, r->inputs, r->A, r->B, values->pole_re, values->pole_im, r->K,
-                        &r->sweeps, &r->condition, message) == STANCE_OK;
+    struct resolved_gains how;
+    const bool good = resolve_gains(r->scenario->scene, values, r->A, r->B, r->K, &how, message);
+    r->sweeps = how.sweeps;
+    r->condition = how.condition;
+    return good;
 }
 
 static bool closed_loop(struct report *r, stance_message *message)

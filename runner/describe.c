@@ -87,6 +87,9 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
     case FIELD_POLES:
         snprintf(buffer, size, "list of %zu numbers, %s", field->items, field->unit);
         break;
+    case FIELD_NUMBERS:
+        snprintf(buffer, size, "list of %zu numbers, %s", field->items, field->unit);
+        break;
     case FIELD_MATRIX:
         snprintf(buffer, size, "%zu lists of %zu numbers, %s", field->items, field->columns,
                  field->unit);
@@ -120,7 +123,10 @@ static const char *use_text(enum field_use use)
         [USE_CONTROL] = "Only with a controller.kind other than none.",
         [USE_HOLD] = "Only with controller.kind hold.",
         [USE_FEEDBACK] = "Only with controller.kind state-feedback.",
-        [USE_PLACE] = "Only with controller.kind state-feedback and controller.design place.",
+        [USE_PLACE] = "Only with controller.kind state-feedback and controller.design place or "
+                      "place-schur.",
+        [USE_LQR] = "Only with controller.kind state-feedback and controller.design lqr.",
+        [USE_MODEL] = "Only with controller.kind state-feedback; not with controller.design gains.",
         [USE_GAINS] = "Only with controller.kind state-feedback and controller.design gains.",
         [USE_EQUILIBRIUM] = "Only where the run starts from an equilibrium.",
         [USE_STATE] = "Only where the run starts from a state.",
@@ -222,7 +228,8 @@ static json_t *number_schema(const struct scenario_field *field)
                             json_number(field->low));
     }
     if (isfinite(field->high)) {
-        json_object_set_new(schema, "maximum", json_number(field->high));
+        json_object_set_new(schema, field->high_open ? "exclusiveMaximum" : "maximum",
+                            json_number(field->high));
     }
     if (field->words) {
         return json_pack("{s:[o,{s:s}]}", "anyOf", schema, "const", field->words[0]);
@@ -293,6 +300,11 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
     }
     case FIELD_POLES:
         return list_schema(complex_schema(schema), field->items);
+    case FIELD_NUMBERS: {
+        char item[sizeof field->path + 2];
+        snprintf(item, sizeof item, "%s[]", field->path);
+        return list_schema(number_schema(schema_find(schema, item)), field->items);
+    }
     case FIELD_MATRIX:
         return list_schema(
             list_schema(number_schema(schema_find(schema, "controller.gains[][]")), field->columns),

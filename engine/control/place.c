@@ -672,7 +672,7 @@ static stance_error solve(problem *p, double *K, candidate *c, stance_message *m
     const size_t bytes = (size_t)p->n * (size_t)p->m * sizeof *K;
     candidate mirrored = {0};
     int before = 0;
-    number *best = calloc((size_t)p->n * (size_t)p->n, sizeof *best);
+    number *best = p->n > 0 ? calloc((size_t)p->n * (size_t)p->n, sizeof *best) : NULL;
     double *other = malloc(bytes);
     stance_error error = best && other ? STANCE_OK : STANCE_NO_MEMORY;
     if (error == STANCE_OK) {
