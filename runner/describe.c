@@ -85,8 +85,6 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         snprintf(buffer, size, "list of: %s", words);
         break;
     case FIELD_POLES:
-        snprintf(buffer, size, "list of %zu numbers, %s", field->items, field->unit);
-        break;
     case FIELD_NUMBERS:
         snprintf(buffer, size, "list of %zu numbers, %s", field->items, field->unit);
         break;
@@ -123,10 +121,9 @@ static const char *use_text(enum field_use use)
         [USE_CONTROL] = "Only with a controller.kind other than none.",
         [USE_HOLD] = "Only with controller.kind hold.",
         [USE_FEEDBACK] = "Only with controller.kind state-feedback.",
-        [USE_PLACE] = "Only with controller.kind state-feedback and controller.design place or "
-                      "place-schur.",
+        [USE_PLACE] = "Only with controller.kind state-feedback, design place or place-schur.",
         [USE_LQR] = "Only with controller.kind state-feedback and controller.design lqr.",
-        [USE_MODEL] = "Only with controller.kind state-feedback; not with controller.design gains.",
+        [USE_MODEL] = "Only with controller.kind state-feedback, any design but gains.",
         [USE_GAINS] = "Only with controller.kind state-feedback and controller.design gains.",
         [USE_EQUILIBRIUM] = "Only where the run starts from an equilibrium.",
         [USE_STATE] = "Only where the run starts from a state.",
