@@ -2,7 +2,7 @@
  * own, which gains a design leads to, and what is said where there is none. */
 #include "reading.h"
 
-#include "../runner/resolve.h"
+#include "../runner/design.h"
 
 /* A scenario of the default robot with these keys of the controller. */
 static const char *designed(const char *keys)
@@ -152,12 +152,157 @@ static void impossible_designs(void **state)
                "be told from its mirror image");
 }
 
+/* ---- the report ------------------------------------------------------------------------------ */
+
+static const struct design_report *report(struct scenario *s, const char *keys)
+{
+    static struct design_report r;
+    stance_message message;
+    read_good(s, designed(keys), NULL, 0);
+    if (!design_compute(&r, s, &message)) {
+        fail_msg("%s", message.text);
+    }
+    return &r;
+}
+
+/* What part of the room that the equilibrium leaves the torques and the force on the foot use up at
+ * X, the largest over all bounds. */
+static double room_used(const struct design_report *r, const double *X)
+{
+    const struct scenario_values *v = &r->scenario->base;
+    double force[2], by_state[2 * N], by_torque[2 * M], most = 0;
+    assert_int_equal(
+        r->scenario->scene->contact_force(r->model, &r->equilibrium, force, by_state, by_torque),
+        STANCE_OK);
+    const double weight = force[0];
+    for (int i = 0; i < M; i++) {
+        double torque = r->equilibrium.torque[i], change = 0;
+        for (int j = 0; j < N; j++) {
+            change -= r->K[i * N + j] * X[j];
+        }
+        most = fmax(
+            most, fmax(change / (v->torque_limit - torque), -change / (v->torque_limit + torque)));
+        force[0] += by_torque[i] * change;
+        force[1] += by_torque[M + i] * change;
+    }
+    for (int j = 0; j < N; j++) {
+        force[0] += by_state[j] * X[j];
+        force[1] += by_state[N + j] * X[j];
+    }
+    most = fmax(most, (weight - force[0]) / weight);
+    return fmax(most,
+                (fabs(force[1]) + v->friction * (weight - force[0])) / (v->friction * weight));
+}
+
+/* Points of the set's surface use up at most all of the room, and the worst of them nearly all. */
+static void check_set(const struct design_report *r)
+{
+    uint64_t random = 11;
+    double most = 0, direction[N] = {0};
+    assert_true(r->set.exists && r->set.binding >= 0);
+    for (int k = 0; k < 60000; k++) {
+        /* Far around at first, then ever nearer to the worst point so far. */
+        const double spread = exp(-k / 4000.0);
+        double X[N], V = 0;
+        for (int i = 0; i < N; i++) {
+            X[i] = direction[i] + r->set.extent[i] * spread * uniform(&random, -1, 1);
+        }
+        for (int i = 0; i < N; i++) {
+            for (int j = 0; j < N; j++) {
+                V += X[i] * r->set.P[i * N + j] * X[j];
+            }
+        }
+        for (int i = 0; i < N; i++) {
+            X[i] *= sqrt(r->set.level / V);
+        }
+        const double used = room_used(r, X);
+        assert_true(used <= 1 + 1e-9);
+        if (used > most) {
+            most = used;
+            memcpy(direction, X, sizeof direction);
+        }
+    }
+    assert_true(most > 0.99);
+}
+
+static void sets_keep_within_bounds(void **state)
+{
+    struct scenario s;
+    char name[64];
+    (void)state;
+    check_set(report(&s, "poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6], torque_limit: 10"));
+    scenario_free(&s);
+    const struct design_report *r =
+        report(&s, "design: lqr, design_time: sampled, sample_time: 0.02, torque_limit: 12");
+    check_set(r);
+    assert_string_equal(design_bound_name(r, 1, name), "torque limit of hip1, negative");
+    scenario_free(&s);
+    r = report(&s, "design: lqr, torque_limit: 1000");
+    check_set(r);
+    assert_string_equal(design_bound_name(r, r->set.binding, name),
+                        "friction cone, force backward");
+    scenario_free(&s);
+    /* Where the limit is below what the equilibrium takes there is no room. */
+    assert_true(report(&s, "design: lqr, torque_limit: 5")->set.level == 0);
+    scenario_free(&s);
+}
+
+/* One sample after the other, by hand: growth as the report's spectral radius says. */
+static void sampled_loop_grows_as_reported(void **state)
+{
+    (void)state;
+    for (int delay = 0; delay < 2; delay++) {
+        struct scenario s;
+        char keys[128];
+        double Ad[N * N], Bd[N * M], X[N] = {1, 0, 0, 0, 0, 0}, u[M] = {0}, size = 0;
+        snprintf(keys, sizeof keys, "design: lqr, sample_time: 0.06, delay: %d", delay);
+        const struct design_report *r = report(&s, keys);
+        assert_int_equal(stance_discretise(N, M, r->A, r->B, 0.06, Ad, Bd), STANCE_OK);
+        double logarithm = 0;
+        for (int k = 0; k < 4000; k++) {
+            double next[N], late[M];
+            size = 0;
+            for (int i = 0; i < M; i++) {
+                late[i] = 0;
+                for (int j = 0; j < N; j++) {
+                    late[i] -= r->K[i * N + j] * X[j];
+                }
+            }
+            for (int i = 0; i < N; i++) {
+                next[i] = 0;
+                for (int j = 0; j < N; j++) {
+                    next[i] += Ad[i * N + j] * X[j];
+                }
+                for (int j = 0; j < M; j++) {
+                    next[i] += Bd[i * M + j] * (delay ? u[j] : late[j]);
+                }
+                size = fmax(size, fabs(next[i]));
+            }
+            for (int i = 0; i < N; i++) {
+                X[i] = next[i] / size;
+            }
+            for (int i = 0; i < M; i++) {
+                u[i] = late[i] / size;
+            }
+            logarithm += k >= 2000 ? log(size) : 0;
+        }
+        assert_true(fabs(exp(logarithm / 2000) - r->radius) < 1e-3);
+        assert_int_equal(r->sampled, delay ? N + M : N);
+        assert_true(r->stable == (r->radius < 1));
+        assert_true(r->stable == (0.06 < r->critical[delay]));
+        assert_true(r->set.exists == (r->stable && !delay));
+        scenario_free(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sample_time_may_be_design),
         cmocka_unit_test(every_design_reaches_the_case),
         cmocka_unit_test(impossible_designs),
+        cmocka_unit_test(sets_keep_within_bounds),
+        cmocka_unit_test(sampled_loop_grows_as_reported),
     };
     return cmocka_run_group_tests_name("scenario_control", tests, NULL, NULL);
 }
