@@ -85,6 +85,7 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         snprintf(buffer, size, "list of: %s", words);
         break;
     case FIELD_POLES:
+    case FIELD_NUMBERS:
         snprintf(buffer, size, "list of %zu numbers, %s", field->items, field->unit);
         break;
     case FIELD_MATRIX:
@@ -122,7 +123,9 @@ static const char *use_text(enum field_use use)
         [USE_DECOUPLING] = "Only with controller.kind decoupling, or controller.far decoupling.",
         [USE_FAR] = "Only with a controller.far other than none.",
         [USE_FEEDBACK] = "Only with controller.kind state-feedback.",
-        [USE_PLACE] = "Only with controller.kind state-feedback and controller.design place.",
+        [USE_PLACE] = "Only with controller.kind state-feedback, design place or place-schur.",
+        [USE_LQR] = "Only with controller.kind state-feedback and controller.design lqr.",
+        [USE_MODEL] = "Only with controller.kind state-feedback, any design but gains.",
         [USE_GAINS] = "Only with controller.kind state-feedback and controller.design gains.",
         [USE_EQUILIBRIUM] = "Only where the run starts from an equilibrium.",
         [USE_STATE] = "Only where the run starts from a state.",
@@ -224,7 +227,8 @@ static json_t *number_schema(const struct scenario_field *field)
                             json_number(field->low));
     }
     if (isfinite(field->high)) {
-        json_object_set_new(schema, "maximum", json_number(field->high));
+        json_object_set_new(schema, field->high_open ? "exclusiveMaximum" : "maximum",
+                            json_number(field->high));
     }
     if (field->words) {
         return json_pack("{s:[o,{s:s}]}", "anyOf", schema, "const", field->words[0]);
@@ -295,6 +299,11 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
     }
     case FIELD_POLES:
         return list_schema(complex_schema(schema), field->items);
+    case FIELD_NUMBERS: {
+        char item[sizeof field->path + 2];
+        snprintf(item, sizeof item, "%s[]", field->path);
+        return list_schema(number_schema(schema_find(schema, item)), field->items);
+    }
     case FIELD_MATRIX:
         return list_schema(
             list_schema(number_schema(schema_find(schema, "controller.gains[][]")), field->columns),

@@ -116,7 +116,7 @@ bool field_admits(struct problems *problems, const struct scenario_field *field,
 {
     char range[96], word[SHOWN_SIZE];
     if (isnan(value) || value < field->low || value > field->high ||
-        (field->low_open && value == field->low)) {
+        (field->low_open && value == field->low) || (field->high_open && value == field->high)) {
         bool quantity = field->unit[0] && strcmp(field->unit, "1") != 0 && field->columns == 0;
         problem_add(problems, mark, "%s: %s is out of range (%s%s%s)", name, shown(word, what),
                     schema_range_text(field, range, sizeof range), quantity ? " " : "",
@@ -306,10 +306,24 @@ bool field_text(struct problems *problems, const char *name, const struct tree_n
     return true;
 }
 
+static bool stable_pole(struct problems *problems, const struct scenario_field *field,
+                        const char *name, const struct tree_node *node, double re)
+{
+    char word[SHOWN_SIZE];
+    if (re >= 0) {
+        problem_add(problems, node->mark,
+                    "%s: %s is not in the open left half plane: the loop would not be stable", name,
+                    shown(word, node->text));
+        return false;
+    }
+    return field_admits(problems, field, name, node->text, node->mark, re);
+}
+
 bool field_pole(struct problems *problems, const struct scenario_field *field, const char *name,
                 const struct tree_node *node, double *re, double *im)
 {
     static const char wanted[] = "a number, or a complex one such as -3+1.5i";
+    struct scenario_field imaginary = *field;
     char part[64];
     bool finite;
 
@@ -323,7 +337,7 @@ bool field_pole(struct problems *problems, const struct scenario_field *field, c
         if (!number_parse(node->text, re, &finite)) {
             return no_number(problems, field, name, wanted, node);
         }
-        return field_admits(problems, field, name, node->text, node->mark, *re);
+        return stable_pole(problems, field, name, node, *re);
     }
     snprintf(part, sizeof part, "%.*s", (int)(total - length - 1), node->text + length);
     bool good = number_parse(part, im, &finite);
@@ -331,6 +345,8 @@ bool field_pole(struct problems *problems, const struct scenario_field *field, c
     if (!good || !number_parse(part, re, &finite)) {
         return field_mismatch(problems, name, wanted, node);
     }
-    return field_admits(problems, field, name, node->text, node->mark, *re) &&
-           field_admits(problems, field, name, node->text, node->mark, *im);
+    imaginary.high = -field->low;
+    imaginary.high_open = false;
+    return stable_pole(problems, field, name, node, *re) &&
+           field_admits(problems, &imaginary, name, node->text, node->mark, *im);
 }

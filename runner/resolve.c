@@ -70,23 +70,41 @@ bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values
                              support_of(values), equilibrium, message);
 }
 
-static bool place_gains(const stance_scene *scene, const struct scenario_values *values,
-                        const double *model, const stance_equilibrium *equilibrium, double *K,
-                        stance_message *message)
+bool resolve_gains(const stance_scene *scene, const struct scenario_values *values, const double *A,
+                   const double *B, double *K, struct resolved_gains *how, stance_message *message)
 {
     const int n = 2 * scene->postures, m = scene->actuators;
-    double A[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
-    double B[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
+    const double *re = values->pole_re, *im = values->pole_im, T = values->sample_time;
+    const bool sampled = values->design_time == DESIGN_SAMPLED;
+    const stance_placement method =
+        values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST;
+    struct resolved_gains own;
 
-    if (!scene->linearise) {
-        return refuse(message, "the scene %s has no linearisation", scene->name);
+    how = how ? how : &own;
+    *how = (struct resolved_gains){0, NAN};
+    message->text[0] = '\0';
+    stance_error error = STANCE_OK;
+    if (values->design == DESIGN_GAINS) {
+        memcpy(K, values->gains, (size_t)(n * m) * sizeof *K);
+    } else if (values->design == DESIGN_LQR) {
+        error = sampled ? stance_lqr_sampled(n, m, A, B, T, values->state_weights,
+                                             values->torque_weights, K, message)
+                        : stance_lqr(n, m, A, B, values->state_weights, values->torque_weights, K,
+                                     message);
+    } else if (sampled) {
+        error = stance_place_sampled(method, n, m, A, B, T, re, im, K, &how->sweeps,
+                                     &how->condition, message);
+    } else if (method == STANCE_SCHUR) {
+        error = stance_place_schur(n, m, A, B, re, im, K, message);
+    } else {
+        error = stance_place(n, m, A, B, re, im, K, &how->sweeps, &how->condition, message);
     }
-    stance_error error = scene->linearise(model, equilibrium, A, B);
-    if (error != STANCE_OK) {
-        return refuse(message, "linearisation: %s", stance_error_text(error));
+    for (int i = 0; error == STANCE_OK && i < m * n; i++) {
+        if (!isfinite(K[i])) {
+            return refuse(message, "%d finite gains are needed", m * n);
+        }
     }
-    return stance_place(n, m, A, B, values->pole_re, values->pole_im, K, NULL, NULL, message) ==
-           STANCE_OK;
+    return error == STANCE_OK;
 }
 
 static bool design_state_feedback(const stance_scene *scene, const struct scenario_values *values,
@@ -94,22 +112,24 @@ static bool design_state_feedback(const stance_scene *scene, const struct scenar
 {
     const int n = 2 * scene->postures, m = scene->actuators;
     double model[STANCE_MAX_ROBOT], K[SCENARIO_MAX_GAINS] = {0};
+    double A[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
+    double B[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
     stance_equilibrium equilibrium;
 
     if (!resolve_equilibrium(scene, values, model, &equilibrium, message)) {
         return false;
     }
-    if (values->design == DESIGN_PLACE) {
-        if (!place_gains(scene, values, model, &equilibrium, K, message)) {
-            return false;
-        }
-    } else {
-        memcpy(K, values->gains, sizeof K);
+    if (!scene->linearise) {
+        return refuse(message, "the scene %s has no linearisation", scene->name);
+    }
+    const stance_error error = scene->linearise(model, &equilibrium, A, B);
+    if (error != STANCE_OK) {
+        return refuse(message, "linearisation: %s", stance_error_text(error));
+    }
+    if (!resolve_gains(scene, values, A, B, K, NULL, message)) {
+        return false;
     }
     for (int i = 0; i < m * n; i++) {
-        if (!isfinite(K[i])) {
-            return refuse(message, "%d finite gains are needed", m * n);
-        }
         design->gain[i / n][i % n] = K[i];
     }
     memcpy(design->equilibrium, equilibrium.position,
@@ -328,6 +348,9 @@ static bool check_law(const stance_scene *scene, const stance_case *out, stance_
     if (out->switches && out->sample_every == 0) {
         return refuse(message, "controller.far needs a controller.sample_time above 0");
     }
+    if (out->delay != 0 && out->sample_every == 0) {
+        return refuse(message, "controller.delay needs a controller.sample_time above 0");
+    }
     return true;
 }
 
@@ -380,6 +403,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .contacts = (uint32_t)values->contacts,
         .torque_limit = values->torque_limit,
         .noise = values->noise,
+        .delay = values->law == LAW_NONE ? 0 : values->delay,
         .settle = values->settle != 0,
         .support = -1,
         .settle_angle = values->settle_angle,

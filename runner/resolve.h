@@ -11,7 +11,8 @@
 #include "scenario.h"
 
 /* What depends on fields marked `design` in the schema only (robot.*, initial.equilibrium.*,
- * initial.support_foot, controller.kind, .design, .model.*, .equilibrium.*, .poles, .gains). */
+ * initial.support_foot, controller.kind, .design, .design_time, .model.*, .equilibrium.*, .poles,
+ * .weights, .gains), and on controller.sample_time where the design is for the sampled model. */
 struct resolved_design {
     double start[STANCE_MAX_COORDINATES]; /* initial equilibrium, foot at the origin; NAN if none */
     double equilibrium[STANCE_MAX_COORDINATES]; /* controller's equilibrium; NAN if none */
@@ -28,6 +29,17 @@ bool resolve_design(const stance_scene *scene, const struct scenario_values *val
  * none. */
 bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
                          double *model, stance_equilibrium *equilibrium, stance_message *message);
+
+/* How the gains came about. */
+struct resolved_gains {
+    int sweeps;       /* of robust pole placement; 0: another design */
+    double condition; /* of its eigenvectors; NAN: another design */
+};
+
+/* K[actuators][2 postures] of a state-feedback law for x' = A x + B u: designed, or as given. `how`
+ * may be NULL. */
+bool resolve_gains(const stance_scene *scene, const struct scenario_values *values, const double *A,
+                   const double *B, double *K, struct resolved_gains *how, stance_message *message);
 
 /* Fills *out (trajectory NULL). Checks the initial state: a gap below -1e-9 m of a contact that
  * may touch is an error, and so is a state that is not finite. `index` is the flat case index. */

@@ -224,6 +224,12 @@ static void set_defaults(struct reader *r)
     for (int i = 0; i < STANCE_MAX_POSTURE; i++) {
         base->equilibrium.posture[i] = base->design_point.posture[i] = base->target[i] = NAN;
     }
+    for (int i = 0; i < SCENARIO_MAX_POLES; i++) {
+        base->state_weights[i] = 1;
+    }
+    for (int i = 0; i < STANCE_MAX_ACTUATORS; i++) {
+        base->torque_weights[i] = 1;
+    }
     for (size_t i = 0; i < r->schema.count; i++) {
         const struct scenario_field *field = &r->schema.field[i];
         char *place = (char *)base + field->offset;
@@ -333,6 +339,23 @@ static void read_gains(struct reader *r)
     }
 }
 
+static void read_weights(struct reader *r, const char *path, double *weight)
+{
+    struct seen *seen = reader_seen(r, path);
+    char name[PATH_SIZE];
+
+    snprintf(name, sizeof name, "%s[]", path);
+    const struct scenario_field *field = schema_find(&r->schema, name);
+    if (!seen->node || !field) {
+        return;
+    }
+    seen->bad = !has_items(r, path, seen->node, field->items, "numbers");
+    for (size_t i = 0; i < field->items && !seen->bad; i++) {
+        snprintf(name, sizeof name, "%s[%zu]", path, i);
+        seen->bad = !field_number(&r->problems, field, name, seen->node->item[i], &weight[i]);
+    }
+}
+
 static void read_settle(struct reader *r)
 {
     struct seen *seen = reader_seen(r, "stop.settle");
@@ -438,6 +461,8 @@ static void read_by_hand(struct reader *r)
     }
     read_poles(r);
     read_gains(r);
+    read_weights(r, "controller.weights.states", r->s->base.state_weights);
+    read_weights(r, "controller.weights.torques", r->s->base.torque_weights);
     read_settle(r);
     r->axes_bad = !r->s->scene;
     if (grid && r->s->scene) {

@@ -21,7 +21,8 @@ enum {
 
 enum scenario_law { LAW_NONE, LAW_HOLD, LAW_STATE_FEEDBACK, LAW_DECOUPLING };
 enum scenario_far { FAR_NONE, FAR_HOLD, FAR_DECOUPLING };
-enum scenario_design { DESIGN_PLACE, DESIGN_GAINS };
+enum scenario_design { DESIGN_PLACE, DESIGN_PLACE_SCHUR, DESIGN_LQR, DESIGN_GAINS };
+enum scenario_design_time { DESIGN_CONTINUOUS, DESIGN_SAMPLED };
 enum scenario_record { RECORD_NONE, RECORD_ALL, RECORD_LIST };
 
 /* Which member of the family of equilibria, as the user gave it: NAN where not given. */
@@ -46,11 +47,13 @@ struct scenario_values {
 
     int law;                        /* enum scenario_law */
     int design;                     /* enum scenario_design */
+    int design_time;                /* enum scenario_design_time: the model of the design */
     double model[STANCE_MAX_ROBOT]; /* the robot that the design believes in; NAN: as robot */
     struct scenario_equilibrium design_point; /* controller.equilibrium; not given: initial's */
     double pole_re[SCENARIO_MAX_POLES], pole_im[SCENARIO_MAX_POLES];
-    double gains[SCENARIO_MAX_GAINS];  /* [actuators][2 postures] */
-    double kp, kd;                     /* hold */
+    double gains[SCENARIO_MAX_GAINS]; /* [actuators][2 postures] */
+    double state_weights[SCENARIO_MAX_POLES], torque_weights[STANCE_MAX_ACTUATORS]; /* lqr */
+    double kp, kd;                                                                  /* hold */
     double target[STANCE_MAX_POSTURE]; /* hold: controller.target; NAN: the initial angles */
     /* decoupling, over the scene's coordinates; NAN: the initial value */
     int controlled; /* which pair: stance_pair */
@@ -61,6 +64,7 @@ struct scenario_values {
     int far;                      /* enum scenario_far: what acts far from the target */
     double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
     double sample_time;           /* 0: continuous */
+    int delay;                    /* whole samples between measuring and acting, 0 or 1 */
     double torque_limit;          /* INFINITY: none */
     double noise;
 

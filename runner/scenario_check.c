@@ -13,7 +13,8 @@
 struct situation {
     bool law_known, design_known;
     int law, far;
-    bool places, gives_gains;          /* controller.design, base or swept */
+    bool places, regulates, gives_gains; /* controller.design, base or swept */
+    bool places_robustly, models;
     bool from_equilibrium, from_state; /* at most one, or the start is in doubt */
     bool start_known;
     bool settles;
@@ -81,7 +82,10 @@ static struct situation find_situation(struct reader *r)
     is.design_known = !reader_seen(r, "controller.design")->bad &&
                       !reader_seen(r, "controller.design")->excused &&
                       !(reader_seen(r, "controller.design")->swept && r->axes_bad);
-    is.places = takes_word(r, design, DESIGN_PLACE);
+    is.places_robustly = takes_word(r, design, DESIGN_PLACE);
+    is.places = is.places_robustly || takes_word(r, design, DESIGN_PLACE_SCHUR);
+    is.regulates = takes_word(r, design, DESIGN_LQR);
+    is.models = is.places || is.regulates;
     is.gives_gains = takes_word(r, design, DESIGN_GAINS);
     is.from_equilibrium = reader_seen(r, "initial.equilibrium")->node != NULL;
     is.from_state = reader_seen(r, "initial.state")->node != NULL;
@@ -98,6 +102,31 @@ static struct situation find_situation(struct reader *r)
 static const char *law_word(const struct reader *r)
 {
     return schema_find(&r->schema, "controller.kind")->words[r->s->base.law];
+}
+
+/* The same for what depends on controller.design. */
+static const char *design_obstacle(const struct reader *r, const struct situation *is,
+                                   enum field_use use, const char **instead)
+{
+    const struct scenario_field *design = schema_find(&r->schema, "controller.design");
+    const bool fits = use == USE_PLACE   ? is->places
+                      : use == USE_LQR   ? is->regulates
+                      : use == USE_MODEL ? is->models
+                                         : is->gives_gains;
+    if (!is->design_known || fits) {
+        return NULL;
+    }
+    *instead = "others";
+    for (size_t i = 0; design && i < design->word_count; i++) {
+        if (takes_word(r, offsetof(struct scenario_values, design), (int)i)) {
+            *instead = design->words[i];
+            break;
+        }
+    }
+    return use == USE_PLACE   ? "controller.design place or place-schur"
+           : use == USE_LQR   ? "controller.design lqr"
+           : use == USE_MODEL ? "a controller.design other than gains"
+                              : "controller.design gains";
 }
 
 /* Why a field must not be given or swept, as what would be needed and what there is instead; NULL:
@@ -122,15 +151,13 @@ static const char *obstacle(const struct reader *r, const struct situation *is, 
     case USE_FEEDBACK:
         return is->law_known && !feedback ? "controller.kind state-feedback" : NULL;
     case USE_PLACE:
+    case USE_LQR:
+    case USE_MODEL:
     case USE_GAINS:
         if (is->law_known && !feedback) {
             return "controller.kind state-feedback";
         }
-        *instead = use == USE_PLACE ? "gains" : "place";
-        if (!is->design_known || (use == USE_PLACE ? is->places : is->gives_gains)) {
-            return NULL;
-        }
-        return use == USE_PLACE ? "controller.design place" : "controller.design gains";
+        return design_obstacle(r, is, use, instead);
     case USE_EQUILIBRIUM:
         *instead = "initial.state";
         return is->start_known && !is->from_equilibrium ? "initial.equilibrium" : NULL;
@@ -218,7 +245,7 @@ static void check_required(struct reader *r, const struct situation *is)
         [USE_HOLD] = " (hold needs it)",
         [USE_DECOUPLING] = " (decoupling needs it)",
         [USE_FAR] = " (controller.far needs it)",
-        [USE_PLACE] = " (controller.design place needs it)",
+        [USE_PLACE] = " (controller.design place and place-schur need it)",
         [USE_GAINS] = " (controller.design gains needs it)",
     };
     for (size_t i = 0; i < r->schema.count; i++) {
@@ -375,26 +402,85 @@ static void extent(const struct reader *r, size_t offset, double *least, double 
     }
 }
 
+static bool samples_in_design(const struct reader *r, const struct situation *is)
+{
+    return is->law_known && is->law == LAW_STATE_FEEDBACK && is->models &&
+           takes_word(r, offsetof(struct scenario_values, design_time), DESIGN_SAMPLED);
+}
+
 static struct mark where(struct reader *r, const char *path)
 {
     const struct seen *seen = reader_seen(r, path);
     return seen->swept ? seen->sweep : seen->node ? seen->key : r->tree.root->mark;
 }
 
-static void check_noise(struct reader *r, const struct situation *is)
+/* What has a meaning only where the controller samples. */
+static void check_sampling(struct reader *r, const struct situation *is)
 {
     double quiet, loud, shortest, longest;
+    const struct seen *time = reader_seen(r, "controller.sample_time");
 
-    if (!is->law_known || is->law == LAW_NONE || r->axes_bad ||
-        reader_seen(r, "controller.noise")->bad || reader_seen(r, "controller.sample_time")->bad ||
-        reader_seen(r, "controller.sample_time")->excused) {
+    if (!is->law_known || is->law == LAW_NONE || r->axes_bad || time->bad || time->excused) {
+        return;
+    }
+    extent(r, offsetof(struct scenario_values, sample_time), &shortest, &longest);
+    if (shortest > 0) {
         return;
     }
     extent(r, offsetof(struct scenario_values, noise), &quiet, &loud);
-    extent(r, offsetof(struct scenario_values, sample_time), &shortest, &longest);
-    if (loud > 0 && shortest <= 0) {
+    if (loud > 0 && !reader_seen(r, "controller.noise")->bad) {
         problem_add(&r->problems, where(r, "controller.noise"),
                     "controller.noise needs controller.sample_time > 0: it is new at each sample");
+    }
+    if (takes_word(r, offsetof(struct scenario_values, delay), 1) &&
+        !reader_seen(r, "controller.delay")->bad) {
+        problem_add(&r->problems, where(r, "controller.delay"),
+                    "controller.delay needs controller.sample_time > 0: it counts samples");
+    }
+    if (samples_in_design(r, is) && !reader_seen(r, "controller.design_time")->bad) {
+        problem_add(&r->problems, where(r, "controller.design_time"),
+                    "controller.design_time sampled needs controller.sample_time > 0");
+    }
+}
+
+/* Gains designed for the sampled model differ with the sample time. */
+static void mark_sampled_designs(struct reader *r, const struct situation *is)
+{
+    for (int a = 0; a < r->s->axes; a++) {
+        struct scenario_axis *axis = &r->s->axis[a];
+        for (int k = 0; k < axis->paths; k++) {
+            if (axis->offset[k] == offsetof(struct scenario_values, sample_time)) {
+                axis->design = axis->design || samples_in_design(r, is);
+            }
+        }
+    }
+}
+
+/* Robust placement gives every pole an eigenvector of its own, from as many directions as there
+ * are inputs. Axes may still make poles coincide: then the design of that point fails. */
+static void check_multiplicity(struct reader *r, const struct situation *is)
+{
+    const struct seen *poles = reader_seen(r, "controller.poles");
+    const struct scenario_values *base = &r->s->base;
+    const size_t most = (size_t)r->s->scene->actuators;
+
+    if (is->law != LAW_STATE_FEEDBACK || !is->design_known || !is->places_robustly ||
+        !poles->node || poles->bad) {
+        return;
+    }
+    for (size_t i = 0; i < poles->node->count; i++) {
+        size_t times = 1;
+        for (size_t k = 0; k < i; k++) {
+            times += base->pole_re[k] == base->pole_re[i] && base->pole_im[k] == base->pole_im[i];
+        }
+        if (times > most) {
+            char word[SHOWN_SIZE];
+            problem_add(&r->problems, poles->node->item[i]->mark,
+                        "controller.poles[%zu]: %s stands here %zu times; controller.design place "
+                        "can repeat a pole as often as there are actuators, %zu times",
+                        i, shown(word, poles->node->item[i]->text), times, most);
+            return;
+        }
     }
 }
 
@@ -462,7 +548,9 @@ void scenario_cross_check(struct reader *r)
     }
     check_start(r, &is);
     check_controller(r, &is);
-    check_noise(r, &is);
+    check_multiplicity(r, &is);
+    check_sampling(r, &is);
+    mark_sampled_designs(r, &is);
     check_far(r, &is);
     check_support(r, &is);
 }

@@ -14,7 +14,8 @@
 /* In the order of the enumerations in scenario.h. */
 static const char *const kind_words[] = {"none", "hold", "state-feedback", "decoupling"};
 static const char *const far_words[] = {"none", "hold", "decoupling"};
-static const char *const design_words[] = {"place", "gains"};
+static const char *const design_words[] = {"place", "place-schur", "lqr", "gains"};
+static const char *const design_time_words[] = {"continuous", "sampled"};
 static const char *const branch_words[] = {"upper", "lower"};
 static const char *const spacing_words[] = {"linear", "log"};
 static const char *const record_words[] = {"none", "all"};
@@ -45,6 +46,7 @@ enum family {
     FAMILY_CONTACTS,    /* the words are names of contacts */
     FAMILY_FOOT,        /* the range is 1 ... contacts */
     FAMILY_POLES,       /* 2 postures items */
+    FAMILY_ACTUATORS,   /* one item for each */
     FAMILY_MATRIX,      /* actuators x 2 postures */
     FAMILY_SCENES,
     FAMILY_METHODS,
@@ -133,15 +135,25 @@ static const struct row rows[] = {
     {0, {.path = "controller.design", .type = FIELD_WORD, .use = USE_FEEDBACK, .design = true,
          .sweep = true, VALUE(design), .fallback = 0, WORDS(design_words),
          .text = "where the gains come from",
-         .more = "place: robust pole placement; gains: they are given.", .need = NEED_ACTUATORS}},
+         .more = "place: robust pole placement. place-schur: the same poles by SLICOT's Schur "
+                 "method. lqr: linear quadratic regulator. gains: they are given.",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.design_time", .type = FIELD_WORD, .use = USE_MODEL, .design = true,
+         .sweep = true, VALUE(design_time), .fallback = 0, WORDS(design_time_words),
+         .text = "model that the gains are designed for",
+         .more = "sampled: the robot sampled every controller.sample_time with torques held in "
+                 "between; a pole s becomes exp(s T), the cost of lqr stays the integral over all "
+                 "time.",
+         .need = NEED_ACTUATORS}},
     {FAMILY_POLES, {.path = "controller.poles", .type = FIELD_POLES, .by_scene = true,
                     .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",
-                    .text = "poles of the closed loop",
-                    .more = "Real, or complex as -3+1.5i with -3-1.5i beside it.",
+                    .text = "poles of the closed loop, in the open left half plane",
+                    .more = "Real, or complex as -3+1.5i with -3-1.5i beside it; with place none "
+                            "may stand there more often than there are actuators.",
          .need = NEED_ACTUATORS}},
     {FAMILY_POLES, {.path = "controller.poles[]", .type = FIELD_NUMBER, .by_scene = true,
                     .use = USE_PLACE, .design = true, .sweep = true, VALUE(pole_re),
-                    .unit = "1/s", .fallback = NAN, .low = -1e6, .high = 1e6,
+                    .unit = "1/s", .fallback = NAN, .low = -1e6, .high = 0, .high_open = true,
                     .text = "pole of the closed loop", .more = "Only a real pole can be swept.",
          .need = NEED_ACTUATORS}},
     {FAMILY_MATRIX, {.path = "controller.gains", .type = FIELD_MATRIX, .by_scene = true,
@@ -153,6 +165,26 @@ static const struct row rows[] = {
                      .use = USE_GAINS, .design = true, .sweep = true, VALUE(gains),
                      .unit = "N m/rad, N m s/rad", .fallback = NAN, .low = -LARGE, .high = LARGE,
                      .text = "gain of an actuator on an angle or a rate", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.weights", .type = FIELD_MAP, .by_scene = true, .use = USE_LQR, BY_HAND,
+         .text = "what the regulator minimises: weights times squares, integrated over time",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_POLES, {.path = "controller.weights.states", .type = FIELD_NUMBERS, .by_scene = true,
+                    .use = USE_LQR, .design = true, BY_HAND, .unit = "1/rad^2, s^2/rad^2",
+                    .fallback_text = "1 each", .text = "weights of the angles, then of the rates",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_POLES, {.path = "controller.weights.states[]", .type = FIELD_NUMBER, .by_scene = true,
+                    .use = USE_LQR, .design = true, .sweep = true, VALUE(state_weights),
+                    .unit = "1/rad^2, s^2/rad^2", .fallback = 1, .low = 0, .high = LARGE,
+                    .text = "weight of an angle or a rate", .need = NEED_ACTUATORS}},
+    {FAMILY_ACTUATORS, {.path = "controller.weights.torques", .type = FIELD_NUMBERS,
+                        .by_scene = true, .use = USE_LQR, .design = true, BY_HAND,
+                        .unit = "1/(N m)^2", .fallback_text = "1 each",
+                        .text = "weights of the torques", .need = NEED_ACTUATORS}},
+    {FAMILY_ACTUATORS, {.path = "controller.weights.torques[]", .type = FIELD_NUMBER,
+                        .by_scene = true, .use = USE_LQR, .design = true, .sweep = true,
+                        VALUE(torque_weights), .unit = "1/(N m)^2", .fallback = 1, .low = 0,
+                        .high = LARGE, .low_open = true, .text = "weight of a torque",
+         .need = NEED_ACTUATORS}},
     {0, {.path = "controller.model", .type = FIELD_MAP, .by_scene = true, .use = USE_FEEDBACK,
          BY_HAND, .text = "the robot that the design believes in", .need = NEED_ACTUATORS}},
     {FAMILY_ROBOT, {.path = "controller.model.*", .type = FIELD_NUMBER, .by_scene = true,
@@ -252,6 +284,12 @@ static const struct row rows[] = {
          VALUE(sample_time), .unit = "s", .fallback = 0, .low = 0, .high = LARGE,
          .text = "time between samples of the controller",
          .more = "Torques are held in between; 0: it acts continuously, inside the step.",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.delay", .type = FIELD_INTEGER, .use = USE_CONTROL, .sweep = true,
+         VALUE(delay), .unit = "1", .fallback = 0, .low = 0, .high = 1,
+         .text = "whole samples between measuring and acting",
+         .more = "1: the torques of a sample act from the next one on, those of the equilibrium "
+                 "until then; needs sample_time > 0.",
          .need = NEED_ACTUATORS}},
     {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL,
          .sweep = true, VALUE(torque_limit), .unit = "N m", .fallback = INFINITY,
@@ -526,6 +564,8 @@ static bool add_single(struct schema *schema, const struct row *row)
         field->fallback = NAN;
     } else if (row->family == FAMILY_POLES) {
         field->items = 2 * (size_t)scene->postures;
+    } else if (row->family == FAMILY_ACTUATORS) {
+        field->items = (size_t)scene->actuators;
     } else if (row->family == FAMILY_MATRIX) {
         field->items = (size_t)scene->actuators;
         field->columns = 2 * (size_t)scene->postures;
@@ -680,6 +720,8 @@ const char *schema_range_text(const struct scenario_field *field, char *buffer, 
         snprintf(buffer, size, "%.9g", field->low);
     } else if (isinf(field->low)) {
         snprintf(buffer, size, "any finite number");
+    } else if (field->high_open) {
+        snprintf(buffer, size, "less than %.9g, at least %.9g", field->high, field->low);
     } else if (field->low_open) {
         snprintf(buffer, size, "more than %.9g, at most %.9g", field->low, field->high);
     } else {

@@ -15,10 +15,11 @@ enum field_type {
     FIELD_TEXT,
     FIELD_NUMBER, /* `words`: words that may stand for it, see field.h */
     FIELD_INTEGER,
-    FIELD_WORD,   /* one of `words`; its number is its place there */
-    FIELD_WORDS,  /* a list of different words of `words` */
-    FIELD_POLES,  /* a list of numbers or complex numbers, pairs complete */
-    FIELD_MATRIX, /* a list of lists of numbers */
+    FIELD_WORD,    /* one of `words`; its number is its place there */
+    FIELD_WORDS,   /* a list of different words of `words` */
+    FIELD_POLES,   /* a list of numbers or complex numbers, pairs complete */
+    FIELD_NUMBERS, /* a list of numbers */
+    FIELD_MATRIX,  /* a list of lists of numbers */
     FIELD_MAP_OR_WORD,
     FIELD_CASES, /* a word or a list of case indices */
     FIELD_AXES,  /* a list of mappings */
@@ -36,6 +37,8 @@ enum field_use {
     USE_DECOUPLING,
     USE_FAR, /* controller.far is not none */
     USE_PLACE,
+    USE_LQR,
+    USE_MODEL, /* a design from the model: all but gains */
     USE_GAINS,
     USE_EQUILIBRIUM, /* the scenario starts from initial.equilibrium */
     USE_STATE,       /* ... from initial.state */
@@ -66,8 +69,8 @@ struct scenario_field {
     double fallback;           /* default of a number; of a word its place; NAN: none */
     const char *fallback_text; /* where the default is not a plain number; may be NULL */
     double low, high;
-    bool low_open; /* `low` itself is out of range */
-    size_t items;  /* lists of fixed length (poles, rows of the matrix): how many; else 0 */
+    bool low_open, high_open; /* `low`, `high` itself is out of range */
+    size_t items; /* lists of fixed length (poles, rows of the matrix): how many; else 0 */
     size_t columns;
     const char *const *words;
     size_t word_count;

@@ -2,41 +2,12 @@
  *
  * Every file of tests/bad begins with "# LINE:COLUMN: MESSAGE", the one line that it must lead to.
  */
-#include "support.h"
+#include "reading.h"
 
 #include "../runner/schema.h"
 #include "../runner/store.h"
 
 #include <dirent.h>
-
-/* ---- reading ----------------------------------------------------------------------------------
- */
-
-enum { ERRORS_SIZE = 1 << 16 };
-static char errors[ERRORS_SIZE];
-
-#define assert_near(found, wanted, tolerance) assert_true(fabs((found) - (wanted)) <= (tolerance))
-
-/* Reads `text` (or the file, when NULL) under the name `file`; what it says goes to `errors`. */
-static bool read_as(struct scenario *s, const char *file, const char *text, const char *const *sets,
-                    size_t set_count)
-{
-    FILE *out = fmemopen(errors, sizeof errors, "w");
-    assert_non_null(out);
-    bool good = scenario_read(s, file, text, sets, set_count, out);
-    fputc('\0', out);
-    fclose(out);
-    return good;
-}
-
-static void read_good(struct scenario *s, const char *text, const char *const *sets,
-                      size_t set_count)
-{
-    if (!read_as(s, "good.yaml", text, sets, set_count)) {
-        fail_msg("refused: %s", errors);
-    }
-    assert_string_equal(errors, "");
-}
 
 static void refused(const char *text, const char *const *sets, size_t set_count, const char *wanted)
 {
@@ -87,6 +58,20 @@ static const char holds[] = "stance: 1\n"
                             "stop: {time: 1.5, settle: off}\n"
                             "record: {cases: all}\n";
 
+static const char decouples[] = "stance: 1\n"
+                                "scene: biped\n"
+                                "initial: {state: {z: 1.1}}\n"
+                                "controller: {kind: decoupling, controlled: x-theta}\n"
+                                "stop: {time: 1}\n";
+
+static const char switches[] = "stance: 1\n"
+                               "scene: biped\n"
+                               "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
+                               "controller: {kind: state-feedback, design: lqr, far: hold,\n"
+                               "  near: {angle: 0.1, rate: 1}, kp: 100, kd: 10,\n"
+                               "  sample_time: 0.01}\n"
+                               "stop: {time: 1}\n";
+
 static const char gives_gains[] = "stance: 1\n"
                                   "scene: biped\n"
                                   "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
@@ -106,6 +91,18 @@ static const char places[] = "stance: 1\n"
                              "  poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]\n"
                              "stop: {time: 8}\n";
 
+static const char regulates[] = "stance: 1\n"
+                                "scene: biped\n"
+                                "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
+                                "controller:\n"
+                                "  kind: state-feedback\n"
+                                "  design: lqr\n"
+                                "  design_time: sampled\n"
+                                "  weights: {states: [1, 2, 0, 4, 5, 6], torques: [0.1, 0.2]}\n"
+                                "  sample_time: 0.002\n"
+                                "  delay: 1\n"
+                                "stop: {time: 8}\n";
+
 static const char bounces[] = "stance: 1\n"
                               "scene: ball\n"
                               "robot: {radius: 0}\n"
@@ -120,7 +117,7 @@ static const char bounces[] = "stance: 1\n"
                               "    - {path: robot.mass, values: [1, 2]}\n"
                               "record: {answers: [events, energy_gain, dissipation_residual]}\n";
 
-static const char *const good_texts[] = {full, holds, gives_gains, places, bounces};
+static const char *const good_texts[] = {full, holds, gives_gains, places, regulates, bounces};
 enum { GOOD_TEXTS = sizeof good_texts / sizeof good_texts[0] };
 
 /* ---- good scenarios ---------------------------------------------------------------------------
@@ -236,6 +233,23 @@ static void defaults_hold(void **state)
     assert_int_equal(s.base.design, DESIGN_GAINS);
     check_numbers(s.base.gains, (double[]){1, 2, 3, 4, 5, 6, -1, -2, -3, -4, -5, -6}, 12);
     assert_true(isinf(s.base.torque_limit));
+    scenario_free(&s);
+
+    read_good(&s, regulates, NULL, 0);
+    assert_int_equal(s.base.design, DESIGN_LQR);
+    assert_int_equal(s.base.design_time, DESIGN_SAMPLED);
+    assert_int_equal(s.base.delay, 1);
+    check_numbers(s.base.state_weights, (double[]){1, 2, 0, 4, 5, 6}, 6);
+    check_numbers(s.base.torque_weights, (double[]){0.1, 0.2}, 2);
+    scenario_free(&s);
+
+    read_good(&s, regulates, (const char *[]){"controller.weights={torques: [3, 4]}"}, 1);
+    check_numbers(s.base.state_weights, (double[]){1, 1, 1, 1, 1, 1}, 6);
+    check_numbers(s.base.torque_weights, (double[]){3, 4}, 2);
+    scenario_free(&s);
+    read_good(&s, places, NULL, 0);
+    assert_int_equal(s.base.design_time, DESIGN_CONTINUOUS);
+    assert_int_equal(s.base.delay, 0);
     scenario_free(&s);
 }
 
@@ -601,7 +615,12 @@ static void several_errors_are_sorted(void **state)
 /* A scenario in which a field may be given. */
 static const char *text_for(enum field_use use)
 {
-    return use == USE_HOLD || use == USE_STATE ? holds : use == USE_GAINS ? gives_gains : places;
+    return use == USE_HOLD || use == USE_STATE ? holds
+           : use == USE_GAINS                  ? gives_gains
+           : use == USE_LQR                    ? regulates
+           : use == USE_DECOUPLING             ? decouples
+           : use == USE_FAR                    ? switches
+                                               : places;
 }
 
 static void set_path(const struct scenario_field *field, char *path, size_t size)
@@ -668,9 +687,10 @@ static void every_field_can_be_set_and_swept(void **state)
     for (int round = 0; round < 20; round++) {
         for (size_t i = 0; i < schema->count; i++) {
             const struct scenario_field *field = &schema->field[i];
-            /* A third angle of an equilibrium is an error; noise asks for a sample time. */
+            /* A third angle of an equilibrium is an error; noise and a sampled design ask for a
+             * sample time. */
             if (field->sweep && !strstr(field->path, "equilibrium.") &&
-                !strstr(field->path, "noise")) {
+                !strstr(field->path, "noise") && !strstr(field->path, "design_time")) {
                 set_and_sweep(field, &random);
                 fields++;
             }

@@ -28,10 +28,13 @@ stance_error stance_refuse(stance_message *message, stance_error error, const ch
 
 const char *stance_complex_text(double _Complex number, char text[64])
 {
-    if (cimag(number) == 0) {
-        snprintf(text, 64, "%.6g", creal(number));
+    const double dust = 1e-12 * cabs(number), re = creal(number), im = cimag(number);
+    if (fabs(im) <= dust) {
+        snprintf(text, 64, "%.6g", re);
+    } else if (fabs(re) <= dust) {
+        snprintf(text, 64, "%.6gi", im);
     } else {
-        snprintf(text, 64, "%.6g%+.6gi", creal(number), cimag(number));
+        snprintf(text, 64, "%.6g%+.6gi", re, im);
     }
     return text;
 }

@@ -17,7 +17,7 @@
 stance_error stance_refuse(stance_message *message, stance_error error, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* A complex number as people write it: no imaginary part where there is none. */
+/* A complex number as people write it: no part that is nothing but rounding. */
 const char *stance_complex_text(double _Complex number, char text[64]);
 
 /* Puts the poles re + i im in an order in which a pair stands in two places in a row, the one with

@@ -63,6 +63,7 @@ typedef struct problem {
     double *pseudo;        /* [m][r] V S^-1 */
     number *space;         /* [n][n r] orthonormal basis of S_j, column-major */
     number *vector;        /* [n][n] x_j; the conjugate's place in a pair is unused */
+    number *best;          /* [n][n] the highest maximum so far */
     number *image, *small; /* [n n] and [4 n n] scratch */
     double *X;             /* [n][n] column-major: x_j, or real and imaginary part */
     double *factor;        /* [n][n] scratch */
@@ -77,7 +78,7 @@ typedef struct problem {
 static stance_error problem_make(problem *p, int n, int m, const double *A, const double *B)
 {
     const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
-    const size_t numbers = (size_t)n + nn * (size_t)n + nn + nn + 4 * nn;
+    const size_t numbers = (size_t)n + nn * (size_t)n + nn + nn + nn + 4 * nn;
     const size_t reals = nn + nm + nn + nn + nn + 8 * nn + 2 * nm + nn;
     *p = (problem){.n = n, .m = m, .A = A, .B = B};
     p->memory = calloc(1, numbers * sizeof(number) + reals * sizeof(double) +
@@ -89,6 +90,7 @@ static stance_error problem_make(problem *p, int n, int m, const double *A, cons
     p->pole = z, z += n;
     p->space = z, z += nn * (size_t)n;
     p->vector = z, z += nn;
+    p->best = z, z += nn;
     p->image = z, z += nn;
     p->small = z, z += 4 * nn;
     double *d = (double *)z;
@@ -619,8 +621,9 @@ static stance_error not_independent(stance_message *message)
 
 /* The highest maximum that the starts lead to is left in p->vector and p->X; *taken: sweeps from
  * its start. */
-static bool screen(problem *p, number *best, int *taken)
+static bool screen(problem *p, int *taken)
 {
+    number *best = p->best;
     const size_t bytes = (size_t)p->n * (size_t)p->n * sizeof *best;
     double highest = -INFINITY;
     int sweeps;
@@ -672,11 +675,10 @@ static stance_error solve(problem *p, double *K, candidate *c, stance_message *m
     const size_t bytes = (size_t)p->n * (size_t)p->m * sizeof *K;
     candidate mirrored = {0};
     int before = 0;
-    number *best = calloc((size_t)p->n * (size_t)p->n, sizeof *best);
     double *other = malloc(bytes);
-    stance_error error = best && other ? STANCE_OK : STANCE_NO_MEMORY;
+    stance_error error = other ? STANCE_OK : STANCE_NO_MEMORY;
     if (error == STANCE_OK) {
-        error = screen(p, best, &before) ? finish(p, K, c, message) : not_independent(message);
+        error = screen(p, &before) ? finish(p, K, c, message) : not_independent(message);
     }
     if (error == STANCE_OK && reflect(p) && finish(p, other, &mirrored, NULL) == STANCE_OK) {
         const double higher = mirrored.height - c->height;
@@ -688,7 +690,6 @@ static stance_error solve(problem *p, double *K, candidate *c, stance_message *m
     }
     c->sweeps += before;
     free(other);
-    free(best);
     return error;
 }
 
