@@ -738,6 +738,9 @@ stance_error stance_place_following(int n, int m, const linear_model *near,
                                     const linear_model *wanted, double *K, int *sweeps,
                                     double *condition, stance_message *message)
 {
+    if (n < 1 || m < 1) {
+        return STANCE_BAD_ARGUMENT;
+    }
     problem p, q;
     candidate c = {0}, ignored = {0};
     stance_error error = prepare(&p, n, m, wanted->A, wanted->B, wanted->re, wanted->im, message);
