@@ -334,7 +334,8 @@ typedef enum stance_placement { STANCE_ROBUST, STANCE_SCHUR } stance_placement;
 
 /* Pole assignment for a controller that samples every T seconds (T > 0) and holds: the eigenvalues
  * of Ad(T) - Bd(T) K are exp(s T) of the poles s = re + i im (1/s). Pairs must turn less than half
- * a turn in T. sweeps, condition: as stance_place, 0 and NAN from STANCE_SCHUR; may be NULL. */
+ * a turn in T. Of several equally robust gains, the one that continues stance_place's. sweeps,
+ * condition: as stance_place, 0 and NAN from STANCE_SCHUR; may be NULL. */
 stance_error stance_place_sampled(stance_placement how, int n, int m, const double *A,
                                   const double *B, double T, const double *re, const double *im,
                                   double *K, int *sweeps, double *condition,

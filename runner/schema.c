@@ -143,7 +143,7 @@ static const struct row rows[] = {
          .text = "model that the gains are designed for",
          .more = "sampled: the robot sampled every controller.sample_time with torques held in "
                  "between; a pole s becomes exp(s T), the cost of lqr stays the integral over all "
-                 "time.",
+                 "time. Each sample time of a sweep is then a design of its own.",
          .need = NEED_ACTUATORS}},
     {FAMILY_POLES, {.path = "controller.poles", .type = FIELD_POLES, .by_scene = true,
                     .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",

@@ -208,6 +208,42 @@ static void placements(void **state)
     for_each_record(check_placement);
 }
 
+/* As T goes to 0 the gains of the sampled model tend to those of continuous time, linearly: the
+ * robust ones too, which come as twins. At the right angle they are not even isolated. */
+static void check_placement_limit(const struct sample *s)
+{
+    double K[M * N], sampled[M * N], re[N], im[N], distance[2];
+    const double T[2] = {1e-4, 5e-5};
+    stance_message message = {""};
+    eigenvalues_of(s, "poles", re, im);
+    for (int real = 0; real < 2; real++) {
+        if (strstr(s->name, "right angle")) {
+            continue;
+        }
+        TRY(stance_place(N, M, s->A, s->B, re, im, K, NULL, NULL, &message), message);
+        for (int k = 0; k < 2; k++) {
+            TRY(stance_place_sampled(STANCE_ROBUST, N, M, s->A, s->B, T[k], re, im, sampled, NULL,
+                                     NULL, &message),
+                message);
+            distance[k] = 0;
+            for (int i = 0; i < M * N; i++) {
+                distance[k] = fmax(distance[k], fabs(sampled[i] - K[i]));
+            }
+        }
+        assert_near(distance[0] / distance[1], 2, 0.1, s->name);
+        for (int i = 0; i < N; i++) {
+            re[i] = -3 - 0.3 * i;
+            im[i] = 0;
+        }
+    }
+}
+
+static void placement_limits(void **state)
+{
+    (void)state;
+    for_each_record(check_placement_limit);
+}
+
 /* With one input the gain is unique: Ackermann's formula for a double integrator held over T. */
 static void sampled_double_integrator(void **state)
 {
@@ -527,6 +563,7 @@ int main(void)
         cmocka_unit_test(scalar_regulator),
         cmocka_unit_test(regulator_messages),
         cmocka_unit_test(placements),
+        cmocka_unit_test(placement_limits),
         cmocka_unit_test(sampled_double_integrator),
         cmocka_unit_test(placement_messages),
         cmocka_unit_test(uncontrollable_equilibrium),

@@ -118,6 +118,19 @@ for bad in tests/bad/*.yaml; do check "refused: $(basename "$bad" .yaml)" refuse
 check "design" "$stance" design scenarios/balance_recovers.yaml
 check "design prints T*" grep -q 0.1363 "$work/last"
 check "design --json" sh -c "'$stance' design --json scenarios/balance_recovers.yaml | '$python' -m json.tool"
+check "design --json: sampled, late, T*" sh -c "'$stance' design --json scenarios/balance_recovers.yaml \
+    --set controller.delay=1 --set controller.design_time=sampled | '$python' -c '
+import json, sys
+c = json.load(sys.stdin)[\"controller\"]
+assert c[\"design\"] == \"place\" and c[\"design_time\"] == \"sampled\" and c[\"stable\"]
+assert len(c[\"sampled_loop\"][\"eigenvalues\"]) == 8 and c[\"sampled_loop\"][\"delay\"] == 1
+assert 0.9 < c[\"sampled_loop\"][\"spectral_radius\"] < 1 and c[\"lyapunov\"] is None
+assert c[\"critical_sample_time_delayed\"] < c[\"critical_sample_time\"]'"
+check "design --json: the set within bounds" sh -c "'$stance' design --json scenarios/balance_recovers.yaml | '$python' -c '
+import json, sys
+s = json.load(sys.stdin)[\"controller\"][\"lyapunov\"]
+assert s[\"sampled\"] and s[\"level\"] > 0 and s[\"binding\"].startswith(\"torque limit of hip1\")
+assert all(0 < s[\"alone\"][k] <= s[\"extent\"][k] for k in s[\"alone\"]) and len(s[\"P\"]) == 6'"
 check "describe" "$stance" describe
 check "describe controller.poles" "$stance" describe controller.poles
 check "describe --schema" sh -c "'$stance' describe --schema | '$python' -m json.tool"

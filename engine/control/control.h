@@ -20,10 +20,25 @@ stance_error stance_refuse(stance_message *message, stance_error error, const ch
 /* A complex number as people write it: no part that is nothing but rounding. */
 const char *stance_complex_text(double _Complex number, char text[64]);
 
+/* Equal but for rounding. */
+bool stance_same_pole(double _Complex a, double _Complex b);
+
 /* Puts the poles re + i im in an order in which a pair stands in two places in a row, the one with
  * im > 0 first. BAD_POLES when one is not finite or lacks its conjugate. */
 stance_error stance_pair_poles(int n, const double *re, const double *im, double _Complex *pole,
                                stance_message *message);
+
+/* A[n][n], B[n][m] and the n poles wanted of it. */
+typedef struct linear_model {
+    const double *A, *B, *re, *im;
+} linear_model;
+
+/* stance_place for `wanted`, a neighbour of `near` with its poles in the same order: of the maxima
+ * of the conditioning the one that continues the solution of `near`; where that leads nowhere, as
+ * stance_place. Arguments already checked. */
+stance_error stance_place_following(int n, int m, const linear_model *near,
+                                    const linear_model *wanted, double *K, int *sweeps,
+                                    double *condition, stance_message *message);
 
 /* The eigenvalues of A that a Hautus test looks at: all, those with real part >= 0, those of
  * modulus

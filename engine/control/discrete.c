@@ -358,7 +358,8 @@ static stance_error check_pairs(int n, const double *re, const double *im, doubl
 
 /* Ad - Bd K = I + T (D - E K) with D = (Ad - I)/T = phi A, E = Bd/T = phi B and phi the integral
  * over T: the same gain places (exp(s T) - 1)/T for (D, E), which tend to s, A and B as T goes to
- * 0, where Ad alone would lose its digits to the identity. */
+ * 0, where Ad alone would lose its digits to the identity. So does the robust gain to that of
+ * continuous time. */
 stance_error stance_place_sampled(stance_placement how, int n, int m, const double *A,
                                   const double *B, double T, const double *re, const double *im,
                                   double *K, int *sweeps, double *condition,
@@ -394,9 +395,10 @@ stance_error stance_place_sampled(stance_placement how, int n, int m, const doub
             s.re[i] = creal(pole);
             s.im[i] = cimag(pole);
         }
+        const linear_model near = {A, B, re, im}, wanted = {s.loop, s.Bd, s.re, s.im};
         error = how == STANCE_SCHUR
                     ? stance_place_schur(n, m, s.loop, s.Bd, s.re, s.im, K, message)
-                    : stance_place(n, m, s.loop, s.Bd, s.re, s.im, K, sweeps, condition, message);
+                    : stance_place_following(n, m, &near, &wanted, K, sweeps, condition, message);
     }
     if (error == STANCE_OK && how == STANCE_SCHUR) {
         if (sweeps) {

@@ -32,6 +32,10 @@
  * For the default biped on one foot this is the gain that other programs' usual start leads to,
  * and the better one: with 10 N m it recovers from tilts of -0.094 ... 0.020 rad, its mirror image
  * from -0.051 ... 0.021 rad only.
+ *
+ * Sampling breaks the symmetry a little, of the order of T^2, and would let such a trifle choose
+ * between the twins. stance_place_following climbs from the eigenvectors of a solved neighbour
+ * instead, so that the gain of the sampled model continues that of continuous time.
  */
 #include "control.h"
 
@@ -50,7 +54,6 @@
 #define FLAT 1e-6         /* change still admitted after MAX_SWEEPS: a degenerate maximum */
 #define EQUAL_HEIGHT 1e-9 /* relative difference of |det X| between mirror images */
 #define WORST_CONDITION 1e13
-#define SAME_POLE 1e-12
 #define RANK_TOLERANCE 1e-12
 
 typedef double _Complex number;
@@ -111,63 +114,12 @@ static bool is_pair(const problem *p, int j)
 
 /* ---- the poles that are wanted --------------------------------------------------------------- */
 
-static bool same_pole(double complex a, double complex b)
-{
-    return cabs(a - b) <= SAME_POLE * fmax(1, cabs(a));
-}
-
-static stance_error unpaired(stance_message *message, double complex pole)
-{
-    char text[64], conjugate[64];
-    return stance_refuse(
-        message, STANCE_BAD_POLES, "the pole %s has no conjugate %s among the poles",
-        stance_complex_text(pole, text), stance_complex_text(conj(pole), conjugate));
-}
-
-stance_error stance_pair_poles(int n, const double *re, const double *im, double complex *pole,
-                               stance_message *message)
-{
-    bool *taken = calloc((size_t)n, sizeof *taken);
-    stance_error error = taken ? STANCE_OK : STANCE_NO_MEMORY;
-    int placed = 0;
-
-    for (int j = 0; j < n && error == STANCE_OK; j++) {
-        if (!isfinite(re[j]) || !isfinite(im[j])) {
-            error = stance_refuse(message, STANCE_BAD_POLES,
-                                  "%d poles are needed, all of them finite", n);
-        }
-    }
-    for (int j = 0; j < n && error == STANCE_OK; j++) {
-        if (taken[j]) {
-            continue;
-        }
-        const double complex wanted = CMPLX(re[j], im[j]);
-        pole[placed++] = wanted;
-        if (im[j] == 0) {
-            continue;
-        }
-        int k = j + 1;
-        while (k < n && (taken[k] || !same_pole(CMPLX(re[k], im[k]), conj(wanted)))) {
-            k++;
-        }
-        if (k == n) {
-            error = unpaired(message, wanted);
-            break;
-        }
-        taken[k] = true;
-        pole[placed - 1] = CMPLX(re[j], fabs(im[j]));
-        pole[placed++] = CMPLX(re[j], -fabs(im[j]));
-    }
-    free(taken);
-    return error;
-}
-
 static stance_error check_multiplicity(const problem *p, stance_message *message)
 {
     for (int j = 0; j < p->n; j++) {
         int times = 0;
         for (int k = 0; k < p->n; k++) {
-            times += same_pole(p->pole[j], p->pole[k]);
+            times += stance_same_pole(p->pole[j], p->pole[k]);
         }
         if (times > p->r) {
             char text[64];
@@ -670,15 +622,41 @@ static stance_error finish(problem *p, double *K, candidate *c, stance_message *
     return STANCE_OK;
 }
 
+/* Climbs from the vectors `start` of a neighbouring problem, projected on the S_j. */
+static bool solve_from(problem *p, const number *start, double *K, candidate *c)
+{
+    for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1) {
+        number *w = p->small, *part = w + p->r;
+        double *re = p->rhs, *im = re + p->n;
+        for (int i = 0; i < p->n; i++) {
+            re[i] = creal(start[j * p->n + i]);
+            im[i] = cimag(start[j * p->n + i]);
+        }
+        project(p, j, re, w);
+        project(p, j, im, part);
+        for (int k = 0; k < p->r; k++) {
+            w[k] += CMPLX(0, 1) * part[k];
+        }
+        if (!combine(p, j, w, p->vector + j * p->n)) {
+            return false;
+        }
+        store_columns(p, j);
+    }
+    return finish(p, K, c, NULL) == STANCE_OK;
+}
+
+/* The vectors of the solution are left in p->best. */
 static stance_error solve(problem *p, double *K, candidate *c, stance_message *message)
 {
     const size_t bytes = (size_t)p->n * (size_t)p->m * sizeof *K;
+    const size_t vectors = (size_t)p->n * (size_t)p->n * sizeof *p->best;
     candidate mirrored = {0};
     int before = 0;
     double *other = malloc(bytes);
     stance_error error = other ? STANCE_OK : STANCE_NO_MEMORY;
     if (error == STANCE_OK) {
         error = screen(p, &before) ? finish(p, K, c, message) : not_independent(message);
+        memcpy(p->best, p->vector, vectors);
     }
     if (error == STANCE_OK && reflect(p) && finish(p, other, &mirrored, NULL) == STANCE_OK) {
         const double higher = mirrored.height - c->height;
@@ -686,10 +664,52 @@ static stance_error solve(problem *p, double *K, candidate *c, stance_message *m
             mirrored.sweeps += c->sweeps;
             *c = mirrored;
             memcpy(K, other, bytes);
+            memcpy(p->best, p->vector, vectors);
         }
     }
     c->sweeps += before;
     free(other);
+    return error;
+}
+
+/* Fills *p with all but a solution; frees its memory where that fails. */
+static stance_error prepare(problem *p, int n, int m, const double *A, const double *B,
+                            const double *re, const double *im, stance_message *message)
+{
+    stance_error error = problem_make(p, n, m, A, B);
+    if (error == STANCE_OK) {
+        error = stance_pair_poles(n, re, im, p->pole, message);
+    }
+    if (error == STANCE_OK) {
+        error = split_inputs(p, message);
+    }
+    if (error == STANCE_OK) {
+        error = check_multiplicity(p, message);
+    }
+    if (error == STANCE_OK) {
+        error = check_controllable(p, message);
+    }
+    if (error == STANCE_OK) {
+        error = find_spaces(p);
+    }
+    if (error != STANCE_OK) {
+        free(p->memory);
+    }
+    return error;
+}
+
+static stance_error hand_over(stance_error error, const candidate *c, int *sweeps,
+                              double *condition, stance_message *message)
+{
+    if (error == STANCE_OK && sweeps) {
+        *sweeps = c->sweeps;
+    }
+    if (error == STANCE_OK && condition) {
+        *condition = c->condition;
+    }
+    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL) {
+        stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
+    }
     return error;
 }
 
@@ -706,34 +726,33 @@ stance_error stance_place(int n, int m, const double *A, const double *B, const 
     }
     problem p;
     candidate c = {0};
-    stance_error error = problem_make(&p, n, m, A, B);
-    if (error == STANCE_OK) {
-        error = stance_pair_poles(n, re, im, p.pole, message);
-    }
-    if (error == STANCE_OK) {
-        error = split_inputs(&p, message);
-    }
-    if (error == STANCE_OK) {
-        error = check_multiplicity(&p, message);
-    }
-    if (error == STANCE_OK) {
-        error = check_controllable(&p, message);
-    }
-    if (error == STANCE_OK) {
-        error = find_spaces(&p);
-    }
+    stance_error error = prepare(&p, n, m, A, B, re, im, message);
     if (error == STANCE_OK) {
         error = solve(&p, K, &c, message);
+        free(p.memory);
     }
-    if (error == STANCE_OK && sweeps) {
-        *sweeps = c.sweeps;
+    return hand_over(error, &c, sweeps, condition, message);
+}
+
+stance_error stance_place_following(int n, int m, const linear_model *near,
+                                    const linear_model *wanted, double *K, int *sweeps,
+                                    double *condition, stance_message *message)
+{
+    if (n < 1 || m < 1) {
+        return STANCE_BAD_ARGUMENT;
     }
-    if (error == STANCE_OK && condition) {
-        *condition = c.condition;
+    problem p, q;
+    candidate c = {0}, ignored = {0};
+    stance_error error = prepare(&p, n, m, wanted->A, wanted->B, wanted->re, wanted->im, message);
+    if (error == STANCE_OK) {
+        bool followed = false;
+        if (prepare(&q, n, m, near->A, near->B, near->re, near->im, NULL) == STANCE_OK) {
+            followed = q.r == p.r && solve(&q, K, &ignored, NULL) == STANCE_OK &&
+                       solve_from(&p, q.best, K, &c);
+            free(q.memory);
+        }
+        error = followed ? STANCE_OK : solve(&p, K, &c, message);
+        free(p.memory);
     }
-    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL) {
-        stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
-    }
-    free(p.memory);
-    return error;
+    return hand_over(error, &c, sweeps, condition, message);
 }
