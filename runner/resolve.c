@@ -78,7 +78,7 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     const bool sampled = values->design_time == DESIGN_SAMPLED;
     const stance_placement method =
         values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST;
-    struct resolved_gains own;
+    struct resolved_gains own = {0, NAN};
 
     how = how ? how : &own;
     *how = (struct resolved_gains){0, NAN};

@@ -243,9 +243,13 @@ static void bundle_decouple(struct bundle *b, mask due, lanes *command)
     if (!mask_any(servos))
         return;
     struct dynamics e;
-    const struct drive drive = {none, true, NULL};
-    smooth_evaluate(&b->set, b->now.t, b->now.s, b->now.w, b->now.integral, &drive,
-                    smooth_touching(&b->set, b->now.gap), &e);
+    struct contact_state contact;
+    const contact_set touching = smooth_touching(&b->set, b->now.gap);
+    e.trig = b->now.trig;
+    dynamics_evaluate(&b->set, b->now.t, b->now.s, b->now.w, none, touching, true, &e);
+    decoupling_contacts(&b->set, &e, &contact);
+    decouple(&b->set, servos, b->now.t, b->now.s, b->now.w, b->now.integral, touching, &contact,
+             &e);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         command[i] = choose(servos, e.command[i], command[i]);
     law_integrate(law, servos, b->sample_every * b->h, e.integral_rate, b->now.integral);
@@ -514,7 +518,14 @@ static void bundle_start(struct bundle *b, mask fresh, bool coupled)
                     mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
     const struct verdict v = bundle_judge(b, fresh, loaded, MASK_NONE);
     bundle_sample(b, fresh);
-    if (coupled) {
+    if (!coupled) { /* a law that acts all the time, without gains: its torque is constant */
+        lanes torque[ACTUATORS];
+        const mask constant = fresh & mask_less_equal(lanes_of(INFINITY), b->next_sample);
+        law_torque(&b->set.law, b->now.s, b->now.w, torque);
+        law_clip(&b->set.law, torque);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            b->torque[i] = choose(constant, torque[i], b->torque[i]);
+    } else {
         struct dynamics e;
         const struct drive drive = {b->torque, true, NULL};
         smooth_evaluate(&b->set, b->now.t, b->now.s, b->now.w, b->now.integral, &drive,

@@ -32,8 +32,8 @@
 
 #include "dynamics.h"
 
-#define DECOUPLING_CONDITION STANCE_ILL_CONDITIONED /* of G: beyond it the inverse is damped */
-#define DECOUPLING_REST 1e-6     /* m/s: contact velocities below it are zero to the law */
+#define DECOUPLING_CONDITION STANCE_ILL_CONDITIONED /* of G: then its inverse is damped */
+#define DECOUPLING_REST 1e-6 /* m/s: contact velocities below it are zero to the law */
 
 /* What each contact does in the state that *e belongs to. */
 static inline void decoupling_contacts(const struct setting *set, const struct dynamics *e,
@@ -120,6 +120,9 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
         part[c] = where & contact->closed[c];
         for (int a = 0; a < 2; a++) {
             lanes rate[2];
+            problem.free[c][a] = answer[c][a][0] = answer[c][a][1] = lanes_of(0);
+            if (!(touching >> c & 1))
+                continue;
             decoupling_rates(set, &e->trig, e->response[c][a], rate);
             for (int i = 0; i < 2; i++)
                 answer[c][a][i] = -(inverse[i][0] * rate[0] + inverse[i][1] * rate[1]);

@@ -52,13 +52,13 @@ static inline void dynamics_clear(contact_set touching, struct dynamics *e)
         }
 }
 
-/* Contact terms of the contacts in `touching`; `pushes`: responses to the actuators too. */
+/* Evaluates what e->trig, s and w lead to. Contact terms of the contacts in `touching`; `pushes`:
+ * responses to the actuators too. */
 static inline void dynamics_evaluate(const struct setting *set, lanes t, const lanes *s,
                                      const lanes *w, const lanes *torque, contact_set touching,
                                      bool pushes, struct dynamics *e)
 {
     lanes load[SCENE_COORDINATES];
-    scene_trigonometry(s, &e->trig);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->torque[i] = torque[i];
     scene_matrix A;

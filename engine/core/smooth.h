@@ -54,6 +54,7 @@ static inline void smooth_evaluate(const struct setting *set, lanes t, const lan
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             torque[i] = choose(decouples, lanes_of(0), torque[i]);
     }
+    scene_trigonometry(s, &e->trig);
     dynamics_evaluate(set, t, s, w, torque, touching, servos, e);
     if (!servos)
         return;
@@ -316,6 +317,7 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
     lanes torque[ACTUATORS], uf[2][2], r[2][2], energy = none;
     for (int i = 0; i < ACTUATORS; i++)
         torque[i] = none;
+    scene_trigonometry(now->s, &e.trig);
     dynamics_evaluate(set, now->t, now->s, now->w, torque, (1u << SCENE_CONTACTS) - 1, false, &e);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         part[c] = where & mask_less(none, set->may_touch[c]) &
