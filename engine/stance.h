@@ -236,10 +236,10 @@ typedef struct stance_case {
 } stance_case;
 
 typedef struct stance_result {
-    int32_t status;                          /* stance_status */
-    int32_t outcome;                         /* stance_outcome */
-    int32_t evidence;                        /* stance_evidence */
-    int32_t failure;                         /* stance_failure */
+    int32_t status;   /* stance_status */
+    int32_t outcome;  /* stance_outcome */
+    int32_t evidence; /* stance_evidence: inferred, or none: then what is said was simulated */
+    int32_t failure;  /* stance_failure */
     double end_time, settle_time, fall_time; /* s; NAN where not reached */
     int64_t steps, iterations;               /* steps taken; Newton iterations summed over them */
     int64_t ambiguous_steps;                 /* steps whose contact problem had several solutions */

@@ -81,11 +81,10 @@ static bool begin(const struct search *s, uint64_t point, double radius, bool in
 {
     const stance_scene *scene = s->ask->scene;
     const int n = s->n, postures = n / 2;
-    double u[STATES], x[STATES], gap[STANCE_MAX_CONTACTS];
+    double u[STATES], x[STATES] = {0}, gap[STANCE_MAX_CONTACTS];
 
     const double inner = sphere(s, point, u);
     for (int i = 0; i < n; i++) {
-        x[i] = 0;
         for (int j = i; j < n; j++) {
             x[i] += radius * (inside ? inner : 1) * s->inverse[i * n + j] * u[j];
         }

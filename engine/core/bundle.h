@@ -463,9 +463,7 @@ static void bundle_finish(struct bundle *b, int lane, stance_status status, stan
     *r = (stance_result){
         .status = status,
         .outcome = outcome,
-        .evidence = inferred                ? STANCE_INFERRED
-                    : status == STANCE_DONE ? STANCE_SIMULATED
-                                            : STANCE_EVIDENCE_NONE,
+        .evidence = inferred ? STANCE_INFERRED : STANCE_EVIDENCE_NONE,
         .failure = failure,
         .end_time = n * h,
         .settle_time = calm && !inferred ? (begin >= 0 ? begin : n) * h : NAN,
