@@ -136,5 +136,12 @@ const struct command command_design = {
     "                             order, V <= c keeps within torque limits, friction\n"
     "                             cone and contact; binding: which of them stops it;\n"
     "                             alone, extent {state: reach, rad and rad/s}: with the\n"
-    "                             other states 0, and free\n",
+    "                             other states 0, and free\n"
+    "      captured               with stop.capture estimated; null where no set is found:\n"
+    "                             M of the set X' M X <= 1, shape, level (of the shape),\n"
+    "                             boundary_simulations and interior_simulations, all\n"
+    "                             stabilised, batches (sets tried), failing_share_below (of\n"
+    "                             the boundary, 95 % confidence), slowest (s),\n"
+    "                             captured_level (share of the level in which cases stop),\n"
+    "                             alone, extent as above\n",
 };
