@@ -11,9 +11,9 @@
 
 enum { MAX_SETS = 64 };
 
-static int print_json(const struct design_report *r)
+/* Takes the reference. */
+static int print_json(json_t *report)
 {
-    json_t *report = design_json(r);
     if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0) {
         fputs("stance design: the report could not be written\n", stderr);
         json_decref(report);
@@ -44,6 +44,23 @@ static int complain(const struct scenario *s, const char *text)
     return EXIT_USAGE;
 }
 
+/* A decoupling law has no linear design: what there is to know is where it is singular. */
+static int design_decoupling(const struct scenario *s, bool json)
+{
+    struct design_pairs pairs;
+    stance_message message = {""};
+
+    if (!design_pairs_compute(&pairs, s, &message)) {
+        return complain(s, message.text);
+    }
+    if (json) {
+        return print_json(design_pairs_json(&pairs));
+    }
+    printf("%s\n\n", s->title);
+    design_pairs_print(&pairs);
+    return EXIT_DONE;
+}
+
 static int design(const struct scenario *s, bool json)
 {
     struct design_report report;
@@ -54,11 +71,14 @@ static int design(const struct scenario *s, bool json)
                 s->file, s->scene->name);
         return EXIT_USAGE;
     }
+    if (s->base.law == LAW_DECOUPLING) {
+        return design_decoupling(s, json);
+    }
     if (!design_compute(&report, s, &message)) {
         return complain(s, message.text);
     }
     if (json) {
-        return print_json(&report);
+        return print_json(design_json(&report));
     }
     design_print(&report);
     return EXIT_DONE;
@@ -136,5 +156,11 @@ const struct command command_design = {
     "                             order, V <= c keeps within torque limits, friction\n"
     "                             cone and contact; binding: which of them stops it;\n"
     "                             alone, extent {state: reach, rad and rad/s}: with the\n"
-    "                             other states 0, and free\n",
+    "                             other states 0, and free\n"
+    "\n"
+    "With controller.kind decoupling it prints instead for each pair of coordinates where the law\n"
+    "is singular; as JSON: scenario, title, scene and\n"
+    "    pairs                    [{pair, controlled (is it the scenario's?),\n"
+    "                             condition_at_start (null: singular), best_condition,\n"
+    "                             damped_share (of all postures), singular}, ...]\n",
 };

@@ -299,6 +299,32 @@ static void switching_is_either(void **state)
     }
 }
 
+/* A law without gains that acts all the time: a constant torque, here on legs in free fall, where
+ * both turn against the trunk with the accelerations of the inertia matrix. */
+static void constant_torque_acts(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"implicit", "midpoint", "capturing", "lagrange",
+                                          "event-driven"};
+    for (int m = 0; m < 5; m++) {
+        stance_case c = plain_case();
+        stance_result r;
+        c.contacts = 0;
+        c.position[1] = 3;
+        c.step = 1e-5;
+        c.steps = 10;
+        c.tolerance = 1e-10;
+        c.feedforward[0] = 1, c.feedforward[1] = -1;
+        kernel_of(methods[m], NULL)->run(&c, &r, 1);
+        /* Opposite torques on legs that hang straight: phi_i'' = +-1 / (m l^2). */
+        const double l = c.robot[0], turn = 1 / (c.robot[2] * l * l);
+        assert_int_equal(r.status, STANCE_DONE);
+        assert_true(r.peak_torque == 1);
+        assert_true(fabs(r.velocity[3] / (turn * 1e-4) - 1) < 1e-3);
+        assert_true(fabs(r.velocity[4] / (turn * 1e-4) + 1) < 1e-3);
+    }
+}
+
 /* The same bits in every lane of every width, sampled and continuous, falling and standing. */
 static void lanes_agree(void **state)
 {
@@ -338,6 +364,7 @@ int main(void)
         cmocka_unit_test(inertia_is_energy),     cmocka_unit_test(singular_is_survived),
         cmocka_unit_test(integrals_are_bounded), cmocka_unit_test(delay_shortens),
         cmocka_unit_test(switching_is_either),   cmocka_unit_test(lanes_agree),
+        cmocka_unit_test(constant_torque_acts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
