@@ -87,10 +87,11 @@ static inline void law_clip(const struct law *law, lanes *torque)
 
 /* The linear law acting inside the step: torque and its derivative by the velocity at the end, of
  * which the positions move by `lever` and the velocities by `rate_lever` per unit. A decoupling law
- * holds the torque `held`. */
+ * holds the torque `held`. `corner`: NULL, or for each torque 0 where it is taken for free, -1 or 1
+ * where it is taken for being at its limit, whatever is commanded. */
 static inline void law_inside(const struct law *law, const lanes *s, const lanes *w, lanes lever,
-                              double rate_lever, const lanes *held, lanes *torque,
-                              lanes rate[ACTUATORS][POSTURES])
+                              double rate_lever, const lanes *held, const int *corner,
+                              lanes *torque, lanes rate[ACTUATORS][POSTURES])
 {
     lanes command[ACTUATORS];
     const mask decouples = mask_less(lanes_of(0), law->decouples);
@@ -99,7 +100,11 @@ static inline void law_inside(const struct law *law, const lanes *s, const lanes
         torque[i] = command[i];
     law_clip(law, torque);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        const mask free = mask_less(lanes_abs(command[i]), law->limit);
+        mask free = mask_less(lanes_abs(command[i]), law->limit);
+        if (corner) {
+            torque[i] = corner[i] == 0 ? command[i] : corner[i] > 0 ? law->limit : -law->limit;
+            free = corner[i] == 0 ? LANES_ALL : MASK_NONE;
+        }
         torque[i] = choose(decouples, held[i], torque[i]);
         for (int j = 0; j < SCENE_POSTURE; j++) {
             const lanes slope = law->linear.gain[i][j] * lever +
@@ -107,6 +112,20 @@ static inline void law_inside(const struct law *law, const lanes *s, const lanes
             rate[i][j] = choose(free, -slope, lanes_of(0));
         }
     }
+}
+
+/* Lanes where the torques at s, w are what `corner` took them for. */
+static inline mask law_agrees(const struct law *law, const lanes *s, const lanes *w,
+                              const int *corner)
+{
+    lanes command[ACTUATORS];
+    mask agrees = LANES_ALL;
+    law_torque(law, s, w, command);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        agrees &= corner[i] == 0 ? mask_less_equal(lanes_abs(command[i]), (1 + 1e-12) * law->limit)
+                                 : mask_less_equal((1 - 1e-12) * law->limit,
+                                                   corner[i] > 0 ? command[i] : -command[i]);
+    return agrees;
 }
 
 /* Lanes inside the ellipsoid. */
