@@ -39,8 +39,10 @@ static int complain(const struct scenario *s, const char *text)
     const bool controller = s->base.law == LAW_STATE_FEEDBACK &&
                             ((s->base.design_point.given && values.state_given) ||
                              resolve_equilibrium(s->scene, &values, model, &ignored, &message));
-    fprintf(stderr, "%s:%d:%d: %s\n", s->file, controller ? s->controller_line : s->initial_line,
-            controller ? s->controller_column : s->initial_column, text);
+    int line = controller ? s->controller_line : s->initial_line;
+    int column = controller ? s->controller_column : s->initial_column;
+    scenario_place(s, text, &line, &column);
+    fprintf(stderr, "%s:%d:%d: %s\n", s->file, line, column, text);
     return EXIT_USAGE;
 }
 

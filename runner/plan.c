@@ -237,6 +237,7 @@ static void blame_design(const struct plan *plan, size_t design, struct plan_err
     bool law = resolve_design(s->scene, &values, &result, &ignored);
     error->line = law ? s->controller_line : s->initial_line;
     error->column = law ? s->controller_column : s->initial_column;
+    scenario_place(s, error->message.text, &error->line, &error->column);
 }
 
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
@@ -299,6 +300,7 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
     }
     error->line = s->initial_line;
     error->column = s->initial_column;
+    scenario_place(s, message.text, &error->line, &error->column);
     if (s->cases == 1) {
         error->message = message;
     } else {

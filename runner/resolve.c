@@ -19,6 +19,7 @@
 
 #define DEEPEST_START 1e-9 /* m: penetration of an initial state that counts as rounding */
 #define MOST_STEPS 1e15
+#define MOST_CONDITION 1e12 /* of a pair of coordinates at the start: above it is singular */
 
 static bool refuse(stance_message *message, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -300,6 +301,15 @@ static bool decouple(const stance_scene *scene, const struct scenario_values *va
     int controlled[2];
     if (!stance_pair(scene, values->controlled, &controlled[0], &controlled[1])) {
         return refuse(message, "controller.controlled is no pair of coordinates");
+    }
+    double condition;
+    if (stance_pair_condition(scene, out->robot, out->position, values->controlled, &condition) !=
+            STANCE_OK ||
+        !(condition < MOST_CONDITION)) {
+        return refuse(message,
+                      "controller.controlled: the pair %s-%s is singular in the initial "
+                      "posture: no torques give it the accelerations that the law asks for",
+                      scene->coordinate[controlled[0]].name, scene->coordinate[controlled[1]].name);
     }
     out->decouples = true;
     for (int i = 0; i < scene->actuators; i++) {
