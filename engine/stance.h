@@ -221,15 +221,25 @@ typedef struct stance_case {
     double settle_hold;  /* s */
     double fall_height;  /* in lengths of the scene, see stance_scene.height */
 
+    /* `captures`: a case ends as `stabilised`, evidence `inferred`, at the first step (sampling
+     * instant, where the law samples) at whose end the support foot alone carries and stands and
+     * x = (posture - target, rates) has x' captured x <= 1, unless less than capture_time is left.
+     * Has no effect unless `settle` and has_target hold, nor on laws that decouple, switch or act
+     * late, whose next torques do not follow from x. When such a case would have settled is not
+     * known: settle_time is NAN, and what is counted or summed ends with the simulation. */
+    bool captures;
+    double captured[2 * STANCE_MAX_POSTURE][2 * STANCE_MAX_POSTURE]; /* symmetric; units 1/x^2 */
+    double capture_time;                                             /* s, >= 0 */
+
     uint64_t seed, grid_index, sample_index; /* key of the random numbers */
     stance_trajectory *trajectory;           /* NULL: not recorded */
 } stance_case;
 
 typedef struct stance_result {
-    int32_t status;                          /* stance_status */
-    int32_t outcome;                         /* stance_outcome */
-    int32_t evidence;                        /* stance_evidence */
-    int32_t failure;                         /* stance_failure */
+    int32_t status;   /* stance_status */
+    int32_t outcome;  /* stance_outcome */
+    int32_t evidence; /* stance_evidence: inferred, or none: then what is said was simulated */
+    int32_t failure;  /* stance_failure */
     double end_time, settle_time, fall_time; /* s; NAN where not reached */
     int64_t steps, iterations;               /* steps taken; Newton iterations summed over them */
     int64_t ambiguous_steps;                 /* steps whose contact problem had several solutions */
@@ -385,5 +395,49 @@ stance_error stance_lyapunov(int n, const double *loop, bool sampled, const doub
  * extent[n]: when all else is free. P symmetric, positive definite. */
 stance_error stance_sublevel(int n, const double *P, int count, const double *a, const double *d,
                              double *level, int *binding, double *alone, double *extent);
+
+/* The widest ellipsoid x' P x <= 1 that the loop x' = F x (sampled: x+ = F x), once inside, never
+ * leaves and that lies within |a_k' x| <= d_k, a[count][n], 1 to 16 bounds, d > 0, INFINITY where a
+ * bound is none: the Lyapunov function is chosen for the volume. n <= 6. BAD_ARGUMENT when the loop
+ * is not stable or a bound leaves nothing. */
+stance_error stance_widest_set(int n, const double *loop, bool sampled, int count, const double *a,
+                               const double *d, double *P, stance_message *message);
+
+enum { STANCE_MAX_SHAPES = 16 };
+
+/* What stance_capture_estimate looks for. */
+typedef struct stance_capture_search {
+    const stance_scene *scene;
+    const stance_kernel *kernel;
+    /* Robot, ground, law, noise, step, rules and length of the simulations, seed. */
+    stance_case base;
+    int shapes; /* candidates for P, 1 ... STANCE_MAX_SHAPES; symmetric, positive definite */
+    double P[STANCE_MAX_SHAPES][4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
+    int64_t boundary, interior; /* simulations that confirm; interior may be 0 */
+} stance_capture_search;
+
+/* The set x' form x <= 1 from whose boundary every simulation ended `stabilised`. */
+typedef struct stance_captured_set {
+    bool exists;
+    double form[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
+    int shape;           /* which P */
+    double level;        /* form = P / level */
+    double time;         /* s: the longest that a simulation took to end */
+    int64_t boundary;    /* simulations that began on the boundary, all good ... */
+    int64_t interior;    /* ... and inside */
+    int64_t batches;     /* sets that were tried with so many; the last one was good */
+    double share;        /* of the boundary: less than this fails, with 95 % confidence */
+    int64_t simulations; /* in all, those of the search included */
+    double volume[STANCE_MAX_SHAPES]; /* logarithm of the volume that each P reached in the search,
+                                       * up to a constant; NAN where none */
+} stance_captured_set;
+
+/* Largest level c of x' P x, x = (posture - target, rates), for which simulations that begin on its
+ * boundary, evenly in the metric of P, with the support foot standing at rest and no contact inside
+ * the ground, all end as `stabilised`, in full. The shape with the largest volume is taken. 0
+ * failures of n say that less than 1 - (0.05 / batches)^(1 / n) of the boundary fails, with 95 %
+ * confidence. *set with `exists` false: no set was found.
+ * BAD_ARGUMENT: base does not settle at a target on a foot, or its law is not the state's alone. */
+stance_error stance_capture_estimate(const stance_capture_search *search, stance_captured_set *set);
 
 #endif

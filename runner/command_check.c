@@ -91,5 +91,7 @@ const struct command command_check = {
     "    file, file_bytes          where the results would go, and their size\n"
     "    ranks                     1\n"
     "    seconds_on_one_rank       estimate; null when no case could be tried\n"
-    "    seconds_is_upper_bound    whole cases took too long to try: it is a bound\n",
+    "    seconds_is_upper_bound    whole cases took too long to try, or may be\n"
+    "                              captured: it is a bound\n"
+    "    capture_seconds_on_one_rank   estimate for the captured sets of stop.capture; 0: none\n",
 };

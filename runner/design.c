@@ -4,6 +4,8 @@
  */
 #include "design.h"
 
+#include "capture.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -113,42 +115,6 @@ static stance_error sampled_loop(struct design_report *r)
 
 /* ---- the sublevel set ------------------------------------------------------------------------ */
 
-/* Half spaces a X <= d in which no bound is met, the torques being u = u0 - K X and the force on
- * the foot linear in X and u; at the instants of sampling where the controller samples. */
-static stance_error bounds(const struct design_report *r, double *a, double *d)
-{
-    enum { S = DESIGN_STATES, I = DESIGN_INPUTS };
-    const int n = r->states, m = r->inputs;
-    const struct scenario_values *values = &r->scenario->base;
-    double force[2], by_state[2 * S], by_torque[2 * I];
-
-    const stance_error error =
-        r->scenario->scene->contact_force(r->model, &r->equilibrium, force, by_state, by_torque);
-    for (int j = 0; error == STANCE_OK && j < n; j++) {
-        double loop[2];
-        for (int c = 0; c < 2; c++) {
-            loop[c] = by_state[c * n + j];
-            for (int i = 0; i < m; i++) {
-                loop[c] -= by_torque[c * m + i] * r->K[i * n + j];
-            }
-        }
-        for (int i = 0; i < m; i++) {
-            a[2 * i * n + j] = -r->K[i * n + j];
-            a[(2 * i + 1) * n + j] = r->K[i * n + j];
-        }
-        a[2 * m * n + j] = loop[1] - values->friction * loop[0];
-        a[(2 * m + 1) * n + j] = -loop[1] - values->friction * loop[0];
-        a[(2 * m + 2) * n + j] = -loop[0];
-    }
-    for (int i = 0; i < m; i++) {
-        d[2 * i] = values->torque_limit - r->equilibrium.torque[i];
-        d[2 * i + 1] = values->torque_limit + r->equilibrium.torque[i];
-    }
-    d[2 * m] = d[2 * m + 1] = values->friction * force[0];
-    d[2 * m + 2] = force[0];
-    return error;
-}
-
 static const char *why_no_set(const struct design_report *r)
 {
     if (r->scenario->base.law != LAW_STATE_FEEDBACK || !r->scenario->scene->contact_force) {
@@ -192,13 +158,43 @@ static bool sublevel(struct design_report *r, stance_message *message)
         return true;
     }
     if (error == STANCE_OK) {
-        error = bounds(r, a, d);
+        error = capture_bounds(r->scenario->scene, values, r->model, &r->equilibrium, r->K, a, d);
     }
     if (error == STANCE_OK) {
         error = stance_sublevel(n, set->P, 2 * m + 3, a, d, &set->level, &set->binding, set->alone,
                                 set->extent);
     }
     return error == STANCE_OK || refuse(message, "Lyapunov function", error);
+}
+
+static bool confirmed(struct design_report *r, stance_message *message)
+{
+    const struct scenario *s = r->scenario;
+    struct design_capture *capture = &r->capture;
+    struct resolved_design design;
+
+    capture->asked = s->base.capture != 0;
+    if (!capture->asked) {
+        return true;
+    }
+    if (!resolve_design(s->scene, &s->base, &design, message) ||
+        !capture_estimate(s->scene, &s->base, &design, s->seed, &capture->set, &capture->absent)) {
+        return false;
+    }
+    for (int i = 0; capture->set.exists && i < r->states; i++) {
+        double axis[DESIGN_STATES] = {0}, level = 0, one = 1, ignored[2][DESIGN_STATES];
+        int binding = -1;
+        axis[i] = 1;
+        /* x_i <= 1 holds up to 1 / extent^2. */
+        const stance_error error = stance_sublevel(r->states, capture->set.form, 1, axis, &one,
+                                                   &level, &binding, ignored[0], ignored[1]);
+        if (error != STANCE_OK) {
+            return refuse(message, "captured set", error);
+        }
+        capture->alone[i] = 1 / sqrt(capture->set.form[i * r->states + i]);
+        capture->extent[i] = 1 / sqrt(level);
+    }
+    return true;
 }
 
 static bool closed_loop(struct design_report *r, stance_message *message)
@@ -226,7 +222,7 @@ static bool closed_loop(struct design_report *r, stance_message *message)
     if (error != STANCE_OK) {
         return refuse(message, "closed loop", error);
     }
-    return sublevel(r, message);
+    return sublevel(r, message) && confirmed(r, message);
 }
 
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message)

@@ -27,6 +27,14 @@ struct design_set {
     double alone[DESIGN_STATES], extent[DESIGN_STATES];
 };
 
+/* The set that simulation confirms, where stop.capture asks for it. */
+struct design_capture {
+    bool asked;
+    stance_captured_set set;
+    stance_message absent; /* why there is none */
+    double alone[DESIGN_STATES], extent[DESIGN_STATES];
+};
+
 /* Matrices are row-major with `states` and `inputs` as their sizes. */
 struct design_report {
     const struct scenario *scenario;
@@ -49,6 +57,7 @@ struct design_report {
     double critical[2]; /* s, without and with a sample's delay; 0: the continuous loop is unstable,
                          * INFINITY: none found */
     struct design_set set;
+    struct design_capture capture;
 };
 
 /* What is known of the pairs of coordinates that a decoupling law may control, in stance_pair's

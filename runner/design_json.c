@@ -1,6 +1,8 @@
 /* design_json.c - the report of `stance design` for programs. */
 #include "design.h"
 
+#include "capture.h"
+
 #include <math.h>
 
 static json_t *json_matrix(int rows, int columns, const double *x)
@@ -78,6 +80,23 @@ static json_t *json_set(const struct design_report *r)
                      json_states(r, set->alone), "extent", json_states(r, set->extent));
 }
 
+static json_t *json_capture(const struct design_report *r)
+{
+    const stance_captured_set *set = &r->capture.set;
+    char shape[96];
+    if (!set->exists) {
+        return json_null();
+    }
+    return json_pack("{s:o, s:s, s:f, s:I, s:I, s:I, s:f, s:f, s:f, s:o, s:o}", "M",
+                     json_matrix(r->states, r->states, set->form), "shape",
+                     capture_shape_text(set->shape, shape), "level", set->level,
+                     "boundary_simulations", (json_int_t)set->boundary, "interior_simulations",
+                     (json_int_t)set->interior, "batches", (json_int_t)set->batches,
+                     "failing_share_below", set->share, "slowest", set->time, "captured_level",
+                     CAPTURE_SAFETY, "alone", json_states(r, r->capture.alone), "extent",
+                     json_states(r, r->capture.extent));
+}
+
 static json_t *json_sampled(const struct design_report *r)
 {
     if (!r->sampled) {
@@ -116,6 +135,9 @@ static void put_design(const struct design_report *r, json_t *controller)
         json_object_set_new(controller, "sweeps", json_integer(r->how.sweeps));
     }
     json_object_set_new(controller, "lyapunov", json_set(r));
+    if (r->capture.asked) {
+        json_object_set_new(controller, "captured", json_capture(r));
+    }
 }
 
 static json_t *json_controller(const struct design_report *r)

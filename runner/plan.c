@@ -1,6 +1,8 @@
 /* plan.c - designs, chunks and estimates. */
 #include "plan.h"
 
+#include "capture.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -240,13 +242,21 @@ static void blame_design(const struct plan *plan, size_t design, struct plan_err
     scenario_place(s, error->message.text, &error->line, &error->column);
 }
 
+/* This rank's block of the designs. */
+static size_t designs_here(const struct plan *plan, const struct parallel *parallel, size_t *first)
+{
+    const size_t ranks = (size_t)parallel->size, rank = (size_t)parallel->rank;
+    const size_t share = plan->designs / ranks, extra = plan->designs % ranks;
+    *first = rank * share + smaller(rank, extra);
+    return share + (rank < extra);
+}
+
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error)
 {
     const struct scenario *s = plan->scenario;
-    size_t share = plan->designs / (size_t)parallel->size;
-    size_t extra = plan->designs % (size_t)parallel->size, rank = (size_t)parallel->rank;
-    size_t first = rank * share + smaller(rank, extra), count = share + (rank < extra);
+    size_t first;
+    const size_t count = designs_here(plan, parallel, &first);
     uint64_t found = 0;
 
     for (size_t d = first; d < first + count; d++) {
@@ -264,6 +274,30 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
         blame_design(plan, 0, error);
     }
     return found > 0;
+}
+
+bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
+                            struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    size_t first;
+    const size_t count = designs_here(plan, parallel, &first);
+    bool good = true;
+
+    if (!s->base.capture) {
+        return true;
+    }
+    for (size_t d = first; good && d < first + count; d++) {
+        struct scenario_values values;
+        if (plan->design_status[d] != STANCE_DONE) {
+            continue;
+        }
+        scenario_case_values(s, design_case(plan, d), &values);
+        good =
+            capture_estimate(s->scene, &values, &plan->design[d], s->seed, NULL, &error->message);
+    }
+    parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
+    return parallel_agree(parallel, good, error->message.text, sizeof error->message.text);
 }
 
 bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method)
@@ -419,6 +453,35 @@ static void try_cases(const struct plan *plan, uint64_t from, uint64_t n, int64_
         trial->seconds += (plan_clock() - start) / lanes;
         trial->steps += (uint64_t)results[0].steps;
     }
+}
+
+/* A search with few simulations tells what one takes on the way to a set. */
+double plan_capture_cost(const struct plan *plan)
+{
+    enum { TRIED = 256 };
+    const struct scenario *s = plan->scenario;
+
+    for (size_t d = 0; s->base.capture && d < plan->designs; d++) {
+        struct scenario_values values;
+        stance_capture_search search;
+        stance_captured_set set;
+        stance_message ignored;
+        scenario_case_values(s, design_case(plan, d), &values);
+        if (plan->design_status[d] != STANCE_DONE ||
+            !capture_prepare(s->scene, &values, &plan->design[d], s->seed, &search, &ignored)) {
+            continue;
+        }
+        memcpy(search.P[0], search.P[search.shapes / 2], sizeof search.P[0]);
+        search.shapes = 1;
+        search.boundary = TRIED;
+        search.interior = 0;
+        const double start = plan_clock();
+        if (stance_capture_estimate(&search, &set) == STANCE_OK && set.simulations > 0) {
+            return (plan_clock() - start) / (double)set.simulations * CAPTURE_USUAL *
+                   (double)plan->designs;
+        }
+    }
+    return 0;
 }
 
 double plan_cost(const struct plan *plan, double budget, bool *bound)

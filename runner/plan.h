@@ -49,6 +49,14 @@ uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error);
 
+/* Collective, after plan_compute_designs: with stop.capture estimated, the captured set of every
+ * design, each rank a block, gathered on rank 0. false on every rank: no memory. */
+bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
+                            struct plan_error *error);
+/* Seconds that this will take on one rank, from a try at one design; 0 where there is nothing to
+ * estimate. Needs the designs. */
+double plan_capture_cost(const struct plan *plan);
+
 /* Tries the initial states of the first, the last, the corners and up to 4096 other cases spread
  * evenly. Cases whose design does not exist are left out. Needs the designs. */
 bool plan_check_cases(const struct plan *plan, struct plan_error *error);

@@ -35,6 +35,7 @@ struct estimate {
     uint64_t size;
     double seconds; /* on one rank; negative: unknown */
     bool bound;
+    double capture; /* s on one rank for the captured sets; 0: none is asked for */
 };
 
 static struct estimate estimate(const struct plan *plan, int ranks)
@@ -44,6 +45,8 @@ static struct estimate estimate(const struct plan *plan, int ranks)
         e.designs_failed += plan->design_status[d] != STANCE_DONE;
     }
     e.seconds = plan_cost(plan, cost_budget, &e.bound);
+    e.capture = plan_capture_cost(plan);
+    e.bound = e.bound || e.capture > 0; /* captured cases cost less */
     return e;
 }
 
@@ -60,12 +63,13 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
         json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
     }
     json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b}", "scenario", s->file,
-        "title", s->title, "scene", s->scene->name, "cases", (json_int_t)plan->rows, "dimensions",
-        dimensions, "designs", (json_int_t)plan->designs, "designs_failed",
+        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f}", "scenario",
+        s->file, "title", s->title, "scene", s->scene->name, "cases", (json_int_t)plan->rows,
+        "dimensions", dimensions, "designs", (json_int_t)plan->designs, "designs_failed",
         (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
         file, "file_bytes", (json_int_t)e->size, "ranks", ranks, "seconds_on_one_rank",
-        e->seconds < 0 ? json_null() : json_real(e->seconds), "seconds_is_upper_bound", e->bound);
+        e->seconds < 0 ? json_null() : json_real(e->seconds), "seconds_is_upper_bound", e->bound,
+        "capture_seconds_on_one_rank", e->capture);
     json_dumpf(root, out, JSON_INDENT(2));
     fputc('\n', out);
     json_decref(root);
@@ -103,6 +107,11 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
     if (e->seconds < 0) {
         fprintf(out, "cost        unknown: none of the cases tried can be computed\n");
         return;
+    }
+    if (e->capture > 0) {
+        report_seconds(text, sizeof text, e->capture / fmin(ranks, (double)plan->designs));
+        fprintf(out, "capture     about %s first, for %zu set%s of states that recover\n", text,
+                plan->designs, plan->designs == 1 ? "" : "s");
     }
     report_seconds(text, sizeof text, e->seconds / ranks);
     fprintf(out, "cost        %s %s on %d rank%s\n", e->bound ? "at most about" : "about", text,

@@ -12,6 +12,8 @@
  */
 #include "resolve.h"
 
+#include "capture.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -334,6 +336,19 @@ static bool decouple(const stance_scene *scene, const struct scenario_values *va
     return true;
 }
 
+/* A set somewhat smaller than the confirmed one. */
+static void capture(const stance_scene *scene, const struct resolved_design *design,
+                    stance_case *out)
+{
+    out->captures = true;
+    out->capture_time = design->capture_time;
+    for (int i = 0; i < 2 * scene->postures; i++) {
+        for (int j = 0; j < 2 * scene->postures; j++) {
+            out->captured[i][j] = design->captured[i][j] / CAPTURE_SAFETY;
+        }
+    }
+}
+
 static bool check_law(const stance_scene *scene, const stance_case *out, stance_message *message)
 {
     bool finite = isfinite(out->noise);
@@ -437,6 +452,9 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
     } else if (values->law == LAW_STATE_FEEDBACK) {
         feed_back(scene, values, design, out);
         set_far(scene, values, out);
+        if (values->capture && design->capture_time > 0) {
+            capture(scene, design, out);
+        }
     }
     if ((values->law == LAW_DECOUPLING || (out->switches && values->far == FAR_DECOUPLING)) &&
         !decouple(scene, values, out, message)) {

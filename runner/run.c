@@ -432,6 +432,18 @@ static void stage_designs(struct run *run)
     }
 }
 
+/* Sets in which cases are captured, where the scenario asks for them. */
+static void stage_captures(struct run *run)
+{
+    struct plan_error error = {0};
+    stance_message message;
+
+    if (!run->resume && !plan_estimate_captures(&run->plan, &run->parallel, &error)) {
+        message = error.message;
+        fail_io(run, &message);
+    }
+}
+
 /* ---- computing ---------------------------------------------------------------------------- */
 
 /* Names of the ranks' machines, each once, separated by commas; on rank 0. */
@@ -645,7 +657,7 @@ static int conclude(struct run *run)
 static int go_through(struct run *run)
 {
     static void (*const stage[])(struct run *) = {
-        stage_options, stage_scenario, stage_claim,   stage_plan,   stage_designs,
+        stage_options, stage_scenario, stage_claim,   stage_plan,   stage_designs, stage_captures,
         stage_create,  stage_open,     stage_compute, stage_timing, stage_close,
     };
     for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {

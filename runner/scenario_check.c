@@ -502,6 +502,50 @@ static void check_far(struct reader *r, const struct situation *is)
     }
 }
 
+/* Whether the set of states that recover differs along a path. */
+static bool shapes_capture(const char *path)
+{
+    return strncmp(path, "initial.offset.", 15) != 0 && strncmp(path, "initial.state.", 14) != 0;
+}
+
+/* A captured set is one of states: of a law that knows nothing else, and of whole runs that settle.
+ * It depends on all of the case but its initial state. */
+static void check_capture(struct reader *r, const struct situation *is)
+{
+    const struct seen *seen = reader_seen(r, "stop.capture");
+
+    if (!r->s->base.capture || !seen->node || seen->bad || !is->law_known) {
+        return;
+    }
+    const struct mark mark = seen->node->mark;
+    if (is->law != LAW_STATE_FEEDBACK) {
+        problem_add(&r->problems, mark,
+                    "stop.capture estimated needs controller.kind state-feedback (here: %s)",
+                    law_word(r));
+    } else if (is->far != FAR_NONE) {
+        problem_add(&r->problems, mark,
+                    "stop.capture estimated has no meaning with controller.far: another law acts "
+                    "outside");
+    }
+    if (!is->settles) {
+        problem_add(&r->problems, mark,
+                    "stop.capture estimated has no meaning with stop.settle off: runs last their "
+                    "whole time");
+    }
+    if (!r->axes_bad && !reader_seen(r, "controller.delay")->bad &&
+        takes_word(r, offsetof(struct scenario_values, delay), 1)) {
+        problem_add(&r->problems, where(r, "controller.delay"),
+                    "controller.delay 1 has no meaning with stop.capture estimated: the torques "
+                    "under way belong to the state");
+    }
+    for (int a = 0; a < r->s->axes; a++) {
+        struct scenario_axis *axis = &r->s->axis[a];
+        for (int k = 0; k < axis->paths; k++) {
+            axis->design = axis->design || shapes_capture(axis->path[k]);
+        }
+    }
+}
+
 static void check_steps(struct reader *r)
 {
     double least_time, time, step, largest_step;
@@ -552,5 +596,6 @@ void scenario_cross_check(struct reader *r)
     check_sampling(r, &is);
     mark_sampled_designs(r, &is);
     check_far(r, &is);
+    check_capture(r, &is);
     check_support(r, &is);
 }

@@ -20,6 +20,7 @@ static const char *const branch_words[] = {"upper", "lower"};
 static const char *const spacing_words[] = {"linear", "log"};
 static const char *const record_words[] = {"none", "all"};
 static const char *const settle_words[] = {"off"};
+static const char *const capture_words[] = {"off", "estimated"};
 static const char *const limit_words[] = {"none"};
 
 static const char *const answer_words[] = {
@@ -334,6 +335,18 @@ static const struct row rows[] = {
          .unit = "1", .fallback = 0.2, .low = 0, .high = 1,
          .text = "height of the hip, in leg lengths, below which the robot has fallen",
          .need = NEED_HEIGHT}},
+
+    {0, {.path = "stop.capture", .type = FIELD_WORD, VALUE(capture), .fallback = 0,
+         WORDS(capture_words),
+         .text = "whether a run may end where state-feedback is known to recover",
+         .more = "estimated: for each design the largest ellipsoid about the target is sought from "
+                 "whose boundary 10000 simulations all end as stabilised, with the noise, limits, "
+                 "method and rules of the case; a run that comes into it (0.8 of its level) on the "
+                 "support foot alone, at rest, ends as stabilised with evidence inferred. Its "
+                 "settle_time is then missing, and largest values and sums end where the run does. "
+                 "Only for state-feedback without far or delay, with stop.settle; each point of an "
+                 "axis other than initial.offset and initial.state is then a design of its own.",
+         .need = NEED_ACTUATORS}},
 
     {0, {.path = "sweep", .type = FIELD_MAP, BY_HAND, .text = "what varies between cases"}},
     {0, {.path = "sweep.grid", .type = FIELD_AXES, BY_HAND,

@@ -82,40 +82,97 @@ int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]
     return s->axes;
 }
 
-void store_design_columns(const stance_scene *scene,
+void store_design_columns(const struct scenario *scenario,
                           struct store_design_column columns[DESIGN_COLUMNS])
 {
-    int n = scene->coordinates, m = scene->actuators;
-    columns[0] =
-        (struct store_design_column){"gain",
-                                     NULL,
-                                     "gains of the linear law: torque = feedforward - gain * error",
-                                     offsetof(struct resolved_design, gain),
-                                     m,
-                                     2 * scene->postures,
-                                     2 * STANCE_MAX_POSTURE};
-    columns[1] = (struct store_design_column){"equilibrium_position",
-                                              NULL,
-                                              "coordinates of the controller's equilibrium",
-                                              offsetof(struct resolved_design, equilibrium),
-                                              1,
-                                              n,
-                                              n};
-    columns[2] = (struct store_design_column){"equilibrium_torque",
-                                              "N m",
-                                              "torques that hold the controller's equilibrium",
-                                              offsetof(struct resolved_design, torque),
-                                              1,
-                                              m,
-                                              m};
-    columns[3] =
-        (struct store_design_column){"start_position",
-                                     NULL,
-                                     "coordinates of the initial equilibrium, foot at the origin",
-                                     offsetof(struct resolved_design, start),
-                                     1,
-                                     n,
-                                     n};
+    enum { POSTURES = 2 * STANCE_MAX_POSTURE };
+    const stance_scene *scene = scenario->scene;
+    const int n = scene->coordinates, m = scene->actuators, p = 2 * scene->postures;
+    const int set = scenario->base.capture ? p : 0, number = set > 0;
+    const struct store_design_column all[DESIGN_COLUMNS] = {
+        {"gain",
+         NULL,
+         "gains of the linear law: torque = feedforward - gain * error",
+         offsetof(struct resolved_design, gain),
+         m,
+         p,
+         POSTURES,
+         2,
+         {DESIGN_ACTUATOR, DESIGN_POSTURE}},
+        {"equilibrium_position",
+         NULL,
+         "coordinates of the controller's equilibrium",
+         offsetof(struct resolved_design, equilibrium),
+         1,
+         n,
+         n,
+         1,
+         {DESIGN_COORDINATE}},
+        {"equilibrium_torque",
+         "N m",
+         "torques that hold the controller's equilibrium",
+         offsetof(struct resolved_design, torque),
+         1,
+         m,
+         m,
+         1,
+         {DESIGN_ACTUATOR}},
+        {"start_position",
+         NULL,
+         "coordinates of the initial equilibrium, foot at the origin",
+         offsetof(struct resolved_design, start),
+         1,
+         n,
+         n,
+         1,
+         {DESIGN_COORDINATE}},
+        {"captured",
+         NULL,
+         "confirmed set x' M x <= 1 of deviations from the target; cases stop in 0.8 of it",
+         offsetof(struct resolved_design, captured),
+         set,
+         p,
+         POSTURES,
+         2,
+         {DESIGN_POSTURE, DESIGN_POSTURE_OTHER}},
+        {"capture_time",
+         "s",
+         "time that a case must have left to be captured",
+         offsetof(struct resolved_design, capture_time),
+         number,
+         1,
+         1,
+         0,
+         {0}},
+        {"capture_boundary",
+         "1",
+         "simulations from the set's boundary, all stabilised",
+         offsetof(struct resolved_design, capture_boundary),
+         number,
+         1,
+         1,
+         0,
+         {0}},
+        {"capture_batches",
+         "1",
+         "sets that were tried so, the last with success",
+         offsetof(struct resolved_design, capture_batches),
+         number,
+         1,
+         1,
+         0,
+         {0}},
+        {"capture_share",
+         "1",
+         "less than this share of the boundary fails to stabilise, with 95 % confidence",
+         offsetof(struct resolved_design, capture_share),
+         number,
+         1,
+         1,
+         0,
+         {0}},
+    };
+    memcpy(columns, all, sizeof all);
 }
 
 hid_t store_file_type(enum store_kind kind)
@@ -592,7 +649,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
 {
     struct store_design_column columns[DESIGN_COLUMNS];
     bool good = true;
-    store_design_columns(plan->scenario->scene, columns);
+    store_design_columns(plan->scenario, columns);
     for (int k = 0; good && k < DESIGN_COLUMNS; k++) {
         size_t rows = (size_t)columns[k].rows, length = (size_t)columns[k].columns;
         if (rows * length == 0) {

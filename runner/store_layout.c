@@ -464,25 +464,20 @@ static bool write_design_column(const struct layout *layout, hid_t dataset,
 }
 
 static bool put_design_columns(struct layout *layout, hid_t group, const struct dimension **over,
-                               int rank, const struct dimension *coordinate,
-                               const struct dimension *actuator, const struct dimension *posture)
+                               int rank, const struct dimension inner[DESIGN_DIMENSIONS])
 {
     struct store_design_column columns[DESIGN_COLUMNS];
-    store_design_columns(layout->plan->scenario->scene, columns);
+    store_design_columns(layout->plan->scenario, columns);
     for (int k = 0; k < DESIGN_COLUMNS; k++) {
         if (columns[k].rows * columns[k].columns == 0) {
             continue;
         }
-        int inner = 1;
-        if (k == 0) {
-            over[rank] = actuator;
-            over[rank + 1] = posture;
-            inner = 2;
-        } else {
-            over[rank] = k == 2 ? actuator : coordinate;
+        for (int i = 0; i < columns[k].dimensions; i++) {
+            over[rank + i] = &inner[columns[k].over[i]];
         }
-        hid_t dataset = make_variable(group, columns[k].name, store_file_type(KIND_double), over,
-                                      rank + inner, columns[k].unit, columns[k].text);
+        hid_t dataset =
+            make_variable(group, columns[k].name, store_file_type(KIND_double), over,
+                          rank + columns[k].dimensions, columns[k].unit, columns[k].text);
         bool good = dataset >= 0 && write_design_column(layout, dataset, &columns[k]) &&
                     put_fill(dataset, KIND_double, NAN);
         H5Dclose(dataset);
@@ -497,8 +492,9 @@ static bool put_designs(struct layout *layout)
 {
     const struct plan *plan = layout->plan;
     const struct scenario *s = plan->scenario;
-    struct dimension coordinate = {-1, 0}, actuator = {-1, 0}, posture = {-1, 0};
+    struct dimension inner[DESIGN_DIMENSIONS] = {{-1, 0}, {-1, 0}, {-1, 0}, {-1, 0}};
     const struct dimension *over[SCENARIO_MAX_AXES + 2] = {NULL};
+    const bool postures = s->scene->actuators > 0 && s->scene->postures > 0;
     int rank = 0;
     hid_t group = make_group(layout->file, "design");
 
@@ -507,11 +503,13 @@ static bool put_designs(struct layout *layout)
             over[rank++] = &layout->axis[a];
         }
     }
-    bool good = group >= 0 && make_coordinates(layout, group, &coordinate) &&
-                make_actuators(layout, group, &actuator) &&
-                (s->scene->actuators == 0 || s->scene->postures == 0 ||
-                 make_state_names(layout, group, "posture_state", true, &posture)) &&
-                put_design_columns(layout, group, over, rank, &coordinate, &actuator, &posture);
+    bool good = group >= 0 && make_coordinates(layout, group, &inner[DESIGN_COORDINATE]) &&
+                make_actuators(layout, group, &inner[DESIGN_ACTUATOR]) &&
+                (!postures ||
+                 make_state_names(layout, group, "posture_state", true, &inner[DESIGN_POSTURE])) &&
+                (!s->base.capture || make_state_names(layout, group, "posture_state_other", true,
+                                                      &inner[DESIGN_POSTURE_OTHER])) &&
+                put_design_columns(layout, group, over, rank, inner);
     if (good) {
         hid_t status = make_variable(group, "status", store_file_type(KIND_uint8_t), over, rank,
                                      NULL, "whether the design exists");

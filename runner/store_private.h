@@ -62,14 +62,25 @@ size_t store_trajectory_width(const stance_scene *scene, int variable);
 /* Lengths of the dimensions of the cases; returns how many (>= 1). */
 int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
 
+/* Dimensions of the columns of group `design` beside the axes. */
+enum design_dimension {
+    DESIGN_COORDINATE,
+    DESIGN_ACTUATOR,
+    DESIGN_POSTURE,       /* posture_state */
+    DESIGN_POSTURE_OTHER, /* the same names again: no variable has a dimension twice */
+    DESIGN_DIMENSIONS,
+};
+
 /* Columns of group `design`, in struct resolved_design: name, first element, width per design. */
 struct store_design_column {
     const char *name, *unit, *text;
     size_t offset;             /* in struct resolved_design */
-    int rows, columns, stride; /* of the matrix; its row length in memory */
+    int rows, columns, stride; /* of the matrix; its row length in memory; rows 0: left out */
+    int dimensions;            /* 0: a number */
+    enum design_dimension over[2];
 };
-enum { DESIGN_COLUMNS = 4 };
-void store_design_columns(const stance_scene *scene,
+enum { DESIGN_COLUMNS = 9 };
+void store_design_columns(const struct scenario *scenario,
                           struct store_design_column columns[DESIGN_COLUMNS]);
 
 /* The dataset has exactly this shape. */

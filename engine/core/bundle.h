@@ -14,6 +14,7 @@
 #ifndef STANCE_CORE_BUNDLE_H
 #define STANCE_CORE_BUNDLE_H
 
+#include "capture.h"
 #include "smooth.h"
 
 #include <Random123/philox.h>
@@ -44,6 +45,7 @@ struct bundle {
     lanes judge_on_way, has_target, support; /* support: contact index or -1 */
     lanes settle_angle, settle_rate, settle_steps, fall_height;
     struct window settled, resting;
+    struct capture capture;
 
     lanes iterations, evaluations, events, ambiguous, subdivided, degraded;
     lanes least_normal; /* N, on the support contact */
@@ -187,6 +189,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     lane_set(&b->settle_rate, lane, c->settle_rate);
     lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));
     lane_set(&b->fall_height, lane, c->fall_height);
+    capture_load(&b->capture, lane, c);
 }
 
 /* Gaps, approach and trigonometry of freshly loaded lanes. A standing foot is exactly closed. */
@@ -338,6 +341,7 @@ static inline mask window_advance(struct window *w, mask live, mask holds, lanes
 
 struct verdict {
     mask stabilised, rested, fell;
+    mask captured; /* will be stabilised */
 };
 
 /* The outcome rules at the present state; `loaded`: contacts that carry. `last`: time is up. */
@@ -379,7 +383,38 @@ static inline struct verdict bundle_judge(struct bundle *b, mask live, const mas
     const mask at_end = live & last & LANES_NOT(on_way);
     v.stabilised |= at_end & at_target;
     v.rested |= at_end & still;
+    v.captured = MASK_NONE;
     return v;
+}
+
+/* Lanes whose state has come into the captured set: see capture.h. */
+static inline mask bundle_captured(const struct bundle *b, mask live, const mask *loaded)
+{
+    const mask instant =
+        mask_less_equal(b->sample_every, lanes_of(0)) | mask_less_equal(b->next_sample, b->n);
+    mask in = live & mask_less(lanes_of(0), b->capture.on) & instant &
+              mask_less_equal(b->n, b->capture.last);
+    if (!mask_any(in))
+        return in;
+    const lanes rest = lanes_of(CAPTURE_REST);
+    lanes posture[POSTURES], rate[POSTURES];
+    scene_posture(b->now.s, posture);
+    scene_posture(b->now.w, rate);
+    for (int i = 0; i < SCENE_POSTURE; i++)
+        posture[i] = posture[i] - b->set.law.linear.target[i];
+    in &= capture_contains(&b->capture, posture, rate);
+    if (!mask_any(in))
+        return in;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask mine = mask_less(lanes_abs(b->support - (double)c), lanes_of(0.5));
+        lanes u[2];
+        scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, u);
+        const mask stands = loaded[c] & mask_less_equal(lanes_abs(b->now.gap[c]), rest) &
+                            mask_less_equal(lanes_abs(u[0]), rest) &
+                            mask_less_equal(lanes_abs(u[1]), rest);
+        in &= (mine & stands) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
+    }
+    return in;
 }
 
 /* Writes the rows that are due at the present step into the trajectory of a lane. */
@@ -415,7 +450,7 @@ static void bundle_record(struct bundle *b, int lane)
 
 /* Writes a lane's result and leaves the lane idle. */
 static void bundle_finish(struct bundle *b, int lane, stance_status status, stance_outcome outcome,
-                          stance_failure failure)
+                          stance_failure failure, bool inferred)
 {
     stance_result *const r = b->result[lane];
     const stance_case *const c = b->which[lane];
@@ -428,9 +463,10 @@ static void bundle_finish(struct bundle *b, int lane, stance_status status, stan
     *r = (stance_result){
         .status = status,
         .outcome = outcome,
+        .evidence = inferred ? STANCE_INFERRED : STANCE_EVIDENCE_NONE,
         .failure = failure,
         .end_time = n * h,
-        .settle_time = calm ? (begin >= 0 ? begin : n) * h : NAN,
+        .settle_time = calm && !inferred ? (begin >= 0 ? begin : n) * h : NAN,
         .fall_time = outcome == STANCE_FELL ? n * h : NAN,
         .steps = (int64_t)n,
         .iterations = (int64_t)lane_get(&b->iterations, lane),
@@ -478,22 +514,24 @@ static stance_failure bundle_failure(const struct bundle *b, int lane)
 /* Ends the lanes that a verdict or the clock ends. */
 static void bundle_end(struct bundle *b, mask live, mask failed, const struct verdict *v, mask last)
 {
-    const mask over = failed | v->fell | v->stabilised | v->rested | last;
+    const mask over = failed | v->fell | v->stabilised | v->rested | v->captured | last;
     if (!mask_any(live & over))
         return;
     for (int lane = 0; lane < LANES; lane++) {
         if (!b->which[lane] || !mask_get(live & over, lane))
             continue;
-        if (mask_get(failed, lane))
-            bundle_finish(b, lane, STANCE_FAILED, STANCE_NONE, bundle_failure(b, lane));
-        else if (mask_get(v->fell, lane))
-            bundle_finish(b, lane, STANCE_DONE, STANCE_FELL, STANCE_FAILURE_NONE);
-        else if (mask_get(v->stabilised, lane))
-            bundle_finish(b, lane, STANCE_DONE, STANCE_STABILISED, STANCE_FAILURE_NONE);
-        else if (mask_get(v->rested, lane))
-            bundle_finish(b, lane, STANCE_DONE, STANCE_RESTED, STANCE_FAILURE_NONE);
-        else
-            bundle_finish(b, lane, STANCE_DONE, STANCE_UNDECIDED, STANCE_FAILURE_NONE);
+        if (mask_get(failed, lane)) {
+            bundle_finish(b, lane, STANCE_FAILED, STANCE_NONE, bundle_failure(b, lane), false);
+            continue;
+        }
+        const bool simulated = mask_get(v->stabilised | v->rested | v->fell, lane);
+        const bool inferred = !simulated && mask_get(v->captured, lane);
+        const stance_outcome outcome = mask_get(v->fell, lane) ? STANCE_FELL
+                                       : inferred || mask_get(v->stabilised, lane)
+                                           ? STANCE_STABILISED
+                                       : mask_get(v->rested, lane) ? STANCE_RESTED
+                                                                   : STANCE_UNDECIDED;
+        bundle_finish(b, lane, STANCE_DONE, outcome, STANCE_FAILURE_NONE, inferred);
     }
 }
 
@@ -556,7 +594,8 @@ static inline void bundle_step(struct bundle *b, mask live, bool coupled)
     for (int c = 0; c < SCENE_CONTACTS; c++)
         loaded[c] = mask_less(lanes_of(0), report.impulse[c][0]);
     const mask last = ok & mask_less_equal(b->steps, b->n);
-    const struct verdict v = bundle_judge(b, ok, loaded, last);
+    struct verdict v = bundle_judge(b, ok, loaded, last);
+    v.captured = bundle_captured(b, ok, loaded);
     bundle_record_due(b, ok);
     bundle_end(b, live, failed, &v, last);
 }

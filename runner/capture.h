@@ -1,0 +1,41 @@
+/* capture.h - the captured set of a design (stop.capture estimated): what is asked of the engine
+ * and what is kept of its answer. */
+#ifndef STANCE_RUNNER_CAPTURE_H
+#define STANCE_RUNNER_CAPTURE_H
+
+#include "resolve.h"
+
+enum {
+    CAPTURE_BOUNDARY = 10000, /* simulations from the boundary that must all be good */
+    CAPTURE_INTERIOR = 1000,  /* and from inside */
+    CAPTURE_USUAL = 26000,    /* simulations in all, the search included: what it takes as a rule */
+    CAPTURE_BOUNDS = 2 * STANCE_MAX_ACTUATORS + 3,
+};
+
+/* Cases are captured in a set this much smaller than the confirmed one: share of the level. */
+#define CAPTURE_SAFETY 0.8
+
+/* Half spaces a X <= d in which the linear picture meets no bound, X the departure from the
+ * equilibrium: a[CAPTURE_BOUNDS][2 postures], each torque up and down, the friction cone forward
+ * and backward, lift-off. K[actuators][2 postures]; 2 actuators + 3 bounds are written. */
+stance_error capture_bounds(const stance_scene *scene, const struct scenario_values *values,
+                            const double *model, const stance_equilibrium *equilibrium,
+                            const double *K, double *a, double *d);
+
+/* The search for the set of a design and one row of values, whose initial state does not matter.
+ * The simulations last half of stop.time, so that there is time left for whoever is captured in the
+ * first half. false: `message` says why there can be no set. */
+bool capture_prepare(const stance_scene *scene, const struct scenario_values *values,
+                     const struct resolved_design *design, uint64_t seed,
+                     stance_capture_search *search, stance_message *message);
+
+/* Text of candidate `shape` of a prepared search. */
+const char *capture_shape_text(int shape, char text[96]);
+
+/* Estimates the set and keeps it in the design, which is left without where there is none. false:
+ * no memory. *set may be NULL. */
+bool capture_estimate(const stance_scene *scene, const struct scenario_values *values,
+                      struct resolved_design *design, uint64_t seed, stance_captured_set *set,
+                      stance_message *message);
+
+#endif
