@@ -56,11 +56,13 @@ static int design_decoupling(const struct scenario *s, bool json)
         return complain(s, message.text);
     }
     if (json) {
-        return print_json(design_pairs_json(&pairs));
+        const int code = print_json(design_pairs_json(&pairs));
+        return code == EXIT_DONE && pairs.singular ? complain(s, pairs.complaint.text) : code;
     }
     printf("%s\n\n", s->title);
     design_pairs_print(&pairs);
-    return EXIT_DONE;
+    fflush(stdout);
+    return pairs.singular ? complain(s, pairs.complaint.text) : EXIT_DONE;
 }
 
 static int design(const struct scenario *s, bool json)

@@ -67,6 +67,8 @@ struct design_pairs {
     int count;
     double at_start[STANCE_MAX_PAIRS]; /* condition number; INFINITY: singular */
     stance_pair_report report[STANCE_MAX_PAIRS];
+    bool singular; /* the scenario's pair is, at the start: `complaint` says so */
+    stance_message complaint;
 };
 
 /* false: `message` says what does not exist. */

@@ -24,6 +24,7 @@ bool design_pairs_compute(struct design_pairs *d, const struct scenario *s, stan
     while (d->count < STANCE_MAX_PAIRS && stance_pair(s->scene, d->count, &first, &second)) {
         d->count++;
     }
+    d->singular = !resolve_pair(s->scene, &s->base, &start, &d->complaint);
     stance_error error = STANCE_OK;
     for (int p = 0; error == STANCE_OK && p < d->count; p++) {
         error = stance_pair_condition(s->scene, start.robot, start.position, p, &d->at_start[p]);

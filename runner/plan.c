@@ -329,7 +329,8 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
     }
     scenario_case_values(s, index, &values);
     if (resolve_case(s->scene, &values, &plan->design[design], s->seed, index, &resolved,
-                     &message)) {
+                     &message) &&
+        (s->cases > 1 || resolve_pair(s->scene, &values, &resolved, &message))) {
         return true;
     }
     error->line = s->initial_line;

@@ -10,7 +10,7 @@
  *   e = kp (r - q) + kd (r' - q') + ki I,     I' = r - q,     r = setpoint + ramp min(t, duration).
  *
  * What torques that takes depends on the reactions of the ground; decoupling.h solves both
- * together. I is kept within +-integral_limit and rests while a torque is at its limit
+ * together. I is kept within +-integral_limit and does not grow while a torque is at its limit
  * (anti-windup).
  *
  * A switching law is linear inside an ellipsoid about its target and something else outside: a
@@ -161,8 +161,8 @@ static inline void law_servo(const struct law *law, lanes t, const lanes *q, con
     }
 }
 
-/* Rates of the integrals: the errors; zero while a torque is at its limit, and where the integral
- * would leave its range. */
+/* Rates of the integrals: the errors; zero where nothing reads them, and where the integral would
+ * leave its range or grow while a torque is at its limit. */
 static inline void law_integral_rate(const struct law *law, const lanes *error,
                                      const lanes *integral, const lanes *command, lanes *rate)
 {
@@ -170,9 +170,10 @@ static inline void law_integral_rate(const struct law *law, const lanes *error,
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         clipped |= mask_less(law->limit, lanes_abs(command[i]));
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        const mask full = mask_less_equal(law->servo[i].integral_limit, lanes_abs(integral[i])) &
-                          mask_less(lanes_of(0), error[i] * integral[i]);
-        rate[i] = choose(clipped | full, lanes_of(0), error[i]);
+        const mask grows = mask_less_equal(lanes_of(0), error[i] * integral[i]);
+        const mask full = mask_less_equal(law->servo[i].integral_limit, lanes_abs(integral[i]));
+        const mask unread = mask_less_equal(lanes_abs(law->servo[i].ki), lanes_of(0));
+        rate[i] = choose(unread | (grows & (clipped | full)), lanes_of(0), error[i]);
     }
 }
 /* Integrals after an interval h at these rates. */
