@@ -171,7 +171,7 @@ bool capture_prepare(const stance_scene *scene, const struct scenario_values *va
                      const struct resolved_design *design, uint64_t seed,
                      stance_capture_search *search, stance_message *message)
 {
-    double model[STANCE_MAX_ROBOT], K[STATES * INPUTS], loop[STATES * STATES];
+    double model[STANCE_MAX_ROBOT], K[STATES * INPUTS] = {0}, loop[STATES * STATES];
     double a[CAPTURE_BOUNDS * STATES], d[CAPTURE_BOUNDS];
     const int n = 2 * scene->postures;
     stance_equilibrium equilibrium;

@@ -277,7 +277,8 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
 }
 
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
-                            struct plan_error *error)
+                            bool (*stop)(const void *context), const void *context,
+                            stance_message *message)
 {
     const struct scenario *s = plan->scenario;
     size_t first;
@@ -289,15 +290,22 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
     }
     for (size_t d = first; good && d < first + count; d++) {
         struct scenario_values values;
+        stance_message why = {""}; /* there need not be a set */
         if (plan->design_status[d] != STANCE_DONE) {
             continue;
         }
+        if (stop(context)) {
+            good = false;
+            break;
+        }
         scenario_case_values(s, design_case(plan, d), &values);
-        good =
-            capture_estimate(s->scene, &values, &plan->design[d], s->seed, NULL, &error->message);
+        good = capture_estimate(s->scene, &values, &plan->design[d], s->seed, NULL, &why);
+        if (!good) {
+            *message = why;
+        }
     }
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
-    return parallel_agree(parallel, good, error->message.text, sizeof error->message.text);
+    return parallel_agree(parallel, good, message->text, sizeof message->text);
 }
 
 bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method)

@@ -432,15 +432,28 @@ static void stage_designs(struct run *run)
     }
 }
 
-/* Sets in which cases are captured, where the scenario asks for them. */
+static bool out_of_time(const void *context)
+{
+    const struct run *run = context;
+    return work_stop_asked() || plan_clock() - run->start > run->options.time_limit;
+}
+
+/* Sets in which cases are captured, where the scenario asks for them. A stop meanwhile leaves no
+ * file. */
 static void stage_captures(struct run *run)
 {
-    struct plan_error error = {0};
-    stance_message message;
+    stance_message message = {""};
 
-    if (!run->resume && !plan_estimate_captures(&run->plan, &run->parallel, &error)) {
-        message = error.message;
+    if (run->resume ||
+        plan_estimate_captures(&run->plan, &run->parallel, out_of_time, run, &message)) {
+        return;
+    }
+    if (message.text[0]) {
         fail_io(run, &message);
+    } else {
+        snprintf(run->failure.text, sizeof run->failure.text,
+                 "stance run: stopped while captured sets were estimated: nothing is stored");
+        run->failure.code = EXIT_INTERRUPTED;
     }
 }
 

@@ -36,6 +36,11 @@ void work_catch_signals(void)
     sigaction(SIGINT, &action, NULL);
 }
 
+bool work_stop_asked(void)
+{
+    return stop_asked != 0;
+}
+
 /* ---- one slice ---------------------------------------------------------------------------- */
 
 /* Memory for one slice, the same for all slices of a rank. */

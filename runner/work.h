@@ -29,6 +29,9 @@ struct work {
  * kills. */
 void work_catch_signals(void);
 
+/* Whether a signal has asked for a stop. */
+bool work_stop_asked(void);
+
 /* Not collective, but every rank calls it. Leaves early when any rank fails, or is told to stop;
  * false when this rank failed. */
 bool work_run(struct work *work, stance_message *message);

@@ -144,8 +144,8 @@ static bool take_shape(struct search *s, const double *P, double *log_volume)
     const int n = s->n;
     double lower[SQUARE];
 
-    memcpy(lower, P, (size_t)(n * n) * sizeof *P);
-    if (!matrix_finite((size_t)(n * n), P) ||
+    memcpy(lower, P, (size_t)n * (size_t)n * sizeof *P);
+    if (!matrix_finite((size_t)n * (size_t)n, P) ||
         LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', n, lower, n) != 0 ||
         LAPACKE_dtrtri(LAPACK_ROW_MAJOR, 'L', 'N', n, lower, n) != 0) {
         return false;
@@ -229,7 +229,7 @@ static void confirm(struct search *s, double radius, stance_captured_set *set)
 stance_error stance_capture_estimate(const stance_capture_search *search, stance_captured_set *set)
 {
     struct search s = {.ask = search};
-    double best = -INFINITY, best_radius = 0, log_volume;
+    double best = -INFINITY, best_radius = 0, log_volume = 0;
 
     *set = (stance_captured_set){.exists = false};
     if (!makes_sense(search)) {

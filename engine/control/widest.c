@@ -27,6 +27,7 @@ enum {
 #define MU_BEGIN 1.0
 #define MU_END 1e-3
 #define MU_FALL 0.2
+#define LINE_HALVINGS 33
 
 struct problem {
     int n, terms, count;
@@ -38,7 +39,7 @@ struct problem {
 static void decrease(const struct problem *p, const double *X, double *S)
 {
     const int n = p->n;
-    double FX[SQUARE], Ft[SQUARE], FXFt[SQUARE];
+    double FX[SQUARE] = {0}, Ft[SQUARE] = {0}, FXFt[SQUARE] = {0};
     matrix_multiply(n, n, n, p->F, X, FX);
     matrix_transpose(n, n, p->F, Ft);
     matrix_multiply(n, n, n, FX, Ft, FXFt);
@@ -64,7 +65,7 @@ static double quadratic(int n, const double *X, const double *a)
 /* Inverse and logarithm of the determinant; false: not positive definite. */
 static bool invert(int n, const double *M, double *inverse, double *log_det)
 {
-    memcpy(inverse, M, (size_t)(n * n) * sizeof *M);
+    memcpy(inverse, M, (size_t)n * (size_t)n * sizeof *M);
     if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', n, inverse, n) != 0) {
         return false;
     }
@@ -84,7 +85,7 @@ static bool invert(int n, const double *M, double *inverse, double *log_det)
 /* What is maximised; -INFINITY outside. */
 static double merit(const struct problem *p, double mu, const double *X)
 {
-    double S[SQUARE], scratch[SQUARE], volume, margin;
+    double S[SQUARE] = {0}, scratch[SQUARE] = {0}, volume, margin;
     decrease(p, X, S);
     if (!invert(p->n, X, scratch, &volume) || !invert(p->n, S, scratch, &margin)) {
         return -INFINITY;
@@ -106,7 +107,7 @@ static void basis(int n, int t, double *E)
     while (t > i) {
         t -= ++i;
     }
-    memset(E, 0, (size_t)(n * n) * sizeof *E);
+    memset(E, 0, (size_t)n * (size_t)n * sizeof *E);
     E[i * n + t] = E[t * n + i] = 1;
 }
 
@@ -142,7 +143,7 @@ static void add_log_det(const struct problem *p, double weight, const double *in
 static double direction(const struct problem *p, double mu, const double *X, double *step)
 {
     const int n = p->n, terms = p->terms;
-    double S[SQUARE], inverse[SQUARE], ignored, gradient[TERMS] = {0};
+    double S[SQUARE] = {0}, inverse[SQUARE] = {0}, ignored, gradient[TERMS] = {0};
     double hessian[TERMS * TERMS] = {0};
 
     invert(n, X, inverse, &ignored);
@@ -168,7 +169,7 @@ static double direction(const struct problem *p, double mu, const double *X, dou
     if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', terms, 1, hessian, terms, solution, terms) != 0) {
         return -1;
     }
-    memset(step, 0, (size_t)(n * n) * sizeof *step);
+    memset(step, 0, (size_t)n * (size_t)n * sizeof *step);
     for (int t = 0; t < terms; t++) {
         double E[SQUARE];
         basis(n, t, E);
@@ -180,31 +181,42 @@ static double direction(const struct problem *p, double mu, const double *X, dou
     return decrement / 2;
 }
 
+/* The merit at a point on the way; that point in trial[]. */
+static double along(const struct problem *p, double mu, const double *X, double length,
+                    const double *step, double *trial)
+{
+    for (int i = 0; i < p->n * p->n; i++) {
+        trial[i] = X[i] + length * step[i];
+    }
+    return merit(p, mu, trial);
+}
+
+static void maximise_at(const struct problem *p, double mu, double *X)
+{
+    double step[SQUARE] = {0}, trial[SQUARE] = {0};
+    for (int k = 0; k < NEWTON_STEPS; k++) {
+        const double now = merit(p, mu, X), decrement = direction(p, mu, X, step);
+        if (!(decrement > 1e-8)) {
+            return;
+        }
+        double length = 1, next = along(p, mu, X, length, step, trial);
+        for (int j = 0; j < LINE_HALVINGS && !(next >= now + 0.1 * length * decrement); j++) {
+            length /= 2;
+            next = along(p, mu, X, length, step, trial);
+        }
+        if (!(next > now)) {
+            return;
+        }
+        memcpy(X, trial, (size_t)p->n * (size_t)p->n * sizeof *X);
+    }
+}
+
 static void maximise(const struct problem *p, double *X)
 {
-    const int nn = p->n * p->n;
-    double step[SQUARE], trial[SQUARE];
-    for (double mu = MU_BEGIN; mu >= MU_END; mu *= MU_FALL) {
-        for (int k = 0; k < NEWTON_STEPS; k++) {
-            const double now = merit(p, mu, X), decrement = direction(p, mu, X, step);
-            if (!(decrement > 1e-8)) {
-                break;
-            }
-            double length = 1, next = -INFINITY;
-            for (; length > 1e-10; length /= 2) {
-                for (int i = 0; i < nn; i++) {
-                    trial[i] = X[i] + length * step[i];
-                }
-                next = merit(p, mu, trial);
-                if (next >= now + 0.1 * length * decrement) {
-                    break;
-                }
-            }
-            if (!(next > now)) {
-                break;
-            }
-            memcpy(X, trial, (size_t)nn * sizeof *X);
-        }
+    const int falls = (int)ceil(log(MU_END / MU_BEGIN) / log(MU_FALL));
+    double mu = MU_BEGIN;
+    for (int k = 0; k <= falls; k++, mu = fmax(MU_END, mu * MU_FALL)) {
+        maximise_at(p, mu, X);
     }
 }
 
@@ -214,9 +226,9 @@ static stance_error scale(struct problem *p, const double *loop, const double *a
                           double *L)
 {
     const int n = p->n;
-    double ones[STATES], P[SQUARE], alone[STATES], extent[STATES], level;
-    double upper[SQUARE], scaled[SQUARE], log_det;
-    int binding;
+    double ones[STATES], P[SQUARE] = {0}, alone[STATES], extent[STATES], level = 0;
+    double upper[SQUARE] = {0}, scaled[SQUARE] = {0}, log_det;
+    int binding = -1;
 
     for (int i = 0; i < n; i++) {
         ones[i] = 1;
@@ -246,7 +258,7 @@ static stance_error scale(struct problem *p, const double *loop, const double *a
     matrix_multiply(n, n, n, loop, L, scaled);
     matrix_transpose(n, n, L, upper);
     LAPACKE_dtrtrs(LAPACK_ROW_MAJOR, 'L', 'N', 'N', n, n, L, n, scaled, n);
-    memcpy(p->F, scaled, (size_t)(n * n) * sizeof *scaled);
+    memcpy(p->F, scaled, (size_t)n * (size_t)n * sizeof *scaled);
     for (int k = 0; k < p->count; k++) {
         for (int i = 0; i < n; i++) {
             double sum = 0;
@@ -264,10 +276,10 @@ stance_error stance_widest_set(int n, const double *loop, bool sampled, int coun
                                const double *d, double *P, stance_message *message)
 {
     struct problem p = {.n = n, .terms = n * (n + 1) / 2, .count = count, .sampled = sampled};
-    double L[SQUARE], X[SQUARE] = {0}, product[SQUARE], upper[SQUARE], log_det;
+    double L[SQUARE] = {0}, X[SQUARE] = {0}, product[SQUARE], upper[SQUARE] = {0}, log_det;
 
     if (n < 1 || n > STATES || count < 1 || count > BOUNDS ||
-        !matrix_finite((size_t)(n * n), loop)) {
+        !matrix_finite((size_t)n * (size_t)n, loop)) {
         return stance_refuse(message, STANCE_BAD_ARGUMENT,
                              "no set: a finite loop of 1 to %d states "
                              "and 1 to %d bounds are needed",
