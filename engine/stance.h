@@ -247,8 +247,8 @@ typedef struct stance_result {
     /* Samples (steps, of a law that acts continuously) at which a decoupling law was near a
      * singularity, or no reactions fitted what it wants: see core/decoupling.h. */
     int64_t degraded_samples;
-    /* Smallest normal force on the support contact (of all, where there is none), N; mean over a
-     * step, or where the method knows it, inside. */
+    /* Smallest normal force on the support contact (NAN where there is none), N; mean over a step,
+     * or where the method knows it, inside. */
     double least_normal_force;
     int64_t events;         /* changes of contact mode that the method handled */
     int64_t evaluations;    /* of the accelerations or of the implicit equation */
@@ -323,7 +323,7 @@ stance_error stance_pair_condition(const stance_scene *scene, const double *robo
                                    const double *position, int pair, double *condition);
 
 enum { STANCE_MAX_PAIRS = 10 };
-#define STANCE_ILL_CONDITIONED 1e4 /* condition number from which on the law is damped */
+#define STANCE_ILL_CONDITIONED 1e3 /* condition number from which on the law is damped */
 
 /* One pair over all postures, resolution^postures of them in -pi ... pi. */
 typedef struct stance_pair_report {

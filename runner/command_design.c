@@ -11,9 +11,9 @@
 
 enum { MAX_SETS = 64 };
 
-static int print_json(const struct design_report *r)
+/* Takes the reference. */
+static int print_json(json_t *report)
 {
-    json_t *report = design_json(r);
     if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0) {
         fputs("stance design: the report could not be written\n", stderr);
         json_decref(report);
@@ -39,9 +39,30 @@ static int complain(const struct scenario *s, const char *text)
     const bool controller = s->base.law == LAW_STATE_FEEDBACK &&
                             ((s->base.design_point.given && values.state_given) ||
                              resolve_equilibrium(s->scene, &values, model, &ignored, &message));
-    fprintf(stderr, "%s:%d:%d: %s\n", s->file, controller ? s->controller_line : s->initial_line,
-            controller ? s->controller_column : s->initial_column, text);
+    int line = controller ? s->controller_line : s->initial_line;
+    int column = controller ? s->controller_column : s->initial_column;
+    scenario_place(s, text, &line, &column);
+    fprintf(stderr, "%s:%d:%d: %s\n", s->file, line, column, text);
     return EXIT_USAGE;
+}
+
+/* A decoupling law has no linear design: what there is to know is where it is singular. */
+static int design_decoupling(const struct scenario *s, bool json)
+{
+    struct design_pairs pairs;
+    stance_message message = {""};
+
+    if (!design_pairs_compute(&pairs, s, &message)) {
+        return complain(s, message.text);
+    }
+    if (json) {
+        const int code = print_json(design_pairs_json(&pairs));
+        return code == EXIT_DONE && pairs.singular ? complain(s, pairs.complaint.text) : code;
+    }
+    printf("%s\n\n", s->title);
+    design_pairs_print(&pairs);
+    fflush(stdout);
+    return pairs.singular ? complain(s, pairs.complaint.text) : EXIT_DONE;
 }
 
 static int design(const struct scenario *s, bool json)
@@ -54,11 +75,14 @@ static int design(const struct scenario *s, bool json)
                 s->file, s->scene->name);
         return EXIT_USAGE;
     }
+    if (s->base.law == LAW_DECOUPLING) {
+        return design_decoupling(s, json);
+    }
     if (!design_compute(&report, s, &message)) {
         return complain(s, message.text);
     }
     if (json) {
-        return print_json(&report);
+        return print_json(design_json(&report));
     }
     design_print(&report);
     return EXIT_DONE;
@@ -143,5 +167,11 @@ const struct command command_design = {
     "                             stabilised, batches (sets tried), failing_share_below (of\n"
     "                             the boundary, 95 % confidence), slowest (s),\n"
     "                             captured_level (share of the level in which cases stop),\n"
-    "                             alone, extent as above\n",
+    "                             alone, extent as above\n"
+    "\n"
+    "With controller.kind decoupling it prints instead for each pair of coordinates where the law\n"
+    "is singular; as JSON: scenario, title, scene and\n"
+    "    pairs                    [{pair, controlled (is it the scenario's?),\n"
+    "                             condition_at_start (null: singular), best_condition,\n"
+    "                             damped_share (of all postures), singular}, ...]\n",
 };

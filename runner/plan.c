@@ -239,6 +239,7 @@ static void blame_design(const struct plan *plan, size_t design, struct plan_err
     bool law = resolve_design(s->scene, &values, &result, &ignored);
     error->line = law ? s->controller_line : s->initial_line;
     error->column = law ? s->controller_column : s->initial_column;
+    scenario_place(s, error->message.text, &error->line, &error->column);
 }
 
 /* This rank's block of the designs. */
@@ -336,11 +337,13 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
     }
     scenario_case_values(s, index, &values);
     if (resolve_case(s->scene, &values, &plan->design[design], s->seed, index, &resolved,
-                     &message)) {
+                     &message) &&
+        (s->cases > 1 || resolve_pair(s->scene, &values, &resolved, &message))) {
         return true;
     }
     error->line = s->initial_line;
     error->column = s->initial_column;
+    scenario_place(s, message.text, &error->line, &error->column);
     if (s->cases == 1) {
         error->message = message;
     } else {

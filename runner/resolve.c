@@ -21,6 +21,7 @@
 
 #define DEEPEST_START 1e-9 /* m: penetration of an initial state that counts as rounding */
 #define MOST_STEPS 1e15
+#define MOST_CONDITION 1e12 /* of a pair of coordinates: above it is singular */
 
 static bool refuse(stance_message *message, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
@@ -105,6 +106,15 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
         if (!isfinite(K[i])) {
             return refuse(message, "%d finite gains are needed", m * n);
         }
+    }
+    if (error != STANCE_OK) { /* say which key asked for it */
+        stance_message told = *message;
+        snprintf(message->text, sizeof message->text, "%s: %.200s",
+                 sampled                          ? "controller.design_time"
+                 : values->design == DESIGN_LQR   ? "controller.weights"
+                 : values->design == DESIGN_GAINS ? "controller.gains"
+                                                  : "controller.poles",
+                 told.text);
     }
     return error == STANCE_OK;
 }
@@ -296,8 +306,11 @@ static void set_far(const stance_scene *scene, const struct scenario_values *val
     }
 }
 
+/* Set-points that are not given: where the run begins, or far from a target that state-feedback
+ * takes over at, that target. */
 static bool decouple(const stance_scene *scene, const struct scenario_values *values,
-                     stance_case *out, stance_message *message)
+                     const struct resolved_design *design, stance_case *out,
+                     stance_message *message)
 {
     int controlled[2];
     if (!stance_pair(scene, values->controlled, &controlled[0], &controlled[1])) {
@@ -306,10 +319,11 @@ static bool decouple(const stance_scene *scene, const struct scenario_values *va
     out->decouples = true;
     for (int i = 0; i < scene->actuators; i++) {
         const int k = controlled[i];
+        const double begin = out->switches ? design->equilibrium[k] : out->position[k];
         const double setpoint = values->setpoint[k];
         out->servo[i] = (stance_servo){
             .coordinate = k,
-            .setpoint = isnan(setpoint) ? out->position[k] : setpoint,
+            .setpoint = isnan(setpoint) ? begin : setpoint,
             .ramp = values->ramp[k],
             .duration = values->ramp_time[k],
             .kp = values->proportional[k],
@@ -407,6 +421,23 @@ static bool resolve_time(const struct scenario_values *values, stance_case *out,
     return true;
 }
 
+bool resolve_pair(const stance_scene *scene, const struct scenario_values *values,
+                  const stance_case *start, stance_message *message)
+{
+    double condition;
+    int first, second;
+    if (!start->decouples || !stance_pair(scene, values->controlled, &first, &second) ||
+        (stance_pair_condition(scene, start->robot, start->position, values->controlled,
+                               &condition) == STANCE_OK &&
+         condition < MOST_CONDITION)) {
+        return true;
+    }
+    return refuse(message,
+                  "controller.controlled: the pair %s-%s is singular in the initial posture: no "
+                  "torques give it the accelerations that the law asks for",
+                  scene->coordinate[first].name, scene->coordinate[second].name);
+}
+
 bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
                   const struct resolved_design *design, uint64_t seed, uint64_t index,
                   stance_case *out, stance_message *message)
@@ -447,7 +478,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         }
     }
     if ((values->law == LAW_DECOUPLING || (out->switches && values->far == FAR_DECOUPLING)) &&
-        !decouple(scene, values, out, message)) {
+        !decouple(scene, values, design, out, message)) {
         return false;
     }
     return resolve_time(values, out, message) && check_law(scene, out, message);

@@ -56,4 +56,9 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
                   const struct resolved_design *design, uint64_t seed, uint64_t index,
                   stance_case *out, stance_message *message);
 
+/* false: a decoupling law's pair of coordinates is singular where *start begins. In a sweep such a
+ * case runs all the same, with a damped law. */
+bool resolve_pair(const stance_scene *scene, const struct scenario_values *values,
+                  const stance_case *start, stance_message *message);
+
 #endif

@@ -521,6 +521,36 @@ static struct mark place_of(struct reader *r, const char *path)
     return seen->node && seen->key.set == 0 ? seen->key : (struct mark){0, 1, 1};
 }
 
+/* Remembers where keys stand. Without memory later errors point at the mapping instead. */
+static void note_places(struct reader *r)
+{
+    struct scenario *s = r->s;
+    s->place = calloc(r->schema.count, sizeof *s->place);
+    for (size_t i = 0; s->place && i < r->schema.count; i++) {
+        if (r->seen[i].node && r->seen[i].key.set == 0) {
+            struct scenario_place *place = &s->place[s->places++];
+            snprintf(place->path, sizeof place->path, "%s", r->schema.field[i].path);
+            place->line = r->seen[i].key.line;
+            place->column = r->seen[i].key.column;
+        }
+    }
+}
+
+bool scenario_place(const struct scenario *s, const char *text, int *line, int *column)
+{
+    size_t best = 0;
+    for (size_t i = 0; i < s->places; i++) {
+        const size_t length = strlen(s->place[i].path);
+        if (length > best && strncmp(text, s->place[i].path, length) == 0 &&
+            strchr(".[: ", text[length]) && text[length]) {
+            best = length;
+            *line = s->place[i].line;
+            *column = s->place[i].column;
+        }
+    }
+    return best > 0;
+}
+
 /* Keys in the order of the table, so that equal scenarios have equal text. */
 static void sort_keys(const struct schema *schema, struct tree_node *node, const char *path)
 {
@@ -586,6 +616,7 @@ static void read_all(struct reader *r, const char *file, const char *text, const
     s->initial_column = initial.column;
     s->controller_line = controller.line;
     s->controller_column = controller.column;
+    note_places(r);
     if (r->problems.count == 0) {
         sort_keys(&r->schema, r->tree.root, "");
         s->text = tree_write(r->tree.root);
@@ -651,5 +682,6 @@ void scenario_free(struct scenario *s)
     }
     free(s->record_list);
     free(s->text);
+    free(s->place);
     memset(s, 0, sizeof *s);
 }

@@ -102,6 +102,11 @@ struct scenario_axis {
     int line, column;
 };
 
+struct scenario_place {
+    char path[96];
+    int line, column;
+};
+
 struct scenario {
     char file[512];
     char name[128]; /* file name without directory and .yaml */
@@ -124,6 +129,8 @@ struct scenario {
     char *text; /* resolved scenario: after --set, as YAML; what the file stores and hashes */
     /* Where fields stand, for errors found later (design, initial state). */
     int initial_line, initial_column, controller_line, controller_column;
+    struct scenario_place *place; /* of every key that is given */
+    size_t places;
 };
 
 /* One error or many on `errors` as "FILE:LINE:COLUMN: message"; false then, and *s is empty.
@@ -132,6 +139,10 @@ struct scenario {
 bool scenario_read(struct scenario *s, const char *file, const char *text, const char *const *sets,
                    size_t set_count, FILE *errors);
 void scenario_free(struct scenario *s);
+
+/* Where the key stands that a message begins with ("controller.poles: ..."), or the nearest mapping
+ * around it. False: it does not begin with a key that is given. */
+bool scenario_place(const struct scenario *s, const char *text, int *line, int *column);
 
 /* Value k of point `i` of an axis (k < paths); for words the enumeration's number. */
 double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);

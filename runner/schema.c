@@ -214,7 +214,7 @@ static const struct row rows[] = {
          .text = "the joint angles that the servo holds", .need = NEED_ACTUATORS}},
     {FAMILY_ACTUATED, {.path = "controller.target.*", .type = FIELD_NUMBER, .by_scene = true,
                        .use = USE_HOLD, .sweep = true, VALUE(target),
-                       .fallback_text = "as the run begins", .text = "angle to hold: %s",
+                       .fallback_text = "as the run begins; with far the equilibrium", .text = "angle to hold: %s",
          .need = NEED_ACTUATORS}},
     {0, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
          .fallback = 0, WORDS(far_words),
@@ -267,7 +267,8 @@ static const struct row rows[] = {
          BY_HAND, .text = "set-points of the coordinates", .need = NEED_ACTUATORS}},
     {FAMILY_COORDINATES, {.path = "controller.setpoint.*", .type = FIELD_NUMBER, .by_scene = true,
                           .use = USE_DECOUPLING, .sweep = true, VALUE(setpoint),
-                          .unit = "%s", .fallback = NAN, .fallback_text = "as the run begins", .low = -LARGE, .high = LARGE,
+                          .unit = "%s", .fallback = NAN, .fallback_text = "as the run begins; with far the equilibrium",
+                          .low = -LARGE, .high = LARGE,
                           .text = "set-point of %s", .need = NEED_ACTUATORS}},
     {0, {.path = "controller.ramp", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
          BY_HAND, .text = "rates at which the set-points move", .need = NEED_ACTUATORS}},
@@ -284,13 +285,15 @@ static const struct row rows[] = {
     {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(sample_time), .unit = "s", .fallback = 0, .low = 0, .high = LARGE,
          .text = "time between samples of the controller",
-         .more = "Torques are held in between; 0: it acts continuously, inside the step.",
+         .more = "Torques are held in between; 0: it acts continuously, inside the step (decoupling "
+                 "with implicit and midpoint: once a step).",
          .need = NEED_ACTUATORS}},
     {0, {.path = "controller.delay", .type = FIELD_INTEGER, .use = USE_CONTROL, .sweep = true,
          VALUE(delay), .unit = "1", .fallback = 0, .low = 0, .high = 1,
          .text = "whole samples between measuring and acting",
-         .more = "1: the torques of a sample act from the next one on, those of the equilibrium "
-                 "until then; needs sample_time > 0.",
+         .more = "1: the torques of a sample act from the next one on, until then those that "
+                 "state-feedback has at its target (none with hold and decoupling). Gains do not "
+                 "take it into account. Needs sample_time > 0.",
          .need = NEED_ACTUATORS}},
     {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL,
          .sweep = true, VALUE(torque_limit), .unit = "N m", .fallback = INFINITY,

@@ -299,6 +299,117 @@ static void switching_is_either(void **state)
     }
 }
 
+/* A law without gains that acts all the time: a constant torque, here on legs in free fall, where
+ * both turn against the trunk with the accelerations of the inertia matrix. */
+static void constant_torque_acts(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"implicit", "midpoint", "capturing", "lagrange",
+                                          "event-driven"};
+    for (int m = 0; m < 5; m++) {
+        stance_case c = plain_case();
+        stance_result r;
+        c.contacts = 0;
+        c.position[1] = 3;
+        c.step = 1e-5;
+        c.steps = 10;
+        c.tolerance = 1e-10;
+        c.feedforward[0] = 1, c.feedforward[1] = -1;
+        kernel_of(methods[m], NULL)->run(&c, &r, 1);
+        /* Opposite torques on legs that hang straight: phi_i'' = +-1 / (m l^2). */
+        const double l = c.robot[0], turn = 1 / (c.robot[2] * l * l);
+        assert_int_equal(r.status, STANCE_DONE);
+        assert_true(r.peak_torque == 1);
+        assert_true(fabs(r.velocity[3] / (turn * 1e-4) - 1) < 1e-3);
+        assert_true(fabs(r.velocity[4] / (turn * 1e-4) + 1) < 1e-3);
+    }
+}
+
+/* Cases beside one that sums errors do what they do alone. */
+static void neighbours_do_not_matter(void **state)
+{
+    (void)state;
+    static const double walk[3] = {0, -0.1, 1.4};
+    static const double ki[4] = {0, 1, 5, 7};
+    stance_case cases[4];
+    stance_result together[4], alone;
+    for (int i = 0; i < 4; i++) {
+        cases[i] = pair_case(1, walk, false, 0);
+        cases[i].contacts = 3, cases[i].friction = 0.5;
+        cases[i].position[1] = 1.08;
+        memset(cases[i].velocity, 0, sizeof cases[i].velocity);
+        cases[i].servo[0].ki = ki[i];
+        cases[i].torque_limit = 10;
+        cases[i].step = 1e-3, cases[i].steps = 300, cases[i].tolerance = 1e-8;
+    }
+    kernel_of("capturing", NULL)->run(cases, together, 4);
+    for (int i = 0; i < 4; i++) {
+        kernel_of("capturing", NULL)->run(&cases[i], &alone, 1);
+        assert_memory_equal(&together[i], &alone, sizeof alone);
+    }
+}
+
+/* A state in which no reactions fit the torques that the law wants (found by a program of others):
+ * it takes the reactions without torques, and counts it. */
+static void missing_reactions_are_counted(void **state)
+{
+    (void)state;
+    static const double q[5] = {0, 1.0318272571437432, -0.23655252531852627, -0.059493821218375875,
+                                -0.28928725863443333};
+    static const double v[5] = {-0.5399258832462454, 0.16260795914402282, 0.062380140162429085,
+                                0.9293259499276398, -0.6768644678810902};
+    stance_case c = plain_case();
+    stance_result r;
+    memcpy(c.position, q, sizeof q);
+    memcpy(c.velocity, v, sizeof v);
+    c.friction = 0.6840210470230645;
+    c.decouples = true;
+    c.steps = c.sample_every = 1;
+    c.tolerance = 1e-8;
+    c.servo[0] = (stance_servo){0,
+                                -0.027900303337982404,
+                                -0.6985898307250517,
+                                INFINITY,
+                                17.396477629613372,
+                                0,
+                                0.19566017114806267,
+                                INFINITY};
+    c.servo[1] = (stance_servo){2,
+                                -0.16441600848265628,
+                                0.5516669716449893,
+                                INFINITY,
+                                1.9723770124414375,
+                                0,
+                                4.168654800320388,
+                                INFINITY};
+    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    assert_int_equal(r.status, STANCE_DONE);
+    assert_true(fabs(r.peak_torque - 131.63153345) < 1e-7);
+    assert_int_equal(r.degraded_samples, 1);
+}
+
+/* An integral that has brought a torque to its limit lets it go again. */
+static void integrals_unwind(void **state)
+{
+    (void)state;
+    static const double posture[3] = {0, 0.3, -0.3};
+    stance_case c = pair_case(9, posture, false, 1000);
+    stance_result r;
+    c.position[1] = 100;
+    memset(c.velocity, 0, sizeof c.velocity);
+    for (int i = 0; i < 2; i++) {
+        c.servo[i].kp = c.servo[i].kd = c.servo[i].ramp = 0;
+        c.servo[i].setpoint = i ? -0.3 : 0.5;
+    }
+    c.sample_every = 1;
+    c.torque_limit = 2;
+    c.tolerance = 1e-8;
+    c.steps = 100;
+    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    assert_int_equal(r.status, STANCE_DONE);
+    assert_true(r.velocity[3] < 0); /* it turns back; a latched torque drives it on */
+}
+
 /* The same bits in every lane of every width, sampled and continuous, falling and standing. */
 static void lanes_agree(void **state)
 {
@@ -334,10 +445,18 @@ static void lanes_agree(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pairs_follow),          cmocka_unit_test(sampling_converges),
-        cmocka_unit_test(inertia_is_energy),     cmocka_unit_test(singular_is_survived),
-        cmocka_unit_test(integrals_are_bounded), cmocka_unit_test(delay_shortens),
-        cmocka_unit_test(switching_is_either),   cmocka_unit_test(lanes_agree),
+        cmocka_unit_test(pairs_follow),
+        cmocka_unit_test(sampling_converges),
+        cmocka_unit_test(inertia_is_energy),
+        cmocka_unit_test(singular_is_survived),
+        cmocka_unit_test(integrals_are_bounded),
+        cmocka_unit_test(delay_shortens),
+        cmocka_unit_test(switching_is_either),
+        cmocka_unit_test(lanes_agree),
+        cmocka_unit_test(constant_torque_acts),
+        cmocka_unit_test(neighbours_do_not_matter),
+        cmocka_unit_test(missing_reactions_are_counted),
+        cmocka_unit_test(integrals_unwind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -135,6 +135,30 @@ check "describe" "$stance" describe
 check "describe controller.poles" "$stance" describe controller.poles
 check "describe --schema" sh -c "'$stance' describe --schema | '$python' -m json.tool"
 check "bench" "$stance" bench --repeats 1
+cat >"$work/pair.yaml" <<'EOF'
+stance: 1
+scene: biped
+initial: {state: {z: 1.5}}
+controller:
+  kind: decoupling
+  controlled: x-z
+  sample_time: 0.01
+stop: {time: 0.05}
+EOF
+for command in check design run; do
+    check "$command: a pair that is singular at the start" exits 2 "$stance" "$command" "$work/pair.yaml"
+    check "$command: at its place in the file" grep -q 'pair.yaml:6:3: controller.controlled: the pair x-z is singular' "$work/last"
+done
+check "design: pairs of coordinates" "$stance" design "$work/pair.yaml" --set controller.controlled=x-q1
+check "design: marks the scenario's pair" grep -q '[*] x-q1 .*on a surface' "$work/last"
+check "design --json: pairs" sh -c "'$stance' design --json '$work/pair.yaml' --set controller.controlled=theta-q1 | '$python' -c '
+import json, sys
+pairs = json.load(sys.stdin)[\"pairs\"]
+assert len(pairs) == 10 and sum(p[\"singular\"] for p in pairs) == 7
+assert [p[\"pair\"] for p in pairs if p[\"controlled\"]] == [\"theta-q1\"]'"
+check "run: decoupling" "$stance" run "$work/pair.yaml" --set controller.controlled=x-q1 --quiet -o "$work/pair.h5"
+check "summary names the law" sh -c "'$stance' summary '$work/pair.h5' | grep -q 'kind decoupling'"
+
 for command in check design run status summary plot compare describe bench; do
     check "$command -h" "$stance" $command -h
     check "$command rejects nonsense" exits 2 "$stance" $command --nonsense

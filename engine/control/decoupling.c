@@ -49,12 +49,13 @@ stance_error stance_pair_condition(const stance_scene *scene, const double *robo
     return STANCE_OK;
 }
 
-/* The posture with running number k of resolution^postures in -pi ... pi. */
+/* The posture with running number k of resolution^postures in -pi ... pi. Each angle has its own
+ * offset, or a good part of them would have parallel legs. */
 static void place(const stance_scene *scene, int resolution, long k, double *position)
 {
     for (int i = 0; i < scene->postures; i++) {
-        position[scene->posture[i]] =
-            M_PI * (2 * ((double)(k % resolution) + 0.5) / resolution - 1);
+        const double at = ((double)(k % resolution) + 0.2 + 0.23 * i) / resolution;
+        position[scene->posture[i]] = M_PI * (2 * at - 1);
         k /= resolution;
     }
 }

@@ -169,7 +169,8 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     set_all(b->now.w, SCENE_COORDINATES, lane, w);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         lane_set(&b->torque[i], lane, 0);
-        lane_set(&b->pending[i], lane, 0);
+        lane_set(&b->pending[i], lane,
+                 fmax(fmin(c->feedforward[i], c->torque_limit), -c->torque_limit));
         lane_set(&b->now.integral[i], lane, 0);
     }
     lane_set(&b->delayed, lane, c->delay > 0);
@@ -257,6 +258,7 @@ static void bundle_decouple(struct bundle *b, mask due, lanes *command)
         command[i] = choose(servos, e.command[i], command[i]);
     law_integrate(law, servos, b->sample_every * b->h, e.integral_rate, b->now.integral);
     b->degraded += choose(servos, e.degraded, lanes_of(0));
+    b->ambiguous += choose(servos, e.several, lanes_of(0));
 }
 
 /* New torques in the lanes whose sampling instant it is. */
@@ -280,8 +282,8 @@ static inline void bundle_sample(struct bundle *b, mask live)
             lane_set(&torque[i], lane, lane_get(&torque[i], lane) + noise[i]);
     }
     law_clip(&b->set.law, torque);
-    /* With a delay the command of the sample before comes into force, at the start its own. */
-    const mask late = due & mask_less(lanes_of(0), b->delayed) & mask_less(lanes_of(0), b->n);
+    /* With a delay the command of the sample before comes into force, at the start that of rest. */
+    const mask late = due & mask_less(lanes_of(0), b->delayed);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         b->torque[i] = choose(due, choose(late, b->pending[i], torque[i]), b->torque[i]);
         b->pending[i] = choose(due, torque[i], b->pending[i]);

@@ -105,16 +105,17 @@ static inline void decoupling_reach(const struct setting *set, const struct dyna
         }
 }
 
-/* Adds to torque[] what the reactions change; returns the lanes where none fit. */
+/* Adds to torque[] what the reactions change, e->several where more than one set of them fits;
+ * returns the lanes where none does. */
 static inline mask decoupling_react(const struct setting *set, mask where, contact_set touching,
                                     const struct contact_state *contact, const lanes inverse[2][2],
-                                    const struct dynamics *e, lanes *torque)
+                                    struct dynamics *e, lanes *torque)
 {
     struct {
         lanes D[2][2][2][2], free[2][2], r[2][2];
     } problem;
     lanes reach[2][2][2], answer[2][2][2];
-    mask part[SCENE_CONTACTS], ambiguous, unsolved, none = MASK_NONE;
+    mask part[SCENE_CONTACTS], ambiguous, unsolved, none = MASK_NONE, several = MASK_NONE;
     decoupling_reach(set, e, touching, reach);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         part[c] = where & contact->closed[c];
@@ -139,6 +140,7 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
     for (int round = 0; round < 2; round++) {
         solve_contacts(set, (const lanes(*)[2][2][2])problem.D, (const lanes(*)[2])problem.free,
                        contact->slide, true, part, problem.r, &ambiguous, &unsolved);
+        several |= where & ambiguous;
         if (round > 0 || !mask_any(unsolved))
             break;
         none = unsolved & where; /* then the reactions without torques */
@@ -157,7 +159,8 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
                 part[c],
                 torque[i] + (answer[c][0][i] * problem.r[c][0] + answer[c][1][i] * problem.r[c][1]),
                 torque[i]);
-    return unsolved;
+    e->several = choose(several, lanes_of(1), lanes_of(0));
+    return none;
 }
 
 /* The law in the lanes of `where`: e->command, e->integral_rate and e->degraded. *e was evaluated
@@ -185,6 +188,7 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
     for (int i = 0; i < 2; i++)
         torque[i] = inverse[i][0] * wanted[0] + inverse[i][1] * wanted[1];
     mask stands = MASK_NONE;
+    e->several = lanes_of(0);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         stands |= where & contact->closed[c];
     if (touching && mask_any(stands))

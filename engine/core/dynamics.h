@@ -29,7 +29,7 @@ struct dynamics {
     lanes push[ACTUATORS][SCENE_COORDINATES]; /* A^-1 B, where a law acts that needs it */
     lanes command[ACTUATORS];                 /* N m, of that law, before the limit ... */
     lanes integral_rate[ACTUATORS];           /* ... and how fast it sums errors */
-    lanes degraded;                           /* 1: not quite what it promises, see decoupling.h */
+    lanes degraded, several; /* 1: not quite what it promises, not unique: see decoupling.h */
 };
 
 /* Contacts that matter in any lane: bit c. What an open contact would respond costs nothing. */
@@ -67,7 +67,7 @@ static inline void dynamics_evaluate(const struct setting *set, lanes t, const l
     scene_solve(&A, false, load, e->acceleration);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->integral_rate[i] = lanes_of(0);
-    e->degraded = lanes_of(0);
+    e->degraded = e->several = lanes_of(0);
 #ifdef SCENE_SERVOS
     for (int i = 0; i < SCENE_ACTUATORS && pushes; i++)
         scene_actuator_response(&set->body, &A, i, e->push[i]);

@@ -129,6 +129,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     out->bad = run & LANES_NOT(scene_angles_in_range(end->s));
     smooth_evaluate(set, from->t + h, end->s, end->w, end->integral, &drive, touches, &e);
     out->report.degraded = e.degraded;
+    out->report.ambiguous = e.several;
     if (touches)
         smooth_solve(set, m, &e);
     out->violated |= smooth_violated(set, m, &e);

@@ -26,6 +26,39 @@ static void advance_free(struct advance *a)
     (void)a;
 }
 
+/* One step. Where Newton's iteration does not end because a torque that acts inside the step comes
+ * and goes at its limit, each torque is taken for free or for being at either end of its range, one
+ * way after the other, until a solution agrees with what was assumed. */
+static mask fixed_step(const struct setting *set, const struct motion *from, const lanes *torque,
+                       lanes h, mask run, bool coupled, int freeze_after, struct motion *to,
+                       struct step_report *report)
+{
+    mask good = take_step(set, from, torque, h, run, coupled, freeze_after, to, report);
+    mask failed = run & LANES_NOT(good) & mask_less(set->law.limit, lanes_of(INFINITY));
+    if (SCENE_ACTUATORS == 0 || !coupled || !mask_any(failed))
+        return good;
+    int ways = 1;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        ways *= 3;
+    for (int way = 0; way < ways && mask_any(failed); way++) {
+        static const int ends[3] = {0, 1, -1};
+        int corner[ACTUATORS], rest = way;
+        struct motion next = *from;
+        struct step_report part;
+        for (int i = 0; i < ACTUATORS; i++, rest /= 3)
+            corner[i] = ends[rest % 3];
+        const mask found =
+            take_step_at(corner, set, from, torque, h, failed, coupled, freeze_after, &next, &part);
+        part.iterations += report->iterations;
+        choose_all(found, &next, to, sizeof next);
+        choose_all(found, &part, report, sizeof part);
+        report->iterations = choose(failed & LANES_NOT(found), part.iterations, report->iterations);
+        good |= found;
+        failed &= LANES_NOT(found);
+    }
+    return good;
+}
+
 /* Lanes that did not converge: the step again in 2, 4, ... equal parts. */
 static mask fixed_subdivide(const struct setting *set, const struct motion *from,
                             const lanes *torque, lanes h, mask run, bool coupled, struct motion *to,
@@ -43,7 +76,7 @@ static mask fixed_subdivide(const struct setting *set, const struct motion *from
         for (int k = 0; k < parts && mask_any(good); k++) {
             struct step_report part;
             struct motion next = here;
-            good &= take_step(set, &here, torque, h / parts, good, coupled, freeze, &next, &part);
+            good &= fixed_step(set, &here, torque, h / parts, good, coupled, freeze, &next, &part);
             here = next;
             report_add(&sum, &part);
         }
@@ -62,7 +95,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 {
     (void)a;
     struct motion next = *now;
-    mask ok = take_step(set, now, torque, h, live, coupled, STEP_MAX_ITERATIONS, &next, report);
+    mask ok = fixed_step(set, now, torque, h, live, coupled, STEP_MAX_ITERATIONS, &next, report);
     const mask stuck = live & LANES_NOT(ok);
     if (mask_any(stuck))
         ok |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, report);

@@ -10,7 +10,7 @@
  *   e = kp (r - q) + kd (r' - q') + ki I,     I' = r - q,     r = setpoint + ramp min(t, duration).
  *
  * What torques that takes depends on the reactions of the ground; decoupling.h solves both
- * together. I is kept within +-integral_limit and rests while a torque is at its limit
+ * together. I is kept within +-integral_limit and does not grow while a torque is at its limit
  * (anti-windup).
  *
  * A switching law is linear inside an ellipsoid about its target and something else outside: a
@@ -87,10 +87,11 @@ static inline void law_clip(const struct law *law, lanes *torque)
 
 /* The linear law acting inside the step: torque and its derivative by the velocity at the end, of
  * which the positions move by `lever` and the velocities by `rate_lever` per unit. A decoupling law
- * holds the torque `held`. */
+ * holds the torque `held`. `corner`: NULL, or for each torque 0 where it is taken for free, -1 or 1
+ * where it is taken for being at its limit, whatever is commanded. */
 static inline void law_inside(const struct law *law, const lanes *s, const lanes *w, lanes lever,
-                              double rate_lever, const lanes *held, lanes *torque,
-                              lanes rate[ACTUATORS][POSTURES])
+                              double rate_lever, const lanes *held, const int *corner,
+                              lanes *torque, lanes rate[ACTUATORS][POSTURES])
 {
     lanes command[ACTUATORS];
     const mask decouples = mask_less(lanes_of(0), law->decouples);
@@ -99,7 +100,11 @@ static inline void law_inside(const struct law *law, const lanes *s, const lanes
         torque[i] = command[i];
     law_clip(law, torque);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        const mask free = mask_less(lanes_abs(command[i]), law->limit);
+        mask free = mask_less(lanes_abs(command[i]), law->limit);
+        if (corner) {
+            torque[i] = corner[i] == 0 ? command[i] : corner[i] > 0 ? law->limit : -law->limit;
+            free = corner[i] == 0 ? LANES_ALL : MASK_NONE;
+        }
         torque[i] = choose(decouples, held[i], torque[i]);
         for (int j = 0; j < SCENE_POSTURE; j++) {
             const lanes slope = law->linear.gain[i][j] * lever +
@@ -107,6 +112,20 @@ static inline void law_inside(const struct law *law, const lanes *s, const lanes
             rate[i][j] = choose(free, -slope, lanes_of(0));
         }
     }
+}
+
+/* Lanes where the torques at s, w are what `corner` took them for. */
+static inline mask law_agrees(const struct law *law, const lanes *s, const lanes *w,
+                              const int *corner)
+{
+    lanes command[ACTUATORS];
+    mask agrees = LANES_ALL;
+    law_torque(law, s, w, command);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        agrees &= corner[i] == 0 ? mask_less_equal(lanes_abs(command[i]), (1 + 1e-12) * law->limit)
+                                 : mask_less_equal((1 - 1e-12) * law->limit,
+                                                   corner[i] > 0 ? command[i] : -command[i]);
+    return agrees;
 }
 
 /* Lanes inside the ellipsoid. */
@@ -142,8 +161,8 @@ static inline void law_servo(const struct law *law, lanes t, const lanes *q, con
     }
 }
 
-/* Rates of the integrals: the errors; zero while a torque is at its limit, and where the integral
- * would leave its range. */
+/* Rates of the integrals: the errors; zero where nothing reads them, and where the integral would
+ * leave its range or grow while a torque is at its limit. */
 static inline void law_integral_rate(const struct law *law, const lanes *error,
                                      const lanes *integral, const lanes *command, lanes *rate)
 {
@@ -151,9 +170,10 @@ static inline void law_integral_rate(const struct law *law, const lanes *error,
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         clipped |= mask_less(law->limit, lanes_abs(command[i]));
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        const mask full = mask_less_equal(law->servo[i].integral_limit, lanes_abs(integral[i])) &
-                          mask_less(lanes_of(0), error[i] * integral[i]);
-        rate[i] = choose(clipped | full, lanes_of(0), error[i]);
+        const mask grows = mask_less_equal(lanes_of(0), error[i] * integral[i]);
+        const mask full = mask_less_equal(law->servo[i].integral_limit, lanes_abs(integral[i]));
+        const mask unread = mask_less_equal(lanes_abs(law->servo[i].ki), lanes_of(0));
+        rate[i] = choose(unread | (grows & (clipped | full)), lanes_of(0), error[i]);
     }
 }
 /* Integrals after an interval h at these rates. */

@@ -88,6 +88,7 @@ struct iterate {
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
     mask active[SCENE_CONTACTS];
     mask ambiguous, unsolved;
+    const int *corner; /* see law_inside */
 };
 
 /* The velocity that forces and positions see: (1 - theta) w0 + theta w. */
@@ -197,7 +198,7 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
         for (int i = 0; i < SCENE_COORDINATES; i++)
             u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
         law_inside(&set->law, u, v, h * (METHOD_THETA * METHOD_THETA), METHOD_THETA, it->torque,
-                   torque, torque_rate);
+                   it->corner, torque, torque_rate);
     }
 
     scene_matrix J;
@@ -449,12 +450,15 @@ static inline void report_forces(struct step_report *report, const mask *part,
  * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
  * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
  * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
- * between two modes for every h. Returns the lanes that converged. */
-static inline mask take_step(const struct setting *set, const struct motion *from,
-                             const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
-                             struct motion *to, struct step_report *report)
+ * between two modes for every h. `corner`: as in law_inside; converged is then only what agrees
+ * with it. Returns the lanes that converged. */
+static inline mask take_step_at(const int *corner, const struct setting *set,
+                                const struct motion *from, const lanes *torque, lanes h, mask run,
+                                bool coupled, int freeze_after, struct motion *to,
+                                struct step_report *report)
 {
     struct iterate it;
+    it.corner = corner;
     mask impact = MASK_NONE, running = run;
     mask closed[SCENE_CONTACTS];
     for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -492,6 +496,14 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
         running &= LANES_NOT(done);
     }
     mask converged = run & LANES_NOT(running), touching = MASK_NONE;
+    if (corner) {
+        lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES];
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            v[i] = step_velocity(from->w[i], it.w[i]);
+            u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+        }
+        converged &= law_agrees(&set->law, u, v, corner);
+    }
     if (freeze_after < STEP_MAX_ITERATIONS)
         iterate_place(set, from, h, false, &it);
     if (METHOD_THETA != 1)
@@ -560,6 +572,13 @@ static inline mask take_step(const struct setting *set, const struct motion *fro
 }
 
 /* Adds a part of a step to the whole. */
+static inline mask take_step(const struct setting *set, const struct motion *from,
+                             const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
+                             struct motion *to, struct step_report *report)
+{
+    return take_step_at(NULL, set, from, torque, h, run, coupled, freeze_after, to, report);
+}
+
 static inline void report_add(struct step_report *sum, const struct step_report *part)
 {
     for (int c = 0; c < SCENE_CONTACTS; c++) {
