@@ -131,10 +131,55 @@ static int draw_sweep(const struct plot *plot)
     return EXIT_DONE;
 }
 
+/* ---- an answer ---------------------------------------------------------------------------- */
+
+/* What --answer and --of ask for; false with a message when there is no such. */
+static bool choose_answer(const char *name, const char *of, struct plot_answer *answer)
+{
+    char list[600];
+    if (!plot_answer_find(name, answer)) {
+        plot_answer_list(list, sizeof list);
+        fprintf(stderr, "stance plot: --answer takes one of %s, not '%.60s'\n", list, name);
+        return false;
+    }
+    for (int k = 0; of && k < RESULTS_KIND_COUNT; k++) {
+        if (strcmp(of, results_kind_names[k]) == 0 && k <= RESULTS_UNDECIDED) {
+            answer->of = (enum results_kind)k;
+            return true;
+        }
+    }
+    if (of) {
+        fprintf(stderr,
+                "stance plot: --of takes an outcome, stabilised, rested, fell or undecided, not "
+                "'%.60s'\n",
+                of);
+    }
+    return !of;
+}
+
+static int draw_answer(const struct plot *plot, const char *name, const char *of)
+{
+    struct plot_answer answer;
+    stance_message message = {""};
+    if (!choose_answer(name, of, &answer)) {
+        return EXIT_USAGE;
+    }
+    if (plot->r->single) {
+        fprintf(stderr, "%s: holds one case; stance summary prints its numbers\n", plot->r->file);
+        return EXIT_USAGE;
+    }
+    if (!(plot->r->axes < 2 ? plot_answer_curve(plot, &answer, &message)
+                            : plot_answer_map(plot, &answer, &message))) {
+        fprintf(stderr, "%s\n", message.text);
+        return EXIT_IO;
+    }
+    return EXIT_DONE;
+}
+
 /* ---- the command -------------------------------------------------------------------------- */
 
 struct request {
-    const char *file, *directory, *index;
+    const char *file, *directory, *index, *answer, *of;
 };
 
 static int draw(void *context)
@@ -162,6 +207,8 @@ static int draw(void *context)
     const struct plot plot = {&r, directory, r.name};
     if (!prepare_directory(directory)) {
         code = EXIT_IO;
+    } else if (request->answer) {
+        code = draw_answer(&plot, request->answer, request->of);
     } else if (index_text || r.single) {
         code = draw_case(&plot, index_text ? index : r.index, index_text != NULL);
     } else {
@@ -173,12 +220,14 @@ static int draw(void *context)
 
 static int run(int argc, char **argv)
 {
-    const char *file = NULL, *directory = NULL, *index = NULL;
-    size_t directories = 0, indices = 0, operands = 0;
+    const char *file = NULL, *directory = NULL, *index = NULL, *answer = NULL, *of = NULL;
+    size_t given[4] = {0}, operands = 0;
     bool help = false;
     const struct option_spec specs[] = {
-        {"-o", true, &directory, 1, &directories},
-        {"--case", true, &index, 1, &indices},
+        {"-o", true, &directory, 1, &given[0]},
+        {"--case", true, &index, 1, &given[1]},
+        {"--answer", true, &answer, 1, &given[2]},
+        {"--of", true, &of, 1, &given[3]},
     };
 
     if (!command_options(&command_plot, argc, argv, specs, sizeof specs / sizeof specs[0], &file, 1,
@@ -193,13 +242,18 @@ static int run(int argc, char **argv)
                 operands == 0 ? "a results file" : "a directory");
         return EXIT_USAGE;
     }
-    struct request request = {file, directory, index};
+    if ((index && answer) || (of && !answer)) {
+        fprintf(stderr, "stance plot: %s\n",
+                of && !answer ? "--of belongs to --answer" : "--case or --answer, not both");
+        return EXIT_USAGE;
+    }
+    struct request request = {file, directory, index, answer, of};
     return supervise(draw, &request, file);
 }
 
 const struct command command_plot = {
     "plot",
-    "plot FILE [-o DIR] [--case N]",
+    "plot FILE [-o DIR] [--case N | --answer A [--of OUTCOME]]",
     "pictures (SVG and PNG)",
     run,
     "Draws with gnuplot what the file calls for, into DIR (made when missing; default: where the\n"
@@ -213,6 +267,10 @@ const struct command command_plot = {
     "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"
     "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
     "\n"
-    "  -o DIR     where the pictures go\n"
-    "  --case N   the trajectory of case N (flat index) instead of the sweep\n",
+    "  -o DIR         where the pictures go\n"
+    "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
+    "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another number) of "
+    "every\n"
+    "                 case, as a map or along the one axis\n"
+    "  --of OUTCOME   only of the cases that were stabilised, rested, fell or stayed undecided\n",
 };

@@ -9,7 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TABLE_ROWS = 20, CHANGES_SHOWN = 10, WRAP = 100, INTERVAL = 21, EXTENT = 24 };
+enum {
+    TABLE_ROWS = 20,
+    CHANGES_SHOWN = 10,
+    WRAP = 100,
+    INTERVAL = 21,
+    EXTENT = 24,
+    PAIR_COLUMNS = 6
+};
 
 static double percent(uint64_t k, uint64_t n)
 {
@@ -289,6 +296,40 @@ static void print_parameter(const struct summary *summary, const struct results 
     }
 }
 
+/* The shares of two parameters at once: a column for each value of the one with fewer. */
+static void print_pairs(const struct summary *summary, const struct results *r)
+{
+    int across = r->axis[summary->pair[0]].count < r->axis[summary->pair[1]].count ? 0 : 1;
+    const struct results_axis *down = &r->axis[summary->pair[1 - across]],
+                              *columns = &r->axis[summary->pair[across]];
+    size_t rows = down->count < TABLE_ROWS ? down->count : TABLE_ROWS;
+    char text[128];
+
+    if (columns->count > PAIR_COLUMNS || columns->count < 2 || down->count < 2) {
+        return;
+    }
+    printf("\n%s (%%) against %s and, across, %s\n  %14s",
+           summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised", down->name, columns->name,
+           "");
+    for (size_t j = 0; j < columns->count; j++) {
+        results_value_text(columns, j, false, text, sizeof text);
+        printf(" %11s", text);
+    }
+    putchar('\n');
+    for (size_t k = 0; k < rows; k++) {
+        size_t i = spread(k, rows, down->count);
+        results_value_text(down, i, false, text, sizeof text);
+        printf("  %14s", text);
+        for (size_t j = 0; j < columns->count; j++) {
+            size_t place = across ? i * columns->count + j : j * down->count + i;
+            double share = summary_share(summary, &summary->pair_counts[place]);
+            snprintf(text, sizeof text, isnan(share) ? "-" : "%.3f", 100 * share);
+            printf(" %11s", text);
+        }
+        putchar('\n');
+    }
+}
+
 /* Where the outcome changes along the only axis. */
 static void print_changes(const struct results *r)
 {
@@ -326,14 +367,15 @@ static void print_numbers(const struct summary *summary)
             continue;
         }
         if (first) {
-            printf("\n%-30s %11s %11s %11s %11s  %s\n", "Numbers", "median", "90 %", "99 %",
-                   "largest", "cases");
+            printf("\n%-26s %10s %10s %10s %10s %10s  %s\n", "Numbers", "smallest", "median",
+                   "90 %", "99 %", "largest", "cases");
             first = false;
         }
         snprintf(name, sizeof name, "%s%s%s%s", row->name, row->unit[0] ? " (" : "", row->unit,
                  row->unit[0] ? ")" : "");
-        printf("  %-28s %11.4g %11.4g %11.4g %11.4g  %zu %s\n", name, row->numbers.median,
-               row->numbers.q90, row->numbers.q99, row->numbers.high, row->numbers.n,
+        printf("  %-24s %10.4g %10.4g %10.4g %10.4g %10.4g  %zu %s\n", name, row->numbers.low,
+               row->numbers.median, row->numbers.q90, row->numbers.q99, row->numbers.high,
+               row->numbers.n,
                row->of == RESULTS_KIND_COUNT ? "done" : results_kind_names[row->of]);
     }
 }
@@ -374,6 +416,11 @@ static void print_cost(const struct summary *summary)
     if (summary->events.sum > 0) {
         printf("  events, changes of contact mode: %.6g, in %llu of the cases\n",
                summary->events.sum, (unsigned long long)summary->events.cases);
+    }
+    if (summary->degraded.sum > 0) {
+        printf("  samples at which decoupling could not do what it promises: %.6g, in %llu of the "
+               "cases\n",
+               summary->degraded.sum, (unsigned long long)summary->degraded.cases);
     }
     if (summary->subdivided.stored) {
         printf("  steps that had to be subdivided: %.6g, in %llu of the cases\n",
@@ -470,6 +517,9 @@ static void print_text(const struct summary *summary, const struct results *r)
             print_parameter(summary, r, a);
         }
     }
+    if (summary->pair_counts && outcomes) {
+        print_pairs(summary, r);
+    }
     if (r->axes == 1) {
         print_changes(r);
     }
@@ -563,10 +613,13 @@ const struct command command_summary = {
     "                 stabilised, rested, share, low, high, extents: {path: [low, high]}}],\n"
     "                 steepest: {from, to}}]; share_of: stabilised, or without a controller\n"
     "                 that has a target rested; an extent is [] for none, null for unknown\n"
+    "    pairs        of two parameters, no more: {paths: [2], share: [[...]]}, a row for each\n"
+    "                 value of the first, a column for each of the second; null where none done\n"
     "    changes      [{from, to, before, after}] along the axis of a sweep with one axis\n"
     "    numbers      {answer: {of, unit, count, smallest, median, q90, q99, largest}}\n"
     "    cost         steps, iterations, iterations_per_step, evaluations, events, events_cases,\n"
-    "                 subdivided_steps, subdivided_cases, ambiguous_steps, ambiguous_cases,\n"
+    "                 subdivided_steps, subdivided_cases, degraded_samples, degraded_cases,\n"
+    "                 ambiguous_steps, ambiguous_cases,\n"
     "                 wall_time (s, of the slowest rank), total_time (s, all ranks),\n"
     "                 cases_per_second\n"
     "    case         of a file of one case: index, outcome, failure, end_time, settle_time,\n"

@@ -57,6 +57,25 @@ void plot_value_tics(FILE *script, double low, double high, double height);
 /* One entry per kind of case that occurs, with its share of all cases; returns the height. */
 double plot_kind_legend(const struct plot *plot, struct gnuplot *g, double x, double y);
 
+/* ---- answers ------------------------------------------------------------------------------ */
+
+/* A number that every case has, to be drawn of the cases of one kind. */
+struct plot_answer {
+    const char *name, *unit, *text; /* as runner/store.h has them; unit "": none */
+    enum results_kind of;           /* RESULTS_KIND_COUNT: all that are done */
+};
+
+/* The table's entry of a name; false when it is none, or no number. */
+bool plot_answer_find(const char *name, struct plot_answer *answer);
+/* "a, b, c": the names that plot_answer_find knows. */
+void plot_answer_list(char *text, size_t size);
+/* The numbers, NAN for other cases, and their range; values[cases] are freed by the caller. False,
+ * with a message, also when there are none. */
+bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,
+                         double *low, double *high, stance_message *message);
+/* "friction_used: largest ratio |rT|/rN of a contact, of the stabilised cases" */
+void plot_answer_title(const struct plot_answer *answer, char *text, size_t size);
+
 /* ---- pictures ----------------------------------------------------------------------------- */
 
 /* Each prints the paths that it writes. What cannot be drawn for good reason is said on standard
@@ -67,6 +86,11 @@ bool plot_maps(const struct plot *plot, stance_message *message);
 /* STEM-curve of sweeps over one axis, and of those whose first axis is not an offset: the share of
  * stabilised cases against it. */
 bool plot_curve(const struct plot *plot, stance_message *message);
+/* STEM-NAME of an answer: a map of sweeps over two axes or more, a curve of those over one. */
+bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
+                     stance_message *message);
+bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer,
+                       stance_message *message);
 /* STEM-coordinates, -forces, -torques, -gaps and -strip of the case at a place among the recorded
  * ones. */
 bool plot_case(const struct plot *plot, size_t place, uint64_t index, stance_message *message);

@@ -295,12 +295,74 @@ static double target_of(const struct plot_case *c, size_t i)
     return NAN;
 }
 
+/* Where a decoupling law wants coordinate i: at `start` first, moving at `rate` until `end`. */
+struct setpoint {
+    double start, rate, end;
+};
+
+static bool setpoint_of(const struct plot_case *c, size_t i, struct setpoint *setpoint)
+{
+    const struct scenario_values *v = &c->values;
+    int pair[2];
+    if (!c->readable || v->law != LAW_DECOUPLING ||
+        !stance_pair(c->scenario.scene, v->controlled, &pair[0], &pair[1]) ||
+        ((int)i != pair[0] && (int)i != pair[1])) {
+        return false;
+    }
+    setpoint->start = isnan(v->setpoint[i]) ? c->t->position[i] : v->setpoint[i];
+    setpoint->rate = v->ramp[i];
+    setpoint->end = fmin(v->ramp_time[i], c->t->time[c->t->rows - 1]);
+    return isfinite(setpoint->start);
+}
+
+/* The entry of the dashed lines in the legend, where there are such. */
+static void legend_targets(struct page *page, const char *text)
+{
+    double y = 1 - (page->top + HEADING + 8) / page->g.height, x = LEFT + PLOT_WIDTH + 14;
+    fprintf(page->g.script,
+            "set arrow from screen %.6f,%.6f to screen %.6f,%.6f nohead dt 2 lw 1.6"
+            " lc rgb '%s'\n",
+            x / page->g.width, y, (x + 32) / page->g.width, y, PLOT_SECOND);
+    gnuplot_label(&page->g, x + 40, page->top + HEADING + 8, text, "left", 12, false);
+}
+
+/* One coordinate against time, with what the controller wants of it. */
+static void put_coordinate(struct page *page, const char *name, size_t i)
+{
+    const struct results_trajectory *t = page->c->t;
+    struct range range = range_of(t, t->position, t->coordinates, i, t->coordinates, false);
+    double target = target_of(page->c, i);
+    struct setpoint setpoint;
+    bool led = setpoint_of(page->c, i, &setpoint);
+    if (isfinite(target)) {
+        include(&range, target);
+        level(page, 1, target, "dt 2 lw 1.6 lc rgb '" PLOT_SECOND "'");
+    }
+    if (led) {
+        include(&range, setpoint.start);
+        include(&range, setpoint.start + setpoint.rate * setpoint.end);
+    }
+    widen(&range);
+    begin_panel(page, &range);
+    fprintf(page->g.script, "plot '%s' using 1:%zu with lines lw 1.8 lc rgb '%s' notitle", name,
+            i + 2, PLOT_ACCENT);
+    if (led) {
+        fprintf(page->g.script,
+                ", %.10g + %.10g*(x < %.10g ? x : %.10g) with lines dt 2 lw 1.6 lc rgb '%s'"
+                " notitle",
+                setpoint.start, setpoint.rate, setpoint.end, setpoint.end, PLOT_SECOND);
+    }
+    fputc('\n', page->g.script);
+    clear_levels(page);
+}
+
 static bool draw_coordinates(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
     struct page page = {.c = c};
+    struct setpoint setpoint;
     char name[32], text[300];
-    bool targets = false;
+    bool targets = false, led = false;
 
     if (!begin_page(&page, "Coordinates", (int)t->coordinates, 100, message)) {
         return false;
@@ -310,30 +372,16 @@ static bool draw_coordinates(const struct plot_case *c, stance_message *message)
         snprintf(text, sizeof text, q->unit[0] ? "%s (%s)" : "%s", t->coordinate[i], q->unit);
         head(&page, (int)i, q->text, text);
         targets = targets || isfinite(target_of(c, i));
+        led = led || setpoint_of(c, i, &setpoint);
     }
-    if (targets) {
-        double y = 1 - (page.top + HEADING + 8) / page.g.height, x = LEFT + PLOT_WIDTH + 14;
-        fprintf(page.g.script,
-                "set arrow from screen %.6f,%.6f to screen %.6f,%.6f nohead dt 2 lw 1.6"
-                " lc rgb '%s'\n",
-                x / page.g.width, y, (x + 32) / page.g.width, y, PLOT_SECOND);
-        gnuplot_label(&page.g, x + 40, page.top + HEADING + 8, "equilibrium", "left", 12, false);
+    if (targets || led) {
+        legend_targets(&page, targets ? "equilibrium" : "set-point");
     }
     gnuplot_decorate(&page.g);
     clear_levels(&page);
     put_track(&page.g, t, t->position, t->coordinates, name);
     for (size_t i = 0; i < t->coordinates; i++) {
-        struct range range = range_of(t, t->position, t->coordinates, i, t->coordinates, false);
-        double target = target_of(c, i);
-        if (isfinite(target)) {
-            include(&range, target);
-            level(&page, 1, target, "dt 2 lw 1.6 lc rgb '" PLOT_SECOND "'");
-        }
-        widen(&range);
-        begin_panel(&page, &range);
-        fprintf(page.g.script, "plot '%s' using 1:%zu with lines lw 1.8 lc rgb '%s' notitle\n",
-                name, i + 2, PLOT_ACCENT);
-        clear_levels(&page);
+        put_coordinate(&page, name, i);
     }
     return plot_case_end(c, &page.g, "coordinates", message);
 }

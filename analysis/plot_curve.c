@@ -171,18 +171,17 @@ static bool read_panel(const struct results *r, struct line_panel *panel, stance
     return true;
 }
 
+/* The page STEM-`picture` of LINE_PANELS panels, those without values left out. */
 static bool draw_line_page(const struct plot *plot, const struct plot_axis *along,
                            const struct sample *samples, struct line_panel *panels,
-                           stance_message *message)
+                           const char *what, const char *picture, stance_message *message)
 {
     struct page page = {.plot = plot, .along = along};
-    char stem[512], what[96], label[64];
+    char stem[512], label[64];
     int left = 0;
     for (int k = 0; k < LINE_PANELS; k++) {
         left += panels[k].values != NULL;
     }
-    snprintf(what, sizeof what, "What became of each of %llu cases",
-             (unsigned long long)plot->r->cases);
     if (!begin_page(&page, what, STRIP + left * (LINE_HEIGHT + GAP), message)) {
         return false;
     }
@@ -204,7 +203,7 @@ static bool draw_line_page(const struct plot *plot, const struct plot_axis *alon
             put_line(&page, samples, &panels[k], --left == 0);
         }
     }
-    snprintf(stem, sizeof stem, "%s-curve", plot->stem);
+    snprintf(stem, sizeof stem, "%s-%s", plot->stem, picture);
     return gnuplot_end(&page.g, plot->directory, stem, message);
 }
 
@@ -214,16 +213,37 @@ static bool draw_line(const struct plot *plot, stance_message *message)
                                              {.name = "end_time", .unit = "s"},
                                              {.name = "friction_used", .unit = ""}};
     struct plot_axis along;
+    char what[96];
     plot_axis_make_curve(&along, &plot->r->axis[0]);
     struct sample *samples = make_samples(&along);
     bool good = samples || no_memory(message);
     for (int k = 0; k < LINE_PANELS && good; k++) {
         good = read_panel(plot->r, &panels[k], message);
     }
-    good = good && draw_line_page(plot, &along, samples, panels, message);
+    snprintf(what, sizeof what, "What became of each of %llu cases",
+             (unsigned long long)plot->r->cases);
+    good = good && draw_line_page(plot, &along, samples, panels, what, "curve", message);
     for (int k = 0; k < LINE_PANELS; k++) {
         free(panels[k].values);
     }
+    free(samples);
+    return good;
+}
+
+bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer,
+                       stance_message *message)
+{
+    struct line_panel panels[LINE_PANELS] = {{.name = answer->name, .unit = answer->unit}};
+    struct plot_axis along;
+    char what[256];
+    plot_axis_make_curve(&along, &plot->r->axis[0]);
+    struct sample *samples = make_samples(&along);
+    plot_answer_title(answer, what, sizeof what);
+    bool good = (samples || no_memory(message)) &&
+                plot_answer_numbers(plot, answer, &panels[0].values, &panels[0].low,
+                                    &panels[0].high, message) &&
+                draw_line_page(plot, &along, samples, panels, what, answer->name, message);
+    free(panels[0].values);
     free(samples);
     return good;
 }
@@ -232,19 +252,29 @@ static bool draw_line(const struct plot *plot, stance_message *message)
 
 enum { SHARE_HEIGHT = 300, EXTENT_HEIGHT = 150, MAX_EXTENTS = 2 };
 
-/* Share of a kind with Wilson's interval, in per cent. Words have bars, numbers a band. */
+/* One curve of shares: of a kind, over the counts of the axis's values, `stride` apart. */
+struct share {
+    int kind;
+    const struct statistics_counts *counts;
+    size_t stride;
+    const char *colour;
+    char label[96];
+};
+enum { SHARES = 6 };
+
+/* Share with Wilson's interval, in per cent. Words have bars, numbers a band. */
 static double put_share_data(struct page *page, const struct sample *samples,
-                             const struct statistics_counts *counts, int kind, char name[32])
+                             const struct share *share, char name[32])
 {
     double highest = 0;
     FILE *data = gnuplot_data(&page->g, name);
     for (size_t i = 0; i < page->along->axis->count; i++) {
-        const struct statistics_counts *c = &counts[samples[i].index];
+        const struct statistics_counts *c = &share->counts[samples[i].index * share->stride];
         double low, high;
-        statistics_wilson(c->kind[kind], c->done, &low, &high);
+        statistics_wilson(c->kind[share->kind], c->done, &low, &high);
         bool any = c->done > 0;
         fprintf(data, "%.17g ", samples[i].place);
-        gnuplot_number(data, any ? 100 * (double)c->kind[kind] / (double)c->done : NAN);
+        gnuplot_number(data, any ? 100 * (double)c->kind[share->kind] / (double)c->done : NAN);
         putc(' ', data);
         gnuplot_number(data, any ? 100 * low : NAN);
         putc(' ', data);
@@ -257,41 +287,80 @@ static double put_share_data(struct page *page, const struct sample *samples,
 }
 
 /* Kinds whose shares are drawn: of stabilised and rested those that there are, or the first. */
-enum { SHARES = 2 };
-
-static int choose_shares(const struct statistics_counts *counts, size_t n, int kinds[SHARES])
+static int choose_kinds(const struct statistics_counts *counts, size_t n, struct share *shares)
 {
-    static const int wanted[SHARES] = {RESULTS_STABILISED, RESULTS_RESTED};
+    static const int wanted[2] = {RESULTS_STABILISED, RESULTS_RESTED};
     int found = 0;
-    for (int k = 0; k < SHARES; k++) {
+    for (int k = 0; k < 2; k++) {
         bool any = false;
         for (size_t i = 0; i < n && !any; i++) {
             any = counts[i].kind[wanted[k]] > 0;
         }
-        if (any) {
-            kinds[found++] = wanted[k];
+        if (any || (k == 1 && found == 0)) {
+            int kind = any ? wanted[k] : wanted[0];
+            shares[found] = (struct share){kind, counts, 1, plot_colours[kind], ""};
+            snprintf(shares[found].label, sizeof shares[found].label, "%s",
+                     results_kind_names[kind]);
+            found++;
         }
-    }
-    if (found == 0) {
-        kinds[found++] = wanted[0];
     }
     return found;
 }
 
-static void put_shares(struct page *page, const struct sample *samples,
-                       const struct statistics_counts *counts, const int *kinds, int shares,
-                       bool last)
+/* The axis that the page runs along, and the second parameter, where there is one alone and it has
+ * few values, else -1: the one with more values is run along. */
+static void choose_parameters(const struct results *r, int *along, int *second)
+{
+    int parameters = 1;
+    *along = 0;
+    *second = -1;
+    for (int a = 1; a < r->axes; a++) {
+        if (!r->axis[a].offset) {
+            *second = a;
+            parameters++;
+        }
+    }
+    if (parameters == 2 && r->axis[*second].count > r->axis[0].count) {
+        *along = *second;
+        *second = 0;
+    }
+    if (parameters != 2 || r->axis[*second].count < 2 || r->axis[*second].count > SHARES) {
+        *along = 0;
+        *second = -1;
+    }
+}
+
+/* A curve for each value of the second parameter: of stabilised cases, or where there are none of
+ * rested ones. */
+static int choose_values(const struct results *r, int along, int second,
+                         const struct statistics_counts *counts, struct share *shares)
+{
+    /* after Okabe and Ito (2008) */
+    static const char *const colours[SHARES] = {"#0072b2", "#d55e00", "#009e73",
+                                                "#cc79a7", "#e69f00", "#56b4e9"};
+    size_t n = r->axis[second].count;
+    struct share kinds[2];
+    choose_kinds(counts, r->axis[along].count * n, kinds);
+    for (size_t k = 0; k < n; k++) {
+        shares[k] = (struct share){kinds[0].kind, counts + k, n, colours[k], ""};
+        results_value_text(&r->axis[second], k, true, shares[k].label, sizeof shares[k].label);
+    }
+    return (int)n;
+}
+
+static void put_shares(struct page *page, const struct sample *samples, const struct share *shares,
+                       int count, bool last)
 {
     char name[SHARES][32];
     double highest = 0;
-    for (int k = 0; k < shares; k++) {
-        highest = fmax(highest, put_share_data(page, samples, counts, kinds[k], name[k]));
+    for (int k = 0; k < count; k++) {
+        highest = fmax(highest, put_share_data(page, samples, &shares[k], name[k]));
     }
     begin_panel(page, SHARE_HEIGHT, 0, highest > 0 ? fmin(100, 1.08 * highest) : 100, last);
     bool words = page->along->axis->word != NULL;
     fputs("plot ", page->g.script);
-    for (int k = 0; k < shares; k++) {
-        const char *colour = plot_colours[kinds[k]];
+    for (int k = 0; k < count; k++) {
+        const char *colour = shares[k].colour;
         const char *shape =
             words ? "'%s' using 1:2:3:4 with yerrorbars lc rgb '%s' pt 7 ps 1.1 lw 1.6"
                     " notitle"
@@ -347,10 +416,16 @@ static void put_extent(struct page *page, const struct sample *samples, int axis
     fputs("unset arrow 1\n", page->g.script);
 }
 
-/* Axes of offsets whose extents are drawn: none when a further parameter is varied. */
+/* Axes of offsets whose extents are drawn: none when a further parameter is varied, or no case was
+ * stabilised. */
 static int choose_extents(const struct results *r, int *axes)
 {
+    struct statistics_counts all;
     int count = 0;
+    statistics_count(r, -1, 0, &all);
+    if (all.kind[RESULTS_STABILISED] == 0) {
+        return 0;
+    }
     for (int a = 1; a < r->axes; a++) {
         if (!r->axis[a].offset) {
             return 0;
@@ -363,7 +438,7 @@ static int choose_extents(const struct results *r, int *axes)
 }
 
 static void label_share_page(struct page *page, const int *extents, int extent_count,
-                             const int *kinds, int shares)
+                             const struct share *shares, int count, const char *of)
 {
     const struct results *r = page->plot->r;
     double x = LEFT + PLOT_WIDTH + 20, y = page->top + 10;
@@ -371,8 +446,12 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
 
     gnuplot_label(&page->g, 24, page->top + SHARE_HEIGHT / 2.0, "share of the cases done (%)",
                   "center", 12, true);
-    for (int k = 0; k < shares; k++) {
-        gnuplot_legend(&page->g, x, y, plot_colours[kinds[k]], results_kind_names[kinds[k]]);
+    if (of) {
+        gnuplot_label(&page->g, x, y, of, "left", 11, false);
+        y += 22;
+    }
+    for (int k = 0; k < count; k++) {
+        gnuplot_legend(&page->g, x, y, shares[k].colour, shares[k].label);
         y += 24;
     }
     gnuplot_label(&page->g, x, y + 2,
@@ -392,27 +471,31 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
     }
 }
 
+/* `second`: the axis whose values have a curve each, or -1. */
 static bool draw_share_page(const struct plot *plot, const struct plot_axis *along,
-                            const struct sample *samples, const struct statistics_counts *counts,
-                            stance_message *message)
+                            const struct sample *samples, const struct share *shares, int count,
+                            int second, stance_message *message)
 {
     struct page page = {.plot = plot, .along = along};
-    char stem[512], what[160];
-    int extents[MAX_EXTENTS], extent_count = choose_extents(plot->r, extents);
-    int kinds[SHARES], shares = choose_shares(counts, along->axis->count, kinds);
+    const struct results *r = plot->r;
+    char stem[512], what[256];
+    int extents[MAX_EXTENTS], extent_count = choose_extents(r, extents);
+    size_t values = along->axis->count * (second < 0 ? 1 : r->axis[second].count);
 
-    snprintf(what, sizeof what, "%s cases against %s, %llu cases per value",
-             shares > 1                   ? "Stabilised and rested"
-             : kinds[0] == RESULTS_RESTED ? "Rested"
-                                          : "Stabilised",
-             along->axis->name,
-             (unsigned long long)(plot->r->cases / (along->axis->count ? along->axis->count : 1)));
+    snprintf(what, sizeof what, "%s cases against %s%s%s, %llu cases per %s",
+             second < 0 && count > 1            ? "Stabilised and rested"
+             : shares[0].kind == RESULTS_RESTED ? "Rested"
+                                                : "Stabilised",
+             along->axis->name, second < 0 ? "" : " and ", second < 0 ? "" : r->axis[second].name,
+             (unsigned long long)(r->cases / (values ? values : 1)),
+             second < 0 ? "value" : "pair of values");
     if (!begin_page(&page, what, SHARE_HEIGHT + extent_count * (EXTENT_HEIGHT + GAP), message)) {
         return false;
     }
-    label_share_page(&page, extents, extent_count, kinds, shares);
+    label_share_page(&page, extents, extent_count, shares, count,
+                     second < 0 ? NULL : r->axis[second].name);
     gnuplot_decorate(&page.g);
-    put_shares(&page, samples, counts, kinds, shares, extent_count == 0);
+    put_shares(&page, samples, shares, count, extent_count == 0);
     for (int k = 0; k < extent_count; k++) {
         put_extent(&page, samples, extents[k], k == extent_count - 1);
     }
@@ -424,13 +507,24 @@ static bool draw_shares(const struct plot *plot, stance_message *message)
 {
     const struct results *r = plot->r;
     struct plot_axis along;
-    plot_axis_make_curve(&along, &r->axis[0]);
+    struct share shares[SHARES];
+    int first, second;
+    choose_parameters(r, &first, &second);
+    plot_axis_make_curve(&along, &r->axis[first]);
     struct sample *samples = make_samples(&along);
-    struct statistics_counts *counts = malloc(r->axis[0].count * sizeof *counts);
+    size_t counted = r->axis[first].count * (second < 0 ? 1 : r->axis[second].count);
+    struct statistics_counts *counts = malloc(counted * sizeof *counts);
     bool good = (samples && counts) || no_memory(message);
     if (good) {
-        statistics_count_axis(r, 0, counts);
-        good = draw_share_page(plot, &along, samples, counts, message);
+        int count;
+        if (second < 0) {
+            statistics_count_axis(r, first, counts);
+            count = choose_kinds(counts, counted, shares);
+        } else {
+            statistics_count_pair(r, first, second, counts);
+            count = choose_values(r, first, second, counts, shares);
+        }
+        good = draw_share_page(plot, &along, samples, shares, count, second, message);
     }
     free(samples);
     free(counts);

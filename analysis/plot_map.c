@@ -9,6 +9,13 @@
 
 enum { MAX_PANELS = 16, LEFT = 118, BOTTOM = 84, LEGEND = 190, GAP = 28, PANEL_TITLE = 22 };
 
+/* How the titles of panels name their axes. */
+enum naming {
+    NAMES,      /* "proportional.x = 25" */
+    LAST_WORDS, /* "x = 25" */
+    VALUES_ALONE,
+};
+
 /* Which axes are drawn, and which of the points of the others. */
 struct layout {
     int x, y; /* axes of the map */
@@ -16,13 +23,15 @@ struct layout {
     int others, other[SCENARIO_MAX_AXES]; /* axes of the panels */
     size_t shown[SCENARIO_MAX_AXES];      /* how many of their points */
     int panels, columns, rows;
-    double width, height; /* of a panel, px */
-    int canvas_width;
+    double width, height;   /* of a panel, px */
+    int left, canvas_width; /* px; left of the panels: labels of the axis */
+    enum naming naming;
 };
 
 /* ---- what is drawn ------------------------------------------------------------------------ */
 
-/* The last two axes of numbers make the map; where there are fewer, axes of words join them. */
+/* The last two axes of numbers make the map; where there are fewer, axes of words join them. Words
+ * beside numbers stand at the left, where each has a line. */
 static void choose_axes(const struct results *r, struct layout *layout)
 {
     int chosen[2] = {0, 0}, count = 0;
@@ -35,6 +44,11 @@ static void choose_axes(const struct results *r, struct layout *layout)
     }
     layout->x = chosen[0] < chosen[1] ? chosen[0] : chosen[1];
     layout->y = chosen[0] < chosen[1] ? chosen[1] : chosen[0];
+    if (r->axis[layout->x].word && !r->axis[layout->y].word) {
+        int words = layout->x;
+        layout->x = layout->y;
+        layout->y = words;
+    }
     plot_axis_make(&layout->across, &r->axis[layout->x]);
     plot_axis_make(&layout->up, &r->axis[layout->y]);
 }
@@ -104,25 +118,42 @@ static void say_what_is_shown(const struct results *r, const struct layout *layo
     }
 }
 
+/* What the words of an axis take to the left of it beyond what numbers take, px. */
+static int word_room(const struct results_axis *axis)
+{
+    enum { LETTER = 9, LETTERS = 6 };
+    size_t longest = LETTERS;
+    for (size_t i = 0; axis->word && i < axis->count; i++) {
+        size_t length = strlen(axis->word[i]);
+        longest = length > longest ? length : longest;
+    }
+    return LETTER * (int)(longest < 24 ? longest - LETTERS : 24 - LETTERS);
+}
+
 static void arrange(struct layout *layout)
 {
-    /* Two axes make a table; else the page is a little wider than it is high. */
-    layout->columns = layout->others == 2 && layout->shown[1] <= 6
-                          ? (int)layout->shown[1]
-                          : (int)ceil(sqrt(1.2 * layout->panels));
+    /* Two axes make a table; else the page is a little wider than it is high, and full where it
+     * can be. */
+    int columns = layout->panels == 3 ? 3 : (int)ceil(sqrt(1.2 * layout->panels));
+    if (columns > 2 && layout->panels % columns != 0 && layout->panels % (columns - 1) == 0) {
+        columns--;
+    }
+    layout->columns =
+        layout->others == 2 && layout->shown[1] <= 6 ? (int)layout->shown[1] : columns;
     if (layout->columns > layout->panels) {
         layout->columns = layout->panels;
     }
     layout->rows = (layout->panels + layout->columns - 1) / layout->columns;
+    layout->left = LEFT + word_room(layout->up.axis);
     double scale = layout->panels == 1 ? 1 : layout->panels <= 4 ? 0.6 : 0.42;
     layout->width = 560 * scale;
     layout->height = 500 * scale;
-    layout->canvas_width = LEFT + (int)(layout->columns * (layout->width + GAP)) + LEGEND;
+    layout->canvas_width = layout->left + (int)(layout->columns * (layout->width + GAP)) + LEGEND;
 }
 
 static void panel_place(const struct layout *layout, int panel, double top, double *x, double *y)
 {
-    *x = LEFT + panel % layout->columns * (layout->width + GAP);
+    *x = layout->left + panel % layout->columns * (layout->width + GAP);
     const int row = panel / layout->columns;
     *y = top + row * (layout->height + PANEL_TITLE + 12) + (layout->panels > 1 ? PANEL_TITLE : 0);
 }
@@ -212,21 +243,47 @@ static void put_cross(struct gnuplot *g, const struct layout *layout)
     }
 }
 
-/* "friction = 0.25, noise = 0.1": the last words of the paths suffice, the page names them whole.
- */
-static void panel_title(const struct results *r, const struct layout *layout, int panel, char *text,
-                        size_t size)
+/* A path as the titles of panels have it. */
+static const char *short_name(const char *path, enum naming naming)
+{
+    const char *dot = naming == NAMES ? strchr(path, '.') : strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+/* "friction = 0.25, noise = 0.1": the page's subtitle has the whole paths in the same order.
+ * Returns its length. */
+static size_t panel_title(const struct results *r, const struct layout *layout, int panel,
+                          char *text, size_t size)
 {
     size_t point[SCENARIO_MAX_AXES], used = 0;
     char value[96];
+    bool names = layout->naming != VALUES_ALONE;
     panel_point(r, layout, panel, point);
     text[0] = '\0';
     for (int k = 0; k < layout->others && used < size; k++) {
         const struct results_axis *axis = &r->axis[layout->other[k]];
-        const char *dot = strrchr(axis->name, '.');
         results_value_text(axis, point[layout->other[k]], true, value, sizeof value);
-        used += (size_t)snprintf(text + used, size - used, "%s%s = %s", k ? ", " : "",
-                                 dot ? dot + 1 : axis->name, value);
+        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s", k ? ", " : "",
+                                 names ? short_name(axis->name, layout->naming) : "",
+                                 names ? " = " : "", value);
+    }
+    return used;
+}
+
+/* The longest names for which the titles of all panels have room. */
+static void choose_naming(const struct results *r, struct layout *layout)
+{
+    enum { LETTER = 7 }; /* px, on average */
+    char text[1024];
+    for (layout->naming = NAMES; layout->naming < VALUES_ALONE; layout->naming++) {
+        bool fits = true;
+        for (int p = 0; p < layout->panels && fits; p++) {
+            fits = LETTER * (double)panel_title(r, layout, p, text, sizeof text) <
+                   layout->width + GAP / 2.0;
+        }
+        if (fits) {
+            return;
+        }
     }
 }
 
@@ -273,8 +330,8 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
         return false;
     }
     gnuplot_title(g, title, text);
-    plot_axis_label(layout->across.axis, g, LEFT + inner_width / 2, bottom + 46, inner_width + 80,
-                    false);
+    plot_axis_label(layout->across.axis, g, layout->left + inner_width / 2, bottom + 46,
+                    inner_width + 80, false);
     /* Long names may go on beside the labels under the map, but not into the title. */
     plot_axis_label(layout->up.axis, g, 22, 0.5 * (*top + bottom) + 14, bottom - *top + 28, true);
     for (int p = 0; p < layout->panels && layout->panels > 1; p++) {
@@ -287,7 +344,7 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
 
 static double legend_left(const struct layout *layout)
 {
-    return LEFT + layout->columns * (layout->width + GAP) + 8;
+    return layout->left + layout->columns * (layout->width + GAP) + 8;
 }
 
 static double legend_top(const struct layout *layout, double top)
@@ -332,30 +389,37 @@ static bool draw_outcomes(const struct plot *plot, const struct layout *layout,
     return gnuplot_end(&g, plot->directory, stem, message);
 }
 
-/* ---- the time of settling ----------------------------------------------------------------- */
+/* ---- an answer ---------------------------------------------------------------------------- */
+
+/* A picture of the numbers of one answer. */
+struct measure {
+    const char *name, *unit, *what; /* what: the page's subtitle */
+    const char *none;               /* the legend of cells without a number */
+    double *values, low, high;
+};
 
 /* Leaves the times of cases that settled; their range. False: there are none. */
-static bool settle_range(const struct results *r, double *values, double *low, double *high)
+static bool settle_range(const struct results *r, struct measure *m)
 {
-    *low = INFINITY;
-    *high = -INFINITY;
+    m->low = INFINITY;
+    m->high = -INFINITY;
     for (uint64_t i = 0; i < r->cases; i++) {
         bool settled = r->kind[i] == RESULTS_STABILISED || r->kind[i] == RESULTS_RESTED;
-        if (!settled || !isfinite(values[i])) {
-            values[i] = NAN;
+        if (!settled || !isfinite(m->values[i])) {
+            m->values[i] = NAN;
             continue;
         }
-        *low = fmin(*low, values[i]);
-        *high = fmax(*high, values[i]);
+        m->low = fmin(m->low, m->values[i]);
+        m->high = fmax(m->high, m->values[i]);
     }
-    return *low <= *high;
+    return m->low <= m->high;
 }
 
 /* Palette and colour bar; for the first panel. */
-static void put_palette(struct gnuplot *g, const struct layout *layout, double top, double low,
-                        double high)
+static void put_palette(struct gnuplot *g, const struct layout *layout, double top,
+                        const struct measure *m)
 {
-    double x = legend_left(layout), y = legend_top(layout, top);
+    double x = legend_left(layout), y = legend_top(layout, top), low = m->low, high = m->high;
     if (!(high > low)) { /* a range of nothing cannot be drawn */
         high = low + 0.5;
         low = low - 0.5;
@@ -365,57 +429,84 @@ static void put_palette(struct gnuplot *g, const struct layout *layout, double t
             "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c',"
             " 1 '#fee838')\n"
             "set cbrange [%.10g:%.10g]\nset cbtics %.10g nomirror out scale 0\n"
-            "set cblabel 'settle_time (s)' offset 0.5,0\n"
+            "set cblabel '%s%s%s%s' offset 0.5,0\n"
             "set colorbox user origin screen %.6f, screen %.6f size screen %.6f, screen %.6f\n",
-            low, high, plot_round_step(low, high, 6), x / g->width, 1 - (y + 70 + 180) / g->height,
-            18.0 / g->width, 180.0 / g->height);
+            low, high, plot_round_step(low, high, 6), m->name, m->unit[0] ? " (" : "", m->unit,
+            m->unit[0] ? ")" : "", x / g->width, 1 - (y + 70 + 180) / g->height, 18.0 / g->width,
+            180.0 / g->height);
 }
 
-static bool draw_settle_times(const struct plot *plot, const struct layout *layout,
-                              const double *values, double low, double high,
-                              stance_message *message)
+static bool draw_measure(const struct plot *plot, const struct layout *layout,
+                         const struct measure *m, stance_message *message)
 {
     struct gnuplot g;
     double top;
     char stem[512];
-    if (!begin_page(&g, plot, layout, "Time from which each case stayed settled", &top, message)) {
+    if (!begin_page(&g, plot, layout, m->what, &top, message)) {
         return false;
     }
-    gnuplot_legend(&g, legend_left(layout), legend_top(layout, top), "#d9d9d9", "did not settle");
+    gnuplot_legend(&g, legend_left(layout), legend_top(layout, top), "#d9d9d9", m->none);
     legend_cross(&g, layout, legend_top(layout, top) + 24);
     gnuplot_decorate(&g);
-    put_palette(&g, layout, top, low, high);
+    put_palette(&g, layout, top, m);
     for (int p = 0; p < layout->panels; p++) {
         fputs("set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb '#d9d9d9' "
               "fillstyle solid noborder\n",
               g.script);
         begin_panel(&g, layout, p, top);
-        put_image(&g, plot, layout, p, values, put_value, "format='%float64' with image");
+        put_image(&g, plot, layout, p, m->values, put_value, "format='%float64' with image");
         fputs("\nunset colorbox\n", g.script); /* one for all */
     }
-    snprintf(stem, sizeof stem, "%s-settle_time", plot->stem);
+    snprintf(stem, sizeof stem, "%s-%s", plot->stem, m->name);
     return gnuplot_end(&g, plot->directory, stem, message);
+}
+
+static void make_layout(const struct plot *plot, struct layout *layout)
+{
+    choose_axes(plot->r, layout);
+    choose_panels(plot->r, layout);
+    arrange(layout);
+    choose_naming(plot->r, layout);
+    say_what_is_shown(plot->r, layout);
 }
 
 bool plot_maps(const struct plot *plot, stance_message *message)
 {
     struct layout layout;
-    double *values, low, high;
-
-    choose_axes(plot->r, &layout);
-    choose_panels(plot->r, &layout);
-    arrange(&layout);
-    say_what_is_shown(plot->r, &layout);
+    struct measure m = {.name = "settle_time",
+                        .unit = "s",
+                        .what = "Time from which each case stayed settled",
+                        .none = "did not settle"};
+    make_layout(plot, &layout);
     if (!draw_outcomes(plot, &layout, message) ||
-        !results_answer(plot->r, "settle_time", &values, message)) {
+        !results_answer(plot->r, "settle_time", &m.values, message)) {
         return false;
     }
     bool good = true;
-    if (values && settle_range(plot->r, values, &low, &high)) {
-        good = draw_settle_times(plot, &layout, values, low, high, message);
+    if (m.values && settle_range(plot->r, &m)) {
+        good = draw_measure(plot, &layout, &m, message);
     } else {
         fputs("no picture of settle_time: no case has one\n", stderr);
     }
-    free(values);
+    free(m.values);
+    return good;
+}
+
+bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
+                     stance_message *message)
+{
+    struct layout layout;
+    char what[256], none[64];
+    struct measure m = {.name = answer->name, .unit = answer->unit, .what = what, .none = none};
+
+    if (!plot_answer_numbers(plot, answer, &m.values, &m.low, &m.high, message)) {
+        return false;
+    }
+    plot_answer_title(answer, what, sizeof what);
+    snprintf(none, sizeof none, answer->of == RESULTS_KIND_COUNT ? "no number" : "not %s",
+             answer->of == RESULTS_KIND_COUNT ? "" : results_kind_names[answer->of]);
+    make_layout(plot, &layout);
+    bool good = draw_measure(plot, &layout, &m, message);
+    free(m.values);
     return good;
 }

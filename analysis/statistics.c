@@ -69,6 +69,20 @@ void statistics_count_axis(const struct results *r, int axis, struct statistics_
     }
 }
 
+void statistics_count_pair(const struct results *r, int a, int b, struct statistics_counts *counts)
+{
+    uint64_t stride_a = stride_of(r, a), stride_b = stride_of(r, b);
+    size_t rows = r->axis[a].count, columns = r->axis[b].count;
+
+    memset(counts, 0, rows * columns * sizeof *counts);
+    for (uint64_t i = 0; i < r->cases; i++) {
+        counts[i / stride_a % rows * columns + i / stride_b % columns].kind[r->kind[i]]++;
+    }
+    for (size_t p = 0; p < rows * columns; p++) {
+        finish_counts(&counts[p]);
+    }
+}
+
 /* ---- numbers ------------------------------------------------------------------------------ */
 
 static int compare_doubles(const void *a, const void *b)

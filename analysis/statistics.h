@@ -22,6 +22,9 @@ void statistics_count(const struct results *r, int axis, size_t point,
 /* The same for every value of an axis at once: counts[axis->count]. */
 void statistics_count_axis(const struct results *r, int axis, struct statistics_counts *counts);
 
+/* The same for every pair of values of two axes: counts[axis a's count][axis b's count]. */
+void statistics_count_pair(const struct results *r, int a, int b, struct statistics_counts *counts);
+
 /* What the numbers of an answer look like; NANs are left out. */
 struct statistics_numbers {
     size_t n;

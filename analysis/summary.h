@@ -9,6 +9,7 @@
 #define SUMMARY_NUMBERS(X)                                                                         \
     X(settle_time, RESULTS_STABILISED, "s")                                                        \
     X(friction_used, RESULTS_STABILISED, "")                                                       \
+    X(least_normal_force, RESULTS_STABILISED, "N")                                                 \
     X(slip_distance, RESULTS_STABILISED, "m")                                                      \
     X(fall_time, RESULTS_FELL, "s")                                                                \
     X(peak_torque, RESULTS_KIND_COUNT, "N m")                                                      \
@@ -59,7 +60,7 @@ struct summary {
     enum results_kind judged;
     uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
     struct summary_numbers numbers[SUMMARY_NUMBER_COUNT];
-    struct summary_count steps, iterations, evaluations, events, ambiguous, subdivided;
+    struct summary_count steps, iterations, evaluations, events, ambiguous, subdivided, degraded;
     bool timed;
     double longest, total, timed_cases; /* s, s, 1 */
     size_t ranks;
@@ -70,6 +71,10 @@ struct summary {
     struct statistics_counts *by_value[SCENARIO_MAX_AXES];
     size_t steepest[SCENARIO_MAX_AXES];
     int parameters; /* how many such axes */
+    /* Two such axes, no more: the counts of every pair of their values, pair_counts[first axis's
+     * count][second's]; else NULL. */
+    int pair[2];
+    struct statistics_counts *pair_counts;
     size_t fields;
     struct summary_field field[SUMMARY_FIELDS];
 };
@@ -77,6 +82,10 @@ struct summary {
 /* Reads what it needs. A failure leaves nothing allocated. */
 bool summary_make(struct summary *summary, const struct results *r, stance_message *message);
 void summary_free(struct summary *summary);
+
+/* Fills in the fields that do not vary; of what memory does not suffice for there are none. */
+void summary_collect_fields(struct summary *summary, const struct results *r,
+                            const struct scenario *s);
 
 /* False when cases are done but the file stores no outcomes: record.answers left them out. */
 bool summary_has_outcomes(const struct summary *summary);

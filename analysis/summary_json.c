@@ -202,6 +202,26 @@ static json_t *parameters(const struct summary *summary, const struct results *r
     return list;
 }
 
+static json_t *pairs(const struct summary *summary, const struct results *r)
+{
+    const struct results_axis *first = &r->axis[summary->pair[0]],
+                              *second = &r->axis[summary->pair[1]];
+    json_t *object = json_object(), *paths = json_array(), *table = json_array();
+    json_array_append_new(paths, json_string(first->name));
+    json_array_append_new(paths, json_string(second->name));
+    for (size_t i = 0; i < first->count; i++) {
+        json_t *row = json_array();
+        for (size_t j = 0; j < second->count; j++) {
+            const struct statistics_counts *counts = &summary->pair_counts[i * second->count + j];
+            json_array_append_new(row, number(summary_share(summary, counts)));
+        }
+        json_array_append_new(table, row);
+    }
+    put(object, "paths", paths);
+    put(object, "share", table);
+    return object;
+}
+
 static json_t *changes(const struct results *r)
 {
     json_t *list = json_array();
@@ -263,6 +283,7 @@ static json_t *cost(const struct summary *summary)
     put_count(object, "evaluations", NULL, &summary->evaluations);
     put_count(object, "events", "events_cases", &summary->events);
     put_count(object, "subdivided_steps", "subdivided_cases", &summary->subdivided);
+    put_count(object, "degraded_samples", "degraded_cases", &summary->degraded);
     put_count(object, "ambiguous_steps", "ambiguous_cases", &summary->ambiguous);
     put(object, "wall_time", summary->timed ? number(summary->longest) : json_null());
     put(object, "total_time", summary->timed ? number(summary->total) : json_null());
@@ -320,6 +341,9 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
     } else {
         put(root, "extents", known ? extents(summary, r) : json_null());
         put(root, "parameters", known ? parameters(summary, r) : json_null());
+        if (summary->pair_counts && known) {
+            put(root, "pairs", pairs(summary, r));
+        }
         put(root, "changes", known ? changes(r) : json_null());
     }
     put(root, "numbers", numbers(summary));

@@ -109,8 +109,11 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     }
     if (error != STANCE_OK) { /* say which key asked for it */
         stance_message told = *message;
+        const char *point =
+            values->design_point.given ? "controller.equilibrium" : "initial.equilibrium";
         snprintf(message->text, sizeof message->text, "%s: %.200s",
-                 sampled                          ? "controller.design_time"
+                 error == STANCE_UNCONTROLLABLE   ? point
+                 : sampled                        ? "controller.design_time"
                  : values->design == DESIGN_LQR   ? "controller.weights"
                  : values->design == DESIGN_GAINS ? "controller.gains"
                                                   : "controller.poles",

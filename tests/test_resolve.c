@@ -255,7 +255,8 @@ static void refusals(void **state)
 
     v = balance_values();
     v.pole_im[2] = 1;
-    assert_refused(&v, "controller.poles: the pole -3.6+1i has no conjugate -3.6-1i among the poles");
+    assert_refused(&v,
+                   "controller.poles: the pole -3.6+1i has no conjugate -3.6-1i among the poles");
     v = balance_values();
     v.sample_time = 0;
     v.noise = 0.1;

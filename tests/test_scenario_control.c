@@ -187,20 +187,25 @@ static void impossible_designs(void **state)
         "initial.equilibrium={q1: 2.0943951023931953, q2: 2.0943951023931953}"};
     (void)state;
     impossible("poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]", level, 2,
-               "the pair (A, B) is not controllable: no input reaches the mode with eigenvalue "
+               "initial.equilibrium: the pair (A, B) is not controllable: no input reaches the "
+               "mode with eigenvalue "
                "-2.20334");
     impossible("design: place-schur, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]", level, 2,
-               "the pair (A, B) is not controllable: no input reaches the mode with eigenvalue "
+               "initial.equilibrium: the pair (A, B) is not controllable: no input reaches the "
+               "mode with eigenvalue "
                "-2.20334");
     impossible("design: lqr", level, 2,
-               "the system is not stabilisable: no input reaches the mode with eigenvalue 2.20334");
+               "initial.equilibrium: the system is not stabilisable: no input reaches the mode "
+               "with eigenvalue 2.20334");
     impossible("design: lqr, weights: {states: [0, 0, 0, 0, 0, 0]}", NULL, 0,
-               "the weights of the states do not see the mode with eigenvalue -4.32043i, which "
+               "controller.weights: the weights of the states do not see the mode with eigenvalue "
+               "-4.32043i, which "
                "does not decay by itself");
     impossible("poles: [-3+7i, -3-7i, -3.6, -3.9, -4.2, -4.6], design_time: sampled, "
                "sample_time: 0.5",
                NULL, 0,
-               "the pole -3+7i turns 0.557 times in a sample of 0.5 s: less than half a turn can "
+               "controller.design_time: the pole -3+7i turns 0.557 times in a sample of 0.5 s: "
+               "less than half a turn can "
                "be told from its mirror image");
 }
 

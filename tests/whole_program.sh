@@ -29,12 +29,19 @@ png() { # is it a picture of a sensible size?
     [ "$(head -c 4 "$1" | tail -c 3)" = PNG ] && [ "$(stat -c %s "$1")" -gt 5000 ]
 }
 
-# ---- every shipped scenario ----
-for scenario in scenarios/*.yaml; do
+# ---- every shipped scenario, and the studies of the controllers ----
+for scenario in scenarios/*.yaml scenarios/controllers/*.yaml; do
     name=$(basename "$scenario" .yaml) reduce=()
     case $name in
     basin_*) reduce=(--set 'sweep.grid[0].count=24' --set 'sweep.grid[1].count=24') ;;
-    *_sweep) reduce=(--set 'sweep.grid[1].count=9' --set 'sweep.grid[2].count=9') ;;
+    *_sweep | gain_choice | friction_check | switching*)
+        reduce=(--set 'sweep.grid[1].count=9' --set 'sweep.grid[2].count=9') ;;
+    gain_choice_sampled | walk_gains)
+        reduce=(--set 'sweep.grid[2].count=5' --set 'sweep.grid[3].count=5') ;;
+    friction | noise | torque_limit | friction_needed)
+        reduce=(--set 'sweep.grid[0].count=13' --set 'sweep.grid[1].count=13') ;;
+    delay) reduce=(--set 'sweep.grid[1].count=13' --set 'sweep.grid[2].count=13') ;;
+    decoupling_*) reduce=(--set 'sweep.grid[1].count=7') ;;
     esac
     check "$name: check" "$stance" check "$scenario"
     check "$name: run" "$stance" run "$scenario" "${reduce[@]}" --quiet -o "$work/$name.h5"
@@ -66,12 +73,53 @@ orders = {o['method']: o['position'] for o in json.load(open(sys.argv[1]))['stud
 assert 0.8 < orders['implicit'] < 1.2 and orders['midpoint'] > 0.9, orders
 assert orders['lagrange'] > 3.5 and 0.6 < orders['capturing'] < 1.3, orders" "$work/accuracy.json"
 
+# ---- an answer as a picture; what summary tells of the controllers ----
+check "plot --answer" "$stance" plot "$work/friction_needed.h5" --answer friction_used --of stabilised -o "$work"
+check "plot --answer: map" png "$work/friction_needed-friction_used.png"
+check "plot --answer: one axis" "$stance" plot "$work/ball_bounce.h5" --answer steps -o "$work"
+check "plot --answer: curve" png "$work/ball_bounce-steps.png"
+check "plot --answer: no such" exits 2 "$stance" plot "$work/friction_needed.h5" --answer nonsense -o "$work"
+check "... names those there are" grep -q friction_used "$work/last"
+check "plot --answer: a code" exits 2 "$stance" plot "$work/friction_needed.h5" --answer outcome -o "$work"
+check "plot --of: no such" exits 2 "$stance" plot "$work/friction_needed.h5" --answer steps --of failed -o "$work"
+check "plot --of alone" exits 2 "$stance" plot "$work/friction_needed.h5" --of fell -o "$work"
+check "plot --answer: nobody has one" exits 3 "$stance" plot "$work/ball_bounce.h5" --answer settle_time --of fell -o "$work"
+check "summary tells the decoupling law" sh -c "'$stance' summary '$work/walk_attempt.h5' |
+    tr '\n' ' ' | tr -s ' ' | grep -q 'controlled x-theta, proportional.x 75 1/s^2, proportional.theta 50 1/s^2'"
+check "summary tells the switching law" sh -c "'$stance' summary '$work/switching.h5' |
+    tr '\n' ' ' | tr -s ' ' | grep -q 'design place, design_time continuous, far hold, kp 100 N m/rad'"
+check "summary: two parameters at once" "$python" -c "
+import json, subprocess, sys, h5py
+stance, path = sys.argv[1:]
+pairs = json.loads(subprocess.run([stance, 'summary', '--json', path], capture_output=True).stdout)['pairs']
+assert pairs['paths'] == ['controller.design', 'controller.design_time']
+want = (h5py.File(path)['outcome'][...] == 1).mean(axis=(2, 3))
+assert pairs['share'] == want.tolist(), (pairs, want)" "$stance" "$work/gain_choice_sampled.h5"
+check "friction that sufficed suffices" sh -c "'$stance' run scenarios/controllers/friction_needed.yaml \
+    --set ground.friction=0.402 --set 'sweep.grid[0].count=13' --set 'sweep.grid[1].count=13' --quiet -o '$work/enough.h5' &&
+    '$python' -c \"
+import h5py
+a, b = h5py.File('$work/friction_needed.h5'), h5py.File('$work/enough.h5')
+recovers = a['outcome'][...] == 1
+assert recovers.sum() > 20 and a['friction_used'][...][recovers].max() < 0.402
+for k in ('final_state', 'settle_time', 'least_normal_force'):
+    assert (a[k][...][recovers] == b[k][...][recovers]).all(), k\""
+
 # ---- outcomes ----
 outcome() { "$python" -c "
 import sys, h5py
 f = h5py.File(sys.argv[1]); assert (f['outcome'][...] == int(sys.argv[2])).all(), f['outcome'][...]" "$1" "$2"; }
 check "section 3.2, test 1 recovers" outcome "$work/balance_recovers.h5" 1
 check "section 3.2, test 2 falls" outcome "$work/balance_falls.h5" 2
+check "section 3.4 ends in a fall" outcome "$work/walk_attempt.h5" 2
+check "section 3.4: phases" "$python" -c "
+import sys, h5py
+t = h5py.File(sys.argv[1])['trajectory']
+time, load = t['time'][...], t['force'][0, :, :, 0]
+first = lambda foot, after: time[(load[:, foot] > 1) & (time > after)][0]
+assert abs(first(0, 0) - 0.010) < 0.003 and abs(first(1, 0) - 0.366) < 0.01
+assert abs(first(1, 0.7) - 0.852) < 0.03, first(1, 0.7)
+assert (load[(time > 0.92) & (time < 1.0)] == 0).all()" "$work/walk_attempt.h5"
 check "section 2.4 ends at rest" outcome "$work/drop.h5" 3
 check "the scuffing free foot costs domain" "$python" -c "
 import sys, h5py

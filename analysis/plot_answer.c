@@ -1,0 +1,81 @@
+/* plot_answer.c - the answers that `stance plot --answer` draws: their names, units and numbers. */
+#include "plot.h"
+
+#include "../runner/store.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Codes, not numbers: a map of outcomes is drawn anyway. */
+static bool is_code(const char *name)
+{
+    return strcmp(name, "outcome") == 0 || strcmp(name, "evidence") == 0 ||
+           strcmp(name, "failure") == 0;
+}
+
+static const struct plot_answer answers[] = {
+#define PLOT_ANSWER(name, type, field, fill, unit, text) {#name, unit, text, RESULTS_KIND_COUNT},
+    STORE_ANSWERS(PLOT_ANSWER)
+#undef PLOT_ANSWER
+};
+enum { ANSWERS = sizeof answers / sizeof answers[0] };
+
+bool plot_answer_find(const char *name, struct plot_answer *answer)
+{
+    for (int k = 0; k < ANSWERS; k++) {
+        if (strcmp(answers[k].name, name) == 0 && !is_code(name)) {
+            *answer = answers[k];
+            answer->unit = strcmp(answer->unit, "1") == 0 ? "" : answer->unit;
+            return true;
+        }
+    }
+    return false;
+}
+
+void plot_answer_list(char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = 0; k < ANSWERS && used < size; k++) {
+        if (!is_code(answers[k].name)) {
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
+                                     answers[k].name);
+        }
+    }
+}
+
+bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,
+                         double *low, double *high, stance_message *message)
+{
+    const struct results *r = plot->r;
+    const bool all = answer->of == RESULTS_KIND_COUNT;
+    if (!results_answer(r, answer->name, values, message)) {
+        return false;
+    }
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (uint64_t i = 0; *values && i < r->cases; i++) {
+        if ((all || r->kind[i] == (uint8_t)answer->of) && isfinite((*values)[i])) {
+            *low = fmin(*low, (*values)[i]);
+            *high = fmax(*high, (*values)[i]);
+        } else {
+            (*values)[i] = NAN;
+        }
+    }
+    if (*values && *low <= *high) {
+        return true;
+    }
+    snprintf(message->text, sizeof message->text, "%.200s: no%s%s case has a number %s", r->file,
+             all ? "" : " ", all ? "" : results_kind_names[answer->of], answer->name);
+    free(*values);
+    *values = NULL;
+    return false;
+}
+
+void plot_answer_title(const struct plot_answer *answer, char *text, size_t size)
+{
+    bool all = answer->of == RESULTS_KIND_COUNT;
+    snprintf(text, size, "%s: %s%s%s%s", answer->name, answer->text, all ? "" : ", of the ",
+             all ? "" : results_kind_names[answer->of], all ? "" : " cases");
+}
