@@ -417,6 +417,10 @@ static void print_cost(const struct summary *summary)
         printf("  events, changes of contact mode: %.6g, in %llu of the cases\n",
                summary->events.sum, (unsigned long long)summary->events.cases);
     }
+    const double inferred = summary->evidence.sum - (double)summary->evidence.cases;
+    if (inferred > 0) {
+        printf("  ended early in the captured set (evidence: inferred): %.6g cases\n", inferred);
+    }
     if (summary->degraded.sum > 0) {
         printf("  samples at which decoupling could not do what it promises: %.6g, in %llu of the "
                "cases\n",

@@ -61,6 +61,7 @@ struct summary {
     uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
     struct summary_numbers numbers[SUMMARY_NUMBER_COUNT];
     struct summary_count steps, iterations, evaluations, events, ambiguous, subdivided, degraded;
+    struct summary_count evidence; /* 1 simulated, 2 inferred */
     bool timed;
     double longest, total, timed_cases; /* s, s, 1 */
     size_t ranks;
