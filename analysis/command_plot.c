@@ -142,8 +142,8 @@ static bool choose_answer(const char *name, const char *of, struct plot_answer *
         fprintf(stderr, "stance plot: --answer takes one of %s, not '%.60s'\n", list, name);
         return false;
     }
-    for (int k = 0; of && k < RESULTS_KIND_COUNT; k++) {
-        if (strcmp(of, results_kind_names[k]) == 0 && k <= RESULTS_UNDECIDED) {
+    for (int k = 0; of && k <= RESULTS_UNDECIDED; k++) { /* the outcomes come first */
+        if (strcmp(of, results_kind_names[k]) == 0) {
             answer->of = (enum results_kind)k;
             return true;
         }
