@@ -323,7 +323,7 @@ stance_error stance_pair_condition(const stance_scene *scene, const double *robo
                                    const double *position, int pair, double *condition);
 
 enum { STANCE_MAX_PAIRS = 10 };
-#define STANCE_ILL_CONDITIONED 1e3 /* condition number from which on the law is damped */
+#define STANCE_ILL_CONDITIONED 1e4 /* condition number from which on the law is damped */
 
 /* One pair over all postures, resolution^postures of them in -pi ... pi. */
 typedef struct stance_pair_report {
