@@ -7,7 +7,7 @@
 #define CONE 1e-9
 #define GOLDEN_IMPLICIT 0x85cec19654049b01u
 #define GOLDEN_MIDPOINT 0xac46ae7350a4ff0eu
-#define GOLDEN_CAPTURING 0x7074deaf16084cd0u
+#define GOLDEN_CAPTURING 0x61f8515a076e5283u
 #define GOLDEN_LAGRANGE 0x4811372f0b293830u
 
 static uint64_t hash(const void *data, size_t size, uint64_t h)

@@ -514,15 +514,21 @@ static inline mask take_step_at(const int *corner, const struct setting *set,
     report->work = scene_work(&set->body, h, from->t + METHOD_THETA * h, it.torque, moved);
     lanes slip[SCENE_CONTACTS];
     report->signorini = report->coulomb = report->dissipation = lanes_of(0);
+    lanes load = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        load += lanes_max(it.r[c][0], lanes_of(0));
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        lanes u[2];
+        lanes u[2], carried[2];
+        for (int a = 0; a < 2;
+             a++) /* what hardly carries has no direction, see CONTACT_TOLERANCE */
+            carried[a] = choose(mask_less(1e-6 * load, it.r[c][0]), it.r[c][a], lanes_of(0));
         scene_contact_velocity(&set->body, &it.end, c, it.w, u);
         to->approach[c] = choose(converged, u[0], to->approach[c]);
         slip[c] = h * lanes_abs(u[1]);
         const mask part = it.active[c] & converged;
         touching |= part;
         u[0] += set->restitution * lanes_min(from->approach[c], lanes_of(0));
-        report_residuals(report, part, set->friction, it.r[c], u);
+        report_residuals(report, part, set->friction, carried, u);
     }
     lanes energy = lanes_of(0), projected = lanes_of(0);
     if (mask_any(touching & impact))
