@@ -1,4 +1,5 @@
-/* fixed.h - advances by fixed implicit steps; a step that does not converge is taken in parts.
+/* fixed.h - advances by fixed implicit steps; a step that does not converge is tried with each
+ * torque free or at its limit in turn, then taken in parts.
  *
  * One of the ways to get from one step's end to the next (`advance`, see bundle.h).
  */
