@@ -97,7 +97,7 @@ static void make_case(const stance_scene *scene, const stance_case *base, enum r
             c->target[1 + k] = k ? -leg : leg;
             c->position[3 + k] = c->target[1 + k];
         }
-        c->position[2] = 0.02 * spread(i, 0);
+        c->position[2] = -0.02 * spread(i, 0); /* the other foot up to a centimetre high */
         scene->stand(c->robot, 0, c->position, c->velocity);
     }
 }
