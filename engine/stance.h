@@ -275,13 +275,28 @@ typedef struct stance_method {
         tolerance; /* default of stance_case.tolerance; 0: the method does not control its error */
 } stance_method;
 
+/* Where a kernel gets its cases from, one whenever a lane is free, and where the results go. */
+typedef struct stance_feed {
+    void *context;
+    /* The next case and where its result goes; both stay in place until `done`. false: there are
+     * no more, and it is not asked again. */
+    bool (*next)(void *context, const stance_case **c, stance_result **result);
+    /* *result is written; in whatever order cases end. */
+    void (*done)(void *context, const stance_case *c, stance_result *result);
+    /* NULL, or asked about every millisecond: true, the cases in hand are given up at once. */
+    bool (*leave)(void *context);
+} stance_feed;
+
 /* One compiled stepping core: a scene, a method, a number of lanes. */
 typedef struct stance_kernel {
     const stance_scene *scene;
     const stance_method *method;
     const char *isa; /* "scalar", "sse2", "avx2", "avx512", "neon" */
     int lanes;
-    /* Runs n cases; cases[i] -> results[i]. The results do not depend on lanes, order or n. */
+    /* Runs cases until there are no more or it is told to leave; false: told to leave. A case's
+     * result does not depend on lanes, on the order, or on the cases that run beside it. */
+    bool (*stream)(const stance_feed *feed);
+    /* The same for n cases at hand: cases[i] -> results[i]. */
     void (*run)(const stance_case *cases, stance_result *results, size_t n);
 } stance_kernel;
 

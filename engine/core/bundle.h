@@ -19,6 +19,7 @@
 
 #include <Random123/philox.h>
 
+#define BUNDLE_STEPS 1000       /* between looks whether to leave */
 #define BUNDLE_ERROR_FLOOR 1e-9 /* of settle.angle and settle.rate: smaller errors do not grow */
 
 /* A condition that must hold for a while without its measure growing. */
@@ -28,8 +29,11 @@ struct window {
 };
 
 struct bundle {
+    const stance_feed *feed;
     const stance_case *which[LANES]; /* NULL: idle */
     stance_result *result[LANES];
+    mask live;  /* lanes that are not idle */
+    int filled; /* how many */
     struct setting set;
     struct motion now;
     lanes torque[ACTUATORS];  /* in force */
@@ -163,6 +167,8 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
     b->which[lane] = c;
     b->result[lane] = result;
+    b->live |= mask_of_lane(lane);
+    b->filled++;
     bundle_load_setting(&b->set, lane, c);
     scene_enter(c->robot, c->position, c->velocity, s, w);
     set_all(b->now.s, SCENE_COORDINATES, lane, s);
@@ -450,7 +456,7 @@ static void bundle_record(struct bundle *b, int lane)
              row < t->rows ? nearbyint((double)row * t->interval / c->step) : INFINITY);
 }
 
-/* Writes a lane's result and leaves the lane idle. */
+/* Hands a lane's result in and leaves the lane idle. */
 static void bundle_finish(struct bundle *b, int lane, stance_status status, stance_outcome outcome,
                           stance_failure failure, bool inferred)
 {
@@ -493,6 +499,9 @@ static void bundle_finish(struct bundle *b, int lane, stance_status status, stan
         s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
     scene_leave(c->robot, s, w, r->position, r->velocity);
     b->which[lane] = NULL;
+    b->live &= LANES_NOT(mask_of_lane(lane));
+    b->filled--;
+    b->feed->done(b->feed->context, c, r);
 }
 
 /* Why a lane could not go on. */
@@ -602,52 +611,95 @@ static inline void bundle_step(struct bundle *b, mask live, bool coupled)
     bundle_end(b, live, failed, &v, last);
 }
 
-static inline __attribute__((always_inline)) void
-bundle_run_part(const stance_case *cases, stance_result *results, size_t n, bool coupled)
+/* A stream's bundles: one for the cases whose law acts inside the step, one for the others. */
+struct stream {
+    struct bundle bundle[2]; /* [coupled] */
+    const stance_feed *feed;
+    const stance_case *ahead; /* drawn, but no lane of its bundle is free */
+    stance_result *result;
+    bool drained; /* the feed has no more */
+};
+
+/* Fills the free lanes of a bundle; those that were filled. */
+static mask stream_fill(struct stream *stream, bool coupled)
 {
-    struct bundle b;
-    memset(&b, 0, sizeof b);
-    size_t next = 0;
-    bool any = true;
-    while (any) {
-        mask fresh = MASK_NONE, live = MASK_NONE;
-        any = false;
-        for (int lane = 0; lane < LANES; lane++) {
-            while (!b.which[lane] && next < n && case_is_coupled(&cases[next]) != coupled)
-                next++;
-            if (!b.which[lane] && next < n) {
-                bundle_load(&b, lane, &cases[next], &results[next]);
-                next++;
-                fresh |= mask_of_lane(lane);
-            }
-            if (b.which[lane])
-                live |= mask_of_lane(lane), any = true;
-        }
-        if (!any)
+    struct bundle *const b = &stream->bundle[coupled];
+    const stance_feed *const feed = stream->feed;
+    mask fresh = MASK_NONE;
+    for (int lane = 0; lane < LANES; lane++) {
+        if (b->which[lane])
+            continue;
+        if (!stream->ahead && !stream->drained)
+            stream->drained = !feed->next(feed->context, &stream->ahead, &stream->result);
+        if (!stream->ahead || case_is_coupled(stream->ahead) != coupled)
             break;
-        if (mask_any(fresh)) {
-            bundle_start(&b, fresh, coupled);
-            continue; /* a case may have ended at its start */
-        }
-        size_t filled = 0;
-        for (int lane = 0; lane < LANES; lane++)
-            filled += b.which[lane] != NULL;
-        size_t left = filled;
-        while (left == filled) {
-            bundle_step(&b, live, coupled);
-            left = 0;
-            for (int lane = 0; lane < LANES; lane++)
-                left += b.which[lane] != NULL;
-        }
+        bundle_load(b, lane, stream->ahead, stream->result);
+        stream->ahead = NULL;
+        fresh |= mask_of_lane(lane);
     }
-    advance_free(&b.advance);
+    return fresh;
 }
 
+/* Steps a bundle for a while and refills lanes as they end. */
+static inline __attribute__((always_inline)) void stream_advance(struct stream *stream,
+                                                                 bool coupled)
+{
+    struct bundle *const b = &stream->bundle[coupled];
+    for (int k = 0; k < BUNDLE_STEPS; k++) {
+        while (b->filled < LANES) { /* a case may end at its start */
+            const mask fresh = stream_fill(stream, coupled);
+            if (!mask_any(fresh))
+                break;
+            bundle_start(b, fresh, coupled);
+        }
+        if (b->filled == 0)
+            return;
+        bundle_step(b, b->live, coupled);
+    }
+}
+
+static bool bundle_stream(const stance_feed *feed)
+{
+    struct stream stream;
+    memset(&stream, 0, sizeof stream);
+    stream.feed = stream.bundle[0].feed = stream.bundle[1].feed = feed;
+    bool leave = false;
+    do {
+        stream_advance(&stream, false);
+        if (SCENE_ACTUATORS > 0)
+            stream_advance(&stream, true);
+        leave = feed->leave && feed->leave(feed->context);
+    } while (!leave && (!stream.drained || stream.ahead || stream.bundle[0].filled > 0 ||
+                        stream.bundle[1].filled > 0));
+    advance_free(&stream.bundle[0].advance);
+    advance_free(&stream.bundle[1].advance);
+    return !leave;
+}
+
+/* An array as a feed. */
+struct array {
+    const stance_case *cases;
+    stance_result *results;
+    size_t next, n;
+};
+static bool array_next(void *context, const stance_case **c, stance_result **result)
+{
+    struct array *const a = context;
+    if (a->next == a->n)
+        return false;
+    *c = &a->cases[a->next];
+    *result = &a->results[a->next++];
+    return true;
+}
+static void array_done(void *context, const stance_case *c, stance_result *result)
+{
+    (void)context, (void)c, (void)result;
+}
 static void bundle_run(const stance_case *cases, stance_result *results, size_t n)
 {
-    bundle_run_part(cases, results, n, false);
-    if (SCENE_ACTUATORS > 0)
-        bundle_run_part(cases, results, n, true);
+    struct array array = {cases, results, 0, n};
+    const stance_feed feed = {&array, array_next, array_done, NULL};
+    bundle_stream(&feed);
 }
 
 #endif
