@@ -5,6 +5,7 @@
 #include "../runner/command.h"
 #include "../runner/lock.h"
 #include "../runner/plan.h"
+#include "../runner/schedule.h"
 #include "../runner/store.h"
 #include "../runner/supervise.h"
 
@@ -116,7 +117,7 @@ static void test_chunks(void **state)
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         for (int ranks = 1; ranks <= 1024; ranks = ranks * 3 + 1) {
             uint64_t next = 0, first, count, k = 0, before = UINT64_MAX;
-            for (; plan_chunk(sizes[i], ranks, k, &first, &count); k++) {
+            for (; schedule_chunk(sizes[i], ranks, k, &first, &count); k++) {
                 assert_int_equal(first, next);
                 assert_in_range(count, 1, 4096);
                 assert_true(count <= before);
@@ -126,12 +127,12 @@ static void test_chunks(void **state)
             }
             assert_int_equal(next, sizes[i]);
             assert_true(before <= 64);
-            assert_false(plan_chunk(sizes[i], ranks, k + 1, &first, &count));
-            assert_false(plan_chunk(sizes[i], ranks, UINT32_MAX, &first, &count));
+            assert_false(schedule_chunk(sizes[i], ranks, k + 1, &first, &count));
+            assert_false(schedule_chunk(sizes[i], ranks, UINT32_MAX, &first, &count));
         }
     }
     uint64_t first, count;
-    assert_true(plan_chunk((uint64_t)1 << 40, 7, 1000003, &first, &count));
+    assert_true(schedule_chunk((uint64_t)1 << 40, 7, 1000003, &first, &count));
     assert_int_equal(first, (uint64_t)1000003 * 4096);
 }
 
@@ -257,13 +258,25 @@ static stance_result numbered(uint64_t row)
     return r;
 }
 
+/* Through a block, from its third slot on. */
+static void store_results(struct store *store, uint64_t first, size_t n,
+                          const stance_result *results)
+{
+    stance_message message;
+    struct store_block *block = store_block_make(store, n + 2);
+    assert_non_null(block);
+    for (size_t i = 0; i < n; i++)
+        store_put(block, i + 2, &results[i]);
+    assert_true(store_write(store, block, 2, first, n, &message));
+    store_block_free(block);
+}
+
 static void write_rows(struct store *store, uint64_t first, size_t n)
 {
     stance_result results[STORE_ROWS];
-    stance_message message;
     for (size_t i = 0; i < n; i++)
         results[i] = numbered(first + i);
-    assert_true(store_write(store, first, n, results, &message));
+    store_results(store, first, n, results);
 }
 
 static void assert_whole(struct store *store, uint64_t first, size_t n, bool expected)
@@ -366,14 +379,14 @@ static void test_plain_scene(void **state)
         assert_true(data[1] == 0.6 && data[36] == 0.6 - c.robot[1]); /* z and the gap at 0 */
         assert_true(store_write_trajectory(store, row, &t, &message));
     }
-    assert_true(store_write(store, 0, 2, results, &message));
+    store_results(store, 0, 2, results);
     assert_true(store_verify(store, 0, 3, read, whole, &message));
     assert_true(whole[0] && whole[1] && !whole[2]);
     data[41] += 1;
     assert_true(store_write_trajectory(
         store, 2, &(stance_trajectory){0.1, 6, data, data + 12, NULL, data + 24, data + 36},
         &message));
-    assert_true(store_write(store, 2, 1, &results[2], &message));
+    store_results(store, 2, 1, &results[2]);
     assert_true(store_verify(store, 0, 3, read, whole, &message));
     assert_true(whole[2]); /* its checksum is of what was written */
     assert_true(store_close(store, &message));
