@@ -29,6 +29,14 @@ static void test_crc32c(void **state)
     assert_int_equal(checksum_crc32c(0, rising, 32), 0x46dd794e);
     assert_int_equal(checksum_crc32c(0, "123456789", 9), 0xe3069283);
     assert_int_equal(checksum_crc32c(checksum_crc32c(0, "1234", 4), "56789", 5), 0xe3069283);
+    uint8_t bytes[100]; /* one at a time no instruction for eight is used */
+    for (size_t size = 0; size < sizeof bytes; size++) {
+        uint32_t crc = 0;
+        bytes[size] = (uint8_t)(size * size * 37 + 11);
+        for (size_t i = 0; i <= size; i++)
+            crc = checksum_crc32c(crc, &bytes[i], 1);
+        assert_int_equal(checksum_crc32c(0, bytes, size + 1), crc);
+    }
 }
 
 /* FIPS 180-4's examples, and the lengths around a block's end by what they continue to. */
