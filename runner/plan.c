@@ -275,8 +275,7 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
 }
 
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
-                            bool (*stop)(const void *context), const void *context,
-                            stance_message *message)
+                            bool (*stop)(void *context), void *context, stance_message *message)
 {
     const struct scenario *s = plan->scenario;
     size_t first;
@@ -292,12 +291,9 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
         if (plan->design_status[d] != STANCE_DONE) {
             continue;
         }
-        if (stop(context)) {
-            good = false;
-            break;
-        }
         scenario_case_values(s, design_case(plan, d), &values);
-        good = capture_estimate(s->scene, &values, &plan->design[d], s->seed, NULL, &why);
+        good = capture_estimate(s->scene, &values, &plan->design[d], s->seed, stop, context, NULL,
+                                &why);
         if (!good) {
             *message = why;
         }

@@ -53,10 +53,9 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
 
 /* Collective, after plan_compute_designs: with stop.capture estimated, the captured set of every
  * design, each rank a block, gathered on rank 0. false on every rank: no memory, or `stop`, asked
- * before each design, said true somewhere; *message is empty then. */
+ * about every millisecond, said true somewhere; *message is empty then. */
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
-                            bool (*stop)(const void *context), const void *context,
-                            stance_message *message);
+                            bool (*stop)(void *context), void *context, stance_message *message);
 /* Seconds that this will take on one rank, from a try at one design; 0 where there is nothing to
  * estimate. Needs the designs. */
 double plan_capture_cost(const struct plan *plan);

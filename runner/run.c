@@ -432,7 +432,7 @@ static void stage_designs(struct run *run)
     }
 }
 
-static bool out_of_time(const void *context)
+static bool out_of_time(void *context)
 {
     const struct run *run = context;
     return work_stop_asked() || plan_clock() - run->start > run->options.time_limit;
