@@ -16,11 +16,17 @@ struct rows {
     uint64_t count;
 };
 
-/* Chunk k of the guided schedule of `rows` places on `ranks` ranks: sizes shrink from at most
- * SCHEDULE_LARGEST to a few bundles of lanes, always whole bundles but for the last; a batch of one
- * chunk per rank takes half of what is left. Pure function; chunks tile the places. false beyond
- * the last chunk. */
-enum { SCHEDULE_BUNDLE = 8, SCHEDULE_LARGEST = 4096 };
+enum {
+    SCHEDULE_BUNDLE = 8, /* the widest bundle of lanes: chunks are whole ones but for the last */
+    SCHEDULE_LARGEST = 1 << 15,  /* largest chunk */
+    SCHEDULE_SMALLEST = 1 << 13, /* most that the last chunks may hold */
+};
+
+/* Chunk k of the guided schedule of `rows` places on `ranks` ranks. Chunks are the same size, a
+ * sixteenth of a rank's share but at most SCHEDULE_LARGEST, as long as two per rank are left; then
+ * a batch of one per rank takes half of what is left, down to 1/512 of a share, where there are
+ * more ranks as many places as there are pairs of them, but 1/128 of a share at most; always 8 to
+ * SCHEDULE_SMALLEST. Pure function; chunks tile the places. false beyond the last chunk. */
 bool schedule_chunk(uint64_t rows, int ranks, uint64_t k, uint64_t *first, uint64_t *count);
 
 /* What one rank has drawn: places of the schedule, numbered from 0, which stand for all rows of the
@@ -40,5 +46,18 @@ bool schedule_draw(struct schedule *schedule, uint64_t k);
 size_t schedule_take(struct schedule *schedule, size_t most, uint64_t *first);
 /* Row of the file that a place stands for. */
 uint64_t schedule_row(const struct schedule *schedule, uint64_t place);
+
+/* Rows of the largest block that a rank keeps in memory and writes at once, of rows of that many
+ * bytes. */
+size_t schedule_block_rows(size_t row_size);
+/* Seconds between a rank's looks at the shared counters: the more ranks there are, the longer, for
+ * they all meet in one place. */
+double schedule_look_interval(int ranks);
+/* Seconds after which what has ended of a block is written though the block is not whole. `spent`:
+ * seconds that this took the last time (0: there was none); such writes take 1/500 of the time at
+ * most. They leave out stretches of less than SCHEDULE_STRETCH rows, but for every SCHEDULE_ALL-th
+ * of a block. */
+enum { SCHEDULE_STRETCH = 32, SCHEDULE_ALL = 10 };
+double schedule_write_interval(int ranks, double spent);
 
 #endif

@@ -9,6 +9,7 @@
 #include "build_info.h"
 #include "checksum.h"
 #include "command.h"
+#include "report.h"
 #include "seal.h"
 
 #include <errno.h>
@@ -695,12 +696,6 @@ static bool system_failed(stance_message *message, const char *file, const char 
     return false;
 }
 
-static const char *bytes(char text[32], double size)
-{
-    snprintf(text, 32, size < 1e9 ? "%.1f MB" : "%.1f GB", size * (size < 1e9 ? 1e-6 : 1e-9));
-    return text;
-}
-
 /* Whether the file can fit at all, before HDF5 begins what it could not end. */
 static bool check_space(const char *file, uint64_t size, stance_message *message)
 {
@@ -715,19 +710,20 @@ static bool check_space(const char *file, uint64_t size, stance_message *message
     } else {
         slash[slash == directory] = '\0';
     }
+    report_bytes(needed, sizeof needed, (double)size);
     if (statvfs(directory, &system) == 0 && (uint64_t)system.f_bavail * system.f_frsize < size) {
+        report_bytes(there, sizeof there, (double)system.f_bavail * (double)system.f_frsize);
         snprintf(message->text, sizeof message->text,
-                 "%.100s: needs about %s but only %s are free: %s", file,
-                 bytes(needed, (double)size),
-                 bytes(there, (double)system.f_bavail * (double)system.f_frsize), strerror(ENOSPC));
+                 "%.100s: needs about %s but only %s are free: %s", file, needed, there,
+                 strerror(ENOSPC));
         return false;
     }
     if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
         limit.rlim_cur < size) {
+        report_bytes(there, sizeof there, (double)limit.rlim_cur);
         snprintf(message->text, sizeof message->text,
-                 "%.100s: needs about %s but the limit on file sizes is %s: %s", file,
-                 bytes(needed, (double)size), bytes(there, (double)limit.rlim_cur),
-                 strerror(EFBIG));
+                 "%.100s: needs about %s but the limit on file sizes is %s: %s", file, needed,
+                 there, strerror(EFBIG));
         return false;
     }
     return true;

@@ -22,15 +22,9 @@
 
 enum {
     MAX_METHODS = 32,
-    BLOCK_BYTES = 1 << 21,  /* of a block's rows */
-    BLOCK_SMALLEST = 256,   /* rows */
     BLOCKS_OF_METHODS = 16, /* open at once where methods are swept */
 };
 static const double progress_terminal = 0.5, progress_elsewhere = 60;
-/* Seconds between looks at the shared counters, and between writes of what has ended: at least so
- * many, and more on many ranks, whose messages and writes meet in one place. */
-static const double look_least = 0.05, look_per_rank = 2e-4;
-static const double write_least = 1, write_per_rank = 1e-3;
 
 static volatile sig_atomic_t stop_asked;
 
@@ -67,6 +61,8 @@ struct block {
     size_t count;    /* rows */
     size_t open;     /* of these, not ended */
     size_t cursor;   /* where the stream looks for its next case */
+    double write_at; /* when what has ended is written next */
+    int writes;      /* so far */
     uint8_t *state;  /* [capacity] */
     uint8_t *method; /* [capacity] */
 };
@@ -102,9 +98,8 @@ struct job {
     int blocks;                  /* open */
     struct task *tasks, *idle_task; /* all; those that are in no lane */
     uint64_t ended, kept;           /* not yet told to the counters */
-    double look_at, write_at;       /* when next */
+    double look_at;                 /* when next */
     double checking;                /* s spent on what the file already holds */
-    bool unwritten;                 /* something has ended since the last write */
     bool leaving;                   /* no more cases: told to stop, or broken */
     bool broken;                    /* *message says why */
     stance_message *message;
@@ -229,8 +224,8 @@ static void tally(struct work *work, stance_status status, stance_outcome outcom
     }
 }
 
-/* Writes the rows of a block that have ended, stretch by stretch. */
-static void write_block(struct job *job, struct block *block)
+/* Writes the rows of a block that have ended, in stretches of at least so many. */
+static void write_block(struct job *job, struct block *block, size_t least)
 {
     for (size_t slot = 0; slot < block->count && !job->broken;) {
         const uint64_t row = schedule_row(&job->schedule, block->first + slot);
@@ -239,21 +234,30 @@ static void write_block(struct job *job, struct block *block)
                schedule_row(&job->schedule, block->first + slot + n) == row + n) {
             n++;
         }
-        if (n > 0 && !store_write(job->work->store, block->rows, slot, row, n, job->message)) {
+        if (n < least) {
+            slot += n > 0 ? n : 1;
+            continue;
+        }
+        if (!store_write(job->work->store, block->rows, slot, row, n, job->message)) {
             break_off(job);
             return;
         }
         memset(block->state + slot, STORED, n);
-        slot += n > 0 ? n : 1;
+        slot += n;
     }
 }
 
-static void write_ended(struct job *job)
+/* What has ended of blocks that have been open for long. */
+static void write_ended(struct job *job, double now)
 {
-    for (struct block *block = job->oldest; job->unwritten && block; block = block->next) {
-        write_block(job, block);
+    for (struct block *block = job->oldest; block; block = block->next) {
+        if (now >= block->write_at) {
+            const double start = plan_clock();
+            write_block(job, block, ++block->writes % SCHEDULE_ALL == 0 ? 1 : SCHEDULE_STRETCH);
+            const double end = plan_clock();
+            block->write_at = end + schedule_write_interval(job->work->parallel->size, end - start);
+        }
     }
-    job->unwritten = false;
 }
 
 /* Takes a block whose rows have all ended out of the list. */
@@ -280,9 +284,8 @@ static void end_row(struct job *job, struct block *block, size_t slot, const sta
     block->state[slot] = ENDED;
     job->work->computed++;
     job->ended++;
-    job->unwritten = true;
     if (--block->open == 0) {
-        write_block(job, block);
+        write_block(job, block, 1);
         close_block(job, block);
     }
 }
@@ -365,6 +368,8 @@ static bool open_block(struct job *job)
     block->first = first;
     block->count = block->open = count;
     block->cursor = 0;
+    block->writes = 0;
+    block->write_at = plan_clock() + schedule_write_interval(job->work->parallel->size, 0);
     memset(block->state, PENDING, count);
     struct block **link = &job->oldest;
     while (*link) {
@@ -501,7 +506,8 @@ static bool attend(void *context)
 {
     struct job *job = context;
     const struct work *work = job->work;
-    const double now = plan_clock(), ranks = work->parallel->size;
+    const double now = plan_clock();
+    const int ranks = work->parallel->size;
 
     if (job->leaving) {
         return true;
@@ -511,14 +517,11 @@ static bool attend(void *context)
         job->leaving = true;
         return true;
     }
-    if (now >= job->write_at) {
-        write_ended(job);
-        job->write_at = now + fmax(write_least, write_per_rank * ranks);
-    }
+    write_ended(job, now);
     if (now >= job->look_at) {
         report(job);
         job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
-        job->look_at = now + fmax(look_least, look_per_rank * ranks);
+        job->look_at = now + schedule_look_interval(ranks);
     } else if (work->parallel->rank == 0) {
         job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
     }
@@ -582,20 +585,24 @@ bool work_run(struct work *work, const struct rows *only, stance_message *messag
     struct job job = {
         .work = work,
         .plan = work->plan,
-        .schedule = schedule_make(work->plan->rows, work->parallel->size, only),
+        .schedule =
+            schedule_make(work->plan->rows, work->parallel->size, only),
         .message = message,
-        .write_at = start + write_least,
+        .capacity = schedule_block_rows(store_row_size(work->store)),
         .progress = {.terminal = isatty(STDERR_FILENO) == 1, .start = start},
     };
-    size_t rows = BLOCK_BYTES / store_row_size(work->store);
-    rows = rows < BLOCK_SMALLEST ? BLOCK_SMALLEST : rows;
-    job.capacity = rows < SCHEDULE_LARGEST ? rows : SCHEDULE_LARGEST;
+    uint64_t first, largest;
+    if (schedule_chunk(job.schedule.places, work->parallel->size, 0, &first, &largest)) {
+        job.capacity = job.capacity < largest ? job.capacity : (size_t)largest;
+    }
     job.progress.next = start + (job.progress.terminal ? progress_terminal : progress_elsewhere);
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++) {
         job.kernel[m] = stance_kernel_find(work->plan->scenario->scene, stance_methods()[m], NULL);
     }
     run_streams(&job);
-    write_ended(&job);
+    for (struct block *block = job.oldest; block; block = block->next) {
+        write_block(&job, block, 1);
+    }
     report(&job);
     if (job.progress.terminal && !work->quiet && work->parallel->rank == 0) {
         fputs("\r\033[K", stderr);

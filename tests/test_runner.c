@@ -116,8 +116,8 @@ static void test_options(void **state)
 
 /* ---- the plan ----------------------------------------------------------------------------- */
 
-/* Chunks tile the rows, in order, without overlap; none is larger than 4096; the first batch of
- * chunks leaves about half; the last are small. */
+/* Chunks tile the rows, in order, without overlap, in whole bundles of lanes; none is larger than a
+ * sixteenth of a rank's share, the last ones are a 128th of it at most. */
 static void test_chunks(void **state)
 {
     (void)state;
@@ -127,21 +127,24 @@ static void test_chunks(void **state)
             uint64_t next = 0, first, count, k = 0, before = UINT64_MAX;
             for (; schedule_chunk(sizes[i], ranks, k, &first, &count); k++) {
                 assert_int_equal(first, next);
-                assert_in_range(count, 1, 4096);
+                const uint64_t share = sizes[i] / (uint64_t)ranks;
+                assert_in_range(count, 1, SCHEDULE_LARGEST);
+                assert_true(count <= share / 16 + 8);
                 assert_true(count <= before);
+                assert_true(count % 8 == 0 || first + count == sizes[i]);
                 before = count;
                 next = first + count;
                 assert_true(k < 2 * sizes[i]);
             }
             assert_int_equal(next, sizes[i]);
-            assert_true(before <= 64);
+            assert_true(before <= sizes[i] / (uint64_t)ranks / 128 + 8);
             assert_false(schedule_chunk(sizes[i], ranks, k + 1, &first, &count));
             assert_false(schedule_chunk(sizes[i], ranks, UINT32_MAX, &first, &count));
         }
     }
     uint64_t first, count;
     assert_true(schedule_chunk((uint64_t)1 << 40, 7, 1000003, &first, &count));
-    assert_int_equal(first, (uint64_t)1000003 * 4096);
+    assert_int_equal(first, (uint64_t)1000003 * SCHEDULE_LARGEST);
 }
 
 static const char swept[] =
