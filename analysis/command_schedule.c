@@ -255,24 +255,28 @@ static json_t *study_json(const struct schedule_study *study, const struct resul
                      "rows", rows);
 }
 
+static void put_table(const struct schedule_study *study, FILE *out)
+{
+    fputs("ranks,cases,seconds,efficiency,computing_seconds,drawing_seconds,writing_seconds,"
+          "waiting_seconds,draws,writes,bytes\n",
+          out);
+    for (size_t k = 0; k < study->count; k++) {
+        const struct simulation *s = &study->result[k];
+        fprintf(out, "%d,%" PRIu64 ",%.9g,%.6f,%.9g,%.9g,%.9g,%.9g,%" PRIu64 ",%" PRIu64 ",%.0f\n",
+                study->ranks[k], s->cases, s->time, simulation_efficiency(s, study->ranks[k]),
+                s->computing, s->drawing, s->writing, s->waiting, s->draws, s->writes, s->bytes);
+    }
+}
+
 static bool write_table(const struct schedule_study *study, const char *directory,
                         stance_message *message)
 {
     char path[1100];
     snprintf(path, sizeof path, "%s/schedule.csv", directory);
     FILE *out = fopen(path, "w");
-    bool good = out != NULL;
-    if (good) {
-        fputs("ranks,cases,seconds,efficiency,computing_seconds,drawing_seconds,writing_seconds,"
-              "waiting_seconds,draws,writes,bytes\n",
-              out);
-        for (size_t k = 0; k < study->count; k++) {
-            const struct simulation *s = &study->result[k];
-            fprintf(
-                out, "%d,%" PRIu64 ",%.9g,%.6f,%.9g,%.9g,%.9g,%.9g,%" PRIu64 ",%" PRIu64 ",%.0f\n",
-                study->ranks[k], s->cases, s->time, simulation_efficiency(s, study->ranks[k]),
-                s->computing, s->drawing, s->writing, s->waiting, s->draws, s->writes, s->bytes);
-        }
+    bool good = false;
+    if (out) {
+        put_table(study, out);
         good = !ferror(out);
         good = fclose(out) == 0 && good;
     }

@@ -585,8 +585,7 @@ bool work_run(struct work *work, const struct rows *only, stance_message *messag
     struct job job = {
         .work = work,
         .plan = work->plan,
-        .schedule =
-            schedule_make(work->plan->rows, work->parallel->size, only),
+        .schedule = schedule_make(work->plan->rows, work->parallel->size, only),
         .message = message,
         .capacity = schedule_block_rows(store_row_size(work->store)),
         .progress = {.terminal = isatty(STDERR_FILENO) == 1, .start = start},
