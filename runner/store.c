@@ -18,6 +18,7 @@ struct store {
     char file[1024];
     const struct plan *plan;
     hid_t id;
+    int ranks;                      /* that have it open together */
     hid_t column[COLUMNS];          /* -1: not stored */
     size_t width[COLUMNS];          /* elements per case */
     struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
@@ -289,6 +290,21 @@ static hid_t open_for_ranks(const char *file, int ranks)
     return id;
 }
 
+/* Collective: rank 0 reads where the dataset is and tells the others, lest thousands of ranks read
+ * the same few bytes of the file. */
+static hid_t open_dataset(const struct store *store, const char *name)
+{
+    hid_t access = H5Pcreate(H5P_DATASET_ACCESS), dataset;
+#if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
+    if (store->ranks > 1) {
+        H5Pset_all_coll_metadata_ops(access, true);
+    }
+#endif
+    dataset = H5Dopen2(store->id, name, access);
+    H5Pclose(access);
+    return dataset;
+}
+
 bool store_has_shape(hid_t dataset, int rank, const hsize_t *length)
 {
     hsize_t found[H5S_MAX_RANK];
@@ -311,7 +327,7 @@ static bool open_columns(struct store *store, stance_message *message)
             continue;
         }
         size_t width = store->width[c] = store_column_width(s, c);
-        store->column[c] = H5Dopen2(store->id, store_columns[c].name, H5P_DEFAULT);
+        store->column[c] = open_dataset(store, store_columns[c].name);
         length[store->rank] = width;
         if (store->column[c] < 0 ||
             !store_has_shape(store->column[c], store->rank + (width > 1), length)) {
@@ -336,12 +352,12 @@ static bool open_trajectories(struct store *store, stance_message *message)
         }
         char name[64];
         snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v]);
-        store->trajectory[v] = H5Dopen2(store->id, name, H5P_DEFAULT);
+        store->trajectory[v] = open_dataset(store, name);
         if (store->trajectory[v] < 0) {
             return store_failed(message, store->file, "open the trajectories");
         }
     }
-    store->trajectory_checksum = H5Dopen2(store->id, "trajectory/checksum", H5P_DEFAULT);
+    store->trajectory_checksum = open_dataset(store, "trajectory/checksum");
     return store->trajectory_checksum >= 0 ||
            store_failed(message, store->file, "open the trajectories");
 }
@@ -360,6 +376,7 @@ bool store_open(struct store **result, const char *file, const struct plan *plan
     snprintf(store->file, sizeof store->file, "%s", file);
     store->plan = plan;
     store->id = id;
+    store->ranks = ranks;
     store->rank = store_dimensions(plan, store->length);
     store->trajectory_checksum = -1;
     for (int c = 0; c < COLUMNS; c++) {
@@ -688,7 +705,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
     struct store_design_column columns[DESIGN_COLUMNS];
     bool good = true;
     store_design_columns(plan->scenario, columns);
-    for (int k = 0; good && k < DESIGN_COLUMNS; k++) {
+    for (int k = 0; k < DESIGN_COLUMNS; k++) { /* all of them, even when this rank has failed */
         size_t rows = (size_t)columns[k].rows, length = (size_t)columns[k].columns;
         if (rows * length == 0) {
             continue;
@@ -696,10 +713,11 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         char name[64];
         snprintf(name, sizeof name, "design/%s", columns[k].name);
         double *data = malloc(plan->designs * rows * length * sizeof *data);
-        hid_t dataset = H5Dopen2(store->id, name, H5P_DEFAULT);
+        hid_t dataset = open_dataset(store, name);
         good = data && dataset >= 0 &&
                H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                       data) >= 0;
+                       data) >= 0 &&
+               good;
         for (size_t d = 0; good && d < plan->designs; d++) {
             char *design = (char *)&plan->design[d] + columns[k].offset;
             for (size_t r = 0; r < rows; r++) {
@@ -710,7 +728,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         H5Dclose(dataset);
         free(data);
     }
-    hid_t dataset = H5Dopen2(store->id, "design/status", H5P_DEFAULT);
+    hid_t dataset = open_dataset(store, "design/status");
     good = good && H5Dread(dataset, store_memory_type(KIND_uint8_t), H5S_ALL, H5S_ALL, H5P_DEFAULT,
                            plan->design_status) >= 0;
     H5Dclose(dataset);

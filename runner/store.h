@@ -130,7 +130,7 @@ bool store_open(struct store **store, const char *file, const struct plan *plan,
 bool store_close(struct store *store, stance_message *message);
 void store_abandon(struct store *store);
 
-/* Not collective. Designs of the file into the plan. */
+/* Collective, right after store_open: designs of the file into the plan. */
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message);
 /* Bytes of a row in a block; a block for `rows` rows, NULL: no memory. */
 size_t store_row_size(const struct store *store);
