@@ -1,12 +1,16 @@
-/* fixed.h - advances by fixed implicit steps; a step that does not converge is tried with each
- * torque free or at its limit in turn, then taken in parts.
+/* fixed.h - advances by fixed implicit steps: the quick way where a step is ordinary, else with all
+ * that step.h can do; a step that does not converge is tried with each torque free or at its limit
+ * in turn, then taken in parts.
  *
  * One of the ways to get from one step's end to the next (`advance`, see bundle.h).
  */
 #ifndef STANCE_CORE_FIXED_H
 #define STANCE_CORE_FIXED_H
 
-#include "step.h"
+#include "quick.h"
+
+/* Motions know their energy. */
+#define ADVANCE_TELLS_ENERGY
 
 /* A law that is not linear acts once a step, on the state at its beginning. */
 #define ADVANCE_SAMPLES_LAWS
@@ -15,12 +19,13 @@
 #define FIXED_FREEZE_AFTER 6    /* ... and in the last attempt the geometry freezes here */
 
 struct advance {
-    char nothing; /* to remember between steps */
+    struct quick quick;
 };
 
 static void advance_load(struct advance *a, int lane, const stance_case *c)
 {
-    (void)a, (void)lane, (void)c;
+    (void)c;
+    quick_forget(&a->quick, mask_of_lane(lane));
 }
 static void advance_free(struct advance *a)
 {
@@ -30,9 +35,9 @@ static void advance_free(struct advance *a)
 /* One step. Where Newton's iteration does not end because a torque that acts inside the step comes
  * and goes at its limit, each torque is taken for free or for being at either end of its range, one
  * way after the other, until a solution agrees with what was assumed. */
-static mask fixed_step(const struct setting *set, const struct motion *from, const lanes *torque,
-                       lanes h, mask run, bool coupled, int freeze_after, struct motion *to,
-                       struct step_report *report)
+COLD mask fixed_step(const struct setting *set, const struct motion *from, const lanes *torque,
+                     lanes h, mask run, bool coupled, int freeze_after, struct motion *to,
+                     struct step_report *report)
 {
     mask good = take_step(set, from, torque, h, run, coupled, freeze_after, to, report);
     mask failed = run & LANES_NOT(good) & mask_less(set->law.limit, lanes_of(INFINITY));
@@ -61,9 +66,9 @@ static mask fixed_step(const struct setting *set, const struct motion *from, con
 }
 
 /* Lanes that did not converge: the step again in 2, 4, ... equal parts. */
-static mask fixed_subdivide(const struct setting *set, const struct motion *from,
-                            const lanes *torque, lanes h, mask run, bool coupled, struct motion *to,
-                            struct step_report *total)
+COLD mask fixed_subdivide(const struct setting *set, const struct motion *from, const lanes *torque,
+                          lanes h, mask run, bool coupled, struct motion *to,
+                          struct step_report *total)
 {
     mask failed = run;
     for (int level = 1; level <= FIXED_MAX_SUBDIVISION && mask_any(failed); level++) {
@@ -90,18 +95,67 @@ static mask fixed_subdivide(const struct setting *set, const struct motion *from
     return run & LANES_NOT(failed);
 }
 
-static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
-                           lanes h, mask live, bool coupled, struct motion *now,
-                           struct step_report *report, mask *failed)
+/* Contacts that are closed in any of the lanes. */
+static inline contact_set fixed_touching(const struct setting *set, const struct motion *now,
+                                         mask live)
 {
-    (void)a;
-    struct motion next = *now;
-    mask ok = fixed_step(set, now, torque, h, live, coupled, STEP_MAX_ITERATIONS, &next, report);
-    const mask stuck = live & LANES_NOT(ok);
-    if (mask_any(stuck))
-        ok |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, report);
-    *now = next;
-    *failed = live & LANES_NOT(ok);
+    contact_set touching = 0;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (mask_any(live & mask_less(lanes_of(0), set->may_touch[c]) &
+                     mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED))))
+            touching |= 1u << c;
+    return touching;
+}
+
+/* The bundle's contacts as the compiler should know them. */
+enum {
+    TOUCHING_NONE = 0,
+    TOUCHING_FIRST = 1,
+    TOUCHING_SECOND = SCENE_CONTACTS > 1 ? 2 : 1,
+    TOUCHING_ALL = (1 << SCENE_CONTACTS) - 1
+};
+
+/* One ordinary step in all lanes; false: it is not ordinary in all, and nothing has happened. */
+#define ADVANCE_ORDINARY
+HOT bool advance_ordinary(struct advance *a, const struct setting *set, const lanes *torque,
+                          lanes h, mask live, contact_set touching, struct motion *now,
+                          struct step_report *report)
+{
+    struct iterate it;
+    const mask good = quick_try(&a->quick, set, now, torque, h, live, touching, &it, report);
+    if (mask_any(live & LANES_NOT(good)))
+        return false;
+    quick_keep(&a->quick, &it, h, true, good, now);
+    return true;
+}
+
+COLD mask advance(struct advance *a, const struct setting *set, const lanes *torque, lanes h,
+                  mask live, bool coupled, struct motion *now, struct step_report *report,
+                  mask *failed)
+{
+    mask ok = MASK_NONE;
+    if (!coupled) {
+        struct iterate it;
+        ok = quick_try(&a->quick, set, now, torque, h, live, fixed_touching(set, now, live), &it,
+                       report);
+        quick_keep(&a->quick, &it, h, false, ok, now);
+    }
+    const mask other = live & LANES_NOT(ok);
+    *failed = MASK_NONE;
+    if (mask_any(other)) {
+        struct step_report slow;
+        struct motion next = *now;
+        mask there =
+            fixed_step(set, now, torque, h, other, coupled, STEP_MAX_ITERATIONS, &next, &slow);
+        const mask stuck = other & LANES_NOT(there);
+        if (mask_any(stuck))
+            there |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, &slow);
+        choose_all(other, &slow, report, sizeof slow);
+        choose_all(there, &next, now, sizeof next);
+        *failed = other & LANES_NOT(there);
+        ok |= there;
+        quick_forget(&a->quick, other);
+    }
     return ok;
 }
 

@@ -19,6 +19,10 @@
 
 enum { LANES = STANCE_LANES };
 
+/* Functions of the inner loop, compiled anew for what each caller knows; and those that are not. */
+#define HOT static inline __attribute__((always_inline))
+#define COLD static __attribute__((noinline))
+
 /* Length of an array that may be empty: a scene without actuators, say. */
 #define SLOTS(n) ((n) > 0 ? (n) : 1)
 
@@ -53,6 +57,18 @@ static inline lanes lanes_abs(lanes a)
 {
     return fabs(a);
 }
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(-a, b, c);
+}
 
 #elif STANCE_LANES == 8 && defined(__AVX512F__)
 
@@ -85,6 +101,18 @@ static inline bool mask_any(mask m)
 static inline lanes lanes_abs(lanes a)
 {
     return _mm512_abs_pd(a);
+}
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return _mm512_fmadd_pd(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return _mm512_fmsub_pd(a, b, c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return _mm512_fnmadd_pd(a, b, c);
 }
 
 #elif STANCE_LANES == 4 && defined(__AVX2__)
@@ -119,6 +147,18 @@ static inline lanes lanes_abs(lanes a)
 {
     return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
 }
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return _mm256_fmadd_pd(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return _mm256_fmsub_pd(a, b, c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return _mm256_fnmadd_pd(a, b, c);
+}
 
 #elif STANCE_LANES == 2 /* SSE2, NEON: the compiler's generic vectors */
 
@@ -151,12 +191,30 @@ static inline lanes lanes_abs(lanes a)
 {
     return (lanes)((mask)a & (mask){INT64_MAX, INT64_MAX});
 }
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return (lanes){__builtin_fma(a[0], b[0], c[0]), __builtin_fma(a[1], b[1], c[1])};
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return lanes_fma(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return lanes_fma(-a, b, c);
+}
 
 #else
 #error "no lanes of this width for these compiler flags"
 #endif
 
 #define MASK_NONE LANES_NOT(LANES_ALL)
+
+/* `choose` where the compiler may know that m holds in all lanes that matter. */
+HOT lanes choose_unless(bool all, mask m, lanes a, lanes b)
+{
+    return all ? a : choose(m, a, b);
+}
 
 /* min and max as comparisons spell them: the second operand where the first is NAN. */
 static inline lanes lanes_max(lanes a, lanes b)
