@@ -9,9 +9,9 @@
 #include "schedule.h"
 
 enum {
-    CHUNKS_OF_SHARE = 16,
+    CHUNKS_OF_SHARE = 8,
     LAST_OF_SHARE = 512,
-    LAST_AT_MOST = 128,
+    LAST_AT_MOST = 32,
     BLOCK_BYTES = 1 << 21,
     BLOCK_LEAST = 256
 };
@@ -34,7 +34,7 @@ bool schedule_chunk(uint64_t rows, int ranks, uint64_t k, uint64_t *first, uint6
     /* What many ranks write last should not be too many small pieces. */
     const uint64_t most = clamp(share / LAST_AT_MOST, SCHEDULE_BUNDLE, SCHEDULE_SMALLEST);
     const uint64_t smallest = whole_bundles(
-        clamp(workers / 2, clamp(share / LAST_OF_SHARE, SCHEDULE_BUNDLE, most), most));
+        clamp(2 * workers, clamp(share / LAST_OF_SHARE, SCHEDULE_BUNDLE, most), most));
     const uint64_t largest =
         whole_bundles(clamp(share / CHUNKS_OF_SHARE, smallest, SCHEDULE_LARGEST));
     uint64_t begin = 0, batch = k / workers, member = k % workers;

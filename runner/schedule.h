@@ -18,15 +18,15 @@ struct rows {
 
 enum {
     SCHEDULE_BUNDLE = 8, /* the widest bundle of lanes: chunks are whole ones but for the last */
-    SCHEDULE_LARGEST = 1 << 15,  /* largest chunk */
-    SCHEDULE_SMALLEST = 1 << 13, /* most that the last chunks may hold */
+    SCHEDULE_LARGEST = 1 << 17,  /* largest chunk */
+    SCHEDULE_SMALLEST = 1 << 15, /* most that the last chunks may hold */
 };
 
-/* Chunk k of the guided schedule of `rows` places on `ranks` ranks. Chunks are the same size, a
- * sixteenth of a rank's share but at most SCHEDULE_LARGEST, as long as two per rank are left; then
- * a batch of one per rank takes half of what is left, down to 1/512 of a share, where there are
- * more ranks as many places as there are pairs of them, but 1/128 of a share at most; always 8 to
- * SCHEDULE_SMALLEST. Pure function; chunks tile the places. false beyond the last chunk. */
+/* Chunk k of the guided schedule of `rows` places on `ranks` ranks. Chunks are the same size, an
+ * eighth of a rank's share but at most SCHEDULE_LARGEST, as long as two per rank are left; then a
+ * batch of one per rank takes half of what is left, down to 1/512 of a share, on many ranks twice
+ * as many places as there are ranks, but 1/32 of a share at most; always 8 to SCHEDULE_SMALLEST.
+ * Pure function; chunks tile the places. false beyond the last chunk. */
 bool schedule_chunk(uint64_t rows, int ranks, uint64_t k, uint64_t *first, uint64_t *count);
 
 /* What one rank has drawn: places of the schedule, numbered from 0, which stand for all rows of the

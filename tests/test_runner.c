@@ -117,7 +117,7 @@ static void test_options(void **state)
 /* ---- the plan ----------------------------------------------------------------------------- */
 
 /* Chunks tile the rows, in order, without overlap, in whole bundles of lanes; none is larger than a
- * sixteenth of a rank's share, the last ones are a 128th of it at most. */
+ * eighth of a rank's share, the last ones are a 32nd of it at most. */
 static void test_chunks(void **state)
 {
     (void)state;
@@ -129,7 +129,7 @@ static void test_chunks(void **state)
                 assert_int_equal(first, next);
                 const uint64_t share = sizes[i] / (uint64_t)ranks;
                 assert_in_range(count, 1, SCHEDULE_LARGEST);
-                assert_true(count <= share / 16 + 8);
+                assert_true(count <= share / 8 + 8);
                 assert_true(count <= before);
                 assert_true(count % 8 == 0 || first + count == sizes[i]);
                 before = count;
@@ -137,7 +137,7 @@ static void test_chunks(void **state)
                 assert_true(k < 2 * sizes[i]);
             }
             assert_int_equal(next, sizes[i]);
-            assert_true(before <= sizes[i] / (uint64_t)ranks / 128 + 8);
+            assert_true(before <= sizes[i] / (uint64_t)ranks / 32 + 8);
             assert_false(schedule_chunk(sizes[i], ranks, k + 1, &first, &count));
             assert_false(schedule_chunk(sizes[i], ranks, UINT32_MAX, &first, &count));
         }
