@@ -47,14 +47,18 @@ SCENES  = ball block rod biped
 METHODS = implicit midpoint capturing lagrange
 SCALAR_METHODS = event_driven
 MACHINE := $(shell uname -m)
-ISAS_x86_64  = scalar sse2 avx2 avx512
+# Slow to fast: sse2 has to emulate fused multiply-adds and is for processors without them.
+ISAS_x86_64  = sse2 scalar avx2 avx512
 ISAS_aarch64 = scalar neon
 ISAS    := $(or $(ISAS_$(MACHINE)),scalar)
-isa_flags_scalar = -DSTANCE_LANES=1
+fma_x86_64       = -mfma
+isa_flags_scalar = -DSTANCE_LANES=1 $(fma_$(MACHINE))
 isa_flags_sse2   = -DSTANCE_LANES=2
 isa_flags_neon   = -DSTANCE_LANES=2
-isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2
-isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl
+isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2 -mfma
+isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma
+# Methods that take one case at a time run on every processor.
+scalar_method_flags = -DSTANCE_LANES=1
 
 kernels := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i)))) \
            $(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
@@ -86,12 +90,13 @@ $(BUILD)/libstance.a: $(engine_objects)
 define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
-	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES))-scalar,$(1)-$(3)),-DSTANCE_DESCRIBE_METHOD) \
+	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES))-scalar,$(1)-$(3)),-DSTANCE_DESCRIBE_METHOD) \
 	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
-$(eval $(call kernel_rule,$(s),$(m),$(i))))))
-$(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(eval $(call kernel_rule,$(s),$(m),scalar))))
+$(eval $(call kernel_rule,$(s),$(m),$(i),$(isa_flags_$(i)))))))
+$(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),\
+$(eval $(call kernel_rule,$(s),$(m),scalar,$(scalar_method_flags)))))
 
 $(BUILD)/engine/%.o: engine/%.c Makefile
 	@mkdir -p $(@D)
@@ -120,8 +125,16 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
 $(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< $(shared_objects) \
-	    $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(isa_list) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
+	    $(shared_objects) $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
+
+# Each instruction set's fused multiply-adds, for test_fma.
+fused_objects = $(ISAS:%=$(BUILD)/tests/lanes_fma-%.o)
+$(BUILD)/tests/lanes_fma-%.o: tests/lanes_fma.c Makefile
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(isa_flags_$*) -DSTANCE_ISA=$* -MMD -MP -c -o $@ $<
+$(BUILD)/tests/test_fma: $(fused_objects) $(BUILD)/isas
+$(BUILD)/tests/test_fma: test_objects = $(fused_objects)
 
 # What Open MPI wants in a container, as root, on few cores.
 MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \

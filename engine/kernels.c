@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* What there is: a method or a scene is a word here and in the Makefile. STANCE_ISA_LIST comes
- * from there: X(scalar) X(sse2) ... in order of width. */
+ * from there: X(sse2) X(scalar) ... from slow to fast. */
 #define STANCE_METHODS(X) X(implicit) X(midpoint) X(capturing) X(lagrange) X(event_driven)
 #define STANCE_VECTOR_METHODS(K, scene, isa)                                                       \
     K(scene, implicit, isa) K(scene, midpoint, isa) K(scene, capturing, isa) K(scene, lagrange, isa)
@@ -31,7 +31,7 @@ STANCE_ISA_LIST
 #undef X
 STANCE_SCENES(STANCE_SCALAR_METHODS, DECLARE_KERNEL, scalar)
 
-/* Narrow to wide. */
+/* Slow to fast. */
 static const stance_kernel *const kernels[] = {
 #define ENTRY_KERNEL(scene, m, isa) &stance_kernel_##scene##_##m##_##isa,
 #define X(isa) STANCE_SCENES(STANCE_VECTOR_METHODS, ENTRY_KERNEL, isa)
@@ -61,10 +61,15 @@ const stance_method *stance_method_find(const char *name)
     return NULL;
 }
 
-/* Does this processor (and its operating system) run the instruction set? */
+/* Does this processor (and its operating system) run the instruction set? `scalar` is compiled for
+ * processors with fused multiply-adds, where its architecture has others too. */
 static bool isa_runs(const char *isa)
 {
 #if defined(__x86_64__)
+    if (strcmp(isa, "sse2") == 0)
+        return true;
+    if (!__builtin_cpu_supports("fma"))
+        return false;
     if (strcmp(isa, "avx2") == 0)
         return __builtin_cpu_supports("avx2");
     if (strcmp(isa, "avx512") == 0)

@@ -1,8 +1,13 @@
 /* lanes.h - a vector of STANCE_LANES doubles, one simulation in each lane, and masks over it.
  *
  * The stepping core is written once against these few operations and compiled for 1, 2, 4 and 8
- * lanes. Everything is plain IEEE arithmetic (+ - * / and comparisons), without contraction, so a
- * lane computes the same bits whatever the width. Control flow is by masks: `choose(m, a, b)`.
+ * lanes. Everything is plain IEEE arithmetic (+ - * / fma and comparisons), and the compiler
+ * contracts nothing: products are fused with sums where the source says so. A lane computes the
+ * same bits whatever the width. Control flow is by masks: `choose(m, a, b)`.
+ *
+ * lanes_fma(a, b, c) is a * b + c rounded once, lanes_fms(a, b, c) a * b - c, and
+ * lanes_fnma(a, b, c) c - a * b: an instruction each; emulated in fma.h for SSE2, which has none;
+ * by the C library, as exactly, in one lane compiled for processors without.
  */
 #ifndef STANCE_CORE_LANES_H
 #define STANCE_CORE_LANES_H
@@ -53,6 +58,18 @@ static inline lanes lanes_abs(lanes a)
 {
     return fabs(a);
 }
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(-a, b, c);
+}
 
 #elif STANCE_LANES == 8 && defined(__AVX512F__)
 
@@ -86,8 +103,20 @@ static inline lanes lanes_abs(lanes a)
 {
     return _mm512_abs_pd(a);
 }
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return _mm512_fmadd_pd(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return _mm512_fmsub_pd(a, b, c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return _mm512_fnmadd_pd(a, b, c);
+}
 
-#elif STANCE_LANES == 4 && defined(__AVX2__)
+#elif STANCE_LANES == 4 && defined(__AVX2__) && defined(__FMA__)
 
 #include <immintrin.h>
 typedef double lanes __attribute__((vector_size(32), may_alias));
@@ -119,9 +148,26 @@ static inline lanes lanes_abs(lanes a)
 {
     return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
 }
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return _mm256_fmadd_pd(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return _mm256_fmsub_pd(a, b, c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return _mm256_fnmadd_pd(a, b, c);
+}
 
 #elif STANCE_LANES == 2 /* SSE2, NEON: the compiler's generic vectors */
 
+#if defined(__x86_64__)
+#include <emmintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
 typedef double lanes __attribute__((vector_size(16), may_alias));
 typedef int64_t mask __attribute__((vector_size(16)));
 
@@ -145,12 +191,44 @@ static inline lanes choose(mask m, lanes a, lanes b)
 }
 static inline bool mask_any(mask m)
 {
+#if defined(__x86_64__)
+    return _mm_movemask_pd((__m128d)m) != 0;
+#else
     return (m[0] | m[1]) != 0;
+#endif
 }
 static inline lanes lanes_abs(lanes a)
 {
     return (lanes)((mask)a & (mask){INT64_MAX, INT64_MAX});
 }
+#if defined(__aarch64__)
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return vfmaq_f64(c, a, b);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return vfmaq_f64(-c, a, b);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return vfmsq_f64(c, a, b);
+}
+#else
+#include "fma.h"
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(-a, b, c);
+}
+#endif
 
 #else
 #error "no lanes of this width for these compiler flags"
