@@ -1,6 +1,8 @@
 /* work.c - draw a chunk, cut it into slices, run them, write them, look whether to stop. */
 #include "work.h"
 
+#include "instruction_set.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <signal.h>
@@ -89,7 +91,7 @@ static bool bench_make(struct bench *bench, const struct plan *plan)
         return false;
     }
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++) {
-        bench->kernel[m] = stance_kernel_find(plan->scenario->scene, stance_methods()[m], NULL);
+        bench->kernel[m] = instruction_set_kernel(plan->scenario->scene, stance_methods()[m]);
     }
     if (plan->record_rows == 0) {
         return true;

@@ -8,8 +8,8 @@
 /* results[i][0 ... 2] = a b + c, a b - c, c - a b of operands[i] = a, b, c; n a multiple of 8. */
 typedef void fused_function(const double (*operands)[3], double (*results)[3], size_t n);
 
-#define X(isa) extern fused_function fused_##isa;
+#define ISA(isa) extern fused_function fused_##isa;
 STANCE_ISA_LIST
-#undef X
+#undef ISA
 
 #endif

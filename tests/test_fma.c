@@ -10,9 +10,9 @@ static const struct {
     const char *isa;
     fused_function *function;
 } fused[] = {
-#define X(isa) {#isa, fused_##isa},
+#define ISA(isa) {#isa, fused_##isa},
     STANCE_ISA_LIST
-#undef X
+#undef ISA
 };
 
 static fused_function *function_of(const char *isa)
