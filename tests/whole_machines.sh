@@ -4,7 +4,8 @@
 # emulated). What cannot be had is skipped with a notice.
 set -u
 cd "$(dirname "$0")/.."
-build=${BUILD:-build} cases=10 count=0
+build=${BUILD:-build} neon=build/neon${NEON_CFLAGS:=-O1} cases=10 count=0
+export NEON_CFLAGS
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 check() { # description, command ...
     local what=$1
@@ -52,8 +53,8 @@ arm=$(command -v qemu-aarch64-static qemu-aarch64 | head -n 1)
 if [ -z "$arm" ] || ! command -v aarch64-linux-gnu-gcc >/dev/null; then
     echo "# skipped: 64-bit ARM (make test-neon installs compiler and emulator)"
 else
-    check "64-bit ARM builds" make golden-neon
-    check "64-bit ARM runs" sh -c "'$arm' build/neon/tests/golden $cases >'$work/arm'"
+    check "64-bit ARM builds" env -u BUILD make golden-neon
+    check "64-bit ARM runs" sh -c "'$arm' $neon/tests/golden $cases >'$work/arm'"
     check "64-bit ARM: NEON among its sets" grep -q neon "$work/arm"
     check "64-bit ARM: the same" same "$work/here" "$work/arm"
 fi
