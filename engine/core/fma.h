@@ -52,7 +52,7 @@ static inline lanes fma_sum_error(lanes a, lanes b, lanes sum)
 static inline lanes fma_add_to_odd(lanes a, lanes b)
 {
     const lanes sum = a + b, error = fma_sum_error(a, b, sum);
-    const fma_bits inexact = (fma_bits)(error != 0);
+    const fma_bits inexact = (fma_bits)_mm_cmpneq_pd(error, lanes_of(0));
     const fma_bits beyond = ((fma_bits)sum ^ (fma_bits)error) >> 63; /* 1: rounded away from zero */
     return (lanes)(((fma_bits)sum - (beyond & inexact)) | (inexact & 1));
 }
@@ -63,7 +63,7 @@ static __attribute__((noinline, unused)) lanes fma_careful(lanes a, lanes b, lan
     const lanes p = a * b, q = fma_product_error(a, b, p);
     const lanes high = p + c, low = fma_sum_error(p, c, high);
     /* A product with zero is exact, and c added to it has the sign, if zero, that is due. */
-    const mask zero = (mask)(a == 0) | (mask)(b == 0);
+    const mask zero = (mask)_mm_cmpeq_pd(a, lanes_of(0)) | (mask)_mm_cmpeq_pd(b, lanes_of(0));
     const mask sound = mask_less_equal(lanes_of(FMA_SMALLEST_PRODUCT), lanes_abs(p)) &
                        mask_less_equal(lanes_abs(low + q), lanes_of(0x1.fffffffffffffp1023));
     lanes sum = choose(zero, high, high + fma_add_to_odd(low, q));
@@ -80,8 +80,9 @@ static inline lanes fma_emulated(lanes a, lanes b, lanes c)
     const lanes rest = low + q;
     const lanes few = (lanes)((fma_bits)rest << FMA_FEW_BITS);
     /* rest - rest: zero, or NAN where something has overflowed or was not finite. */
-    const mask doubtful = ((mask)(few == 0) & (mask)(rest - rest != q)) |
-                          mask_less(lanes_abs(p), lanes_of(FMA_SMALLEST_PRODUCT));
+    const mask doubtful =
+        ((mask)_mm_cmpeq_pd(few, lanes_of(0)) & (mask)_mm_cmpneq_pd(rest - rest, q)) |
+        mask_less(lanes_abs(p), lanes_of(FMA_SMALLEST_PRODUCT));
     if (__builtin_expect(mask_any(doubtful), 0))
         return fma_careful(a, b, c);
     return high + rest;

@@ -161,13 +161,56 @@ static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
     return _mm256_fnmadd_pd(a, b, c);
 }
 
-#elif STANCE_LANES == 2 /* SSE2, NEON: the compiler's generic vectors */
+#elif STANCE_LANES == 2 && defined(__x86_64__)
 
-#if defined(__x86_64__)
 #include <emmintrin.h>
-#elif defined(__aarch64__)
+typedef double lanes __attribute__((vector_size(16), may_alias));
+typedef int64_t mask __attribute__((vector_size(16)));
+
+#define LANES_ALL ((mask){-1, -1})
+#define LANES_NOT(m) (~(m))
+static inline lanes lanes_of(double x)
+{
+    return (lanes){x, x};
+}
+/* By their instructions: of GCC's own vectors gcc 12 makes selections that SSE2 has not. */
+static inline mask mask_less(lanes a, lanes b)
+{
+    return (mask)_mm_cmplt_pd(a, b);
+}
+static inline mask mask_less_equal(lanes a, lanes b)
+{
+    return (mask)_mm_cmple_pd(a, b);
+}
+static inline lanes choose(mask m, lanes a, lanes b)
+{
+    return _mm_or_pd(_mm_and_pd((__m128d)m, a), _mm_andnot_pd((__m128d)m, b));
+}
+static inline bool mask_any(mask m)
+{
+    return _mm_movemask_pd((__m128d)m) != 0;
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return _mm_andnot_pd(_mm_set1_pd(-0.0), a);
+}
+#include "fma.h"
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(-a, b, c);
+}
+
+#elif STANCE_LANES == 2 && defined(__aarch64__)
+
 #include <arm_neon.h>
-#endif
 typedef double lanes __attribute__((vector_size(16), may_alias));
 typedef int64_t mask __attribute__((vector_size(16)));
 
@@ -191,17 +234,12 @@ static inline lanes choose(mask m, lanes a, lanes b)
 }
 static inline bool mask_any(mask m)
 {
-#if defined(__x86_64__)
-    return _mm_movemask_pd((__m128d)m) != 0;
-#else
     return (m[0] | m[1]) != 0;
-#endif
 }
 static inline lanes lanes_abs(lanes a)
 {
-    return (lanes)((mask)a & (mask){INT64_MAX, INT64_MAX});
+    return vabsq_f64(a);
 }
-#if defined(__aarch64__)
 static inline lanes lanes_fma(lanes a, lanes b, lanes c)
 {
     return vfmaq_f64(c, a, b);
@@ -214,21 +252,6 @@ static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
 {
     return vfmsq_f64(c, a, b);
 }
-#else
-#include "fma.h"
-static inline lanes lanes_fma(lanes a, lanes b, lanes c)
-{
-    return fma_emulated(a, b, c);
-}
-static inline lanes lanes_fms(lanes a, lanes b, lanes c)
-{
-    return fma_emulated(a, b, -c);
-}
-static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
-{
-    return fma_emulated(-a, b, c);
-}
-#endif
 
 #else
 #error "no lanes of this width for these compiler flags"
