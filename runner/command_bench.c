@@ -7,8 +7,7 @@
  * with the legs held by a sampled servo).
  */
 #include "command.h"
-
-#include "../engine/stance.h"
+#include "instruction_set.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -135,24 +134,58 @@ static void measure(const stance_kernel *kernel, const stance_case *cases, stanc
 static void report(json_t *rows, const stance_kernel *k, enum regime regime,
                    const struct measurement *m, double scalar_ns)
 {
+    const double speedup = scalar_ns / m->ns;
     if (rows) {
-        json_array_append_new(
-            rows, json_pack("{s:s, s:s, s:s, s:i, s:f, s:f, s:f, s:f, s:f, s:i}", "regime",
-                            regime_name[regime], "method", k->method->name, "isa", k->isa, "lanes",
-                            k->lanes, "ns_per_step", m->ns, "ns_min", m->ns_low, "ns_max",
-                            m->ns_high, "iterations_per_step", m->iterations, "speedup_over_scalar",
-                            scalar_ns / m->ns, "failed", m->failed));
+        json_t *const row =
+            json_pack("{s:s, s:s, s:s, s:b, s:i, s:f, s:f, s:f, s:f, s:o, s:i}", "regime",
+                      regime_name[regime], "method", k->method->name, "isa", k->isa, "in_use",
+                      k == instruction_set_kernel(k->scene, k->method), "lanes", k->lanes,
+                      "ns_per_step", m->ns, "ns_min", m->ns_low, "ns_max", m->ns_high,
+                      "iterations_per_step", m->iterations, "speedup_over_scalar",
+                      isnan(speedup) ? json_null() : json_real(speedup), "failed", m->failed);
+        json_array_append_new(rows, row);
         return;
     }
-    printf("%-9s  %-9s %-7s %5d  %9.1f  %8.1f %8.1f  %10.2f  %9.2f\n", regime_name[regime],
-           k->method->name, k->isa, k->lanes, m->ns, m->ns_low, m->ns_high, m->iterations,
-           scalar_ns / m->ns);
+    printf("%-9s  %-12s %-7s %5d  %9.1f  %8.1f %8.1f  %10.2f  ", regime_name[regime],
+           k->method->name, k->isa, k->lanes, m->ns, m->ns_low, m->ns_high, m->iterations);
+    if (isnan(speedup))
+        printf("%9s\n", "-");
+    else
+        printf("%9.2f\n", speedup);
     fflush(stdout);
 }
 
-static int bench(const stance_scene *scene, int repeats, json_t *rows)
+/* A method with each instruction set of this machine, or with the one that is asked for alone. */
+static void bench_method(const stance_method *method, enum regime regime, stance_case *cases,
+                         stance_result *results, int repeats, json_t *rows)
 {
     static const char *const isas[] = {"scalar", "sse2", "neon", "avx2", "avx512"};
+    const stance_scene *const scene = stance_scene_find("biped");
+    double scalar_ns = NAN;
+    struct measurement m;
+
+    for (int i = 0; i < CASES; i++)
+        cases[i].tolerance = method->tolerance;
+    if (instruction_set_asked()) {
+        const stance_kernel *const k = instruction_set_kernel(scene, method);
+        measure(k, cases, results, repeats, &m);
+        report(rows, k, regime, &m, k->lanes == 1 ? m.ns : NAN);
+        return;
+    }
+    for (size_t i = 0; i < sizeof isas / sizeof *isas; i++) {
+        const stance_kernel *const k = stance_kernel_find(scene, method, isas[i]);
+        if (!k || strcmp(k->isa, isas[i]) != 0) /* else the scalar one again */
+            continue;
+        measure(k, cases, results, repeats, &m);
+        if (i == 0)
+            scalar_ns = m.ns;
+        report(rows, k, regime, &m, scalar_ns);
+    }
+}
+
+static int bench(int repeats, json_t *rows)
+{
+    const stance_scene *const scene = stance_scene_find("biped");
     stance_case base, *cases = calloc(CASES, sizeof *cases);
     stance_result *results = calloc(CASES, sizeof *results);
     int code = EXIT_DONE;
@@ -162,26 +195,15 @@ static int bench(const stance_scene *scene, int repeats, json_t *rows)
         goto done;
     }
     if (!rows)
-        printf("regime     method    isa     lanes  ns / step  (min      max)     iterations  "
-               "x scalar\n");
+        printf("instruction set in use: %s\n"
+               "regime     method       isa     lanes  ns / step  (min      max)     iterations  "
+               "x scalar\n",
+               instruction_set());
     for (enum regime regime = 0; regime < REGIMES; regime++) {
         for (int i = 0; i < CASES; i++)
             make_case(scene, &base, regime, i, &cases[i]);
-        for (const stance_method *const *method = stance_methods(); *method; method++) {
-            double scalar_ns = NAN;
-            for (int i = 0; i < CASES; i++)
-                cases[i].tolerance = (*method)->tolerance;
-            for (size_t i = 0; i < sizeof isas / sizeof *isas; i++) {
-                const stance_kernel *const k = stance_kernel_find(scene, *method, isas[i]);
-                struct measurement m;
-                if (!k || strcmp(k->isa, isas[i]) != 0) /* else the scalar one again */
-                    continue;
-                measure(k, cases, results, repeats, &m);
-                if (i == 0)
-                    scalar_ns = m.ns;
-                report(rows, k, regime, &m, scalar_ns);
-            }
-        }
+        for (const stance_method *const *method = stance_methods(); *method; method++)
+            bench_method(*method, regime, cases, results, repeats, rows);
     }
 done:
     free(cases);
@@ -206,6 +228,8 @@ static int run(int argc, char **argv)
         return EXIT_USAGE;
     if (help)
         return EXIT_DONE;
+    if (!instruction_set_usable("bench"))
+        return EXIT_USAGE;
     int repeats = 5;
     if (repeat_count) {
         char *end;
@@ -218,7 +242,7 @@ static int run(int argc, char **argv)
         repeats = (int)value;
     }
     json_t *rows = json_count ? json_array() : NULL;
-    const int code = bench(stance_scene_find("biped"), repeats, rows);
+    const int code = bench(repeats, rows);
     if (rows) {
         json_dumpf(rows, stdout, JSON_INDENT(1));
         putchar('\n');
@@ -228,18 +252,23 @@ static int run(int argc, char **argv)
 }
 
 const struct command command_bench = {
-    "bench", "stance bench [--repeats N] [--json]", "speed of the stepping kernels on one core",
+    "bench",
+    "stance bench [--repeats N] [--json]",
+    "speed of the stepping kernels on one core",
     run,
     "Prints nanoseconds per case-step: the median of N runs (default 5), the extremes, Newton\n"
     "iterations per step and the speed-up over one lane, for the regimes\n"
     "  flight    nothing near the ground\n"
     "  one foot  linear balance control, torques held for 1 ms\n"
     "  two feet  standing with the legs held\n"
-    "for each method and instruction set, 512 cases of 1000 steps of 1 ms.\n"
+    "for each method and each instruction set of this machine (or the one that the environment\n"
+    "variable STANCE_ISA names), 512 cases of 1000 steps of 1 ms.\n"
     "\n"
     "`stance bench accuracy -h`, `failure -h` and `schedule -h` tell of the studies of error "
     "against\n"
     "cost, of where methods fail, and of jobs on thousands of ranks.\n"
     "\n"
-    "--json: a list of objects with keys regime, method, isa, lanes, ns_per_step, ns_min, ns_max,\n"
-    "iterations_per_step, speedup_over_scalar, failed.\n"};
+    "--json: a list of objects with keys regime, method, isa, in_use (by `stance run`), lanes,\n"
+    "ns_per_step, ns_min, ns_max, iterations_per_step, speedup_over_scalar (null: scalar was not\n"
+    "measured), failed.\n",
+};
