@@ -182,7 +182,7 @@ assert all(0 < s[\"alone\"][k] <= s[\"extent\"][k] for k in s[\"alone\"]) and le
 check "describe" "$stance" describe
 check "describe controller.poles" "$stance" describe controller.poles
 check "describe --schema" sh -c "'$stance' describe --schema | '$python' -m json.tool"
-check "bench" "$stance" bench --repeats 1
+check "bench" "$stance" bench --repeats 1 --cases 8
 cat >"$work/pair.yaml" <<'EOF'
 stance: 1
 scene: biped
