@@ -123,6 +123,15 @@ $(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< $(shared_objects) \
 	    $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
 
+# ---- benchmarks: what the kernels are held to; a program without MuJoCo skips that comparison -----
+MUJOCO := $(wildcard /usr/include/mujoco/mujoco.h)
+bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco)
+$(BUILD)/tests/bench_mujoco: LIBS += -lmujoco
+$(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(BUILD)/libstance.a
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< $(shared_objects) \
+	    $(BUILD)/libstance.a $(LDFLAGS) $(LIBS)
+
 # What Open MPI wants in a container, as root, on few cores.
 MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
                   OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
