@@ -20,6 +20,7 @@ PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev libla
                 libslicot-dev libsundials-dev librandom123-dev libjansson-dev gnuplot-nox fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
 PACKAGES_LINT = clang-format clang-tidy cppcheck
+PACKAGES_BENCH = libmujoco-dev valgrind linux-perf
 BUILD_TOOLS   = gcc make pkg-config
 
 ifeq ($(MPI),1)
@@ -73,7 +74,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo test test-long bench lint sanitize install clean FORCE
+.PHONY: all help packages demo test test-long bench bench-run profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(BUILD)/libstance.a
@@ -147,8 +148,9 @@ test-long: packages-test
 
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
-packages packages-test: packages%:
-	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT))"; \
+packages packages-test packages-bench: packages%:
+	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT)) \
+	    $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
 	missing=; for p in $$need; do \
 	    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
 	[ -z "$$missing" ] && exit 0; \
@@ -165,8 +167,15 @@ demo: packages
 	bin/stance summary results/basin_one_foot.h5
 	@echo; echo "The stability domain, drawn:"; bin/stance plot results/basin_one_foot.h5
 
-bench: bin/stance
-	bin/stance bench
+# All speed benchmarks -> results/bench.csv and .png. Packages for comparisons are no necessity.
+bench: packages
+	-@$(MAKE) packages-bench
+	@$(MAKE) bench-run
+bench-run: $(PROGRAM) $(bench_programs)
+	@$(TEST_ENVIRONMENT) bash tests/bench.sh
+profile: $(PROGRAM)
+	-@$(MAKE) packages-bench
+	@$(TEST_ENVIRONMENT) bash tests/profile.sh
 
 lint: packages-test
 	@bash tests/lint.sh
@@ -187,7 +196,8 @@ help:
 	@echo 'make demo       install what is missing, build, map a stability domain, draw it'
 	@echo 'make test       install what is missing, build, run every test'
 	@echo 'make test-long  the same with the long tests'
-	@echo 'make bench      speed of the stepping kernels'
+	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
+	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
 	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'
 	@echo 'make install    PREFIX=/usr/local DESTDIR='

@@ -21,67 +21,62 @@ static double even(int i, int k)
 
 /* ---- workloads ---------------------------------------------------------------------------- */
 
-/* Makes *c, which has the scene's default body and no controller, the i-th case. */
-typedef bool regime_maker(const stance_scene *scene, int i, stance_case *c);
+/* Makes *c, a copy of what all cases of the workload share, the i-th of them. */
+typedef void regime_maker(const stance_scene *scene, int i, stance_case *c);
+/* Gives what they share a controller. */
+typedef bool regime_controller(const stance_scene *scene, stance_case *c);
 
-static bool ball_flight(const stance_scene *scene, int i, stance_case *c)
+static void ball_flight(const stance_scene *scene, int i, stance_case *c)
 {
     (void)scene;
     c->position[1] = 1000;
     c->velocity[0] = 4 * even(i, 0) - 2;
-    return true;
 }
 
 /* Friction 0.05 takes 0.5 m/s in a second. */
-static bool ball_sliding(const stance_scene *scene, int i, stance_case *c)
+static void ball_sliding(const stance_scene *scene, int i, stance_case *c)
 {
     (void)scene;
     c->friction = 0.05;
     c->position[1] = c->robot[1];
     c->velocity[0] = 1 + even(i, 0);
-    return true;
 }
 
-static bool block_at_rest(const stance_scene *scene, int i, stance_case *c)
+static void block_at_rest(const stance_scene *scene, int i, stance_case *c)
 {
     (void)scene;
     c->robot[1] = 0.6 * even(i, 0); /* arctan 0.8 = 0.67 */
-    return true;
 }
 
-static bool block_sliding(const stance_scene *scene, int i, stance_case *c)
+static void block_sliding(const stance_scene *scene, int i, stance_case *c)
 {
     (void)scene;
     c->friction = 0.3;
     c->robot[1] = 0.5 + 0.5 * even(i, 0);
-    return true;
 }
 
-static bool rod_flight(const stance_scene *scene, int i, stance_case *c)
+static void rod_flight(const stance_scene *scene, int i, stance_case *c)
 {
     (void)scene;
     c->position[1] = 1000;
     c->velocity[2] = 8 * even(i, 0) - 4;
-    return true;
 }
 
 /* Upright on an end but for a hundredth: it tilts about that end for more than a second. */
-static bool rod_on_one_end(const stance_scene *scene, int i, stance_case *c)
+static void rod_on_one_end(const stance_scene *scene, int i, stance_case *c)
 {
     double gap[STANCE_MAX_CONTACTS];
     c->position[2] = 1.5707963267948966 + 0.02 * even(i, 0) - 0.01;
     scene->gaps(c->robot, c->position, gap);
     c->position[1] -= gap[0];
-    return true;
 }
 
-static bool rod_on_two_ends(const stance_scene *scene, int i, stance_case *c)
+static void rod_on_two_ends(const stance_scene *scene, int i, stance_case *c)
 {
     (void)scene;
     c->friction = 0.05;
     c->position[1] = c->position[2] = 0;
     c->velocity[0] = 1 + even(i, 0);
-    return true;
 }
 
 /* The paper's balance controller at its equilibrium. */
@@ -104,52 +99,56 @@ static bool biped_balance(const stance_scene *scene, stance_case *c)
     return true;
 }
 
-static bool biped_flight(const stance_scene *scene, int i, stance_case *c)
+static void biped_flight(const stance_scene *scene, int i, stance_case *c)
 {
-    const bool good = biped_balance(scene, c);
+    (void)scene;
     c->position[1] += 1000;
     for (int k = 2; k < 5; k++)
         c->velocity[k] = 4 * even(i, k % 2) - 2;
-    return good;
 }
 
-static bool biped_on_one_foot(const stance_scene *scene, int i, stance_case *c)
+static void biped_on_one_foot(const stance_scene *scene, int i, stance_case *c)
 {
-    const bool good = biped_balance(scene, c);
     c->contacts = 1;
     c->position[2] += -0.09 + 0.1 * even(i, 0);
     scene->stand(c->robot, 0, c->position, c->velocity);
-    return good;
 }
 
-static bool biped_on_two_feet(const stance_scene *scene, int i, stance_case *c)
+/* The legs held apart. */
+static bool biped_servo(const stance_scene *scene, stance_case *c)
 {
     const double leg = 0.5;
+    (void)scene;
     c->torque_limit = 100;
     for (int k = 0; k < 2; k++) {
         c->gain[k][1 + k] = 200, c->gain[k][4 + k] = 10;
         c->target[1 + k] = k ? -leg : leg;
         c->position[3 + k] = c->target[1 + k];
     }
+    return true;
+}
+
+static void biped_on_two_feet(const stance_scene *scene, int i, stance_case *c)
+{
     c->position[2] = -0.02 * even(i, 0); /* the other foot up to a centimetre high */
     scene->stand(c->robot, 0, c->position, c->velocity);
-    return true;
 }
 
 static const struct regime {
     const char *scene, *name;
     regime_maker *make;
+    regime_controller *control; /* NULL: none */
 } regimes[] = {
-    {"ball", "flight", ball_flight},
-    {"ball", "sliding", ball_sliding},
-    {"block", "at rest", block_at_rest},
-    {"block", "sliding", block_sliding},
-    {"rod", "flight", rod_flight},
-    {"rod", "one end", rod_on_one_end},
-    {"rod", "two ends", rod_on_two_ends},
-    {"biped", "flight", biped_flight},
-    {"biped", "one foot", biped_on_one_foot},
-    {"biped", "two feet", biped_on_two_feet},
+    {"ball", "flight", ball_flight, NULL},
+    {"ball", "sliding", ball_sliding, NULL},
+    {"block", "at rest", block_at_rest, NULL},
+    {"block", "sliding", block_sliding, NULL},
+    {"rod", "flight", rod_flight, NULL},
+    {"rod", "one end", rod_on_one_end, NULL},
+    {"rod", "two ends", rod_on_two_ends, NULL},
+    {"biped", "flight", biped_flight, biped_balance},
+    {"biped", "one foot", biped_on_one_foot, biped_balance},
+    {"biped", "two feet", biped_on_two_feet, biped_servo},
 };
 enum { REGIMES = sizeof regimes / sizeof regimes[0] };
 
@@ -179,12 +178,13 @@ bool bench_cases(const stance_scene *scene, const char *regime, stance_case *cas
     while (r < REGIMES &&
            (strcmp(regimes[r].scene, scene->name) != 0 || strcmp(regimes[r].name, regime) != 0))
         r++;
-    bool good = r < REGIMES;
-    for (int i = 0; i < count && good; i++) {
+    if (r == REGIMES || (regimes[r].control && !regimes[r].control(scene, &base)))
+        return false;
+    for (int i = 0; i < count; i++) {
         cases[i] = base;
-        good = regimes[r].make(scene, i, &cases[i]);
+        regimes[r].make(scene, i, &cases[i]);
     }
-    return good;
+    return true;
 }
 
 /* ---- measuring ---------------------------------------------------------------------------- */

@@ -23,7 +23,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CASES = 128, ROUNDS = 15, MOST_ITERATIONS = 25 };
+enum { CASES = 128, ROUNDS = 31, MOST_ITERATIONS = 25 };
 
 static const double converged = 1e-7;  /* last correction of Newton's iteration, as the kernels */
 static const double on_ground = 1e-13; /* m */
