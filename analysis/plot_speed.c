@@ -348,10 +348,14 @@ bool speed_plot(const struct speed_table *table, const char *directory, const ch
                   "Every method in every scene, in the widest instruction set", "left", 12, false);
     put_legends(&g, &methods, LEFT, second - LEGEND_ROW + 4);
     gnuplot_decorate(&g);
-    put_chart(&g, &rivals, LEFT, top, RIVALS, UPPER);
+    if (rivals.series > 0) {
+        put_chart(&g, &rivals, LEFT, top, RIVALS, UPPER);
+    }
     if (map_ranks(table) > 0) {
         put_map(&g, table, top);
     }
-    put_chart(&g, &methods, LEFT, second, WIDTH - LEFT - 30, LOWER);
+    if (methods.groups > 0) {
+        put_chart(&g, &methods, LEFT, second, WIDTH - LEFT - 30, LOWER);
+    }
     return gnuplot_end(&g, directory, stem, message);
 }

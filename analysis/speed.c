@@ -37,10 +37,10 @@ static const char *const names[COLUMNS] = {
 
 static char *read_text(const char *path, stance_message *message)
 {
+    errno = 0;
     FILE *file = fopen(path, "r");
     char *text = NULL;
     long size = -1;
-    errno = 0;
     if (file && fseek(file, 0, SEEK_END) == 0 && (size = ftell(file)) >= 0 &&
         fseek(file, 0, SEEK_SET) == 0 && (text = malloc((size_t)size + 1)) != NULL &&
         fread(text, 1, (size_t)size, file) == (size_t)size) {
@@ -60,18 +60,16 @@ static char *read_text(const char *path, stance_message *message)
 /* Cuts a line at its commas; false when there are not COLUMNS fields. */
 static bool cut(char *line, char *field[COLUMNS])
 {
-    int n = 0;
-    for (char *next = line; next && n < COLUMNS; n++) {
-        field[n] = next;
-        next = strchr(next, ',');
-        if (next) {
-            *next++ = '\0';
-            if (n == COLUMNS - 1) {
-                return false;
-            }
+    field[0] = line;
+    for (int n = 1; n < COLUMNS; n++) {
+        char *comma = strchr(field[n - 1], ',');
+        if (!comma) {
+            return false;
         }
+        *comma = '\0';
+        field[n] = comma + 1;
     }
-    return n == COLUMNS;
+    return !strchr(field[COLUMNS - 1], ',');
 }
 
 bool speed_read(const char *path, struct speed_table *table, stance_message *message)

@@ -8,7 +8,7 @@ set -u
 cd "$(dirname "$0")/.."
 stance=${STANCE:-bin/stance} build=${BUILD:-build}
 rounds=${BENCH_ROUNDS:-5} sizes=${BENCH_SIZES-256 512 1024} map=scenarios/basin_one_foot.yaml
-csv=results/bench.csv
+csv=results/bench.csv method=$(sed -n 's/^method: {name: \([a-z-]*\).*/\1/p' $map)
 mkdir -p results
 scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
 table=$scratch/table.csv
@@ -41,9 +41,9 @@ time_map() {
 }
 # A row of the table: regime, ranks, cases, quantity, unit; values on standard input, one a line.
 row() {
-    sort -g | awk -v OFS=, -v regime="$1" -v ranks="$2" -v cases="$3" -v quantity="$4" -v unit="$5" -v origin="$origin" '
+    sort -g | awk -v OFS=, -v method="$method" -v regime="$1" -v ranks="$2" -v cases="$3" -v quantity="$4" -v unit="$5" -v origin="$origin" '
         { v[NR] = $1 }
-        END { if (NR) print "stance run", "biped", regime, "midpoint", "", "", ranks, "0.001", cases, NR, quantity, unit,
+        END { if (NR) print "stance run", "biped", regime, method, "", "", ranks, "0.001", cases, NR, quantity, unit,
                   (v[int((NR + 1) / 2)] + v[int(NR / 2) + 1]) / 2, v[1], v[NR], origin }' >>"$table"
 }
 
@@ -62,6 +62,7 @@ elif [ -n "$sizes" ]; then
             echo "$one $two"
         done >"$scratch/scaling"
         cut -d' ' -f1 "$scratch/scaling" | row "basin full" 1 $((side * side)) "wall time" s
+        cut -d' ' -f2 "$scratch/scaling" | row "basin full" 1 $((side * side)) "processor time" s
         awk '{ print 1 }' "$scratch/scaling" | row "basin full" 1 $((side * side)) "parallel efficiency" 1
         awk '{ print $1 / (2 * $3) }' "$scratch/scaling" | row "basin full" 2 $((side * side)) "parallel efficiency" 1
     fi
