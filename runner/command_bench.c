@@ -219,6 +219,8 @@ static int run(int argc, char **argv)
         return command_accuracy.run(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "failure") == 0)
         return command_failure.run(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "schedule") == 0)
+        return command_schedule.run(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "plot") == 0)
         return command_speed.run(argc - 1, argv + 1);
     struct selection what = {.repeats = 5};
@@ -277,8 +279,8 @@ const struct command command_bench = {
     "of them run once more to warm up.\n"
     "\n"
     "`make bench` measures all of this, the whole program and other engines, and draws it with\n"
-    "`stance bench plot`. `stance bench accuracy -h` and `stance bench failure -h` tell of the\n"
-    "studies of error against cost, and of where methods fail.\n"
+    "`stance bench plot`. `stance bench accuracy -h`, `failure -h` and `schedule -h` tell of the\n"
+    "studies of error against cost, of where methods fail, and of jobs on thousands of ranks.\n"
     "\n"
     "--csv: columns as in results/bench.csv.\n"
     "--json: a list of objects with keys scene, regime, method, isa, lanes, ns_per_step, ns_min,\n"
