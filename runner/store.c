@@ -458,6 +458,50 @@ static hid_t select_rows(const struct store *store, size_t width, uint64_t first
     return space;
 }
 
+/* File space with rows of a list selected, point by point; or -1. */
+static hid_t select_list(const struct store *store, size_t width, const uint64_t *rows, size_t n)
+{
+    const int rank = store->rank + (width > 1);
+    hsize_t length[SCENARIO_MAX_AXES + 1];
+    hsize_t *place = malloc(n * width * (size_t)rank * sizeof *place), *at = place;
+    memcpy(length, store->length, sizeof store->length);
+    length[store->rank] = width;
+    for (size_t i = 0; place && i < n * width; i++, at += rank) {
+        uint64_t rest = rows[i / width] * width + i % width;
+        for (int d = rank - 1; d >= 0; d--) {
+            at[d] = rest % length[d];
+            rest /= length[d];
+        }
+    }
+    hid_t space = place ? H5Screate_simple(rank, length, NULL) : -1;
+    if (space >= 0 && H5Sselect_elements(space, H5S_SELECT_SET, n * width, place) < 0) {
+        H5Sclose(space);
+        space = -1;
+    }
+    free(place);
+    return space;
+}
+
+/* Rows to be moved: a list in ascending order, or without one [first, first + n). */
+struct stretch {
+    uint64_t first;
+    const uint64_t *list;
+    size_t n;
+};
+
+static uint64_t stretch_row(const struct stretch *stretch, size_t k)
+{
+    return stretch->list ? stretch->list[k] : stretch->first + k;
+}
+
+static hid_t select_stretch(const struct store *store, size_t width, const struct stretch *stretch)
+{
+    const uint64_t first = stretch_row(stretch, 0);
+    return stretch_row(stretch, stretch->n - 1) - first == stretch->n - 1
+               ? select_rows(store, width, first, stretch->n)
+               : select_list(store, width, stretch->list, stretch->n);
+}
+
 enum direction { READ, WRITE };
 
 /* Moves the rows of one column between its buffer and the file. */
@@ -480,17 +524,18 @@ static bool move_column(struct store *store, int c, hid_t space, size_t n, enum 
 }
 
 /* All columns, in order: the checksum and then the status are the last ones. */
-static bool move_rows(struct store *store, uint64_t first, size_t n, enum direction way,
+static bool move_rows(struct store *store, const struct stretch *stretch, enum direction way,
                       stance_message *message)
 {
-    hid_t narrow = select_rows(store, 1, first, n);
+    hid_t narrow = select_stretch(store, 1, stretch);
     hid_t wide =
-        select_rows(store, 2 * (size_t)store->plan->scenario->scene->coordinates, first, n);
+        select_stretch(store, 2 * (size_t)store->plan->scenario->scene->coordinates, stretch);
     bool good = (narrow >= 0 && wide >= 0) ||
                 store_failed(message, store->file, "select rows of the results");
     for (int c = 0; good && c < COLUMNS; c++) {
         if (store->column[c] >= 0) {
-            good = move_column(store, c, store->width[c] > 1 ? wide : narrow, n, way, message);
+            good = move_column(store, c, store->width[c] > 1 ? wide : narrow, stretch->n, way,
+                               message);
         }
     }
     H5Sclose(narrow);
@@ -529,13 +574,36 @@ static void pack_row(struct store *store, size_t row, const stance_result *resul
     ((uint32_t *)store->buffer[COLUMN_CHECKSUM])[row] = row_checksum(store, row);
 }
 
+void store_blank(stance_result *result)
+{
+    *result = (stance_result){0};
+#define STORE_BLANK(name, type, field, fill, unit, text) result->field = fill;
+    STORE_ANSWERS(STORE_BLANK)
+#undef STORE_BLANK
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++) {
+        result->position[i] = result->velocity[i] = NAN;
+    }
+}
+
+static bool write_stretch(struct store *store, const struct stretch *stretch,
+                          const stance_result *results, stance_message *message)
+{
+    for (size_t row = 0; row < stretch->n; row++) {
+        pack_row(store, row, &results[row]);
+    }
+    return move_rows(store, stretch, WRITE, message);
+}
+
 bool store_write(struct store *store, uint64_t first, size_t n, const stance_result *results,
                  stance_message *message)
 {
-    for (size_t row = 0; row < n; row++) {
-        pack_row(store, row, &results[row]);
-    }
-    return move_rows(store, first, n, WRITE, message);
+    return write_stretch(store, &(struct stretch){first, NULL, n}, results, message);
+}
+
+bool store_write_list(struct store *store, const uint64_t *rows, size_t n,
+                      const stance_result *results, stance_message *message)
+{
+    return write_stretch(store, &(struct stretch){0, rows, n}, results, message);
 }
 
 /* ---- trajectories ------------------------------------------------------------------------- */
@@ -620,20 +688,20 @@ static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
     return good || store_failed(message, store->file, "read a trajectory");
 }
 
-bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
-                  bool *whole, stance_message *message)
+static bool verify_stretch(struct store *store, const struct stretch *stretch,
+                           stance_result *results, bool *whole, stance_message *message)
 {
-    if (!move_rows(store, first, n, READ, message)) {
+    if (!move_rows(store, stretch, READ, message)) {
         return false;
     }
     const uint8_t *status = store->buffer[COLUMN_STATUS];
     const uint8_t *outcome = store->buffer[COLUMN_outcome];
     const uint32_t *checksum = store->buffer[COLUMN_CHECKSUM];
-    for (size_t row = 0; row < n; row++) {
+    for (size_t row = 0; row < stretch->n; row++) {
         uint64_t place;
         whole[row] = (status[row] == STANCE_DONE || status[row] == STANCE_FAILED) &&
                      checksum[row] == row_checksum(store, row);
-        if (whole[row] && plan_recorded(store->plan, first + row, &place) &&
+        if (whole[row] && plan_recorded(store->plan, stretch_row(stretch, row), &place) &&
             !verify_trajectory(store, place, &whole[row], message)) {
             return false;
         }
@@ -641,6 +709,18 @@ bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *
         results[row].outcome = outcome ? outcome[row] : STANCE_NONE;
     }
     return true;
+}
+
+bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
+                  bool *whole, stance_message *message)
+{
+    return verify_stretch(store, &(struct stretch){first, NULL, n}, results, whole, message);
+}
+
+bool store_verify_list(struct store *store, const uint64_t *rows, size_t n, stance_result *results,
+                       bool *whole, stance_message *message)
+{
+    return verify_stretch(store, &(struct stretch){0, rows, n}, results, whole, message);
 }
 
 /* ---- designs and timing ------------------------------------------------------------------- */

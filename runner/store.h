@@ -131,9 +131,14 @@ void store_abandon(struct store *store);
 
 /* Not collective. Designs of the file into the plan. */
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message);
+/* What is stored for a case without answers: every answer its fill value. */
+void store_blank(stance_result *result);
 /* Rows [first, first + n), n <= STORE_ROWS; their status last. */
 bool store_write(struct store *store, uint64_t first, size_t n, const stance_result *results,
                  stance_message *message);
+/* The same for n rows of a list in ascending order. */
+bool store_write_list(struct store *store, const uint64_t *rows, size_t n,
+                      const stance_result *results, stance_message *message);
 /* The trajectory at one place of the recorded cases; before the row itself. */
 bool store_write_trajectory(struct store *store, uint64_t place,
                             const stance_trajectory *trajectory, stance_message *message);
@@ -141,6 +146,8 @@ bool store_write_trajectory(struct store *store, uint64_t place,
  * (where stored) are filled in. Trajectories of recorded cases are verified, too. */
 bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
                   bool *whole, stance_message *message);
+bool store_verify_list(struct store *store, const uint64_t *rows, size_t n, stance_result *results,
+                       bool *whole, stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
                       stance_message *message);

@@ -129,15 +129,9 @@ static stance_trajectory *blank_trajectory(struct bench *bench, const struct pla
 /* What is stored for a case that does not exist. */
 static void fail_initially(stance_result *result)
 {
-    *result = (stance_result){0};
-#define WORK_FILL(name, type, field, fill, unit, text) result->field = fill;
-    STORE_ANSWERS(WORK_FILL)
-#undef WORK_FILL
+    store_blank(result);
     result->status = STANCE_FAILED;
     result->failure = STANCE_FAILURE_INITIAL;
-    for (int i = 0; i < STANCE_MAX_COORDINATES; i++) {
-        result->position[i] = result->velocity[i] = NAN;
-    }
 }
 
 /* Runs the cases of one method among the n of the slice. */
@@ -164,7 +158,18 @@ static void run_method(struct bench *bench, int method, size_t n)
     }
 }
 
-static void tally(struct work *work, const stance_result *result)
+/* Rows are dealt with by their place among those to be computed. */
+static uint64_t places(const struct work *work)
+{
+    return work->only ? work->only->count : work->plan->rows;
+}
+
+static uint64_t row_at(const struct work *work, uint64_t place)
+{
+    return work->only ? work->only->row[place] : place;
+}
+
+void work_tally(struct work *work, const stance_result *result)
 {
     work->finished++;
     if (result->status == STANCE_FAILED) {
@@ -174,7 +179,32 @@ static void tally(struct work *work, const stance_result *result)
     }
 }
 
-/* Computes and writes rows [first, first + *n); *n shrinks when their trajectories do not fit. */
+static void tally(struct work *work, uint64_t place, const stance_result *result)
+{
+    work_tally(work, result);
+    if (work->label) {
+        bool failed = result->status == STANCE_FAILED;
+        work->label[place] = (uint8_t)(failed ? WORK_OUTCOMES + 1 : result->outcome + 1);
+    }
+}
+
+static bool write_rows(const struct work *work, uint64_t first, size_t n,
+                       const stance_result *results, stance_message *message)
+{
+    return work->only ? store_write_list(work->store, work->only->row + first, n, results, message)
+                      : store_write(work->store, first, n, results, message);
+}
+
+static bool verify_rows(const struct work *work, uint64_t first, size_t n, stance_result *results,
+                        bool *whole, stance_message *message)
+{
+    return work->only
+               ? store_verify_list(work->store, work->only->row + first, n, results, whole, message)
+               : store_verify(work->store, first, n, results, whole, message);
+}
+
+/* Computes and writes the rows at places [first, first + *n); *n shrinks when their trajectories do
+ * not fit. */
 static bool compute_rows(struct work *work, struct bench *bench, uint64_t first, size_t *n,
                          stance_message *message)
 {
@@ -183,11 +213,12 @@ static bool compute_rows(struct work *work, struct bench *bench, uint64_t first,
     for (; count < *n; count++) {
         uint64_t place;
         int method;
-        bool record = plan_recorded(work->plan, first + count, &place);
+        const uint64_t row = row_at(work, first + count);
+        bool record = plan_recorded(work->plan, row, &place);
         if (record && recorded == bench->room) {
             break;
         }
-        if (!plan_resolve(work->plan, first + count, &bench->cases[count], &method)) {
+        if (!plan_resolve(work->plan, row, &bench->cases[count], &method)) {
             fail_initially(&bench->results[count]);
             method = -1;
         }
@@ -207,11 +238,11 @@ static bool compute_rows(struct work *work, struct bench *bench, uint64_t first,
             return false;
         }
     }
-    if (!store_write(work->store, first, count, bench->results, message)) {
+    if (!write_rows(work, first, count, bench->results, message)) {
         return false;
     }
     for (size_t i = 0; i < count; i++) {
-        tally(work, &bench->results[i]);
+        tally(work, first + i, &bench->results[i]);
     }
     work->computed += count;
     return true;
@@ -223,7 +254,7 @@ static bool keep_rows(struct work *work, struct bench *bench, uint64_t first, si
                       stance_message *message)
 {
     size_t length = 1;
-    if (!store_verify(work->store, first, *n, bench->results, bench->whole, message)) {
+    if (!verify_rows(work, first, *n, bench->results, bench->whole, message)) {
         return false;
     }
     while (length < *n && bench->whole[length] == bench->whole[0]) {
@@ -232,7 +263,7 @@ static bool keep_rows(struct work *work, struct bench *bench, uint64_t first, si
     *n = length;
     *kept = bench->whole[0];
     for (size_t i = 0; *kept && i < length; i++) {
-        tally(work, &bench->results[i]);
+        tally(work, first + i, &bench->results[i]);
     }
     return true;
 }
@@ -241,7 +272,7 @@ static bool keep_rows(struct work *work, struct bench *bench, uint64_t first, si
 
 struct progress {
     bool terminal;
-    double next, start;
+    double start;
 };
 
 static void duration(char *text, size_t size, double seconds)
@@ -254,30 +285,32 @@ static void duration(char *text, size_t size, double seconds)
     }
 }
 
-static void show_progress(const struct work *work, struct progress *progress)
+static void show_progress(struct work *work, const struct progress *progress)
 {
     double now = plan_clock();
-    if (work->quiet || work->parallel->rank != 0 || now < progress->next) {
+    if (work->quiet || work->parallel->rank != 0 || now < work->progress_due) {
         return;
     }
-    char left[32] = "?";
+    char left[32] = "?", round[32] = "";
     uint64_t finished = (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
     uint64_t kept = (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
     double rate = (double)(finished - kept) / (now - progress->start);
     if (rate > 0) {
-        duration(left, sizeof left, (double)(work->plan->rows - finished) / rate);
+        duration(left, sizeof left, (double)(places(work) - finished) / rate);
     }
-    fprintf(stderr, "%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left%s",
-            progress->terminal ? "\r" : "", finished, work->plan->rows, rate, left,
+    if (work->round > 0) {
+        snprintf(round, sizeof round, "round %d: ", work->round);
+    }
+    fprintf(stderr, "%s%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left%s",
+            progress->terminal ? "\r" : "", round, finished, places(work), rate, left,
             progress->terminal ? "\033[K" : "\n");
     fflush(stderr);
-    progress->next = now + (progress->terminal ? progress_terminal : progress_elsewhere);
+    work->progress_due = now + (progress->terminal ? progress_terminal : progress_elsewhere);
 }
 
 /* ---- the loop ----------------------------------------------------------------------------- */
 
-/* Whether to stop before the next slice, which will take about `expected` seconds. */
-static bool told_to_stop(const struct work *work, double expected)
+bool work_told_to_stop(const struct work *work, double expected)
 {
     if (stop_asked || plan_clock() - work->start + expected > work->time_limit) {
         parallel_add(work->parallel, COUNTER_STOP, 1);
@@ -297,7 +330,7 @@ static bool run_chunk(struct work *work, struct bench *bench, struct progress *p
                    : fits > SLICE_SMALLEST ? (size_t)fits
                                            : SLICE_SMALLEST;
         n = end - first < n ? (size_t)(end - first) : n;
-        if ((*stop = told_to_stop(work, *per_case * (double)n))) {
+        if ((*stop = work_told_to_stop(work, *per_case * (double)n))) {
             return true;
         }
         bool kept = false;
@@ -332,7 +365,7 @@ static bool run_chunks(struct work *work, struct bench *bench, struct progress *
 
     while (!stop) {
         int64_t k = parallel_add(work->parallel, COUNTER_CHUNK, 1);
-        if (!plan_chunk(work->plan->rows, work->parallel->size, (uint64_t)k, &first, &count)) {
+        if (!plan_chunk(places(work), work->parallel->size, (uint64_t)k, &first, &count)) {
             break;
         }
         if (!run_chunk(work, bench, progress, first, count, &per_case, &stop, message)) {
@@ -347,7 +380,10 @@ bool work_run(struct work *work, stance_message *message)
 {
     struct bench bench;
     struct progress progress = {.terminal = isatty(STDERR_FILENO) == 1, .start = plan_clock()};
-    progress.next = progress.start + (progress.terminal ? progress_terminal : progress_elsewhere);
+    if (work->progress_due <= 0) {
+        work->progress_due =
+            progress.start + (progress.terminal ? progress_terminal : progress_elsewhere);
+    }
 
     bool good = bench_make(&bench, work->plan);
     if (!good) {

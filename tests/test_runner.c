@@ -307,6 +307,37 @@ static void test_rows(void **state)
     }
 }
 
+/* Lists of rows, scattered and in one stretch: those are whole, and no others were touched. */
+static void test_listed_rows(void **state)
+{
+    struct fixture *f = *state;
+    struct store *store;
+    stance_message message;
+    struct plan plan = f->plan;
+    plan.record_rows = 0, plan.record_cases = 0;
+    unlink(f->file);
+    assert_true(store_create(f->file, &plan, 1, "here", &message));
+    assert_true(store_open(&store, f->file, &plan, 1, &message));
+    for (uint64_t third = 0; third < 3; third++) {
+        const uint64_t begin = 20 * third, step = 7 - 3 * third;
+        stance_result results[20], read[20];
+        uint64_t rows[20];
+        bool whole[60];
+        size_t n = 0;
+        for (uint64_t row = begin; row < begin + 20; row += step) {
+            results[n] = numbered(row);
+            rows[n++] = row;
+        }
+        assert_true(store_write_list(store, rows, n, results, &message));
+        assert_true(store_verify_list(store, rows, n, read, whole, &message));
+        for (size_t i = 0; i < n; i++)
+            assert_true(whole[i] && read[i].outcome == STANCE_FELL);
+        for (uint64_t row = begin; row < 60; row++)
+            assert_whole(store, row, 1, row < begin + 20 && (row - begin) % step == 0);
+    }
+    assert_true(store_close(store, &message));
+}
+
 static void test_designs_stored(void **state)
 {
     struct fixture *f = *state;
@@ -499,14 +530,14 @@ static void test_lock(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_crc32c),       cmocka_unit_test(test_sha256),
-        cmocka_unit_test(test_nearest_word), cmocka_unit_test(test_options),
-        cmocka_unit_test(test_chunks),       cmocka_unit_test(test_designs),
-        cmocka_unit_test(test_recorded),     cmocka_unit_test(test_checks),
-        cmocka_unit_test(test_rows),         cmocka_unit_test(test_designs_stored),
-        cmocka_unit_test(test_origin),       cmocka_unit_test(test_lock),
-        cmocka_unit_test(test_plain_scene),  cmocka_unit_test(test_check),
-        cmocka_unit_test(test_supervise),
+        cmocka_unit_test(test_crc32c),         cmocka_unit_test(test_sha256),
+        cmocka_unit_test(test_nearest_word),   cmocka_unit_test(test_options),
+        cmocka_unit_test(test_chunks),         cmocka_unit_test(test_designs),
+        cmocka_unit_test(test_recorded),       cmocka_unit_test(test_checks),
+        cmocka_unit_test(test_rows),           cmocka_unit_test(test_listed_rows),
+        cmocka_unit_test(test_designs_stored), cmocka_unit_test(test_origin),
+        cmocka_unit_test(test_lock),           cmocka_unit_test(test_plain_scene),
+        cmocka_unit_test(test_check),          cmocka_unit_test(test_supervise),
     };
     store_prepare();
     return cmocka_run_group_tests_name("runner", tests, make_fixture, free_fixture);

@@ -1,0 +1,135 @@
+/* rounds.c - ask what to simulate, compute it together, tell all ranks the labels, ask again. */
+#include "rounds.h"
+
+#include "refine.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROUND_LARGEST = 1 << 20 };
+
+_Static_assert((int)REFINE_FAILED == (int)WORK_OUTCOMES + 1, "labels of work.h are refine.h's");
+
+struct rounds {
+    struct work *work;
+    struct refine *refine;
+    uint64_t *row;
+    uint8_t *label; /* [ROUND_LARGEST] each */
+};
+
+static bool rounds_make(struct rounds *rounds, struct work *work)
+{
+    const struct scenario *s = work->plan->scenario;
+    const struct refine_map map = refine_map_of(s);
+    *rounds = (struct rounds){.work = work, .refine = refine_make(&map)};
+    rounds->row = malloc(ROUND_LARGEST * sizeof *rounds->row);
+    rounds->label = malloc(ROUND_LARGEST);
+    for (uint64_t k = 0; rounds->refine && k < work->plan->record_cases; k++) {
+        refine_want(rounds->refine, plan_recorded_case(work->plan, k));
+    }
+    return rounds->refine && rounds->row && rounds->label;
+}
+
+static void rounds_free(struct rounds *rounds)
+{
+    refine_free(rounds->refine);
+    free(rounds->row);
+    free(rounds->label);
+}
+
+/* *complete: there was nothing left to simulate, or no time to do so. */
+static bool run_round(struct rounds *rounds, bool *complete, bool *stopped, stance_message *message)
+{
+    struct work *work = rounds->work;
+    const struct work_rows rows = {rounds->row,
+                                   refine_next(rounds->refine, rounds->row, ROUND_LARGEST)};
+
+    *complete = rows.count == 0;
+    if (*complete) {
+        return true;
+    }
+    memset(rounds->label, 0, rows.count);
+    work->only = &rows;
+    work->label = rounds->label;
+    work->round++;
+    parallel_restart(work->parallel);
+    bool good = work_run(work, message);
+    work->only = NULL;
+    work->label = NULL;
+    if (!parallel_agree(work->parallel, good, message->text, sizeof message->text)) {
+        return false;
+    }
+    parallel_largest(work->parallel, rounds->label, rows.count);
+    for (size_t k = 0; k < rows.count; k++) {
+        *stopped = *stopped || rounds->label[k] == REFINE_UNKNOWN;
+        if (!*stopped) {
+            refine_set(rounds->refine, rounds->row[k], rounds->label[k]);
+        }
+    }
+    return true;
+}
+
+/* ---- what is inferred --------------------------------------------------------------------- */
+
+static void infer(stance_result *result, int label)
+{
+    store_blank(result);
+    result->status = STANCE_DONE;
+    result->outcome = label - 1;
+    result->evidence = STANCE_INFERRED;
+}
+
+/* Writes the inferred rows of this rank's part of the file. */
+static bool write_inferred(struct rounds *rounds, stance_message *message)
+{
+    struct work *work = rounds->work;
+    const uint64_t rows = work->plan->rows;
+    const uint64_t ranks = (uint64_t)work->parallel->size, rank = (uint64_t)work->parallel->rank;
+    const uint64_t end = rows / ranks * (rank + 1) + rows % ranks * (rank + 1) / ranks;
+    stance_result result[STORE_ROWS];
+    uint64_t list[STORE_ROWS];
+    size_t n = 0;
+
+    for (uint64_t row = rows / ranks * rank + rows % ranks * rank / ranks; row < end; row++) {
+        if (refine_inferred(rounds->refine, row)) {
+            infer(&result[n], refine_label(rounds->refine, row));
+            list[n++] = row;
+        }
+        if (n < STORE_ROWS && (row + 1 < end || n == 0)) {
+            continue;
+        }
+        if (work_told_to_stop(work, 0)) {
+            return true;
+        }
+        if (!store_write_list(work->store, list, n, result, message)) {
+            return false;
+        }
+        for (size_t k = 0; k < n; k++) {
+            work_tally(work, &result[k]);
+        }
+        work->inferred += n;
+        n = 0;
+    }
+    return true;
+}
+
+bool rounds_run(struct work *work, stance_message *message)
+{
+    struct rounds rounds;
+    bool complete = false, stopped = false, good = rounds_make(&rounds, work);
+
+    if (!good) {
+        snprintf(message->text, sizeof message->text, "not enough memory to refine %llu cases",
+                 (unsigned long long)work->plan->rows);
+    }
+    good = parallel_agree(work->parallel, good, message->text, sizeof message->text);
+    while (good && !complete && !stopped) {
+        good = run_round(&rounds, &complete, &stopped, message);
+    }
+    if (good && complete) {
+        refine_infer(rounds.refine);
+        good = write_inferred(&rounds, message);
+    }
+    rounds_free(&rounds);
+    return good;
+}
