@@ -491,7 +491,7 @@ bool plot_maps(const struct plot *plot, stance_message *message)
     if (!statistics_inferred(plot->r, &inferred, NULL, message)) {
         return false;
     }
-    m.none = inferred > 0 ? "not settled, or inferred" : m.none;
+    m.none = inferred > 0 ? "none or inferred" : m.none;
     if (!draw_outcomes(plot, &layout, message) ||
         !results_answer(plot->r, "settle_time", &m.values, message)) {
         return false;
@@ -519,9 +519,11 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
         return false;
     }
     plot_answer_title(answer, what, sizeof what);
-    const bool any = answer->of == RESULTS_KIND_COUNT;
-    snprintf(none, sizeof none, "%s%s%s", any ? "no number" : "not ",
-             any ? "" : results_kind_names[answer->of], inferred > 0 ? ", or inferred" : "");
+    snprintf(none, sizeof none,
+             inferred > 0                       ? "none or inferred"
+             : answer->of == RESULTS_KIND_COUNT ? "no number"
+                                                : "not %s",
+             answer->of == RESULTS_KIND_COUNT ? "" : results_kind_names[answer->of]);
     make_layout(plot, &layout);
     bool good = draw_measure(plot, &layout, &m, message);
     free(m.values);

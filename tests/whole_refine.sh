@@ -4,7 +4,8 @@
 # Speaks TAP. Uses bin/stance, or the program that STANCE names; STANCE_SLOW: that is a slow one.
 set -u
 cd "$(dirname "$0")/.."
-stance=${STANCE:-$PWD/bin/stance} python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
+export STANCE=${STANCE:-$PWD/bin/stance}
+stance=$STANCE python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
 scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
@@ -159,4 +160,63 @@ assert (evidence[:, none] == 0).all() and (evidence[:, ~none] > 0).all()
 assert (evidence == 2).mean() > 0.2, (evidence == 2).mean()
 END
 result $? "failed cases were tried, each of them"
+
+# ---- what the other commands make of it --------------------------------------------------------
+expect "check says what will be simulated" 0 "$stance" check map.yaml "${refine[@]}" --json
+mv log check.json
+"$python" - >log 2>&1 <<END
+import json, math
+found = json.load(open("check.json"))
+side = math.ceil(($points - 1) / 2 ** math.ceil(math.log2($points / 16))) + 1
+cases = 2 * $points**2
+assert found["refine"] == {"coarse_cases": 2 * side**2, "most_cases": cases,
+                           "probes": round(0.01 * (cases - 2 * side**2))}, (found["refine"], side)
+assert found["cases"] == cases and found["seconds_is_upper_bound"]
+END
+result $? "... as JSON"
+expect "a dry run" 0 mpirun -n 2 "$stance" run map.yaml "${refine[@]}" -o dry.h5 --dry-run
+says "... says it, too" '^refine .* coarse lattice'
+expect "without refinement" 0 "$stance" check map.yaml --json
+says "... there is none" '"refine": null'
+expect "a summary" 0 "$stance" summary map.h5
+says "... counts what was inferred" 'not simulated: inferred'
+expect "a summary as JSON" 0 "$stance" summary map.h5 --json
+mv log summary.json
+"$python" -c 'import h5py, json
+assert json.load(open("summary.json"))["cases"]["inferred"] == \
+    (h5py.File("map.h5")["evidence"][...] == 2).sum()' >log 2>&1
+result $? "... counts the same"
+expect "maps" 0 "$stance" plot map.h5 -o .
+grep -q "inferred from neighbours" map-map.svg
+result $? "... say what was inferred"
+expect "bit for bit the maps differ" 1 "$stance" compare full.h5 map.h5
+expect "in their labels they do not" 0 "$stance" compare --labels full.h5 map.h5
+says "... says so" "^labels: $((2 * points * points)) of $((2 * points * points)) equal (100 %)"
+# Some labels changed: how far from the boundary, worked out here from its definition.
+"$python" - >log 2>&1 <<'END'
+import h5py, json, numpy, shutil, subprocess, os
+stance = os.environ["STANCE"]
+label = h5py.File("full.h5")["outcome"][...]
+for seed in range(4):
+    shutil.copy("map.h5", "other.h5")
+    places = numpy.random.default_rng(seed).integers(0, label.size, 5)
+    with h5py.File("other.h5", "r+") as f:
+        changed = f["outcome"][...]
+        changed.flat[places] = 3
+        f["outcome"][...] = changed
+    farthest = 0
+    for at in places:
+        i, k, j = numpy.unravel_index(at, label.shape)
+        x, y = numpy.nonzero(label[:, k, :] != label[i, k, j])
+        farthest = max(farthest, numpy.maximum(abs(x - i), abs(y - j)).min())
+    done = subprocess.run([stance, "compare", "--labels", "--json", "full.h5", "other.h5"],
+                          capture_output=True)
+    found = json.loads(done.stdout)
+    assert done.returncode == 1 and found["farthest"] == farthest > 0, (found, farthest)
+    assert found["equal"] == label.size - len(set(places)) and found["compared"] == label.size
+    assert found["first"][0]["index"] == min(places) and found["first"][0]["values"][1] == "rested"
+END
+result $? "compare --labels measures how far from the boundary"
+expect "maps over other axes are not compared" 2 "$stance" compare --labels full.h5 cube.h5
+says "... says so" 'not over the same axes'
 echo "1..$count"
