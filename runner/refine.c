@@ -139,7 +139,7 @@ static struct box cell_box(const struct refine *refine, const struct level *leve
                            const size_t *place, const size_t *step)
 {
     const struct refine_map *map = &refine->map;
-    struct box box;
+    struct box box = {{0}, {0}, {0}};
     for (int a = 0; a < map->axes; a++) {
         const size_t stride = level->stride[a];
         box.low[a] = place[a] * stride;
@@ -155,7 +155,7 @@ static struct box cell_box(const struct refine *refine, const struct level *leve
 static bool make_levels(struct refine *refine)
 {
     const struct refine_map *map = &refine->map;
-    size_t coarsest[SCENARIO_MAX_AXES], most = 1;
+    size_t coarsest[SCENARIO_MAX_AXES] = {0}, most = 1;
     for (int a = 0; a < map->axes; a++) {
         coarsest[a] = coarsest_stride(map, a);
         most = coarsest[a] > most ? coarsest[a] : most;
@@ -181,7 +181,7 @@ static bool make_levels(struct refine *refine)
 struct refine *refine_make(const struct refine_map *map)
 {
     struct refine *refine = calloc(1, sizeof *refine);
-    struct box whole;
+    struct box whole = {{0}, {0}, {0}};
 
     if (!refine) {
         return NULL;

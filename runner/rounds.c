@@ -37,7 +37,7 @@ static void rounds_free(struct rounds *rounds)
     free(rounds->label);
 }
 
-/* *complete: there was nothing left to simulate, or no time to do so. */
+/* *complete: there was nothing left to simulate. *stopped: some of the round was not. */
 static bool run_round(struct rounds *rounds, bool *complete, bool *stopped, stance_message *message)
 {
     struct work *work = rounds->work;
@@ -116,13 +116,13 @@ static bool write_inferred(struct rounds *rounds, stance_message *message)
 bool rounds_run(struct work *work, stance_message *message)
 {
     struct rounds rounds;
-    bool complete = false, stopped = false, good = rounds_make(&rounds, work);
+    bool complete = false, stopped = false, made = rounds_make(&rounds, work);
 
-    if (!good) {
+    if (!made) {
         snprintf(message->text, sizeof message->text, "not enough memory to refine %llu cases",
                  (unsigned long long)work->plan->rows);
     }
-    good = parallel_agree(work->parallel, good, message->text, sizeof message->text);
+    bool good = parallel_agree(work->parallel, made, message->text, sizeof message->text) && made;
     while (good && !complete && !stopped) {
         good = run_round(&rounds, &complete, &stopped, message);
     }
