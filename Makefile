@@ -50,10 +50,10 @@ MACHINE := $(shell uname -m)
 ISAS_x86_64  = scalar sse2 avx2 avx512
 ISAS_aarch64 = scalar neon
 ISAS    := $(or $(ISAS_$(MACHINE)),scalar)
-isa_flags_scalar = -DSTANCE_LANES=1
+isa_flags_scalar = -DSTANCE_LANES=1 -mfma
 isa_flags_sse2   = -DSTANCE_LANES=2
 isa_flags_neon   = -DSTANCE_LANES=2
-isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2
+isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2 -mfma
 isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl
 
 kernels := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i)))) \

@@ -214,8 +214,11 @@ static void bundle_begin(struct bundle *b, mask fresh)
         b->now.gap[c] = choose(fresh, scene_gap(&b->set.body, b->now.s, &trig, c), b->now.gap[c]);
         b->now.approach[c] = choose(fresh, u[0], b->now.approach[c]);
     }
-    b->energy_bound = choose(fresh, scene_energy(&b->set.body, b->now.s, b->now.w, &b->now.trig),
-                             b->energy_bound);
+    struct motion begin = b->now;
+    motion_energy(&b->set, &begin);
+    b->now.kinetic = choose(fresh, begin.kinetic, b->now.kinetic);
+    b->now.energy = choose(fresh, begin.energy, b->now.energy);
+    b->energy_bound = choose(fresh, begin.energy, b->energy_bound);
 }
 
 /* Uniform in [-1, 1): actuator i of sampling instant k, keyed as stance.h says. */
@@ -309,7 +312,11 @@ static inline void bundle_account(struct bundle *b, mask ok, const struct step_r
     b->subdivided += choose(ok, report->subdivided, none);
     b->degraded += choose(ok, report->degraded, none);
     b->energy_bound += choose(ok, report->work, none);
+#ifdef ADVANCE_TELLS_ENERGY
+    const lanes energy = b->now.energy;
+#else
     const lanes energy = scene_energy(&b->set.body, b->now.s, b->now.w, &b->now.trig);
+#endif
     b->energy_gain =
         choose(ok, lanes_max(energy - b->energy_bound, b->energy_gain), b->energy_gain);
     b->friction_used = choose(ok, lanes_max(report->friction, b->friction_used), b->friction_used);

@@ -138,8 +138,9 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
                     problem.D[c][k][a][b] = e->D[c][k][a][b] + (reach[c][0][a] * answer[k][b][0] +
                                                                 reach[c][1][a] * answer[k][b][1]);
     for (int round = 0; round < 2; round++) {
-        solve_contacts(set, (const lanes(*)[2][2][2])problem.D, (const lanes(*)[2])problem.free,
-                       contact->slide, true, part, problem.r, &ambiguous, &unsolved);
+        solve_contacts(set->friction, (const lanes(*)[2][2][2])problem.D,
+                       (const lanes(*)[2])problem.free, contact->slide, true, touching, part,
+                       problem.r, &ambiguous, &unsolved);
         several |= where & ambiguous;
         if (round > 0 || !mask_any(unsolved))
             break;

@@ -32,9 +32,6 @@ struct dynamics {
     lanes degraded, several; /* 1: not quite what it promises, not unique: see decoupling.h */
 };
 
-/* Contacts that matter in any lane: bit c. What an open contact would respond costs nothing. */
-typedef unsigned contact_set;
-
 /* Contact terms of the contacts that are not in `touching`: zero, so that sums may run over all. */
 static inline void dynamics_clear(contact_set touching, struct dynamics *e)
 {

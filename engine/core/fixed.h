@@ -1,12 +1,16 @@
-/* fixed.h - advances by fixed implicit steps; a step that does not converge is tried with each
- * torque free or at its limit in turn, then taken in parts.
+/* fixed.h - advances by fixed implicit steps: the quick way where a step is ordinary, else with all
+ * that step.h can do; a step that does not converge is tried with each torque free or at its limit
+ * in turn, then taken in parts.
  *
  * One of the ways to get from one step's end to the next (`advance`, see bundle.h).
  */
 #ifndef STANCE_CORE_FIXED_H
 #define STANCE_CORE_FIXED_H
 
-#include "step.h"
+#include "quick.h"
+
+/* Motions know their energy. */
+#define ADVANCE_TELLS_ENERGY
 
 /* A law that is not linear acts once a step, on the state at its beginning. */
 #define ADVANCE_SAMPLES_LAWS
@@ -15,12 +19,13 @@
 #define FIXED_FREEZE_AFTER 6    /* ... and in the last attempt the geometry freezes here */
 
 struct advance {
-    char nothing; /* to remember between steps */
+    struct quick quick;
 };
 
 static void advance_load(struct advance *a, int lane, const stance_case *c)
 {
-    (void)a, (void)lane, (void)c;
+    (void)c;
+    quick_forget(&a->quick, mask_of_lane(lane));
 }
 static void advance_free(struct advance *a)
 {
@@ -90,18 +95,51 @@ static mask fixed_subdivide(const struct setting *set, const struct motion *from
     return run & LANES_NOT(failed);
 }
 
+/* Contacts that are closed in any of the lanes. */
+static inline contact_set fixed_touching(const struct setting *set, const struct motion *now,
+                                         mask live)
+{
+    contact_set touching = 0;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (mask_any(live & mask_less(lanes_of(0), set->may_touch[c]) &
+                     mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED))))
+            touching |= 1u << c;
+    return touching;
+}
+
 static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
                            lanes h, mask live, bool coupled, struct motion *now,
                            struct step_report *report, mask *failed)
 {
-    (void)a;
     struct motion next = *now;
-    mask ok = fixed_step(set, now, torque, h, live, coupled, STEP_MAX_ITERATIONS, &next, report);
-    const mask stuck = live & LANES_NOT(ok);
-    if (mask_any(stuck))
-        ok |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, report);
+    mask ok = MASK_NONE;
+    if (!coupled) {
+        const contact_set touching = fixed_touching(set, now, live);
+        enum { NO = 0, FIRST = 1, OTHER = 1 << SECOND & 2, BOTH = (1 << SCENE_CONTACTS) - 1 };
+        if (touching == NO)
+            ok = quick_step(&a->quick, set, now, torque, h, live, NO, &next, report);
+        else if (touching == FIRST)
+            ok = quick_step(&a->quick, set, now, torque, h, live, FIRST, &next, report);
+        else if (touching == OTHER)
+            ok = quick_step(&a->quick, set, now, torque, h, live, OTHER, &next, report);
+        else
+            ok = quick_step(&a->quick, set, now, torque, h, live, BOTH, &next, report);
+    }
+    const mask other = live & LANES_NOT(ok);
+    *failed = MASK_NONE;
+    if (mask_any(other)) {
+        struct step_report slow;
+        mask there =
+            fixed_step(set, now, torque, h, other, coupled, STEP_MAX_ITERATIONS, &next, &slow);
+        const mask stuck = other & LANES_NOT(there);
+        if (mask_any(stuck))
+            there |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, &slow);
+        choose_all(other, &slow, report, sizeof slow);
+        *failed = other & LANES_NOT(there);
+        ok |= there;
+        quick_forget(&a->quick, other);
+    }
     *now = next;
-    *failed = live & LANES_NOT(ok);
     return ok;
 }
 

@@ -20,8 +20,12 @@
     extern const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name, STANCE_ISA);               \
     extern const stance_scene STANCE_JOIN2(scene, STANCE_SCENE);                                   \
     extern const stance_method STANCE_JOIN2(method, name);                                         \
-    const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name, STANCE_ISA) = {                   \
-        &STANCE_JOIN2(scene, STANCE_SCENE), &STANCE_JOIN2(method, name), STANCE_QUOTE(STANCE_ISA), \
-        STANCE_LANES, bundle_stream, bundle_run}
+    const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name,                                   \
+                                     STANCE_ISA) = {&STANCE_JOIN2(scene, STANCE_SCENE),            \
+                                                    &STANCE_JOIN2(method, name),                   \
+                                                    STANCE_QUOTE(STANCE_ISA),                      \
+                                                    STANCE_LANES,                                  \
+                                                    bundle_stream,                                 \
+                                                    bundle_run}
 
 #endif

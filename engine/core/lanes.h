@@ -53,6 +53,18 @@ static inline lanes lanes_abs(lanes a)
 {
     return fabs(a);
 }
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return __builtin_fma(-a, b, c);
+}
 
 #elif STANCE_LANES == 8 && defined(__AVX512F__)
 
@@ -85,6 +97,18 @@ static inline bool mask_any(mask m)
 static inline lanes lanes_abs(lanes a)
 {
     return _mm512_abs_pd(a);
+}
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return _mm512_fmadd_pd(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return _mm512_fmsub_pd(a, b, c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return _mm512_fnmadd_pd(a, b, c);
 }
 
 #elif STANCE_LANES == 4 && defined(__AVX2__)
@@ -119,6 +143,18 @@ static inline lanes lanes_abs(lanes a)
 {
     return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
 }
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return _mm256_fmadd_pd(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return _mm256_fmsub_pd(a, b, c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return _mm256_fnmadd_pd(a, b, c);
+}
 
 #elif STANCE_LANES == 2 /* SSE2, NEON: the compiler's generic vectors */
 
@@ -150,6 +186,18 @@ static inline bool mask_any(mask m)
 static inline lanes lanes_abs(lanes a)
 {
     return (lanes)((mask)a & (mask){INT64_MAX, INT64_MAX});
+}
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return (lanes){__builtin_fma(a[0], b[0], c[0]), __builtin_fma(a[1], b[1], c[1])};
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return lanes_fma(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return lanes_fma(-a, b, c);
 }
 
 #else

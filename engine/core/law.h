@@ -20,13 +20,7 @@
 #define STANCE_CORE_LAW_H
 
 #include "lanes.h"
-
-enum {
-    SECOND = SCENE_CONTACTS - 1, /* the other contact, where there are two */
-    FIRST_ANGLE = SCENE_COORDINATES - SCENE_ANGLES,
-    ACTUATORS = SLOTS(SCENE_ACTUATORS), /* lengths of arrays that may be empty */
-    POSTURES = SLOTS(SCENE_POSTURE),
-};
+#include "sizes.h"
 
 struct linear_law {
     lanes feedforward[ACTUATORS];
@@ -66,8 +60,8 @@ static inline void linear_torque(const struct linear_law *law, const lanes *post
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         torque[i] = law->feedforward[i];
         for (int j = 0; j < SCENE_POSTURE; j++)
-            torque[i] -= law->gain[i][j] * (posture[j] - law->target[j]) +
-                         law->gain[i][SCENE_POSTURE + j] * rate[j];
+            torque[i] = lanes_fnma(law->gain[i][j], posture[j] - law->target[j],
+                                   lanes_fnma(law->gain[i][SCENE_POSTURE + j], rate[j], torque[i]));
     }
 }
 

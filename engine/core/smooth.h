@@ -197,8 +197,8 @@ static inline void smooth_mode(const struct setting *set, const struct dynamics 
         return;
     lanes r[2][2];
     mask starting[SCENE_CONTACTS], ambiguous, unsolved, begins = MASK_NONE;
-    solve_contacts(set, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, sliding, false,
-                   part, r, &ambiguous, &unsolved);
+    solve_contacts(set->friction, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free,
+                   sliding, false, touching, part, r, &ambiguous, &unsolved);
     trouble->none = any & unsolved;
     trouble->several = any & ambiguous & slides;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -265,8 +265,8 @@ static inline void smooth_project_position(const struct setting *set, const mask
         if (!mask_any(todo))
             return;
         lanes d[SCENE_COORDINATES];
-        project_multipliers(set, &e->trig, (const lanes(*)[SCENE_COORDINATES])lift, held, error,
-                            multiplier);
+        project_multipliers(set, &e->trig, (1u << SCENE_CONTACTS) - 1,
+                            (const lanes(*)[SCENE_COORDINATES])lift, held, error, multiplier);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             lanes sum = lift[0][i] * multiplier[0];
             if (SCENE_CONTACTS > 1)
@@ -330,8 +330,8 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
         uf[c][0] = e.u[c][0] + set->restitution * lanes_min(e.u[c][0], none);
         uf[c][1] = e.u[c][1];
     }
-    solve_contacts(set, (const lanes(*)[2][2][2])e.D, (const lanes(*)[2])uf, NULL, false, part, r,
-                   &ambiguous, &unsolved);
+    solve_contacts(set->friction, (const lanes(*)[2][2][2])e.D, (const lanes(*)[2])uf, NULL, false,
+                   (1u << SCENE_CONTACTS) - 1, part, r, &ambiguous, &unsolved);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int i = 0; i < SCENE_COORDINATES; i++)
             now->w[i] =

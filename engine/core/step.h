@@ -27,7 +27,7 @@
 #ifndef STANCE_CORE_STEP_H
 #define STANCE_CORE_STEP_H
 
-#include "contact.h"
+#include "direct.h"
 #include "law.h"
 
 #define STEP_MAX_ITERATIONS 25
@@ -58,7 +58,15 @@ struct motion {
     scene_trig trig;                /* at s */
     lanes t;                        /* s */
     lanes integral[ACTUATORS];      /* what the law has summed, see law.h */
+    lanes energy, kinetic;          /* J, of this state; where steps of step.h are taken */
 };
+
+/* Fills in the energies of a motion. */
+static inline void motion_energy(const struct setting *set, struct motion *m)
+{
+    m->kinetic = scene_kinetic(&set->body, &m->trig, m->w);
+    m->energy = m->kinetic + scene_potential(&set->body, m->s, &m->trig);
+}
 
 /* What a step did; consists of lanes (choose_all). */
 struct step_report {
@@ -88,7 +96,10 @@ struct iterate {
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
     mask active[SCENE_CONTACTS];
     mask ambiguous, unsolved;
-    const int *corner; /* see law_inside */
+    lanes size, speed; /* of the last correction; of the velocity, at least 1 */
+    lanes shift;       /* how far impulses moved with it, as a velocity */
+    lanes approach[SCENE_CONTACTS], energy, kinetic; /* at the end, see struct motion */
+    const int *corner;                               /* see law_inside */
 };
 
 /* The velocity that forces and positions see: (1 - theta) w0 + theta w. */
@@ -121,59 +132,71 @@ static inline void iterate_place(const struct setting *set, const struct motion 
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
 }
 
-/* Impulses of the active contacts for the linearised step; zero elsewhere. `sliding`: see
- * contact_problem. */
-static inline void solve_contacts(const struct setting *set, const lanes D[2][2][2][2],
-                                  const lanes uf[2][2], const lanes *sliding, bool indefinite,
-                                  const mask *active, lanes r[2][2], mask *ambiguous,
-                                  mask *unsolved)
+/* Contact impulses of an iterate: adds what they do to the correction dw of the velocity. */
+static inline void iterate_contacts(const struct setting *set, const struct motion *from,
+                                    mask running, bool coupled, contact_set touching,
+                                    const scene_matrix *J, const scene_trig *direction, lanes lever,
+                                    lanes *dw, struct iterate *it)
 {
-    lanes scale = lanes_of(1);
+    lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES];
     for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            response[c][0][i] = response[c][1][i] = lanes_of(0);
+    lanes D[2][2][2][2], uf[2][2]; /* of SCENE_CONTACTS contacts; zero of those that are open */
+    for (int c = 0; c < 2; c++)
         for (int a = 0; a < 2; a++) {
-            scale = lanes_max(choose(active[c], lanes_abs(uf[c][a]), lanes_of(0)), scale);
-            r[c][a] = lanes_of(0);
-        }
-    const lanes tolerance = CONTACT_TOLERANCE * scale;
-    *ambiguous = *unsolved = MASK_NONE;
-    const mask both = SCENE_CONTACTS > 1 ? active[0] & active[SECOND] : MASK_NONE;
-    const mask one = (active[0] | active[SECOND]) & LANES_NOT(both);
-    contact_choice best;
-    if (mask_any(one)) {
-        lanes D1[2][2][2][2], uf1[2][2], sliding1[1];
-        if (sliding)
-            sliding1[0] = choose(active[0], sliding[0], sliding[SECOND]);
-        for (int a = 0; a < 2; a++) {
-            uf1[0][a] = choose(active[0], uf[0][a], uf[SECOND][a]);
+            uf[c][a] = lanes_of(0);
             for (int b = 0; b < 2; b++)
-                D1[0][0][a][b] = choose(active[0], D[0][0][a][b], D[SECOND][SECOND][a][b]);
+                D[c][0][a][b] = D[c][1][a][b] = lanes_of(0);
         }
-        contact_solve(&(contact_problem){D1, uf1, sliding ? sliding1 : NULL, set->friction,
-                                         tolerance, 1, indefinite},
-                      &best);
-        for (int a = 0; a < 2; a++) {
-            for (int c = 0; c < SCENE_CONTACTS; c++)
-                r[c][a] = choose(one & active[c], best.r[0][a], r[c][a]);
-        }
-        *ambiguous |= one & best.ambiguous;
-        *unsolved |= one & LANES_NOT(mask_less_equal(best.violation, 1e3 * tolerance));
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            scene_contact_response(&set->body, J, coupled, direction, c, response[c]);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes now[2], moved[2];
+        if (!(touching >> c & 1))
+            continue;
+        scene_contact_velocity(&set->body, &it->end, c, it->w, now);
+        scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, dw, moved);
+        uf[c][0] = lanes_fma(set->restitution, lanes_min(from->approach[c], lanes_of(0)),
+                             now[0] + moved[0]);
+        uf[c][1] = now[1] + moved[1];
+        for (int k = 0; k < SCENE_CONTACTS; k++)
+            for (int b = 0; b < 2 && touching >> k & 1; b++) {
+                scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, response[k][b],
+                                              moved);
+                D[c][k][0][b] = moved[0];
+                D[c][k][1][b] = moved[1];
+            }
     }
-    if (SCENE_CONTACTS > 1 && mask_any(both)) {
-        contact_solve(&(contact_problem){D, uf, sliding, set->friction, tolerance, 2, indefinite},
-                      &best);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            for (int a = 0; a < 2; a++)
-                r[c][a] = choose(both, best.r[c][a], r[c][a]);
-        *ambiguous |= both & best.ambiguous;
-        *unsolved |= both & LANES_NOT(mask_less_equal(best.violation, 1e3 * tolerance));
+    lanes r[2][2];
+    mask ambiguous, unsolved;
+    solve_contacts(set->friction, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, NULL, false,
+                   touching, it->active, r, &ambiguous, &unsolved);
+    it->ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
+    it->unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        if (!(touching >> c & 1))
+            continue;
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            /* Where nothing touches even the sign of a zero stays as it is. */
+            const lanes pushed =
+                lanes_fma(response[c][0][i], r[c][0], lanes_fma(response[c][1][i], r[c][1], dw[i]));
+            dw[i] = choose(it->active[c] & running, pushed, dw[i]);
+            it->lift[c][i] = choose(running, response[c][0][i], it->lift[c][i]);
+        }
+        for (int a = 0; a < 2; a++) {
+            it->shift = lanes_fma(lanes_abs(r[c][a] - it->r[c][a]), D[c][c][a][a], it->shift);
+            it->r[c][a] = choose(running, r[c][a], it->r[c][a]);
+        }
     }
 }
 
-/* One Newton iteration in the lanes that still run; returns the size of the correction. With the
+/* One Newton iteration in the lanes that still run. With the
  * geometry frozen the derivatives by it are left out too, so that the operator is constant. */
-static inline lanes iterate_newton(const struct setting *set, const struct motion *from, lanes h,
-                                   mask running, mask impact, bool coupled, bool frozen,
-                                   struct iterate *it)
+static inline void iterate_newton(const struct setting *set, const struct motion *from, lanes h,
+                                  mask running, bool impacts, mask impact, bool coupled,
+                                  bool frozen, contact_set touching, struct iterate *it)
 {
     const double moves = frozen ? 0 : METHOD_THETA;
     const lanes lever = h * (METHOD_THETA * moves), end_lever = h * moves;
@@ -183,9 +206,9 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
         v[i] = step_velocity(from->w[i], it->w[i]);
         change[i] = it->w[i] - from->w[i];
     }
-    scene_trig direction = it->end;
-    lanes direction_lever = end_lever;
-    if (METHOD_THETA != 1) {
+    scene_trig direction = *trig;
+    lanes direction_lever = METHOD_THETA == 1 ? end_lever : lever;
+    if (METHOD_THETA != 1 && impacts) {
         scene_choose_trig(impact, &it->end, &it->middle, &direction);
         direction_lever = choose(impact, end_lever, lever);
     }
@@ -210,82 +233,52 @@ static inline lanes iterate_newton(const struct setting *set, const struct motio
         residual[i] = -residual[i];
     scene_solve(&J, coupled, residual, dw);
 
-    mask touching = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        touching |= it->active[c] & running;
-    if (mask_any(touching)) {
-        lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES];
-        lanes D[2][2][2][2], uf[2][2]; /* of SCENE_CONTACTS contacts */
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            scene_contact_response(&set->body, &J, coupled, &direction, c, response[c]);
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
-            lanes now[2], moved[2];
-            scene_contact_velocity(&set->body, &it->end, c, it->w, now);
-            scene_contact_velocity_change(&set->body, &it->end, c, it->w, end_lever, dw, moved);
-            uf[c][0] =
-                now[0] + moved[0] + set->restitution * lanes_min(from->approach[c], lanes_of(0));
-            uf[c][1] = now[1] + moved[1];
-            for (int k = 0; k < SCENE_CONTACTS; k++)
-                for (int b = 0; b < 2; b++) {
-                    scene_contact_velocity_change(&set->body, &it->end, c, it->w, end_lever,
-                                                  response[k][b], moved);
-                    D[c][k][0][b] = moved[0];
-                    D[c][k][1][b] = moved[1];
-                }
-        }
-        lanes r[2][2];
-        mask ambiguous, unsolved;
-        solve_contacts(set, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, NULL, false,
-                       it->active, r, &ambiguous, &unsolved);
-        it->ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
-        it->unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
-            for (int i = 0; i < SCENE_COORDINATES; i++) {
-                /* Where nothing touches even the sign of a zero stays as it is. */
-                dw[i] = choose(touching,
-                               dw[i] + (response[c][0][i] * r[c][0] + response[c][1][i] * r[c][1]),
-                               dw[i]);
-                it->lift[c][i] = choose(running, response[c][0][i], it->lift[c][i]);
-            }
-            for (int a = 0; a < 2; a++)
-                it->r[c][a] = choose(running, r[c][a], it->r[c][a]);
-        }
-    }
-    lanes size = lanes_of(0), speed = lanes_of(1);
+    it->shift = lanes_of(0);
+    if (touching)
+        iterate_contacts(set, from, running, coupled, touching, &J, &direction, end_lever, dw, it);
+    it->size = lanes_of(0), it->speed = lanes_of(1);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         it->w[i] = choose(running, it->w[i] + dw[i], it->w[i]);
-        size += lanes_abs(dw[i]); /* a sum keeps NAN */
-        speed = lanes_max(lanes_abs(it->w[i]), speed);
+        it->size += lanes_abs(dw[i]); /* a sum keeps NAN */
+        it->speed = lanes_max(lanes_abs(it->w[i]), it->speed);
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         it->torque[i] = choose(running, torque[i], it->torque[i]);
-    return size / speed;
 }
 
-/* Multipliers of the normal directions `lift` that change the gaps of held contacts by `error`, to
- * first order; where the two are dependent the first does the work. */
+/* Multipliers of the normal directions `lift` that change the gaps of held contacts, which are in
+ * `touching`, by `error`, to first order; where the two are dependent the first does the work. */
 static inline void project_multipliers(const struct setting *set, const scene_trig *trig,
+                                       contact_set touching,
                                        const lanes lift[SCENE_CONTACTS][SCENE_COORDINATES],
                                        const mask *held, const lanes *error, lanes *multiplier)
 {
     lanes G[2][2];
     for (int c = 0; c < SCENE_CONTACTS; c++)
+        multiplier[c] = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int k = 0; k < SCENE_CONTACTS; k++) {
             lanes u[2];
+            if (!(touching >> c & touching >> k & 1))
+                continue;
             scene_contact_velocity(&set->body, trig, c, lift[k], u);
             G[c][k] = choose(held[c] & held[k], u[0], lanes_of(c == k));
         }
-    if (SCENE_CONTACTS == 1) {
-        multiplier[0] = error[0] / G[0][0];
+    if ((touching & (touching - 1)) == 0) {
+        const int c = touching == 1 ? 0 : SECOND;
+        multiplier[c] = error[c] * (1 / G[c][c]); /* the bits that a pair would give */
         return;
     }
-    const lanes product = G[0][0] * G[1][1], determinant = product - G[0][1] * G[1][0];
+    const lanes product = G[0][0] * G[1][1];
+    const lanes determinant = lanes_fnma(G[0][1], G[1][0], product);
     const mask regular = mask_less(1e-12 * product, determinant);
     const lanes reciprocal = 1 / choose(regular, determinant, G[0][0]);
     multiplier[0] =
-        choose(regular, G[1][1] * error[0] - G[0][1] * error[SECOND], error[0]) * reciprocal;
+        choose(regular, lanes_fms(G[1][1], error[0], G[0][1] * error[SECOND]), error[0]) *
+        reciprocal;
     multiplier[SECOND] =
-        choose(regular, G[0][0] * error[SECOND] - G[1][0] * error[0], lanes_of(0)) * reciprocal;
+        choose(regular, lanes_fms(G[0][0], error[SECOND], G[1][0] * error[0]), lanes_of(0)) *
+        reciprocal;
 }
 
 /* Sine and cosine after turning by small angles d, to third order. */
@@ -299,17 +292,46 @@ static inline void trig_turn(scene_trig *trig, mask where, const lanes *d)
     }
 }
 
+/* The displacement d along the normal directions that changes the gaps of held contacts by `error`,
+ * to second order. */
+static inline void project_move(const struct setting *set, const struct iterate *it,
+                                contact_set touching, const mask *held, const lanes *error,
+                                lanes *d)
+{
+    lanes multiplier[SCENE_CONTACTS], rest[SCENE_CONTACTS], more[SCENE_CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        multiplier[c] = lanes_of(0);
+    for (int round = 0; round < 2; round++) {
+        for (int c = 0; c < SCENE_CONTACTS; c++) {
+            rest[c] = error[c];
+            if (round > 0)
+                rest[c] -= scene_gap_change(&set->body, &it->end, c, d);
+            rest[c] = choose(held[c], rest[c], lanes_of(0));
+        }
+        project_multipliers(set, &it->end, touching, it->lift, held, rest, more);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            multiplier[c] = multiplier[c] + more[c];
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            d[i] = lanes_of(0);
+            for (int c = 0; c < SCENE_CONTACTS; c++)
+                if (touching >> c & 1)
+                    d[i] = choose(held[c], lanes_fma(it->lift[c][i], multiplier[c], d[i]), d[i]);
+        }
+    }
+}
+
 /* Moves the end position until loaded contacts have their gap and no contact penetrates. Returns
  * the lanes where that needed no more than STEP_FARTHEST of turning: elsewhere the step is too
  * long for its velocity. */
 static inline mask iterate_project(const struct setting *set, const struct motion *from, lanes h,
-                                   mask run, struct iterate *it, lanes *energy)
+                                   contact_set touching, bool impacts, mask run, struct iterate *it,
+                                   lanes *energy)
 {
     lanes wanted[SCENE_CONTACTS], error[SCENE_CONTACTS];
     mask held[SCENE_CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         /* A rebound has used part of the step to arrive: it leaves e times what it overshot. */
-        const lanes overshoot = -(from->gap[c] + h * from->approach[c]);
+        const lanes overshoot = -lanes_fma(h, from->approach[c], from->gap[c]);
         wanted[c] = set->restitution * lanes_max(overshoot, lanes_of(0));
         held[c] = run & it->active[c] & mask_less(lanes_of(0), it->r[c][0]);
     }
@@ -319,9 +341,14 @@ static inline mask iterate_project(const struct setting *set, const struct motio
     for (int round = 0; round < 12; round++) {
         todo = MASK_NONE;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
-            const mask touching = run & mask_less(lanes_of(0), set->may_touch[c]) &
-                                  (it->active[0] | it->active[SECOND]);
-            held[c] |= touching & mask_less(it->gap[c], lanes_of(-STEP_PROJECTION));
+            error[c] = lanes_of(0);
+            if (!(touching >> c & 1))
+                continue;
+            mask near = run & it->active[c];
+            if (impacts)
+                near = run & mask_less(lanes_of(0), set->may_touch[c]) &
+                       (it->active[0] | it->active[SECOND]);
+            held[c] |= near & mask_less(it->gap[c], lanes_of(-STEP_PROJECTION));
             error[c] = choose(held[c],
                               choose(mask_less(lanes_of(0), it->r[c][0]), wanted[c], lanes_of(0)) -
                                   it->gap[c],
@@ -330,13 +357,10 @@ static inline mask iterate_project(const struct setting *set, const struct motio
         }
         if (!mask_any(todo))
             break;
-        lanes multiplier[SCENE_CONTACTS], d[SCENE_COORDINATES], far = lanes_of(0);
-        project_multipliers(set, &it->end, it->lift, held, error, multiplier);
+        lanes d[SCENE_COORDINATES], far = lanes_of(0);
+        project_move(set, it, touching, held, error, d);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
-            lanes sum = it->lift[0][i] * multiplier[0];
-            if (SCENE_CONTACTS > 1)
-                sum += it->lift[SECOND][i] * multiplier[SECOND];
-            d[i] = choose(todo, sum, lanes_of(0));
+            d[i] = choose(todo, d[i], lanes_of(0));
             it->s1[i] = choose(todo, it->s1[i] + d[i], it->s1[i]);
             if (i >= FIRST_ANGLE)
                 turned += lanes_abs(d[i]);
@@ -387,17 +411,14 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
  * further roots, at which the robot has turned around several times and is much too fast: such a
  * step is as good as not converged. Not for steps with a rebound: there the place of the impact
  * inside the step decides on the energy, and Newton's restitution may add some. */
-static inline mask step_balances(const struct setting *set, const struct motion *from,
-                                 const struct iterate *it, lanes work)
+static inline mask step_balances(const struct motion *from, const struct iterate *it, lanes work)
 {
-    const lanes before = scene_energy(&set->body, from->s, from->w, &from->trig);
-    const lanes after = scene_energy(&set->body, it->s1, it->w, &it->end);
-    const lanes kinetic = scene_kinetic(&set->body, &from->trig, from->w) +
-                          scene_kinetic(&set->body, &it->end, it->w);
     /* At rest there is rounding: a share of the potential energy, of whatever size. */
-    const lanes admitted = STEP_MOST_GAIN * (kinetic + lanes_abs(work)) +
-                           1e-9 * (lanes_abs(before) + lanes_abs(after)) + 1e-12;
-    return mask_less_equal(after - before - work, admitted);
+    const lanes moving = from->kinetic + it->kinetic + lanes_abs(work);
+    const lanes rounding = lanes_abs(from->energy) + lanes_abs(it->energy);
+    const lanes admitted = lanes_fma(lanes_of(STEP_MOST_GAIN), moving,
+                                     lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12)));
+    return mask_less_equal(it->energy - from->energy - work, admitted);
 }
 
 /* Residuals of the contact laws at a contact with force (or impulse) r and velocity u, the normal
@@ -415,6 +436,27 @@ static inline void report_residuals(struct step_report *report, mask part, lanes
         mask_less_equal((1 - 1e-9) * bound, lanes_abs(r[1])) & mask_less_equal(r[1] * u[1], none);
     report->dissipation = choose(loaded & LANES_NOT(opposed), lanes_max(along, report->dissipation),
                                  report->dissipation);
+}
+
+/* What one contact says in a step that has arrived: velocity u, impulse r, where it is in `part`.
+ * What hardly carries has no direction, see CONTACT_TOLERANCE. */
+static inline void report_contact(const struct setting *set, const struct motion *from, lanes h,
+                                  mask part, lanes load, int c, const lanes u[2], const lanes r[2],
+                                  struct step_report *report)
+{
+    const lanes none = lanes_of(0);
+    const mask loaded = part & mask_less(none, r[0]);
+    const mask carries = mask_less(1e-6 * load, r[0]);
+    const lanes relative[2] = {
+        lanes_fma(set->restitution, lanes_min(from->approach[c], none), u[0]), u[1]};
+    const lanes carried[2] = {choose(carries, r[0], none), choose(carries, r[1], none)};
+    report_residuals(report, part, set->friction, carried, relative);
+    report->slip[c] = choose(loaded, h * lanes_abs(u[1]), none);
+    for (int a = 0; a < 2; a++)
+        report->impulse[c][a] = choose(loaded, r[a], none);
+    const lanes ratio = lanes_abs(r[1]) / choose(loaded, r[0], lanes_of(1));
+    report->friction = choose(loaded, lanes_max(ratio, report->friction), report->friction);
+    report->least[c] = choose(loaded, r[0] / h, none);
 }
 
 /* A report of nothing, to add others to. */
@@ -444,6 +486,79 @@ static inline void report_forces(struct step_report *report, const mask *part,
         report->friction = choose(loaded, lanes_max(ratio, report->friction), report->friction);
         report->least[c] = lanes_min(choose(loaded, force[c][0], none), report->least[c]);
     }
+}
+
+/* What an iterate that has arrived leaves: position errors removed, the balance of energy, the
+ * report. `touching`: contacts that are active anywhere; `impacts`: not all were closed before, and
+ * those in `impact` are; `frozen`: the geometry was. Returns the lanes of `converged` whose step
+ * is admitted. */
+static inline mask step_finish(const struct setting *set, const struct motion *from, lanes h,
+                               contact_set touching, bool impacts, mask impact, mask converged,
+                               bool frozen, struct iterate *it, struct step_report *report)
+{
+    const lanes none = lanes_of(0);
+    mask somewhere = MASK_NONE;
+    lanes moved[SCENE_COORDINATES], load = none;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        moved[i] = it->s1[i] - from->s[i];
+    report->work = scene_work(&set->body, h, from->t + METHOD_THETA * h, it->torque, moved);
+    report->signorini = report->coulomb = report->dissipation = none;
+    report->friction = report->impact_energy = report->projection_energy = none;
+    report->subdivided = report->events = report->degraded = report->failure = none;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        report->torque[i] = it->torque[i];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            load += lanes_max(it->r[c][0], none);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes u[2];
+        scene_contact_velocity(&set->body, &it->end, c, it->w, u);
+        it->approach[c] = u[0];
+        report->slip[c] = report->impulse[c][0] = report->impulse[c][1] = none;
+        report->least[c] = none;
+        if (!(touching >> c & 1))
+            continue;
+        const mask part = it->active[c] & converged;
+        somewhere |= part;
+        report_contact(set, from, h, part, load, c, (const lanes *)u, it->r[c], report);
+    }
+    if (impacts && mask_any(somewhere & impact))
+        report->impact_energy = choose(somewhere & impact, impact_energy(set, it), none);
+    if (frozen) /* what the frozen geometry made of the contact laws */
+        converged &= mask_less_equal(lanes_max(report->signorini, report->dissipation),
+                                     lanes_of(STEP_FROZEN_RESIDUAL));
+    if (touching && mask_any(somewhere)) {
+        const mask near = iterate_project(set, from, h, touching, impacts, somewhere, it,
+                                          &report->projection_energy);
+        converged &= near | LANES_NOT(somewhere);
+    }
+    it->kinetic = scene_kinetic(&set->body, &it->end, it->w);
+    it->energy = it->kinetic + scene_potential(&set->body, it->s1, &it->end);
+    const mask rebounds = somewhere & mask_less(none, set->restitution);
+    converged &= rebounds | step_balances(from, it, report->work);
+    report->ambiguous = choose(it->ambiguous & converged, lanes_of(1), none);
+    return converged;
+}
+
+/* Hands the iterate's end over, in the lanes of `done`. */
+static inline void step_commit(const struct motion *from, lanes h, const struct iterate *it,
+                               mask done, struct motion *to)
+{
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        to->s[i] = choose(done, it->s1[i], to->s[i]);
+        to->w[i] = choose(done, it->w[i], to->w[i]);
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        to->gap[c] = choose(done, it->gap[c], to->gap[c]);
+        to->approach[c] = choose(done, it->approach[c], to->approach[c]);
+    }
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        to->trig.sine[a] = choose(done, it->end.sine[a], to->trig.sine[a]);
+        to->trig.cosine[a] = choose(done, it->end.cosine[a], to->trig.cosine[a]);
+    }
+    to->t = choose(done, from->t + h, to->t);
+    to->energy = choose(done, it->energy, to->energy);
+    to->kinetic = choose(done, it->kinetic, to->kinetic);
 }
 
 /* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
@@ -478,8 +593,11 @@ static inline mask take_step_at(const int *corner, const struct setting *set,
     iterate_place(set, from, h, false, &it);
     lanes iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
-        const lanes correction =
-            iterate_newton(set, from, h, running, impact, coupled, k > freeze_after, &it);
+        contact_set touching = 0;
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            touching |= mask_any(it.active[c] & running) ? 1u << c : 0;
+        iterate_newton(set, from, h, running, true, impact, coupled, k > freeze_after, touching,
+                       &it);
         iterations += choose(running, lanes_of(1), lanes_of(0));
         iterate_place(set, from, h, k >= freeze_after, &it);
         mask news = MASK_NONE;
@@ -491,11 +609,11 @@ static inline mask take_step_at(const int *corner, const struct setting *set,
             news |= hit;
         }
         impact |= news;
-        const mask done = mask_less_equal(correction, lanes_of(STEP_TOLERANCE)) & LANES_NOT(news) &
+        const mask done = mask_less_equal(it.size, STEP_TOLERANCE * it.speed) & LANES_NOT(news) &
                           LANES_NOT(it.unsolved);
         running &= LANES_NOT(done);
     }
-    mask converged = run & LANES_NOT(running), touching = MASK_NONE;
+    mask converged = run & LANES_NOT(running);
     if (corner) {
         lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES];
         for (int i = 0; i < SCENE_COORDINATES; i++) {
@@ -508,72 +626,10 @@ static inline mask take_step_at(const int *corner, const struct setting *set,
         iterate_place(set, from, h, false, &it);
     if (METHOD_THETA != 1)
         scene_trigonometry(it.s1, &it.end);
-    lanes moved[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        moved[i] = it.s1[i] - from->s[i];
-    report->work = scene_work(&set->body, h, from->t + METHOD_THETA * h, it.torque, moved);
-    lanes slip[SCENE_CONTACTS];
-    report->signorini = report->coulomb = report->dissipation = lanes_of(0);
-    lanes load = lanes_of(0);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        load += lanes_max(it.r[c][0], lanes_of(0));
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        lanes u[2], carried[2];
-        for (int a = 0; a < 2;
-             a++) /* what hardly carries has no direction, see CONTACT_TOLERANCE */
-            carried[a] = choose(mask_less(1e-6 * load, it.r[c][0]), it.r[c][a], lanes_of(0));
-        scene_contact_velocity(&set->body, &it.end, c, it.w, u);
-        to->approach[c] = choose(converged, u[0], to->approach[c]);
-        slip[c] = h * lanes_abs(u[1]);
-        const mask part = it.active[c] & converged;
-        touching |= part;
-        u[0] += set->restitution * lanes_min(from->approach[c], lanes_of(0));
-        report_residuals(report, part, set->friction, carried, u);
-    }
-    lanes energy = lanes_of(0), projected = lanes_of(0);
-    if (mask_any(touching & impact))
-        energy = choose(touching & impact, impact_energy(set, &it), lanes_of(0));
-    if (freeze_after < STEP_MAX_ITERATIONS) /* what the frozen geometry made of the contact laws */
-        converged &= mask_less_equal(lanes_max(report->signorini, report->dissipation),
-                                     lanes_of(STEP_FROZEN_RESIDUAL));
-    if (mask_any(touching)) {
-        const mask near = iterate_project(set, from, h, touching, &it, &projected);
-        converged &= near | LANES_NOT(touching);
-    }
-    const mask rebounds = touching & mask_less(lanes_of(0), set->restitution);
-    converged &= rebounds | step_balances(set, from, &it, report->work);
-
+    converged = step_finish(set, from, h, (1u << SCENE_CONTACTS) - 1, true, impact, converged,
+                            freeze_after < STEP_MAX_ITERATIONS, &it, report);
     report->iterations = report->evaluations = iterations;
-    report->impact_energy = energy;
-    report->projection_energy = projected;
-    report->ambiguous = choose(it.ambiguous & converged, lanes_of(1), lanes_of(0));
-    report->subdivided = report->events = report->degraded = report->failure = lanes_of(0);
-    report->friction = lanes_of(0);
-    lanes mean[SCENE_CONTACTS][2];
-    mask carries[SCENE_CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        const mask loaded = it.active[c] & mask_less(lanes_of(0), it.r[c][0]) & converged;
-        report->slip[c] = choose(loaded, slip[c], lanes_of(0));
-        for (int a = 0; a < 2; a++)
-            report->impulse[c][a] = choose(loaded, it.r[c][a], lanes_of(0));
-        carries[c] = loaded;
-        mean[c][0] = it.r[c][0] / h, mean[c][1] = it.r[c][1] / h;
-        report->least[c] = lanes_of(INFINITY);
-    }
-    report_forces(report, carries, (const lanes(*)[2])mean);
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
-        to->s[i] = choose(converged, it.s1[i], to->s[i]);
-        to->w[i] = choose(converged, it.w[i], to->w[i]);
-    }
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        to->gap[c] = choose(converged, it.gap[c], to->gap[c]);
-    for (int a = 0; a < SCENE_ANGLES; a++) {
-        to->trig.sine[a] = choose(converged, it.end.sine[a], to->trig.sine[a]);
-        to->trig.cosine[a] = choose(converged, it.end.cosine[a], to->trig.cosine[a]);
-    }
-    to->t = choose(converged, from->t + h, to->t);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        report->torque[i] = it.torque[i];
+    step_commit(from, h, &it, converged, to);
     return converged;
 }
 

@@ -106,16 +106,19 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
                                     lanes tolerance, lanes acceleration, struct motion *next,
                                     struct step_report *report)
 {
-    struct motion coarse = *now, middle = *now;
+    struct motion here = *now;
+    motion_energy(set, &here);
+    struct motion coarse = here, middle = here;
     struct step_report whole, half;
     struct setting law = *set;
     law.restitution =
         choose(capture_rebounds(set, now, h, acceleration), set->restitution, lanes_of(0));
     report_clear(report);
     *next = *now;
-    mask good = take_step(&law, now, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
+    mask good =
+        take_step(&law, &here, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
     good &=
-        take_step(&law, now, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, &middle, &half);
+        take_step(&law, &here, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, &middle, &half);
     report_add(report, &half);
     *next = middle;
     good &=

@@ -43,6 +43,7 @@ typedef struct scene_body {
     lanes inertia_trunk, inertia_leg;
     lanes inverse_trunk, inverse_leg; /* of the inertias */
     lanes leg, trunk;                 /* lengths */
+    lanes curvature;                  /* see scene_curvature */
 } scene_body;
 
 typedef struct scene_trig {
@@ -69,6 +70,8 @@ static inline void scene_load_body(scene_body *b, int lane, const double *robot)
     lane_set(&b->inverse_leg, lane, 1 / (m * l * l));
     lane_set(&b->leg, lane, l);
     lane_set(&b->trunk, lane, lt);
+    const double hip = 1 + 2 * (mt * lt + 2 * m * l) / mh;
+    lane_set(&b->curvature, lane, 2 * hip * (1 + 1 / l + 1 / lt));
 }
 
 /* The paper's q = (x, z, theta, q1, q2) and its rate to s, s', and back. */
@@ -179,10 +182,11 @@ static inline void scene_residual(const scene_body *b, lanes h, lanes t, const s
     for (int a = 0; a < SCENE_ANGLES; a++) {
         const lanes s = trig->sine[a], c = trig->cosine[a];
         const lanes centrifugal = h * (w[2 + a] * w[2 + a]);
-        x += k[a] * (c * change[2 + a] - s * centrifugal);
-        z += k[a] * (s * change[2 + a] + c * centrifugal);
-        residual[2 + a] =
-            inertia[a] * change[2 + a] + k[a] * (c * change[0] + s * (change[1] + hg)) - h * tau[a];
+        const lanes along = k[a] * change[2 + a], across = k[a] * centrifugal;
+        x = lanes_fma(c, along, lanes_fnma(s, across, x));
+        z = lanes_fma(s, along, lanes_fma(c, across, z));
+        const lanes drawn = lanes_fma(c, change[0], s * (change[1] + hg));
+        residual[2 + a] = lanes_fma(inertia[a], change[2 + a], lanes_fms(k[a], drawn, h * tau[a]));
     }
     residual[0] = x;
     residual[1] = z;
@@ -196,10 +200,11 @@ static inline void scene_invert_angles(lanes m[SCENE_ANGLES][SCENE_ANGLES],
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) {
             const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-            cofactor[i][j] = m[i1][j1] * m[i2][j2] - m[i1][j2] * m[i2][j1];
+            cofactor[i][j] = lanes_fms(m[i1][j1], m[i2][j2], m[i1][j2] * m[i2][j1]);
         }
     const lanes reciprocal =
-        1 / (m[0][0] * cofactor[0][0] + m[0][1] * cofactor[0][1] + m[0][2] * cofactor[0][2]);
+        1 / lanes_fma(m[0][0], cofactor[0][0],
+                      lanes_fma(m[0][1], cofactor[0][1], m[0][2] * cofactor[0][2]));
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             inverse[i][j] = cofactor[j][i] * reciprocal;
@@ -213,7 +218,8 @@ static inline void scene_solve_angles(const scene_matrix *m, bool coupled, const
             y[i] = m->inverse[i][i] * x[i];
             continue;
         }
-        y[i] = m->inverse[i][0] * x[0] + m->inverse[i][1] * x[1] + m->inverse[i][2] * x[2];
+        y[i] = lanes_fma(m->inverse[i][0], x[0],
+                         lanes_fma(m->inverse[i][1], x[1], m->inverse[i][2] * x[2]));
     }
 }
 
@@ -235,19 +241,20 @@ static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes
     lanes diagonal[SCENE_ANGLES];
     for (int a = 0; a < SCENE_ANGLES; a++) {
         const lanes s = trig->sine[a], c = trig->cosine[a], rotation = w[2 + a];
-        const lanes along = 1 - lever * (h * (rotation * rotation));
-        const lanes across = lever * change[2 + a] + twice * rotation;
-        m->row[a][0] = k[a] * c;
-        m->row[a][1] = k[a] * s;
-        m->column[a][0] = k[a] * (c * along - s * across);
-        m->column[a][1] = k[a] * (s * along + c * across);
-        diagonal[a] = inertia[a] + lever * (k[a] * (c * (change[1] + hg) - s * change[0]));
+        const lanes along = lanes_fnma(lever * h, rotation * rotation, lanes_of(1));
+        const lanes across = lanes_fma(lever, change[2 + a], twice * rotation);
+        const lanes x = k[a] * c, z = k[a] * s;
+        m->row[a][0] = x;
+        m->row[a][1] = z;
+        m->column[a][0] = lanes_fms(x, along, z * across);
+        m->column[a][1] = lanes_fma(z, along, x * across);
+        diagonal[a] = lanes_fma(lever, lanes_fms(x, change[1] + hg, z * change[0]), inertia[a]);
     }
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const int a = 1 + c;
-        diagonal[a] -=
-            contact_lever *
-            (b->leg * (contact_trig->cosine[a] * r[c][1] - contact_trig->sine[a] * r[c][0]));
+        const lanes turning =
+            lanes_fms(contact_trig->cosine[a], r[c][1], contact_trig->sine[a] * r[c][0]);
+        diagonal[a] = lanes_fnma(contact_lever * b->leg, turning, diagonal[a]);
     }
     if (!coupled) {
         for (int a = 0; a < SCENE_ANGLES; a++) {
@@ -281,16 +288,13 @@ static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes
         const lanes x[3] = {m->row[0][j], m->row[1][j], m->row[2][j]};
         lanes y[3];
         scene_solve_angles(m, coupled, x, y);
-        const lanes first =
-            m->column[0][0] * y[0] + m->column[1][0] * y[1] + m->column[2][0] * y[2];
-        const lanes second =
-            m->column[0][1] * y[0] + m->column[1][1] * y[1] + m->column[2][1] * y[2];
-        if (j == 0)
-            xx -= first, zx -= second;
-        else
-            xz -= first, zz -= second;
+        lanes *const first = j == 0 ? &xx : &xz, *const second = j == 0 ? &zx : &zz;
+        for (int a = 0; a < SCENE_ANGLES; a++) {
+            *first = lanes_fnma(m->column[a][0], y[a], *first);
+            *second = lanes_fnma(m->column[a][1], y[a], *second);
+        }
     }
-    const lanes reciprocal = 1 / (xx * zz - xz * zx);
+    const lanes reciprocal = 1 / lanes_fms(xx, zz, xz * zx);
     m->schur[0][0] = zz * reciprocal;
     m->schur[0][1] = -xz * reciprocal;
     m->schur[1][0] = -zx * reciprocal;
@@ -309,11 +313,11 @@ static inline void scene_inertia(const scene_body *b, const scene_trig *trig, sc
         m->row[a][0] = m->column[a][0] = x;
         m->row[a][1] = m->column[a][1] = z;
         m->inverse[a][a] = inverse[a];
-        xx -= scaled * x;
-        xz -= scaled * z;
-        zz -= inverse[a] * (z * z);
+        xx = lanes_fnma(scaled, x, xx);
+        xz = lanes_fnma(scaled, z, xz);
+        zz = lanes_fnma(inverse[a], z * z, zz);
     }
-    const lanes reciprocal = 1 / (xx * zz - xz * xz);
+    const lanes reciprocal = 1 / lanes_fms(xx, zz, xz * xz);
     m->schur[0][0] = zz * reciprocal;
     m->schur[0][1] = m->schur[1][0] = -xz * reciprocal;
     m->schur[1][1] = xx * reciprocal;
@@ -329,9 +333,9 @@ static inline void scene_forces(const scene_body *b, lanes t, const scene_trig *
     lanes x = lanes_of(0), z = -(b->mass * STANCE_GRAVITY);
     for (int a = 0; a < SCENE_ANGLES; a++) {
         const lanes centrifugal = k[a] * (w[2 + a] * w[2 + a]);
-        x += centrifugal * trig->sine[a];
-        z -= centrifugal * trig->cosine[a];
-        force[2 + a] = tau[a] - STANCE_GRAVITY * (k[a] * trig->sine[a]);
+        x = lanes_fma(centrifugal, trig->sine[a], x);
+        z = lanes_fnma(centrifugal, trig->cosine[a], z);
+        force[2 + a] = lanes_fnma(STANCE_GRAVITY * k[a], trig->sine[a], tau[a]);
     }
     force[0] = x;
     force[1] = z;
@@ -344,12 +348,14 @@ static inline void scene_solve(const scene_matrix *m, bool coupled, const lanes 
     scene_solve_angles(m, coupled, b + 2, y);
     lanes p[2];
     for (int j = 0; j < 2; j++)
-        p[j] = b[j] - (m->column[0][j] * y[0] + m->column[1][j] * y[1] + m->column[2][j] * y[2]);
-    x[0] = m->schur[0][0] * p[0] + m->schur[0][1] * p[1];
-    x[1] = m->schur[1][0] * p[0] + m->schur[1][1] * p[1];
+        p[j] =
+            lanes_fnma(m->column[0][j], y[0],
+                       lanes_fnma(m->column[1][j], y[1], lanes_fnma(m->column[2][j], y[2], b[j])));
+    x[0] = lanes_fma(m->schur[0][0], p[0], m->schur[0][1] * p[1]);
+    x[1] = lanes_fma(m->schur[1][0], p[0], m->schur[1][1] * p[1]);
     lanes rest[SCENE_ANGLES];
     for (int a = 0; a < SCENE_ANGLES; a++)
-        rest[a] = b[2 + a] - (m->row[a][0] * x[0] + m->row[a][1] * x[1]);
+        rest[a] = lanes_fnma(m->row[a][0], x[0], lanes_fnma(m->row[a][1], x[1], b[2 + a]));
     scene_solve_angles(m, coupled, rest, x + 2);
 }
 
@@ -369,13 +375,29 @@ static inline void scene_contact_response(const scene_body *b, const scene_matri
                                           const scene_trig *trig, int c,
                                           lanes x[2][SCENE_COORDINATES])
 {
-    const lanes zero = lanes_of(0), one = lanes_of(1);
     for (int direction = 0; direction < 2; direction++) {
         const bool normal = direction == 0;
         const lanes lever = b->leg * (normal ? trig->sine[1 + c] : trig->cosine[1 + c]);
-        lanes rhs[SCENE_COORDINATES] = {normal ? zero : one, normal ? one : zero, zero, zero, zero};
-        rhs[3 + c] = lever;
-        scene_solve(m, coupled, rhs, x[direction]);
+        /* As scene_solve, of a load on the hip in one direction and on one angle. */
+        lanes y[SCENE_ANGLES], p[2] = {lanes_of(normal ? 0 : 1), lanes_of(normal ? 1 : 0)};
+        for (int a = 0; a < SCENE_ANGLES; a++) {
+            if (!coupled && a != 1 + c)
+                continue;
+            y[a] = m->inverse[a][1 + c] * lever;
+            for (int j = 0; j < 2; j++)
+                p[j] = lanes_fnma(m->column[a][j], y[a], p[j]);
+        }
+        x[direction][0] = lanes_fma(m->schur[0][0], p[0], m->schur[0][1] * p[1]);
+        x[direction][1] = lanes_fma(m->schur[1][0], p[0], m->schur[1][1] * p[1]);
+        lanes rest[SCENE_ANGLES];
+        for (int a = 0; a < SCENE_ANGLES; a++) {
+            const lanes drawn =
+                lanes_fma(m->row[a][0], x[direction][0], m->row[a][1] * x[direction][1]);
+            rest[a] = -drawn;
+            if (a == 1 + c)
+                rest[a] = lever - drawn;
+        }
+        scene_solve_angles(m, coupled, rest, x[direction] + 2);
     }
 }
 
@@ -384,8 +406,8 @@ static inline void scene_contact_velocity(const scene_body *b, const scene_trig 
                                           const lanes *w, lanes u[2])
 {
     const lanes speed = b->leg * w[3 + c];
-    u[0] = w[1] + speed * trig->sine[1 + c];
-    u[1] = w[0] + speed * trig->cosine[1 + c];
+    u[0] = lanes_fma(speed, trig->sine[1 + c], w[1]);
+    u[1] = lanes_fma(speed, trig->cosine[1 + c], w[0]);
 }
 /* Its derivative along `change` of the velocity, when the angle moves by `lever` times the change:
  * (H + lever dH/ds w) change. */
@@ -396,8 +418,8 @@ static inline void scene_contact_velocity_change(const scene_body *b, const scen
     const lanes s = trig->sine[1 + c], k = trig->cosine[1 + c];
     const lanes turn = lever * w[3 + c];
     const lanes speed = b->leg * change[3 + c];
-    u[0] = change[1] + speed * (s + turn * k);
-    u[1] = change[0] + speed * (k - turn * s);
+    u[0] = lanes_fma(speed, lanes_fma(turn, k, s), change[1]);
+    u[1] = lanes_fma(speed, lanes_fnma(turn, s, k), change[0]);
 }
 
 /* Acceleration of contact c (normal, tangential) when the coordinates do not accelerate. */
@@ -411,14 +433,14 @@ static inline void scene_contact_curvature(const scene_body *b, const scene_trig
 
 static inline lanes scene_gap(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
 {
-    return s[1] - b->leg * trig->cosine[1 + c];
+    return lanes_fnma(b->leg, trig->cosine[1 + c], s[1]);
 }
 /* Gap after a small displacement d of s, to second order in the leg's angle. */
 static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c,
                                      const lanes *d)
 {
     const lanes a = d[3 + c];
-    return d[1] + b->leg * (a * (trig->sine[1 + c] + 0.5 * (a * trig->cosine[1 + c])));
+    return lanes_fma(b->leg * a, lanes_fma(0.5 * a, trig->cosine[1 + c], trig->sine[1 + c]), d[1]);
 }
 /* Bound on what scene_gap_change leaves out. */
 static inline lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
@@ -435,7 +457,8 @@ static inline lanes scene_energy_change(const scene_body *b, const scene_trig *t
     lanes sum = b->mass * (STANCE_GRAVITY * d[1]);
     for (int a = 0; a < SCENE_ANGLES; a++) {
         const lanes s = trig->sine[a], c = trig->cosine[a];
-        sum += d[2 + a] * (k[a] * (STANCE_GRAVITY * s + w[2 + a] * (c * w[1] - s * w[0])));
+        const lanes drawn = lanes_fms(c, w[1], s * w[0]);
+        sum = lanes_fma(k[a] * d[2 + a], lanes_fma(w[2 + a], drawn, STANCE_GRAVITY * s), sum);
     }
     return sum;
 }
@@ -444,28 +467,32 @@ static inline lanes scene_kinetic(const scene_body *b, const scene_trig *trig, c
 {
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};
-    lanes sum = 0.5 * (b->mass * (x[0] * x[0] + x[1] * x[1]));
-    for (int a = 0; a < SCENE_ANGLES; a++)
-        sum += x[2 + a] * (0.5 * (inertia[a] * x[2 + a]) +
-                           k[a] * (trig->cosine[a] * x[0] + trig->sine[a] * x[1]));
+    lanes sum = (0.5 * b->mass) * lanes_fma(x[0], x[0], x[1] * x[1]);
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        const lanes along = lanes_fma(trig->cosine[a], x[0], trig->sine[a] * x[1]);
+        sum = lanes_fma(x[2 + a], lanes_fma(k[a], along, (0.5 * inertia[a]) * x[2 + a]), sum);
+    }
     return sum;
 }
 
-/* Kinetic and potential energy at s with velocity w: the potential is that of each mass. */
+/* Potential energy at s. */
+static inline lanes scene_potential(const scene_body *b, const lanes *s, const scene_trig *trig)
+{
+    const lanes trunk = lanes_fnma(b->coupling_trunk, trig->cosine[0], b->mass * s[1]);
+    return STANCE_GRAVITY * lanes_fnma(b->coupling_leg, trig->cosine[1] + trig->cosine[2], trunk);
+}
+/* Kinetic and potential energy at s with velocity w. */
 static inline lanes scene_energy(const scene_body *b, const lanes *s, const lanes *w,
                                  const scene_trig *trig)
 {
-    lanes height = b->mass * s[1];
-    height -= b->coupling_trunk * trig->cosine[0];
-    height -= b->coupling_leg * (trig->cosine[1] + trig->cosine[2]);
-    return scene_kinetic(b, trig, w) + STANCE_GRAVITY * height;
+    return scene_kinetic(b, trig, w) + scene_potential(b, s, trig);
 }
 /* Work of the torques over a displacement d. */
 static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const lanes *torque,
                                const lanes *d)
 {
     (void)b, (void)h, (void)t;
-    return torque[0] * (d[3] - d[2]) + torque[1] * (d[4] - d[2]);
+    return lanes_fma(torque[0], d[3] - d[2], torque[1] * (d[4] - d[2]));
 }
 
 /* Down: the hip below `fall_height` leg lengths, or the trunk on the ground. */
@@ -473,18 +500,26 @@ static inline mask scene_fallen(const scene_body *b, const lanes *s, const scene
                                 lanes fall_height)
 {
     return mask_less(s[1], fall_height * b->leg) |
-           mask_less_equal(s[1] + b->trunk * trig->cosine[0], lanes_of(0));
+           mask_less_equal(lanes_fma(b->trunk, trig->cosine[0], s[1]), lanes_of(0));
 }
 /* Largest of the rates: the trunk's x and z, its pitch, the joints. */
 static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, const scene_trig *trig)
 {
     const lanes turn = b->trunk * w[2];
-    lanes largest =
-        lanes_max(lanes_abs(w[0] - turn * trig->cosine[0]), lanes_abs(w[1] - turn * trig->sine[0]));
+    lanes largest = lanes_max(lanes_abs(lanes_fnma(turn, trig->cosine[0], w[0])),
+                              lanes_abs(lanes_fnma(turn, trig->sine[0], w[1])));
     largest = lanes_max(lanes_abs(w[2]), largest);
     for (int i = 3; i < SCENE_COORDINATES; i++)
         largest = lanes_max(lanes_abs(w[i] - w[2]), largest);
     return largest;
+}
+
+/* K of which a correction d of the velocities leaves an error of at most K h |d|^2 in a step's
+ * equation. What the linearisation leaves out are 2 h k_a a'^2 on the hip, whose Schur complement
+ * is mh at least, h k_a a' |p'| on an angle, of inertia k_a l_a, and as much for the contacts. */
+static inline lanes scene_curvature(const scene_body *b)
+{
+    return b->curvature;
 }
 
 /* The longest step, s, that resolves how forces change with time: they do not. */

@@ -215,11 +215,17 @@ static inline lanes scene_kinetic(const scene_body *b, const scene_trig *trig, c
     (void)trig;
     return 0.5 * (b->mass * (x[0] * x[0] + x[1] * x[1]) + b->inertia * (x[2] * x[2]));
 }
+/* Potential energy at s. */
+static inline lanes scene_potential(const scene_body *b, const lanes *s, const scene_trig *trig)
+{
+    (void)trig;
+    return b->mass * (STANCE_GRAVITY * s[1]);
+}
 /* Kinetic and potential energy at s with velocity w. */
 static inline lanes scene_energy(const scene_body *b, const lanes *s, const lanes *w,
                                  const scene_trig *trig)
 {
-    return scene_kinetic(b, trig, w) + b->mass * (STANCE_GRAVITY * s[1]);
+    return scene_kinetic(b, trig, w) + scene_potential(b, s, trig);
 }
 /* Nothing but gravity and contact acts. */
 static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const lanes *torque,
@@ -241,6 +247,14 @@ static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, cons
 {
     (void)b, (void)trig;
     return lanes_max(lanes_abs(w[2]), lanes_max(lanes_abs(w[0]), lanes_abs(w[1])));
+}
+
+/* K of which a correction d of the velocities leaves an error of at most K h |d|^2 in a step's
+ * equation: the ends' velocities leave out h a theta'^2, which impulses through the centre and
+ * about it take up. */
+static inline lanes scene_curvature(const scene_body *b)
+{
+    return 2 * b->half * (1 + b->mass * b->half / b->inertia) * (1 + 1 / b->half);
 }
 
 /* The longest step, s, that resolves how forces change with time: they do not. */
