@@ -164,7 +164,7 @@ static inline void contact_eliminate(const contact_problem *p, enum contact_mode
 
 /* Solves the problem of the active contacts (p->contacts of them). r is put exactly inside the
  * cone. The solution violates no law by more than p->tolerance where violation says so. */
-static inline void contact_solve(const contact_problem *p, contact_choice *best)
+COLD void contact_solve(const contact_problem *p, contact_choice *best)
 {
     for (int i = 0; i < 2; i++)
         for (int a = 0; a < 2; a++)

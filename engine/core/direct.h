@@ -27,8 +27,8 @@ typedef unsigned contact_set;
 
 /* Sliding: NULL or as in contact_problem, of this contact. Returns the lanes where r is certainly
  * the one solution. */
-static inline mask direct_one(const lanes D[2][2], const lanes uf[2], lanes friction,
-                              const lanes *sliding, lanes r[2])
+HOT mask direct_one(const lanes D[2][2], const lanes uf[2], lanes friction, const lanes *sliding,
+                    lanes r[2])
 {
     const lanes none = lanes_of(0), across = friction * lanes_abs(D[0][1]);
     const lanes product = D[0][0] * D[1][1];
@@ -63,8 +63,8 @@ struct direct_part {
     lanes alone[2], push[2][2];
 };
 
-static inline void direct_part(enum contact_mode mode, const lanes D[2][2][2][2], const lanes uf[2],
-                               lanes friction, lanes determinant, struct direct_part *part)
+HOT void direct_part(enum contact_mode mode, const lanes D[2][2][2][2], const lanes uf[2],
+                     lanes friction, lanes determinant, struct direct_part *part)
 {
     const lanes(*const own)[2] = D[0][0];
     const lanes edge = mode == CONTACT_FORWARD ? -friction : friction;
@@ -85,8 +85,8 @@ static inline void direct_part(enum contact_mode mode, const lanes D[2][2][2][2]
     }
 }
 
-static inline void direct_eliminate(const lanes D[2][2][2][2], const lanes uf[2][2],
-                                    const struct direct_part *part, lanes D1[2][2], lanes uf1[2])
+HOT void direct_eliminate(const lanes D[2][2][2][2], const lanes uf[2][2],
+                          const struct direct_part *part, lanes D1[2][2], lanes uf1[2])
 {
     for (int a = 0; a < 2; a++) {
         const lanes *const through = D[1][0][a];
@@ -99,9 +99,8 @@ static inline void direct_eliminate(const lanes D[2][2][2][2], const lanes uf[2]
 }
 
 /* What the law of contact 0 in its mode is violated by, as a velocity, with the impulses r. */
-static inline lanes direct_violation(enum contact_mode mode, const lanes D[2][2][2][2],
-                                     const lanes uf[2][2], lanes friction, const lanes *sliding,
-                                     const lanes r[2][2])
+HOT lanes direct_violation(enum contact_mode mode, const lanes D[2][2][2][2], const lanes uf[2][2],
+                           lanes friction, const lanes *sliding, const lanes r[2][2])
 {
     const int a = mode == CONTACT_OPEN ? 0 : 1;
     const mask goes_on = sliding ? mask_less(lanes_of(0), lanes_abs(sliding[0])) : MASK_NONE;
@@ -121,8 +120,8 @@ static inline lanes direct_violation(enum contact_mode mode, const lanes D[2][2]
 }
 
 /* The same for two contacts; `tolerance` as in contact_problem, `sliding` of both. */
-static inline mask direct_two(const lanes D[2][2][2][2], const lanes uf[2][2], lanes friction,
-                              const lanes *sliding, lanes tolerance, lanes r[2][2])
+HOT mask direct_two(const lanes D[2][2][2][2], const lanes uf[2][2], lanes friction,
+                    const lanes *sliding, lanes tolerance, lanes r[2][2])
 {
     const lanes product = D[0][0][0][0] * D[0][0][1][1];
     const lanes determinant = lanes_fnma(D[0][0][0][1], D[0][0][1][0], product);
@@ -163,9 +162,8 @@ static inline mask direct_two(const lanes D[2][2][2][2], const lanes uf[2][2], l
 }
 
 /* Impulses of one active contact: directly where that is certain. */
-static inline void solve_one(lanes friction, const lanes D[2][2], const lanes uf[2],
-                             const lanes *sliding, bool indefinite, mask active, lanes r[2],
-                             mask *ambiguous, mask *unsolved)
+HOT void solve_one(lanes friction, const lanes D[2][2], const lanes uf[2], const lanes *sliding,
+                   bool indefinite, mask active, lanes r[2], mask *ambiguous, mask *unsolved)
 {
     mask unsure = active;
     if (!indefinite)
@@ -188,9 +186,9 @@ static inline void solve_one(lanes friction, const lanes D[2][2], const lanes uf
 }
 
 /* The same for two. */
-static inline void solve_two(lanes friction, const lanes D[2][2][2][2], const lanes uf[2][2],
-                             const lanes *sliding, bool indefinite, mask active, lanes r[2][2],
-                             mask *ambiguous, mask *unsolved)
+HOT void solve_two(lanes friction, const lanes D[2][2][2][2], const lanes uf[2][2],
+                   const lanes *sliding, bool indefinite, mask active, lanes r[2][2],
+                   mask *ambiguous, mask *unsolved)
 {
     lanes scale = lanes_of(1);
     for (int c = 0; c < 2; c++)
@@ -213,10 +211,9 @@ static inline void solve_two(lanes friction, const lanes D[2][2][2][2], const la
 
 /* Impulses of the active contacts for the linearised step; zero elsewhere. `sliding`: see
  * contact_problem. D and uf of the contacts in `touching`. */
-static inline void solve_contacts(lanes friction, const lanes D[2][2][2][2], const lanes uf[2][2],
-                                  const lanes *sliding, bool indefinite, contact_set touching,
-                                  const mask *active, lanes r[2][2], mask *ambiguous,
-                                  mask *unsolved)
+HOT void solve_contacts(lanes friction, const lanes D[2][2][2][2], const lanes uf[2][2],
+                        const lanes *sliding, bool indefinite, contact_set touching,
+                        const mask *active, lanes r[2][2], mask *ambiguous, mask *unsolved)
 {
     const lanes none = lanes_of(0);
     *ambiguous = *unsolved = MASK_NONE;

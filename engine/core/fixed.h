@@ -35,9 +35,9 @@ static void advance_free(struct advance *a)
 /* One step. Where Newton's iteration does not end because a torque that acts inside the step comes
  * and goes at its limit, each torque is taken for free or for being at either end of its range, one
  * way after the other, until a solution agrees with what was assumed. */
-static mask fixed_step(const struct setting *set, const struct motion *from, const lanes *torque,
-                       lanes h, mask run, bool coupled, int freeze_after, struct motion *to,
-                       struct step_report *report)
+COLD mask fixed_step(const struct setting *set, const struct motion *from, const lanes *torque,
+                     lanes h, mask run, bool coupled, int freeze_after, struct motion *to,
+                     struct step_report *report)
 {
     mask good = take_step(set, from, torque, h, run, coupled, freeze_after, to, report);
     mask failed = run & LANES_NOT(good) & mask_less(set->law.limit, lanes_of(INFINITY));
@@ -66,9 +66,9 @@ static mask fixed_step(const struct setting *set, const struct motion *from, con
 }
 
 /* Lanes that did not converge: the step again in 2, 4, ... equal parts. */
-static mask fixed_subdivide(const struct setting *set, const struct motion *from,
-                            const lanes *torque, lanes h, mask run, bool coupled, struct motion *to,
-                            struct step_report *total)
+COLD mask fixed_subdivide(const struct setting *set, const struct motion *from, const lanes *torque,
+                          lanes h, mask run, bool coupled, struct motion *to,
+                          struct step_report *total)
 {
     mask failed = run;
     for (int level = 1; level <= FIXED_MAX_SUBDIVISION && mask_any(failed); level++) {
@@ -107,39 +107,55 @@ static inline contact_set fixed_touching(const struct setting *set, const struct
     return touching;
 }
 
-static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
-                           lanes h, mask live, bool coupled, struct motion *now,
-                           struct step_report *report, mask *failed)
+/* The bundle's contacts as the compiler should know them. */
+enum {
+    TOUCHING_NONE = 0,
+    TOUCHING_FIRST = 1,
+    TOUCHING_SECOND = SCENE_CONTACTS > 1 ? 2 : 1,
+    TOUCHING_ALL = (1 << SCENE_CONTACTS) - 1
+};
+
+/* One ordinary step in all lanes; false: it is not ordinary in all, and nothing has happened. */
+#define ADVANCE_ORDINARY
+HOT bool advance_ordinary(struct advance *a, const struct setting *set, const lanes *torque,
+                          lanes h, mask live, contact_set touching, struct motion *now,
+                          struct step_report *report)
 {
-    struct motion next = *now;
+    struct iterate it;
+    const mask good = quick_try(&a->quick, set, now, torque, h, live, touching, &it, report);
+    if (mask_any(live & LANES_NOT(good)))
+        return false;
+    quick_keep(&a->quick, &it, h, true, good, now);
+    return true;
+}
+
+COLD mask advance(struct advance *a, const struct setting *set, const lanes *torque, lanes h,
+                  mask live, bool coupled, struct motion *now, struct step_report *report,
+                  mask *failed)
+{
     mask ok = MASK_NONE;
     if (!coupled) {
-        const contact_set touching = fixed_touching(set, now, live);
-        enum { NO = 0, FIRST = 1, OTHER = 1 << SECOND & 2, BOTH = (1 << SCENE_CONTACTS) - 1 };
-        if (touching == NO)
-            ok = quick_step(&a->quick, set, now, torque, h, live, NO, &next, report);
-        else if (touching == FIRST)
-            ok = quick_step(&a->quick, set, now, torque, h, live, FIRST, &next, report);
-        else if (touching == OTHER)
-            ok = quick_step(&a->quick, set, now, torque, h, live, OTHER, &next, report);
-        else
-            ok = quick_step(&a->quick, set, now, torque, h, live, BOTH, &next, report);
+        struct iterate it;
+        ok = quick_try(&a->quick, set, now, torque, h, live, fixed_touching(set, now, live), &it,
+                       report);
+        quick_keep(&a->quick, &it, h, false, ok, now);
     }
     const mask other = live & LANES_NOT(ok);
     *failed = MASK_NONE;
     if (mask_any(other)) {
         struct step_report slow;
+        struct motion next = *now;
         mask there =
             fixed_step(set, now, torque, h, other, coupled, STEP_MAX_ITERATIONS, &next, &slow);
         const mask stuck = other & LANES_NOT(there);
         if (mask_any(stuck))
             there |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, &slow);
         choose_all(other, &slow, report, sizeof slow);
+        choose_all(there, &next, now, sizeof next);
         *failed = other & LANES_NOT(there);
         ok |= there;
         quick_forget(&a->quick, other);
     }
-    *now = next;
     return ok;
 }
 

@@ -19,6 +19,10 @@
 
 enum { LANES = STANCE_LANES };
 
+/* Functions of the inner loop, compiled anew for what each caller knows; and those that are not. */
+#define HOT static inline __attribute__((always_inline))
+#define COLD static __attribute__((noinline))
+
 /* Length of an array that may be empty: a scene without actuators, say. */
 #define SLOTS(n) ((n) > 0 ? (n) : 1)
 
@@ -205,6 +209,12 @@ static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
 #endif
 
 #define MASK_NONE LANES_NOT(LANES_ALL)
+
+/* `choose` where the compiler may know that m holds in all lanes that matter. */
+HOT lanes choose_unless(bool all, mask m, lanes a, lanes b)
+{
+    return all ? a : choose(m, a, b);
+}
 
 /* min and max as comparisons spell them: the second operand where the first is NAN. */
 static inline lanes lanes_max(lanes a, lanes b)

@@ -53,7 +53,7 @@ static inline void quick_forget(struct quick *q, mask m)
 }
 
 /* Sines and cosines after turning by d[], at most QUICK_ANGLE. */
-static inline void quick_turn(const scene_trig *from, const lanes *d, scene_trig *to)
+HOT void quick_turn(const scene_trig *from, const lanes *d, scene_trig *to)
 {
     for (int a = 0; a < SCENE_ANGLES; a++) {
         const lanes x = d[a], t = x * x, s = from->sine[a], c = from->cosine[a];
@@ -68,23 +68,24 @@ static inline void quick_turn(const scene_trig *from, const lanes *d, scene_trig
     }
 }
 
-/* Takes sines and cosines over where m holds. */
-static inline void quick_take(mask m, const scene_trig *from, scene_trig *to)
+/* Takes sines and cosines over where m holds, or everywhere. */
+HOT void quick_take(bool all, mask m, const scene_trig *from, scene_trig *to)
 {
     for (int a = 0; a < SCENE_ANGLES; a++) {
-        to->sine[a] = choose(m, from->sine[a], to->sine[a]);
-        to->cosine[a] = choose(m, from->cosine[a], to->cosine[a]);
+        to->sine[a] = choose_unless(all, m, from->sine[a], to->sine[a]);
+        to->cosine[a] = choose_unless(all, m, from->cosine[a], to->cosine[a]);
     }
 }
 
-/* Places the iterate in the lanes of m: its end position and the sines there (and halfway). */
-static inline void quick_place(const struct quick *q, const struct motion *from, lanes h, mask m,
-                               struct iterate *it)
+/* Places the iterate in the lanes of m, or in all: its end position and the sines there (and
+ * halfway). */
+HOT void quick_place(const struct quick *q, const struct motion *from, lanes h, bool all, mask m,
+                     struct iterate *it)
 {
     lanes d[SLOTS(SCENE_ANGLES)], halfway[SCENE_COORDINATES], farthest = lanes_of(0);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         const lanes move = h * step_velocity(from->w[i], it->w[i]);
-        it->s1[i] = choose(m, from->s[i] + move, it->s1[i]);
+        it->s1[i] = choose_unless(all, m, from->s[i] + move, it->s1[i]);
         halfway[i] = from->s[i] + METHOD_THETA * move;
         if (i >= FIRST_ANGLE) {
             d[i - FIRST_ANGLE] = METHOD_THETA * move;
@@ -104,21 +105,20 @@ static inline void quick_place(const struct quick *q, const struct motion *from,
     if (mask_any(m & anew)) {
         scene_trig exact;
         scene_trigonometry(halfway, &exact);
-        quick_take(anew, &exact, &middle);
+        quick_take(false, anew, &exact, &middle);
         if (METHOD_THETA != 1) {
             scene_trigonometry(it->s1, &exact);
-            quick_take(anew, &exact, &end);
+            quick_take(false, anew, &exact, &end);
         }
     }
-    quick_take(m, METHOD_THETA == 1 ? &middle : &end, &it->end);
+    quick_take(all, m, METHOD_THETA == 1 ? &middle : &end, &it->end);
     if (METHOD_THETA != 1)
-        quick_take(m, &middle, &it->middle);
+        quick_take(all, m, &middle, &it->middle);
 }
 
 /* Moves the end by the last correction, from `old` to it->w: the sines follow to third order.
  * Returns the lanes where that is enough. */
-static inline mask quick_arrive(const struct motion *from, lanes h, const lanes *old,
-                                struct iterate *it)
+HOT mask quick_arrive(const struct motion *from, lanes h, const lanes *old, struct iterate *it)
 {
     lanes d[SCENE_COORDINATES], farthest = lanes_of(0);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
@@ -131,33 +131,61 @@ static inline mask quick_arrive(const struct motion *from, lanes h, const lanes 
     return mask_less_equal(farthest, lanes_of(QUICK_SMALL));
 }
 
+/* One iteration in the lanes of m, or in all; `old` is where it started. Returns the lanes where
+ * the error left is certainly small. */
+HOT mask quick_iterate(const struct quick *q, const struct setting *set, const struct motion *from,
+                       lanes h, bool all, mask m, contact_set touching, lanes *old,
+                       struct iterate *it)
+{
+    quick_place(q, from, h, all, m, it);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        old[i] = choose_unless(all, m, it->w[i], old[i]);
+    iterate_newton(set, from, h, all, m, false, MASK_NONE, false, false, touching, it);
+    const lanes left = (h * scene_curvature(&set->body) * it->size) * (it->size + it->shift);
+    return mask_less_equal(left, QUICK_ERROR * it->speed);
+}
+
+/* Further iterations, where one was not enough; returns the lanes where they got there. */
+COLD mask quick_more(const struct quick *q, const struct setting *set, const struct motion *from,
+                     lanes h, mask running, contact_set touching, lanes *old, lanes *iterations,
+                     struct iterate *it)
+{
+    mask there = MASK_NONE;
+    for (int k = 1; k < QUICK_ITERATIONS && mask_any(running); k++) {
+        *iterations += choose(running, lanes_of(1), lanes_of(0));
+        const mask small = quick_iterate(q, set, from, h, false, running, touching, old, it);
+        there |= running & small;
+        running &= LANES_NOT(small);
+    }
+    return there;
+}
+
 /* Newton's iteration to its end, from the extrapolated velocity. Returns the lanes where it got
  * there. */
-static inline mask quick_newton(const struct quick *q, const struct setting *set,
-                                const struct motion *from, lanes h, mask run, contact_set touching,
-                                struct iterate *it, lanes *iterations)
+HOT mask quick_newton(const struct quick *q, const struct setting *set, const struct motion *from,
+                      lanes h, mask run, contact_set touching, struct iterate *it,
+                      lanes *iterations)
 {
     lanes old[SCENE_COORDINATES];
-    const lanes bound = h * scene_curvature(&set->body);
-    mask running = run;
-    *iterations = lanes_of(0);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         it->w[i] = from->w[i] + lanes_fms(lanes_of(2), q->change[i], q->before[i]);
-    for (int k = 0; k < QUICK_ITERATIONS && mask_any(running); k++) {
-        const mask moving = k == 0 ? LANES_ALL : running;
-        quick_place(q, from, h, moving, it);
-        for (int i = 0; i < SCENE_COORDINATES; i++)
-            old[i] = choose(moving, it->w[i], old[i]);
-        iterate_newton(set, from, h, moving, false, MASK_NONE, false, false, touching, it);
-        *iterations += choose(moving, lanes_of(1), lanes_of(0));
-        running &= LANES_NOT(
-            mask_less_equal((bound * it->size) * (it->size + it->shift), QUICK_ERROR * it->speed));
+    *iterations = lanes_of(1);
+    mask there = run & quick_iterate(q, set, from, h, true, LANES_ALL, touching, old, it);
+    const mask running = run & LANES_NOT(there);
+    if (mask_any(running)) { /* with copies: what is passed on by address stays in memory */
+        struct iterate copy = *it;
+        lanes start[SCENE_COORDINATES], count = *iterations;
+        memcpy(start, old, sizeof start);
+        there |= quick_more(q, set, from, h, running, touching, start, &count, &copy);
+        *it = copy;
+        *iterations = count;
+        memcpy(old, start, sizeof old);
     }
-    return run & LANES_NOT(running) & quick_arrive(from, h, old, it);
+    return there & quick_arrive(from, h, old, it);
 }
 
 /* Lanes where a contact that did not touch is not above the ground. */
-static inline mask quick_arrivals(const struct setting *set, const struct iterate *it)
+HOT mask quick_arrivals(const struct setting *set, const struct iterate *it)
 {
     mask there = MASK_NONE;
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -166,52 +194,57 @@ static inline mask quick_arrivals(const struct setting *set, const struct iterat
     return there;
 }
 
-/* One ordinary step of the lanes in `run`, contacts in `touching` being closed in some of them.
- * Returns the lanes where it was one; in the others *to is left as it is. */
-static inline mask quick_step(struct quick *q, const struct setting *set, const struct motion *from,
-                              const lanes *torque, lanes h, mask run, contact_set touching,
-                              struct motion *to, struct step_report *report)
+/* Tries one ordinary step of the lanes in `run`, where contacts in `touching` are closed in some of
+ * them. Returns the lanes where it was one. */
+HOT mask quick_try(const struct quick *q, const struct setting *set, const struct motion *from,
+                   const lanes *torque, lanes h, mask run, contact_set touching, struct iterate *it,
+                   struct step_report *report)
 {
-    struct iterate it;
     lanes iterations;
     mask good = run;
-    memset(&it.end, 0, sizeof it.end);
-    it.corner = NULL;
-    it.ambiguous = it.unsolved = MASK_NONE;
+    it->corner = NULL;
+    it->ambiguous = it->unsolved = MASK_NONE;
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        it.torque[i] = torque[i];
+        it->torque[i] = torque[i];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const bool here = touching >> c & 1;
-        it.active[c] = MASK_NONE;
-        if (here)
-            it.active[c] = mask_less(lanes_of(0), set->may_touch[c]) &
-                           mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
-        good &= LANES_NOT(it.active[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
+        it->active[c] = MASK_NONE;
+        it->r[c][0] = it->r[c][1] = lanes_of(0);
+        if (!here)
+            continue;
+        it->active[c] = mask_less(lanes_of(0), set->may_touch[c]) &
+                        mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
+        good &= LANES_NOT(it->active[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
         for (int a = 0; a < 2; a++)
-            it.r[c][a] = here ? choose(it.active[c], q->impulse[c][a], lanes_of(0)) : lanes_of(0);
+            it->r[c][a] = choose(it->active[c], q->impulse[c][a], lanes_of(0));
     }
-    good &= quick_newton(q, set, from, h, good, touching, &it, &iterations);
-    good &= LANES_NOT(it.unsolved);
+    good &= quick_newton(q, set, from, h, good, touching, it, &iterations);
+    good &= LANES_NOT(it->unsolved);
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        it.gap[c] = scene_gap(&set->body, it.s1, &it.end, c);
-    good &= LANES_NOT(quick_arrivals(set, &it));
-    good = step_finish(set, from, h, touching, false, MASK_NONE, good, false, &it, report);
-    good &= LANES_NOT(quick_arrivals(set, &it)); /* removing position errors may bring some */
+        it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
+    good &= LANES_NOT(quick_arrivals(set, it));
+    good = step_finish(set, from, h, touching, false, MASK_NONE, good, false, it, report);
+    good &= LANES_NOT(quick_arrivals(set, it)); /* removing position errors may bring some */
     report->iterations = report->evaluations = iterations;
-    const lanes none = lanes_of(0), known = q->known;
-    const mask second = mask_less(none, known);
+    return good;
+}
+
+/* Keeps what quick_try found, in the lanes of `good`, or in all: the motion moves on. */
+HOT void quick_keep(struct quick *q, const struct iterate *it, lanes h, bool all, mask good,
+                    struct motion *now)
+{
+    const mask second = mask_less(lanes_of(0), q->known);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
-        const lanes change = it.w[i] - from->w[i];
+        const lanes change = it->w[i] - now->w[i];
         q->before[i] = choose(second, q->change[i], change);
         q->change[i] = change;
     }
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int a = 0; a < 2; a++)
-            q->impulse[c][a] = it.r[c][a];
+            q->impulse[c][a] = it->r[c][a];
     q->known = lanes_of(1);
     q->turns = choose(mask_less_equal(lanes_of(QUICK_TURNS), q->turns), lanes_of(1), q->turns + 1);
-    step_commit(from, h, &it, good, to);
-    return good;
+    step_commit(now->t + h, it, all, good, now);
 }
 
 #endif

@@ -133,10 +133,9 @@ static inline void iterate_place(const struct setting *set, const struct motion 
 }
 
 /* Contact impulses of an iterate: adds what they do to the correction dw of the velocity. */
-static inline void iterate_contacts(const struct setting *set, const struct motion *from,
-                                    mask running, bool coupled, contact_set touching,
-                                    const scene_matrix *J, const scene_trig *direction, lanes lever,
-                                    lanes *dw, struct iterate *it)
+HOT void iterate_contacts(const struct setting *set, const struct motion *from, bool all,
+                          mask running, bool coupled, contact_set touching, const scene_matrix *J,
+                          const scene_trig *direction, lanes lever, lanes *dw, struct iterate *it)
 {
     lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES];
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -173,8 +172,12 @@ static inline void iterate_contacts(const struct setting *set, const struct moti
     mask ambiguous, unsolved;
     solve_contacts(set->friction, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, NULL, false,
                    touching, it->active, r, &ambiguous, &unsolved);
-    it->ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
-    it->unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
+    if (!all) {
+        ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
+        unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
+    }
+    it->ambiguous = ambiguous;
+    it->unsolved = unsolved;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         if (!(touching >> c & 1))
             continue;
@@ -182,21 +185,21 @@ static inline void iterate_contacts(const struct setting *set, const struct moti
             /* Where nothing touches even the sign of a zero stays as it is. */
             const lanes pushed =
                 lanes_fma(response[c][0][i], r[c][0], lanes_fma(response[c][1][i], r[c][1], dw[i]));
-            dw[i] = choose(it->active[c] & running, pushed, dw[i]);
-            it->lift[c][i] = choose(running, response[c][0][i], it->lift[c][i]);
+            dw[i] = choose(it->active[c], pushed, dw[i]);
+            it->lift[c][i] = choose_unless(all, running, response[c][0][i], it->lift[c][i]);
         }
         for (int a = 0; a < 2; a++) {
             it->shift = lanes_fma(lanes_abs(r[c][a] - it->r[c][a]), D[c][c][a][a], it->shift);
-            it->r[c][a] = choose(running, r[c][a], it->r[c][a]);
+            it->r[c][a] = choose_unless(all, running, r[c][a], it->r[c][a]);
         }
     }
 }
 
 /* One Newton iteration in the lanes that still run. With the
  * geometry frozen the derivatives by it are left out too, so that the operator is constant. */
-static inline void iterate_newton(const struct setting *set, const struct motion *from, lanes h,
-                                  mask running, bool impacts, mask impact, bool coupled,
-                                  bool frozen, contact_set touching, struct iterate *it)
+HOT void iterate_newton(const struct setting *set, const struct motion *from, lanes h, bool all,
+                        mask running, bool impacts, mask impact, bool coupled, bool frozen,
+                        contact_set touching, struct iterate *it)
 {
     const double moves = frozen ? 0 : METHOD_THETA;
     const lanes lever = h * (METHOD_THETA * moves), end_lever = h * moves;
@@ -235,23 +238,24 @@ static inline void iterate_newton(const struct setting *set, const struct motion
 
     it->shift = lanes_of(0);
     if (touching)
-        iterate_contacts(set, from, running, coupled, touching, &J, &direction, end_lever, dw, it);
+        iterate_contacts(set, from, all, running, coupled, touching, &J, &direction, end_lever, dw,
+                         it);
     it->size = lanes_of(0), it->speed = lanes_of(1);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
-        it->w[i] = choose(running, it->w[i] + dw[i], it->w[i]);
+        it->w[i] = choose_unless(all, running, it->w[i] + dw[i], it->w[i]);
         it->size += lanes_abs(dw[i]); /* a sum keeps NAN */
         it->speed = lanes_max(lanes_abs(it->w[i]), it->speed);
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        it->torque[i] = choose(running, torque[i], it->torque[i]);
+        it->torque[i] = choose_unless(all, running, torque[i], it->torque[i]);
 }
 
 /* Multipliers of the normal directions `lift` that change the gaps of held contacts, which are in
  * `touching`, by `error`, to first order; where the two are dependent the first does the work. */
-static inline void project_multipliers(const struct setting *set, const scene_trig *trig,
-                                       contact_set touching,
-                                       const lanes lift[SCENE_CONTACTS][SCENE_COORDINATES],
-                                       const mask *held, const lanes *error, lanes *multiplier)
+HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
+                             contact_set touching,
+                             const lanes lift[SCENE_CONTACTS][SCENE_COORDINATES], const mask *held,
+                             const lanes *error, lanes *multiplier)
 {
     lanes G[2][2];
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -282,7 +286,7 @@ static inline void project_multipliers(const struct setting *set, const scene_tr
 }
 
 /* Sine and cosine after turning by small angles d, to third order. */
-static inline void trig_turn(scene_trig *trig, mask where, const lanes *d)
+HOT void trig_turn(scene_trig *trig, mask where, const lanes *d)
 {
     for (int a = 0; a < SCENE_ANGLES; a++) {
         const lanes x = d[FIRST_ANGLE + a], s = trig->sine[a], c = trig->cosine[a];
@@ -294,9 +298,8 @@ static inline void trig_turn(scene_trig *trig, mask where, const lanes *d)
 
 /* The displacement d along the normal directions that changes the gaps of held contacts by `error`,
  * to second order. */
-static inline void project_move(const struct setting *set, const struct iterate *it,
-                                contact_set touching, const mask *held, const lanes *error,
-                                lanes *d)
+HOT void project_move(const struct setting *set, const struct iterate *it, contact_set touching,
+                      const mask *held, const lanes *error, lanes *d)
 {
     lanes multiplier[SCENE_CONTACTS], rest[SCENE_CONTACTS], more[SCENE_CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -323,9 +326,9 @@ static inline void project_move(const struct setting *set, const struct iterate 
 /* Moves the end position until loaded contacts have their gap and no contact penetrates. Returns
  * the lanes where that needed no more than STEP_FARTHEST of turning: elsewhere the step is too
  * long for its velocity. */
-static inline mask iterate_project(const struct setting *set, const struct motion *from, lanes h,
-                                   contact_set touching, bool impacts, mask run, struct iterate *it,
-                                   lanes *energy)
+HOT mask iterate_project(const struct setting *set, const struct motion *from, lanes h,
+                         contact_set touching, bool impacts, mask run, struct iterate *it,
+                         lanes *energy)
 {
     lanes wanted[SCENE_CONTACTS], error[SCENE_CONTACTS];
     mask held[SCENE_CONTACTS];
@@ -411,7 +414,7 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
  * further roots, at which the robot has turned around several times and is much too fast: such a
  * step is as good as not converged. Not for steps with a rebound: there the place of the impact
  * inside the step decides on the energy, and Newton's restitution may add some. */
-static inline mask step_balances(const struct motion *from, const struct iterate *it, lanes work)
+HOT mask step_balances(const struct motion *from, const struct iterate *it, lanes work)
 {
     /* At rest there is rounding: a share of the potential energy, of whatever size. */
     const lanes moving = from->kinetic + it->kinetic + lanes_abs(work);
@@ -423,8 +426,8 @@ static inline mask step_balances(const struct motion *from, const struct iterate
 
 /* Residuals of the contact laws at a contact with force (or impulse) r and velocity u, the normal
  * one relative to what restitution asks for. */
-static inline void report_residuals(struct step_report *report, mask part, lanes friction,
-                                    const lanes r[2], const lanes u[2])
+HOT void report_residuals(struct step_report *report, mask part, lanes friction, const lanes r[2],
+                          const lanes u[2])
 {
     const lanes none = lanes_of(0), bound = friction * r[0], along = lanes_abs(u[1]);
     const mask loaded = part & mask_less(none, r[0]);
@@ -440,9 +443,9 @@ static inline void report_residuals(struct step_report *report, mask part, lanes
 
 /* What one contact says in a step that has arrived: velocity u, impulse r, where it is in `part`.
  * What hardly carries has no direction, see CONTACT_TOLERANCE. */
-static inline void report_contact(const struct setting *set, const struct motion *from, lanes h,
-                                  mask part, lanes load, int c, const lanes u[2], const lanes r[2],
-                                  struct step_report *report)
+HOT void report_contact(const struct setting *set, const struct motion *from, lanes h, mask part,
+                        lanes load, int c, const lanes u[2], const lanes r[2],
+                        struct step_report *report)
 {
     const lanes none = lanes_of(0);
     const mask loaded = part & mask_less(none, r[0]);
@@ -492,9 +495,9 @@ static inline void report_forces(struct step_report *report, const mask *part,
  * report. `touching`: contacts that are active anywhere; `impacts`: not all were closed before, and
  * those in `impact` are; `frozen`: the geometry was. Returns the lanes of `converged` whose step
  * is admitted. */
-static inline mask step_finish(const struct setting *set, const struct motion *from, lanes h,
-                               contact_set touching, bool impacts, mask impact, mask converged,
-                               bool frozen, struct iterate *it, struct step_report *report)
+HOT mask step_finish(const struct setting *set, const struct motion *from, lanes h,
+                     contact_set touching, bool impacts, mask impact, mask converged, bool frozen,
+                     struct iterate *it, struct step_report *report)
 {
     const lanes none = lanes_of(0);
     mask somewhere = MASK_NONE;
@@ -540,25 +543,24 @@ static inline mask step_finish(const struct setting *set, const struct motion *f
     return converged;
 }
 
-/* Hands the iterate's end over, in the lanes of `done`. */
-static inline void step_commit(const struct motion *from, lanes h, const struct iterate *it,
-                               mask done, struct motion *to)
+/* Hands the iterate's end over, in the lanes of `done`, or in all. */
+HOT void step_commit(lanes t, const struct iterate *it, bool all, mask done, struct motion *to)
 {
     for (int i = 0; i < SCENE_COORDINATES; i++) {
-        to->s[i] = choose(done, it->s1[i], to->s[i]);
-        to->w[i] = choose(done, it->w[i], to->w[i]);
+        to->s[i] = choose_unless(all, done, it->s1[i], to->s[i]);
+        to->w[i] = choose_unless(all, done, it->w[i], to->w[i]);
     }
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        to->gap[c] = choose(done, it->gap[c], to->gap[c]);
-        to->approach[c] = choose(done, it->approach[c], to->approach[c]);
+        to->gap[c] = choose_unless(all, done, it->gap[c], to->gap[c]);
+        to->approach[c] = choose_unless(all, done, it->approach[c], to->approach[c]);
     }
     for (int a = 0; a < SCENE_ANGLES; a++) {
-        to->trig.sine[a] = choose(done, it->end.sine[a], to->trig.sine[a]);
-        to->trig.cosine[a] = choose(done, it->end.cosine[a], to->trig.cosine[a]);
+        to->trig.sine[a] = choose_unless(all, done, it->end.sine[a], to->trig.sine[a]);
+        to->trig.cosine[a] = choose_unless(all, done, it->end.cosine[a], to->trig.cosine[a]);
     }
-    to->t = choose(done, from->t + h, to->t);
-    to->energy = choose(done, it->energy, to->energy);
-    to->kinetic = choose(done, it->kinetic, to->kinetic);
+    to->t = choose_unless(all, done, t, to->t);
+    to->energy = choose_unless(all, done, it->energy, to->energy);
+    to->kinetic = choose_unless(all, done, it->kinetic, to->kinetic);
 }
 
 /* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
@@ -567,10 +569,9 @@ static inline void step_commit(const struct motion *from, lanes h, const struct 
  * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
  * between two modes for every h. `corner`: as in law_inside; converged is then only what agrees
  * with it. Returns the lanes that converged. */
-static inline mask take_step_at(const int *corner, const struct setting *set,
-                                const struct motion *from, const lanes *torque, lanes h, mask run,
-                                bool coupled, int freeze_after, struct motion *to,
-                                struct step_report *report)
+COLD mask take_step_at(const int *corner, const struct setting *set, const struct motion *from,
+                       const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
+                       struct motion *to, struct step_report *report)
 {
     struct iterate it;
     it.corner = corner;
@@ -596,8 +597,8 @@ static inline mask take_step_at(const int *corner, const struct setting *set,
         contact_set touching = 0;
         for (int c = 0; c < SCENE_CONTACTS; c++)
             touching |= mask_any(it.active[c] & running) ? 1u << c : 0;
-        iterate_newton(set, from, h, running, true, impact, coupled, k > freeze_after, touching,
-                       &it);
+        iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
+                       touching, &it);
         iterations += choose(running, lanes_of(1), lanes_of(0));
         iterate_place(set, from, h, k >= freeze_after, &it);
         mask news = MASK_NONE;
@@ -629,7 +630,7 @@ static inline mask take_step_at(const int *corner, const struct setting *set,
     converged = step_finish(set, from, h, (1u << SCENE_CONTACTS) - 1, true, impact, converged,
                             freeze_after < STEP_MAX_ITERATIONS, &it, report);
     report->iterations = report->evaluations = iterations;
-    step_commit(from, h, &it, converged, to);
+    step_commit(from->t + h, &it, false, converged, to);
     return converged;
 }
 

@@ -270,7 +270,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 }
 
 // clang-format off
-#include "../core/bundle.h"
+#include "../core/stream.h"
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD

@@ -11,7 +11,7 @@
 #include STANCE_SCENE_LANES
 // clang-format off
 #include "../core/fixed.h"
-#include "../core/bundle.h"
+#include "../core/stream.h"
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD
