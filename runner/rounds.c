@@ -6,15 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROUND_LARGEST = 1 << 20 };
+enum { ROUND_LARGEST = 1 << 20, INFER_ROWS = 1 << 12 };
 
-_Static_assert((int)REFINE_FAILED == (int)WORK_OUTCOMES + 1, "labels of work.h are refine.h's");
+_Static_assert((int)REFINE_FAILED == (int)WORK_FAILED, "labels of work.h are refine.h's");
 
 struct rounds {
     struct work *work;
     struct refine *refine;
     uint64_t *row;
-    uint8_t *label; /* [ROUND_LARGEST] each */
+    uint8_t *label;            /* [ROUND_LARGEST] each */
+    struct store_block *block; /* [INFER_ROWS] */
 };
 
 static bool rounds_make(struct rounds *rounds, struct work *work)
@@ -24,10 +25,11 @@ static bool rounds_make(struct rounds *rounds, struct work *work)
     *rounds = (struct rounds){.work = work, .refine = refine_make(&map)};
     rounds->row = malloc(ROUND_LARGEST * sizeof *rounds->row);
     rounds->label = malloc(ROUND_LARGEST);
+    rounds->block = store_block_make(work->store, INFER_ROWS);
     for (uint64_t k = 0; rounds->refine && k < work->plan->record_cases; k++) {
         refine_want(rounds->refine, plan_recorded_case(work->plan, k));
     }
-    return rounds->refine && rounds->row && rounds->label;
+    return rounds->refine && rounds->row && rounds->label && rounds->block;
 }
 
 static void rounds_free(struct rounds *rounds)
@@ -35,27 +37,26 @@ static void rounds_free(struct rounds *rounds)
     refine_free(rounds->refine);
     free(rounds->row);
     free(rounds->label);
+    store_block_free(rounds->block);
 }
 
 /* *complete: there was nothing left to simulate. *stopped: some of the round was not. */
 static bool run_round(struct rounds *rounds, bool *complete, bool *stopped, stance_message *message)
 {
     struct work *work = rounds->work;
-    const struct work_rows rows = {rounds->row,
-                                   refine_next(rounds->refine, rounds->row, ROUND_LARGEST)};
+    const struct rows rows = {
+        .row = rounds->row,
+        .count = refine_next(rounds->refine, rounds->row, ROUND_LARGEST),
+    };
 
     *complete = rows.count == 0;
     if (*complete) {
         return true;
     }
     memset(rounds->label, 0, rows.count);
-    work->only = &rows;
-    work->label = rounds->label;
     work->round++;
     parallel_restart(work->parallel);
-    bool good = work_run(work, message);
-    work->only = NULL;
-    work->label = NULL;
+    bool good = work_run(work, &rows, rounds->label, message);
     if (!parallel_agree(work->parallel, good, message->text, sizeof message->text)) {
         return false;
     }
@@ -71,44 +72,45 @@ static bool run_round(struct rounds *rounds, bool *complete, bool *stopped, stan
 
 /* ---- what is inferred --------------------------------------------------------------------- */
 
-static void infer(stance_result *result, int label)
+static void infer(struct store_block *block, size_t slot, int label)
 {
-    store_blank(result);
-    result->status = STANCE_DONE;
-    result->outcome = label - 1;
-    result->evidence = STANCE_INFERRED;
+    stance_result result;
+    store_blank(&result);
+    result.status = STANCE_DONE;
+    result.outcome = label - 1;
+    result.evidence = STANCE_INFERRED;
+    store_put(block, slot, &result);
 }
 
-/* Writes the inferred rows of this rank's part of the file. */
+/* Writes the inferred rows of this rank's part of the file, INFER_ROWS at a time. */
 static bool write_inferred(struct rounds *rounds, stance_message *message)
 {
     struct work *work = rounds->work;
     const uint64_t rows = work->plan->rows;
     const uint64_t ranks = (uint64_t)work->parallel->size, rank = (uint64_t)work->parallel->rank;
     const uint64_t end = rows / ranks * (rank + 1) + rows % ranks * (rank + 1) / ranks;
-    stance_result result[STORE_ROWS];
-    uint64_t list[STORE_ROWS];
-    size_t n = 0;
+    struct rows list = {.row = rounds->row};
 
     for (uint64_t row = rows / ranks * rank + rows % ranks * rank / ranks; row < end; row++) {
         if (refine_inferred(rounds->refine, row)) {
-            infer(&result[n], refine_label(rounds->refine, row));
-            list[n++] = row;
+            infer(rounds->block, (size_t)list.count, refine_label(rounds->refine, row));
+            rounds->row[list.count++] = row;
         }
-        if (n < STORE_ROWS && (row + 1 < end || n == 0)) {
+        if (list.count == 0 || (list.count < INFER_ROWS && row + 1 < end)) {
             continue;
         }
-        if (work_told_to_stop(work, 0)) {
+        if (work_told_to_stop(work)) {
             return true;
         }
-        if (!store_write_list(work->store, list, n, result, message)) {
+        if (!store_write(work->store, rounds->block, 0, &list, message)) {
             return false;
         }
-        for (size_t k = 0; k < n; k++) {
-            work_tally(work, &result[k]);
+        for (size_t k = 0; k < list.count; k++) {
+            const int label = refine_label(rounds->refine, list.row[k]);
+            work_tally(work, STANCE_DONE, (stance_outcome)(label - 1));
         }
-        work->inferred += n;
-        n = 0;
+        work->inferred += list.count;
+        list.count = 0;
     }
     return true;
 }

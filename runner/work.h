@@ -1,19 +1,17 @@
 /* work.h - the computing part of a run: every rank draws chunks of cases, has the engine run
  * them, and writes what came out, until nothing is left or the job is told to stop.
+ *
+ * Memory is bounded whatever the number of cases: a block of rows (2 MB at most, as a rule) for
+ * each lane and one more, and the trajectories of the cases in the lanes.
  */
 #ifndef STANCE_RUNNER_WORK_H
 #define STANCE_RUNNER_WORK_H
 
 #include "plan.h"
+#include "schedule.h"
 #include "store.h"
 
-enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1 };
-
-/* Rows in ascending order. */
-struct work_rows {
-    const uint64_t *row;
-    size_t count;
-};
+enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1, WORK_FAILED = WORK_OUTCOMES + 1 };
 
 struct work {
     const struct plan *plan;
@@ -23,36 +21,36 @@ struct work {
     bool quiet;                      /* no progress */
     double start;                    /* plan_clock() when the program began */
     double time_limit;               /* s since then, INFINITY: none */
-    const struct work_rows *only;    /* what is to be computed; NULL: every row of the plan */
-    uint8_t *label; /* [only->count], or NULL: filled in for the rows that this rank has dealt with,
-                     * outcome + 1, or WORK_OUTCOMES + 1 for failed */
-    int round;      /* of several, counted from 1, for the progress; 0: there is one only */
+    int round;           /* of several, counted from 1, for the progress; 0: there is one only */
     double progress_due; /* when to show it next; 0: not shown yet */
 
     /* What came out, for this rank's cases. */
     uint64_t finished; /* cases with an answer in the file, kept ones included */
     uint64_t computed; /* of these, now */
-    uint64_t inferred; /* of these, without simulation */
+    uint64_t inferred; /* of these, now and without simulation */
     uint64_t outcome[WORK_OUTCOMES], failed;
     double seconds;
 };
 
-/* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop after the slice in hand. A second SIGINT
- * kills. */
+/* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop: cases in hand are given up, what has
+ * ended is written. A second SIGINT kills. */
 void work_catch_signals(void);
 
 /* Whether a signal has asked for a stop. */
 bool work_stop_asked(void);
 
-/* Counts a case whose answer is in the file. */
-void work_tally(struct work *work, const stance_result *result);
+/* Whether to stop: for a signal, the time limit, or because another rank was told so. The others
+ * learn of it. */
+bool work_told_to_stop(const struct work *work);
 
-/* Whether to stop before something that will take about `expected` seconds: for a signal, the time
- * limit, or because another rank was told so. The others learn of it. */
-bool work_told_to_stop(const struct work *work, double expected);
+/* Counts a case whose answer is in the file, or will be. */
+void work_tally(struct work *work, stance_status status, stance_outcome outcome);
 
-/* Not collective, but every rank calls it. Leaves early when any rank fails, or is told to stop;
- * false when this rank failed. */
-bool work_run(struct work *work, stance_message *message);
+/* Computes all rows of the plan, or `only` some. Not collective, but every rank calls it, with the
+ * same rows and with counters that are new (parallel_share, parallel_restart). Leaves early when
+ * any rank fails, or is told to stop; false when this rank failed. What came out adds to what *work
+ * holds. label[rows], unless NULL: of each row that this rank has dealt with, outcome + 1, or
+ * WORK_FAILED. */
+bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance_message *message);
 
 #endif
