@@ -11,8 +11,9 @@ KERNEL_CFLAGS ?= -O3 -g
 PYTHON  ?= /usr/bin/python3
 
 WARNINGS = -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
-# The same bits on every machine: no contraction, no reassociation.
-STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-math-errno -fno-trapping-math
+# The same bits on every machine: no contraction, no reassociation. In spite of the former GCC's SLP
+# vectoriser (12's, say) fuses a * b - c, d * e + f where there are instructions for the pair.
+STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno -fno-trapping-math
 
 # ---- libraries: found with pkg-config and mpicc; MPI=0 builds for one rank with serial HDF5 ------
 PKG_CONFIG ?= pkg-config
@@ -20,6 +21,8 @@ PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev libla
                 libslicot-dev libsundials-dev librandom123-dev libjansson-dev gnuplot-nox fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
 PACKAGES_LINT = clang-format clang-tidy cppcheck
+PACKAGES_NEON = gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
+PACKAGES_BENCH = libmujoco-dev valgrind linux-perf
 BUILD_TOOLS   = gcc make pkg-config
 
 ifeq ($(MPI),1)
@@ -47,21 +50,30 @@ SCENES  = ball block rod biped
 METHODS = implicit midpoint capturing lagrange
 SCALAR_METHODS = event_driven
 MACHINE := $(shell uname -m)
-ISAS_x86_64  = scalar sse2 avx2 avx512
+# Slow to fast: sse2 has to emulate fused multiply-adds and is for processors without them.
+ISAS_x86_64  = sse2 scalar avx2 avx512
 ISAS_aarch64 = scalar neon
 ISAS    := $(or $(ISAS_$(MACHINE)),scalar)
-isa_flags_scalar = -DSTANCE_LANES=1 -mfma
+fma_x86_64       = -mfma
+isa_flags_scalar = -DSTANCE_LANES=1 $(fma_$(MACHINE))
 isa_flags_sse2   = -DSTANCE_LANES=2
 isa_flags_neon   = -DSTANCE_LANES=2
 isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2 -mfma
-isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl
+isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma
+# Methods that take one case at a time run on every processor.
+scalar_method_flags = -DSTANCE_LANES=1
 
-kernels := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i)))) \
-           $(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
-kernel_objects := $(kernels:%=$(BUILD)/kernel/%.o)
-engine_sources := $(wildcard engine/*.c engine/control/*.c engine/scenes/*.c)
+kernels        := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i))))
+scalar_kernels := $(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
+kernel_objects := $(patsubst %,$(BUILD)/kernel/%.o,$(kernels) $(scalar_kernels))
+CONTROL        ?= engine/control
+engine_sources := $(wildcard engine/*.c $(CONTROL:%=%/*.c) engine/scenes/*.c)
 engine_objects := $(engine_sources:%.c=$(BUILD)/%.o) $(kernel_objects)
-isa_list = -DSTANCE_ISA_LIST='$(foreach i,$(ISAS),X($(i)))'
+comma := ,
+isa_list     = -DSTANCE_ISA_LIST='$(foreach i,$(ISAS),ISA($(i)))'
+kernel_lists = $(isa_list) -DSTANCE_METHOD_LIST='$(foreach m,$(METHODS) $(SCALAR_METHODS),METHOD($(m)))' \
+    -DSTANCE_KERNEL_LIST='$(foreach k,$(kernels),KERNEL($(subst -,$(comma),$(k))))' \
+    -DSTANCE_SCALAR_KERNEL_LIST='$(foreach k,$(scalar_kernels),KERNEL($(subst -,$(comma),$(k))))'
 
 # ---- the program ---------------------------------------------------------------------------------
 program_sources := $(wildcard runner/*.c analysis/*.c)
@@ -73,7 +85,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo test test-long bench lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long bench bench-run profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(BUILD)/libstance.a
@@ -86,16 +98,17 @@ $(BUILD)/libstance.a: $(engine_objects)
 define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
-	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(isa_flags_$(3)) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES))-scalar,$(1)-$(3)),-DSTANCE_DESCRIBE_METHOD) \
+	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES))-scalar,$(1)-$(3)),-DSTANCE_DESCRIBE_METHOD) \
 	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
-$(eval $(call kernel_rule,$(s),$(m),$(i))))))
-$(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(eval $(call kernel_rule,$(s),$(m),scalar))))
+$(eval $(call kernel_rule,$(s),$(m),$(i),$(isa_flags_$(i)))))))
+$(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),\
+$(eval $(call kernel_rule,$(s),$(m),scalar,$(scalar_method_flags)))))
 
 $(BUILD)/engine/%.o: engine/%.c Makefile
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(LIBRARY_CFLAGS) -MMD -MP -c -o $@ $<
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(EXTRA) $(LIBRARY_CFLAGS) -MMD -MP -c -o $@ $<
 $(BUILD)/runner/%.o: runner/%.c Makefile
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
@@ -106,9 +119,10 @@ $(BUILD)/analysis/%.o: analysis/%.c Makefile
 $(BUILD)/runner/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/build_info.o: $(BUILD)/revision
 # The table of kernels is made anew when the list of what it holds changes.
-$(BUILD)/engine/kernels.o: $(BUILD)/isas
-$(BUILD)/isas: FORCE
-	@mkdir -p $(@D); echo '$(SCENES) $(METHODS) $(ISAS)' | cmp -s - $@ || echo '$(SCENES) $(METHODS) $(ISAS)' > $@
+$(BUILD)/engine/kernels.o: EXTRA = $(kernel_lists)
+$(BUILD)/engine/kernels.o: $(BUILD)/kernels
+$(BUILD)/kernels: FORCE
+	@mkdir -p $(@D); echo '$(kernels) $(scalar_kernels)' | cmp -s - $@ || echo '$(kernels) $(scalar_kernels)' > $@
 $(BUILD)/revision: FORCE
 	@mkdir -p $(@D); echo '$(REVISION)' | cmp -s - $@ || echo '$(REVISION)' > $@
 
@@ -120,26 +134,66 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
 $(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< $(shared_objects) \
-	    $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(isa_list) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
+	    $(shared_objects) $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
+
+# Each instruction set's fused multiply-adds, for test_fma.
+fused_objects = $(ISAS:%=$(BUILD)/tests/lanes_fma-%.o)
+$(BUILD)/tests/lanes_fma-%.o: tests/lanes_fma.c Makefile
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(isa_flags_$*) -DSTANCE_ISA=$* -MMD -MP -c -o $@ $<
+$(BUILD)/tests/test_fma: $(fused_objects) $(BUILD)/kernels
+$(BUILD)/tests/test_fma: test_objects = $(fused_objects)
+
+# Hashes of what the kernels compute, by a program of the engine alone that other machines run too.
+$(BUILD)/tests/golden: tests/golden.c $(BUILD)/libstance.a
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $^ $(LDFLAGS) $(GOLDEN_LIBS)
+golden: $(BUILD)/tests/golden
+GOLDEN_LIBS = $(LIBS)
+
+# The same for a 64-bit ARM, by Debian's cross compiler: the engine without what needs libraries.
+NEON_CFLAGS ?= -O1
+golden-neon:
+	@$(MAKE) BUILD=build/neon$(NEON_CFLAGS) KERNEL_CFLAGS=$(NEON_CFLAGS) MACHINE=aarch64 \
+	    CC=aarch64-linux-gnu-gcc SCALAR_METHODS= CONTROL= LIBRARY_CFLAGS= LDFLAGS=-static \
+	    GOLDEN_LIBS=-lm golden
+
+# ---- benchmarks: what the kernels are held to; a program without MuJoCo skips that comparison -----
+MUJOCO := $(wildcard /usr/include/mujoco/mujoco.h)
+bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco)
+$(BUILD)/tests/bench_mujoco: LIBS += -lmujoco
+# By hand as fast as the compiler makes it: the instructions of the one-lane kernel, contracted.
+$(BUILD)/tests/bench_scalar: BENCH_FLAGS = $(filter -m%,$(isa_flags_scalar)) -ffp-contract=fast
+$(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(BUILD)/libstance.a
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(BENCH_FLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< \
+	    $(shared_objects) $(BUILD)/libstance.a $(LDFLAGS) $(LIBS)
 
 # What Open MPI wants in a container, as root, on few cores.
 MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
                   OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
 TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(abspath $(PROGRAM))
 
+# ARM's kernels against this machine's, in an emulator. `check` does so where the packages are, with
+# kernels that are quicker to compile.
+test-neon: packages-neon
+	$(MAKE) golden
+	@$(TEST_ENVIRONMENT) NEON_CFLAGS=-O3 bash tests/whole_machines.sh
+
 test: packages-test
 	$(MAKE) check
-check: $(PROGRAM) $(test_programs)
+check: $(PROGRAM) $(test_programs) golden
 	@$(TEST_ENVIRONMENT) bash tests/run.sh
 test-long: packages-test
-	$(MAKE) $(PROGRAM) $(test_programs)
+	$(MAKE) $(PROGRAM) $(test_programs) golden
 	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
-packages packages-test: packages%:
-	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT))"; \
+packages packages-test packages-neon packages-bench: packages%:
+	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT)) \
+	    $(if $(filter -neon,$*),$(PACKAGES_NEON)) $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
 	missing=; for p in $$need; do \
 	    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
 	[ -z "$$missing" ] && exit 0; \
@@ -156,8 +210,15 @@ demo: packages
 	bin/stance summary results/basin_one_foot.h5
 	@echo; echo "The stability domain, drawn:"; bin/stance plot results/basin_one_foot.h5
 
-bench: bin/stance
-	bin/stance bench
+# All speed benchmarks -> results/bench.csv and .png. Packages for comparisons are no necessity.
+bench: packages
+	@$(MAKE) packages-bench || echo 'bench: what needs $(PACKAGES_BENCH) and is missing is skipped' >&2
+	@$(MAKE) bench-run
+bench-run: $(PROGRAM) $(bench_programs)
+	@$(TEST_ENVIRONMENT) bash tests/bench.sh
+profile: $(PROGRAM)
+	@$(MAKE) packages-bench || echo 'profile: what needs $(PACKAGES_BENCH) and is missing is skipped' >&2
+	@$(TEST_ENVIRONMENT) bash tests/profile.sh
 
 lint: packages-test
 	@bash tests/lint.sh
@@ -178,7 +239,9 @@ help:
 	@echo 'make demo       install what is missing, build, map a stability domain, draw it'
 	@echo 'make test       install what is missing, build, run every test'
 	@echo 'make test-long  the same with the long tests'
-	@echo 'make bench      speed of the stepping kernels'
+	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'
+	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
+	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
 	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'
 	@echo 'make install    PREFIX=/usr/local DESTDIR='

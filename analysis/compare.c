@@ -397,9 +397,15 @@ static bool compare_attribute(struct comparison *comparison, const struct result
 static bool compare_attributes(struct comparison *comparison, const struct results *const r[2],
                                const hid_t object[2], const char *owner, stance_message *message)
 {
-    static const char *const provenance[] = {
-        "program_version", "git_revision", "compiler", "library_versions",
-        "ranks",           "hosts",        "date",     NULL};
+    static const char *const provenance[] = {"program_version",
+                                             "git_revision",
+                                             "compiler",
+                                             "library_versions",
+                                             "instruction_set",
+                                             "ranks",
+                                             "hosts",
+                                             "date",
+                                             NULL};
     struct names names = {0};
     bool good = true;
     char name[192];

@@ -1,6 +1,8 @@
 /* studies.c - finds, runs and reports the scenarios of `stance bench accuracy` and `failure`. */
 #include "studies.h"
 
+#include "../runner/instruction_set.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <math.h>
@@ -171,6 +173,9 @@ int studies_run(const struct command *command, const char *kind, study_function 
     }
     if (help) {
         return EXIT_DONE;
+    }
+    if (!instruction_set_usable(command->name)) {
+        return EXIT_USAGE;
     }
     snprintf(fallback, sizeof fallback, "results/%s", kind);
     const struct request request = {command, study, directories ? directory : fallback, json > 0,

@@ -4,48 +4,40 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What there is: a method or a scene is a word here and in the Makefile. STANCE_ISA_LIST comes
- * from there: X(scalar) X(sse2) ... in order of width. */
-#define STANCE_METHODS(X) X(implicit) X(midpoint) X(capturing) X(lagrange) X(event_driven)
-#define STANCE_VECTOR_METHODS(K, scene, isa)                                                       \
-    K(scene, implicit, isa) K(scene, midpoint, isa) K(scene, capturing, isa) K(scene, lagrange, isa)
-/* One case at a time, whatever the processor. */
-#define STANCE_SCALAR_METHODS(K, scene, isa) K(scene, event_driven, isa)
-#define STANCE_SCENES(EACH, K, isa)                                                                \
-    EACH(K, ball, isa) EACH(K, block, isa) EACH(K, rod, isa) EACH(K, biped, isa)
-
-#ifndef STANCE_ISA_LIST
-#define STANCE_ISA_LIST X(scalar)
+/* What there is, from the Makefile: METHOD(implicit) ..., ISA(sse2) ISA(scalar) ... from slow to
+ * fast, and KERNEL(ball, implicit, sse2) ... in that order of instruction sets; the kernels of
+ * methods that take one case at a time, which run on every processor, in a list of their own. Here
+ * is what a tool that reads this file alone sees. */
+#ifndef STANCE_METHOD_LIST
+#define STANCE_METHOD_LIST METHOD(implicit)
+#define STANCE_ISA_LIST ISA(scalar)
+#define STANCE_KERNEL_LIST KERNEL(biped, implicit, scalar)
+#define STANCE_SCALAR_KERNEL_LIST
 #endif
 
-#define DECLARE_METHOD(m) extern const stance_method stance_method_##m;
-STANCE_METHODS(DECLARE_METHOD)
+#define METHOD(method) extern const stance_method stance_method_##method;
+STANCE_METHOD_LIST
+#undef METHOD
+#define KERNEL(scene, method, isa)                                                                 \
+    extern const stance_kernel stance_kernel_##scene##_##method##_##isa;
+STANCE_KERNEL_LIST STANCE_SCALAR_KERNEL_LIST
+#undef KERNEL
 
-#define ENTRY_METHOD(m) &stance_method_##m,
-static const stance_method *const methods[] = {STANCE_METHODS(ENTRY_METHOD) NULL};
-
-#define DECLARE_KERNEL(scene, m, isa)                                                              \
-    extern const stance_kernel stance_kernel_##scene##_##m##_##isa;
-#define X(isa) STANCE_SCENES(STANCE_VECTOR_METHODS, DECLARE_KERNEL, isa)
-STANCE_ISA_LIST
-#undef X
-STANCE_SCENES(STANCE_SCALAR_METHODS, DECLARE_KERNEL, scalar)
-
-/* Narrow to wide. */
-static const stance_kernel *const kernels[] = {
-#define ENTRY_KERNEL(scene, m, isa) &stance_kernel_##scene##_##m##_##isa,
-#define X(isa) STANCE_SCENES(STANCE_VECTOR_METHODS, ENTRY_KERNEL, isa)
-    STANCE_ISA_LIST
-#undef X
-};
-static const stance_kernel *const scalar_kernels[] = {
-    STANCE_SCENES(STANCE_SCALAR_METHODS, ENTRY_KERNEL, scalar)};
+#define METHOD(method) &stance_method_##method,
+    static const stance_method *const methods[] = {STANCE_METHOD_LIST NULL};
+#undef METHOD
+#define ISA(isa) #isa,
+static const char *const isas[] = {STANCE_ISA_LIST};
+#undef ISA
+#define KERNEL(scene, method, isa) &stance_kernel_##scene##_##method##_##isa,
+static const stance_kernel *const kernels[] = {STANCE_KERNEL_LIST};
+static const stance_kernel *const scalar_kernels[] = {STANCE_SCALAR_KERNEL_LIST NULL};
+#undef KERNEL
 
 /* Numbers of them. */
 enum {
+    ISAS = sizeof isas / sizeof isas[0],          // NOLINT(bugprone-sizeof-expression)
     KERNELS = sizeof kernels / sizeof kernels[0], // NOLINT(bugprone-sizeof-expression)
-    SCALAR_KERNELS =
-        sizeof scalar_kernels / sizeof scalar_kernels[0] // NOLINT(bugprone-sizeof-expression)
 };
 
 const stance_method *const *stance_methods(void)
@@ -61,10 +53,15 @@ const stance_method *stance_method_find(const char *name)
     return NULL;
 }
 
-/* Does this processor (and its operating system) run the instruction set? */
+/* Does this processor (and its operating system) run the instruction set? `scalar` is compiled for
+ * processors with fused multiply-adds, where its architecture has others too. */
 static bool isa_runs(const char *isa)
 {
 #if defined(__x86_64__)
+    if (strcmp(isa, "sse2") == 0)
+        return true;
+    if (!__builtin_cpu_supports("fma"))
+        return false;
     if (strcmp(isa, "avx2") == 0)
         return __builtin_cpu_supports("avx2");
     if (strcmp(isa, "avx512") == 0)
@@ -85,7 +82,7 @@ const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_
         if (!isa || strcmp(isa, k->isa) == 0)
             return k;
     }
-    for (int i = 0; i < SCALAR_KERNELS; i++)
+    for (int i = 0; scalar_kernels[i]; i++)
         if (scalar_kernels[i]->scene == scene && scalar_kernels[i]->method == method)
             return scalar_kernels[i];
     return NULL;
@@ -93,13 +90,8 @@ const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_
 
 const char *stance_isa(int rank)
 {
-    const char *previous = "";
-    for (int i = KERNELS - 1; i >= 0; i--) {
-        if (strcmp(kernels[i]->isa, previous) == 0 || !isa_runs(kernels[i]->isa))
-            continue;
-        previous = kernels[i]->isa;
-        if (rank-- == 0)
-            return previous;
-    }
+    for (int i = ISAS - 1; i >= 0; i--)
+        if (isa_runs(isas[i]) && rank-- == 0)
+            return isas[i];
     return NULL;
 }

@@ -304,12 +304,12 @@ typedef struct stance_kernel {
 /* The methods there are, NULL-terminated; and one by name, or NULL. */
 const stance_method *const *stance_methods(void);
 const stance_method *stance_method_find(const char *name);
-/* The kernel for a scene and a method; isa NULL: the widest that this processor runs. A method that
- * takes one case at a time has a scalar kernel only and gives it for every isa. NULL when there is
- * none. */
+/* The kernel for a scene and a method; isa NULL: the fastest that this processor runs. A method
+ * that takes one case at a time has a scalar kernel only, which runs on every processor, and gives
+ * it for every isa. NULL when there is none, as for an isa that this processor does not run. */
 const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_method *method,
                                         const char *isa);
-/* Name of the instruction set that comes at `rank` (0: widest) among those that this build has and
+/* Name of the instruction set that comes at `rank` (0: fastest) among those that this build has and
  * this processor runs; NULL past the last. */
 const char *stance_isa(int rank);
 

@@ -11,6 +11,8 @@
  */
 #include "capture.h"
 
+#include "instruction_set.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -178,7 +180,7 @@ bool capture_prepare(const stance_scene *scene, const struct scenario_values *va
 
     *search = (stance_capture_search){
         .scene = scene, .boundary = CAPTURE_BOUNDARY, .interior = CAPTURE_INTERIOR};
-    search->kernel = stance_kernel_find(scene, stance_methods()[values->method], NULL);
+    search->kernel = instruction_set_kernel(scene, stance_methods()[values->method]);
     if (!search->kernel || !scene->contact_force || !scene->linearise) {
         snprintf(message->text, sizeof message->text, "no captured set: not for this scene");
         return false;

@@ -1,5 +1,6 @@
 /* command_check.c - `stance check`: is the scenario sound, and what would running it take? */
 #include "command.h"
+#include "instruction_set.h"
 #include "report.h"
 
 #include <stdio.h>
@@ -58,6 +59,8 @@ static int run_check(int argc, char **argv)
         } else if (operands != 1) {
             fprintf(stderr, "stance check: a scenario file must be given (stance check -h "
                             "explains)\n");
+        } else if (!instruction_set_usable("check")) {
+            code = EXIT_USAGE;
         } else if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
             code = check(s, json > 0);
             scenario_free(s);

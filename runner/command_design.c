@@ -3,6 +3,7 @@
  */
 #include "command.h"
 #include "design.h"
+#include "instruction_set.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -107,6 +108,9 @@ static int run(int argc, char **argv)
     }
     if (operands == 0) {
         fputs("stance design: a scenario is needed (stance design -h explains)\n", stderr);
+        return EXIT_USAGE;
+    }
+    if (!instruction_set_usable("design")) {
         return EXIT_USAGE;
     }
     struct scenario *s = malloc(sizeof *s);

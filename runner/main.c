@@ -1,6 +1,7 @@
 /* main.c - the program: finds the command and runs it. */
 #include "build_info.h"
 #include "command.h"
+#include "instruction_set.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -23,18 +24,25 @@ static void print_usage(FILE *out)
     for (size_t i = 0; i < COMMANDS; i++) {
         fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
     }
-    fputs("\nstance COMMAND -h explains a command; stance --version says what was built.\n"
-          "Exit codes: 0 done, 1 some cases failed numerically (compare: files differ),\n"
-          "2 bad use or bad scenario, 3 input or output failed, 4 interrupted and resumable.\n",
-          out);
+    fputs(
+        "\nstance COMMAND -h explains a command; stance --version says what was built.\n"
+        "Exit codes: 0 done, 1 some cases failed numerically (compare: files differ),\n"
+        "2 bad use or bad scenario, 3 input or output failed, 4 interrupted and resumable.\n"
+        "The environment variable STANCE_ISA, if set, names the instruction set to compute with;\n"
+        "results do not depend on it.\n",
+        out);
 }
 
 static void print_version(void)
 {
-    char libraries[BUILD_LIBRARIES_SIZE];
+    char libraries[BUILD_LIBRARIES_SIZE], sets[INSTRUCTION_SETS_SIZE];
+    stance_message message;
     build_libraries(libraries);
+    instruction_set_names(sets);
     printf("stance %s (revision %s)\n%s\n%s\n%s\n", STANCE_VERSION, build_revision(),
            build_compiler(), build_flags(), libraries);
+    printf("instruction sets %s; in use: %s\n", sets,
+           instruction_set_check(&message) ? instruction_set() : "none");
 }
 
 static int unknown_command(const char *word)

@@ -1,6 +1,8 @@
 /* measure.c - repeats a group of cases and takes the median of its times. */
 #include "measure.h"
 
+#include "instruction_set.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,7 +75,7 @@ bool measure_rows(const struct plan *plan, uint64_t first, size_t count, double 
         n += plan_resolve(plan, first + i, &cases[n], &method);
     }
     const stance_kernel *kernel =
-        n > 0 ? stance_kernel_find(plan->scenario->scene, stance_methods()[method], NULL) : NULL;
+        n > 0 ? instruction_set_kernel(plan->scenario->scene, stance_methods()[method]) : NULL;
     if (kernel) {
         repeat(kernel, cases, results, n, budget, cost);
     }

@@ -2,6 +2,7 @@
 #include "plan.h"
 
 #include "capture.h"
+#include "instruction_set.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -83,7 +84,7 @@ static void plan_trajectories(struct plan *plan, bool trace)
 static bool method_runs(const struct scenario *s, int method, struct plan_error *error)
 {
     const stance_method *m = stance_methods()[method];
-    if (stance_kernel_find(s->scene, m, NULL)) {
+    if (instruction_set_kernel(s->scene, m)) {
         return true;
     }
     snprintf(error->message.text, sizeof error->message.text,
@@ -419,7 +420,7 @@ static void try_cases(const struct plan *plan, uint64_t from, uint64_t n, int64_
         trial->steps_asked += (uint64_t)input.steps;
         input.steps = input.steps < steps ? input.steps : steps;
         const stance_kernel *kernel =
-            stance_kernel_find(plan->scenario->scene, stance_methods()[method], NULL);
+            instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
         /* Lanes share the work of a bundle: a full one is timed, of copies. */
         stance_case bundle[WIDEST];
         stance_result results[WIDEST] = {{0}};

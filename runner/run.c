@@ -6,6 +6,7 @@
 #include "build_info.h"
 #include "checksum.h"
 #include "command.h"
+#include "instruction_set.h"
 #include "lock.h"
 #include "report.h"
 #include "rounds.h"
@@ -178,6 +179,7 @@ static bool read_options(struct options *o, int argc, char **argv)
 static void stage_options(struct run *run)
 {
     struct options *o = &run->options;
+    stance_message message;
     bool good = false;
 
     o->sets = malloc((size_t)run->argc * sizeof *o->sets);
@@ -199,6 +201,10 @@ static void stage_options(struct run *run)
         read_options(o, run->argc, run->argv);
     }
     o->help = help;
+    if (!help && !instruction_set_check(&message)) {
+        snprintf(run->failure.text, sizeof run->failure.text, "stance run: %s", message.text);
+        run->failure.code = EXIT_USAGE;
+    }
 }
 
 /* ---- the scenario ------------------------------------------------------------------------- */

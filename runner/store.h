@@ -22,8 +22,9 @@
  *   group `timing`: `wall_time` (rank, seconds of computing), `cases` (rank): the only part that
  *     differs between runs. A resumed run adds its ranks' numbers, modulo the length.
  *   root attributes: Conventions "CF-1.8", title, format_version (int 1), program_version,
- *     git_revision, compiler (with flags), library_versions, ranks, hosts, date, seed, scenario
- *     (text), axes (comma-separated dimension names, in order), scenario_sha256.
+ *     git_revision, compiler (with flags), library_versions, instruction_set (of rank 0), ranks,
+ *     hosts, date, seed, scenario (text), axes (comma-separated dimension names, in order),
+ *     scenario_sha256.
  *   every variable but the answers, the trajectories' own and those of `timing` has an attribute
  *     `checksum` over its values (seal.h), which whoever reads the file verifies.
  * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as

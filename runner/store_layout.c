@@ -9,6 +9,7 @@
 #include "build_info.h"
 #include "checksum.h"
 #include "command.h"
+#include "instruction_set.h"
 #include "report.h"
 #include "seal.h"
 
@@ -656,6 +657,7 @@ static bool put_provenance(struct layout *layout)
            put_text(layout->file, "git_revision", build_revision()) &&
            put_text(layout->file, "compiler", compiler) &&
            put_text(layout->file, "library_versions", libraries) &&
+           put_text(layout->file, "instruction_set", instruction_set()) &&
            put_int(layout->file, "ranks", layout->ranks) &&
            put_text(layout->file, "hosts", layout->hosts) && put_text(layout->file, "date", date) &&
            put_number(layout->file, "seed", KIND_uint64_t, &s->seed) &&

@@ -12,6 +12,8 @@
  */
 #include "work.h"
 
+#include "instruction_set.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <signal.h>
@@ -616,7 +618,7 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
             start + (job.progress.terminal ? progress_terminal : progress_elsewhere);
     }
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++) {
-        job.kernel[m] = stance_kernel_find(work->plan->scenario->scene, stance_methods()[m], NULL);
+        job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
     }
     run_streams(&job);
     for (struct block *block = job.oldest; block; block = block->next) {

@@ -49,7 +49,7 @@ def answers(data, dims):
 
 def provenance(data):
     for key in ["title", "program_version", "git_revision", "compiler", "library_versions",
-                "hosts", "date", "scenario", "scenario_sha256", "axes"]:
+                "instruction_set", "hosts", "date", "scenario", "scenario_sha256", "axes"]:
         assert data.attrs[key], key
     equal(data.attrs["Conventions"], "CF-1.8", "Conventions")
     equal(int(data.attrs["format_version"]), 1, "format_version")

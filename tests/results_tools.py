@@ -16,8 +16,8 @@ import sys
 import h5py
 import numpy
 
-PROVENANCE = {"program_version", "git_revision", "compiler", "library_versions", "ranks", "hosts",
-              "date"}
+PROVENANCE = {"program_version", "git_revision", "compiler", "library_versions",
+              "instruction_set", "ranks", "hosts", "date"}
 # The answers in the order in which the checksum takes them.
 ANSWERS = """outcome evidence failure end_time settle_time fall_time steps iterations
     ambiguous_steps subdivided_steps degraded_samples max_penetration slip_distance peak_torque

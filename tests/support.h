@@ -1,4 +1,5 @@
-/* support.h - what several tests share: robots, cases, random numbers, JSON references. */
+/* support.h - what several tests share beside cases.h: controllers, trajectories, JSON references.
+ */
 #ifndef STANCE_TESTS_SUPPORT_H
 #define STANCE_TESTS_SUPPORT_H
 
@@ -14,52 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../engine/stance.h"
-
-/* Uniform in [low, high) from splitmix64: the same everywhere. */
-static inline double uniform(uint64_t *state, double low, double high)
-{
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    z ^= z >> 31;
-    return low + (high - low) * (double)(z >> 11) * 0x1p-53;
-}
+#include "cases.h"
 
 static inline const stance_kernel *kernel_of(const char *method, const char *isa)
 {
     const stance_kernel *k =
         stance_kernel_find(stance_scene_find("biped"), stance_method_find(method), isa);
     return k;
-}
-
-/* A case of the default robot without controller, 1 ms, one second, both feet, friction 0.8. */
-static inline stance_case plain_case(void)
-{
-    const stance_scene *scene = stance_scene_find("biped");
-    stance_case c;
-    memset(&c, 0, sizeof c);
-    for (int i = 0; i < scene->robot_count; i++)
-        c.robot[i] = scene->robot[i].fallback;
-    c.friction = 0.8;
-    c.contacts = 3;
-    c.torque_limit = INFINITY;
-    c.step = 1e-3;
-    c.steps = 1000;
-    c.support = -1;
-    c.settle_angle = 0.05, c.settle_rate = 0.5, c.settle_hold = 0.5;
-    c.fall_height = 0.2;
-    return c;
-}
-
-/* The legs' servo: holds the joint angles that the case starts with. */
-static inline void hold_legs(stance_case *c, double kp, double kd)
-{
-    for (int i = 0; i < 2; i++) {
-        c->gain[i][1 + i] = kp;
-        c->gain[i][4 + i] = kd;
-        c->target[1 + i] = c->position[3 + i];
-    }
 }
 
 /* Section 3.2's balance: foot 1 as only contact, robust gains, torques limited to 10 N m and held

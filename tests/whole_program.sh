@@ -158,6 +158,34 @@ done
 check "compare sees a difference" exits 1 "$stance" compare "$work/basin_both_feet.h5" "$work/basin_one_foot.h5"
 check "compare --json" sh -c "'$stance' compare --json '$work/drop.h5' '$work/drop.h5' | '$python' -m json.tool"
 
+# ---- instruction sets ----
+mapfile -t sets < <("$stance" --version | sed -n 's/^instruction sets \(.*\); in use: .*/\1/p' | tr -d ' ' | tr , '\n')
+check "--version tells the instruction sets" test ${#sets[@]} -ge 1
+names_set() { "$python" -c "
+import sys, h5py
+assert h5py.File(sys.argv[1]).attrs['instruction_set'] in (sys.argv[2], sys.argv[2].encode())" "$1" "$2"; }
+for set in "${sets[@]}"; do
+    check "$set: --version" sh -c "STANCE_ISA=$set '$stance' --version | grep -q 'in use: $set\$'"
+    for name in drop basin_both_feet walk_attempt; do
+        reduce=()
+        [ $name = basin_both_feet ] && reduce=(--set 'sweep.grid[0].count=24' --set 'sweep.grid[1].count=24')
+        check "$set: run $name" env STANCE_ISA="$set" "$stance" run scenarios/$name.yaml "${reduce[@]}" --quiet \
+            -o "$work/$name-$set.h5"
+        check "$set: the file says so" names_set "$work/$name-$set.h5" "$set"
+        check "$set: compare says identical" "$stance" compare "$work/$name.h5" "$work/$name-$set.h5"
+    done
+done
+for command in check design run; do
+    check "$command: an unknown instruction set" exits 2 env STANCE_ISA=mmx "$stance" $command scenarios/drop.yaml
+    check "... one line that names those there are" sh -c "[ \$(wc -l <'$work/last') = 1 ] &&
+        grep -q \"STANCE_ISA is 'mmx'.*${sets[0]}\" '$work/last'"
+done
+for command in bench 'bench accuracy' 'bench failure'; do
+    check "$command: an unknown instruction set" exits 2 env STANCE_ISA=mmx "$stance" $command
+done
+check "two ranks: an unknown instruction set" exits 2 env STANCE_ISA=mmx mpirun -n 2 "$stance" run scenarios/drop.yaml
+check "... said once" sh -c "[ \$(grep -c STANCE_ISA '$work/last') = 1 ]"
+
 # ---- one case again ----
 cd "$work" || exit 1
 check "--only --trace" "$stance" run "$OLDPWD/scenarios/basin_one_foot.yaml" --only 300 --trace \
@@ -204,7 +232,21 @@ assert all(0 < s[\"alone\"][k] <= s[\"extent\"][k] for k in s[\"alone\"]) and le
 check "describe" "$stance" describe
 check "describe controller.poles" "$stance" describe controller.poles
 check "describe --schema" sh -c "'$stance' describe --schema | '$python' -m json.tool"
-check "bench" "$stance" bench --repeats 1
+check "bench" "$stance" bench --repeats 1 --cases 8
+check "bench --json" sh -c "'$stance' bench --json --repeats 1 --cases 8 --scene biped --method implicit | '$python' -c '
+import json, sys
+rows = json.load(sys.stdin)
+assert {r[\"regime\"] for r in rows} == {\"flight\", \"one foot\", \"two feet\"}
+assert all(r[\"ns_min\"] <= r[\"ns_per_step\"] <= r[\"ns_max\"] and r[\"failed\"] == 0 for r in rows)
+assert all(r[\"steps\"] == 8000 and abs(r[\"ns_per_second\"] / r[\"ns_per_step\"] - 1000) < 1e-6 for r in rows)'"
+check "bench --csv" sh -c "'$stance' bench --csv --repeats 1 --cases 8 --scene biped --method implicit >'$work/speed.csv'"
+check "bench --csv: one width" sh -c "awk -F, 'NF != 21 {exit 1}' '$work/speed.csv'"
+check "bench: one instruction set" sh -c "STANCE_ISA=scalar '$stance' bench --repeats 1 --cases 8 --scene ball --regime flight \
+    | awk 'NR > 2 && \$4 != \"scalar\" {exit 1} END {exit NR != 7}'"
+check "bench: no such regime" exits 2 "$stance" bench --scene ball --regime 'two feet'
+check "bench plot" "$stance" bench plot "$work/speed.csv" -o "$work"
+check "bench plot: picture" png "$work/speed.png"
+check "bench plot: not a table" exits 3 "$stance" bench plot Makefile
 cat >"$work/pair.yaml" <<'EOF'
 stance: 1
 scene: biped

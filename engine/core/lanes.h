@@ -1,8 +1,13 @@
 /* lanes.h - a vector of STANCE_LANES doubles, one simulation in each lane, and masks over it.
  *
  * The stepping core is written once against these few operations and compiled for 1, 2, 4 and 8
- * lanes. Everything is plain IEEE arithmetic (+ - * / and comparisons), without contraction, so a
- * lane computes the same bits whatever the width. Control flow is by masks: `choose(m, a, b)`.
+ * lanes. Everything is plain IEEE arithmetic (+ - * / fma and comparisons), and the compiler
+ * contracts nothing: products are fused with sums where the source says so. A lane computes the
+ * same bits whatever the width. Control flow is by masks: `choose(m, a, b)`.
+ *
+ * lanes_fma(a, b, c) is a * b + c rounded once, lanes_fms(a, b, c) a * b - c, and
+ * lanes_fnma(a, b, c) c - a * b: an instruction each; emulated in fma.h for SSE2, which has none;
+ * by the C library, as exactly, in one lane compiled for processors without.
  */
 #ifndef STANCE_CORE_LANES_H
 #define STANCE_CORE_LANES_H
@@ -115,7 +120,7 @@ static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
     return _mm512_fnmadd_pd(a, b, c);
 }
 
-#elif STANCE_LANES == 4 && defined(__AVX2__)
+#elif STANCE_LANES == 4 && defined(__AVX2__) && defined(__FMA__)
 
 #include <immintrin.h>
 typedef double lanes __attribute__((vector_size(32), may_alias));
@@ -160,8 +165,56 @@ static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
     return _mm256_fnmadd_pd(a, b, c);
 }
 
-#elif STANCE_LANES == 2 /* SSE2, NEON: the compiler's generic vectors */
+#elif STANCE_LANES == 2 && defined(__x86_64__)
 
+#include <emmintrin.h>
+typedef double lanes __attribute__((vector_size(16), may_alias));
+typedef int64_t mask __attribute__((vector_size(16)));
+
+#define LANES_ALL ((mask){-1, -1})
+#define LANES_NOT(m) (~(m))
+static inline lanes lanes_of(double x)
+{
+    return (lanes){x, x};
+}
+/* By their instructions: of GCC's own vectors gcc 12 makes selections that SSE2 has not. */
+static inline mask mask_less(lanes a, lanes b)
+{
+    return (mask)_mm_cmplt_pd(a, b);
+}
+static inline mask mask_less_equal(lanes a, lanes b)
+{
+    return (mask)_mm_cmple_pd(a, b);
+}
+static inline lanes choose(mask m, lanes a, lanes b)
+{
+    return _mm_or_pd(_mm_and_pd((__m128d)m, a), _mm_andnot_pd((__m128d)m, b));
+}
+static inline bool mask_any(mask m)
+{
+    return _mm_movemask_pd((__m128d)m) != 0;
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return _mm_andnot_pd(_mm_set1_pd(-0.0), a);
+}
+#include "fma.h"
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(-a, b, c);
+}
+
+#elif STANCE_LANES == 2 && defined(__aarch64__)
+
+#include <arm_neon.h>
 typedef double lanes __attribute__((vector_size(16), may_alias));
 typedef int64_t mask __attribute__((vector_size(16)));
 
@@ -189,19 +242,19 @@ static inline bool mask_any(mask m)
 }
 static inline lanes lanes_abs(lanes a)
 {
-    return (lanes)((mask)a & (mask){INT64_MAX, INT64_MAX});
+    return vabsq_f64(a);
 }
 static inline lanes lanes_fma(lanes a, lanes b, lanes c)
 {
-    return (lanes){__builtin_fma(a[0], b[0], c[0]), __builtin_fma(a[1], b[1], c[1])};
+    return vfmaq_f64(c, a, b);
 }
 static inline lanes lanes_fms(lanes a, lanes b, lanes c)
 {
-    return lanes_fma(a, b, -c);
+    return vfmaq_f64(-c, a, b);
 }
 static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
 {
-    return lanes_fma(-a, b, c);
+    return vfmsq_f64(c, a, b);
 }
 
 #else

@@ -1,0 +1,165 @@
+/* cases.h - cases that tests step, and a hash of what comes out. The engine alone is needed. */
+#ifndef STANCE_TESTS_CASES_H
+#define STANCE_TESTS_CASES_H
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../engine/stance.h"
+
+/* Uniform in [low, high) from splitmix64: the same everywhere. */
+static inline double uniform(uint64_t *state, double low, double high)
+{
+    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    z ^= z >> 31;
+    return low + (high - low) * (double)(z >> 11) * 0x1p-53;
+}
+
+/* A case of the default robot without controller, 1 ms, one second, both feet, friction 0.8. */
+static inline stance_case plain_case(void)
+{
+    const stance_scene *scene = stance_scene_find("biped");
+    stance_case c;
+    memset(&c, 0, sizeof c);
+    for (int i = 0; i < scene->robot_count; i++)
+        c.robot[i] = scene->robot[i].fallback;
+    c.friction = 0.8;
+    c.contacts = 3;
+    c.torque_limit = INFINITY;
+    c.step = 1e-3;
+    c.steps = 1000;
+    c.support = -1;
+    c.settle_angle = 0.05, c.settle_rate = 0.5, c.settle_hold = 0.5;
+    c.fall_height = 0.2;
+    return c;
+}
+
+/* The legs' servo: holds the joint angles that the case starts with. */
+static inline void hold_legs(stance_case *c, double kp, double kd)
+{
+    for (int i = 0; i < 2; i++) {
+        c->gain[i][1 + i] = kp;
+        c->gain[i][4 + i] = kd;
+        c->target[1 + i] = c->position[3 + i];
+    }
+}
+
+static inline uint64_t hash(const void *data, size_t size, uint64_t h)
+{
+    const unsigned char *p = data;
+    for (size_t i = 0; i < size; i++)
+        h = (h ^ p[i]) * 0x100000001b3u;
+    return h;
+}
+
+/* Random states, launches, frictions (0 ... 2), servos, limits: half start with the lower foot on
+ * the ground, half up to 0.2 m above it. */
+static inline void random_case(uint64_t *seed, int i, double h, stance_case *c)
+{
+    *c = plain_case();
+    c->friction = uniform(seed, 0, 2);
+    for (int k = 2; k < 5; k++) {
+        c->position[k] = uniform(seed, -M_PI, M_PI);
+        c->velocity[k] = i % 3 == 0 ? uniform(seed, -20, 20) : uniform(seed, -5, 5);
+    }
+    for (int k = 0; k < 2; k++)
+        c->velocity[k] = uniform(seed, -3, 3);
+    double gap[2];
+    stance_scene_find("biped")->gaps(c->robot, c->position, gap);
+    c->position[1] += 1e-13 - fmin(gap[0], gap[1]) + (i % 2 ? 0 : uniform(seed, 0, 0.2));
+    const double stiffness = uniform(seed, 0, 200);
+    hold_legs(c, stiffness, stiffness / 20);
+    c->torque_limit = i % 5 ? 50 : INFINITY;
+    c->sample_every = i % 4 ? 1 : 0;
+    c->step = h;
+    c->steps = (int64_t)lround(0.25 / h);
+    c->fall_height = -1e9;
+}
+
+/* The golden cases: given gains, given states, noise, both feet, restitution; no
+ * number in them comes from libm or LAPACK. */
+static inline void golden_case(uint64_t *seed, int i, stance_case *c)
+{
+    static const double gain[2][6] = {{318.97, 308.17, -43.08, 83.55, 71.79, -7.38},
+                                      {-277.81, -257.34, 35.56, -73.42, -61.87, 6.96}};
+    random_case(seed, i, i % 7 ? 1e-3 : 1e-2, c);
+    c->seed = 42, c->grid_index = (uint64_t)i;
+    if (i % 3 == 0) {
+        memcpy(c->gain, gain, sizeof gain);
+        c->target[0] = -0.41, c->target[1] = 0.570127, c->target[2] = 0.82;
+        c->feedforward[0] = -7.53135, c->feedforward[1] = 3.76567;
+        c->position[2] = uniform(seed, -0.5, -0.36);
+        c->position[3] = 0.570127, c->position[4] = 0.82;
+        c->velocity[2] = c->velocity[3] = c->velocity[4] = 0;
+        stance_scene_find("biped")->stand(c->robot, 0, c->position, c->velocity);
+        c->has_target = c->settle = true;
+        c->support = 0;
+        c->contacts = i % 2 ? 1 : 3;
+        c->torque_limit = 10, c->noise = 0.1;
+        c->sample_every = 1 + i % 4;
+        c->steps = 3000;
+        c->fall_height = 0.2;
+    }
+    c->restitution = i % 5 == 4 ? 0.5 : 0;
+    c->tolerance = 1e-8;
+}
+
+/* Random states of a scene without actuators, near the ground. */
+static inline void scene_case(const stance_scene *scene, uint64_t *seed, stance_case *c)
+{
+    double gap[STANCE_MAX_CONTACTS], least = INFINITY;
+    *c = plain_case();
+    memset(c->robot, 0, sizeof c->robot);
+    for (int i = 0; i < scene->robot_count; i++)
+        c->robot[i] = scene->robot[i].fallback;
+    c->contacts = (1u << scene->contacts) - 1;
+    for (int i = 0; i < scene->coordinates; i++) {
+        c->position[i] = uniform(seed, -1, 1);
+        c->velocity[i] = uniform(seed, -3, 3);
+    }
+    scene->gaps(c->robot, c->position, gap);
+    for (int k = 0; k < scene->contacts; k++)
+        least = fmin(least, gap[k]);
+    c->position[1] += uniform(seed, 1e-13, 0.2) - least;
+    c->friction = uniform(seed, 0, 2);
+    c->restitution = uniform(seed, 0, 0.5);
+    c->steps = 250;
+    c->fall_height = -1e9;
+    c->tolerance = 1e-8;
+}
+
+/* Hash of the results of the first n golden cases of the biped, or, for another scene, of random
+ * ones: given to the kernel in slices, in order or from the last to the first. 0: no memory. */
+static inline uint64_t golden_hash(const stance_kernel *kernel, size_t n, bool backwards,
+                                   size_t slice)
+{
+    const bool biped = strcmp(kernel->scene->name, "biped") == 0;
+    stance_case *const cases = calloc(n, sizeof *cases);
+    stance_result *const results = calloc(n, sizeof *results), *const back =
+                                                                   calloc(n, sizeof *back);
+    uint64_t seed = 99, h = 0;
+    if (cases && results && back) {
+        for (size_t i = 0; i < n; i++) {
+            stance_case *const c = &cases[backwards ? n - 1 - i : i];
+            if (biped)
+                golden_case(&seed, (int)i, c);
+            else
+                scene_case(kernel->scene, &seed, c);
+        }
+        for (size_t i = 0; i < n; i += slice)
+            kernel->run(cases + i, results + i, i + slice <= n ? slice : n - i);
+        for (size_t i = 0; i < n; i++)
+            back[backwards ? n - 1 - i : i] = results[i];
+        h = hash(back, n * sizeof *back, 0xcbf29ce484222325u);
+    }
+    free(cases);
+    free(results);
+    free(back);
+    return h;
+}
+
+#endif
