@@ -33,7 +33,8 @@ enum {
     X(BAD_POLES, "the poles cannot be placed")                                                     \
     X(NOT_CONVERGED, "an iteration did not converge")                                              \
     X(NUMERICAL, "a numerical library reported a failure")                                         \
-    X(NO_MEMORY, "out of memory")
+    X(NO_MEMORY, "out of memory")                                                                  \
+    X(STOPPED, "told to stop")
 
 typedef enum stance_error {
 #define STANCE_ERROR_ENUM(name, text) STANCE_##name,
@@ -429,6 +430,9 @@ typedef struct stance_capture_search {
     int shapes; /* candidates for P, 1 ... STANCE_MAX_SHAPES; symmetric, positive definite */
     double P[STANCE_MAX_SHAPES][4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
     int64_t boundary, interior; /* simulations that confirm; interior may be 0 */
+    /* NULL, or asked about every millisecond: true, the search is given up (STOPPED). */
+    bool (*leave)(void *context);
+    void *context;
 } stance_capture_search;
 
 /* The set x' form x <= 1 from whose boundary every simulation ended `stabilised`. */

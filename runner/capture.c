@@ -208,8 +208,8 @@ bool capture_prepare(const stance_scene *scene, const struct scenario_values *va
 }
 
 bool capture_estimate(const stance_scene *scene, const struct scenario_values *values,
-                      struct resolved_design *design, uint64_t seed, stance_captured_set *set,
-                      stance_message *message)
+                      struct resolved_design *design, uint64_t seed, bool (*stop)(void *context),
+                      void *context, stance_captured_set *set, stance_message *message)
 {
     stance_capture_search search;
     stance_captured_set own = {.exists = false};
@@ -221,7 +221,13 @@ bool capture_estimate(const stance_scene *scene, const struct scenario_values *v
     if (!capture_prepare(scene, values, design, seed, &search, message)) {
         return true;
     }
+    search.leave = stop;
+    search.context = context;
     const stance_error error = stance_capture_estimate(&search, set);
+    if (error == STANCE_STOPPED) {
+        message->text[0] = '\0';
+        return false;
+    }
     if (error != STANCE_OK) {
         snprintf(message->text, sizeof message->text, "captured set: %s", stance_error_text(error));
         return error != STANCE_NO_MEMORY;

@@ -33,9 +33,10 @@ bool capture_prepare(const stance_scene *scene, const struct scenario_values *va
 const char *capture_shape_text(int shape, char text[96]);
 
 /* Estimates the set and keeps it in the design, which is left without where there is none. false:
- * no memory. *set may be NULL. */
+ * no memory, or `stop`, asked about every millisecond, said true; the message is empty then. *set
+ * and `stop` may be NULL. */
 bool capture_estimate(const stance_scene *scene, const struct scenario_values *values,
-                      struct resolved_design *design, uint64_t seed, stance_captured_set *set,
-                      stance_message *message);
+                      struct resolved_design *design, uint64_t seed, bool (*stop)(void *context),
+                      void *context, stance_captured_set *set, stance_message *message);
 
 #endif

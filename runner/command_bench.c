@@ -218,6 +218,8 @@ static int run(int argc, char **argv)
         return command_accuracy.run(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "failure") == 0)
         return command_failure.run(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "schedule") == 0)
+        return command_schedule.run(argc - 1, argv + 1);
     const char *operand[1], *repeat_text[1];
     size_t operands, json_count = 0, repeat_count = 0;
     const struct option_spec specs[] = {{"--json", false, NULL, 0, &json_count},
@@ -262,9 +264,9 @@ const struct command command_bench = {
     "for each method and each instruction set of this machine (or the one that the environment\n"
     "variable STANCE_ISA names), 512 cases of 1000 steps of 1 ms.\n"
     "\n"
-    "`stance bench accuracy -h` and `stance bench failure -h` tell of the studies of error "
+    "`stance bench accuracy -h`, `failure -h` and `schedule -h` tell of the studies of error "
     "against\n"
-    "cost, and of where methods fail.\n"
+    "cost, of where methods fail, and of jobs on thousands of ranks.\n"
     "\n"
     "--json: a list of objects with keys regime, method, isa, in_use (by `stance run`), lanes,\n"
     "ns_per_step, ns_min, ns_max, iterations_per_step, speedup_over_scalar (null: scalar was not\n"

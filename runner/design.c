@@ -178,7 +178,8 @@ static bool confirmed(struct design_report *r, stance_message *message)
         return true;
     }
     if (!resolve_design(s->scene, &s->base, &design, message) ||
-        !capture_estimate(s->scene, &s->base, &design, s->seed, &capture->set, &capture->absent)) {
+        !capture_estimate(s->scene, &s->base, &design, s->seed, NULL, NULL, &capture->set,
+                          &capture->absent)) {
         return false;
     }
     for (int i = 0; capture->set.exists && i < r->states; i++) {

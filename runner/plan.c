@@ -1,4 +1,4 @@
-/* plan.c - designs, chunks and estimates. */
+/* plan.c - designs, checks and estimates. */
 #include "plan.h"
 
 #include "capture.h"
@@ -14,9 +14,7 @@ enum {
     CHECKED_CASES = 4096,
     CORNER_AXES = 11, /* 2048 corners */
     TRACE_ROWS = 1000000,
-    CHUNK_LARGEST = 4096,
-    CHUNK_SMALLEST = 64,
-    CHUNK_BUNDLE = 8, /* the widest bundle of lanes */
+    WIDEST = 8, /* bundle of lanes */
     COST_CASES = 64,
     COST_STEPS = 500, /* length of the beginnings tried first */
 };
@@ -94,16 +92,16 @@ static bool method_runs(const struct scenario *s, int method, struct plan_error 
     return false;
 }
 
-static bool methods_run(const struct scenario *s, struct plan_error *error)
+static bool methods_run(struct plan *plan, struct plan_error *error)
 {
-    bool swept = false;
+    const struct scenario *s = plan->scenario;
     for (int a = 0; a < s->axes; a++) {
         const struct scenario_axis *axis = &s->axis[a];
         for (int k = 0; k < axis->paths; k++) {
             if (axis->offset[k] != offsetof(struct scenario_values, method)) {
                 continue;
             }
-            swept = true;
+            plan->methods_swept = true;
             for (size_t i = 0; i < axis->count; i++) {
                 if (!method_runs(s, (int)scenario_axis_value(axis, i, k), error)) {
                     error->line = axis->line;
@@ -113,7 +111,7 @@ static bool methods_run(const struct scenario *s, struct plan_error *error)
             }
         }
     }
-    return swept || method_runs(s, s->base.method, error);
+    return plan->methods_swept || method_runs(s, s->base.method, error);
 }
 
 bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
@@ -123,7 +121,7 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
         .scenario = scenario, .single = single, .single_case = single_case, .designs = 1};
     *error = (struct plan_error){0};
     plan->rows = single ? 1 : scenario->cases;
-    if (!methods_run(scenario, error)) {
+    if (!methods_run(plan, error)) {
         return false;
     }
     for (int a = 0; !single && a < scenario->axes; a++) {
@@ -278,8 +276,7 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
 }
 
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
-                            bool (*stop)(const void *context), const void *context,
-                            stance_message *message)
+                            bool (*stop)(void *context), void *context, stance_message *message)
 {
     const struct scenario *s = plan->scenario;
     size_t first;
@@ -295,18 +292,25 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
         if (plan->design_status[d] != STANCE_DONE) {
             continue;
         }
-        if (stop(context)) {
-            good = false;
-            break;
-        }
         scenario_case_values(s, design_case(plan, d), &values);
-        good = capture_estimate(s->scene, &values, &plan->design[d], s->seed, NULL, &why);
+        good = capture_estimate(s->scene, &values, &plan->design[d], s->seed, stop, context, NULL,
+                                &why);
         if (!good) {
             *message = why;
         }
     }
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
     return parallel_agree(parallel, good, message->text, sizeof message->text);
+}
+
+int plan_method(const struct plan *plan, uint64_t row)
+{
+    struct scenario_values values;
+    if (!plan->methods_swept) {
+        return plan->scenario->base.method;
+    }
+    scenario_case_values(plan->scenario, plan_case(plan, row), &values);
+    return values.method;
 }
 
 bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method)
@@ -392,40 +396,6 @@ bool plan_check_cases(const struct plan *plan, struct plan_error *error)
     return true;
 }
 
-/* ---- chunks ------------------------------------------------------------------------------- */
-
-bool plan_chunk(uint64_t rows, int ranks, uint64_t k, uint64_t *first, uint64_t *count)
-{
-    uint64_t workers = (uint64_t)ranks, smallest = rows / (8 * workers);
-    smallest = smallest < CHUNK_BUNDLE     ? CHUNK_BUNDLE
-               : smallest > CHUNK_SMALLEST ? CHUNK_SMALLEST
-                                           : smallest;
-    uint64_t begin = 0, batch = k / workers, member = k % workers;
-
-    while (begin < rows) {
-        uint64_t left = rows - begin, size = left / (2 * workers), batches = 1;
-        if (size >= CHUNK_LARGEST) {
-            /* As many batches as keep to the largest size, in one stride. */
-            size = CHUNK_LARGEST;
-            batches = (left / (2 * workers) - size) * 2 / size + 1;
-        } else if (size <= smallest) {
-            size = smallest;
-            batches = UINT64_MAX;
-        }
-        if (batch < batches) {
-            *first = begin + (batch * workers + member) * size;
-            if (batch > rows || *first >= rows) {
-                return false;
-            }
-            *count = rows - *first < size ? rows - *first : size;
-            return true;
-        }
-        batch -= batches;
-        begin += batches * workers * size;
-    }
-    return false;
-}
-
 /* ---- cost --------------------------------------------------------------------------------- */
 
 struct trial {
@@ -452,9 +422,9 @@ static void try_cases(const struct plan *plan, uint64_t from, uint64_t n, int64_
         const stance_kernel *kernel =
             instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
         /* Lanes share the work of a bundle: a full one is timed, of copies. */
-        stance_case bundle[CHUNK_BUNDLE];
-        stance_result results[CHUNK_BUNDLE] = {{0}};
-        int lanes = kernel->lanes < CHUNK_BUNDLE ? kernel->lanes : CHUNK_BUNDLE;
+        stance_case bundle[WIDEST];
+        stance_result results[WIDEST] = {{0}};
+        int lanes = kernel->lanes < WIDEST ? kernel->lanes : WIDEST;
         for (int lane = 0; lane < lanes; lane++) {
             bundle[lane] = input;
         }
@@ -510,7 +480,7 @@ double plan_cost(const struct plan *plan, double budget, bool *bound)
     }
     double per_step = beginnings.seconds / (double)beginnings.steps;
     double per_case = per_step * (double)beginnings.steps_asked / FIRST;
-    if (per_case * CHUNK_BUNDLE * FIRST > budget) {
+    if (per_case * WIDEST * FIRST > budget) {
         *bound = true;
         return per_case * (double)plan->rows;
     }

@@ -1,4 +1,4 @@
-/* plan.h - what a run will compute: its rows, its distinct designs, its chunks, its trajectories.
+/* plan.h - what a run will compute: its rows, its distinct designs, its trajectories.
  *
  * Nothing here is as large as the number of cases: the parameters of a case are made when it is
  * drawn. Designs (equilibria and gains) are kept once per distinct combination of those axes that
@@ -15,6 +15,8 @@ struct plan {
     bool single;          /* --only: the file holds one case */
     uint64_t single_case; /* its flat index */
     uint64_t rows;        /* cases in the file: 1, or all of the scenario's */
+
+    bool methods_swept; /* some axis lists methods */
 
     size_t designs;                 /* distinct ones, row-major over the axes flagged `design` */
     struct resolved_design *design; /* [designs] */
@@ -51,10 +53,9 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
 
 /* Collective, after plan_compute_designs: with stop.capture estimated, the captured set of every
  * design, each rank a block, gathered on rank 0. false on every rank: no memory, or `stop`, asked
- * before each design, said true somewhere; *message is empty then. */
+ * about every millisecond, said true somewhere; *message is empty then. */
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
-                            bool (*stop)(const void *context), const void *context,
-                            stance_message *message);
+                            bool (*stop)(void *context), void *context, stance_message *message);
 /* Seconds that this will take on one rank, from a try at one design; 0 where there is nothing to
  * estimate. Needs the designs. */
 double plan_capture_cost(const struct plan *plan);
@@ -63,14 +64,11 @@ double plan_capture_cost(const struct plan *plan);
  * evenly. Cases whose design does not exist are left out. Needs the designs. */
 bool plan_check_cases(const struct plan *plan, struct plan_error *error);
 
+/* Method of a row, as index into stance_methods(). */
+int plan_method(const struct plan *plan, uint64_t row);
 /* Parameters of a row; *method as index into stance_methods(). false: the case does not exist,
  * because its design or its initial state does not. */
 bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method);
-
-/* Chunk k of the guided schedule: sizes shrink from at most 4096 rows to a few bundles of lanes,
- * a batch of one chunk per rank taking half of what is left. Pure function; chunks tile the rows.
- * false beyond the last chunk. */
-bool plan_chunk(uint64_t rows, int ranks, uint64_t k, uint64_t *first, uint64_t *count);
 
 /* Seconds on one rank, measured on cases spread over the sweep for about `budget` seconds. When
  * whole cases take too long to try, beginnings are measured and *bound is set: no more than that.

@@ -438,7 +438,7 @@ static void stage_designs(struct run *run)
     }
 }
 
-static bool out_of_time(const void *context)
+static bool out_of_time(void *context)
 {
     const struct run *run = context;
     return work_stop_asked() || plan_clock() - run->start > run->options.time_limit;
@@ -539,7 +539,7 @@ static void stage_compute(struct run *run)
         return;
     }
     run->work.parallel = &run->parallel;
-    if (!work_run(&run->work, &message)) {
+    if (!work_run(&run->work, NULL, &message)) {
         fail_io(run, &message);
     }
 }
@@ -739,14 +739,14 @@ const struct command command_run = {
     "                     the link, not the file that it names\n"
     "  --resume           go on with an existing file of the same scenario: cases that it holds\n"
     "                     whole, as their checksums say, are kept. Begins when there is no file\n"
-    "  --time-limit TIME  stop in time to be done after 90s, 55m, 1h30m ...; resumable\n"
+    "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
     "  --only CASE        compute one case of the sweep, by its flat index, to a file of its own\n"
     "  --trace            ... and record its trajectory, each 0.01 s unless record.every says\n"
     "  --dry-run          plan and estimate, write nothing\n"
     "  --quiet            neither progress nor summary\n"
     "\n"
-    "SIGINT, SIGTERM and SIGUSR1 stop after the cases in hand, with everything written; mpirun\n"
-    "forwards SIGUSR1 but kills its ranks soon after SIGINT or SIGTERM. Exit codes: 0 done, 1 "
-    "some\n"
-    "cases failed, 2 bad use or scenario, 3 input or output, 4 stopped and resumable.\n",
+    "SIGINT, SIGTERM and SIGUSR1 stop at once: cases in hand are given up, what has ended is\n"
+    "written; mpirun forwards SIGUSR1 but kills its ranks soon after SIGINT or SIGTERM. Exit\n"
+    "codes: 0 done, 1 some cases failed, 2 bad use or scenario, 3 input or output, 4 stopped and\n"
+    "resumable.\n",
 };

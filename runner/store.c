@@ -18,13 +18,20 @@ struct store {
     char file[1024];
     const struct plan *plan;
     hid_t id;
+    int ranks;                      /* that have it open together */
     hid_t column[COLUMNS];          /* -1: not stored */
     size_t width[COLUMNS];          /* elements per case */
-    void *buffer[COLUMNS];          /* [STORE_ROWS][width] */
+    struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
     hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
     hid_t trajectory_checksum;
     int rank; /* dimensions of the cases */
     hsize_t length[SCENARIO_MAX_AXES];
+};
+
+struct store_block {
+    const struct store *store;
+    size_t rows;
+    void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
 };
 
 /* ---- tables ------------------------------------------------------------------------------- */
@@ -283,6 +290,21 @@ static hid_t open_for_ranks(const char *file, int ranks)
     return id;
 }
 
+/* Collective: rank 0 reads where the dataset is and tells the others, lest thousands of ranks read
+ * the same few bytes of the file. */
+static hid_t open_dataset(const struct store *store, const char *name)
+{
+    hid_t access = H5Pcreate(H5P_DATASET_ACCESS), dataset;
+#if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
+    if (store->ranks > 1) {
+        H5Pset_all_coll_metadata_ops(access, true);
+    }
+#endif
+    dataset = H5Dopen2(store->id, name, access);
+    H5Pclose(access);
+    return dataset;
+}
+
 bool store_has_shape(hid_t dataset, int rank, const hsize_t *length)
 {
     hsize_t found[H5S_MAX_RANK];
@@ -305,12 +327,7 @@ static bool open_columns(struct store *store, stance_message *message)
             continue;
         }
         size_t width = store->width[c] = store_column_width(s, c);
-        store->buffer[c] = malloc(STORE_ROWS * width * store_columns[c].size);
-        if (!store->buffer[c]) {
-            snprintf(message->text, sizeof message->text, "not enough memory");
-            return false;
-        }
-        store->column[c] = H5Dopen2(store->id, store_columns[c].name, H5P_DEFAULT);
+        store->column[c] = open_dataset(store, store_columns[c].name);
         length[store->rank] = width;
         if (store->column[c] < 0 ||
             !store_has_shape(store->column[c], store->rank + (width > 1), length)) {
@@ -335,12 +352,12 @@ static bool open_trajectories(struct store *store, stance_message *message)
         }
         char name[64];
         snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v]);
-        store->trajectory[v] = H5Dopen2(store->id, name, H5P_DEFAULT);
+        store->trajectory[v] = open_dataset(store, name);
         if (store->trajectory[v] < 0) {
             return store_failed(message, store->file, "open the trajectories");
         }
     }
-    store->trajectory_checksum = H5Dopen2(store->id, "trajectory/checksum", H5P_DEFAULT);
+    store->trajectory_checksum = open_dataset(store, "trajectory/checksum");
     return store->trajectory_checksum >= 0 ||
            store_failed(message, store->file, "open the trajectories");
 }
@@ -359,6 +376,7 @@ bool store_open(struct store **result, const char *file, const struct plan *plan
     snprintf(store->file, sizeof store->file, "%s", file);
     store->plan = plan;
     store->id = id;
+    store->ranks = ranks;
     store->rank = store_dimensions(plan, store->length);
     store->trajectory_checksum = -1;
     for (int c = 0; c < COLUMNS; c++) {
@@ -377,9 +395,7 @@ bool store_open(struct store **result, const char *file, const struct plan *plan
 void store_abandon(struct store *store)
 {
     if (store) {
-        for (int c = 0; c < COLUMNS; c++) {
-            free(store->buffer[c]);
-        }
+        store_block_free(store->checked);
         free(store);
     }
 }
@@ -460,18 +476,18 @@ static hid_t select_rows(const struct store *store, size_t width, uint64_t first
 
 enum direction { READ, WRITE };
 
-/* Moves the rows of one column between its buffer and the file. */
-static bool move_column(struct store *store, int c, hid_t space, size_t n, enum direction way,
-                        stance_message *message)
+/* Moves n rows of one column, from `slot` of the block on, between the block and the file. */
+static bool move_column(struct store *store, int c, struct store_block *block, size_t slot,
+                        hid_t space, size_t n, enum direction way, stance_message *message)
 {
     hid_t type = store_memory_type(store_columns[c].kind);
     hsize_t elements = n * store->width[c];
+    char *data = (char *)block->column[c] + slot * store->width[c] * store_columns[c].size;
     hid_t memory = H5Screate_simple(1, &elements, NULL);
-    herr_t status =
-        memory < 0 ? -1
-        : way == WRITE
-            ? H5Dwrite(store->column[c], type, memory, space, H5P_DEFAULT, store->buffer[c])
-            : H5Dread(store->column[c], type, memory, space, H5P_DEFAULT, store->buffer[c]);
+    herr_t status = memory < 0 ? -1
+                    : way == WRITE
+                        ? H5Dwrite(store->column[c], type, memory, space, H5P_DEFAULT, data)
+                        : H5Dread(store->column[c], type, memory, space, H5P_DEFAULT, data);
     bool good =
         status >= 0 ||
         store_failed(message, store->file, way == WRITE ? "write the results" : "read the results");
@@ -480,8 +496,8 @@ static bool move_column(struct store *store, int c, hid_t space, size_t n, enum 
 }
 
 /* All columns, in order: the checksum and then the status are the last ones. */
-static bool move_rows(struct store *store, uint64_t first, size_t n, enum direction way,
-                      stance_message *message)
+static bool move_rows(struct store *store, struct store_block *block, size_t slot, uint64_t first,
+                      size_t n, enum direction way, stance_message *message)
 {
     hid_t narrow = select_rows(store, 1, first, n);
     hid_t wide =
@@ -490,7 +506,8 @@ static bool move_rows(struct store *store, uint64_t first, size_t n, enum direct
                 store_failed(message, store->file, "select rows of the results");
     for (int c = 0; good && c < COLUMNS; c++) {
         if (store->column[c] >= 0) {
-            good = move_column(store, c, store->width[c] > 1 ? wide : narrow, n, way, message);
+            good = move_column(store, c, block, slot, store->width[c] > 1 ? wide : narrow, n, way,
+                               message);
         }
     }
     H5Sclose(narrow);
@@ -498,44 +515,78 @@ static bool move_rows(struct store *store, uint64_t first, size_t n, enum direct
     return good;
 }
 
-static uint32_t row_checksum(const struct store *store, size_t row)
+/* ---- rows in memory ----------------------------------------------------------------------- */
+
+size_t store_row_size(const struct store *store)
+{
+    size_t size = 0;
+    for (int c = 0; c < COLUMNS; c++) {
+        size += store->column[c] >= 0 ? store->width[c] * store_columns[c].size : 0;
+    }
+    return size;
+}
+
+struct store_block *store_block_make(const struct store *store, size_t rows)
+{
+    struct store_block *block = calloc(1, sizeof *block);
+    bool good = block != NULL;
+    for (int c = 0; good && c < COLUMNS; c++) {
+        if (store->column[c] >= 0) {
+            block->column[c] = malloc(rows * store->width[c] * store_columns[c].size);
+            good = block->column[c] != NULL;
+        }
+    }
+    if (!good) {
+        store_block_free(block);
+        return NULL;
+    }
+    block->store = store;
+    block->rows = rows;
+    return block;
+}
+
+void store_block_free(struct store_block *block)
+{
+    for (int c = 0; block && c < COLUMNS; c++) {
+        free(block->column[c]);
+    }
+    free(block);
+}
+
+static uint32_t row_checksum(const struct store_block *block, size_t slot)
 {
     uint32_t crc = 0;
     for (int c = 0; c < COLUMNS; c++) {
-        if (store->column[c] >= 0 && c != COLUMN_CHECKSUM) {
-            size_t size = store->width[c] * store_columns[c].size;
-            crc = checksum_crc32c(crc, (const char *)store->buffer[c] + row * size, size);
+        if (block->column[c] && c != COLUMN_CHECKSUM) {
+            size_t size = block->store->width[c] * store_columns[c].size;
+            crc = checksum_crc32c(crc, (const char *)block->column[c] + slot * size, size);
         }
     }
     return crc;
 }
 
-/* Results into the columns' buffers. */
-static void pack_row(struct store *store, size_t row, const stance_result *result)
+void store_put(struct store_block *block, size_t slot, const stance_result *result)
 {
-    size_t n = (size_t)store->plan->scenario->scene->coordinates;
+    size_t n = (size_t)block->store->plan->scenario->scene->coordinates;
 #define STORE_PACK(name, type, field, fill, unit, text)                                            \
-    if (store->buffer[COLUMN_##name]) {                                                            \
-        ((type *)store->buffer[COLUMN_##name])[row] = (type)result->field;                         \
+    if (block->column[COLUMN_##name]) {                                                            \
+        ((type *)block->column[COLUMN_##name])[slot] = (type)result->field;                        \
     }
     STORE_ANSWERS(STORE_PACK)
 #undef STORE_PACK
-    if (store->buffer[COLUMN_FINAL_STATE]) {
-        double *state = (double *)store->buffer[COLUMN_FINAL_STATE] + 2 * n * row;
+    if (block->column[COLUMN_FINAL_STATE]) {
+        double *state = (double *)block->column[COLUMN_FINAL_STATE] + 2 * n * slot;
         memcpy(state, result->position, n * sizeof *state);
         memcpy(state + n, result->velocity, n * sizeof *state);
     }
-    ((uint8_t *)store->buffer[COLUMN_STATUS])[row] = (uint8_t)result->status;
-    ((uint32_t *)store->buffer[COLUMN_CHECKSUM])[row] = row_checksum(store, row);
+    ((uint8_t *)block->column[COLUMN_STATUS])[slot] = (uint8_t)result->status;
+    ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = row_checksum(block, slot);
 }
 
-bool store_write(struct store *store, uint64_t first, size_t n, const stance_result *results,
-                 stance_message *message)
+bool store_write(struct store *store, struct store_block *block, size_t slot, uint64_t first,
+                 size_t n, stance_message *message)
 {
-    for (size_t row = 0; row < n; row++) {
-        pack_row(store, row, &results[row]);
-    }
-    return move_rows(store, first, n, WRITE, message);
+    return move_rows(store, block, slot, first, n, WRITE, message);
 }
 
 /* ---- trajectories ------------------------------------------------------------------------- */
@@ -623,16 +674,20 @@ static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
 bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
                   bool *whole, stance_message *message)
 {
-    if (!move_rows(store, first, n, READ, message)) {
+    if (!store->checked && !(store->checked = store_block_make(store, STORE_ROWS))) {
+        snprintf(message->text, sizeof message->text, "not enough memory");
         return false;
     }
-    const uint8_t *status = store->buffer[COLUMN_STATUS];
-    const uint8_t *outcome = store->buffer[COLUMN_outcome];
-    const uint32_t *checksum = store->buffer[COLUMN_CHECKSUM];
+    if (!move_rows(store, store->checked, 0, first, n, READ, message)) {
+        return false;
+    }
+    const uint8_t *status = store->checked->column[COLUMN_STATUS];
+    const uint8_t *outcome = store->checked->column[COLUMN_outcome];
+    const uint32_t *checksum = store->checked->column[COLUMN_CHECKSUM];
     for (size_t row = 0; row < n; row++) {
         uint64_t place;
         whole[row] = (status[row] == STANCE_DONE || status[row] == STANCE_FAILED) &&
-                     checksum[row] == row_checksum(store, row);
+                     checksum[row] == row_checksum(store->checked, row);
         if (whole[row] && plan_recorded(store->plan, first + row, &place) &&
             !verify_trajectory(store, place, &whole[row], message)) {
             return false;
@@ -650,7 +705,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
     struct store_design_column columns[DESIGN_COLUMNS];
     bool good = true;
     store_design_columns(plan->scenario, columns);
-    for (int k = 0; good && k < DESIGN_COLUMNS; k++) {
+    for (int k = 0; k < DESIGN_COLUMNS; k++) { /* all of them, even when this rank has failed */
         size_t rows = (size_t)columns[k].rows, length = (size_t)columns[k].columns;
         if (rows * length == 0) {
             continue;
@@ -658,10 +713,11 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         char name[64];
         snprintf(name, sizeof name, "design/%s", columns[k].name);
         double *data = malloc(plan->designs * rows * length * sizeof *data);
-        hid_t dataset = H5Dopen2(store->id, name, H5P_DEFAULT);
+        hid_t dataset = open_dataset(store, name);
         good = data && dataset >= 0 &&
                H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                       data) >= 0;
+                       data) >= 0 &&
+               good;
         for (size_t d = 0; good && d < plan->designs; d++) {
             char *design = (char *)&plan->design[d] + columns[k].offset;
             for (size_t r = 0; r < rows; r++) {
@@ -672,7 +728,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         H5Dclose(dataset);
         free(data);
     }
-    hid_t dataset = H5Dopen2(store->id, "design/status", H5P_DEFAULT);
+    hid_t dataset = open_dataset(store, "design/status");
     good = good && H5Dread(dataset, store_memory_type(KIND_uint8_t), H5S_ALL, H5S_ALL, H5P_DEFAULT,
                            plan->design_status) >= 0;
     H5Dclose(dataset);

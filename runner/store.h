@@ -86,10 +86,11 @@ enum {
         STORE_BIT_FINAL_STATE,
 };
 
-enum { STORE_ROWS = 256 }; /* most rows in one call */
+enum { STORE_ROWS = 256 }; /* most rows in one call of store_verify */
 
-struct plan;  /* plan.h */
-struct store; /* an open file */
+struct plan;        /* plan.h */
+struct store;       /* an open file */
+struct store_block; /* rows in memory as they will be in the file, column after column */
 
 /* Call before MPI starts: an unfinished file must not be touched again at exit. */
 void store_prepare(void);
@@ -130,16 +131,24 @@ bool store_open(struct store **store, const char *file, const struct plan *plan,
 bool store_close(struct store *store, stance_message *message);
 void store_abandon(struct store *store);
 
-/* Not collective. Designs of the file into the plan. */
+/* Collective, right after store_open: designs of the file into the plan. */
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message);
-/* Rows [first, first + n), n <= STORE_ROWS; their status last. */
-bool store_write(struct store *store, uint64_t first, size_t n, const stance_result *results,
-                 stance_message *message);
+/* Bytes of a row in a block; a block for `rows` rows, NULL: no memory. */
+size_t store_row_size(const struct store *store);
+struct store_block *store_block_make(const struct store *store, size_t rows);
+void store_block_free(struct store_block *block);
+/* What is stored of a result, its checksum included, into a slot of the block. */
+void store_put(struct store_block *block, size_t slot, const stance_result *result);
+/* Slots [slot, slot + n) of the block to rows [first, first + n) of the file, any n; one write per
+ * variable and row of the innermost axis that is broken, their status last. */
+bool store_write(struct store *store, struct store_block *block, size_t slot, uint64_t first,
+                 size_t n, stance_message *message);
 /* The trajectory at one place of the recorded cases; before the row itself. */
 bool store_write_trajectory(struct store *store, uint64_t place,
                             const stance_trajectory *trajectory, stance_message *message);
-/* Which rows are whole: done or failed, and as their checksums say; of these, status and outcome
- * (where stored) are filled in. Trajectories of recorded cases are verified, too. */
+/* Which of n <= STORE_ROWS rows are whole: done or failed, and as their checksums say; of these,
+ * status and outcome (where stored) are filled in. Trajectories of recorded cases are verified,
+ * too. */
 bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
                   bool *whole, stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */

@@ -10,6 +10,7 @@
 #include "checksum.h"
 #include "command.h"
 #include "instruction_set.h"
+#include "report.h"
 #include "seal.h"
 
 #include <errno.h>
@@ -24,7 +25,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { FORMAT_VERSION = 1, PIECE = 4096, METADATA_SIZE = 96 * 1024, DATASET_SIZE = 1024 };
+enum { FORMAT_VERSION = 1, PIECE = 1 << 16, METADATA_SIZE = 96 * 1024, DATASET_SIZE = 1024 };
 
 struct dimension {
     hid_t id;
@@ -214,9 +215,9 @@ typedef double (*value_function)(const void *context, uint64_t i);
 
 static bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context)
 {
-    double buffer[PIECE];
+    double *buffer = malloc((n < PIECE ? n : PIECE) * sizeof *buffer);
     hid_t space = H5Screate_simple(1, &n, NULL);
-    bool good = space >= 0;
+    bool good = buffer && space >= 0;
     for (hsize_t at = 0; good && at < n; at += PIECE) {
         hsize_t count = n - at < PIECE ? n - at : PIECE;
         hid_t memory = H5Screate_simple(1, &count, NULL);
@@ -228,6 +229,7 @@ static bool write_values(hid_t dataset, hsize_t n, value_function value, const v
         H5Sclose(memory);
     }
     H5Sclose(space);
+    free(buffer);
     return good;
 }
 
@@ -701,7 +703,7 @@ static bool check_space(const char *file, uint64_t size, stance_message *message
 {
     struct statvfs system;
     struct rlimit limit;
-    char directory[1024];
+    char directory[1024], needed[32], there[32];
 
     snprintf(directory, sizeof directory, "%s", file);
     char *slash = strrchr(directory, '/');
@@ -710,18 +712,20 @@ static bool check_space(const char *file, uint64_t size, stance_message *message
     } else {
         slash[slash == directory] = '\0';
     }
+    report_bytes(needed, sizeof needed, (double)size);
     if (statvfs(directory, &system) == 0 && (uint64_t)system.f_bavail * system.f_frsize < size) {
+        report_bytes(there, sizeof there, (double)system.f_bavail * (double)system.f_frsize);
         snprintf(message->text, sizeof message->text,
-                 "%.100s: needs about %.1f MB but only %.1f MB are free: %s", file,
-                 1e-6 * (double)size, 1e-6 * (double)system.f_bavail * (double)system.f_frsize,
+                 "%.100s: needs about %s but only %s are free: %s", file, needed, there,
                  strerror(ENOSPC));
         return false;
     }
     if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
         limit.rlim_cur < size) {
+        report_bytes(there, sizeof there, (double)limit.rlim_cur);
         snprintf(message->text, sizeof message->text,
-                 "%.100s: needs about %.1f MB but the limit on file sizes is %.1f MB: %s", file,
-                 1e-6 * (double)size, 1e-6 * (double)limit.rlim_cur, strerror(EFBIG));
+                 "%.100s: needs about %s but the limit on file sizes is %s: %s", file, needed,
+                 there, strerror(EFBIG));
         return false;
     }
     return true;
@@ -739,7 +743,9 @@ static bool reserve(const char *file, stance_message *message)
         }
         return result;
     }
-    int error = posix_fallocate(descriptor, 0, information.st_size);
+    /* Where the file system cannot reserve, a full disk shows when rows are written. */
+    int error = fallocate(descriptor, 0, 0, information.st_size) == 0 ? 0 : errno;
+    error = error == EOPNOTSUPP ? 0 : error;
     if (error == 0 && fsync(descriptor) != 0) {
         error = errno;
     }

@@ -1,4 +1,15 @@
-/* work.c - draw a chunk, cut it into slices, run them, write them, look whether to stop. */
+/* work.c - a rank's part of the computing: the kernel's lanes take cases from blocks of rows that
+ * are drawn as they run dry, and hand results back into them as they end.
+ *
+ * A block stays open until its last case has ended. Every open block but the one that is being
+ * taken from has a case in a lane, so that there are never more of them than lanes and one; a
+ * straggler keeps its block, not its lane's neighbours. What has ended is written when the block is
+ * whole, and in between every second or so. Only the end of the job makes lanes wait.
+ *
+ * A kernel is of one method. Where methods are swept, streams follow each other: each takes the
+ * rows of its method from the chunk in hand and, once none but its own are left of that, from the
+ * next one. So lanes run empty once a chunk.
+ */
 #include "work.h"
 
 #include "instruction_set.h"
@@ -12,12 +23,9 @@
 #include <unistd.h>
 
 enum {
-    SLICE_SMALLEST = 16,
-    TRAJECTORY_MEMORY = 1 << 26, /* bytes of trajectories in hand */
     MAX_METHODS = 32,
+    BLOCKS_OF_METHODS = 16, /* open at once where methods are swept */
 };
-/* A slice is cut to about this time: stops are answered so fast, and the counters served. */
-static const double slice_seconds = 0.3;
 static const double progress_terminal = 0.5, progress_elsewhere = 60;
 
 static volatile sig_atomic_t stop_asked;
@@ -43,32 +51,99 @@ bool work_stop_asked(void)
     return stop_asked != 0;
 }
 
-/* ---- one slice ---------------------------------------------------------------------------- */
+/* ---- blocks and tasks --------------------------------------------------------------------- */
 
-/* Memory for one slice, the same for all slices of a rank. */
-struct bench {
-    stance_case *cases, *grouped; /* [STORE_ROWS] */
-    stance_result *results, *grouped_results;
-    int *method; /* [STORE_ROWS]; -1: the case does not exist */
-    bool *whole;
-    double *samples; /* of the trajectories, [room][record_rows * elements] */
-    stance_trajectory *trajectory;
-    uint64_t *place; /* of each trajectory in the file */
-    size_t room;     /* trajectories that fit */
-    const stance_kernel *kernel[MAX_METHODS];
+enum state { PENDING, RUNNING, ENDED, STORED };
+
+/* Rows that were drawn together. */
+struct block {
+    struct block *next;
+    struct store_block *rows;
+    uint64_t first;  /* place in the schedule */
+    size_t count;    /* rows */
+    size_t open;     /* of these, not ended */
+    size_t cursor;   /* where the stream looks for its next case */
+    double write_at; /* when what has ended is written next */
+    int writes;      /* so far */
+    uint8_t *state;  /* [capacity] */
+    uint8_t *method; /* [capacity] */
 };
 
-static void bench_free(struct bench *bench)
+/* A case in a lane. */
+struct task {
+    stance_case input; /* first: by this the kernel names it */
+    stance_result result;
+    stance_trajectory trajectory;
+    double *samples; /* of the trajectory */
+    uint64_t place;  /* of the trajectory in the file */
+    struct block *block;
+    size_t slot;
+    struct task *next, *next_idle;
+};
+
+struct progress {
+    bool terminal;
+    double next, start;
+};
+
+/* All that the callbacks of a stream know. */
+struct job {
+    struct work *work;
+    const struct plan *plan;
+    struct schedule schedule;
+    const stance_kernel *kernel[MAX_METHODS];
+    size_t capacity;             /* rows of a block */
+    struct block *oldest, *idle; /* open blocks in the order of drawing; blocks to be used again */
+    struct block *at;            /* the one that the stream takes from; NULL: none has any */
+    int method;                  /* of the stream */
+    uint64_t pending;            /* rows of open blocks in state PENDING */
+    int blocks;                  /* open */
+    struct task *tasks, *idle_task; /* all; those that are in no lane */
+    uint64_t ended, kept;           /* not yet told to the counters */
+    double look_at;                 /* when next */
+    double checking;                /* s spent on what the file already holds */
+    bool leaving;                   /* no more cases: told to stop, or broken */
+    bool broken;                    /* *message says why */
+    stance_message *message;
+    struct progress progress;
+};
+
+/* No more, with the reason in *job->message. */
+static void break_off(struct job *job)
 {
-    free(bench->cases);
-    free(bench->grouped);
-    free(bench->results);
-    free(bench->grouped_results);
-    free(bench->method);
-    free(bench->whole);
-    free(bench->samples);
-    free(bench->trajectory);
-    free(bench->place);
+    job->broken = job->leaving = true;
+    parallel_add(job->work->parallel, COUNTER_STOP, 1);
+}
+
+static void out_of_memory(struct job *job, const char *what)
+{
+    snprintf(job->message->text, sizeof job->message->text, "not enough memory for %s", what);
+    break_off(job);
+}
+
+static void block_free(struct block *block)
+{
+    if (block) {
+        store_block_free(block->rows);
+        free(block->state);
+        free(block->method);
+        free(block);
+    }
+}
+
+static struct block *block_make(const struct job *job)
+{
+    struct block *block = calloc(1, sizeof *block);
+    if (block) {
+        block->rows = store_block_make(job->work->store, job->capacity);
+        block->state = malloc(job->capacity);
+        block->method = malloc(job->capacity);
+        if (!block->rows || !block->state || !block->method) {
+            block_free(block);
+            return NULL;
+        }
+    }
+    return block;
 }
 
 /* Doubles of one recorded instant. */
@@ -77,44 +152,17 @@ static size_t instant_size(const stance_scene *scene)
     return 2 * (size_t)scene->coordinates + (size_t)scene->actuators + 3 * (size_t)scene->contacts;
 }
 
-static bool bench_make(struct bench *bench, const struct plan *plan)
-{
-    *bench = (struct bench){0};
-    bench->cases = calloc(STORE_ROWS, sizeof *bench->cases);
-    bench->grouped = calloc(STORE_ROWS, sizeof *bench->grouped);
-    bench->results = calloc(STORE_ROWS, sizeof *bench->results);
-    bench->grouped_results = calloc(STORE_ROWS, sizeof *bench->grouped_results);
-    bench->method = calloc(STORE_ROWS, sizeof *bench->method);
-    bench->whole = calloc(STORE_ROWS, sizeof *bench->whole);
-    if (!bench->cases || !bench->grouped || !bench->results || !bench->grouped_results ||
-        !bench->method || !bench->whole) {
-        return false;
-    }
-    for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++) {
-        bench->kernel[m] = instruction_set_kernel(plan->scenario->scene, stance_methods()[m]);
-    }
-    if (plan->record_rows == 0) {
-        return true;
-    }
-    size_t size = (size_t)plan->record_rows * instant_size(plan->scenario->scene);
-    bench->room = TRAJECTORY_MEMORY / (size * sizeof(double));
-    bench->room = bench->room > STORE_ROWS ? STORE_ROWS : bench->room;
-    bench->room = bench->room > plan->record_cases ? (size_t)plan->record_cases : bench->room;
-    bench->room = bench->room < 1 ? 1 : bench->room;
-    bench->samples = malloc(bench->room * size * sizeof *bench->samples);
-    bench->trajectory = calloc(bench->room, sizeof *bench->trajectory);
-    bench->place = calloc(bench->room, sizeof *bench->place);
-    return bench->samples && bench->trajectory && bench->place;
-}
-
-/* Trajectory k, blank: NAN stays where a case ends before. */
-static stance_trajectory *blank_trajectory(struct bench *bench, const struct plan *plan, size_t k)
+/* The task's trajectory, blank: NAN stays where a case ends before. false: no memory. */
+static bool blank_trajectory(struct task *task, const struct plan *plan)
 {
     const stance_scene *scene = plan->scenario->scene;
-    size_t rows = (size_t)plan->record_rows, size = rows * instant_size(scene);
-    double *at = bench->samples + k * size;
-    stance_trajectory *trajectory = &bench->trajectory[k];
+    const size_t rows = (size_t)plan->record_rows, size = rows * instant_size(scene);
+    stance_trajectory *trajectory = &task->trajectory;
 
+    if (!task->samples && !(task->samples = malloc(size * sizeof *task->samples))) {
+        return false;
+    }
+    double *at = task->samples;
     for (size_t i = 0; i < size; i++) {
         at[i] = NAN;
     }
@@ -125,8 +173,34 @@ static stance_trajectory *blank_trajectory(struct bench *bench, const struct pla
     trajectory->torque = at += rows * (size_t)scene->coordinates;
     trajectory->force = at += rows * (size_t)scene->actuators;
     trajectory->gap = at + 2 * rows * (size_t)scene->contacts;
-    return trajectory;
+    task->input.trajectory = trajectory;
+    return true;
 }
+
+static struct task *task_take(struct job *job)
+{
+    struct task *task = job->idle_task;
+    if (task) {
+        job->idle_task = task->next_idle;
+        return task;
+    }
+    task = calloc(1, sizeof *task);
+    if (!task) {
+        out_of_memory(job, "the cases");
+        return NULL;
+    }
+    task->next = job->tasks;
+    job->tasks = task;
+    return task;
+}
+
+static void task_leave(struct job *job, struct task *task)
+{
+    task->next_idle = job->idle_task;
+    job->idle_task = task;
+}
+
+/* ---- results ------------------------------------------------------------------------------ */
 
 /* What is stored for a case that does not exist. */
 static void fail_initially(stance_result *result)
@@ -142,109 +216,247 @@ static void fail_initially(stance_result *result)
     }
 }
 
-/* Runs the cases of one method among the n of the slice. */
-static void run_method(struct bench *bench, int method, size_t n)
-{
-    size_t index[STORE_ROWS], count = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (bench->method[i] == method) {
-            bench->grouped[count] = bench->cases[i];
-            index[count++] = i;
-        }
-    }
-    if (count == 0 || !bench->kernel[method]) { /* the plan saw to it that there is a kernel */
-        return;
-    }
-    memset(bench->grouped_results, 0, count * sizeof *bench->grouped_results);
-    bench->kernel[method]->run(bench->grouped, bench->grouped_results, count);
-    for (size_t i = 0; i < count; i++) {
-        stance_result *result = &bench->results[index[i]];
-        *result = bench->grouped_results[i];
-        if (result->status == STANCE_DONE && result->evidence == STANCE_EVIDENCE_NONE) {
-            result->evidence = STANCE_SIMULATED;
-        }
-    }
-}
-
-static void tally(struct work *work, const stance_result *result)
+static void tally(struct work *work, stance_status status, stance_outcome outcome)
 {
     work->finished++;
-    if (result->status == STANCE_FAILED) {
+    if (status == STANCE_FAILED) {
         work->failed++;
-    } else if (result->outcome >= 0 && result->outcome < WORK_OUTCOMES) {
-        work->outcome[result->outcome]++;
+    } else if ((int)outcome >= 0 && (int)outcome < WORK_OUTCOMES) {
+        work->outcome[outcome]++;
     }
 }
 
-/* Computes and writes rows [first, first + *n); *n shrinks when their trajectories do not fit. */
-static bool compute_rows(struct work *work, struct bench *bench, uint64_t first, size_t *n,
-                         stance_message *message)
+/* Writes the rows of a block that have ended, in stretches of at least so many. */
+static void write_block(struct job *job, struct block *block, size_t least)
 {
-    size_t recorded = 0, count = 0;
+    for (size_t slot = 0; slot < block->count && !job->broken;) {
+        const uint64_t row = schedule_row(&job->schedule, block->first + slot);
+        size_t n = 0;
+        while (slot + n < block->count && block->state[slot + n] == ENDED &&
+               schedule_row(&job->schedule, block->first + slot + n) == row + n) {
+            n++;
+        }
+        if (n < least) {
+            slot += n > 0 ? n : 1;
+            continue;
+        }
+        if (!store_write(job->work->store, block->rows, slot, row, n, job->message)) {
+            break_off(job);
+            return;
+        }
+        memset(block->state + slot, STORED, n);
+        slot += n;
+    }
+}
 
-    for (; count < *n; count++) {
-        uint64_t place;
-        int method;
-        bool record = plan_recorded(work->plan, first + count, &place);
-        if (record && recorded == bench->room) {
-            break;
-        }
-        if (!plan_resolve(work->plan, first + count, &bench->cases[count], &method)) {
-            fail_initially(&bench->results[count]);
-            method = -1;
-        }
-        bench->method[count] = method;
-        bench->cases[count].trajectory = NULL;
-        if (record) {
-            bench->place[recorded] = place;
-            bench->cases[count].trajectory = blank_trajectory(bench, work->plan, recorded++);
+/* What has ended of blocks that have been open for long. */
+static void write_ended(struct job *job, double now)
+{
+    for (struct block *block = job->oldest; block; block = block->next) {
+        if (now >= block->write_at) {
+            const double start = plan_clock();
+            write_block(job, block, ++block->writes % SCHEDULE_ALL == 0 ? 1 : SCHEDULE_STRETCH);
+            const double end = plan_clock();
+            block->write_at = end + schedule_write_interval(job->work->parallel->size, end - start);
         }
     }
-    *n = count;
-    for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++) {
-        run_method(bench, m, count);
+}
+
+/* Takes a block whose rows have all ended out of the list. */
+static void close_block(struct job *job, struct block *block)
+{
+    struct block **link = &job->oldest;
+    while (*link != block) {
+        link = &(*link)->next;
     }
-    for (size_t k = 0; k < recorded; k++) {
-        if (!store_write_trajectory(work->store, bench->place[k], &bench->trajectory[k], message)) {
+    *link = block->next;
+    if (job->at == block) {
+        job->at = block->next;
+    }
+    block->next = job->idle;
+    job->idle = block;
+    job->blocks--;
+}
+
+/* The result of a row, which was pending or in a lane. */
+static void end_row(struct job *job, struct block *block, size_t slot, const stance_result *result)
+{
+    store_put(block->rows, slot, result);
+    tally(job->work, result->status, result->outcome);
+    block->state[slot] = ENDED;
+    job->work->computed++;
+    job->ended++;
+    if (--block->open == 0) {
+        write_block(job, block, 1);
+        close_block(job, block);
+    }
+}
+
+/* A task's trajectory, then its row. */
+static void end_task(struct job *job, struct task *task)
+{
+    if (!task->input.trajectory ||
+        store_write_trajectory(job->work->store, task->place, &task->trajectory, job->message)) {
+        end_row(job, task->block, task->slot, &task->result);
+    } else {
+        break_off(job);
+    }
+    task_leave(job, task);
+}
+
+static void case_done(void *context, const stance_case *input, stance_result *result)
+{
+    /* A task begins with its case, which was handed out as const but is not. */
+    struct task *task = (struct task *)(uintptr_t)input;
+    if (result->status == STANCE_DONE && result->evidence == STANCE_EVIDENCE_NONE) {
+        result->evidence = STANCE_SIMULATED;
+    }
+    end_task(context, task);
+}
+
+/* ---- drawing ------------------------------------------------------------------------------ */
+
+static bool attend(void *context);
+
+/* Rows that the file of a resumed run holds whole are as good as ended. */
+static void keep_rows(struct job *job, struct block *block)
+{
+    const double start = plan_clock();
+    stance_result results[STORE_ROWS];
+    bool whole[STORE_ROWS];
+
+    for (size_t slot = 0, n; slot < block->count && !job->broken; slot += n) {
+        const uint64_t row = schedule_row(&job->schedule, block->first + slot);
+        for (n = 1; n < STORE_ROWS && slot + n < block->count &&
+                    schedule_row(&job->schedule, block->first + slot + n) == row + n;) {
+            n++;
+        }
+        if (!store_verify(job->work->store, row, n, results, whole, job->message)) {
+            break_off(job);
+            return;
+        }
+        for (size_t i = 0; i < n; i++) {
+            if (whole[i]) {
+                tally(job->work, results[i].status, results[i].outcome);
+                block->state[slot + i] = STORED;
+                block->open--;
+                job->kept++;
+            }
+        }
+    }
+    job->checking += plan_clock() - start;
+}
+
+/* The next rows of the chunk in hand, or of a new one. false: there are none, or no memory. */
+static bool open_block(struct job *job)
+{
+    uint64_t first;
+    size_t count = schedule_take(&job->schedule, job->capacity, &first);
+    if (count == 0) {
+        const int64_t k = parallel_add(job->work->parallel, COUNTER_CHUNK, 1);
+        if (!schedule_draw(&job->schedule, (uint64_t)k)) {
+            return false;
+        }
+        count = schedule_take(&job->schedule, job->capacity, &first);
+    }
+    struct block *block = job->idle;
+    if (block) {
+        job->idle = block->next;
+    } else if (!(block = block_make(job))) {
+        out_of_memory(job, "the results");
+        return false;
+    }
+    block->next = NULL;
+    block->first = first;
+    block->count = block->open = count;
+    block->cursor = 0;
+    block->writes = 0;
+    block->write_at = plan_clock() + schedule_write_interval(job->work->parallel->size, 0);
+    memset(block->state, PENDING, count);
+    struct block **link = &job->oldest;
+    while (*link) {
+        link = &(*link)->next;
+    }
+    *link = block;
+    job->blocks++;
+    for (size_t slot = 0; slot < count; slot++) {
+        block->method[slot] =
+            (uint8_t)plan_method(job->plan, schedule_row(&job->schedule, first + slot));
+    }
+    if (job->work->resume) {
+        keep_rows(job, block);
+    }
+    job->pending += block->open;
+    job->at = job->at ? job->at : block;
+    if (block->open == 0) {
+        close_block(job, block);
+    }
+    return true;
+}
+
+/* Whether the stream may draw: not while rows of other methods wait, but for the rest of a chunk as
+ * far as memory goes. */
+static bool may_draw(const struct job *job)
+{
+    return job->pending == 0 ||
+           (job->blocks < BLOCKS_OF_METHODS && job->schedule.next < job->schedule.end);
+}
+
+/* The next pending row of the stream's method. */
+static bool find_row(struct job *job, struct block **block, size_t *slot)
+{
+    for (;;) {
+        for (; job->at; job->at = job->at->next) {
+            for (struct block *b = job->at; b->cursor < b->count; b->cursor++) {
+                if (b->state[b->cursor] == PENDING && b->method[b->cursor] == job->method) {
+                    *block = b;
+                    *slot = b->cursor++;
+                    job->pending--;
+                    return true;
+                }
+            }
+        }
+        if (!may_draw(job) || attend(job) || !open_block(job) || job->leaving) {
             return false;
         }
     }
-    if (!store_write(work->store, first, count, bench->results, message)) {
-        return false;
-    }
-    for (size_t i = 0; i < count; i++) {
-        tally(work, &bench->results[i]);
-    }
-    work->computed += count;
-    return true;
 }
 
-/* Rows of a slice that a resume need not compute again are counted as they are; *n becomes the
- * length of the first stretch of equal kind, *kept says which kind. */
-static bool keep_rows(struct work *work, struct bench *bench, uint64_t first, size_t *n, bool *kept,
-                      stance_message *message)
+static bool next_case(void *context, const stance_case **input, stance_result **result)
 {
-    size_t length = 1;
-    if (!store_verify(work->store, first, *n, bench->results, bench->whole, message)) {
-        return false;
+    struct job *job = context;
+    struct block *block;
+    size_t slot;
+    int method;
+
+    while (!job->leaving && find_row(job, &block, &slot)) {
+        struct task *task = task_take(job);
+        if (!task) {
+            return false;
+        }
+        const uint64_t row = schedule_row(&job->schedule, block->first + slot);
+        const bool exists = plan_resolve(job->plan, row, &task->input, &method);
+        task->block = block;
+        task->slot = slot;
+        task->input.trajectory = NULL;
+        if (plan_recorded(job->plan, row, &task->place) && !blank_trajectory(task, job->plan)) {
+            task_leave(job, task);
+            out_of_memory(job, "trajectories");
+            return false;
+        }
+        block->state[slot] = RUNNING;
+        if (exists) {
+            *input = &task->input;
+            *result = &task->result;
+            return true;
+        }
+        fail_initially(&task->result);
+        end_task(job, task);
     }
-    while (length < *n && bench->whole[length] == bench->whole[0]) {
-        length++;
-    }
-    *n = length;
-    *kept = bench->whole[0];
-    for (size_t i = 0; *kept && i < length; i++) {
-        tally(work, &bench->results[i]);
-    }
-    return true;
+    return false;
 }
 
-/* ---- progress ----------------------------------------------------------------------------- */
-
-struct progress {
-    bool terminal;
-    double next, start;
-};
+/* ---- counters, progress, stops -------------------------------------------------------------- */
 
 static void duration(char *text, size_t size, double seconds)
 {
@@ -256,9 +468,10 @@ static void duration(char *text, size_t size, double seconds)
     }
 }
 
-static void show_progress(const struct work *work, struct progress *progress)
+static void show_progress(struct job *job, double now)
 {
-    double now = plan_clock();
+    const struct work *work = job->work;
+    struct progress *progress = &job->progress;
     if (work->quiet || work->parallel->rank != 0 || now < progress->next) {
         return;
     }
@@ -267,100 +480,135 @@ static void show_progress(const struct work *work, struct progress *progress)
     uint64_t kept = (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
     double rate = (double)(finished - kept) / (now - progress->start);
     if (rate > 0) {
-        duration(left, sizeof left, (double)(work->plan->rows - finished) / rate);
+        duration(left, sizeof left, (double)(job->schedule.places - finished) / rate);
     }
     fprintf(stderr, "%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left%s",
-            progress->terminal ? "\r" : "", finished, work->plan->rows, rate, left,
+            progress->terminal ? "\r" : "", finished, job->schedule.places, rate, left,
             progress->terminal ? "\033[K" : "\n");
     fflush(stderr);
     progress->next = now + (progress->terminal ? progress_terminal : progress_elsewhere);
 }
 
-/* ---- the loop ----------------------------------------------------------------------------- */
-
-/* Whether to stop before the next slice, which will take about `expected` seconds. */
-static bool told_to_stop(const struct work *work, double expected)
+/* Tells the counters what has ended. */
+static void report(struct job *job)
 {
-    if (stop_asked || plan_clock() - work->start + expected > work->time_limit) {
-        parallel_add(work->parallel, COUNTER_STOP, 1);
+    const struct parallel *parallel = job->work->parallel;
+    if (job->kept > 0) {
+        parallel_add(parallel, COUNTER_KEPT, (int64_t)job->kept);
+    }
+    if (job->ended + job->kept > 0) {
+        parallel_add(parallel, COUNTER_DONE, (int64_t)(job->ended + job->kept));
+    }
+    job->ended = job->kept = 0;
+}
+
+/* Called about every millisecond: what must not wait for the end of a case. true: leave. On rank 0
+ * it always looks at the counters, which live there, so that others get at them. */
+static bool attend(void *context)
+{
+    struct job *job = context;
+    const struct work *work = job->work;
+    const double now = plan_clock();
+    const int ranks = work->parallel->size;
+
+    if (job->leaving) {
         return true;
     }
-    return parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
-}
-
-/* Computes a chunk in slices. *stop: leave, this was not all. */
-static bool run_chunk(struct work *work, struct bench *bench, struct progress *progress,
-                      uint64_t first, uint64_t count, double *per_case, bool *stop,
-                      stance_message *message)
-{
-    for (uint64_t end = first + count; first < end;) {
-        double fits = *per_case > 0 ? slice_seconds / *per_case : SLICE_SMALLEST;
-        size_t n = fits > STORE_ROWS       ? STORE_ROWS
-                   : fits > SLICE_SMALLEST ? (size_t)fits
-                                           : SLICE_SMALLEST;
-        n = end - first < n ? (size_t)(end - first) : n;
-        if ((*stop = told_to_stop(work, *per_case * (double)n))) {
-            return true;
-        }
-        bool kept = false;
-        if (work->resume && !keep_rows(work, bench, first, &n, &kept, message)) {
-            return false;
-        }
-        double start = plan_clock();
-        if (!kept) {
-            if (!compute_rows(work, bench, first, &n, message)) {
-                return false;
-            }
-            double spent = plan_clock() - start;
-            work->seconds += spent;
-            *per_case = spent / (double)n;
-        }
-        first += n;
-        parallel_add(work->parallel, COUNTER_DONE, (int64_t)n);
-        if (kept) {
-            parallel_add(work->parallel, COUNTER_KEPT, (int64_t)n);
-        }
-        show_progress(work, progress);
-    }
-    return true;
-}
-
-static bool run_chunks(struct work *work, struct bench *bench, struct progress *progress,
-                       stance_message *message)
-{
-    double per_case = 0;
-    uint64_t first, count;
-    bool stop = false;
-
-    while (!stop) {
-        int64_t k = parallel_add(work->parallel, COUNTER_CHUNK, 1);
-        if (!plan_chunk(work->plan->rows, work->parallel->size, (uint64_t)k, &first, &count)) {
-            break;
-        }
-        if (!run_chunk(work, bench, progress, first, count, &per_case, &stop, message)) {
-            parallel_add(work->parallel, COUNTER_STOP, 1);
-            return false;
-        }
-    }
-    return true;
-}
-
-bool work_run(struct work *work, stance_message *message)
-{
-    struct bench bench;
-    struct progress progress = {.terminal = isatty(STDERR_FILENO) == 1, .start = plan_clock()};
-    progress.next = progress.start + (progress.terminal ? progress_terminal : progress_elsewhere);
-
-    bool good = bench_make(&bench, work->plan);
-    if (!good) {
-        snprintf(message->text, sizeof message->text, "not enough memory for %s",
-                 bench.samples || work->plan->record_rows == 0 ? "the cases" : "trajectories");
+    if (stop_asked || now - work->start > work->time_limit) {
         parallel_add(work->parallel, COUNTER_STOP, 1);
+        job->leaving = true;
+        return true;
     }
-    good = good && run_chunks(work, &bench, &progress, message);
-    if (progress.terminal && !work->quiet && work->parallel->rank == 0) {
+    write_ended(job, now);
+    if (now >= job->look_at) {
+        report(job);
+        job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
+        job->look_at = now + schedule_look_interval(ranks);
+    } else if (work->parallel->rank == 0) {
+        job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
+    }
+    show_progress(job, now);
+    return job->leaving;
+}
+
+/* ---- the whole ---------------------------------------------------------------------------- */
+
+/* Method of the first row that waits; draws where none does. false: there are no more. */
+static bool find_method(struct job *job)
+{
+    while (!attend(job)) {
+        for (struct block *block = job->oldest; job->pending > 0 && block; block = block->next) {
+            for (size_t slot = 0; slot < block->count; slot++) {
+                if (block->state[slot] == PENDING) {
+                    job->method = block->method[slot];
+                    return true;
+                }
+            }
+        }
+        if (!open_block(job)) {
+            return false;
+        }
+    }
+    return false;
+}
+
+static void run_streams(struct job *job)
+{
+    const stance_feed feed = {job, next_case, case_done, attend};
+    while (find_method(job)) {
+        for (struct block *block = job->oldest; block; block = block->next) {
+            block->cursor = 0;
+        }
+        job->at = job->oldest;
+        job->kernel[job->method]->stream(&feed); /* the plan saw to it that there is a kernel */
+    }
+}
+
+static void job_free(struct job *job)
+{
+    for (struct block *block = job->oldest, *next; block; block = next) {
+        next = block->next;
+        block_free(block);
+    }
+    for (struct block *block = job->idle, *next; block; block = next) {
+        next = block->next;
+        block_free(block);
+    }
+    for (struct task *task = job->tasks, *next; task; task = next) {
+        next = task->next;
+        free(task->samples);
+        free(task);
+    }
+}
+
+bool work_run(struct work *work, const struct rows *only, stance_message *message)
+{
+    const double start = plan_clock();
+    struct job job = {
+        .work = work,
+        .plan = work->plan,
+        .schedule = schedule_make(work->plan->rows, work->parallel->size, only),
+        .message = message,
+        .capacity = schedule_block_rows(store_row_size(work->store)),
+        .progress = {.terminal = isatty(STDERR_FILENO) == 1, .start = start},
+    };
+    uint64_t first, largest;
+    if (schedule_chunk(job.schedule.places, work->parallel->size, 0, &first, &largest)) {
+        job.capacity = job.capacity < largest ? job.capacity : (size_t)largest;
+    }
+    job.progress.next = start + (job.progress.terminal ? progress_terminal : progress_elsewhere);
+    for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++) {
+        job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
+    }
+    run_streams(&job);
+    for (struct block *block = job.oldest; block; block = block->next) {
+        write_block(&job, block, 1);
+    }
+    report(&job);
+    if (job.progress.terminal && !work->quiet && work->parallel->rank == 0) {
         fputs("\r\033[K", stderr);
     }
-    bench_free(&bench);
-    return good;
+    work->seconds += plan_clock() - start - job.checking;
+    job_free(&job);
+    return !job.broken;
 }

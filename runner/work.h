@@ -1,10 +1,14 @@
 /* work.h - the computing part of a run: every rank draws chunks of cases, has the engine run
  * them, and writes what came out, until nothing is left or the job is told to stop.
+ *
+ * Memory is bounded whatever the number of cases: a block of rows (2 MB at most, as a rule) for
+ * each lane and one more, and the trajectories of the cases in the lanes.
  */
 #ifndef STANCE_RUNNER_WORK_H
 #define STANCE_RUNNER_WORK_H
 
 #include "plan.h"
+#include "schedule.h"
 #include "store.h"
 
 enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1 };
@@ -25,15 +29,16 @@ struct work {
     double seconds;
 };
 
-/* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop after the slice in hand. A second SIGINT
- * kills. */
+/* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop: cases in hand are given up, what has
+ * ended is written. A second SIGINT kills. */
 void work_catch_signals(void);
 
 /* Whether a signal has asked for a stop. */
 bool work_stop_asked(void);
 
-/* Not collective, but every rank calls it. Leaves early when any rank fails, or is told to stop;
- * false when this rank failed. */
-bool work_run(struct work *work, stance_message *message);
+/* Computes all rows of the plan, or `only` some. Not collective, but every rank calls it, with the
+ * same rows and with counters that are new (parallel_share). Leaves early when any rank fails, or
+ * is told to stop; false when this rank failed. What came out adds to what *work holds. */
+bool work_run(struct work *work, const struct rows *only, stance_message *message);
 
 #endif

@@ -77,7 +77,8 @@ static void world_make(struct world *w, const char *const *sets, size_t count)
     if (!read_as(&w->s, "scenarios/basin_one_foot.yaml", NULL, all, count + 1))
         fail_msg("refused: %s", errors);
     if (!resolve_design(w->s.scene, &w->s.base, &w->design, &message) ||
-        !capture_estimate(w->s.scene, &w->s.base, &w->design, w->s.seed, &w->set, &message))
+        !capture_estimate(w->s.scene, &w->s.base, &w->design, w->s.seed, NULL, NULL, &w->set,
+                          &message))
         fail_msg("%s", message.text);
     if (!w->set.exists)
         print_message("# %s\n", message.text);
@@ -171,8 +172,8 @@ static void set_holds_what_it_promises(void **state)
     stance_captured_set again;
     struct resolved_design design = plain.design;
     stance_message message;
-    assert_true(
-        capture_estimate(plain.s.scene, &plain.s.base, &design, plain.s.seed, &again, &message));
+    assert_true(capture_estimate(plain.s.scene, &plain.s.base, &design, plain.s.seed, NULL, NULL,
+                                 &again, &message));
     assert_memory_equal(again.form, set->form, sizeof again.form);
 }
 
@@ -358,6 +359,28 @@ static void labels_elsewhere(void **state)
     }
 }
 
+static bool third_time(void *context)
+{
+    return ++*(int *)context >= 3;
+}
+
+/* Told to stop, the estimate ends there, without a set. */
+static void stops_when_told(void **state)
+{
+    (void)state;
+    struct world w;
+    stance_message message = {"before"};
+    int asked = 0;
+    assert_true(read_as(&w.s, "scenarios/basin_one_foot.yaml", NULL, NULL, 0));
+    assert_true(resolve_design(w.s.scene, &w.s.base, &w.design, &message));
+    assert_false(capture_estimate(w.s.scene, &w.s.base, &w.design, w.s.seed, third_time, &asked,
+                                  &w.set, &message));
+    assert_int_equal(asked, 3);
+    assert_false(w.set.exists);
+    assert_string_equal(message.text, "");
+    scenario_free(&w.s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -366,6 +389,7 @@ int main(void)
         cmocka_unit_test(set_holds_what_it_promises),
         cmocka_unit_test(stops_only_where_it_may),
         cmocka_unit_test(lanes_agree),
+        cmocka_unit_test(stops_when_told),
         cmocka_unit_test(labels_do_not_change),
         cmocka_unit_test(labels_elsewhere),
     };

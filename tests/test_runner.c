@@ -5,6 +5,7 @@
 #include "../runner/command.h"
 #include "../runner/lock.h"
 #include "../runner/plan.h"
+#include "../runner/schedule.h"
 #include "../runner/store.h"
 #include "../runner/supervise.h"
 
@@ -28,6 +29,14 @@ static void test_crc32c(void **state)
     assert_int_equal(checksum_crc32c(0, rising, 32), 0x46dd794e);
     assert_int_equal(checksum_crc32c(0, "123456789", 9), 0xe3069283);
     assert_int_equal(checksum_crc32c(checksum_crc32c(0, "1234", 4), "56789", 5), 0xe3069283);
+    uint8_t bytes[100]; /* one at a time no instruction for eight is used */
+    for (size_t size = 0; size < sizeof bytes; size++) {
+        uint32_t crc = 0;
+        bytes[size] = (uint8_t)(size * size * 37 + 11);
+        for (size_t i = 0; i <= size; i++)
+            crc = checksum_crc32c(crc, &bytes[i], 1);
+        assert_int_equal(checksum_crc32c(0, bytes, size + 1), crc);
+    }
 }
 
 /* FIPS 180-4's examples, and the lengths around a block's end by what they continue to. */
@@ -107,8 +116,8 @@ static void test_options(void **state)
 
 /* ---- the plan ----------------------------------------------------------------------------- */
 
-/* Chunks tile the rows, in order, without overlap; none is larger than 4096; the first batch of
- * chunks leaves about half; the last are small. */
+/* Chunks tile the rows, in order, without overlap, in whole bundles of lanes; none is larger than a
+ * eighth of a rank's share, the last ones are a 32nd of it at most. */
 static void test_chunks(void **state)
 {
     (void)state;
@@ -116,23 +125,26 @@ static void test_chunks(void **state)
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         for (int ranks = 1; ranks <= 1024; ranks = ranks * 3 + 1) {
             uint64_t next = 0, first, count, k = 0, before = UINT64_MAX;
-            for (; plan_chunk(sizes[i], ranks, k, &first, &count); k++) {
+            for (; schedule_chunk(sizes[i], ranks, k, &first, &count); k++) {
                 assert_int_equal(first, next);
-                assert_in_range(count, 1, 4096);
+                const uint64_t share = sizes[i] / (uint64_t)ranks;
+                assert_in_range(count, 1, SCHEDULE_LARGEST);
+                assert_true(count <= share / 8 + 8);
                 assert_true(count <= before);
+                assert_true(count % 8 == 0 || first + count == sizes[i]);
                 before = count;
                 next = first + count;
                 assert_true(k < 2 * sizes[i]);
             }
             assert_int_equal(next, sizes[i]);
-            assert_true(before <= 64);
-            assert_false(plan_chunk(sizes[i], ranks, k + 1, &first, &count));
-            assert_false(plan_chunk(sizes[i], ranks, UINT32_MAX, &first, &count));
+            assert_true(before <= sizes[i] / (uint64_t)ranks / 32 + 8);
+            assert_false(schedule_chunk(sizes[i], ranks, k + 1, &first, &count));
+            assert_false(schedule_chunk(sizes[i], ranks, UINT32_MAX, &first, &count));
         }
     }
     uint64_t first, count;
-    assert_true(plan_chunk((uint64_t)1 << 40, 7, 1000003, &first, &count));
-    assert_int_equal(first, (uint64_t)1000003 * 4096);
+    assert_true(schedule_chunk((uint64_t)1 << 40, 7, 1000003, &first, &count));
+    assert_int_equal(first, (uint64_t)1000003 * SCHEDULE_LARGEST);
 }
 
 static const char swept[] =
@@ -257,13 +269,25 @@ static stance_result numbered(uint64_t row)
     return r;
 }
 
+/* Through a block, from its third slot on. */
+static void store_results(struct store *store, uint64_t first, size_t n,
+                          const stance_result *results)
+{
+    stance_message message;
+    struct store_block *block = store_block_make(store, n + 2);
+    assert_non_null(block);
+    for (size_t i = 0; i < n; i++)
+        store_put(block, i + 2, &results[i]);
+    assert_true(store_write(store, block, 2, first, n, &message));
+    store_block_free(block);
+}
+
 static void write_rows(struct store *store, uint64_t first, size_t n)
 {
     stance_result results[STORE_ROWS];
-    stance_message message;
     for (size_t i = 0; i < n; i++)
         results[i] = numbered(first + i);
-    assert_true(store_write(store, first, n, results, &message));
+    store_results(store, first, n, results);
 }
 
 static void assert_whole(struct store *store, uint64_t first, size_t n, bool expected)
@@ -366,14 +390,14 @@ static void test_plain_scene(void **state)
         assert_true(data[1] == 0.6 && data[36] == 0.6 - c.robot[1]); /* z and the gap at 0 */
         assert_true(store_write_trajectory(store, row, &t, &message));
     }
-    assert_true(store_write(store, 0, 2, results, &message));
+    store_results(store, 0, 2, results);
     assert_true(store_verify(store, 0, 3, read, whole, &message));
     assert_true(whole[0] && whole[1] && !whole[2]);
     data[41] += 1;
     assert_true(store_write_trajectory(
         store, 2, &(stance_trajectory){0.1, 6, data, data + 12, NULL, data + 24, data + 36},
         &message));
-    assert_true(store_write(store, 2, 1, &results[2], &message));
+    store_results(store, 2, 1, &results[2]);
     assert_true(store_verify(store, 0, 3, read, whole, &message));
     assert_true(whole[2]); /* its checksum is of what was written */
     assert_true(store_close(store, &message));

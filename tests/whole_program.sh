@@ -59,6 +59,27 @@ assert d.status.dims == d.outcome.dims
 " "$work/$name.h5"
 done
 
+# ---- large jobs ----
+check "bench schedule" "$stance" bench schedule "$work/basin_one_foot.h5" -o "$work/schedule"
+check "bench schedule: picture" png "$work/schedule/schedule.png"
+check "bench schedule: table and JSON agree" sh -c "'$stance' bench schedule --json '$work/basin_one_foot.h5' \
+    >'$work/schedule.json' && '$python' -c \"
+import csv, json
+rows = json.load(open('$work/schedule.json'))['rows']
+table = list(csv.DictReader(open('$work/schedule/schedule.csv')))
+assert [int(t['ranks']) for t in table] == [r['ranks'] for r in rows] and len(rows) == 7
+assert all(abs(float(t['efficiency']) - r['efficiency']) < 1e-6 for t, r in zip(table, rows))
+assert all(int(t['cases']) == 10**10 for t in table)\""
+check "1e9 and 1e10 cases are planned in 200 MB" "$python" -c "
+import resource, subprocess, sys
+for n in 32768, 100000:
+    for command in ['check'], ['run', '--dry-run']:
+        out = subprocess.run([sys.argv[1], *command, 'scenarios/basin_one_foot.yaml', '--set',
+                              f'sweep.grid[0].count={n}', '--set', f'sweep.grid[1].count={n}'],
+                             check=True, capture_output=True, text=True).stdout
+        assert f'{n * n} cases' in out, out
+assert resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss < 200e3" "$stance"
+
 # ---- studies of the methods ----
 for scenario in scenarios/accuracy/*.yaml scenarios/failure/*.yaml; do
     check "$(basename "$(dirname "$scenario")"), $(basename "$scenario" .yaml): check" "$stance" check "$scenario"

@@ -255,6 +255,27 @@ expect "a time limit" 4 mpirun -n 2 "$stance" run long.yaml -o limited.h5 --time
 says "... says how to go on" 'go on with: mpirun -n 2 stance run long.yaml .*--resume'
 expect "... and it does" 0 "$stance" run long.yaml -o limited.h5 --resume
 tool "stopped and resumed: the same bits" same long.h5 limited.h5
+# Cases that would take minutes each: nobody waits for their ends.
+scenario "sweep:
+  grid:
+    - {path: method.name, values: [implicit, capturing]}
+    - {path: initial.offset.theta, from: 0, to: 0.01, count: 50}
+stop: {time: 500000, settle: off}" >endless.yaml
+for launch in "" "mpirun -n 2"; do
+    # shellcheck disable=SC2086
+    expect "a time limit within long cases${launch:+ ($launch)}" 4 $launch "$stance" run endless.yaml \
+        -o endless.h5 --time-limit 0.5s --force
+done
+"$stance" run endless.yaml -o endless.h5 --resume --quiet >log 2>&1 &
+job=$!
+for _ in $(seq 200); do
+    "$stance" status endless.h5 2>/dev/null | grep -v 'not running' | grep -q running && break
+    sleep 0.05
+done
+kill -TERM $job
+wait $job
+(($? == 4))
+result $? "SIGTERM within long cases stops with code 4"
 for signal in INT TERM USR1; do
     rm -f signal.h5
     "$stance" run long.yaml -o signal.h5 --quiet >log 2>&1 &

@@ -39,6 +39,7 @@ struct search {
     uint64_t batch;         /* number of the batch: no two use the same random numbers */
     int64_t simulations;
     double longest; /* s, in the batch */
+    bool stopped;
     stance_case *cases;
     stance_result *results;
 };
@@ -112,18 +113,51 @@ static bool begin(const struct search *s, uint64_t point, double radius, bool in
 
 /* ---- batches --------------------------------------------------------------------------------- */
 
-/* Simulates points of a level; false as soon as one does not end as it should. */
+/* Cases at hand for the kernel. */
+struct hand {
+    struct search *search;
+    size_t next, size;
+};
+
+static bool hand_next(void *context, const stance_case **c, stance_result **result)
+{
+    struct hand *hand = context;
+    if (hand->next == hand->size) {
+        return false;
+    }
+    *c = &hand->search->cases[hand->next];
+    *result = &hand->search->results[hand->next++];
+    return true;
+}
+
+static void hand_done(void *context, const stance_case *c, stance_result *result)
+{
+    (void)context, (void)c, (void)result;
+}
+
+static bool hand_leave(void *context)
+{
+    const stance_capture_search *ask = ((struct hand *)context)->search->ask;
+    return ask->leave && ask->leave(ask->context);
+}
+
+/* Simulates points of a level; false as soon as one does not end as it should, or when stopped. */
 static bool batch(struct search *s, double radius, int64_t count, bool inside)
 {
     s->batch++;
-    for (int64_t first = 0; first < count; first += CHUNK) {
+    for (int64_t first = 0; first < count && !s->stopped; first += CHUNK) {
         const size_t size = (size_t)(count - first < CHUNK ? count - first : CHUNK);
         for (size_t i = 0; i < size; i++) {
             if (!begin(s, (uint64_t)first + i, radius, inside, &s->cases[i])) {
                 return false;
             }
         }
-        s->ask->kernel->run(s->cases, s->results, size);
+        struct hand hand = {s, 0, size};
+        s->stopped =
+            !s->ask->kernel->stream(&(stance_feed){&hand, hand_next, hand_done, hand_leave});
+        if (s->stopped) {
+            return false;
+        }
         s->simulations += (int64_t)size;
         for (size_t i = 0; i < size; i++) {
             if (s->results[i].status != STANCE_DONE || s->results[i].outcome != STANCE_STABILISED) {
@@ -132,7 +166,7 @@ static bool batch(struct search *s, double radius, int64_t count, bool inside)
             s->longest = fmax(s->longest, s->results[i].end_time);
         }
     }
-    return true;
+    return !s->stopped;
 }
 
 /* ---- one shape ------------------------------------------------------------------------------- */
@@ -165,7 +199,7 @@ static double screen(struct search *s)
 {
     double radius = 1, good = 0, bad = 0;
 
-    for (int k = 0; k < DOUBLINGS && !(good > 0 && bad > 0); k++) {
+    for (int k = 0; k < DOUBLINGS && !s->stopped && !(good > 0 && bad > 0); k++) {
         if (batch(s, radius, SCREEN, false)) {
             good = radius;
             radius = 2 * radius;
@@ -174,7 +208,7 @@ static double screen(struct search *s)
             radius = radius / 2;
         }
     }
-    for (int k = 0; good > 0 && bad > 0 && k < HALVINGS; k++) {
+    for (int k = 0; good > 0 && bad > 0 && !s->stopped && k < HALVINGS; k++) {
         radius = sqrt(good * bad);
         if (batch(s, radius, SCREEN, false)) {
             good = radius;
@@ -203,7 +237,7 @@ static void confirm(struct search *s, double radius, stance_captured_set *set)
     const stance_capture_search *ask = s->ask;
     const int n = s->n;
 
-    for (int k = 0; k < SHRINKINGS && !set->exists; k++, radius *= SHRINK) {
+    for (int k = 0; k < SHRINKINGS && !set->exists && !s->stopped; k++, radius *= SHRINK) {
         s->longest = 0;
         if (!batch(s, radius, ask->boundary < SCREEN_MORE ? ask->boundary : SCREEN_MORE, false)) {
             continue;
@@ -244,7 +278,7 @@ stance_error stance_capture_estimate(const stance_capture_search *search, stance
         free(s.results);
         return STANCE_NO_MEMORY;
     }
-    for (int k = 0; k < search->shapes; k++) {
+    for (int k = 0; k < search->shapes && !s.stopped; k++) {
         set->volume[k] = NAN;
         const double radius = take_shape(&s, search->P[k], &log_volume) ? screen(&s) : 0;
         if (radius > 0) {
@@ -256,12 +290,12 @@ stance_error stance_capture_estimate(const stance_capture_search *search, stance
             set->shape = k;
         }
     }
-    if (best_radius > 0) {
+    if (best_radius > 0 && !s.stopped) {
         take_shape(&s, search->P[set->shape], &log_volume);
         confirm(&s, best_radius, set);
     }
     set->simulations = s.simulations;
     free(s.cases);
     free(s.results);
-    return STANCE_OK;
+    return s.stopped ? STANCE_STOPPED : STANCE_OK;
 }

@@ -251,7 +251,8 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
 }
 
 /* Multipliers of the normal directions `lift` that change the gaps of held contacts, which are in
- * `touching`, by `error`, to first order; where the two are dependent the first does the work. */
+ * `touching`, by `error`, to first order; where the two are dependent the first does the work, and
+ * as much as it takes to leave none below. */
 HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
                              contact_set touching,
                              const lanes lift[SCENE_CONTACTS][SCENE_COORDINATES], const mask *held,
@@ -277,9 +278,9 @@ HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
     const lanes determinant = lanes_fnma(G[0][1], G[1][0], product);
     const mask regular = mask_less(1e-12 * product, determinant);
     const lanes reciprocal = 1 / choose(regular, determinant, G[0][0]);
-    multiplier[0] =
-        choose(regular, lanes_fms(G[1][1], error[0], G[0][1] * error[SECOND]), error[0]) *
-        reciprocal;
+    multiplier[0] = choose(regular, lanes_fms(G[1][1], error[0], G[0][1] * error[SECOND]),
+                           lanes_max(error[0], error[SECOND])) *
+                    reciprocal;
     multiplier[SECOND] =
         choose(regular, lanes_fms(G[0][0], error[SECOND], G[1][0] * error[0]), lanes_of(0)) *
         reciprocal;
@@ -356,6 +357,9 @@ HOT mask iterate_project(const struct setting *set, const struct motion *from, l
                               choose(mask_less(lanes_of(0), it->r[c][0]), wanted[c], lanes_of(0)) -
                                   it->gap[c],
                               lanes_of(0));
+            /* Of two dependent ones one may have to stay above. */
+            if (round > 2)
+                error[c] = lanes_max(error[c], lanes_of(0));
             todo |= mask_less(lanes_of(STEP_PROJECTION), lanes_abs(error[c]));
         }
         if (!mask_any(todo))
@@ -594,9 +598,9 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
     iterate_place(set, from, h, false, &it);
     lanes iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
-        contact_set touching = 0;
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            touching |= mask_any(it.active[c] & running) ? 1u << c : 0;
+        /* All or none: position errors may have to be removed at a contact that is not active. */
+        const mask somewhere = (it.active[0] | it.active[SECOND]) & running;
+        const contact_set touching = mask_any(somewhere) ? (1u << SCENE_CONTACTS) - 1 : 0;
         iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
                        touching, &it);
         iterations += choose(running, lanes_of(1), lanes_of(0));

@@ -1,0 +1,357 @@
+/* test_schedule.c - the drawing of rows, the computing loop on lists of rows, and the simulator of
+ * large jobs against schedules and sums made here. */
+#include "support.h"
+
+#include "../analysis/simulate.h"
+#include "../runner/schedule.h"
+#include "../runner/work.h"
+
+#include <unistd.h>
+
+/* ---- drawing ------------------------------------------------------------------------------ */
+
+/* Stretches tile each chunk; places stand for all rows, or for those of a list. */
+static void test_stretches(void **state)
+{
+    (void)state;
+    const uint64_t row[5] = {3, 4, 9, 100, 1000};
+    const struct rows only = {row, 5};
+    uint64_t first, count, place;
+    struct schedule schedule = schedule_make(1000, 3, NULL);
+    assert_int_equal(schedule_take(&schedule, 10, &place), 0);
+    for (uint64_t k = 0; schedule_chunk(1000, 3, k, &first, &count); k++) {
+        uint64_t next = first;
+        size_t n;
+        assert_true(schedule_draw(&schedule, k));
+        while ((n = schedule_take(&schedule, 5, &place)) > 0) {
+            assert_int_equal(place, next);
+            assert_true(n == 5 || next + n == first + count);
+            next += n;
+        }
+        assert_int_equal(next, first + count);
+        assert_int_equal(schedule_row(&schedule, first), first);
+    }
+    assert_false(schedule_draw(&schedule, 1000));
+    assert_int_equal(schedule_take(&schedule, 10, &place), 0);
+    schedule = schedule_make(5000, 1, &only);
+    assert_true(schedule_draw(&schedule, 0));
+    assert_int_equal(schedule_take(&schedule, 10, &place), 5);
+    for (uint64_t i = 0; i < 5; i++)
+        assert_int_equal(schedule_row(&schedule, place + i), row[i]);
+}
+
+/* ---- the computing loop ------------------------------------------------------------------- */
+
+/* Rows of three methods in turn, some of robots that do not exist, a few recorded. */
+static const char swept[] =
+    "stance: 1\nscene: biped\nground: {friction: 0.8, contacts: [foot1]}\n"
+    "initial:\n  equilibrium: {theta: -0.41, q2: 0.82}\n  support_foot: 1\n"
+    "controller: {kind: state-feedback, design: place, sample_time: 0.001, torque_limit: 10,\n"
+    "  poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6]}\n"
+    "method: {step: 0.001}\nstop: {time: 0.2}\n"
+    "sweep:\n  grid:\n    - {path: initial.offset.theta, from: -0.1, to: 0.05, count: 40}\n"
+    "    - {path: robot.trunk_length, values: [0.535, 9]}\n"
+    "    - {path: method.name, values: [implicit, capturing, midpoint]}\n"
+    "record: {every: 0.1, cases: [0, 7, 100, 239]}\n";
+
+struct fixture {
+    struct scenario scenario;
+    struct plan plan;
+    struct parallel parallel;
+    struct store *store;
+    struct work work;
+    char file[64];
+};
+
+static int make_fixture(void **state)
+{
+    struct fixture *f = calloc(1, sizeof *f);
+    struct plan_error error;
+    stance_message message;
+    *state = f;
+    if (!f || !scenario_read(&f->scenario, "swept.yaml", swept, NULL, 0, stderr))
+        return -1;
+    f->parallel = parallel_alone();
+    snprintf(f->file, sizeof f->file, "/tmp/stance-schedule-%d.h5", (int)getpid());
+    unlink(f->file);
+    if (!plan_make(&f->plan, &f->scenario, false, 0, false, &error) ||
+        !plan_compute_designs(&f->plan, &f->parallel, &error) ||
+        !store_create(f->file, &f->plan, 1, "here", &message) ||
+        !store_open(&f->store, f->file, &f->plan, 1, &message))
+        return -1;
+    f->work = (struct work){.plan = &f->plan,
+                            .store = f->store,
+                            .parallel = &f->parallel,
+                            .quiet = true,
+                            .start = plan_clock(),
+                            .time_limit = INFINITY};
+    return 0;
+}
+
+static int free_fixture(void **state)
+{
+    struct fixture *f = *state;
+    stance_message message;
+    store_close(f->store, &message);
+    unlink(f->file);
+    plan_free(&f->plan);
+    scenario_free(&f->scenario);
+    free(f);
+    return 0;
+}
+
+static void run_rows(struct fixture *f, const struct rows *only)
+{
+    stance_message message;
+    assert_true(parallel_share(&f->parallel));
+    assert_true(work_run(&f->work, only, &message));
+    parallel_unshare(&f->parallel);
+}
+
+static void assert_whole(struct fixture *f, const bool *expected)
+{
+    stance_result results[240];
+    stance_message message;
+    bool whole[240];
+    assert_true(store_verify(f->store, 0, 240, results, whole, &message));
+    for (int row = 0; row < 240; row++) {
+        assert_int_equal(whole[row], expected[row]);
+        if (whole[row]) /* every other row of three has a trunk of 9 m */
+            assert_int_equal(results[row].status, row / 3 % 2 ? STANCE_FAILED : STANCE_DONE);
+    }
+}
+
+/* A list of rows computes those and no others; what a file holds is kept by a resumed run. */
+static void test_lists(void **state)
+{
+    struct fixture *f = *state;
+    uint64_t row[60], n = 0, random = 5;
+    bool whole[240] = {false};
+    for (uint64_t i = 0; i < 240; i++)
+        if (uniform(&random, 0, 1) < 0.2 || i == 100 || i / 8 == 3)
+            row[n++] = i, whole[i] = true;
+    run_rows(f, &(struct rows){row, n});
+    assert_int_equal(f->work.computed, n);
+    assert_int_equal(f->work.finished, n);
+    assert_whole(f, whole);
+    run_rows(f, &(struct rows){row, 0});
+    assert_int_equal(f->work.computed, n);
+    f->work.resume = true;
+    run_rows(f, NULL);
+    assert_int_equal(f->work.computed, 240);
+    assert_int_equal(f->work.finished, 240 + n); /* what was kept counts again */
+    memset(whole, true, sizeof whole);
+    assert_whole(f, whole);
+}
+
+/* Out of time before it begins: nothing is computed, and that is no error. */
+static void test_stopped(void **state)
+{
+    struct fixture *f = *state;
+    bool whole[240] = {false};
+    f->work.time_limit = 0;
+    run_rows(f, NULL);
+    assert_int_equal(f->work.finished, 0);
+    assert_whole(f, whole);
+}
+
+/* ---- the simulator ------------------------------------------------------------------------ */
+
+static const struct simulated_machine ideal = {.write_rate = INFINITY, .bandwidth = INFINITY};
+
+/* seconds[0 ... ] of each case. */
+static double sum_of(const void *costs, uint64_t first, uint64_t count)
+{
+    const double *seconds = costs;
+    double sum = 0;
+    for (uint64_t i = first; i < first + count; i++)
+        sum += seconds[i];
+    return sum;
+}
+
+enum { CASES = 30011 };
+
+static double *random_costs(void)
+{
+    double *seconds = malloc(CASES * sizeof *seconds);
+    uint64_t random = 1;
+    assert_non_null(seconds);
+    for (int i = 0; i < CASES; i++) /* neighbours are alike, as in a map */
+        seconds[i] = 1e-4 * (1.2 + sin(1e-3 * i)) * uniform(&random, 0.5, 1.5);
+    return seconds;
+}
+
+/* Chunk after chunk to the rank that is free first. */
+static double list_schedule(const double *seconds, int ranks)
+{
+    double *free_at = calloc((size_t)ranks, sizeof *free_at), last = 0;
+    uint64_t first, count;
+    assert_non_null(free_at);
+    for (uint64_t k = 0; schedule_chunk(CASES, ranks, k, &first, &count); k++) {
+        int earliest = 0;
+        for (int r = 1; r < ranks; r++)
+            earliest = free_at[r] < free_at[earliest] ? r : earliest;
+        free_at[earliest] += sum_of(seconds, first, count);
+        last = fmax(last, free_at[earliest]);
+    }
+    free(free_at);
+    return last;
+}
+
+/* Without costs of counter and writes the time is that of a list schedule; all cases are computed
+ * once; the ranks' times add up. */
+static void test_list_schedule(void **state)
+{
+    (void)state;
+    double *seconds = random_costs();
+    const double total = sum_of(seconds, 0, CASES);
+    struct simulation s;
+    for (int ranks = 1; ranks <= 1000; ranks = ranks * 3 + 1) {
+        const struct simulated_job job = {.cases = CASES,
+                                          .ranks = ranks,
+                                          .seconds = sum_of,
+                                          .costs = seconds,
+                                          .variables = 3,
+                                          .row_size = 20};
+        const double expected = list_schedule(seconds, ranks);
+        assert_true(simulate(&ideal, &job, &s));
+        assert_true(fabs(s.time - expected) < 1e-12 * expected * CASES);
+        assert_int_equal(s.cases, CASES);
+        assert_true(s.bytes == 20.0 * CASES);
+        assert_true(fabs(s.computing - total) < 1e-9 * total);
+        assert_true(fabs(s.computing + s.drawing + s.writing + s.waiting - ranks * s.time) <
+                    1e-9 * total);
+        assert_true(fabs(simulation_efficiency(&s, ranks) - total / (ranks * expected)) < 1e-9);
+    }
+    free(seconds);
+}
+
+/* On one rank nothing queues: what draws and writes cost is a sum. */
+static void test_one_rank(void **state)
+{
+    (void)state;
+    double *seconds = random_costs();
+    const double total = sum_of(seconds, 0, CASES);
+    struct simulated_machine machine = {
+        .latency = 1e-3, .write_latency = 1e-4, .write_rate = 1e3, .bandwidth = 1e6};
+    struct simulated_job job = {.cases = CASES,
+                                .ranks = 1,
+                                .seconds = sum_of,
+                                .costs = seconds,
+                                .drain = 0.125,
+                                .variables = 3,
+                                .row_size = 20};
+    struct simulation s;
+    uint64_t chunks = 0, first, count;
+    while (schedule_chunk(CASES, 1, chunks, &first, &count))
+        chunks++;
+    assert_true(simulate(&machine, &job, &s));
+    assert_int_equal(s.draws, chunks + 1); /* the last one finds nothing */
+    assert_int_equal(s.writes, 3 * chunks);
+    assert_true(fabs(s.drawing - (double)s.draws * 2e-3) < 1e-9);
+    assert_true(fabs(s.writing - ((double)s.writes * (1e-4 + 1e-3) + 20e-6 * CASES)) < 1e-9);
+    assert_true(fabs(s.time - (total + s.drawing + s.writing + 0.125)) < 1e-9);
+    job.lanes =
+        4; /* writes in between: more of them, the same bytes, at most a 500th of the time */
+    struct simulation with;
+    machine.write_rate = 1e5;
+    for (int i = 0; i < CASES; i++)
+        seconds[i] *= 1e3;
+    assert_true(simulate(&machine, &job, &with));
+    assert_true(with.writes > s.writes && with.bytes == s.bytes);
+    assert_true(with.writing < 1.1 * with.time / 500);
+    free(seconds);
+}
+
+/* A counter that takes longer than the cases decides: one draw after the other. So does a file
+ * system. */
+static void test_queues(void **state)
+{
+    (void)state;
+    double *seconds = calloc(CASES, sizeof *seconds);
+    struct simulated_machine machine = ideal;
+    const struct simulated_job job = {.cases = CASES,
+                                      .ranks = 100,
+                                      .seconds = sum_of,
+                                      .costs = seconds,
+                                      .variables = 3,
+                                      .row_size = 20};
+    struct simulation s;
+    assert_non_null(seconds);
+    machine.service = 1e-9; /* looks do not matter then */
+    assert_true(simulate(&machine, &job, &s));
+    assert_true(fabs(s.time - 1e-9 * (double)s.draws) < 1e-4 * s.time);
+    machine.service = 0;
+    machine.write_rate = 10;
+    assert_true(simulate(&machine, &job, &s));
+    assert_true(fabs(s.time - 0.1 * (double)s.writes) < 1e-6 * s.time);
+    machine.write_rate = INFINITY;
+    machine.bandwidth = 1e3;
+    assert_true(simulate(&machine, &job, &s));
+    assert_true(fabs(s.time - 0.02 * CASES) < 1e-6 * s.time);
+    free(seconds);
+}
+
+/* A map of the same size gives each case its own cost; a larger one the same mean, in order. */
+static void test_cost_map(void **state)
+{
+    (void)state;
+    double seconds[12], total = 0;
+    struct cost_map map;
+    for (int i = 0; i < 12; i++)
+        total += seconds[i] = 1 + i * i;
+    assert_true(cost_map_make(&map, seconds, 3, 4, 12));
+    for (uint64_t i = 0; i < 12; i++)
+        assert_true(fabs(cost_map_seconds(&map, i, 1) - seconds[i]) < 1e-12 * total);
+    assert_true(map.longest == 122);
+    cost_map_free(&map);
+    assert_true(cost_map_make(&map, seconds, 3, 4, 1200000));
+    assert_true(fabs(cost_map_seconds(&map, 0, 1200000) / 1200000 - total / 12) <
+                3e-3 * total / 12);
+    assert_true(fabs(cost_map_seconds(&map, 0, 1) - seconds[0]) < 1e-9);
+    assert_true(fabs(cost_map_seconds(&map, (map.lines - 1) * map.of - 1, 1) - seconds[11]) < 1e-6);
+    const double parts = cost_map_seconds(&map, 0, 777) + cost_map_seconds(&map, 777, 100000) +
+                         cost_map_seconds(&map, 100777, 1200000 - 100777);
+    assert_true(fabs(parts - cost_map_seconds(&map, 0, 1200000)) < 1e-9 * parts);
+    cost_map_free(&map);
+    assert_true(cost_map_make(&map, seconds, 1, 12, 10000000000)); /* one axis */
+    assert_true(fabs(cost_map_seconds(&map, 0, 10000000000) / 1e10 - total / 12) < 1e-9 * total);
+    cost_map_free(&map);
+}
+
+/* What large jobs rest on: 1e10 cases on 16,384 ranks are few draws, in whole blocks. */
+static void test_large(void **state)
+{
+    (void)state;
+    const double seconds[1] = {1e-4};
+    struct cost_map map;
+    struct simulation s;
+    assert_true(cost_map_make(&map, seconds, 1, 1, 10000000000));
+    const struct simulated_job job = {.cases = 10000000000,
+                                      .ranks = 16384,
+                                      .seconds = cost_map_seconds,
+                                      .costs = &map,
+                                      .variables = 4,
+                                      .row_size = 14};
+    assert_true(simulate(&ideal, &job, &s));
+    assert_int_equal(s.cases, 10000000000);
+    assert_true(fabs(s.computing - 1e6) < 1e-3);
+    assert_true(simulation_efficiency(&s, 16384) > 0.95);
+    cost_map_free(&map);
+}
+
+int main(void)
+{
+    store_prepare();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_stretches),
+        cmocka_unit_test_setup_teardown(test_lists, make_fixture, free_fixture),
+        cmocka_unit_test_setup_teardown(test_stopped, make_fixture, free_fixture),
+        cmocka_unit_test(test_list_schedule),
+        cmocka_unit_test(test_one_rank),
+        cmocka_unit_test(test_queues),
+        cmocka_unit_test(test_cost_map),
+        cmocka_unit_test(test_large),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
