@@ -22,6 +22,7 @@ PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev libla
 PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
 PACKAGES_LINT = clang-format clang-tidy cppcheck
 PACKAGES_NEON = gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
+PACKAGES_BENCH = libmujoco-dev valgrind linux-perf
 BUILD_TOOLS   = gcc make pkg-config
 
 ifeq ($(MPI),1)
@@ -84,7 +85,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long bench lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long bench bench-run profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(BUILD)/libstance.a
@@ -158,6 +159,17 @@ golden-neon:
 	    CC=aarch64-linux-gnu-gcc SCALAR_METHODS= CONTROL= LIBRARY_CFLAGS= LDFLAGS=-static \
 	    GOLDEN_LIBS=-lm golden
 
+# ---- benchmarks: what the kernels are held to; a program without MuJoCo skips that comparison -----
+MUJOCO := $(wildcard /usr/include/mujoco/mujoco.h)
+bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco)
+$(BUILD)/tests/bench_mujoco: LIBS += -lmujoco
+# By hand as fast as the compiler makes it: the instructions of the one-lane kernel, contracted.
+$(BUILD)/tests/bench_scalar: BENCH_FLAGS = $(filter -m%,$(isa_flags_scalar)) -ffp-contract=fast
+$(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(BUILD)/libstance.a
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(BENCH_FLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< \
+	    $(shared_objects) $(BUILD)/libstance.a $(LDFLAGS) $(LIBS)
+
 # What Open MPI wants in a container, as root, on few cores.
 MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
                   OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
@@ -179,8 +191,9 @@ test-long: packages-test
 
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
-packages packages-test packages-neon: packages%:
-	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT)) $(if $(filter -neon,$*),$(PACKAGES_NEON))"; \
+packages packages-test packages-neon packages-bench: packages%:
+	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT)) \
+	    $(if $(filter -neon,$*),$(PACKAGES_NEON)) $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
 	missing=; for p in $$need; do \
 	    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
 	[ -z "$$missing" ] && exit 0; \
@@ -197,8 +210,15 @@ demo: packages
 	bin/stance summary results/basin_one_foot.h5
 	@echo; echo "The stability domain, drawn:"; bin/stance plot results/basin_one_foot.h5
 
-bench: bin/stance
-	bin/stance bench
+# All speed benchmarks -> results/bench.csv and .png. Packages for comparisons are no necessity.
+bench: packages
+	@$(MAKE) packages-bench || echo 'bench: what needs $(PACKAGES_BENCH) and is missing is skipped' >&2
+	@$(MAKE) bench-run
+bench-run: $(PROGRAM) $(bench_programs)
+	@$(TEST_ENVIRONMENT) bash tests/bench.sh
+profile: $(PROGRAM)
+	@$(MAKE) packages-bench || echo 'profile: what needs $(PACKAGES_BENCH) and is missing is skipped' >&2
+	@$(TEST_ENVIRONMENT) bash tests/profile.sh
 
 lint: packages-test
 	@bash tests/lint.sh
@@ -220,7 +240,8 @@ help:
 	@echo 'make test       install what is missing, build, run every test'
 	@echo 'make test-long  the same with the long tests'
 	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'
-	@echo 'make bench      speed of the stepping kernels'
+	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
+	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
 	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'
 	@echo 'make install    PREFIX=/usr/local DESTDIR='

@@ -24,8 +24,8 @@ struct command {
 
 extern const struct command command_check, command_design, command_run, command_status,
     command_summary, command_plot, command_compare, command_describe, command_bench;
-/* `stance bench accuracy`, `failure` and `schedule`, which command_bench hands over to. */
-extern const struct command command_accuracy, command_failure, command_schedule;
+/* `stance bench accuracy`, `failure`, `schedule` and `plot`, which command_bench hands over to. */
+extern const struct command command_accuracy, command_failure, command_schedule, command_speed;
 
 /* Options: long ones only, and -o, -h. `takes_value` options accept "--name VALUE" and
  * "--name=VALUE". A repeatable option collects into `values`. */

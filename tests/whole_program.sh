@@ -231,9 +231,21 @@ assert all(0 < s[\"alone\"][k] <= s[\"extent\"][k] for k in s[\"alone\"]) and le
 check "describe" "$stance" describe
 check "describe controller.poles" "$stance" describe controller.poles
 check "describe --schema" sh -c "'$stance' describe --schema | '$python' -m json.tool"
-check "bench" "$stance" bench --repeats 1
-check "bench with one instruction set" env STANCE_ISA="${sets[-1]}" "$stance" bench --repeats 1
-check "bench: says which" grep -q "in use: ${sets[-1]}\$" "$work/last"
+check "bench" "$stance" bench --repeats 1 --cases 8
+check "bench --json" sh -c "'$stance' bench --json --repeats 1 --cases 8 --scene biped --method implicit | '$python' -c '
+import json, sys
+rows = json.load(sys.stdin)
+assert {r[\"regime\"] for r in rows} == {\"flight\", \"one foot\", \"two feet\"}
+assert all(r[\"ns_min\"] <= r[\"ns_per_step\"] <= r[\"ns_max\"] and r[\"failed\"] == 0 for r in rows)
+assert all(r[\"steps\"] == 8000 and abs(r[\"ns_per_second\"] / r[\"ns_per_step\"] - 1000) < 1e-6 for r in rows)'"
+check "bench --csv" sh -c "'$stance' bench --csv --repeats 1 --cases 8 --scene biped --method implicit >'$work/speed.csv'"
+check "bench --csv: one width" sh -c "awk -F, 'NF != 21 {exit 1}' '$work/speed.csv'"
+check "bench: one instruction set" sh -c "STANCE_ISA=scalar '$stance' bench --repeats 1 --cases 8 --scene ball --regime flight \
+    | awk 'NR > 2 && \$4 != \"scalar\" {exit 1} END {exit NR != 7}'"
+check "bench: no such regime" exits 2 "$stance" bench --scene ball --regime 'two feet'
+check "bench plot" "$stance" bench plot "$work/speed.csv" -o "$work"
+check "bench plot: picture" png "$work/speed.png"
+check "bench plot: not a table" exits 3 "$stance" bench plot Makefile
 cat >"$work/pair.yaml" <<'EOF'
 stance: 1
 scene: biped

@@ -170,22 +170,31 @@ static inline __attribute__((always_inline)) void stream_advance(struct stream *
     }
 }
 
+/* Until there are no more cases, or (false) it is told to leave. Apart from bundle_stream, so that
+ * the bundles are reached by a pointer and only what is spilled lies on the stack. */
+COLD bool stream_go(struct stream *stream)
+{
+    const stance_feed *const feed = stream->feed;
+    bool leave = false;
+    do {
+        stream_advance(stream, false);
+        if (SCENE_ACTUATORS > 0)
+            stream_advance(stream, true);
+        leave = feed->leave && feed->leave(feed->context);
+    } while (!leave && (!stream->drained || stream->ahead || stream->bundle[0].filled > 0 ||
+                        stream->bundle[1].filled > 0));
+    return !leave;
+}
+
 static bool bundle_stream(const stance_feed *feed)
 {
     struct stream stream;
     memset(&stream, 0, sizeof stream);
     stream.feed = stream.bundle[0].feed = stream.bundle[1].feed = feed;
-    bool leave = false;
-    do {
-        stream_advance(&stream, false);
-        if (SCENE_ACTUATORS > 0)
-            stream_advance(&stream, true);
-        leave = feed->leave && feed->leave(feed->context);
-    } while (!leave && (!stream.drained || stream.ahead || stream.bundle[0].filled > 0 ||
-                        stream.bundle[1].filled > 0));
+    const bool all = stream_go(&stream);
     advance_free(&stream.bundle[0].advance);
     advance_free(&stream.bundle[1].advance);
-    return !leave;
+    return all;
 }
 
 /* An array as a feed. */

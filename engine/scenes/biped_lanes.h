@@ -253,7 +253,7 @@ static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const int a = 1 + c;
         const lanes turning =
-            lanes_fms(contact_trig->cosine[a], r[c][1], contact_trig->sine[a] * r[c][0]);
+            lanes_fms(contact_trig->cosine[a], r[c][0], contact_trig->sine[a] * r[c][1]);
         diagonal[a] = lanes_fnma(contact_lever * b->leg, turning, diagonal[a]);
     }
     if (!coupled) {
