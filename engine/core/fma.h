@@ -57,18 +57,28 @@ static inline lanes fma_add_to_odd(lanes a, lanes b)
     return (lanes)(((fma_bits)sum - (beyond & inexact)) | (inexact & 1));
 }
 
+static inline mask fma_finite(lanes a)
+{
+    return mask_less_equal(lanes_abs(a), lanes_of(0x1.fffffffffffffp1023));
+}
+static inline mask fma_zero(lanes a)
+{
+    return (mask)_mm_cmpeq_pd(a, lanes_of(0));
+}
+
 /* Every operand there is. */
 static __attribute__((noinline, unused)) lanes fma_careful(lanes a, lanes b, lanes c)
 {
     const lanes p = a * b, q = fma_product_error(a, b, p);
     const lanes high = p + c, low = fma_sum_error(p, c, high);
-    /* A product with zero is exact, and c added to it has the sign, if zero, that is due. */
-    const mask zero = (mask)_mm_cmpeq_pd(a, lanes_of(0)) | (mask)_mm_cmpeq_pd(b, lanes_of(0));
-    const mask sound = mask_less_equal(lanes_of(FMA_SMALLEST_PRODUCT), lanes_abs(p)) &
-                       mask_less_equal(lanes_abs(low + q), lanes_of(0x1.fffffffffffffp1023));
-    lanes sum = choose(zero, high, high + fma_add_to_odd(low, q));
+    /* A product that is exact because it is zero, infinite or NAN; c that is one of the latter. */
+    const mask plain = fma_zero(a) | fma_zero(b) | ~(fma_finite(a) & fma_finite(b)) |
+                       (fma_finite(p) & ~fma_finite(c));
+    const mask sound =
+        mask_less_equal(lanes_of(FMA_SMALLEST_PRODUCT), lanes_abs(p)) & fma_finite(low + q);
+    lanes sum = choose(plain, high, high + fma_add_to_odd(low, q));
     for (int lane = 0; lane < LANES; lane++)
-        if (!(zero | sound)[lane])
+        if (!(plain | sound)[lane])
             sum[lane] = fma(a[lane], b[lane], c[lane]);
     return sum;
 }
@@ -77,15 +87,16 @@ static inline lanes fma_emulated(lanes a, lanes b, lanes c)
 {
     const lanes p = a * b, q = fma_product_error(a, b, p);
     const lanes high = p + c, low = fma_sum_error(p, c, high);
-    const lanes rest = low + q;
+    const lanes rest = low + q, sum = high + rest;
     const lanes few = (lanes)((fma_bits)rest << FMA_FEW_BITS);
     /* rest - rest: zero, or NAN where something has overflowed or was not finite. */
     const mask doubtful =
-        ((mask)_mm_cmpeq_pd(few, lanes_of(0)) & (mask)_mm_cmpneq_pd(rest - rest, q)) |
-        mask_less(lanes_abs(p), lanes_of(FMA_SMALLEST_PRODUCT));
+        (fma_zero(few) & (mask)_mm_cmpneq_pd(rest - rest, q)) |
+        (mask_less(lanes_abs(p), lanes_of(FMA_SMALLEST_PRODUCT)) & ~(fma_zero(a) | fma_zero(b)));
     if (__builtin_expect(mask_any(doubtful), 0))
         return fma_careful(a, b, c);
-    return high + rest;
+    /* The sum is zero where both parts are, and `high` has its sign. */
+    return (lanes)((mask)sum | (fma_zero(sum) & (mask)high));
 }
 
 #endif
