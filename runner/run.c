@@ -586,37 +586,46 @@ static void stage_close(struct run *run)
 
 /* ---- the end ------------------------------------------------------------------------------ */
 
-static void print_word(const char *word)
+static void print_word(FILE *to, const char *word)
 {
     if (word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
                           "_-+./,:=@%")] == '\0' &&
         word[0]) {
-        fprintf(stderr, " %s", word);
+        fprintf(to, " %s", word);
         return;
     }
-    fputs(" '", stderr);
+    fputs(" '", to);
     for (; *word; word++) {
-        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, stderr);
+        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, to);
     }
-    fputc('\'', stderr);
+    fputc('\'', to);
 }
 
 /* The command that goes on: the same one with --resume. */
 static void print_interrupted(const struct run *run, uint64_t finished)
 {
-    fprintf(stderr,
-            "stance run: stopped at %" PRIu64 " of %" PRIu64 " cases; go on with:", finished,
+    char *line = NULL; /* in one piece: a launcher mixes what ranks write in pieces */
+    size_t size = 0;
+    FILE *to = open_memstream(&line, &size);
+    if (!to) {
+        return;
+    }
+    fprintf(to, "stance run: stopped at %" PRIu64 " of %" PRIu64 " cases; go on with:", finished,
             run->plan.rows);
     if (run->parallel.size > 1) {
-        fprintf(stderr, " mpirun -n %d", run->parallel.size);
+        fprintf(to, " mpirun -n %d", run->parallel.size);
     }
-    fprintf(stderr, " stance run");
+    fprintf(to, " stance run");
     for (int i = 1; i < run->argc; i++) {
         if (strcmp(run->argv[i], "--force") != 0 && strcmp(run->argv[i], "--resume") != 0) {
-            print_word(run->argv[i]);
+            print_word(to, run->argv[i]);
         }
     }
-    fputs(run->options.single ? " --force\n" : " --resume\n", stderr);
+    fputs(run->options.single ? " --force\n" : " --resume\n", to);
+    if (fclose(to) == 0) {
+        fputs(line, stderr);
+    }
+    free(line);
 }
 
 /* What came out, over all ranks. */

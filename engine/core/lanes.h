@@ -24,8 +24,13 @@
 
 enum { LANES = STANCE_LANES };
 
-/* Functions of the inner loop, compiled anew for what each caller knows; and those that are not. */
+/* Functions of the inner loop, compiled anew for what each caller knows; and those that are not.
+ * Where multiply-adds are emulated nothing is gained by the first, and compiling takes long. */
+#if STANCE_LANES == 2 && defined(__SSE2__) && !defined(__FMA__)
+#define HOT static inline
+#else
 #define HOT static inline __attribute__((always_inline))
+#endif
 #define COLD static __attribute__((noinline))
 
 /* Length of an array that may be empty: a scene without actuators, say. */
