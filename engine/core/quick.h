@@ -222,7 +222,7 @@ HOT mask quick_try(const struct quick *q, const struct setting *set, const struc
             it->r[c][a] = choose(it->active[c], q->impulse[c][a], lanes_of(0));
     }
     good &= quick_newton(q, set, from, h, good, touching, it, &iterations);
-    good &= LANES_NOT(it->unsolved);
+    good &= LANES_NOT(it->unsolved | it->ambiguous);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
     good &= LANES_NOT(quick_arrivals(set, it));
