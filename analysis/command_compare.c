@@ -1,5 +1,6 @@
 /* command_compare.c - `stance compare FILE FILE`: what differs, as text or JSON. */
 #include "compare.h"
+#include "compare_labels.h"
 
 #include "../runner/command.h"
 #include "../runner/supervise.h"
@@ -61,27 +62,32 @@ static json_t *json_name(const char *name)
     return text ? text : json_null();
 }
 
+/* Coordinates of a case as {path: value}. */
+static json_t *json_point(const struct results *r, uint64_t index)
+{
+    json_t *at = json_object();
+    size_t point[SCENARIO_MAX_AXES];
+    char text[128];
+    results_point(r, index, point);
+    for (int a = 0; a < r->axes; a++) {
+        const struct results_axis *axis = &r->axis[a];
+        results_value_text(axis, point[a], false, text, sizeof text);
+        json_object_set_new(at, axis->name,
+                            axis->word ? json_string(text) : json_real(axis->value[point[a]]));
+    }
+    return at;
+}
+
 static json_t *json_places(const struct results *r, const struct compare_difference *difference)
 {
     json_t *list = json_array();
     for (int k = 0; k < difference->shown; k++) {
         const struct compare_place *place = &difference->place[k];
-        json_t *entry = json_object(), *at = json_object(), *values = json_array();
-        size_t point[SCENARIO_MAX_AXES];
-        char text[128];
+        json_t *entry = json_object(), *values = json_array();
+        const bool known = difference->cases && !r->single && place->index < r->cases;
         json_object_set_new(entry, "index", json_integer((json_int_t)place->index));
         json_object_set_new(entry, "component", json_integer((json_int_t)place->component));
-        if (difference->cases && !r->single && place->index < r->cases) {
-            results_point(r, place->index, point);
-            for (int a = 0; a < r->axes; a++) {
-                const struct results_axis *axis = &r->axis[a];
-                results_value_text(axis, point[a], false, text, sizeof text);
-                json_object_set_new(at, axis->name,
-                                    axis->word ? json_string(text)
-                                               : json_real(axis->value[point[a]]));
-            }
-        }
-        json_object_set_new(entry, "at", at);
+        json_object_set_new(entry, "at", known ? json_point(r, place->index) : json_object());
         for (int f = 0; f < 2; f++) {
             json_array_append_new(values, json_string(place->value[f]));
         }
@@ -89,6 +95,14 @@ static json_t *json_places(const struct results *r, const struct compare_differe
         json_array_append_new(list, entry);
     }
     return list;
+}
+
+static json_t *json_files(const struct results r[2])
+{
+    json_t *files = json_array();
+    json_array_append_new(files, json_name(r[0].file));
+    json_array_append_new(files, json_name(r[1].file));
+    return files;
 }
 
 static bool print_json(const struct results r[2], const struct comparison *comparison)
@@ -105,11 +119,8 @@ static bool print_json(const struct results r[2], const struct comparison *compa
         json_object_set_new(entry, "first", json_places(&r[0], difference));
         json_array_append_new(differences, entry);
     }
-    json_t *files = json_array();
-    json_array_append_new(files, json_name(r[0].file));
-    json_array_append_new(files, json_name(r[1].file));
     json_t *root = json_object();
-    json_object_set_new(root, "files", files);
+    json_object_set_new(root, "files", json_files(r));
     json_object_set_new(root, "identical", json_boolean(comparison->count == 0));
     json_object_set_new(root, "differences", differences);
     bool good = root && json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
@@ -130,18 +141,110 @@ static void print_text(const struct results r[2], const struct comparison *compa
     }
 }
 
+/* ---- labels alone ------------------------------------------------------------------------- */
+
+static const char *label_at(const struct results *r, uint64_t index)
+{
+    return results_kind_names[r->kind[index]];
+}
+
+static double equal_share(const struct label_comparison *c)
+{
+    return c->compared ? (double)c->equal / (double)c->compared : 1;
+}
+
+static bool print_labels_json(const struct results r[2], const struct label_comparison *c)
+{
+    json_t *first = json_array();
+    for (int k = 0; k < c->shown; k++) {
+        const uint64_t i = c->place[k];
+        json_array_append_new(first, json_pack("{s:I, s:o, s:[s,s]}", "index", (json_int_t)i, "at",
+                                               r[0].single ? json_object() : json_point(&r[0], i),
+                                               "values", label_at(&r[0], i), label_at(&r[1], i)));
+    }
+    json_t *root = json_pack("{s:o, s:I, s:I, s:f, s:o, s:o}", "files", json_files(r), "compared",
+                             (json_int_t)c->compared, "equal", (json_int_t)c->equal, "equal_share",
+                             equal_share(c), "farthest",
+                             c->farthest ? json_integer((json_int_t)c->farthest) : json_null(),
+                             "first", first);
+    bool good = root && json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
+    json_decref(root);
+    putchar('\n');
+    return good;
+}
+
+static void print_labels(const struct results r[2], const struct label_comparison *c)
+{
+    const uint64_t unequal = c->compared - c->equal;
+    char where[600];
+
+    printf("labels: %llu of %llu equal (%.5g %%)\n", (unsigned long long)c->equal,
+           (unsigned long long)c->compared, 100 * equal_share(c));
+    if (c->farthest > 0) {
+        printf("unequal: %llu, at most %llu cell%s from another label in %s\n",
+               (unsigned long long)unequal, (unsigned long long)c->farthest,
+               c->farthest == 1 ? "" : "s", r[0].file);
+    } else if (unequal > 0) {
+        printf("unequal: %llu, and %s has no boundary\n", (unsigned long long)unequal, r[0].file);
+    }
+    for (int k = 0; k < c->shown; k++) {
+        results_case_text(&r[0], c->place[k], where, sizeof where);
+        printf("  case %llu%s%s%s: %s | %s\n", (unsigned long long)c->place[k],
+               where[0] ? " (" : "", where, where[0] ? ")" : "", label_at(&r[0], c->place[k]),
+               label_at(&r[1], c->place[k]));
+    }
+}
+
+/* ---- the command -------------------------------------------------------------------------- */
+
 struct request {
     const char *file[2];
-    bool json;
+    bool json, labels;
 };
+
+static int compare_all(const struct results r[2], bool json)
+{
+    struct comparison comparison;
+    stance_message message = {""};
+
+    if (!compare_results(&comparison, &r[0], &r[1], &message)) {
+        fprintf(stderr, "%s\n", message.text);
+        return EXIT_IO;
+    }
+    int code = comparison.count == 0 ? EXIT_DONE : EXIT_CASES_FAILED;
+    if (!json) {
+        print_text(r, &comparison);
+    } else if (!print_json(r, &comparison)) {
+        fputs("stance compare: the comparison could not be written\n", stderr);
+        code = EXIT_IO;
+    }
+    compare_free(&comparison);
+    return code;
+}
+
+static int compare_only_labels(const struct results r[2], bool json)
+{
+    struct label_comparison comparison;
+    stance_message message = {""};
+
+    if (!compare_labels(&comparison, &r[0], &r[1], &message)) {
+        fprintf(stderr, "%s\n", message.text);
+        return EXIT_USAGE;
+    }
+    if (!json) {
+        print_labels(r, &comparison);
+    } else if (!print_labels_json(r, &comparison)) {
+        fputs("stance compare: the comparison could not be written\n", stderr);
+        return EXIT_IO;
+    }
+    return comparison.equal == comparison.compared ? EXIT_DONE : EXIT_CASES_FAILED;
+}
 
 static int compare(void *context)
 {
     const struct request *request = context;
     struct results r[2];
-    struct comparison comparison;
     stance_message message = {""};
-    int code = EXIT_IO;
 
     for (int f = 0; f < 2; f++) {
         if (!results_open(&r[f], request->file[f], &message)) {
@@ -152,18 +255,7 @@ static int compare(void *context)
             return EXIT_IO;
         }
     }
-    if (!compare_results(&comparison, &r[0], &r[1], &message)) {
-        fprintf(stderr, "%s\n", message.text);
-    } else {
-        code = comparison.count == 0 ? EXIT_DONE : EXIT_CASES_FAILED;
-        if (!request->json) {
-            print_text(r, &comparison);
-        } else if (!print_json(r, &comparison)) {
-            fputs("stance compare: the comparison could not be written\n", stderr);
-            code = EXIT_IO;
-        }
-        compare_free(&comparison);
-    }
+    int code = (request->labels ? compare_only_labels : compare_all)(r, request->json);
     results_close(&r[0]);
     results_close(&r[1]);
     return code;
@@ -172,11 +264,12 @@ static int compare(void *context)
 static int run(int argc, char **argv)
 {
     const char *files[2];
-    size_t json = 0, operands = 0;
+    size_t json = 0, labels = 0, operands = 0;
     bool help = false;
-    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json}};
+    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
+                                        {"--labels", false, NULL, 0, &labels}};
 
-    if (!command_options(&command_compare, argc, argv, specs, 1, files, 2, &operands, &help)) {
+    if (!command_options(&command_compare, argc, argv, specs, 2, files, 2, &operands, &help)) {
         return EXIT_USAGE;
     }
     if (help) {
@@ -187,7 +280,7 @@ static int run(int argc, char **argv)
               stderr);
         return EXIT_USAGE;
     }
-    struct request request = {{files[0], files[1]}, json > 0};
+    struct request request = {{files[0], files[1]}, json > 0, labels > 0};
     char names[2100];
     snprintf(names, sizeof names, "%s or %s", files[0], files[1]);
     return supervise(compare, &request, names);
@@ -195,8 +288,8 @@ static int run(int argc, char **argv)
 
 const struct command command_compare = {
     "compare",
-    "compare FILE FILE [--json]",
-    "what differs between two results files, bit for bit",
+    "compare FILE FILE [--labels] [--json]",
+    "what differs between two results files, bit for bit, or in their labels",
     run,
     "Prints `identical` (exit code 0), or every variable and attribute that differs with the "
     "first\n"
@@ -206,10 +299,19 @@ const struct command command_compare = {
     "instruction_set, ranks, hosts, date) and the rows of cases that are pending in either file:\n"
     "`status` differs there when one has them. A NAN equals a NAN; 0 and -0 differ.\n"
     "\n"
+    "  --labels compare outcomes alone (and which cases failed): the share that is equal, and how\n"
+    "           many cells, along refined axes, an unequal one is at most away from a case of\n"
+    "           another label than its own in the first file (1: beside it). For a refined map "
+    "and\n"
+    "           a full one, or maps of two methods; exit code 2 when the axes differ\n"
     "  --json   the same as JSON, with the keys\n"
     "    files         both paths\n"
     "    identical     true or false\n"
     "    differences   [{name, reason, of_cases, differing, of, first}]; `reason` is values,\n"
     "                  shapes, types or `only in the first file`, `only in the second file`;\n"
-    "                  `first` is [{index, component, at: {path: value}, values: [text, text]}]\n",
+    "                  `first` is [{index, component, at: {path: value}, values: [text, text]}]\n"
+    "           and of --labels with the keys files and\n"
+    "    compared, equal, equal_share   cases pending in neither file, those equal, their share\n"
+    "    farthest      cells, as above; null where there is nothing to measure\n"
+    "    first         [{index, at: {path: value}, values: [label, label]}]\n",
 };

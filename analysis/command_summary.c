@@ -110,6 +110,10 @@ static void print_outcomes(const struct summary *summary)
     if (!summary_has_outcomes(summary)) {
         puts("  not stored in this file");
     }
+    if (summary->inferred > 0) {
+        printf("  of these %14llu  %7.3f %%   not simulated: inferred from neighbours that agree\n",
+               (unsigned long long)summary->inferred, percent(summary->inferred, counts->done));
+    }
     if (counts->kind[RESULTS_PENDING] > 0) {
         printf("  %-11s%12llu  not computed yet\n", "pending",
                (unsigned long long)counts->kind[RESULTS_PENDING]);
@@ -417,9 +421,10 @@ static void print_cost(const struct summary *summary)
         printf("  events, changes of contact mode: %.6g, in %llu of the cases\n",
                summary->events.sum, (unsigned long long)summary->events.cases);
     }
-    const double inferred = summary->evidence.sum - (double)summary->evidence.cases;
-    if (inferred > 0) {
-        printf("  ended early in the captured set (evidence: inferred): %.6g cases\n", inferred);
+    const double captured =
+        summary->evidence.sum - (double)summary->evidence.cases - (double)summary->inferred;
+    if (captured > 0) {
+        printf("  ended early in the captured set (evidence: inferred): %.6g cases\n", captured);
     }
     if (summary->degraded.sum > 0) {
         printf("  samples at which decoupling could not do what it promises: %.6g, in %llu of the "
@@ -607,7 +612,8 @@ const struct command command_summary = {
     "    file, title, version, revision, date, ranks\n"
     "    axes         [{path, unit, long_name, count, first, last}]\n"
     "    fixed        {path: value} of the fields that do not vary\n"
-    "    cases        total, done, failed, pending\n"
+    "    cases        total, done, failed, pending; inferred: done, but not simulated (refined "
+    "map)\n"
     "    failures     {reason: count}\n"
     "    outcomes     {name: {count, share, low, high}} of the cases done\n"
     "    extents      [{path, unit, outcome, stabilised, low, high, low_at_end, high_at_end,\n"

@@ -1,5 +1,6 @@
 /* plot_answer.c - the answers that `stance plot --answer` draws: their names, units and numbers. */
 #include "plot.h"
+#include "statistics.h"
 
 #include "../runner/store.h"
 
@@ -50,19 +51,27 @@ bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answ
 {
     const struct results *r = plot->r;
     const bool all = answer->of == RESULTS_KIND_COUNT;
+    uint64_t inferred;
+    bool *which; /* cases without numbers, whatever stands in the file */
+    if (!statistics_inferred(r, &inferred, &which, message)) {
+        return false;
+    }
     if (!results_answer(r, answer->name, values, message)) {
+        free(which);
         return false;
     }
     *low = INFINITY;
     *high = -INFINITY;
     for (uint64_t i = 0; *values && i < r->cases; i++) {
-        if ((all || r->kind[i] == (uint8_t)answer->of) && isfinite((*values)[i])) {
+        const bool wanted = all || r->kind[i] == (uint8_t)answer->of;
+        if (wanted && !(which && which[i]) && isfinite((*values)[i])) {
             *low = fmin(*low, (*values)[i]);
             *high = fmax(*high, (*values)[i]);
         } else {
             (*values)[i] = NAN;
         }
     }
+    free(which);
     if (*values && *low <= *high) {
         return true;
     }

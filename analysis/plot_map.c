@@ -369,9 +369,18 @@ static bool draw_outcomes(const struct plot *plot, const struct layout *layout,
 {
     struct gnuplot g;
     double top;
-    char what[96], stem[512];
-    snprintf(what, sizeof what, "What became of each of %llu cases",
-             (unsigned long long)plot->r->cases);
+    char what[160], stem[512];
+    uint64_t inferred;
+    if (!statistics_inferred(plot->r, &inferred, NULL, message)) {
+        return false;
+    }
+    int used = snprintf(what, sizeof what, "What became of each of %llu cases",
+                        (unsigned long long)plot->r->cases);
+    if (inferred > 0) {
+        snprintf(what + used, sizeof what - (size_t)used,
+                 "; %llu of them inferred from neighbours that agree",
+                 (unsigned long long)inferred);
+    }
     if (!begin_page(&g, plot, layout, what, &top, message)) {
         return false;
     }
@@ -477,7 +486,12 @@ bool plot_maps(const struct plot *plot, stance_message *message)
                         .unit = "s",
                         .what = "Time from which each case stayed settled",
                         .none = "did not settle"};
+    uint64_t inferred;
     make_layout(plot, &layout);
+    if (!statistics_inferred(plot->r, &inferred, NULL, message)) {
+        return false;
+    }
+    m.none = inferred > 0 ? "none or inferred" : m.none;
     if (!draw_outcomes(plot, &layout, message) ||
         !results_answer(plot->r, "settle_time", &m.values, message)) {
         return false;
@@ -497,13 +511,18 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
 {
     struct layout layout;
     char what[256], none[64];
+    uint64_t inferred;
     struct measure m = {.name = answer->name, .unit = answer->unit, .what = what, .none = none};
 
-    if (!plot_answer_numbers(plot, answer, &m.values, &m.low, &m.high, message)) {
+    if (!statistics_inferred(plot->r, &inferred, NULL, message) ||
+        !plot_answer_numbers(plot, answer, &m.values, &m.low, &m.high, message)) {
         return false;
     }
     plot_answer_title(answer, what, sizeof what);
-    snprintf(none, sizeof none, answer->of == RESULTS_KIND_COUNT ? "no number" : "not %s",
+    snprintf(none, sizeof none,
+             inferred > 0                       ? "none or inferred"
+             : answer->of == RESULTS_KIND_COUNT ? "no number"
+                                                : "not %s",
              answer->of == RESULTS_KIND_COUNT ? "" : results_kind_names[answer->of]);
     make_layout(plot, &layout);
     bool good = draw_measure(plot, &layout, &m, message);

@@ -207,3 +207,49 @@ bool statistics_extent(const struct results *r, int axis, const size_t *point,
     extent->high_unknown = rising ? second_unknown : first_unknown;
     return true;
 }
+
+static bool is_refined(const struct results *r)
+{
+    struct scenario *s = calloc(1, sizeof *s);
+    bool refined = false;
+    if (s && !r->single && results_scenario(r, s)) {
+        refined = s->refine.given;
+        scenario_free(s);
+    }
+    free(s);
+    return refined;
+}
+
+/* With stop.capture a simulated case may be inferred, too; it has an end. */
+bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
+                         stance_message *message)
+{
+    double *evidence = NULL, *end = NULL;
+    bool *flag = NULL;
+    *count = 0;
+    if (which) {
+        *which = NULL;
+    }
+    if (!is_refined(r)) {
+        return true;
+    }
+    bool good = results_answer(r, "evidence", &evidence, message) &&
+                results_answer(r, "end_time", &end, message);
+    if (good && which && !(flag = calloc(r->cases, sizeof *flag))) {
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        good = false;
+    }
+    for (uint64_t i = 0; good && evidence && i < r->cases; i++) {
+        bool inferred = evidence[i] == STANCE_INFERRED && !(end && isfinite(end[i]));
+        *count += inferred;
+        if (flag) {
+            flag[i] = inferred;
+        }
+    }
+    free(evidence);
+    free(end);
+    if (which) {
+        *which = flag;
+    }
+    return good;
+}

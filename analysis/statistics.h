@@ -25,6 +25,11 @@ void statistics_count_axis(const struct results *r, int axis, struct statistics_
 /* The same for every pair of values of two axes: counts[axis a's count][axis b's count]. */
 void statistics_count_pair(const struct results *r, int a, int b, struct statistics_counts *counts);
 
+/* Cases of a refined map that were not simulated: their outcome is that of their neighbours.
+ * *which, where asked for, flags them; freed by the caller, NULL when there are none. */
+bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
+                         stance_message *message);
+
 /* What the numbers of an answer look like; NANs are left out. */
 struct statistics_numbers {
     size_t n;

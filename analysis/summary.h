@@ -62,6 +62,7 @@ struct summary {
     struct summary_numbers numbers[SUMMARY_NUMBER_COUNT];
     struct summary_count steps, iterations, evaluations, events, ambiguous, subdivided, degraded;
     struct summary_count evidence; /* 1 simulated, 2 inferred */
+    uint64_t inferred;             /* from neighbours, in a refined map */
     bool timed;
     double longest, total, timed_cases; /* s, s, 1 */
     size_t ranks;

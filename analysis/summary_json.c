@@ -60,13 +60,15 @@ static json_t *fixed(const struct summary *summary)
     return object;
 }
 
-static json_t *cases(const struct statistics_counts *counts, const struct results *r)
+static json_t *cases(const struct summary *summary, const struct results *r)
 {
+    const struct statistics_counts *counts = &summary->counts;
     json_t *object = json_object();
     put(object, "total", whole(r->cases));
     put(object, "done", whole(counts->done));
     put(object, "failed", whole(counts->kind[RESULTS_FAILED]));
     put(object, "pending", whole(counts->kind[RESULTS_PENDING]));
+    put(object, "inferred", whole(summary->inferred));
     return object;
 }
 
@@ -332,7 +334,7 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
     put(root, "ranks", json_integer(r->ranks));
     put(root, "axes", axes(r));
     put(root, "fixed", fixed(summary));
-    put(root, "cases", cases(&summary->counts, r));
+    put(root, "cases", cases(summary, r));
     put(root, "failures", failures(summary));
     bool known = summary_has_outcomes(summary);
     put(root, "outcomes", known ? outcomes(&summary->counts) : json_null());

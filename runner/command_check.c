@@ -96,5 +96,7 @@ const struct command command_check = {
     "    seconds_on_one_rank       estimate; null when no case could be tried\n"
     "    seconds_is_upper_bound    whole cases took too long to try, or may be\n"
     "                              captured: it is a bound\n"
-    "    capture_seconds_on_one_rank   estimate for the captured sets of stop.capture; 0: none\n",
+    "    capture_seconds_on_one_rank   estimate for the captured sets of stop.capture; 0: none\n"
+    "    refine                    null, or with sweep.refine {coarse_cases, probes (expected),\n"
+    "                              most_cases}: seconds_on_one_rank is then for all of them\n",
 };

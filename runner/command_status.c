@@ -8,11 +8,13 @@
 #include <inttypes.h>
 #include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <time.h>
 
 struct state {
     struct store_counts counts;
     bool running;
+    bool refined; /* a map whose boundary is being sought: the cases left are not all simulated */
     double rate, left; /* cases/s and s; negative: unknown */
 };
 
@@ -21,6 +23,28 @@ static double wall_clock(void)
     struct timespec now;
     clock_gettime(CLOCK_REALTIME, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static bool is_refined(const char *file)
+{
+    struct store_origin origin;
+    stance_message ignored;
+    struct scenario *s = calloc(1, sizeof *s);
+    FILE *nowhere = fopen("/dev/null", "w");
+    bool refined = false;
+
+    if (s && nowhere && store_read_origin(file, &origin, &ignored)) {
+        if (scenario_read(s, file, origin.scenario, NULL, 0, nowhere)) {
+            refined = s->refine.given;
+            scenario_free(s);
+        }
+        store_origin_free(&origin);
+    }
+    if (nowhere) {
+        fclose(nowhere);
+    }
+    free(s);
+    return refined;
 }
 
 static bool read_state(const char *file, struct state *state, stance_message *message)
@@ -34,7 +58,10 @@ static bool read_state(const char *file, struct state *state, stance_message *me
     double spent = wall_clock() - note.start;
     if (state->running && note.start > 0 && finished > note.finished && spent > 0) {
         state->rate = (double)(finished - note.finished) / spent;
-        state->left = (double)(state->counts.cases - finished) / state->rate;
+        state->refined = is_refined(file);
+        if (!state->refined) {
+            state->left = (double)(state->counts.cases - finished) / state->rate;
+        }
     }
     return true;
 }
@@ -65,8 +92,13 @@ static void print_text(const char *file, const struct state *state)
            : pending      ? "not running (stance run --resume goes on)"
                           : "complete");
     if (state->rate >= 0) {
+        printf(", %.0f cases/s", state->rate);
+    }
+    if (state->left >= 0) {
         report_seconds(left, sizeof left, state->left);
-        printf(", %.0f cases/s, %s left", state->rate, left);
+        printf(", %s left", left);
+    } else if (state->refined) {
+        printf(", refining: most of the others will be inferred");
     }
     putchar('\n');
 }
@@ -131,5 +163,6 @@ const struct command command_status = {
     "    file                           as given\n"
     "    cases, done, failed, pending   numbers of cases\n"
     "    running                        whether a run is writing the file now\n"
-    "    rate, seconds_left             cases per second and seconds; null when unknown\n",
+    "    rate, seconds_left             cases per second and seconds; null when unknown,\n"
+    "                                   as seconds_left is while a map is refined\n",
 };

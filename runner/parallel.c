@@ -168,6 +168,21 @@ void parallel_sum(const struct parallel *parallel, uint64_t *number, int n)
     }
 }
 
+void parallel_largest(const struct parallel *parallel, uint8_t *byte, size_t n)
+{
+    for (size_t at = 0; parallel->size > 1 && at < n; at += PIECE) {
+        MPI_Allreduce(MPI_IN_PLACE, byte + at, piece_of(n - at), MPI_UINT8_T, MPI_MAX,
+                      MPI_COMM_WORLD);
+    }
+}
+
+static void barrier(const struct parallel *parallel)
+{
+    if (parallel->size > 1) {
+        MPI_Barrier(MPI_COMM_WORLD);
+    }
+}
+
 bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size)
 {
     if (parallel->size == 1) {
@@ -280,6 +295,16 @@ void parallel_sum(const struct parallel *parallel, uint64_t *number, int n)
     (void)parallel, (void)number, (void)n;
 }
 
+void parallel_largest(const struct parallel *parallel, uint8_t *byte, size_t n)
+{
+    (void)parallel, (void)byte, (void)n;
+}
+
+static void barrier(const struct parallel *parallel)
+{
+    (void)parallel;
+}
+
 bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size)
 {
     (void)parallel, (void)text, (void)size;
@@ -309,3 +334,14 @@ void parallel_library(char *text, size_t size)
 }
 
 #endif
+
+void parallel_restart(const struct parallel *parallel)
+{
+    barrier(parallel); /* every rank has drawn its last */
+    for (int counter = 0; parallel->rank == 0 && counter < COUNTERS; counter++) {
+        if (counter != COUNTER_STOP) {
+            parallel_add(parallel, counter, -parallel_add(parallel, counter, 0));
+        }
+    }
+    barrier(parallel);
+}

@@ -39,6 +39,8 @@ void parallel_gather_block(const struct parallel *parallel, void *array, size_t 
                            size_t first, size_t count);
 /* Collective: sums each of n numbers over the ranks, in place, on every rank. */
 void parallel_sum(const struct parallel *parallel, uint64_t *number, int n);
+/* Collective: the largest of each of n bytes over the ranks, in place, on every rank. */
+void parallel_largest(const struct parallel *parallel, uint8_t *byte, size_t n);
 /* Collective: true when every rank says true. Else `text` (of `size` bytes, the same on every
  * rank) becomes that of the lowest rank that said false. */
 bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size);
@@ -48,6 +50,8 @@ bool parallel_share(struct parallel *parallel);
 void parallel_unshare(struct parallel *parallel);
 /* Not collective: adds to a counter and returns what it held before; adding 0 reads it. */
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value);
+/* Collective: all counters but COUNTER_STOP are zero again. */
+void parallel_restart(const struct parallel *parallel);
 
 /* Name of this machine. */
 void parallel_host(char *name, size_t size);

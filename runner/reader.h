@@ -51,6 +51,9 @@ void scenario_cross_check(struct reader *r);
 
 /* sweep.c: the axes from the value of sweep.grid, into r->s. */
 void sweep_read(struct reader *r, const struct tree_node *grid);
+/* The keys of sweep.refine, and what they mean for the axes and for what is recorded; after both.
+ */
+void sweep_read_refine(struct reader *r);
 void sweep_free(struct scenario_axis *axis);
 
 #endif

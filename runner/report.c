@@ -1,6 +1,7 @@
 /* report.c - cases, dimensions, designs, file size and cost of a plan. */
 #include "report.h"
 
+#include "refine.h"
 #include "store.h"
 
 #include <inttypes.h>
@@ -35,7 +36,9 @@ struct estimate {
     uint64_t size;
     double seconds; /* on one rank; negative: unknown */
     bool bound;
-    double capture; /* s on one rank for the captured sets; 0: none is asked for */
+    double capture;  /* s on one rank for the captured sets; 0: none is asked for */
+    uint64_t coarse; /* points of the coarse lattice; 0: the map is not refined */
+    double probes;   /* expected number beyond these */
 };
 
 static struct estimate estimate(const struct plan *plan, int ranks)
@@ -47,6 +50,12 @@ static struct estimate estimate(const struct plan *plan, int ranks)
     e.seconds = plan_cost(plan, cost_budget, &e.bound);
     e.capture = plan_capture_cost(plan);
     e.bound = e.bound || e.capture > 0; /* captured cases cost less */
+    if (plan->scenario->refine.given && !plan->single) {
+        const struct refine_map map = refine_map_of(plan->scenario);
+        e.coarse = refine_coarse(&map);
+        e.probes = map.probes * (double)(plan->rows - e.coarse);
+        e.bound = true;
+    }
     return e;
 }
 
@@ -63,13 +72,16 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
         json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
     }
     json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f}", "scenario",
+        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o}", "scenario",
         s->file, "title", s->title, "scene", s->scene->name, "cases", (json_int_t)plan->rows,
         "dimensions", dimensions, "designs", (json_int_t)plan->designs, "designs_failed",
         (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
         file, "file_bytes", (json_int_t)e->size, "ranks", ranks, "seconds_on_one_rank",
         e->seconds < 0 ? json_null() : json_real(e->seconds), "seconds_is_upper_bound", e->bound,
-        "capture_seconds_on_one_rank", e->capture);
+        "capture_seconds_on_one_rank", e->capture, "refine",
+        e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
+                              (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
+                  : json_null());
     json_dumpf(root, out, JSON_INDENT(2));
     fputc('\n', out);
     json_decref(root);
@@ -102,6 +114,12 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
         fprintf(out, "\nrecorded    %" PRIu64 " trajectories of %" PRId64 " instants",
                 plan->record_cases, plan->record_rows);
     }
+    if (e->coarse > 0) {
+        fprintf(out,
+                "\nrefine      %" PRIu64 " cases of a coarse lattice and about %.0f probes, then "
+                "those where outcomes differ: at most all",
+                e->coarse, e->probes);
+    }
     report_bytes(text, sizeof text, (double)e->size);
     fprintf(out, "\nfile        %s, about %s\n", file, text);
     if (e->seconds < 0) {
@@ -112,6 +130,15 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
         report_seconds(text, sizeof text, e->capture / fmin(ranks, (double)plan->designs));
         fprintf(out, "capture     about %s first, for %zu set%s of states that recover\n", text,
                 plan->designs, plan->designs == 1 ? "" : "s");
+    }
+    if (e->coarse > 0) {
+        const double share = ((double)e->coarse + e->probes) / (double)plan->rows;
+        char first[40];
+        report_seconds(first, sizeof first, share * e->seconds / ranks);
+        report_seconds(text, sizeof text, e->seconds / ranks);
+        fprintf(out, "cost        about %s for lattice and probes, %s for all, on %d rank%s\n",
+                first, text, ranks, ranks == 1 ? "" : "s");
+        return;
     }
     report_seconds(text, sizeof text, e->seconds / ranks);
     fprintf(out, "cost        %s %s on %d rank%s\n", e->bound ? "at most about" : "about", text,

@@ -9,9 +9,8 @@
 #include "instruction_set.h"
 #include "lock.h"
 #include "report.h"
-#include "store.h"
+#include "rounds.h"
 #include "supervise.h"
-#include "work.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -539,7 +538,8 @@ static void stage_compute(struct run *run)
         return;
     }
     run->work.parallel = &run->parallel;
-    if (!work_run(&run->work, NULL, &message)) {
+    const bool refined = run->scenario->refine.given && !run->plan.single;
+    if (refined ? !rounds_run(&run->work, &message) : !work_run(&run->work, NULL, NULL, &message)) {
         fail_io(run, &message);
     }
 }
@@ -619,26 +619,33 @@ static void print_interrupted(const struct run *run, uint64_t finished)
     fputs(run->options.single ? " --force\n" : " --resume\n", stderr);
 }
 
-static void print_summary(const struct run *run, const uint64_t *outcome, uint64_t failed,
-                          uint64_t finished, uint64_t computed)
+/* What came out, over all ranks. */
+struct sums {
+    uint64_t outcome[WORK_OUTCOMES], failed, finished, computed, inferred;
+};
+
+static void print_summary(const struct run *run, const struct sums *sums)
 {
     static const char *const name[WORK_OUTCOMES] = {"without outcome", "stabilised", "fell",
                                                     "rested", "undecided"};
     double wall = plan_clock() - run->start;
     const char *separator = ": ";
 
-    printf("%s: %" PRIu64 " case%s", run->file, finished, finished == 1 ? "" : "s");
+    printf("%s: %" PRIu64 " case%s", run->file, sums->finished, sums->finished == 1 ? "" : "s");
     for (int i = 0; i < WORK_OUTCOMES; i++) {
-        if (outcome[i] > 0) {
-            printf("%s%" PRIu64 " %s", separator, outcome[i], name[i]);
+        if (sums->outcome[i] > 0) {
+            printf("%s%" PRIu64 " %s", separator, sums->outcome[i], name[i]);
             separator = ", ";
         }
     }
-    if (failed > 0) {
-        printf("%s%" PRIu64 " failed", separator, failed);
+    if (sums->failed > 0) {
+        printf("%s%" PRIu64 " failed", separator, sums->failed);
     }
-    if (computed < finished) {
-        printf("; %" PRIu64 " of them computed now", computed);
+    if (sums->inferred > 0) {
+        printf("; %" PRIu64 " of them inferred", sums->inferred);
+    }
+    if (sums->computed + sums->inferred < sums->finished) {
+        printf("; %" PRIu64 " of them computed now", sums->computed);
     }
     printf("; %.1f s on %d rank%s\n", wall, run->parallel.size, run->parallel.size == 1 ? "" : "s");
     fflush(stdout);
@@ -647,29 +654,29 @@ static void print_summary(const struct run *run, const uint64_t *outcome, uint64
 /* Adds up over the ranks and says what came out. */
 static int conclude(struct run *run)
 {
-    uint64_t sums[WORK_OUTCOMES + 3];
-    memcpy(sums, run->work.outcome, sizeof run->work.outcome);
-    sums[WORK_OUTCOMES] = run->work.failed;
-    sums[WORK_OUTCOMES + 1] = run->work.finished;
-    sums[WORK_OUTCOMES + 2] = run->work.computed;
-    parallel_sum(&run->parallel, sums, WORK_OUTCOMES + 3);
-    uint64_t failed = sums[WORK_OUTCOMES], finished = sums[WORK_OUTCOMES + 1];
-    bool complete = finished == run->plan.rows;
+    const struct work *work = &run->work;
+    struct sums sums = {.failed = work->failed,
+                        .finished = work->finished,
+                        .computed = work->computed,
+                        .inferred = work->inferred};
+    memcpy(sums.outcome, work->outcome, sizeof sums.outcome);
+    parallel_sum(&run->parallel, (uint64_t *)&sums, sizeof sums / sizeof(uint64_t));
+    bool complete = sums.finished == run->plan.rows;
 
     if (run->parallel.rank == 0) {
         if (!run->options.quiet) {
-            print_summary(run, sums, failed, finished, sums[WORK_OUTCOMES + 2]);
+            print_summary(run, &sums);
         }
         if (!complete) {
-            print_interrupted(run, finished);
-        } else if (failed > 0) {
+            print_interrupted(run, sums.finished);
+        } else if (sums.failed > 0) {
             fprintf(stderr,
                     "stance run: %" PRIu64
                     " case%s failed; the variable `failure` in %s says why\n",
-                    failed, failed == 1 ? "" : "s", run->file);
+                    sums.failed, sums.failed == 1 ? "" : "s", run->file);
         }
     }
-    return !complete ? EXIT_INTERRUPTED : failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
+    return !complete ? EXIT_INTERRUPTED : sums.failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
 }
 
 /* Goes through the stages; stops where one failed on any rank. */

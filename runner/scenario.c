@@ -469,6 +469,7 @@ static void read_by_hand(struct reader *r)
         sweep_read(r, grid);
     }
     read_record(r);
+    sweep_read_refine(r);
 }
 
 /* ---- reading --------------------------------------------------------------------------------- */

@@ -99,7 +99,15 @@ struct scenario_axis {
     char **word;
     double from, to;
     bool log;
+    bool refined; /* sweep.refine leaves points of it out */
     int line, column;
+};
+
+/* sweep.refine: which cases are simulated depends on what others became, see refine.h. */
+struct scenario_refine {
+    bool given;
+    size_t start, margin;
+    double probes;
 };
 
 struct scenario_place {
@@ -118,6 +126,7 @@ struct scenario {
     int axes;
     struct scenario_axis axis[SCENARIO_MAX_AXES];
     uint64_t cases; /* product of the counts; 1 without a sweep */
+    struct scenario_refine refine;
 
     double record_every; /* s; 0: not given, and no trajectories */
     enum scenario_record record_cases;

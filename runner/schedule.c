@@ -87,16 +87,15 @@ double schedule_write_interval(int ranks, double spent)
 struct schedule schedule_make(uint64_t rows, int ranks, const struct rows *only)
 {
     return (struct schedule){
-        .places = only ? only->count : rows,
+        .rows = only ? *only : (struct rows){.count = rows},
         .ranks = ranks,
-        .list = only ? only->row : NULL,
     };
 }
 
 bool schedule_draw(struct schedule *schedule, uint64_t k)
 {
     uint64_t count;
-    if (!schedule_chunk(schedule->places, schedule->ranks, k, &schedule->next, &count)) {
+    if (!schedule_chunk(schedule->rows.count, schedule->ranks, k, &schedule->next, &count)) {
         schedule->next = schedule->end = 0;
         return false;
     }
@@ -111,9 +110,4 @@ size_t schedule_take(struct schedule *schedule, size_t most, uint64_t *first)
     *first = schedule->next;
     schedule->next += count;
     return count;
-}
-
-uint64_t schedule_row(const struct schedule *schedule, uint64_t place)
-{
-    return schedule->list ? schedule->list[place] : place;
 }

@@ -6,15 +6,9 @@
 #ifndef STANCE_RUNNER_SCHEDULE_H
 #define STANCE_RUNNER_SCHEDULE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "rows.h"
 
-/* Some rows of the file, ascending. */
-struct rows {
-    const uint64_t *row;
-    uint64_t count;
-};
+#include <stdbool.h>
 
 enum {
     SCHEDULE_BUNDLE = 8, /* the widest bundle of lanes: chunks are whole ones but for the last */
@@ -29,13 +23,12 @@ enum {
  * Pure function; chunks tile the places. false beyond the last chunk. */
 bool schedule_chunk(uint64_t rows, int ranks, uint64_t k, uint64_t *first, uint64_t *count);
 
-/* What one rank has drawn: places of the schedule, numbered from 0, which stand for all rows of the
- * file in order, or for those of a list. */
+/* What one rank has drawn: places of the schedule, numbered from 0, each of which stands for a row
+ * of the file. */
 struct schedule {
-    uint64_t places;
+    struct rows rows; /* in the order of their places */
     int ranks;
-    const uint64_t *list; /* [places], or NULL: place i is row i */
-    uint64_t next, end;   /* what is left of the chunk in hand */
+    uint64_t next, end; /* what is left of the chunk in hand */
 };
 
 /* `only` NULL: all `rows`. */
@@ -44,9 +37,6 @@ struct schedule schedule_make(uint64_t rows, int ranks, const struct rows *only)
 bool schedule_draw(struct schedule *schedule, uint64_t k);
 /* The next stretch of the chunk in hand, of at most `most` places; 0: nothing is left of it. */
 size_t schedule_take(struct schedule *schedule, size_t most, uint64_t *first);
-/* Row of the file that a place stands for. */
-uint64_t schedule_row(const struct schedule *schedule, uint64_t place);
-
 /* Rows of the largest block that a rank keeps in memory and writes at once, of rows of that many
  * bytes. */
 size_t schedule_block_rows(size_t row_size);

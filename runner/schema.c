@@ -371,6 +371,21 @@ static const struct row rows[] = {
          WORDS(spacing_words), .text = "equal differences or equal ratios between points"}},
     {0, {.path = "sweep.grid[].values", .type = FIELD_VALUES, BY_HAND,
          .text = "the points one by one: numbers or words, with `paths` a list for each point"}},
+    {0, {.path = "sweep.refine", .type = FIELD_MAP, BY_HAND,
+         .text = "map the outcomes adaptively: simulate a coarse lattice, then only where they differ",
+         .more = "Along axes of numbers with more than start points; others are taken in full, each "
+                 "combination a map of its own. Cases that are not simulated take the outcome of "
+                 "their cell, with evidence inferred and no other answers. The same for any number "
+                 "of ranks."}},
+    {0, {.path = "sweep.refine.start", .type = FIELD_INTEGER, BY_HAND, .fallback = 32, .low = 2,
+         .high = 1e9, .text = "most cells of the coarse lattice along an axis",
+         .more = "Its stride is the smallest power of two that leaves no more; each level halves it."}},
+    {0, {.path = "sweep.refine.margin", .type = FIELD_INTEGER, BY_HAND, .fallback = 1, .low = 0,
+         .high = 1e9, .text = "cells around one of several outcomes that are refined with it"}},
+    {0, {.path = "sweep.refine.probes", .type = FIELD_NUMBER, BY_HAND, .unit = "1", .fallback = 0.01,
+         .low = 0, .high = 1, .text = "share of all cases that is simulated in search of islands",
+         .more = "Chosen by seed. An island of k cases between the points of the lattice stays "
+                 "unseen with probability (1 - probes)^k."}},
 
     {0, {.path = "record", .type = FIELD_MAP, BY_HAND,
          .text = "what is stored besides the parameters"}},

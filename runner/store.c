@@ -420,60 +420,6 @@ bool store_close(struct store *store, stance_message *message)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-bool store_select_range(hid_t space, int rank, const hsize_t *length, int level, hsize_t *start,
-                        hsize_t first, hsize_t last)
-{
-    hsize_t inner = 1, count[H5S_MAX_RANK];
-    for (int d = level + 1; d < rank; d++) {
-        inner *= length[d];
-    }
-    hsize_t whole = (first + inner - 1) / inner, end = last / inner;
-    if (whole > end) { /* within one row */
-        start[level] = end;
-        return store_select_range(space, rank, length, level + 1, start, first - end * inner,
-                                  last - end * inner);
-    }
-    if (first < whole * inner) {
-        start[level] = whole - 1;
-        if (!store_select_range(space, rank, length, level + 1, start, first - (whole - 1) * inner,
-                                inner)) {
-            return false;
-        }
-    }
-    if (whole < end) {
-        start[level] = whole;
-        for (int d = 0; d < rank; d++) {
-            count[d] = d < level ? 1 : d == level ? end - whole : length[d];
-            start[d] = d <= level ? start[d] : 0;
-        }
-        if (H5Sselect_hyperslab(space, H5S_SELECT_OR, start, NULL, count, NULL) < 0) {
-            return false;
-        }
-    }
-    if (end * inner < last) {
-        start[level] = end;
-        return store_select_range(space, rank, length, level + 1, start, 0, last - end * inner);
-    }
-    return true;
-}
-
-/* File space with the rows selected, of variables with `width` elements per row; or -1. */
-static hid_t select_rows(const struct store *store, size_t width, uint64_t first, size_t n)
-{
-    hsize_t length[SCENARIO_MAX_AXES + 1], start[SCENARIO_MAX_AXES + 1] = {0};
-    int rank = store->rank + (width > 1);
-    memcpy(length, store->length, sizeof store->length);
-    length[store->rank] = width;
-    hid_t space = H5Screate_simple(rank, length, NULL);
-    if (space >= 0 &&
-        (H5Sselect_none(space) < 0 ||
-         !store_select_range(space, rank, length, 0, start, first * width, (first + n) * width))) {
-        H5Sclose(space);
-        return -1;
-    }
-    return space;
-}
-
 enum direction { READ, WRITE };
 
 /* Moves n rows of one column, from `slot` of the block on, between the block and the file. */
@@ -496,18 +442,18 @@ static bool move_column(struct store *store, int c, struct store_block *block, s
 }
 
 /* All columns, in order: the checksum and then the status are the last ones. */
-static bool move_rows(struct store *store, struct store_block *block, size_t slot, uint64_t first,
-                      size_t n, enum direction way, stance_message *message)
+static bool move_rows(struct store *store, struct store_block *block, size_t slot,
+                      const struct rows *rows, enum direction way, stance_message *message)
 {
-    hid_t narrow = select_rows(store, 1, first, n);
-    hid_t wide =
-        select_rows(store, 2 * (size_t)store->plan->scenario->scene->coordinates, first, n);
+    const size_t state = 2 * (size_t)store->plan->scenario->scene->coordinates;
+    hid_t narrow = store_select_rows(store->rank, store->length, 1, rows);
+    hid_t wide = store_select_rows(store->rank, store->length, state, rows);
     bool good = (narrow >= 0 && wide >= 0) ||
                 store_failed(message, store->file, "select rows of the results");
     for (int c = 0; good && c < COLUMNS; c++) {
         if (store->column[c] >= 0) {
-            good = move_column(store, c, block, slot, store->width[c] > 1 ? wide : narrow, n, way,
-                               message);
+            good = move_column(store, c, block, slot, store->width[c] > 1 ? wide : narrow,
+                               (size_t)rows->count, way, message);
         }
     }
     H5Sclose(narrow);
@@ -583,10 +529,21 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
     ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = row_checksum(block, slot);
 }
 
-bool store_write(struct store *store, struct store_block *block, size_t slot, uint64_t first,
-                 size_t n, stance_message *message)
+void store_blank(stance_result *result)
 {
-    return move_rows(store, block, slot, first, n, WRITE, message);
+    *result = (stance_result){0};
+#define STORE_BLANK(name, type, field, fill, unit, text) result->field = fill;
+    STORE_ANSWERS(STORE_BLANK)
+#undef STORE_BLANK
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++) {
+        result->position[i] = result->velocity[i] = NAN;
+    }
+}
+
+bool store_write(struct store *store, struct store_block *block, size_t slot,
+                 const struct rows *rows, stance_message *message)
+{
+    return move_rows(store, block, slot, rows, WRITE, message);
 }
 
 /* ---- trajectories ------------------------------------------------------------------------- */
@@ -671,24 +628,24 @@ static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
     return good || store_failed(message, store->file, "read a trajectory");
 }
 
-bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
-                  bool *whole, stance_message *message)
+bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
+                  stance_message *message)
 {
     if (!store->checked && !(store->checked = store_block_make(store, STORE_ROWS))) {
         snprintf(message->text, sizeof message->text, "not enough memory");
         return false;
     }
-    if (!move_rows(store, store->checked, 0, first, n, READ, message)) {
+    if (!move_rows(store, store->checked, 0, rows, READ, message)) {
         return false;
     }
     const uint8_t *status = store->checked->column[COLUMN_STATUS];
     const uint8_t *outcome = store->checked->column[COLUMN_outcome];
     const uint32_t *checksum = store->checked->column[COLUMN_CHECKSUM];
-    for (size_t row = 0; row < n; row++) {
+    for (size_t row = 0; row < rows->count; row++) {
         uint64_t place;
         whole[row] = (status[row] == STANCE_DONE || status[row] == STANCE_FAILED) &&
                      checksum[row] == row_checksum(store->checked, row);
-        if (whole[row] && plan_recorded(store->plan, first + row, &place) &&
+        if (whole[row] && plan_recorded(store->plan, rows_at(rows, row), &place) &&
             !verify_trajectory(store, place, &whole[row], message)) {
             return false;
         }

@@ -36,6 +36,7 @@
 #ifndef STANCE_RUNNER_STORE_H
 #define STANCE_RUNNER_STORE_H
 
+#include "rows.h"
 #include "scenario.h"
 
 /* The answers: name, C type of the file, field of stance_result, value where a case has none
@@ -139,18 +140,20 @@ struct store_block *store_block_make(const struct store *store, size_t rows);
 void store_block_free(struct store_block *block);
 /* What is stored of a result, its checksum included, into a slot of the block. */
 void store_put(struct store_block *block, size_t slot, const stance_result *result);
-/* Slots [slot, slot + n) of the block to rows [first, first + n) of the file, any n; one write per
- * variable and row of the innermost axis that is broken, their status last. */
-bool store_write(struct store *store, struct store_block *block, size_t slot, uint64_t first,
-                 size_t n, stance_message *message);
+/* What is stored for a case without answers: every answer its fill value. */
+void store_blank(stance_result *result);
+/* As many slots of the block as there are rows (one at least), from `slot` on, to those rows of the
+ * file, their status last; one write per variable and unbroken stretch of the innermost axis. */
+bool store_write(struct store *store, struct store_block *block, size_t slot,
+                 const struct rows *rows, stance_message *message);
 /* The trajectory at one place of the recorded cases; before the row itself. */
 bool store_write_trajectory(struct store *store, uint64_t place,
                             const stance_trajectory *trajectory, stance_message *message);
-/* Which of n <= STORE_ROWS rows are whole: done or failed, and as their checksums say; of these,
+/* Which of 1 to STORE_ROWS rows are whole: done or failed, and as their checksums say; of these,
  * status and outcome (where stored) are filled in. Trajectories of recorded cases are verified,
  * too. */
-bool store_verify(struct store *store, uint64_t first, size_t n, stance_result *results,
-                  bool *whole, stance_message *message);
+bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
+                  stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
                       stance_message *message);

@@ -1,5 +1,6 @@
-/* store_private.h - shared by store.c (rows), store_layout.c (creation), store_look.c (questions)
- * and seal.c (checksums); nothing else includes it, so that HDF5 stays between them. */
+/* store_private.h - shared by store.c (rows), store_select.c (which elements those are),
+ * store_layout.c (creation), store_look.c (questions) and seal.c (checksums); nothing else includes
+ * it, so that HDF5 stays between them. */
 #ifndef STANCE_RUNNER_STORE_PRIVATE_H
 #define STANCE_RUNNER_STORE_PRIVATE_H
 
@@ -90,6 +91,11 @@ bool store_has_shape(hid_t dataset, int rank, const hsize_t *length);
  * fixed above `level`. */
 bool store_select_range(hid_t space, int rank, const hsize_t *length, int level, hsize_t *start,
                         hsize_t first, hsize_t last);
+
+/* File space of a variable over the cases, of `width` elements each, with some rows selected (one
+ * at least); or -1. */
+hid_t store_select_rows(int dimensions, const hsize_t *lengths, size_t width,
+                        const struct rows *rows);
 
 hid_t store_file_type(enum store_kind kind);
 hid_t store_memory_type(enum store_kind kind);

@@ -2,6 +2,8 @@
 #include "reader.h"
 
 #include "command.h"
+#include "refine.h"
+#include "store.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -438,6 +440,74 @@ void sweep_read(struct reader *r, const struct tree_node *grid)
             s->cases *= a.axis->count;
         }
     }
+}
+
+/* ---- refinement ------------------------------------------------------------------------------ */
+
+/* A number of sweep.refine, its default where it is not given. False: a problem. */
+static bool refine_number(struct reader *r, const char *path, double *value)
+{
+    const struct scenario_field *field = schema_find(&r->schema, path);
+    const struct tree_node *node = reader_seen(r, path)->node;
+
+    *value = field->fallback;
+    return !node ||
+           (field->type == FIELD_INTEGER ? field_integer(&r->problems, field, path, node, value)
+                                         : field_number(&r->problems, field, path, node, value));
+}
+
+/* What is stored must leave room for cases that are not simulated. */
+static void check_refined_record(struct reader *r)
+{
+    const struct scenario *s = r->s;
+    const uint32_t needed = 1u << STORE_BIT_outcome | 1u << STORE_BIT_evidence;
+
+    if (s->record_cases == RECORD_ALL) {
+        problem_add(&r->problems, reader_seen(r, "record.cases")->key,
+                    "record.cases all has no meaning with sweep.refine: list those to be recorded");
+    }
+    if ((s->answers & needed) != needed) {
+        problem_add(&r->problems, reader_seen(r, "record.answers")->key,
+                    "record.answers: sweep.refine needs outcome and evidence among them");
+    }
+}
+
+void sweep_read_refine(struct reader *r)
+{
+    struct scenario *s = r->s;
+    const struct seen *seen = reader_seen(r, "sweep.refine");
+    double start, margin, probes;
+    bool any = false;
+
+    if (!seen->node || seen->bad) {
+        return;
+    }
+    bool good = refine_number(r, "sweep.refine.start", &start);
+    good = refine_number(r, "sweep.refine.margin", &margin) && good;
+    good = refine_number(r, "sweep.refine.probes", &probes) && good;
+    if (!reader_seen(r, "sweep.grid")->node) {
+        problem_add(&r->problems, seen->key, "sweep.refine needs sweep.grid: axes to refine");
+        return;
+    }
+    if (!good || r->axes_bad) {
+        return;
+    }
+    s->refine = (struct scenario_refine){true, (size_t)start, (size_t)margin, probes};
+    for (int a = 0; a < s->axes; a++) {
+        struct scenario_axis *axis = &s->axis[a];
+        axis->refined = !axis->words && axis->count > s->refine.start;
+        any = any || axis->refined;
+    }
+    if (!any) {
+        problem_add(&r->problems, seen->key,
+                    "sweep.refine: no axis of numbers has more points than start, %zu",
+                    s->refine.start);
+    } else if ((double)s->cases > REFINE_MOST_POINTS) {
+        problem_add(&r->problems, seen->key,
+                    "sweep.refine: %llu cases are more than the %.0f that it can keep in memory",
+                    (unsigned long long)s->cases, REFINE_MOST_POINTS);
+    }
+    check_refined_record(r);
 }
 
 void sweep_free(struct scenario_axis *axis)

@@ -83,7 +83,7 @@ struct task {
 
 struct progress {
     bool terminal;
-    double next, start;
+    double start;
 };
 
 /* All that the callbacks of a stream know. */
@@ -91,6 +91,7 @@ struct job {
     struct work *work;
     const struct plan *plan;
     struct schedule schedule;
+    uint8_t *label; /* [places of the schedule], or NULL */
     const stance_kernel *kernel[MAX_METHODS];
     size_t capacity;             /* rows of a block */
     struct block *oldest, *idle; /* open blocks in the order of drawing; blocks to be used again */
@@ -205,18 +206,12 @@ static void task_leave(struct job *job, struct task *task)
 /* What is stored for a case that does not exist. */
 static void fail_initially(stance_result *result)
 {
-    *result = (stance_result){0};
-#define WORK_FILL(name, type, field, fill, unit, text) result->field = fill;
-    STORE_ANSWERS(WORK_FILL)
-#undef WORK_FILL
+    store_blank(result);
     result->status = STANCE_FAILED;
     result->failure = STANCE_FAILURE_INITIAL;
-    for (int i = 0; i < STANCE_MAX_COORDINATES; i++) {
-        result->position[i] = result->velocity[i] = NAN;
-    }
 }
 
-static void tally(struct work *work, stance_status status, stance_outcome outcome)
+void work_tally(struct work *work, stance_status status, stance_outcome outcome)
 {
     work->finished++;
     if (status == STANCE_FAILED) {
@@ -226,26 +221,37 @@ static void tally(struct work *work, stance_status status, stance_outcome outcom
     }
 }
 
+/* Counts the row at a place of the schedule. */
+static void tally(struct job *job, uint64_t place, stance_status status, stance_outcome outcome)
+{
+    work_tally(job->work, status, outcome);
+    if (job->label) {
+        job->label[place] = (uint8_t)(status == STANCE_FAILED ? WORK_FAILED : (int)outcome + 1);
+    }
+}
+
+static uint64_t row_at(const struct job *job, const struct block *block, size_t slot)
+{
+    return rows_at(&job->schedule.rows, block->first + slot);
+}
+
 /* Writes the rows of a block that have ended, in stretches of at least so many. */
 static void write_block(struct job *job, struct block *block, size_t least)
 {
-    for (size_t slot = 0; slot < block->count && !job->broken;) {
-        const uint64_t row = schedule_row(&job->schedule, block->first + slot);
-        size_t n = 0;
-        while (slot + n < block->count && block->state[slot + n] == ENDED &&
-               schedule_row(&job->schedule, block->first + slot + n) == row + n) {
+    for (size_t slot = 0, n; slot < block->count && !job->broken; slot += n > 0 ? n : 1) {
+        n = 0;
+        while (slot + n < block->count && block->state[slot + n] == ENDED) {
             n++;
         }
         if (n < least) {
-            slot += n > 0 ? n : 1;
             continue;
         }
-        if (!store_write(job->work->store, block->rows, slot, row, n, job->message)) {
+        const struct rows rows = rows_part(&job->schedule.rows, block->first + slot, n);
+        if (!store_write(job->work->store, block->rows, slot, &rows, job->message)) {
             break_off(job);
             return;
         }
         memset(block->state + slot, STORED, n);
-        slot += n;
     }
 }
 
@@ -282,7 +288,7 @@ static void close_block(struct job *job, struct block *block)
 static void end_row(struct job *job, struct block *block, size_t slot, const stance_result *result)
 {
     store_put(block->rows, slot, result);
-    tally(job->work, result->status, result->outcome);
+    tally(job, block->first + slot, result->status, result->outcome);
     block->state[slot] = ENDED;
     job->work->computed++;
     job->ended++;
@@ -326,18 +332,15 @@ static void keep_rows(struct job *job, struct block *block)
     bool whole[STORE_ROWS];
 
     for (size_t slot = 0, n; slot < block->count && !job->broken; slot += n) {
-        const uint64_t row = schedule_row(&job->schedule, block->first + slot);
-        for (n = 1; n < STORE_ROWS && slot + n < block->count &&
-                    schedule_row(&job->schedule, block->first + slot + n) == row + n;) {
-            n++;
-        }
-        if (!store_verify(job->work->store, row, n, results, whole, job->message)) {
+        n = block->count - slot < STORE_ROWS ? block->count - slot : STORE_ROWS;
+        const struct rows rows = rows_part(&job->schedule.rows, block->first + slot, n);
+        if (!store_verify(job->work->store, &rows, results, whole, job->message)) {
             break_off(job);
             return;
         }
         for (size_t i = 0; i < n; i++) {
             if (whole[i]) {
-                tally(job->work, results[i].status, results[i].outcome);
+                tally(job, block->first + slot + i, results[i].status, results[i].outcome);
                 block->state[slot + i] = STORED;
                 block->open--;
                 job->kept++;
@@ -380,8 +383,7 @@ static bool open_block(struct job *job)
     *link = block;
     job->blocks++;
     for (size_t slot = 0; slot < count; slot++) {
-        block->method[slot] =
-            (uint8_t)plan_method(job->plan, schedule_row(&job->schedule, first + slot));
+        block->method[slot] = (uint8_t)plan_method(job->plan, row_at(job, block, slot));
     }
     if (job->work->resume) {
         keep_rows(job, block);
@@ -434,7 +436,7 @@ static bool next_case(void *context, const stance_case **input, stance_result **
         if (!task) {
             return false;
         }
-        const uint64_t row = schedule_row(&job->schedule, block->first + slot);
+        const uint64_t row = row_at(job, block, slot);
         const bool exists = plan_resolve(job->plan, row, &task->input, &method);
         task->block = block;
         task->slot = slot;
@@ -470,23 +472,26 @@ static void duration(char *text, size_t size, double seconds)
 
 static void show_progress(struct job *job, double now)
 {
-    const struct work *work = job->work;
-    struct progress *progress = &job->progress;
-    if (work->quiet || work->parallel->rank != 0 || now < progress->next) {
+    struct work *work = job->work;
+    const struct progress *progress = &job->progress;
+    if (work->quiet || work->parallel->rank != 0 || now < work->progress_due) {
         return;
     }
-    char left[32] = "?";
+    char left[32] = "?", round[32] = "";
     uint64_t finished = (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
     uint64_t kept = (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
     double rate = (double)(finished - kept) / (now - progress->start);
     if (rate > 0) {
-        duration(left, sizeof left, (double)(job->schedule.places - finished) / rate);
+        duration(left, sizeof left, (double)(job->schedule.rows.count - finished) / rate);
     }
-    fprintf(stderr, "%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left%s",
-            progress->terminal ? "\r" : "", finished, job->schedule.places, rate, left,
+    if (work->round > 0) {
+        snprintf(round, sizeof round, "round %d: ", work->round);
+    }
+    fprintf(stderr, "%s%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left%s",
+            progress->terminal ? "\r" : "", round, finished, job->schedule.rows.count, rate, left,
             progress->terminal ? "\033[K" : "\n");
     fflush(stderr);
-    progress->next = now + (progress->terminal ? progress_terminal : progress_elsewhere);
+    work->progress_due = now + (progress->terminal ? progress_terminal : progress_elsewhere);
 }
 
 /* Tells the counters what has ended. */
@@ -502,6 +507,17 @@ static void report(struct job *job)
     job->ended = job->kept = 0;
 }
 
+static bool asked_to_stop(const struct work *work, double now)
+{
+    return stop_asked || now - work->start > work->time_limit;
+}
+
+bool work_told_to_stop(const struct work *work)
+{
+    const bool asked = asked_to_stop(work, plan_clock());
+    return parallel_add(work->parallel, COUNTER_STOP, asked) != 0 || asked;
+}
+
 /* Called about every millisecond: what must not wait for the end of a case. true: leave. On rank 0
  * it always looks at the counters, which live there, so that others get at them. */
 static bool attend(void *context)
@@ -514,7 +530,7 @@ static bool attend(void *context)
     if (job->leaving) {
         return true;
     }
-    if (stop_asked || now - work->start > work->time_limit) {
+    if (asked_to_stop(work, now)) {
         parallel_add(work->parallel, COUNTER_STOP, 1);
         job->leaving = true;
         return true;
@@ -581,22 +597,26 @@ static void job_free(struct job *job)
     }
 }
 
-bool work_run(struct work *work, const struct rows *only, stance_message *message)
+bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance_message *message)
 {
     const double start = plan_clock();
     struct job job = {
         .work = work,
         .plan = work->plan,
         .schedule = schedule_make(work->plan->rows, work->parallel->size, only),
+        .label = label,
         .message = message,
         .capacity = schedule_block_rows(store_row_size(work->store)),
         .progress = {.terminal = isatty(STDERR_FILENO) == 1, .start = start},
     };
     uint64_t first, largest;
-    if (schedule_chunk(job.schedule.places, work->parallel->size, 0, &first, &largest)) {
+    if (schedule_chunk(job.schedule.rows.count, work->parallel->size, 0, &first, &largest)) {
         job.capacity = job.capacity < largest ? job.capacity : (size_t)largest;
     }
-    job.progress.next = start + (job.progress.terminal ? progress_terminal : progress_elsewhere);
+    if (work->progress_due <= 0) {
+        work->progress_due =
+            start + (job.progress.terminal ? progress_terminal : progress_elsewhere);
+    }
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++) {
         job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
     }

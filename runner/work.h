@@ -11,7 +11,7 @@
 #include "schedule.h"
 #include "store.h"
 
-enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1 };
+enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1, WORK_FAILED = WORK_OUTCOMES + 1 };
 
 struct work {
     const struct plan *plan;
@@ -21,10 +21,13 @@ struct work {
     bool quiet;                      /* no progress */
     double start;                    /* plan_clock() when the program began */
     double time_limit;               /* s since then, INFINITY: none */
+    int round;           /* of several, counted from 1, for the progress; 0: there is one only */
+    double progress_due; /* when to show it next; 0: not shown yet */
 
     /* What came out, for this rank's cases. */
     uint64_t finished; /* cases with an answer in the file, kept ones included */
     uint64_t computed; /* of these, now */
+    uint64_t inferred; /* of these, now and without simulation */
     uint64_t outcome[WORK_OUTCOMES], failed;
     double seconds;
 };
@@ -36,9 +39,18 @@ void work_catch_signals(void);
 /* Whether a signal has asked for a stop. */
 bool work_stop_asked(void);
 
+/* Whether to stop: for a signal, the time limit, or because another rank was told so. The others
+ * learn of it. */
+bool work_told_to_stop(const struct work *work);
+
+/* Counts a case whose answer is in the file, or will be. */
+void work_tally(struct work *work, stance_status status, stance_outcome outcome);
+
 /* Computes all rows of the plan, or `only` some. Not collective, but every rank calls it, with the
- * same rows and with counters that are new (parallel_share). Leaves early when any rank fails, or
- * is told to stop; false when this rank failed. What came out adds to what *work holds. */
-bool work_run(struct work *work, const struct rows *only, stance_message *message);
+ * same rows and with counters that are new (parallel_share, parallel_restart). Leaves early when
+ * any rank fails, or is told to stop; false when this rank failed. What came out adds to what *work
+ * holds. label[rows], unless NULL: of each row that this rank has dealt with, outcome + 1, or
+ * WORK_FAILED. */
+bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance_message *message);
 
 #endif

@@ -16,7 +16,7 @@ static stance_result run_case(const char *scene, const stance_case *c)
 }
 
 /* A case of any scene with its default body, all contacts, friction 0.5. */
-static stance_case scene_case(const char *name, double step, double time)
+static stance_case event_case(const char *name, double step, double time)
 {
     const stance_scene *scene = stance_scene_find(name);
     stance_case c = {.friction = 0.5,
@@ -83,7 +83,7 @@ static void drop_against_reference(void **state)
 }
 
 /* Any posture near the ground, any rates, any servo: what test_stepping asks the others for. */
-static stance_case random_case(uint64_t *seed, int i)
+static stance_case random_event_case(uint64_t *seed, int i)
 {
     stance_case c = plain_case();
     c.friction = uniform(seed, 0, 2);
@@ -126,7 +126,7 @@ static void agrees_with_capturing(void **state)
     int both = 0, gave_up[2] = {0}, meet = 0;
     double worst = 0;
     for (int i = 0; i < N; i++) {
-        stance_case c = random_case(&seed, i);
+        stance_case c = random_event_case(&seed, i);
         c.restitution = i % 7 == 0 ? 0.5 : 0;
         c.tolerance = 1e-12;
         stance_trajectory t = trajectory_new(c.steps + 1, c.step);
@@ -190,7 +190,7 @@ static void flight_conserves(void **state)
     uint64_t seed = 5;
     double worst = 0;
     for (int i = 0; i < 40; i++) {
-        stance_case c = random_case(&seed, i);
+        stance_case c = random_event_case(&seed, i);
         const stance_scene *biped = stance_scene_find("biped");
         const bool passive = i % 2 == 0;
         if (passive)
@@ -237,7 +237,7 @@ static void zeno_fails(void **state)
     (void)state;
     for (double e = 0.1; e < 0.95; e += 0.2)
         for (double step = 1e-4; step < 0.05; step *= 10) {
-            stance_case c = scene_case("ball", step, 30);
+            stance_case c = event_case("ball", step, 30);
             c.restitution = e;
             c.position[1] = 1.1;
             const double zeno = sqrt(2 / STANCE_GRAVITY) * (1 + e) / (1 - e);
@@ -260,7 +260,7 @@ static void painleve_fails(void **state)
         for (size_t k = 0; k < 5; k++)
             x[k] = json_number_value(json_array_get(row, k));
         const char *kind = json_string_value(json_array_get(row, 7));
-        stance_case c = scene_case("rod", 1e-4, 1e-4);
+        stance_case c = event_case("rod", 1e-4, 1e-4);
         c.robot[2] = x[0], c.friction = x[2], c.contacts = 1;
         c.position[0] = 0.5 * cos(x[1]), c.position[1] = 0.5 * sin(x[1]), c.position[2] = x[1];
         c.velocity[0] = x[4] - 0.5 * sin(x[1]) * x[3], c.velocity[1] = 0.5 * cos(x[1]) * x[3];
@@ -303,7 +303,7 @@ static void graze(const char *method, double tolerance, double least)
     uint64_t seed = 11;
     for (int i = 0; i < 100; i++) {
         const double spin = uniform(&seed, 30, 300), when = uniform(&seed, 0.5, 2.5) / spin;
-        stance_case c = scene_case("rod", i % 2 ? 1e-2 : 1e-3, 1);
+        stance_case c = event_case("rod", i % 2 ? 1e-2 : 1e-3, 1);
         c.contacts = 1;
         c.tolerance = tolerance;
         c.velocity[0] = 1, c.velocity[1] = uniform(&seed, -1, 1), c.velocity[2] = spin;
@@ -338,7 +338,7 @@ static void short_slips(const char *method, double tolerance, double least)
             for (int side = -1; side <= 1; side += 2) {
                 const double mu = 0.3, drag = mu * STANCE_GRAVITY;
                 const double pull = drag * (1 + side * excesses[k]), w = 2 * M_PI * frequency;
-                stance_case c = scene_case("block", 0.6 / frequency, 0.6 / frequency);
+                stance_case c = event_case("block", 0.6 / frequency, 0.6 / frequency);
                 c.friction = mu;
                 c.tolerance = tolerance;
                 c.robot[2] = pull, c.robot[3] = frequency;
@@ -382,7 +382,7 @@ static void short_slip_is_seen(void **state)
 static void pressed_rebounds_end(void **state)
 {
     (void)state;
-    stance_case c = scene_case("biped", 0.01, 0.8);
+    stance_case c = event_case("biped", 0.01, 0.8);
     static const double start[] = {-0.6190420068784885, 0.6001175971973135, -0.8832618334430357};
     c.position[1] = 1.3;
     c.velocity[0] = 0.765348141110965, c.velocity[1] = -0.6428562436512562;
@@ -407,7 +407,7 @@ static void cases_are_independent(void **state)
     stance_result results[N], back[N];
     uint64_t seed = 3;
     for (int i = 0; i < N; i++) {
-        cases[i] = random_case(&seed, i);
+        cases[i] = random_event_case(&seed, i);
         cases[i].tolerance = i % 2 ? 1e-12 : 1e-9;
         if (i % 10 == 9)
             cases[i].tolerance = 1e-18; /* cannot be met */
@@ -419,7 +419,7 @@ static void cases_are_independent(void **state)
     const stance_kernel *const rod =
         stance_kernel_find(stance_scene_find("rod"), stance_method_find("event-driven"), NULL);
     for (int i = 0; i < 12; i++) { /* of two contacts one, the other or both take part */
-        rods[i] = scene_case("rod", 0.01, 0.5);
+        rods[i] = event_case("rod", 0.01, 0.5);
         rods[i].position[1] = 0.75, rods[i].position[2] = 0.1 + 1.4 * i / 11;
         rods_reversed[11 - i] = rods[i];
     }

@@ -270,15 +270,14 @@ static stance_result numbered(uint64_t row)
 }
 
 /* Through a block, from its third slot on. */
-static void store_results(struct store *store, uint64_t first, size_t n,
-                          const stance_result *results)
+static void store_results(struct store *store, struct rows rows, const stance_result *results)
 {
     stance_message message;
-    struct store_block *block = store_block_make(store, n + 2);
+    struct store_block *block = store_block_make(store, rows.count + 2);
     assert_non_null(block);
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < rows.count; i++)
         store_put(block, i + 2, &results[i]);
-    assert_true(store_write(store, block, 2, first, n, &message));
+    assert_true(store_write(store, block, 2, &rows, &message));
     store_block_free(block);
 }
 
@@ -287,7 +286,7 @@ static void write_rows(struct store *store, uint64_t first, size_t n)
     stance_result results[STORE_ROWS];
     for (size_t i = 0; i < n; i++)
         results[i] = numbered(first + i);
-    store_results(store, first, n, results);
+    store_results(store, (struct rows){NULL, n, first}, results);
 }
 
 static void assert_whole(struct store *store, uint64_t first, size_t n, bool expected)
@@ -295,7 +294,7 @@ static void assert_whole(struct store *store, uint64_t first, size_t n, bool exp
     stance_result results[STORE_ROWS];
     stance_message message;
     bool whole[STORE_ROWS];
-    assert_true(store_verify(store, first, n, results, whole, &message));
+    assert_true(store_verify(store, &(struct rows){NULL, n, first}, results, whole, &message));
     for (size_t i = 0; i < n; i++) {
         assert_int_equal(whole[i], expected);
         if (expected)
@@ -329,6 +328,37 @@ static void test_rows(void **state)
         assert_int_equal(counts.done, n);
         assert_int_equal(counts.failed, 0);
     }
+}
+
+/* Lists of rows, scattered and in one stretch: those are whole, and no others were touched. */
+static void test_listed_rows(void **state)
+{
+    struct fixture *f = *state;
+    struct store *store;
+    stance_message message;
+    struct plan plan = f->plan;
+    plan.record_rows = 0, plan.record_cases = 0;
+    unlink(f->file);
+    assert_true(store_create(f->file, &plan, 1, "here", &message));
+    assert_true(store_open(&store, f->file, &plan, 1, &message));
+    for (uint64_t third = 0; third < 3; third++) {
+        const uint64_t begin = 20 * third, step = 7 - 3 * third;
+        stance_result results[20], read[20];
+        uint64_t rows[20];
+        bool whole[60];
+        size_t n = 0;
+        for (uint64_t row = begin; row < begin + 20; row += step) {
+            results[n] = numbered(row);
+            rows[n++] = row;
+        }
+        store_results(store, (struct rows){rows, n, 0}, results);
+        assert_true(store_verify(store, &(struct rows){rows, n, 0}, read, whole, &message));
+        for (size_t i = 0; i < n; i++)
+            assert_true(whole[i] && read[i].outcome == STANCE_FELL);
+        for (uint64_t row = begin; row < 60; row++)
+            assert_whole(store, row, 1, row < begin + 20 && (row - begin) % step == 0);
+    }
+    assert_true(store_close(store, &message));
 }
 
 static void test_designs_stored(void **state)
@@ -390,15 +420,15 @@ static void test_plain_scene(void **state)
         assert_true(data[1] == 0.6 && data[36] == 0.6 - c.robot[1]); /* z and the gap at 0 */
         assert_true(store_write_trajectory(store, row, &t, &message));
     }
-    store_results(store, 0, 2, results);
-    assert_true(store_verify(store, 0, 3, read, whole, &message));
+    store_results(store, (struct rows){NULL, 2, 0}, results);
+    assert_true(store_verify(store, &(struct rows){NULL, 3, 0}, read, whole, &message));
     assert_true(whole[0] && whole[1] && !whole[2]);
     data[41] += 1;
     assert_true(store_write_trajectory(
         store, 2, &(stance_trajectory){0.1, 6, data, data + 12, NULL, data + 24, data + 36},
         &message));
-    store_results(store, 2, 1, &results[2]);
-    assert_true(store_verify(store, 0, 3, read, whole, &message));
+    store_results(store, (struct rows){NULL, 1, 2}, &results[2]);
+    assert_true(store_verify(store, &(struct rows){NULL, 3, 0}, read, whole, &message));
     assert_true(whole[2]); /* its checksum is of what was written */
     assert_true(store_close(store, &message));
     plan_free(&plan);
@@ -523,14 +553,14 @@ static void test_lock(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_crc32c),       cmocka_unit_test(test_sha256),
-        cmocka_unit_test(test_nearest_word), cmocka_unit_test(test_options),
-        cmocka_unit_test(test_chunks),       cmocka_unit_test(test_designs),
-        cmocka_unit_test(test_recorded),     cmocka_unit_test(test_checks),
-        cmocka_unit_test(test_rows),         cmocka_unit_test(test_designs_stored),
-        cmocka_unit_test(test_origin),       cmocka_unit_test(test_lock),
-        cmocka_unit_test(test_plain_scene),  cmocka_unit_test(test_check),
-        cmocka_unit_test(test_supervise),
+        cmocka_unit_test(test_crc32c),         cmocka_unit_test(test_sha256),
+        cmocka_unit_test(test_nearest_word),   cmocka_unit_test(test_options),
+        cmocka_unit_test(test_chunks),         cmocka_unit_test(test_designs),
+        cmocka_unit_test(test_recorded),       cmocka_unit_test(test_checks),
+        cmocka_unit_test(test_rows),           cmocka_unit_test(test_listed_rows),
+        cmocka_unit_test(test_designs_stored), cmocka_unit_test(test_origin),
+        cmocka_unit_test(test_lock),           cmocka_unit_test(test_plain_scene),
+        cmocka_unit_test(test_check),          cmocka_unit_test(test_supervise),
     };
     store_prepare();
     return cmocka_run_group_tests_name("runner", tests, make_fixture, free_fixture);

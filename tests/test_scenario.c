@@ -495,6 +495,27 @@ static void sets_edit(void **state)
     scenario_free(&s);
 }
 
+/* Long axes of numbers are refined, words and short lists are not. */
+static void refinement(void **state)
+{
+    static const bool refined[] = {false, false, false, false, true};
+    struct scenario s;
+    (void)state;
+    read_good(&s, full, NULL, 0);
+    assert_false(s.refine.given);
+    scenario_free(&s);
+    read_good(&s, full,
+              (const char *[]){"sweep.refine={start: 4}",
+                               "sweep.grid[4]={path: stop.time, from: 1, to: 3, count: 5}",
+                               "record={}"},
+              3);
+    assert_true(s.refine.given && s.refine.start == 4 && s.refine.margin == 1);
+    assert_true(s.refine.probes == 0.01);
+    for (int a = 0; a < s.axes; a++)
+        assert_int_equal(s.axis[a].refined, refined[a]);
+    scenario_free(&s);
+}
+
 static void bad_sets_are_refused(void **state)
 {
     static const char *const wanted[][2] = {
@@ -765,6 +786,7 @@ int main(void)
         cmocka_unit_test(resolved_text_reads_back),
         cmocka_unit_test(resolved_text_is_canonical),
         cmocka_unit_test(sets_edit),
+        cmocka_unit_test(refinement),
         cmocka_unit_test(bad_sets_are_refused),
         cmocka_unit_test(bad_files_lead_to_one_line),
         cmocka_unit_test(unreadable_files_lead_to_one_line),

@@ -168,7 +168,7 @@ static void known_motions(void **state)
 
 /* ---- what only one scene shows -------------------------------------------------------------- */
 
-static stance_case scene_case(const char *name, double step, double time)
+static stance_case scene_case_of(const char *name, double step, double time)
 {
     const stance_scene *scene = stance_scene_find(name);
     stance_case c = {.torque_limit = INFINITY,
@@ -201,7 +201,7 @@ static void slope_threshold(void **state)
     for (int d = 0; d < DEMANDS; d++)
         for (double slope = 0.1; slope < 1.5; slope += 0.2)
             for (int side = -1; side <= 1; side += 2) {
-                stance_case c = scene_case("block", 1e-3, 1);
+                stance_case c = scene_case_of("block", 1e-3, 1);
                 c.robot[1] = slope;
                 c.friction = tan(slope) * (1 + side * 1e-9);
                 const stance_result r = run_one("block", demands[d].method, &c);
@@ -234,7 +234,7 @@ static void endless_bounces(void **state)
         {"event-driven", 1e-1, getenv("STANCE_TEST_LONG") ? 9031 : 903, 0, 1e-9},
     };
     for (size_t i = 0; i < sizeof bounds / sizeof *bounds; i++) {
-        stance_case c = scene_case("ball", bounds[i].step, bounds[i].time);
+        stance_case c = scene_case_of("ball", bounds[i].step, bounds[i].time);
         c.restitution = 1;
         c.position[1] = 1.1;
         const stance_scene *ball = stance_scene_find("ball");
@@ -267,7 +267,7 @@ static void painleve(void **state)
         numbers(row, x, 5);
         const char *kind = json_string_value(json_array_get(row, 7));
         const bool paradox = strcmp(kind, "none") == 0 || strcmp(kind, "two") == 0;
-        stance_case c = scene_case("rod", 1e-4, 0.1);
+        stance_case c = scene_case_of("rod", 1e-4, 0.1);
         c.robot[2] = x[0];
         c.contacts = 1;
         c.position[0] = 0.5 * cos(x[1]), c.position[1] = 0.5 * sin(x[1]), c.position[2] = x[1];
@@ -311,7 +311,7 @@ static void jams(void **state)
             if (!demands[d].zeno)
                 continue;
             double after[3];
-            stance_case c = scene_case("rod", 1e-8, 1e-8);
+            stance_case c = scene_case_of("rod", 1e-8, 1e-8);
             c.robot[2] = number(jam, "inertia_ratio");
             c.friction = number(jam, "friction");
             c.contacts = 1;
@@ -333,7 +333,7 @@ static void redundant_rest(void **state)
 {
     (void)state;
     for (int d = 0; d < DEMANDS; d++) {
-        stance_case c = scene_case("rod", 1e-2, 10);
+        stance_case c = scene_case_of("rod", 1e-2, 10);
         c.friction = 0.3;
         c.settle = true;
         const stance_result r = run_one("rod", demands[d].method, &c);

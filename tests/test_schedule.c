@@ -15,7 +15,7 @@ static void test_stretches(void **state)
 {
     (void)state;
     const uint64_t row[5] = {3, 4, 9, 100, 1000};
-    const struct rows only = {row, 5};
+    const struct rows only = {row, 5, 0};
     uint64_t first, count, place;
     struct schedule schedule = schedule_make(1000, 3, NULL);
     assert_int_equal(schedule_take(&schedule, 10, &place), 0);
@@ -29,7 +29,7 @@ static void test_stretches(void **state)
             next += n;
         }
         assert_int_equal(next, first + count);
-        assert_int_equal(schedule_row(&schedule, first), first);
+        assert_int_equal(rows_at(&schedule.rows, first), first);
     }
     assert_false(schedule_draw(&schedule, 1000));
     assert_int_equal(schedule_take(&schedule, 10, &place), 0);
@@ -37,7 +37,7 @@ static void test_stretches(void **state)
     assert_true(schedule_draw(&schedule, 0));
     assert_int_equal(schedule_take(&schedule, 10, &place), 5);
     for (uint64_t i = 0; i < 5; i++)
-        assert_int_equal(schedule_row(&schedule, place + i), row[i]);
+        assert_int_equal(rows_at(&schedule.rows, place + i), row[i]);
 }
 
 /* ---- the computing loop ------------------------------------------------------------------- */
@@ -100,12 +100,23 @@ static int free_fixture(void **state)
     return 0;
 }
 
+/* Every row that was run has its label: those with a trunk of 9 m, which fail, and no others. */
 static void run_rows(struct fixture *f, const struct rows *only)
 {
     stance_message message;
+    uint8_t label[240] = {0};
+    const struct rows rows = only ? *only : (struct rows){NULL, 240, 0};
     assert_true(parallel_share(&f->parallel));
-    assert_true(work_run(&f->work, only, &message));
+    assert_true(work_run(&f->work, only, label, &message));
     parallel_unshare(&f->parallel);
+    for (uint64_t i = 0; i < rows.count && f->work.time_limit > 0; i++) {
+        if (rows_at(&rows, i) / 3 % 2)
+            assert_int_equal(label[i], WORK_FAILED);
+        else
+            assert_in_range(label[i], STANCE_STABILISED + 1, STANCE_UNDECIDED + 1);
+    }
+    for (uint64_t i = f->work.time_limit > 0 ? rows.count : 0; i < 240; i++)
+        assert_int_equal(label[i], 0);
 }
 
 static void assert_whole(struct fixture *f, const bool *expected)
@@ -113,7 +124,7 @@ static void assert_whole(struct fixture *f, const bool *expected)
     stance_result results[240];
     stance_message message;
     bool whole[240];
-    assert_true(store_verify(f->store, 0, 240, results, whole, &message));
+    assert_true(store_verify(f->store, &(struct rows){NULL, 240, 0}, results, whole, &message));
     for (int row = 0; row < 240; row++) {
         assert_int_equal(whole[row], expected[row]);
         if (whole[row]) /* every other row of three has a trunk of 9 m */
@@ -130,11 +141,11 @@ static void test_lists(void **state)
     for (uint64_t i = 0; i < 240; i++)
         if (uniform(&random, 0, 1) < 0.2 || i == 100 || i / 8 == 3)
             row[n++] = i, whole[i] = true;
-    run_rows(f, &(struct rows){row, n});
+    run_rows(f, &(struct rows){row, n, 0});
     assert_int_equal(f->work.computed, n);
     assert_int_equal(f->work.finished, n);
     assert_whole(f, whole);
-    run_rows(f, &(struct rows){row, 0});
+    run_rows(f, &(struct rows){row, 0, 0});
     assert_int_equal(f->work.computed, n);
     f->work.resume = true;
     run_rows(f, NULL);

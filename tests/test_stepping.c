@@ -5,10 +5,10 @@
 
 #define PENETRATION 1e-9
 #define CONE 1e-9
-#define GOLDEN_IMPLICIT 0x85cec19654049b01u
-#define GOLDEN_MIDPOINT 0xac46ae7350a4ff0eu
-#define GOLDEN_CAPTURING 0x61f8515a076e5283u
-#define GOLDEN_LAGRANGE 0x4811372f0b293830u
+#define GOLDEN_IMPLICIT 0xae32fe96a15eed17u
+#define GOLDEN_MIDPOINT 0x0aab8edc5dc6c958u
+#define GOLDEN_CAPTURING 0xfdc8eeb0f0aa2176u
+#define GOLDEN_LAGRANGE 0x9b4490dd82fb4877u
 
 struct extremes {
     double penetration, cone, impact_energy, energy_of_projection;

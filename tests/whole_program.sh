@@ -33,6 +33,7 @@ png() { # is it a picture of a sensible size?
 for scenario in scenarios/*.yaml scenarios/controllers/*.yaml; do
     name=$(basename "$scenario" .yaml) reduce=()
     case $name in
+    basin_refined) reduce=(--set 'sweep.grid[0].count=64' --set 'sweep.grid[1].count=64') ;;
     basin_*) reduce=(--set 'sweep.grid[0].count=24' --set 'sweep.grid[1].count=24') ;;
     *_sweep | gain_choice | friction_check | switching*)
         reduce=(--set 'sweep.grid[1].count=9' --set 'sweep.grid[2].count=9') ;;

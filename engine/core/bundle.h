@@ -17,11 +17,12 @@ struct window {
 
 struct bundle {
     const stance_feed *feed;
-    const stance_case *which[LANES]; /* NULL: idle */
-    stance_result *result[LANES];
     mask live;                        /* lanes that are not idle */
     int filled;                       /* how many */
     int recorded, capturing, unusual; /* of these: see case_is_unusual */
+    /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
+    _Alignas(sizeof(lanes)) const stance_case *which[LANES]; /* NULL: idle */
+    stance_result *result[LANES];
     struct setting set;
     struct motion now;
     lanes torque[ACTUATORS];  /* in force */

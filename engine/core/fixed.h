@@ -9,6 +9,9 @@
 
 #include "quick.h"
 
+/* Cases may change lanes. */
+#define ADVANCE_MOVES
+
 /* Motions know their energy. */
 #define ADVANCE_TELLS_ENERGY
 

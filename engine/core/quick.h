@@ -142,7 +142,10 @@ HOT mask quick_iterate(const struct quick *q, const struct setting *set, const s
         old[i] = choose_unless(all, m, it->w[i], old[i]);
     iterate_newton(set, from, h, all, m, false, MASK_NONE, false, false, touching, it);
     const lanes left = (h * scene_curvature(&set->body) * it->size) * (it->size + it->shift);
-    return mask_less_equal(left, QUICK_ERROR * it->speed);
+    const mask small = mask_less_equal(left, lanes_of(QUICK_ERROR));
+    if (!mask_any(m & LANES_NOT(small)))
+        return small;
+    return small | mask_less_equal(left, QUICK_ERROR * iterate_speed(it));
 }
 
 /* Further iterations, where one was not enough; returns the lanes where they got there. */

@@ -96,11 +96,20 @@ struct iterate {
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
     mask active[SCENE_CONTACTS];
     mask ambiguous, unsolved;
-    lanes size, speed; /* of the last correction; of the velocity, at least 1 */
-    lanes shift;       /* how far impulses moved with it, as a velocity */
+    lanes size;  /* of the last correction */
+    lanes shift; /* how far impulses moved with it, as a velocity */
     lanes approach[SCENE_CONTACTS], energy, kinetic; /* at the end, see struct motion */
     const int *corner;                               /* see law_inside */
 };
+
+/* What corrections are measured by: the largest velocity, at least 1. */
+HOT lanes iterate_speed(const struct iterate *it)
+{
+    lanes speed = lanes_of(1);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        speed = lanes_max(lanes_abs(it->w[i]), speed);
+    return speed;
+}
 
 /* The velocity that forces and positions see: (1 - theta) w0 + theta w. */
 static inline lanes step_velocity(lanes w0, lanes w)
@@ -240,11 +249,10 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
     if (touching)
         iterate_contacts(set, from, all, running, coupled, touching, &J, &direction, end_lever, dw,
                          it);
-    it->size = lanes_of(0), it->speed = lanes_of(1);
+    it->size = lanes_of(0);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         it->w[i] = choose_unless(all, running, it->w[i] + dw[i], it->w[i]);
         it->size += lanes_abs(dw[i]); /* a sum keeps NAN */
-        it->speed = lanes_max(lanes_abs(it->w[i]), it->speed);
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         it->torque[i] = choose_unless(all, running, torque[i], it->torque[i]);
@@ -437,7 +445,7 @@ HOT void report_residuals(struct step_report *report, mask part, lanes friction,
     const mask loaded = part & mask_less(none, r[0]);
     const lanes normal = choose(loaded, lanes_abs(u[0]), lanes_max(-u[0], none));
     report->signorini = lanes_max(choose(part, normal, none), report->signorini);
-    const lanes beyond = (lanes_abs(r[1]) - bound) / choose(loaded, r[0], lanes_of(1));
+    const lanes beyond = lanes_abs(r[1]) / choose(loaded, r[0], lanes_of(1)) - friction;
     report->coulomb = choose(loaded, lanes_max(beyond, report->coulomb), report->coulomb);
     const mask opposed =
         mask_less_equal((1 - 1e-9) * bound, lanes_abs(r[1])) & mask_less_equal(r[1] * u[1], none);
@@ -614,8 +622,8 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
             news |= hit;
         }
         impact |= news;
-        const mask done = mask_less_equal(it.size, STEP_TOLERANCE * it.speed) & LANES_NOT(news) &
-                          LANES_NOT(it.unsolved);
+        const mask done = mask_less_equal(it.size, STEP_TOLERANCE * iterate_speed(&it)) &
+                          LANES_NOT(news) & LANES_NOT(it.unsolved);
         running &= LANES_NOT(done);
     }
     mask converged = run & LANES_NOT(running);

@@ -13,7 +13,8 @@
  *                                         *failed,
  *   void advance_free(a)                  at the end of all,
  *
- * and may define ADVANCE_ORDINARY: see stream_ordinary.
+ * and may define ADVANCE_ORDINARY (see stream_ordinary), and ADVANCE_MOVES where struct advance
+ * consists of lanes, so that cases may change lanes between steps.
  */
 #ifndef STANCE_CORE_STREAM_H
 #define STANCE_CORE_STREAM_H
@@ -21,7 +22,14 @@
 #include "record.h"
 #include "sample.h"
 
-#define STREAM_STEPS 1000 /* between looks whether to leave */
+/* Bundles of one kind that take turns, and for how many steps. */
+#ifdef ADVANCE_MOVES
+enum { STREAM_BUNDLES = 4, STREAM_STEPS = 250 };
+#else
+enum { STREAM_BUNDLES = 1, STREAM_STEPS = 1000 };
+#endif
+
+#include "regroup.h"
 
 /* Judges and records the initial state of fresh lanes. */
 COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
@@ -123,9 +131,9 @@ HOT void stream_step(struct bundle *b, bool coupled)
     stream_any(b, coupled);
 }
 
-/* A stream's bundles: one for the cases whose law acts inside the step, one for the others. */
+/* A stream's bundles: one for the cases whose law acts inside the step, some for the others. */
 struct stream {
-    struct bundle bundle[2]; /* [coupled] */
+    struct bundle bundle[STREAM_BUNDLES], coupled;
     const stance_feed *feed;
     const stance_case *ahead; /* drawn, but no lane of its bundle is free */
     stance_result *result;
@@ -133,9 +141,8 @@ struct stream {
 };
 
 /* Fills the free lanes of a bundle; those that were filled. */
-static mask stream_fill(struct stream *stream, bool coupled)
+static mask stream_fill(struct stream *stream, struct bundle *b, bool coupled)
 {
-    struct bundle *const b = &stream->bundle[coupled];
     const stance_feed *const feed = stream->feed;
     mask fresh = MASK_NONE;
     for (int lane = 0; lane < LANES; lane++) {
@@ -153,13 +160,11 @@ static mask stream_fill(struct stream *stream, bool coupled)
 }
 
 /* Steps a bundle for a while and refills lanes as they end. */
-static inline __attribute__((always_inline)) void stream_advance(struct stream *stream,
-                                                                 bool coupled)
+HOT void stream_advance(struct stream *stream, struct bundle *b, bool coupled)
 {
-    struct bundle *const b = &stream->bundle[coupled];
     for (int k = 0; k < STREAM_STEPS; k++) {
         while (b->filled < LANES) { /* a case may end at its start */
-            const mask fresh = stream_fill(stream, coupled);
+            const mask fresh = stream_fill(stream, b, coupled);
             if (!mask_any(fresh))
                 break;
             bundle_start(b, fresh, coupled);
@@ -175,14 +180,20 @@ static inline __attribute__((always_inline)) void stream_advance(struct stream *
 COLD bool stream_go(struct stream *stream)
 {
     const stance_feed *const feed = stream->feed;
-    bool leave = false;
-    do {
-        stream_advance(stream, false);
+    bool leave = false, running = true;
+    while (running && !leave) {
+        running = false;
+        for (int k = 0; k < STREAM_BUNDLES; k++) {
+            stream_advance(stream, &stream->bundle[k], false);
+            running |= stream->bundle[k].filled > 0;
+        }
         if (SCENE_ACTUATORS > 0)
-            stream_advance(stream, true);
+            stream_advance(stream, &stream->coupled, true);
+        running |= stream->coupled.filled > 0 || stream->ahead || !stream->drained;
+        if (STREAM_BUNDLES > 1)
+            regroup(stream->bundle, STREAM_BUNDLES);
         leave = feed->leave && feed->leave(feed->context);
-    } while (!leave && (!stream->drained || stream->ahead || stream->bundle[0].filled > 0 ||
-                        stream->bundle[1].filled > 0));
+    }
     return !leave;
 }
 
@@ -190,10 +201,13 @@ static bool bundle_stream(const stance_feed *feed)
 {
     struct stream stream;
     memset(&stream, 0, sizeof stream);
-    stream.feed = stream.bundle[0].feed = stream.bundle[1].feed = feed;
+    stream.feed = stream.coupled.feed = feed;
+    for (int k = 0; k < STREAM_BUNDLES; k++)
+        stream.bundle[k].feed = feed;
     const bool all = stream_go(&stream);
-    advance_free(&stream.bundle[0].advance);
-    advance_free(&stream.bundle[1].advance);
+    for (int k = 0; k < STREAM_BUNDLES; k++)
+        advance_free(&stream.bundle[k].advance);
+    advance_free(&stream.coupled.advance);
     return all;
 }
 

@@ -58,6 +58,9 @@ static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 #define CAPTURE_ATTEMPTS 20000 /* in one step, then the case fails */
 #define CAPTURE_GROWTH 64      /* an error this much smaller than the tolerance: twice as long */
 
+/* Cases may change lanes. */
+#define ADVANCE_MOVES
+
 /* Where each lane is inside its step. */
 struct advance {
     lanes tolerance;

@@ -32,6 +32,9 @@ static const double tableau_b[METHOD_STAGES] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 /
 #define LAGRANGE_BRACKET 1e-12 /* s: a switch is known this well */
 #define LAGRANGE_EVENTS 200    /* in one step, then the case fails */
 
+/* Cases may change lanes. */
+#define ADVANCE_MOVES
+
 /* Where each lane is inside its step. */
 struct advance {
     lanes done;   /* s, of the step */

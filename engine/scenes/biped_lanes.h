@@ -228,12 +228,10 @@ static inline void scene_solve_angles(const scene_matrix *m, bool coupled, const
  * the contact directions are taken at, with `contact_trig` there and the impulses r[contact][2] of
  * the last iterate. torque_rate[i][j] = d Gamma_i / d(rate of posture j) in all, read when
  * `coupled` only. */
-static inline void scene_factor(const scene_body *b, lanes h, double rate, lanes lever,
-                                lanes contact_lever, const scene_trig *trig,
-                                const scene_trig *contact_trig, const lanes *w, const lanes *change,
-                                const lanes r[SCENE_CONTACTS][2], bool coupled,
-                                const lanes torque_rate[SCENE_ACTUATORS][SCENE_POSTURE],
-                                scene_matrix *m)
+HOT void scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes contact_lever,
+                      const scene_trig *trig, const scene_trig *contact_trig, const lanes *w,
+                      const lanes *change, const lanes r[SCENE_CONTACTS][2], bool coupled,
+                      const lanes torque_rate[SCENE_ACTUATORS][SCENE_POSTURE], scene_matrix *m)
 {
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};

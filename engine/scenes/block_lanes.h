@@ -109,11 +109,11 @@ static inline void scene_residual(const scene_body *b, lanes h, lanes t, const s
 }
 
 /* Factors J = d residual / d velocity: the mass. */
-static inline void
-scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes contact_lever,
-             const scene_trig *trig, const scene_trig *contact_trig, const lanes *w,
-             const lanes *change, const lanes r[SCENE_CONTACTS][2], bool coupled,
-             const lanes torque_rate[SLOTS(SCENE_ACTUATORS)][SLOTS(SCENE_POSTURE)], scene_matrix *m)
+HOT void scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes contact_lever,
+                      const scene_trig *trig, const scene_trig *contact_trig, const lanes *w,
+                      const lanes *change, const lanes r[SCENE_CONTACTS][2], bool coupled,
+                      const lanes torque_rate[SLOTS(SCENE_ACTUATORS)][SLOTS(SCENE_POSTURE)],
+                      scene_matrix *m)
 {
     (void)h, (void)rate, (void)lever, (void)contact_lever, (void)trig, (void)contact_trig;
     (void)w, (void)change, (void)r, (void)coupled, (void)torque_rate;

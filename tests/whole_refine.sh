@@ -1,0 +1,222 @@
+#!/usr/bin/env bash
+# Refined maps from outside: the labels of the full map at a part of its cost, the same file whatever
+# the ranks, the lanes, kills and resumes; what the other commands make of it.
+# Speaks TAP. Uses bin/stance, or the program that STANCE names; STANCE_SLOW: that is a slow one.
+set -u
+cd "$(dirname "$0")/.."
+export STANCE=${STANCE:-$PWD/bin/stance}
+stance=$STANCE python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
+scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
+cd "$scratch" || exit 1
+count=0 patience=60 points=150
+[ -n "${STANCE_SLOW:-}" ] && patience=300 points=60
+
+result() { # status, name
+    count=$((count + 1))
+    if (($1 == 0)); then
+        echo "ok $count - $2"
+    else
+        echo "not ok $count - $2"
+        sed 's/^/# /' log 2>/dev/null | tail -n 20
+    fi
+}
+expect() { # name, code, command ...
+    local name=$1 code=$2 status
+    shift 2
+    timeout $patience "$@" >log 2>&1 </dev/null
+    status=$?
+    ((status == code)) || echo "exit code $status, expected $code" >>log
+    result $((status != code)) "$name"
+}
+says() { # name, pattern
+    [ "$(grep -c -- "$2" log)" = 1 ]
+    result $? "$1"
+}
+tool() { # name, task ...
+    local name=$1
+    shift
+    "$python" "$tests/results_tools.py" "$@" >log 2>&1
+    result $? "$name"
+}
+
+# Two maps beside each other: the axis of words is taken in full.
+cat >map.yaml <<END
+stance: 1
+scene: biped
+ground: {friction: 0.8, contacts: [foot1]}
+initial: {equilibrium: {theta: -0.41, q2: 0.82}, support_foot: 1}
+controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
+             sample_time: 0.01, torque_limit: 10}
+method: {name: implicit, step: 0.01}
+stop: {time: 4}
+sweep:
+  grid:
+    - {path: initial.offset.theta, from: -0.12, to: 0.06, count: $points}
+    - {path: method.name, values: [implicit, midpoint]}
+    - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: $points}
+record: {every: 0.1, cases: [0, 1003]}
+END
+refine=(--set 'sweep.refine={start: 16, margin: 1, probes: 0.01}')
+
+expect "the full map" 0 "$stance" run map.yaml -o full.h5 --quiet
+expect "the refined map" 0 "$stance" run map.yaml "${refine[@]}" -o map.h5
+says "... says what was inferred" ': [0-9]* cases: .* of them inferred; '
+tool "every case of it is marked and whole" whole map.h5 $((2 * points * points))
+"$python" - >log 2>&1 <<'END'
+import h5py, numpy
+full, map = h5py.File("full.h5"), h5py.File("map.h5")
+inferred = map["evidence"][...] == 2
+assert 0.5 < inferred.mean() < 0.95, inferred.mean()
+assert (full["outcome"][...] == map["outcome"][...]).mean() > 0.999
+assert (map["status"][...] == 1).all() and set(map["outcome"][...].ravel()) == {1, 2, 4}
+for name in ["outcome", "evidence", "end_time", "steps", "final_state", "checksum"]:
+    assert numpy.array_equal(full[name][...][~inferred], map[name][...][~inferred], True), name
+assert numpy.isnan(map["end_time"][...][inferred]).all()
+assert numpy.isnan(map["final_state"][...][inferred]).all()
+assert (map["steps"][...][inferred] == 0).all()
+n = len(inferred)
+assert not inferred[[0, 16, n - 1]][:, :, [0, 16, n - 1]].any()
+assert not inferred.ravel()[[0, 1003]].any()
+assert numpy.array_equal(full["trajectory/position"], map["trajectory/position"], True)
+END
+result $? "simulated cases are those of the full map, the others have its label and nothing else"
+
+# ---- the same file ---------------------------------------------------------------------------
+for n in 1 2 3; do
+    expect "$n ranks" 0 mpirun -n $n "$stance" run map.yaml "${refine[@]}" -o ranks$n.h5 --quiet
+    tool "$n ranks give the same bits as none" same map.h5 ranks$n.h5
+done
+STANCE_ISA=scalar expect "one lane" 0 "$stance" run map.yaml "${refine[@]}" -o scalar.h5 --quiet
+tool "one lane gives the same bits" same map.h5 scalar.h5
+expect "a finished map is resumed" 0 "$stance" run map.yaml "${refine[@]}" -o scalar.h5 --resume
+says "... and nothing is simulated again" 'inferred; 0 of them computed now'
+tool "... and it stays the same" same map.h5 scalar.h5
+"$python" "$tests/results_tools.py" damage scalar.h5 0
+"$python" "$tests/results_tools.py" damage scalar.h5 5
+expect "a simulated and an inferred case are damaged" 0 mpirun -n 2 "$stance" run map.yaml \
+    "${refine[@]}" -o scalar.h5 --resume --quiet
+tool "... and mended" same map.h5 scalar.h5
+
+# Stopped or killed again and again, each time a little later.
+stopped=0
+for limit in 0.05 0.1 0.2 0.3 0.4 0.6 0.8 1.2 1.6; do
+    timeout $patience "$stance" run map.yaml "${refine[@]}" -o limited.h5 --resume --quiet \
+        --time-limit $limit >log 2>&1
+    code=$?
+    ((code == 4)) && stopped=$((stopped + 1))
+    ((code == 0 || code == 4)) || break
+done
+((stopped > 2)) && ((code == 0 || code == 4))
+result $? "stopped for its time limit more than twice"
+expect "... and ended" 0 "$stance" run map.yaml "${refine[@]}" -o limited.h5 --resume --quiet
+tool "... with the same bits" same map.h5 limited.h5
+
+killed=0
+for attempt in 1 2 3 4 5 6 7 8; do
+    timeout -s KILL 0.$((2 * attempt)) "$stance" run map.yaml "${refine[@]}" -o killed.h5 --resume \
+        --quiet >log 2>&1
+    (($? == 137)) && killed=$((killed + 1))
+    [ -e killed.h5 ] && "$python" "$tests/results_tools.py" whole killed.h5 0 >log 2>&1 || break
+done 2>/dev/null
+((killed > 1))
+result $? "killed more than once, what is marked done is whole"
+mpirun -n 2 "$stance" run map.yaml "${refine[@]}" -o killed.h5 --resume --quiet >log 2>&1 &
+job=$!
+for _ in $(seq 100); do
+    victim=$(pgrep -P $job -x "$(basename "$stance")" | tail -n 1)
+    [ -n "$victim" ] && break
+    sleep 0.02
+done
+sleep 0.4
+kill -9 "$victim" 2>/dev/null
+wait $job 2>/dev/null
+expect "a rank of two was killed, and three went on" 0 mpirun -n 3 "$stance" run map.yaml \
+    "${refine[@]}" -o killed.h5 --resume --quiet
+tool "... with the same bits" same map.h5 killed.h5
+expect "another margin is another scenario" 2 "$stance" run map.yaml "${refine[@]}" \
+    --set sweep.refine.margin=2 -o killed.h5 --resume
+says "... says where" 'made from another scenario: line .*margin'
+
+# A shape that is not a multiple of anything, three axes, and cases that do not exist.
+cube=(--set 'sweep.grid=[{path: initial.offset.theta, from: -0.12, to: 0.06, count: 21},
+    {path: robot.trunk_length, from: 0.3, to: 9, count: 19},
+    {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 30}]' --set 'record={}'
+    --set 'sweep.refine={start: 5, margin: 0}')
+expect "three axes, with robots that cannot stand so" 1 mpirun -n 2 "$stance" run map.yaml \
+    "${cube[@]}" -o cube2.h5 --quiet
+says "... says so" ' cases failed; '
+expect "the same alone" 1 "$stance" run map.yaml "${cube[@]}" -o cube.h5 --quiet
+tool "... the same bits" same cube.h5 cube2.h5
+"$python" - >log 2>&1 <<'END'
+import h5py
+f = h5py.File("cube.h5")
+status, evidence = f["status"][...], f["evidence"][...]
+none = f["design/status"][...] == 2
+assert 2 < none.sum() < 12, none.sum()
+assert (status[:, none] == 2).all() and (status[:, ~none] == 1).all()
+assert (evidence[:, none] == 0).all() and (evidence[:, ~none] > 0).all()
+assert (evidence == 2).mean() > 0.2, (evidence == 2).mean()
+END
+result $? "failed cases were tried, each of them"
+
+# ---- what the other commands make of it --------------------------------------------------------
+expect "check says what will be simulated" 0 "$stance" check map.yaml "${refine[@]}" --json
+mv log check.json
+"$python" - >log 2>&1 <<END
+import json, math
+found = json.load(open("check.json"))
+side = math.ceil(($points - 1) / 2 ** math.ceil(math.log2($points / 16))) + 1
+cases = 2 * $points**2
+assert found["refine"] == {"coarse_cases": 2 * side**2, "most_cases": cases,
+                           "probes": round(0.01 * (cases - 2 * side**2))}, (found["refine"], side)
+assert found["cases"] == cases and found["seconds_is_upper_bound"]
+END
+result $? "... as JSON"
+expect "a dry run" 0 mpirun -n 2 "$stance" run map.yaml "${refine[@]}" -o dry.h5 --dry-run
+says "... says it, too" '^refine .* coarse lattice'
+expect "without refinement" 0 "$stance" check map.yaml --json
+says "... there is none" '"refine": null'
+expect "a summary" 0 "$stance" summary map.h5
+says "... counts what was inferred" 'not simulated: inferred'
+expect "a summary as JSON" 0 "$stance" summary map.h5 --json
+mv log summary.json
+"$python" -c 'import h5py, json
+assert json.load(open("summary.json"))["cases"]["inferred"] == \
+    (h5py.File("map.h5")["evidence"][...] == 2).sum()' >log 2>&1
+result $? "... counts the same"
+expect "maps" 0 "$stance" plot map.h5 -o .
+grep -q "inferred from neighbours" map-map.svg
+result $? "... say what was inferred"
+expect "bit for bit the maps differ" 1 "$stance" compare full.h5 map.h5
+expect "in their labels they do not" 0 "$stance" compare --labels full.h5 map.h5
+says "... says so" "^labels: $((2 * points * points)) of $((2 * points * points)) equal (100 %)"
+# Some labels changed: how far from the boundary, worked out here from its definition.
+"$python" - >log 2>&1 <<'END'
+import h5py, json, numpy, shutil, subprocess, os
+stance = os.environ["STANCE"]
+label = h5py.File("full.h5")["outcome"][...]
+for seed in range(4):
+    shutil.copy("map.h5", "other.h5")
+    places = numpy.random.default_rng(seed).integers(0, label.size, 5)
+    with h5py.File("other.h5", "r+") as f:
+        changed = f["outcome"][...]
+        changed.flat[places] = 3
+        f["outcome"][...] = changed
+    farthest = 0
+    for at in places:
+        i, k, j = numpy.unravel_index(at, label.shape)
+        x, y = numpy.nonzero(label[:, k, :] != label[i, k, j])
+        farthest = max(farthest, numpy.maximum(abs(x - i), abs(y - j)).min())
+    done = subprocess.run([stance, "compare", "--labels", "--json", "full.h5", "other.h5"],
+                          capture_output=True)
+    found = json.loads(done.stdout)
+    assert done.returncode == 1 and found["farthest"] == farthest > 0, (found, farthest)
+    assert found["equal"] == label.size - len(set(places)) and found["compared"] == label.size
+    assert found["first"][0]["index"] == min(places) and found["first"][0]["values"][1] == "rested"
+END
+result $? "compare --labels measures how far from the boundary"
+expect "maps over other axes are not compared" 2 "$stance" compare --labels full.h5 cube.h5
+says "... says so" 'not over the same axes'
+echo "1..$count"
