@@ -5,8 +5,8 @@
 
 #define PENETRATION 1e-9
 #define CONE 1e-9
-#define GOLDEN_IMPLICIT 0xae32fe96a15eed17u
-#define GOLDEN_MIDPOINT 0x0aab8edc5dc6c958u
+#define GOLDEN_IMPLICIT 0x1dee29814fa700e2u
+#define GOLDEN_MIDPOINT 0x874d157cca76a298u
 #define GOLDEN_CAPTURING 0xfdc8eeb0f0aa2176u
 #define GOLDEN_LAGRANGE 0x9b4490dd82fb4877u
 

@@ -40,7 +40,8 @@
     1e-6 /* m/s: a step with frozen geometry that is further off is refused */
 #define STEP_MOST_GAIN                                                                             \
     0.03 /* share of kinetic energies and work; a step that gains more is refused */
-#define STEP_APPROACH 1e-9 /* m/s: a closed contact that approaches faster is an impact */
+#define STEP_MOST_REBOUND 4 /* the same for a step with a rebound, of all kinetic energy */
+#define STEP_APPROACH 1e-9  /* m/s: a closed contact that approaches faster is an impact */
 
 /* What does not change during a case. */
 struct setting {
@@ -424,8 +425,7 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
 
 /* Lanes where the energy gained is what discretisation may gain. The equation of a long step has
  * further roots, at which the robot has turned around several times and is much too fast: such a
- * step is as good as not converged. Not for steps with a rebound: there the place of the impact
- * inside the step decides on the energy, and Newton's restitution may add some. */
+ * step is as good as not converged. */
 HOT mask step_balances(const struct motion *from, const struct iterate *it, lanes work)
 {
     /* At rest there is rounding: a share of the potential energy, of whatever size. */
@@ -434,6 +434,18 @@ HOT mask step_balances(const struct motion *from, const struct iterate *it, lane
     const lanes admitted = lanes_fma(lanes_of(STEP_MOST_GAIN), moving,
                                      lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12)));
     return mask_less_equal(it->energy - from->energy - work, admitted);
+}
+/* The same for a step with a rebound: the place of the impact inside the step decides on its
+ * energy, and Newton's restitution may add some; what multiplies the motion is another root still.
+ */
+HOT mask step_rebounds(const struct motion *from, const struct iterate *it, lanes work)
+{
+    const lanes fallen = (it->energy - it->kinetic) - (from->energy - from->kinetic);
+    const lanes source = from->kinetic + lanes_abs(work) + lanes_abs(fallen);
+    const lanes rounding = lanes_abs(from->energy) + lanes_abs(it->energy);
+    return mask_less_equal(it->kinetic,
+                           lanes_fma(lanes_of(STEP_MOST_REBOUND), source,
+                                     lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12))));
 }
 
 /* Residuals of the contact laws at a contact with force (or impulse) r and velocity u, the normal
@@ -550,7 +562,8 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     it->kinetic = scene_kinetic(&set->body, &it->end, it->w);
     it->energy = it->kinetic + scene_potential(&set->body, it->s1, &it->end);
     const mask rebounds = somewhere & mask_less(none, set->restitution);
-    converged &= rebounds | step_balances(from, it, report->work);
+    converged &= (rebounds & step_rebounds(from, it, report->work)) |
+                 (LANES_NOT(rebounds) & step_balances(from, it, report->work));
     report->ambiguous = choose(it->ambiguous & converged, lanes_of(1), none);
     return converged;
 }
