@@ -449,6 +449,19 @@ static void golden(void **state)
     }
 }
 
+/* So many cases that some have several contact solutions beside neighbours of every kind. */
+static void neighbours_change_nothing(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"implicit", "midpoint"};
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+        const stance_kernel *const wide = kernel_of(methods[m], stance_isa(0));
+        const stance_kernel *const narrow =
+            kernel_of(methods[m], stance_isa(stance_isa(1) ? 1 : 0)); /* the next narrower */
+        assert_true(golden_hash(wide, 4000, false, 4000) == golden_hash(narrow, 4000, false, 4000));
+    }
+}
+
 /* ---- bad days
  * ------------------------------------------------------------------------------------- */
 
@@ -485,6 +498,7 @@ int main(void)
         cmocka_unit_test(first_drop_stages),
         cmocka_unit_test(far_roots_are_refused),
         cmocka_unit_test(golden),
+        cmocka_unit_test(neighbours_change_nothing),
         cmocka_unit_test(failures_are_reported),
     };
     return cmocka_run_group_tests_name("stepping", tests, NULL, NULL);
