@@ -126,7 +126,7 @@ static void ordinary_steps_are_converged(void **state)
                 struct motion next = b.now;
                 for (int a = 0; a < 2; a++) /* torques change as a law's would */
                     torque[a] += h * uniform(&seed, -20, 20);
-                const contact_set touching = fixed_touching(&b.set, &b.now, true);
+                const contact_set touching = step_touching(&b.set, b.now.gap, true);
                 const bool good = quick_try(&b.advance.quick, &b.set, &b.now, torque, h, true,
                                             touching, &it, &quick);
                 const bool there = take_step(&b.set, &b.now, torque, h, true, false,

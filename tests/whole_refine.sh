@@ -13,33 +13,7 @@ cd "$scratch" || exit 1
 count=0 patience=60 points=150
 [ -n "${STANCE_SLOW:-}" ] && patience=300 points=60
 
-result() { # status, name
-    count=$((count + 1))
-    if (($1 == 0)); then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        sed 's/^/# /' log 2>/dev/null | tail -n 20
-    fi
-}
-expect() { # name, code, command ...
-    local name=$1 code=$2 status
-    shift 2
-    timeout $patience "$@" >log 2>&1 </dev/null
-    status=$?
-    ((status == code)) || echo "exit code $status, expected $code" >>log
-    result $((status != code)) "$name"
-}
-says() { # name, pattern
-    [ "$(grep -c -- "$2" log)" = 1 ]
-    result $? "$1"
-}
-tool() { # name, task ...
-    local name=$1
-    shift
-    "$python" "$tests/results_tools.py" "$@" >log 2>&1
-    result $? "$name"
-}
+. "$tests/outside.sh"
 
 # Two maps beside each other: the axis of words is taken in full.
 cat >map.yaml <<END

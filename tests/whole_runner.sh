@@ -14,39 +14,11 @@ count=0
 patience=60 span=5 # seconds that a command may take, and that the cases of a long job last
 [ -n "${STANCE_SLOW:-}" ] && patience=300 span=0.5
 
-result() { # status, name
-    count=$((count + 1))
-    if (($1 == 0)); then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        sed 's/^/# /' log 2>/dev/null | tail -n 20
-    fi
-}
-# Runs a command, not for ever; ok when it exits with this code.
-expect() { # name, code, command ...
-    local name=$1 code=$2 status
-    shift 2
-    timeout $patience "$@" >log 2>&1 </dev/null
-    status=$?
-    ((status == code)) || echo "exit code $status, expected $code" >>log
-    result $((status != code)) "$name"
-}
-# The log has exactly one line of the program, and it matches.
-says() { # name, pattern
-    [ "$(grep -c "$2" log)" = 1 ]
-    result $? "$1"
-}
+. "$tests/outside.sh"
 looks() { # name, kind ...
     local name=$1
     shift
     "$python" "$tests/open_results.py" "$@" >log 2>&1
-    result $? "$name"
-}
-tool() { # name, task ...
-    local name=$1
-    shift
-    "$python" "$tests/results_tools.py" "$@" >log 2>&1
     result $? "$name"
 }
 skip() { echo "ok $((++count)) - $1 # SKIP $2"; }

@@ -2,7 +2,7 @@
  * that step.h can do; a step that does not converge is tried with each torque free or at its limit
  * in turn, then taken in parts.
  *
- * One of the ways to get from one step's end to the next (`advance`, see bundle.h).
+ * One of the ways to get from one step's end to the next (`advance`, see stream.h).
  */
 #ifndef STANCE_CORE_FIXED_H
 #define STANCE_CORE_FIXED_H
@@ -98,18 +98,6 @@ COLD mask fixed_subdivide(const struct setting *set, const struct motion *from, 
     return run & LANES_NOT(failed);
 }
 
-/* Contacts that are closed in any of the lanes. */
-static inline contact_set fixed_touching(const struct setting *set, const struct motion *now,
-                                         mask live)
-{
-    contact_set touching = 0;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (mask_any(live & mask_less(lanes_of(0), set->may_touch[c]) &
-                     mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED))))
-            touching |= 1u << c;
-    return touching;
-}
-
 /* The bundle's contacts as the compiler should know them. */
 enum {
     TOUCHING_NONE = 0,
@@ -139,8 +127,8 @@ COLD mask advance(struct advance *a, const struct setting *set, const lanes *tor
     mask ok = MASK_NONE;
     if (!coupled) {
         struct iterate it;
-        ok = quick_try(&a->quick, set, now, torque, h, live, fixed_touching(set, now, live), &it,
-                       report);
+        ok = quick_try(&a->quick, set, now, torque, h, live, step_touching(set, now->gap, live),
+                       &it, report);
         quick_keep(&a->quick, &it, h, false, ok, now);
     }
     const mask other = live & LANES_NOT(ok);

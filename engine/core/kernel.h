@@ -2,7 +2,7 @@
  *
  * A method's file is compiled once per scene and instruction set with -DSTANCE_SCENE=biped
  * -DSTANCE_SCENE_LANES=\"../scenes/biped_lanes.h\" -DSTANCE_ISA=avx2 -DSTANCE_LANES=4; it defines
- * METHOD and METHOD_THETA, includes bundle.h, and ends in STANCE_KERNEL, its one const struct.
+ * METHOD and METHOD_THETA, includes stream.h, and ends in STANCE_KERNEL, its one const struct.
  */
 #ifndef STANCE_CORE_KERNEL_H
 #define STANCE_CORE_KERNEL_H

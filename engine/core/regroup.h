@@ -55,8 +55,7 @@ static void regroup_recount(struct bundle *b)
         }
 }
 
-/* Sorts the lanes of n bundles by their contacts, with as few exchanges as that takes but one or
- * two. */
+/* Sorts the lanes of n bundles by their contacts; what is sorted stays where it is. */
 COLD void regroup(struct bundle *b, int n)
 {
     int key[STREAM_BUNDLES * LANES], count[REGROUP_KEYS] = {0}, wanted = 0;
@@ -73,12 +72,9 @@ COLD void regroup(struct bundle *b, int n)
             j++;
         if (j == i)
             continue;
-        if (i / LANES != j / LANES || wanted == REGROUP_KEYS - 1) {
-            regroup_swap(&b[i / LANES], i % LANES, &b[j / LANES], j % LANES);
-            moved = true;
-        }
-        const int other = key[i];
-        key[i] = wanted, key[j] = other;
+        regroup_swap(&b[i / LANES], i % LANES, &b[j / LANES], j % LANES);
+        key[j] = key[i], key[i] = wanted;
+        moved = true;
     }
     for (int k = 0; k < n && moved; k++)
         regroup_recount(&b[k]);

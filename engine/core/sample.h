@@ -44,7 +44,7 @@ static void bundle_decouple(struct bundle *b, mask due, lanes *command)
         return;
     struct dynamics e;
     struct contact_state contact;
-    const contact_set touching = smooth_touching(&b->set, b->now.gap);
+    const contact_set touching = step_touching(&b->set, b->now.gap, LANES_ALL);
     e.trig = b->now.trig;
     dynamics_evaluate(&b->set, b->now.t, b->now.s, b->now.w, none, touching, true, &e);
     decoupling_contacts(&b->set, &e, &contact);

@@ -143,17 +143,6 @@ struct smooth_trouble {
     mask several; /* more than one set of forces does */
 };
 
-/* Contacts that are closed in any lane: is there anything to solve? */
-static inline contact_set smooth_touching(const struct setting *set, const lanes *gap)
-{
-    contact_set touching = 0;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (mask_any(mask_less(lanes_of(0), set->may_touch[c]) &
-                     mask_less_equal(gap[c], lanes_of(STEP_CLOSED))))
-            touching |= 1u << c;
-    return touching;
-}
-
 /* Lanes where a contact that should begin to slip would be pulled the other way: sticking is
  * impossible and sliding too. */
 static inline mask smooth_jammed(const struct setting *set, const struct dynamics *e,

@@ -62,6 +62,17 @@ struct motion {
     lanes energy, kinetic;          /* J, of this state; where steps of step.h are taken */
 };
 
+/* Contacts that are closed in any of the lanes m: is there anything to solve? */
+static inline contact_set step_touching(const struct setting *set, const lanes *gap, mask m)
+{
+    contact_set touching = 0;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
+                     mask_less_equal(gap[c], lanes_of(STEP_CLOSED))))
+            touching |= 1u << c;
+    return touching;
+}
+
 /* Fills in the energies of a motion. */
 static inline void motion_energy(const struct setting *set, struct motion *m)
 {

@@ -52,7 +52,7 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
         struct dynamics e;
         const struct drive drive = {b->torque, true, NULL};
         smooth_evaluate(&b->set, b->now.t, b->now.s, b->now.w, b->now.integral, &drive,
-                        smooth_touching(&b->set, b->now.gap), &e);
+                        step_touching(&b->set, b->now.gap, LANES_ALL), &e);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             b->torque[i] = choose(fresh, e.torque[i], b->torque[i]);
     }
@@ -93,7 +93,7 @@ HOT bool stream_ordinary(struct bundle *b, contact_set touching)
 /* Compiled for each set of contacts that matters. */
 HOT bool stream_try_ordinary(struct bundle *b)
 {
-    const contact_set touching = fixed_touching(&b->set, &b->now, b->live);
+    const contact_set touching = step_touching(&b->set, b->now.gap, b->live);
     if (touching == TOUCHING_NONE)
         return stream_ordinary(b, TOUCHING_NONE);
     if (touching == TOUCHING_FIRST)

@@ -181,7 +181,7 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
     struct dynamics begin;
     struct contact_state mode;
     struct smooth_trouble trouble;
-    const contact_set touching = smooth_touching(set, now->gap);
+    const contact_set touching = step_touching(set, now->gap, LANES_ALL);
     const struct drive drive = {torque, coupled, NULL};
     smooth_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
     smooth_mode(set, &begin, touching, &mode, &trouble);

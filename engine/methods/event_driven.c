@@ -369,7 +369,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         const double *const s = p->y, *const w = p->y + SCENE_COORDINATES;
         struct smooth_trouble trouble;
         bool below = false;
-        const contact_set touching = smooth_touching(a->problem.set, now->gap);
+        const contact_set touching = step_touching(a->problem.set, now->gap, LANES_ALL);
         const struct drive drive = {a->problem.torque, a->problem.coupled, NULL};
         smooth_evaluate(a->problem.set, a->problem.begin + p->tau, s, w, p->y + EVENT_INTEGRAL,
                         &drive, touching, &p->e);

@@ -72,7 +72,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     struct contact_state mode;
     struct smooth_trouble trouble;
     struct explicit_step step;
-    const contact_set touching = smooth_touching(set, now->gap);
+    const contact_set touching = step_touching(set, now->gap, LANES_ALL);
     const struct drive drive = {torque, coupled, NULL};
     smooth_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
     smooth_mode(set, &begin, touching, &mode, &trouble);
