@@ -18,7 +18,8 @@ STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-tree-slp-vectorize -fno
 # ---- libraries: found with pkg-config and mpicc; MPI=0 builds for one rank with serial HDF5 ------
 PKG_CONFIG ?= pkg-config
 PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
-                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev gnuplot-nox fonts-dejavu-core
+                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev gnuplot-nox \
+                fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
 PACKAGES_LINT = clang-format clang-tidy cppcheck
 PACKAGES_NEON = gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
