@@ -35,9 +35,10 @@ static void print_result(const struct request *request, const struct merge *m)
     }
     putchar('\n');
     if (copied->damaged > 0) {
-        fprintf(stderr,
-                "stance merge: %llu cases are not as their checksums say and were left out\n",
-                (unsigned long long)copied->damaged);
+        fprintf(stderr, "stance merge: %llu case%s not as %s checksum%s left out\n",
+                (unsigned long long)copied->damaged, copied->damaged == 1 ? " is" : "s are",
+                copied->damaged == 1 ? "its" : "their",
+                copied->damaged == 1 ? " says and was" : "s say and were");
     }
     if (m->keyed) {
         fprintf(stderr,

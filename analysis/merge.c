@@ -197,9 +197,10 @@ static bool copy_parts(struct merge *m, struct store *store, bool *usage, stance
         }
         if (good && m->copied.conflicting > 0) {
             snprintf(message->text, sizeof message->text,
-                     "%.80s: %llu cases differ from what another part has, the first is case %llu "
+                     "%.80s: %llu case%s from what another part has, the first is case %llu "
                      "of the whole",
                      m->part[p].file, (unsigned long long)m->copied.conflicting,
+                     m->copied.conflicting == 1 ? " differs" : "s differ",
                      (unsigned long long)m->copied.conflict);
             *usage = true;
             good = false;

@@ -99,6 +99,9 @@ double summary_share(const struct summary *summary, const struct statistics_coun
 const char *summary_failure_name(int failure);
 const char *summary_failure_text(int failure);
 
+/* Prints the counts as CSV: of all cases, then of every value of every parameter. */
+void summary_print_csv(const struct summary *summary, const struct results *r);
+
 /* Prints it as JSON; false when memory or the output fails. */
 bool summary_print_json(const struct summary *summary, const struct results *r);
 
