@@ -100,10 +100,10 @@ static void offsets_of_translation(void **state)
     assert_true(after.position[0] == before.position[0] + 0.5);
     assert_true(after.position[1] == before.position[1] + 0.25);
     assert_true(after.velocity[0] == -1 && after.velocity[1] == 2);
-    v.offset_scale = -0.5;
-    const stance_case turned = resolved(&v);
-    assert_true(turned.position[0] == before.position[0] - 0.25);
-    assert_true(turned.velocity[0] == 0.5 && turned.velocity[1] == -1);
+    v.offset_scale = 0.5;
+    const stance_case halved = resolved(&v);
+    assert_true(halved.position[0] == before.position[0] + 0.25);
+    assert_true(halved.velocity[0] == -0.5 && halved.velocity[1] == 1);
     assert_memory_equal(after.position + 2, before.position + 2, 3 * sizeof(double));
     v.offset[1] = -1e-10; /* rounding, as far as a start goes */
     resolved(&v);
