@@ -3,11 +3,12 @@
  * The run is a list of stages. Every rank goes through each, then all agree on how it went: an
  * error of any rank is printed once, and all leave together with its exit code.
  */
+#include "run.h"
+
 #include "build_info.h"
-#include "checksum.h"
 #include "command.h"
+#include "crash.h"
 #include "instruction_set.h"
-#include "lock.h"
 #include "report.h"
 #include "rounds.h"
 #include "supervise.h"
@@ -22,36 +23,6 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
-
-struct options {
-    const char *scenario, *output; /* output NULL: the default */
-    const char **sets;
-    size_t set_count;
-    bool force, resume, single, trace, dry_run, quiet, help;
-    uint64_t single_case;
-    double time_limit; /* s, INFINITY: none */
-};
-
-struct failure {
-    int code;       /* EXIT_DONE: none */
-    char text[600]; /* one line; empty when it has been printed already */
-};
-
-struct run {
-    int argc;
-    char **argv;
-    struct parallel parallel;
-    struct options options;
-    struct scenario *scenario;
-    char file[1024];
-    bool resume, replace; /* the file exists and is gone on with, or replaced */
-    struct lock lock;
-    struct plan plan;
-    struct store *store;
-    struct work work;
-    struct failure failure; /* of this rank */
-    double start;
-};
 
 static void fail(struct run *run, int code, const char *text)
 {
@@ -456,9 +427,8 @@ static void stage_captures(struct run *run)
     if (message.text[0]) {
         fail_io(run, &message);
     } else {
-        snprintf(run->failure.text, sizeof run->failure.text,
-                 "stance run: stopped while captured sets were estimated: nothing is stored");
         run->failure.code = EXIT_INTERRUPTED;
+        run_say_stopped(run, "stopped while captured sets were estimated: nothing is stored");
     }
 }
 
@@ -584,119 +554,30 @@ static void stage_close(struct run *run)
     }
 }
 
-/* ---- the end ------------------------------------------------------------------------------ */
-
-static void print_word(FILE *to, const char *word)
-{
-    if (word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                          "_-+./,:=@%")] == '\0' &&
-        word[0]) {
-        fprintf(to, " %s", word);
-        return;
-    }
-    fputs(" '", to);
-    for (; *word; word++) {
-        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, to);
-    }
-    fputc('\'', to);
-}
-
-/* The command that goes on: the same one with --resume. */
-static void print_interrupted(const struct run *run, uint64_t finished)
-{
-    char *line = NULL; /* in one piece: a launcher mixes what ranks write in pieces */
-    size_t size = 0;
-    FILE *to = open_memstream(&line, &size);
-    if (!to) {
-        return;
-    }
-    fprintf(to, "stance run: stopped at %" PRIu64 " of %" PRIu64 " cases; go on with:", finished,
-            run->plan.rows);
-    if (run->parallel.size > 1) {
-        fprintf(to, " mpirun -n %d", run->parallel.size);
-    }
-    fprintf(to, " stance run");
-    for (int i = 1; i < run->argc; i++) {
-        if (strcmp(run->argv[i], "--force") != 0 && strcmp(run->argv[i], "--resume") != 0) {
-            print_word(to, run->argv[i]);
-        }
-    }
-    fputs(run->options.single ? " --force\n" : " --resume\n", to);
-    if (fclose(to) == 0) {
-        fputs(line, stderr);
-    }
-    free(line);
-}
-
-/* What came out, over all ranks. */
-struct sums {
-    uint64_t outcome[WORK_OUTCOMES], failed, finished, computed, inferred;
-};
-
-static void print_summary(const struct run *run, const struct sums *sums)
-{
-    static const char *const name[WORK_OUTCOMES] = {"without outcome", "stabilised", "fell",
-                                                    "rested", "undecided"};
-    double wall = plan_clock() - run->start;
-    const char *separator = ": ";
-
-    printf("%s: %" PRIu64 " case%s", run->file, sums->finished, sums->finished == 1 ? "" : "s");
-    for (int i = 0; i < WORK_OUTCOMES; i++) {
-        if (sums->outcome[i] > 0) {
-            printf("%s%" PRIu64 " %s", separator, sums->outcome[i], name[i]);
-            separator = ", ";
-        }
-    }
-    if (sums->failed > 0) {
-        printf("%s%" PRIu64 " failed", separator, sums->failed);
-    }
-    if (sums->inferred > 0) {
-        printf("; %" PRIu64 " of them inferred", sums->inferred);
-    }
-    if (sums->computed + sums->inferred < sums->finished) {
-        printf("; %" PRIu64 " of them computed now", sums->computed);
-    }
-    printf("; %.1f s on %d rank%s\n", wall, run->parallel.size, run->parallel.size == 1 ? "" : "s");
-    fflush(stdout);
-}
-
-/* Adds up over the ranks and says what came out. */
-static int conclude(struct run *run)
-{
-    const struct work *work = &run->work;
-    struct sums sums = {.failed = work->failed,
-                        .finished = work->finished,
-                        .computed = work->computed,
-                        .inferred = work->inferred};
-    memcpy(sums.outcome, work->outcome, sizeof sums.outcome);
-    parallel_sum(&run->parallel, (uint64_t *)&sums, sizeof sums / sizeof(uint64_t));
-    bool complete = sums.finished == run->plan.rows;
-
-    if (run->parallel.rank == 0) {
-        if (!run->options.quiet) {
-            print_summary(run, &sums);
-        }
-        if (!complete) {
-            print_interrupted(run, sums.finished);
-        } else if (sums.failed > 0) {
-            fprintf(stderr,
-                    "stance run: %" PRIu64
-                    " case%s failed; the variable `failure` in %s says why\n",
-                    sums.failed, sums.failed == 1 ? "" : "s", run->file);
-        }
-    }
-    return !complete ? EXIT_INTERRUPTED : sums.failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
-}
+/* ---- the whole ----------------------------------------------------------------------------- */
 
 /* Goes through the stages; stops where one failed on any rank. */
 static int go_through(struct run *run)
 {
-    static void (*const stage[])(struct run *) = {
-        stage_options, stage_scenario, stage_claim,   stage_plan,   stage_designs, stage_captures,
-        stage_create,  stage_open,     stage_compute, stage_timing, stage_close,
+    static const struct {
+        void (*go)(struct run *);
+        const char *doing;
+    } stage[] = {
+        {stage_options, "reading its options"},
+        {stage_scenario, "reading the scenario"},
+        {stage_claim, "looking into the results file"},
+        {stage_plan, "making the plan"},
+        {stage_designs, "computing designs"},
+        {stage_captures, "estimating captured sets"},
+        {stage_create, "creating the results file"},
+        {stage_open, "opening the results file"},
+        {stage_compute, "computing"},
+        {stage_timing, "storing times"},
+        {stage_close, "closing the results file"},
     };
     for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {
-        stage[i](run);
+        crash_stage(stage[i].doing);
+        stage[i].go(run);
         if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
                             sizeof run->failure)) {
             if (run->parallel.rank == 0 && run->failure.text[0]) {
@@ -704,14 +585,14 @@ static int go_through(struct run *run)
             }
             return run->failure.code;
         }
-        if (stage[i] == stage_options && run->options.help) {
+        if (stage[i].go == stage_options && run->options.help) {
             return EXIT_DONE;
         }
-        if (stage[i] == stage_designs && run->options.dry_run) {
+        if (stage[i].go == stage_designs && run->options.dry_run) {
             return EXIT_DONE;
         }
     }
-    return conclude(run);
+    return run_conclude(run);
 }
 
 static int run_run(int argc, char **argv)
@@ -727,6 +608,7 @@ static int run_run(int argc, char **argv)
     run->start = plan_clock();
     run->lock.descriptor = -1;
     run->parallel = parallel_start();
+    crash_watch(run->parallel.rank);
     work_catch_signals();
     int code = go_through(run);
     store_abandon(run->store);

@@ -12,6 +12,7 @@
  */
 #include "work.h"
 
+#include "crash.h"
 #include "instruction_set.h"
 
 #include <inttypes.h>
@@ -78,6 +79,7 @@ struct task {
     uint64_t place;  /* of the trajectory in the file */
     struct block *block;
     size_t slot;
+    int hand; /* place in the list of what is in hand, see crash.h */
     struct task *next, *next_idle;
 };
 
@@ -190,6 +192,7 @@ static struct task *task_take(struct job *job)
         out_of_memory(job, "the cases");
         return NULL;
     }
+    task->hand = -1;
     task->next = job->tasks;
     job->tasks = task;
     return task;
@@ -197,6 +200,8 @@ static struct task *task_take(struct job *job)
 
 static void task_leave(struct job *job, struct task *task)
 {
+    crash_leave(task->hand);
+    task->hand = -1;
     task->next_idle = job->idle_task;
     job->idle_task = task;
 }
@@ -324,6 +329,38 @@ static void case_done(void *context, const stance_case *input, stance_result *re
 
 static bool attend(void *context);
 
+/* Counts a row that is marked done but does not verify; the lowest ones are named. */
+static void note_damage(struct work *work, uint64_t row)
+{
+    uint64_t index = plan_case(work->plan, row);
+    const uint64_t named = work->damaged < WORK_NAMED ? work->damaged : WORK_NAMED;
+    work->damaged++;
+    for (uint64_t k = 0; k < named; k++) {
+        if (index < work->damaged_case[k]) {
+            const uint64_t higher = work->damaged_case[k];
+            work->damaged_case[k] = index;
+            index = higher;
+        }
+    }
+    if (named < WORK_NAMED) {
+        work->damaged_case[named] = index;
+    }
+}
+
+bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,
+                 stance_message *message)
+{
+    if (!store_verify(work->store, rows, results, whole, message)) {
+        return false;
+    }
+    for (size_t i = 0; i < rows->count; i++) {
+        if (!whole[i] && results[i].status != STANCE_PENDING) {
+            note_damage(work, rows_at(rows, i));
+        }
+    }
+    return true;
+}
+
 /* Rows that the file of a resumed run holds whole are as good as ended. */
 static void keep_rows(struct job *job, struct block *block)
 {
@@ -334,7 +371,7 @@ static void keep_rows(struct job *job, struct block *block)
     for (size_t slot = 0, n; slot < block->count && !job->broken; slot += n) {
         n = block->count - slot < STORE_ROWS ? block->count - slot : STORE_ROWS;
         const struct rows rows = rows_part(&job->schedule.rows, block->first + slot, n);
-        if (!store_verify(job->work->store, &rows, results, whole, job->message)) {
+        if (!work_verify(job->work, &rows, results, whole, job->message)) {
             break_off(job);
             return;
         }
@@ -448,6 +485,7 @@ static bool next_case(void *context, const stance_case **input, stance_result **
         }
         block->state[slot] = RUNNING;
         if (exists) {
+            task->hand = crash_take(plan_case(job->plan, row));
             *input = &task->input;
             *result = &task->result;
             return true;
@@ -592,6 +630,7 @@ static void job_free(struct job *job)
     }
     for (struct task *task = job->tasks, *next; task; task = next) {
         next = task->next;
+        crash_leave(task->hand);
         free(task->samples);
         free(task);
     }

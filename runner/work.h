@@ -11,7 +11,7 @@
 #include "schedule.h"
 #include "store.h"
 
-enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1, WORK_FAILED = WORK_OUTCOMES + 1 };
+enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1, WORK_FAILED = WORK_OUTCOMES + 1, WORK_NAMED = 5 };
 
 struct work {
     const struct plan *plan;
@@ -30,6 +30,10 @@ struct work {
     uint64_t inferred; /* of these, now and without simulation */
     uint64_t outcome[WORK_OUTCOMES], failed;
     double seconds;
+
+    /* Cases that the file marks as done but whose answers do not verify, and the lowest of them:
+     * they are computed again. */
+    uint64_t damaged, damaged_case[WORK_NAMED];
 };
 
 /* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop: cases in hand are given up, what has
@@ -45,6 +49,10 @@ bool work_told_to_stop(const struct work *work);
 
 /* Counts a case whose answer is in the file, or will be. */
 void work_tally(struct work *work, stance_status status, stance_outcome outcome);
+
+/* store_verify for a resumed run: counts what is damaged. */
+bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,
+                 stance_message *message);
 
 /* Computes all rows of the plan, or `only` some. Not collective, but every rank calls it, with the
  * same rows and with counters that are new (parallel_share, parallel_restart). Leaves early when

@@ -34,6 +34,8 @@ import sys
 import h5py
 import numpy as np
 
+from results_tools import ANSWERS, crc32c
+
 SCENARIO = """stance: 1
 title: {title}
 scene: biped
@@ -151,7 +153,10 @@ class File:
             state = self.scale(self.file, "state", STATES)
             final = np.zeros(n + (10,)) + np.array(EQUILIBRIUM + [0.0] * 5)
             self.variable("final_state", final, self.axes + [state])
-        self.variable("checksum", np.zeros(n, "u4"), self.axes)
+        parts = [np.frombuffer(self.file[name][...].tobytes(), np.uint8).reshape(status.size, -1)
+                 for name in ANSWERS if name in self.file]
+        parts.append(status.astype("u1").reshape(-1, 1))
+        self.variable("checksum", crc32c(np.hstack(parts)).reshape(n), self.axes)
         self.variable("status", status, self.axes)
         design = self.file.create_group("design")
         coordinate = self.scale(design, "coordinate", STATES[:5])
