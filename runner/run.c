@@ -21,7 +21,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 static void fail(struct run *run, int code, const char *text)
@@ -286,7 +285,6 @@ static int check_file(void *file)
 static void look_into_file(struct run *run)
 {
     struct store_origin origin;
-    struct store_counts counts = {0};
     stance_message message = {""};
 
     run->failure.code = supervise(check_file, run->file, run->file);
@@ -309,13 +307,8 @@ static void look_into_file(struct run *run)
                 fail_io(run, &message);
             }
         }
-        if (!store_count(run->file, &counts, &message)) {
-            fail_io(run, &message);
-        }
     }
     store_origin_free(&origin);
-    struct lock_note note = {(double)time(NULL), counts.done + counts.failed};
-    lock_write_note(&run->lock, &note);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -348,6 +341,10 @@ static void claim_file(struct run *run)
         fail_io(run, &message);
         return;
     }
+    if (!pulse_begin(&run->pulse, &run->lock, &run->parallel, "starting")) {
+        fail(run, EXIT_IO, "stance run: not enough memory");
+        return;
+    }
     run->resume = exists && o->resume;
     run->replace = exists && o->force;
     if (run->resume) {
@@ -378,14 +375,49 @@ static void share_axes(struct run *run)
     }
 }
 
+/* While designs and captured sets are computed: whether any rank is to stop. */
+static bool out_of_time(void *context)
+{
+    struct run *run = context;
+    stance_message message = {""};
+    const double now = plan_clock();
+    bool stop = work_stop_asked() || now - run->start > run->options.time_limit;
+
+    if (run->parallel.rank == 0 && run->pulse.lock) {
+        stop = !pulse_beat(&run->pulse, now, 0, 0, 0, &message) || stop;
+    }
+    if (stop || run->parallel.rank == 0 || now >= run->look_at) {
+        run->look_at = now + schedule_look_interval(run->parallel.size);
+        stop = parallel_add(&run->parallel, COUNTER_STOP, stop) != 0 || stop;
+        parallel_beat(&run->parallel, ++run->work.beats);
+    }
+    if (message.text[0]) {
+        fail_io(run, &message);
+    }
+    return stop;
+}
+
 static void stage_plan(struct run *run)
 {
     struct plan_error error = {0};
     const struct options *o = &run->options;
 
     share_axes(run);
-    if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
+    if (!parallel_share(&run->parallel)) {
+        fail(run, EXIT_IO, "stance run: not enough memory");
+    } else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
         fail_scenario(run, &error);
+    }
+    run->plan.stop = out_of_time;
+    run->plan.stop_context = run;
+}
+
+/* A stop before there is a file. */
+static void stop_early(struct run *run, const char *what)
+{
+    if (run->failure.code == EXIT_DONE) {
+        run->failure.code = EXIT_INTERRUPTED;
+        run_say_stopped(run, what);
     }
 }
 
@@ -398,6 +430,10 @@ static void stage_designs(struct run *run)
         return; /* they are in the file */
     }
     good = plan_compute_designs(&run->plan, &run->parallel, &error);
+    if (!good && !error.message.text[0]) {
+        stop_early(run, "stopped while designs were computed: nothing is stored");
+        return;
+    }
     if (good && run->parallel.rank == 0) {
         good = plan_check_cases(&run->plan, &error);
     }
@@ -408,14 +444,7 @@ static void stage_designs(struct run *run)
     }
 }
 
-static bool out_of_time(void *context)
-{
-    const struct run *run = context;
-    return work_stop_asked() || plan_clock() - run->start > run->options.time_limit;
-}
-
-/* Sets in which cases are captured, where the scenario asks for them. A stop meanwhile leaves no
- * file. */
+/* Sets in which cases are captured, where the scenario asks for them. */
 static void stage_captures(struct run *run)
 {
     stance_message message = {""};
@@ -427,8 +456,7 @@ static void stage_captures(struct run *run)
     if (message.text[0]) {
         fail_io(run, &message);
     } else {
-        run->failure.code = EXIT_INTERRUPTED;
-        run_say_stopped(run, "stopped while captured sets were estimated: nothing is stored");
+        stop_early(run, "stopped while captured sets were estimated: nothing is stored");
     }
 }
 
@@ -475,9 +503,6 @@ static void stage_create(struct run *run)
             fail_io(run, &message);
         } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &message)) {
             fail_io(run, &message);
-        } else {
-            struct lock_note note = {(double)time(NULL), 0};
-            lock_write_note(&run->lock, &note);
         }
     }
     free(hosts);
@@ -486,6 +511,9 @@ static void stage_create(struct run *run)
 static void stage_open(struct run *run)
 {
     stance_message message = {""};
+    if (run->parallel.rank == 0) {
+        pulse_guard(&run->pulse, run->file);
+    }
     if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &message) ||
         !store_read_designs(run->store, &run->plan, &message)) {
         fail_io(run, &message);
@@ -497,17 +525,15 @@ static void stage_compute(struct run *run)
     stance_message message = {""};
     run->work = (struct work){
         .plan = &run->plan,
+        .parallel = &run->parallel,
+        .pulse = run->parallel.rank == 0 ? &run->pulse : NULL,
+        .beats = run->work.beats,
         .store = run->store,
         .resume = run->resume,
         .quiet = run->options.quiet,
         .start = run->start,
         .time_limit = run->options.time_limit,
     };
-    if (!parallel_share(&run->parallel)) {
-        fail(run, EXIT_IO, "stance run: not enough memory");
-        return;
-    }
-    run->work.parallel = &run->parallel;
     const bool refined = run->scenario->refine.given && !run->plan.single;
     if (refined ? !rounds_run(&run->work, &message) : !work_run(&run->work, NULL, NULL, &message)) {
         fail_io(run, &message);
@@ -577,6 +603,7 @@ static int go_through(struct run *run)
     };
     for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {
         crash_stage(stage[i].doing);
+        run->pulse.doing = stage[i].doing;
         stage[i].go(run);
         if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
                             sizeof run->failure)) {
@@ -617,6 +644,7 @@ static int run_run(int argc, char **argv)
         scenario_free(run->scenario);
     }
     lock_release(&run->lock);
+    pulse_end(&run->pulse);
     parallel_finish(&run->parallel);
     free(run->options.sets);
     free(run->scenario);

@@ -29,11 +29,12 @@ struct run {
     char file[1024];
     bool resume, replace; /* the file exists and is gone on with, or replaced */
     struct lock lock;
+    struct pulse pulse; /* on rank 0, once the lock is taken */
     struct plan plan;
     struct store *store;
     struct work work;
     struct failure failure; /* of this rank */
-    double start;
+    double start, look_at;  /* of plan_clock(): the beginning, the next look at the counters */
 };
 
 /* On rank 0: that the run stopped, and the command that goes on with it. */

@@ -106,7 +106,9 @@ struct job {
     double look_at;                 /* when next */
     double checking;                /* s spent on what the file already holds */
     bool leaving;                   /* no more cases: told to stop, or broken */
-    bool broken;                    /* *message says why */
+    bool broken;                    /* nothing can be written; *message says why */
+    bool told;                      /* ... and the others know that we are to stop */
+    bool lost;                      /* the file or its lock is; *message says why */
     stance_message *message;
     struct progress progress;
 };
@@ -550,6 +552,22 @@ static bool asked_to_stop(const struct work *work, double now)
     return stop_asked || now - work->start > work->time_limit;
 }
 
+/* Rank 0's sign of life for the whole job. */
+static void keep_pulse(struct job *job, double now)
+{
+    struct work *work = job->work;
+    if (!work->pulse || now < work->pulse->due || job->broken || job->lost) {
+        return;
+    }
+    const uint64_t done = work->before + (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
+    const uint64_t kept =
+        work->kept_before + (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
+    if (!pulse_beat(work->pulse, now, done, done - kept, work->round, job->message)) {
+        job->lost = job->leaving = true;
+        parallel_add(work->parallel, COUNTER_STOP, 1);
+    }
+}
+
 bool work_told_to_stop(const struct work *work)
 {
     const bool asked = asked_to_stop(work, plan_clock());
@@ -570,19 +588,46 @@ static bool attend(void *context)
     }
     if (asked_to_stop(work, now)) {
         parallel_add(work->parallel, COUNTER_STOP, 1);
-        job->leaving = true;
+        job->leaving = job->told = true;
         return true;
     }
     write_ended(job, now);
     if (now >= job->look_at) {
         report(job);
+        parallel_beat(work->parallel, ++job->work->beats);
         job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
         job->look_at = now + schedule_look_interval(ranks);
     } else if (work->parallel->rank == 0) {
         job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
     }
+    keep_pulse(job, now);
     show_progress(job, now);
     return job->leaving;
+}
+
+/* While other ranks still work. */
+static void wait_for_others(void *context)
+{
+    struct job *job = context;
+    const double now = plan_clock();
+    if (!job->told && asked_to_stop(job->work, now)) {
+        parallel_add(job->work->parallel, COUNTER_STOP, 1);
+        job->told = true;
+    }
+    keep_pulse(job, now);
+    show_progress(job, now);
+}
+
+/* The ranks come together again; rank 0 remembers what this was. */
+static void meet(struct job *job)
+{
+    struct work *work = job->work;
+    parallel_beat(work->parallel, PULSE_WAITS);
+    parallel_meet(work->parallel, wait_for_others, job);
+    if (work->parallel->rank == 0) {
+        work->before += (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
+        work->kept_before += (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
+    }
 }
 
 /* ---- the whole ---------------------------------------------------------------------------- */
@@ -664,10 +709,11 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
         write_block(&job, block, 1);
     }
     report(&job);
+    work->seconds += plan_clock() - start - job.checking;
+    meet(&job);
     if (job.progress.terminal && !work->quiet && work->parallel->rank == 0) {
         fputs("\r\033[K", stderr);
     }
-    work->seconds += plan_clock() - start - job.checking;
     job_free(&job);
-    return !job.broken;
+    return !job.broken && !job.lost;
 }
