@@ -3,11 +3,12 @@
  * The run is a list of stages. Every rank goes through each, then all agree on how it went: an
  * error of any rank is printed once, and all leave together with its exit code.
  */
+#include "run.h"
+
 #include "build_info.h"
-#include "checksum.h"
 #include "command.h"
+#include "crash.h"
 #include "instruction_set.h"
-#include "lock.h"
 #include "report.h"
 #include "rounds.h"
 #include "supervise.h"
@@ -20,38 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
-
-struct options {
-    const char *scenario, *output; /* output NULL: the default */
-    const char **sets;
-    size_t set_count;
-    bool force, resume, single, trace, dry_run, quiet, help;
-    uint64_t single_case;
-    double time_limit; /* s, INFINITY: none */
-};
-
-struct failure {
-    int code;       /* EXIT_DONE: none */
-    char text[600]; /* one line; empty when it has been printed already */
-};
-
-struct run {
-    int argc;
-    char **argv;
-    struct parallel parallel;
-    struct options options;
-    struct scenario *scenario;
-    char file[1024];
-    bool resume, replace; /* the file exists and is gone on with, or replaced */
-    struct lock lock;
-    struct plan plan;
-    struct store *store;
-    struct work work;
-    struct failure failure; /* of this rank */
-    double start;
-};
 
 static void fail(struct run *run, int code, const char *text)
 {
@@ -315,7 +285,6 @@ static int check_file(void *file)
 static void look_into_file(struct run *run)
 {
     struct store_origin origin;
-    struct store_counts counts = {0};
     stance_message message = {""};
 
     run->failure.code = supervise(check_file, run->file, run->file);
@@ -338,13 +307,8 @@ static void look_into_file(struct run *run)
                 fail_io(run, &message);
             }
         }
-        if (!store_count(run->file, &counts, &message)) {
-            fail_io(run, &message);
-        }
     }
     store_origin_free(&origin);
-    struct lock_note note = {(double)time(NULL), counts.done + counts.failed};
-    lock_write_note(&run->lock, &note);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -375,6 +339,10 @@ static void claim_file(struct run *run)
     }
     if (!lock_take(&run->lock, run->file, &message)) {
         fail_io(run, &message);
+        return;
+    }
+    if (!pulse_begin(&run->pulse, &run->lock, &run->parallel, "starting")) {
+        fail(run, EXIT_IO, "stance run: not enough memory");
         return;
     }
     run->resume = exists && o->resume;
@@ -408,14 +376,49 @@ static void share_axes(struct run *run)
     }
 }
 
+/* While designs and captured sets are computed: whether any rank is to stop. */
+static bool out_of_time(void *context)
+{
+    struct run *run = context;
+    stance_message message = {""};
+    const double now = plan_clock();
+    bool stop = work_stop_asked() || now - run->start > run->options.time_limit;
+
+    if (run->parallel.rank == 0 && run->pulse.lock) {
+        stop = !pulse_beat(&run->pulse, now, 0, 0, 0, &message) || stop;
+    }
+    if (stop || run->parallel.rank == 0 || now >= run->look_at) {
+        run->look_at = now + schedule_look_interval(run->parallel.size);
+        stop = parallel_add(&run->parallel, COUNTER_STOP, stop) != 0 || stop;
+        parallel_beat(&run->parallel, ++run->work.beats);
+    }
+    if (message.text[0]) {
+        fail_io(run, &message);
+    }
+    return stop;
+}
+
 static void stage_plan(struct run *run)
 {
     struct plan_error error = {0};
     const struct options *o = &run->options;
 
     share_axes(run);
-    if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
+    if (!parallel_share(&run->parallel)) {
+        fail(run, EXIT_IO, "stance run: not enough memory");
+    } else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
         fail_scenario(run, &error);
+    }
+    run->plan.stop = out_of_time;
+    run->plan.stop_context = run;
+}
+
+/* A stop before there is a file. */
+static void stop_early(struct run *run, const char *what)
+{
+    if (run->failure.code == EXIT_DONE) {
+        run->failure.code = EXIT_INTERRUPTED;
+        run_say_stopped(run, what);
     }
 }
 
@@ -428,6 +431,10 @@ static void stage_designs(struct run *run)
         return; /* they are in the file */
     }
     good = plan_compute_designs(&run->plan, &run->parallel, &error);
+    if (!good && !error.message.text[0]) {
+        stop_early(run, "stopped while designs were computed: nothing is stored");
+        return;
+    }
     if (good && run->parallel.rank == 0) {
         good = plan_check_cases(&run->plan, &error);
     }
@@ -438,14 +445,7 @@ static void stage_designs(struct run *run)
     }
 }
 
-static bool out_of_time(void *context)
-{
-    const struct run *run = context;
-    return work_stop_asked() || plan_clock() - run->start > run->options.time_limit;
-}
-
-/* Sets in which cases are captured, where the scenario asks for them. A stop meanwhile leaves no
- * file. */
+/* Sets in which cases are captured, where the scenario asks for them. */
 static void stage_captures(struct run *run)
 {
     stance_message message = {""};
@@ -457,9 +457,7 @@ static void stage_captures(struct run *run)
     if (message.text[0]) {
         fail_io(run, &message);
     } else {
-        snprintf(run->failure.text, sizeof run->failure.text,
-                 "stance run: stopped while captured sets were estimated: nothing is stored");
-        run->failure.code = EXIT_INTERRUPTED;
+        stop_early(run, "stopped while captured sets were estimated: nothing is stored");
     }
 }
 
@@ -506,9 +504,6 @@ static void stage_create(struct run *run)
             fail_io(run, &message);
         } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &message)) {
             fail_io(run, &message);
-        } else {
-            struct lock_note note = {(double)time(NULL), 0};
-            lock_write_note(&run->lock, &note);
         }
     }
     free(hosts);
@@ -517,6 +512,9 @@ static void stage_create(struct run *run)
 static void stage_open(struct run *run)
 {
     stance_message message = {""};
+    if (run->parallel.rank == 0) {
+        pulse_guard(&run->pulse, run->file);
+    }
     if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &message) ||
         !store_read_designs(run->store, &run->plan, &message)) {
         fail_io(run, &message);
@@ -528,17 +526,15 @@ static void stage_compute(struct run *run)
     stance_message message = {""};
     run->work = (struct work){
         .plan = &run->plan,
+        .parallel = &run->parallel,
+        .pulse = run->parallel.rank == 0 ? &run->pulse : NULL,
+        .beats = run->work.beats,
         .store = run->store,
         .resume = run->resume,
         .quiet = run->options.quiet,
         .start = run->start,
         .time_limit = run->options.time_limit,
     };
-    if (!parallel_share(&run->parallel)) {
-        fail(run, EXIT_IO, "stance run: not enough memory");
-        return;
-    }
-    run->work.parallel = &run->parallel;
     const bool refined = run->scenario->refine.given && !run->plan.single;
     if (refined ? !rounds_run(&run->work, &message) : !work_run(&run->work, NULL, NULL, &message)) {
         fail_io(run, &message);
@@ -585,119 +581,31 @@ static void stage_close(struct run *run)
     }
 }
 
-/* ---- the end ------------------------------------------------------------------------------ */
-
-static void print_word(FILE *to, const char *word)
-{
-    if (word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                          "_-+./,:=@%")] == '\0' &&
-        word[0]) {
-        fprintf(to, " %s", word);
-        return;
-    }
-    fputs(" '", to);
-    for (; *word; word++) {
-        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, to);
-    }
-    fputc('\'', to);
-}
-
-/* The command that goes on: the same one with --resume. */
-static void print_interrupted(const struct run *run, uint64_t finished)
-{
-    char *line = NULL; /* in one piece: a launcher mixes what ranks write in pieces */
-    size_t size = 0;
-    FILE *to = open_memstream(&line, &size);
-    if (!to) {
-        return;
-    }
-    fprintf(to, "stance run: stopped at %" PRIu64 " of %" PRIu64 " cases; go on with:", finished,
-            run->plan.rows);
-    if (run->parallel.size > 1) {
-        fprintf(to, " mpirun -n %d", run->parallel.size);
-    }
-    fprintf(to, " stance run");
-    for (int i = 1; i < run->argc; i++) {
-        if (strcmp(run->argv[i], "--force") != 0 && strcmp(run->argv[i], "--resume") != 0) {
-            print_word(to, run->argv[i]);
-        }
-    }
-    fputs(run->options.single ? " --force\n" : " --resume\n", to);
-    if (fclose(to) == 0) {
-        fputs(line, stderr);
-    }
-    free(line);
-}
-
-/* What came out, over all ranks. */
-struct sums {
-    uint64_t outcome[WORK_OUTCOMES], failed, finished, computed, inferred;
-};
-
-static void print_summary(const struct run *run, const struct sums *sums)
-{
-    static const char *const name[WORK_OUTCOMES] = {"without outcome", "stabilised", "fell",
-                                                    "rested", "undecided"};
-    double wall = plan_clock() - run->start;
-    const char *separator = ": ";
-
-    printf("%s: %" PRIu64 " case%s", run->file, sums->finished, sums->finished == 1 ? "" : "s");
-    for (int i = 0; i < WORK_OUTCOMES; i++) {
-        if (sums->outcome[i] > 0) {
-            printf("%s%" PRIu64 " %s", separator, sums->outcome[i], name[i]);
-            separator = ", ";
-        }
-    }
-    if (sums->failed > 0) {
-        printf("%s%" PRIu64 " failed", separator, sums->failed);
-    }
-    if (sums->inferred > 0) {
-        printf("; %" PRIu64 " of them inferred", sums->inferred);
-    }
-    if (sums->computed + sums->inferred < sums->finished) {
-        printf("; %" PRIu64 " of them computed now", sums->computed);
-    }
-    printf("; %.1f s on %d rank%s\n", wall, run->parallel.size, run->parallel.size == 1 ? "" : "s");
-    fflush(stdout);
-}
-
-/* Adds up over the ranks and says what came out. */
-static int conclude(struct run *run)
-{
-    const struct work *work = &run->work;
-    struct sums sums = {.failed = work->failed,
-                        .finished = work->finished,
-                        .computed = work->computed,
-                        .inferred = work->inferred};
-    memcpy(sums.outcome, work->outcome, sizeof sums.outcome);
-    parallel_sum(&run->parallel, (uint64_t *)&sums, sizeof sums / sizeof(uint64_t));
-    bool complete = sums.finished == run->plan.rows;
-
-    if (run->parallel.rank == 0) {
-        if (!run->options.quiet) {
-            print_summary(run, &sums);
-        }
-        if (!complete) {
-            print_interrupted(run, sums.finished);
-        } else if (sums.failed > 0) {
-            fprintf(stderr,
-                    "stance run: %" PRIu64
-                    " case%s failed; the variable `failure` in %s says why\n",
-                    sums.failed, sums.failed == 1 ? "" : "s", run->file);
-        }
-    }
-    return !complete ? EXIT_INTERRUPTED : sums.failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
-}
+/* ---- the whole ----------------------------------------------------------------------------- */
 
 /* Goes through the stages; stops where one failed on any rank. */
 static int go_through(struct run *run)
 {
-    static void (*const stage[])(struct run *) = {
-        stage_options, stage_scenario, stage_claim,   stage_plan,   stage_designs, stage_captures,
-        stage_create,  stage_open,     stage_compute, stage_timing, stage_close,
+    static const struct {
+        void (*go)(struct run *);
+        const char *doing;
+    } stage[] = {
+        {stage_options, "reading its options"},
+        {stage_scenario, "reading the scenario"},
+        {stage_claim, "looking into the results file"},
+        {stage_plan, "making the plan"},
+        {stage_designs, "computing designs"},
+        {stage_captures, "estimating captured sets"},
+        {stage_create, "creating the results file"},
+        {stage_open, "opening the results file"},
+        {stage_compute, "computing"},
+        {stage_timing, "storing times"},
+        {stage_close, "closing the results file"},
     };
     for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {
-        stage[i](run);
+        crash_stage(stage[i].doing);
+        run->pulse.doing = stage[i].doing;
+        stage[i].go(run);
         if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
                             sizeof run->failure)) {
             if (run->parallel.rank == 0 && run->failure.text[0]) {
@@ -705,14 +613,14 @@ static int go_through(struct run *run)
             }
             return run->failure.code;
         }
-        if (stage[i] == stage_options && run->options.help) {
+        if (stage[i].go == stage_options && run->options.help) {
             return EXIT_DONE;
         }
-        if (stage[i] == stage_designs && run->options.dry_run) {
+        if (stage[i].go == stage_designs && run->options.dry_run) {
             return EXIT_DONE;
         }
     }
-    return conclude(run);
+    return run_conclude(run);
 }
 
 static int run_run(int argc, char **argv)
@@ -728,6 +636,7 @@ static int run_run(int argc, char **argv)
     run->start = plan_clock();
     run->lock.descriptor = -1;
     run->parallel = parallel_start();
+    crash_watch(run->parallel.rank);
     work_catch_signals();
     int code = go_through(run);
     store_abandon(run->store);
@@ -736,6 +645,7 @@ static int run_run(int argc, char **argv)
         scenario_free(run->scenario);
     }
     lock_release(&run->lock);
+    pulse_end(&run->pulse);
     parallel_finish(&run->parallel);
     free(run->options.sets);
     free(run->scenario);
