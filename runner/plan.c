@@ -274,10 +274,12 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
             found[1] = 1;
             break;
         }
-        scenario_case_values(s, design_case(plan, d), &values);
-        bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
-        plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
-        found[0] += exists;
+        if (plan->design_status[d] == STANCE_PENDING) {
+            scenario_case_values(s, design_case(plan, d), &values);
+            bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
+            plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
+        }
+        found[0] += plan->design_status[d] == STANCE_DONE;
     }
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
     parallel_gather_block(parallel, plan->design_status, 1, first, count);
@@ -302,8 +304,8 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
     for (size_t d = first; good && d < first + count; d++) {
         struct scenario_values values;
         stance_message why = {""}; /* there need not be a set */
-        if (plan->design_status[d] != STANCE_DONE) {
-            continue;
+        if (plan->design_status[d] != STANCE_DONE || plan->design[d].capture_time != 0) {
+            continue; /* none, or known from another file */
         }
         scenario_case_values(s, design_case(plan, d), &values);
         good = capture_estimate(s->scene, &values, &plan->design[d], s->seed, stop, context, NULL,
