@@ -154,9 +154,9 @@ bool store_write(struct store *store, struct store_block *block, size_t slot,
 /* The trajectory at one place of the recorded cases; before the row itself. */
 bool store_write_trajectory(struct store *store, uint64_t place,
                             const stance_trajectory *trajectory, stance_message *message);
-/* Which of 1 to STORE_ROWS rows are whole: done or failed, and as their checksums say; of these,
- * status and outcome (where stored) are filled in. Trajectories of recorded cases are verified,
- * too. */
+/* Which of 1 to STORE_ROWS rows are whole: done or failed, and as their checksums say; status (of
+ * all rows, as the file has it) and outcome (where stored) are filled in. Trajectories of recorded
+ * cases are verified, too. */
 bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
                   stance_message *message);
 /* What became of rows that were to be copied; the numbers add up over calls. */
@@ -183,6 +183,17 @@ bool store_annotate(struct store *store, const char *name, const char *text,
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
                       stance_message *message);
+
+/* Rows of an open file (HDF5 identifier) whose answers are not as their checksums say become
+ * pending in status[cases], which holds the file's own; trajectories are not looked at. false: the
+ * rows cannot be read, or no memory. A file without checksums is taken as it is. */
+struct store_damage {
+    uint64_t cases, first; /* how many, the lowest of them */
+};
+bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage);
+
+/* The checksum that an open file has for the trajectory at a place; false: none. */
+bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc);
 
 /* Counts the cases of a file, which another process may be writing. */
 struct store_counts {
