@@ -70,7 +70,14 @@ static int work(void *context)
     }
     int code;
     if (basin_make(&basin, &r, &request->choice, &usage, &message)) {
-        code = show(request, &basin);
+        if (request->boundary && basin.starts != BASIN_GRID) {
+            fprintf(stderr,
+                    "stance basin: --boundary needs starts on a grid; those of %s are a sample\n",
+                    request->file);
+            code = EXIT_USAGE;
+        } else {
+            code = show(request, &basin);
+        }
         basin_free(&basin);
     } else {
         fprintf(stderr, "%s\n", message.text);

@@ -54,9 +54,9 @@ static void print_result(const struct request *request, const struct merge *m)
 /* Whether all parts can be read now: nobody writes them. */
 static bool at_rest(const struct request *request)
 {
-    struct lock_note note;
+    char note[LOCK_NOTE];
     for (size_t p = 0; p < request->count; p++) {
-        if (lock_is_held(request->files[p], &note)) {
+        if (lock_is_held(request->files[p], note)) {
             fprintf(stderr, "stance merge: %s: a job is writing it\n", request->files[p]);
             return false;
         }

@@ -134,15 +134,17 @@ says "... with a word about the random numbers" 'random numbers are keyed'
 result $? "... in the file, too"
 
 # ---- comparison with a tolerance --------------------------------------------------------------
-"$python" - >log 2>&1 <<'END'
+PYTHONPATH=$tests "$python" - >log 2>&1 <<'END'
 import shutil, h5py
+from make_sample_results import put_checksums
 shutil.copy("whole.h5", "moved.h5")
 with h5py.File("moved.h5", "r+") as f:
     f["end_time"][0, 1, 2] *= 1 + 1e-7
     f["peak_torque"][2, 3, 4] += 1e-3
+    put_checksums(f)
 END
 result $? "(numbers that are moved)"
-expect "bit by bit they differ" 1 "$stance" compare whole.h5 moved.h5
+expect "to the bit they differ" 1 "$stance" compare whole.h5 moved.h5
 expect "beyond the tolerance" 1 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6
 says "... is one" '^peak_torque: 1 of 7200 cases differ$'
 says "... within it the other" '^end_time: equal within the tolerance$'
@@ -231,8 +233,31 @@ result $? "... midway between neighbours that differ"
 expect "an outcome of one's own" 0 "$stance" basin whole.h5 --of fell --level 0.99 --box 4
 expect "an axis of starts as a parameter" 0 "$stance" basin whole.h5 --by initial.offset.vtheta
 expect "nothing to measure" 2 "$stance" basin piece0.h5 --by initial.offset.theta
-says "... is said" 'no starts are varied along axes'
+says "... is said" 'no starts are varied (initial.offset'
 expect "an axis that is none" 2 "$stance" basin whole.h5 --by friction
 expect "an outcome that is none" 2 "$stance" basin whole.h5 --of stable
+
+# Starts that are sampled: the share of a grid lies in the interval.
+expect "a Sobol' sample of starts" 0 "$stance" run map.yaml --quiet -o sample.h5 --set record.cases=none \
+    --set 'sweep={grid: [{path: ground.friction, values: [0.1, 0.2, 0.4]}],
+        sample: {method: sobol, count: 1024, vary: [{path: initial.offset.theta, from: -0.12, to: 0.06},
+            {path: initial.offset.vtheta, from: -0.6, to: 0.6}]}}'
+expect "... has its basins" 0 "$stance" basin sample.h5 --json
+"$stance" basin whole.h5 --json >grid.json 2>>log
+"$python" - >log2 2>&1 <<'END'
+import h5py, json, math
+sample, grid = json.load(open("log")), json.load(open("grid.json"))
+outcome = h5py.File("sample.h5")["outcome"][...]
+assert sample["design"] == "sobol" and abs(sample["box"] - 0.216) < 1e-12
+for k, (a, b) in enumerate(zip(sample["rows"], grid["rows"])):
+    n, p, z = 1024, (outcome[k] == 1).mean(), 1.959963984540054
+    centre, half = p + z * z / 2 / n, z * math.sqrt(p * (1 - p) / n + z * z / 4 / n / n)
+    assert abs(a["share"] - p) < 1e-12 and a["at"] == b["at"] and a["alpha"] is None
+    assert abs(a["low"] / 0.216 - (centre - half) / (1 + z * z / n)) < 1e-9
+    assert abs(a["high"] / 0.216 - (centre + half) / (1 + z * z / n)) < 1e-9
+    assert a["low"] < b["volume"] < a["high"] and a["low"] < a["volume"] < a["high"]
+END
+result $? "... with Wilson's interval, in which the grid's volume lies"
+expect "points on a boundary need a grid" 2 "$stance" basin sample.h5 --boundary
 
 echo "1..$count"
