@@ -358,15 +358,13 @@ static bool make_rows(struct basin *b, stance_message *message)
 }
 
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
-                bool *usage, stance_message *message)
+                struct basin_sample *sample, bool *usage, stance_message *message)
 {
-    *basin = (struct basin){.r = r, .choice = *choice, .starts = BASIN_GRID, .averaged = -1};
-    *usage = false;
-    bool good = basin_sample_make(&basin->sample, r, message);
-    if (good) {
-        *usage = true;
-        good = choose_axes(basin, message);
-    }
+    *basin = (struct basin){
+        .r = r, .choice = *choice, .starts = BASIN_GRID, .sample = *sample, .averaged = -1};
+    *sample = (struct basin_sample){.axis = -1};
+    *usage = true;
+    bool good = choose_axes(basin, message);
     if (good) {
         *usage = false;
         good = make_rows(basin, message);

@@ -46,18 +46,18 @@ struct basin {
     int start[SCENARIO_MAX_AXES], start_axes; /* axes of the file: of a grid those that vary, or
                                                * that of the sample */
     int by[SCENARIO_MAX_AXES], by_axes;
-    double box;      /* volume of the box of starts */
-    char unit[256];  /* of volumes, "" without one */
+    double box;                 /* volume of the box of starts */
+    char unit[256];             /* of volumes, "" without one */
     struct basin_sample sample; /* of starts; with BASIN_GRID unused */
     int averaged;               /* axis of a sample of parameters that is averaged over, or -1 */
     size_t rows;
     struct basin_row *row; /* [rows], row-major over by[] */
 };
 
-/* False: one line in *message. `*usage`: it is the request or the file's kind that is at fault.
- * Nothing is left allocated then. */
+/* Takes over the file's sample. False: one line in *message. `*usage`: it is the request or the
+ * file's kind that is at fault. Nothing is left allocated then. */
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
-                bool *usage, stance_message *message);
+                struct basin_sample *sample, bool *usage, stance_message *message);
 void basin_free(struct basin *basin);
 
 /* Calls visit for every pair of neighbouring starts whose outcomes differ, in every slice; `first`
