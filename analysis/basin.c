@@ -92,7 +92,7 @@ static bool choose_sample(struct basin *b, stance_message *message)
     b->start[b->start_axes++] = sample->axis;
     b->box = isfinite(sample->box) ? sample->box : 1;
     for (size_t k = 0; k < sample->factors && isfinite(sample->box); k++) {
-        add_unit(b, sample->factor[k].unit);
+        add_unit(b, sample->factor[k].of->unit);
     }
     return true;
 }

@@ -28,7 +28,7 @@ static json_t *factors(const struct basin_sample *sample)
 {
     json_t *names = json_array();
     for (size_t k = 0; k < sample->factors; k++) {
-        json_array_append_new(names, json_string(sample->factor[k].name));
+        json_array_append_new(names, json_string(sample->factor[k].of->name));
     }
     return names;
 }

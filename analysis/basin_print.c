@@ -38,12 +38,11 @@ static void print_sample(const struct basin *b)
            sample->points, sampling_words[sample->method]);
     for (size_t k = 0; k < sample->factors; k++) {
         const struct basin_factor *factor = &sample->factor[k];
-        printf("  %-24s", factor->name);
+        printf("  %-24s", factor->of->name);
         if (isnan(factor->from)) {
             puts(" not evenly over a range: no volume, shares alone");
         } else {
-            printf(" %.6g ... %.6g %s\n", factor->from, factor->to,
-                   strcmp(factor->unit, "1") == 0 ? "" : factor->unit);
+            printf(" %.6g ... %.6g %s\n", factor->from, factor->to, factor->of->unit);
         }
     }
     if (isfinite(sample->box)) {

@@ -17,7 +17,7 @@ static const struct basin_ray *ray_of(const struct basin_rays *rays, size_t row,
 
 static const char *unit_of(const struct basin_factor *factor)
 {
-    return strcmp(factor->unit, "1") == 0 ? "" : factor->unit;
+    return factor->of->unit;
 }
 
 /* ---- text --------------------------------------------------------------------------------- */
@@ -33,7 +33,7 @@ static void print_head(const struct basin_rays *rays)
            rays->sample.points, results_kind_names[rays->of]);
     for (size_t k = 0; k < rays->sample.factors; k++) {
         const struct basin_factor *factor = &rays->sample.factor[k];
-        printf("  %-24s", factor->name);
+        printf("  %-24s", factor->of->name);
         if (isfinite(factor->from)) {
             printf(" %.6g ... %.6g %s", factor->from, factor->to, unit_of(factor));
         }
@@ -85,8 +85,8 @@ static void print_first(const struct basin_rays *rays, size_t row, const struct 
            ray->low, ray->high, results_kind_names[ray->to]);
     for (size_t k = 0; k < rays->sample.factors; k++) {
         const struct basin_factor *factor = &rays->sample.factor[k];
-        const double along = factor->value[reach->first];
-        printf("    %-24s %.5g +- %.2g %s\n", factor->name, along * basin_ray_middle(ray),
+        const double along = factor->of->value[reach->first];
+        printf("    %-24s %.5g +- %.2g %s\n", factor->of->name, along * basin_ray_middle(ray),
                fabs(along) * 0.5 * (ray->high - ray->low), unit_of(factor));
     }
 }
@@ -150,7 +150,7 @@ bool basin_rays_print_csv(const struct basin_rays *rays)
     struct csv csv = {.file = stdout};
     put_names(&csv, rays);
     for (size_t k = 0; k < rays->sample.factors; k++) {
-        csv_text(&csv, rays->sample.factor[k].name);
+        csv_text(&csv, rays->sample.factor[k].of->name);
     }
     csv_row(&csv, head, sizeof head / sizeof head[0]);
     for (size_t row = 0; row < rays->rows; row++) {
@@ -163,7 +163,7 @@ bool basin_rays_print_csv(const struct basin_rays *rays)
         put_parameters(&csv, rays, row);
         for (size_t k = 0; k < rays->sample.factors; k++) {
             csv_number(&csv,
-                       any ? rays->sample.factor[k].value[reach.first] * basin_ray_middle(first)
+                       any ? rays->sample.factor[k].of->value[reach.first] * basin_ray_middle(first)
                            : NAN);
         }
         const double numbers[] = {(double)rays->sample.points,
@@ -192,7 +192,7 @@ bool basin_rays_print_boundary(const struct basin_rays *rays)
     put_names(&csv, rays);
     csv_text(&csv, "ray");
     for (size_t k = 0; k < rays->sample.factors; k++) {
-        csv_text(&csv, rays->sample.factor[k].name);
+        csv_text(&csv, rays->sample.factor[k].of->name);
     }
     csv_row(&csv, head, sizeof head / sizeof head[0]);
     for (size_t row = 0; row < rays->rows; row++) {
@@ -201,7 +201,7 @@ bool basin_rays_print_boundary(const struct basin_rays *rays)
             put_parameters(&csv, rays, row);
             csv_number(&csv, (double)p);
             for (size_t k = 0; k < rays->sample.factors; k++) {
-                csv_number(&csv, rays->sample.factor[k].value[p] * basin_ray_middle(ray));
+                csv_number(&csv, rays->sample.factor[k].of->value[p] * basin_ray_middle(ray));
             }
             csv_number(&csv, ray->low);
             csv_number(&csv, ray->high);
@@ -235,8 +235,8 @@ static json_t *row_entry(const struct basin_rays *rays, size_t row, const struct
     }
     for (size_t k = 0; any && k < rays->sample.factors; k++) {
         const struct basin_factor *factor = &rays->sample.factor[k];
-        json_object_set_new(place, factor->name,
-                            number(factor->value[reach->first] * basin_ray_middle(first)));
+        json_object_set_new(place, factor->of->name,
+                            number(factor->of->value[reach->first] * basin_ray_middle(first)));
     }
     json_object_set_new(entry, "at", at);
     json_object_set_new(entry, "crossing", json_integer((json_int_t)reach->count[RAY_CROSSES]));
@@ -261,7 +261,7 @@ bool basin_rays_print_json(const struct basin_rays *rays)
     struct basin_reach reach;
     bool good = true;
     for (size_t k = 0; k < rays->sample.factors; k++) {
-        json_array_append_new(factors, json_string(rays->sample.factor[k].name));
+        json_array_append_new(factors, json_string(rays->sample.factor[k].of->name));
     }
     for (size_t row = 0; good && row < rays->rows; row++) {
         good = basin_rays_reach(rays, row, &reach);

@@ -4,11 +4,10 @@
 
 #include "results.h"
 
-/* One varied number of the starts, as the points of the sample have it. */
+/* One varied number of the starts. */
 struct basin_factor {
-    char name[96], unit[24];
-    double from, to; /* of its range; NAN where it has none (values are listed) */
-    double *value;   /* [points] */
+    const struct results_axis *of; /* name, unit, value[points] */
+    double from, to;               /* of its range; NAN where it has none of its own */
 };
 
 struct basin_sample {
@@ -21,7 +20,8 @@ struct basin_sample {
     bool others;                 /* the sample varies more than starts */
 };
 
-/* What the file's sample says of starts. False: no memory. */
+/* What the file's sample says of starts; points into *r. False: its scenario cannot be read, or
+ * there is no memory. */
 bool basin_sample_make(struct basin_sample *sample, const struct results *r,
                        stance_message *message);
 void basin_sample_free(struct basin_sample *sample);

@@ -20,8 +20,7 @@ static const char *const answers[] = {
 };
 enum { ANSWERS = sizeof answers / sizeof answers[0] };
 
-/* A number that varies with the cases though it is no axis: the further paths of an axis, and what
- * is sampled. */
+/* A further path of an axis of the grid. */
 struct parameter {
     char name[96];
     int axis; /* over whose points */
@@ -61,30 +60,35 @@ static bool open_columns(struct table *t, const char *const *names, size_t count
     return true;
 }
 
-/* Paths that vary together along an axis, from the file's scenario. */
+/* Adds a path that varies together with the first one of an axis; of words, whose values are not
+ * read, none. */
+static bool add_parameter(struct table *t, const char *path, int axis)
+{
+    const size_t count = t->r->axis[axis].count;
+    struct parameter *parameter = &t->parameter[t->parameters];
+    double *value = malloc(count * sizeof *value);
+    if (value && results_numbers(t->r, path, value, count) == count) {
+        snprintf(parameter->name, sizeof parameter->name, "%s", path);
+        parameter->axis = axis;
+        parameter->value = value;
+        t->parameters++;
+        return true;
+    }
+    free(value);
+    return value != NULL;
+}
+
+/* The further paths of the grid's axes, from the file's scenario. */
 static bool find_parameters(struct table *t, stance_message *message)
 {
     const struct results *r = t->r;
     struct scenario *s = calloc(1, sizeof *s);
     bool good = s != NULL;
     if (good && !r->single && results_scenario(r, s)) {
-        for (int a = 0; good && a < s->axes && a < r->axes; a++) {
+        for (int a = 0; a < s->axes && a < r->axes; a++) {
             const struct scenario_axis *axis = &s->axis[a];
-            for (int k = axis->sample ? 0 : 1; good && k < axis->paths; k++) {
-                struct parameter *parameter = &t->parameter[t->parameters];
-                if (t->parameters == MOST_PATHS || strcmp(r->axis[a].name, axis->name) != 0) {
-                    break;
-                }
-                snprintf(parameter->name, sizeof parameter->name, "%s", axis->path[k]);
-                parameter->axis = a;
-                parameter->value = malloc(r->axis[a].count * sizeof(double));
-                t->parameters += parameter->value != NULL;
-                good = parameter->value != NULL;
-                if (good && results_numbers(r, parameter->name, parameter->value,
-                                            r->axis[a].count) != r->axis[a].count) {
-                    free(parameter->value); /* words, say */
-                    t->parameters--;
-                }
+            for (int k = 1; good && !axis->sample && k < axis->paths; k++) {
+                good = t->parameters == MOST_PATHS || add_parameter(t, axis->path[k], a);
             }
         }
         scenario_free(s);
@@ -119,6 +123,9 @@ static void put_head(struct table *t)
     }
     for (size_t k = 0; k < t->parameters; k++) {
         csv_text(&t->csv, t->parameter[k].name);
+    }
+    for (int k = 0; k < t->r->varied; k++) {
+        csv_text(&t->csv, t->r->vary[k].of.name);
     }
     for (size_t k = 0; k < t->columns; k++) {
         const struct results_column *column = &t->column[k];
@@ -168,6 +175,15 @@ static void put_point(struct table *t, uint64_t index)
     }
     for (size_t k = 0; k < t->parameters; k++) {
         csv_number(&t->csv, t->parameter[k].value[point[t->parameter[k].axis]]);
+    }
+    for (int k = 0; k < r->varied; k++) {
+        const struct results_varied *v = &r->vary[k];
+        const double value = v->of.value[point[r->sample]];
+        if (v->word) {
+            csv_text(&t->csv, v->word[(int)value]);
+        } else {
+            csv_number(&t->csv, value);
+        }
     }
 }
 
