@@ -260,4 +260,55 @@ END
 result $? "... with Wilson's interval, in which the grid's volume lies"
 expect "points on a boundary need a grid" 2 "$stance" basin sample.h5 --boundary
 
+# ---- rays ------------------------------------------------------------------------------------
+cat >rays.sets <<'END'
+sweep={grid: [{path: ground.friction, values: [0.2, 0.4]}, {path: initial.offset.scale, from: 0.02, to: 1, count: 50}],
+  sample: {method: sphere, count: 24, vary: [{path: initial.offset.theta, from: -0.1, to: 0.1},
+    {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}}
+END
+expect "rays from the equilibrium" 0 "$stance" run map.yaml --quiet -o rays.h5 --set record.cases=none \
+    --set "$(cat rays.sets)"
+expect "where they lose the outcome" 0 "$stance" basin rays.h5 --boundary
+cp log rays.csv
+expect "... in short" 0 "$stance" basin rays.h5 --json
+"$python" - >log2 2>&1 <<'END'
+import csv, h5py, json, numpy
+f, rows, short = h5py.File("rays.h5"), list(csv.DictReader(open("rays.csv", newline=""))), json.load(open("log"))
+inside, scale = f["outcome"][...] == 1, f["initial.offset.scale"][...]
+assert inside.shape == (2, 50, 24) and len(rows) == 48 and inside[:, 0].all()
+for k in range(2):
+    ends = []
+    for p in range(24):
+        row, end = rows[24 * k + p], numpy.argmin(inside[k, :, p])
+        assert int(row["ray"]) == p and float(row["ground.friction"]) == [0.2, 0.4][k]
+        if inside[k, :, p].all():
+            assert row["end"] == "open" and row["high"] == ""
+            ends.append(numpy.inf)
+        else:
+            assert row["end"] == "crosses"
+            assert [float(row["low"]), float(row["high"])] == [scale[end - 1], scale[end]]
+            ends.append((scale[end - 1] + scale[end]) / 2)
+            theta = f["initial.offset.theta"][p] * ends[-1]
+            assert abs(float(row["initial.offset.theta"]) - theta) < 1e-12
+    r = short["rows"][k]
+    assert abs(r["smallest"] - min(ends)) < 1e-12 and r["first_ray"] == numpy.argmin(ends)
+    assert r["crossing"] + r["open"] == 24 and r["open"] == numpy.isinf(ends).sum()
+    assert (r["median"] or numpy.inf) == numpy.median(ends)
+END
+result $? "... as the cases say"
+expect "pictures of rays" 0 "$stance" plot rays.h5
+says "... show the curve" '^rays-rays.png$'
+expect "--by has no meaning for rays" 2 "$stance" basin rays.h5 --by ground.friction
+expect "pictures of basins" 0 "$stance" plot whole.h5
+expect "rays as a table" 0 "$stance" table rays.h5 --answer outcome --of fell
+"$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
+assert list(rows[0])[1:6] == ["ground.friction", "initial.offset.scale", "sample", "initial.offset.theta", "initial.offset.vtheta"]' >>log 2>&1
+result $? "... with the sampled values"
+expect "samples of parts are merged" 0 "$stance" run map.yaml --quiet -o ray2.h5 --set record.cases=none \
+    --set "$(cat rays.sets)" --set 'sweep.grid[0].values=[0.2]'
+expect "... the second part" 0 "$stance" run map.yaml --quiet -o ray4.h5 --set record.cases=none \
+    --set "$(cat rays.sets)" --set 'sweep.grid[0].values=[0.4]'
+expect "... into the whole" 0 "$stance" merge raysm.h5 ray2.h5 ray4.h5
+expect "... to the bit" 0 "$stance" compare rays.h5 raysm.h5
+
 echo "1..$count"
