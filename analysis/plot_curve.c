@@ -502,10 +502,9 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
     }
     const bool word = page->along->axis->word != NULL;
     gnuplot_label(&page->g, x, y + 2,
-                  shares[0].rows
-                      ? (word ? "bars: cells that it crosses" : "band: cells that it crosses")
-                  : word ? "bars: 95 % interval"
-                         : "band: 95 % interval",
+                  shares[0].rows ? (word ? "bars: its bounds" : "band: its bounds")
+                  : word         ? "bars: 95 % interval"
+                                 : "band: 95 % interval",
                   "left", 11, false);
     y = page->top + SHARE_HEIGHT + GAP;
     for (int k = 0; k < extent_count; k++) {
