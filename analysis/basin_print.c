@@ -141,7 +141,7 @@ static void print_shape(const struct basin *b, const struct basin_row *row)
 /* Row k of those shown: all, or some spread over them. */
 static const struct basin_row *shown(const struct basin *b, size_t k, size_t rows)
 {
-    return &b->row[rows == b->rows ? k : k * (b->rows - 1) / (rows - 1)];
+    return &b->row[rows == b->rows || rows < 2 ? k : k * (b->rows - 1) / (rows - 1)];
 }
 
 static void print_left_out(const struct basin *b, size_t rows)

@@ -225,6 +225,7 @@ static json_t *row_entry(const struct basin_rays *rays, size_t row, const struct
 {
     const struct basin_ray *first = ray_of(rays, row, reach->first);
     const bool any = reach->count[RAY_CROSSES] > 0;
+    const size_t outside = reach->count[RAY_OUTSIDE] + reach->count[RAY_UNKNOWN];
     json_t *entry = json_object(), *at = json_object();
     json_t *place = any ? json_object() : json_null();
     for (int k = 0; k < rays->by_axes; k++) {
@@ -241,9 +242,7 @@ static json_t *row_entry(const struct basin_rays *rays, size_t row, const struct
     json_object_set_new(entry, "at", at);
     json_object_set_new(entry, "crossing", json_integer((json_int_t)reach->count[RAY_CROSSES]));
     json_object_set_new(entry, "open", json_integer((json_int_t)reach->count[RAY_OPEN]));
-    json_object_set_new(
-        entry, "outside",
-        json_integer((json_int_t)(reach->count[RAY_OUTSIDE] + reach->count[RAY_UNKNOWN])));
+    json_object_set_new(entry, "outside", json_integer((json_int_t)outside));
     json_object_set_new(entry, "smallest", number(reach->smallest));
     json_object_set_new(entry, "median", number(reach->median));
     json_object_set_new(entry, "largest", number(reach->largest));

@@ -121,6 +121,11 @@ static int work(void *context)
     if (!request->of) {
         request->choice.of = outcome_of(&r);
     }
+    if (memchr(r.kind, RESULTS_DONE, r.cases)) {
+        fprintf(stderr, "%s: holds no outcomes (record.answers left them out)\n", request->file);
+        results_close(&r);
+        return EXIT_USAGE;
+    }
     if (!basin_sample_make(&sample, &r, &message)) {
         code = fail(&message, false);
     } else {

@@ -7,6 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
+static const double last_bits = 1e-9; /* relative difference of designs that are the same */
+
 static bool no_memory(stance_message *message)
 {
     snprintf(message->text, sizeof message->text, "stance merge: not enough memory");
@@ -91,8 +93,9 @@ static uint64_t row_with_design(const struct plan *plan, size_t design)
     return row;
 }
 
-/* Designs made on different processors differ in their last bits, no more. */
-static bool nearly_same(const struct resolved_design *a, const struct resolved_design *b)
+/* How far two designs are apart, relative to their largest number; captured sets, which are
+ * estimates, left out. Designs made on different processors differ in last bits. */
+static double distance_between(const struct resolved_design *a, const struct resolved_design *b)
 {
     const double *x = (const double *)(const void *)a, *y = (const double *)(const void *)b;
     double scale = 0, distance = 0;
@@ -101,10 +104,10 @@ static bool nearly_same(const struct resolved_design *a, const struct resolved_d
             scale = fmax(scale, fabs(x[i]));
             distance = fmax(distance, fabs(x[i] - y[i]));
         } else if (isfinite(x[i]) != isfinite(y[i])) {
-            return false;
+            return INFINITY;
         }
     }
-    return distance <= 1e-9 * scale;
+    return distance > 0 ? distance / scale : 0;
 }
 
 /* Takes the designs that a part has into the merged plan, where they are not yet. */
@@ -121,14 +124,13 @@ static bool take_designs(struct merge *m, const struct merge_part *part,
             plan->design_status[at] = opened->plan.design_status[d];
             continue;
         }
-        if (plan->design_status[at] != opened->plan.design_status[d] ||
-            !nearly_same(&plan->design[at], design)) {
+        const double distance = distance_between(&plan->design[at], design);
+        if (plan->design_status[at] != opened->plan.design_status[d] || distance > last_bits) {
             snprintf(message->text, sizeof message->text,
                      "%.100s: its controller design differs from that of another part", part->file);
             return false;
         }
-        m->designs_differ =
-            m->designs_differ || memcmp(&plan->design[at], design, sizeof *design) != 0;
+        m->designs_differ = m->designs_differ || distance > 0;
     }
     return true;
 }

@@ -21,8 +21,9 @@ static bool read_tree(struct tree *tree, const struct merge_part *part, stance_m
 {
     struct problems *problems = calloc(1, sizeof *problems);
     *tree = (struct tree){0};
-    const bool good = problems && tree_parse(tree, part->origin.scenario,
-                                             strlen(part->origin.scenario), problems);
+    const bool good =
+        problems && part->origin.scenario &&
+        tree_parse(tree, part->origin.scenario, strlen(part->origin.scenario), problems);
     free(problems);
     if (!good) {
         snprintf(message->text, sizeof message->text, "%.100s: its scenario cannot be read",
@@ -105,13 +106,14 @@ static int axis_of(const char *path)
 static bool misfit(const struct merge *m, const struct differences *found, size_t part,
                    stance_message *message)
 {
-    char list[120] = "";
-    for (size_t i = 0, used = 0; i < found->count && used + 40 < sizeof list; i++) {
+    char list[100] = "";
+    for (size_t i = 0, used = 0; i < found->count && used + 41 < sizeof list; i++) {
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%.38s", i ? ", " : "",
                                  found->path[i]);
     }
     snprintf(message->text, sizeof message->text,
-             "%.50s: differs from %.50s in %s: parts may differ along one axis or in one value",
+             "%.40s: differs from %.40s in %s: parts may differ along one axis or in one value "
+             "that can be swept",
              m->part[part].file, m->part[0].file, list);
     return false;
 }
@@ -210,10 +212,10 @@ static bool add_point(struct points *points, const char *text, double number, si
         points->falling = points->falling && number < before;
     }
     points->numbers = points->numbers && !isnan(number);
-    char *own = strdup(text);
-    points->point[points->count] = (struct point){own, number, part, place, points->count};
-    points->count += own != NULL;
-    return own != NULL;
+    struct point *point = &points->point[points->count];
+    *point = (struct point){strdup(text), number, part, place, points->count};
+    points->count += point->text != NULL;
+    return point->text != NULL;
 }
 
 /* Text of a point of an axis: "0.1", or "[0.1, 2]" for several paths. */
@@ -321,7 +323,7 @@ static bool place_points(struct merge *m, struct points *points, stance_message 
         }
     }
     const bool sort = points->numbers && (points->rising || points->falling);
-    if (sort) {
+    if (sort && points->count > 1) {
         qsort(points->point, points->count, sizeof *points->point,
               points->rising ? by_number : by_number_falling);
     }
@@ -348,8 +350,11 @@ static bool place_points(struct merge *m, struct points *points, stance_message 
 /* Values `first`, `last` and their number give all of them, to the bit. */
 static bool is_range(const struct points *points, size_t count)
 {
+    if (!points->numbers || count < 3 || !points->point) {
+        return false;
+    }
     const double from = points->point[0].number, to = points->point[count - 1].number;
-    bool same = points->numbers && count > 2 && isfinite(from) && isfinite(to);
+    bool same = isfinite(from) && isfinite(to);
     for (size_t i = 0; same && i + 1 < count; i++) {
         same = points->point[i].number == from + (double)i * (to - from) / (double)(count - 1);
     }
@@ -408,7 +413,7 @@ static bool set_axis(const struct merge *m, const struct points *points, struct 
     struct tree_node *grid = grid_of(tree);
     const size_t axes = grid ? grid->count : 0;
     const struct tree_node *paths =
-        m->kind == MERGE_AXIS ? tree_find(grid->item[m->axis], "paths") : NULL;
+        grid && m->kind == MERGE_AXIS ? tree_find(grid->item[m->axis], "paths") : NULL;
     char *setting = axis_setting(m, points, m->kind == MERGE_AXIS ? m->axis : (int)axes, paths);
     const bool good = setting && tree_set(tree, setting, 1, problems);
     free(setting);

@@ -245,8 +245,7 @@ static void put_labels(struct page *page, bool plane)
     if (plane) {
         gnuplot_label(&page->g, x, y + 8, "cross: the equilibrium", "left", 11, false);
         gnuplot_label(&page->g, x, y + 26, "dashed: the ray that ends first", "left", 11, false);
-        gnuplot_label(&page->g, x, y + 44, "circles: followed no further", "left", 11,
-                      false);
+        gnuplot_label(&page->g, x, y + 44, "circles: followed no further", "left", 11, false);
     }
 }
 

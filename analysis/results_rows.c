@@ -43,7 +43,7 @@ static char *read_words(hid_t dataset)
 bool results_column_open(const struct results *r, const char *name, struct results_column *column,
                          stance_message *message)
 {
-    hsize_t length[H5S_MAX_RANK];
+    hsize_t length[H5S_MAX_RANK] = {0};
     *column = (struct results_column){.id = -1};
     snprintf(column->name, sizeof column->name, "%s", name);
     if (H5Lexists((hid_t)r->id, name, H5P_DEFAULT) <= 0) {
