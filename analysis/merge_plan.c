@@ -106,13 +106,13 @@ static int axis_of(const char *path)
 static bool misfit(const struct merge *m, const struct differences *found, size_t part,
                    stance_message *message)
 {
-    char list[100] = "";
+    char list[84] = "";
     for (size_t i = 0, used = 0; i < found->count && used + 41 < sizeof list; i++) {
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%.38s", i ? ", " : "",
                                  found->path[i]);
     }
     snprintf(message->text, sizeof message->text,
-             "%.40s: differs from %.40s in %s: parts may differ along one axis or in one value "
+             "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
              "that can be swept",
              m->part[part].file, m->part[0].file, list);
     return false;
