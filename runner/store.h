@@ -25,6 +25,8 @@
  *     git_revision, compiler (with flags), library_versions, instruction_set (of rank 0), ranks,
  *     hosts, date, seed, scenario (text), axes (comma-separated dimension names, in order),
  *     scenario_sha256.
+ *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
+ *     gives, merge_note.
  *   every variable but the answers, the trajectories' own and those of `timing` has an attribute
  *     `checksum` over its values (seal.h), which whoever reads the file verifies.
  * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as
