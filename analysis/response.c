@@ -115,7 +115,7 @@ static bool read_answers(const struct results *r, const char *name, double **ans
     bool good = statistics_inferred(r, &inferred, &which, message) &&
                 results_answer(r, name, answers, message);
     if (good && !*answers) {
-        snprintf(message->text, sizeof message->text, "%.200s: does not store %.60s", r->file,
+        snprintf(message->text, sizeof message->text, "%.150s: does not store %.60s", r->file,
                  name);
         good = false;
     }
