@@ -395,14 +395,15 @@ static void stage_claim(struct run *run)
 
 /* ---- the plan ----------------------------------------------------------------------------- */
 
-/* Points of logarithmic axes come from the C library and may differ between machines: every rank
- * takes those of rank 0, which has them from the file when the run is resumed. */
+/* Points of logarithmic axes and of samples come from libraries and may differ between machines:
+ * every rank takes those of rank 0, which has them from the file when the run is resumed. */
 static void share_axes(struct run *run)
 {
     for (int a = 0; a < run->scenario->axes; a++) {
         struct scenario_axis *axis = &run->scenario->axis[a];
-        if (axis->log) {
-            parallel_broadcast(&run->parallel, axis->value, axis->count * sizeof *axis->value);
+        if (axis->log || axis->sample) {
+            parallel_broadcast(&run->parallel, axis->value,
+                               axis->count * (size_t)axis->paths * sizeof *axis->value);
         }
     }
 }

@@ -121,7 +121,8 @@ struct store_origin {
 };
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);
 void store_origin_free(struct store_origin *origin);
-/* Values of a logarithmic axis as the file has them, into axis->value; other axes are left. */
+/* Values of a logarithmic axis or of a sample as the file has them, into axis->value; other axes
+ * are left. */
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message);
 
 /* Collective when `ranks` > 1: opens a file of this plan for writing. */

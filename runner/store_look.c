@@ -80,24 +80,27 @@ void store_origin_free(struct store_origin *origin)
 
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
 {
-    if (!axis->log) {
+    if (!axis->log && !axis->sample) {
         return true;
     }
-    hid_t id = open_to_read(file), dataset = H5Dopen2(id, axis->name, H5P_DEFAULT);
-    hsize_t length = axis->count;
+    hid_t id = open_to_read(file);
+    const size_t paths = (size_t)axis->paths;
+    const hsize_t length = axis->count;
     double *value = malloc(axis->count * sizeof *value);
-    bool good =
-        value && store_has_shape(dataset, 1, &length) &&
-        H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
-    H5Dclose(dataset);
-    H5Fclose(id);
-    if (!good) {
-        free(value);
-        return store_failed(message, file, "read an axis");
+    bool good = value != NULL && id >= 0;
+    for (size_t k = 0; good && k < paths; k++) {
+        hid_t dataset = H5Dopen2(id, axis->path[k], H5P_DEFAULT);
+        good = store_has_shape(dataset, 1, &length) &&
+               H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                       value) >= 0;
+        for (size_t i = 0; good && i < axis->count; i++) {
+            axis->value[i * paths + k] = value[i];
+        }
+        H5Dclose(dataset);
     }
-    free(axis->value);
-    axis->value = value;
-    return true;
+    free(value);
+    H5Fclose(id);
+    return good || store_failed(message, file, "read an axis");
 }
 
 /* Reads the status variable, whatever its shape, in pieces. */
