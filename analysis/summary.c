@@ -151,15 +151,17 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
+enum results_kind summary_judged(const struct scenario *s)
+{
+    return s->base.law == LAW_STATE_FEEDBACK ? RESULTS_STABILISED : RESULTS_RESTED;
+}
+
 bool summary_make(struct summary *summary, const struct results *r, stance_message *message)
 {
     struct scenario s;
     /* A scenario of another version cannot be read: the summary goes without. */
     const bool readable = results_scenario(r, &s);
-    *summary = (struct summary){.judged = RESULTS_STABILISED};
-    if (readable && s.base.law != LAW_STATE_FEEDBACK) {
-        summary->judged = RESULTS_RESTED;
-    }
+    *summary = (struct summary){.judged = readable ? summary_judged(&s) : RESULTS_STABILISED};
     statistics_count(r, -1, 0, &summary->counts);
     collect_failures(summary, r);
     bool good = collect_numbers(summary, r, message) &&

@@ -92,6 +92,10 @@ void summary_collect_fields(struct summary *summary, const struct results *r,
 /* False when cases are done but the file stores no outcomes: record.answers left them out. */
 bool summary_has_outcomes(const struct summary *summary);
 
+/* What the cases of a scenario are judged by: STABILISED, or where no controller has a target
+ * RESTED. */
+enum results_kind summary_judged(const struct scenario *s);
+
 /* Share of the cases of the kind judged by among those done; NAN when there are none. */
 double summary_share(const struct summary *summary, const struct statistics_counts *counts);
 
