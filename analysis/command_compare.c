@@ -240,6 +240,15 @@ static int compare_only_labels(const struct results r[2], bool json)
     return comparison.equal == comparison.compared ? EXIT_DONE : EXIT_CASES_FAILED;
 }
 
+/* Cases that do not verify would be left out as pending ones are. */
+static bool refuse_damage(const struct results *r)
+{
+    if (r->damage.cases > 0) {
+        fprintf(stderr, "stance compare: %.200s is damaged and not compared\n", r->file);
+    }
+    return r->damage.cases > 0;
+}
+
 static int compare(void *context)
 {
     const struct request *request = context;
@@ -255,7 +264,10 @@ static int compare(void *context)
             return EXIT_IO;
         }
     }
-    int code = (request->labels ? compare_only_labels : compare_all)(r, request->json);
+    int code = EXIT_IO;
+    if (!refuse_damage(&r[0]) && !refuse_damage(&r[1])) {
+        code = (request->labels ? compare_only_labels : compare_all)(r, request->json);
+    }
     results_close(&r[0]);
     results_close(&r[1]);
     return code;

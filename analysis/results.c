@@ -1,7 +1,9 @@
 /* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
 #include "results.h"
 
+#include "../runner/checksum.h"
 #include "../runner/seal.h"
+#include "../runner/store.h"
 #include "../runner/supervise.h"
 
 #include <errno.h>
@@ -434,6 +436,8 @@ static bool read_kinds(struct results *r, stance_message *message)
         translate_failures(r);
     }
     bool good = r->kind || damaged(r, "it has no variable 'status'", message);
+    good = good && (store_distrust(r->id, r->kind, r->cases, &r->damage) ||
+                    failed(r, "the answers", message));
     for (uint64_t i = 0; good && i < r->cases; i++) {
         r->kind[i] = kind_of(r->kind[i], outcome ? &outcome[i] : NULL);
         good = r->kind[i] < RESULTS_KIND_COUNT ||
@@ -571,7 +575,7 @@ static bool verify(const struct results *r, stance_message *message)
 static bool read_all(struct results *r, stance_message *message)
 {
     return open_file(r, message) && read_provenance(r, message) && verify(r, message) &&
-           read_axes(r, message) && read_kinds(r, message);
+           read_axes(r, message);
 }
 
 bool results_open(struct results *r, const char *file, stance_message *message)
@@ -591,7 +595,10 @@ bool results_open(struct results *r, const char *file, stance_message *message)
     supervise_limit(true);
     bool good = read_all(r, message);
     supervise_limit(false);
-    if (!good) {
+    good = good && read_kinds(r, message);
+    if (good) {
+        results_warn(r);
+    } else {
         results_close(r);
     }
     return good;
@@ -708,6 +715,28 @@ static size_t count_rows(const struct results_trajectory *t, size_t rows)
     return k;
 }
 
+/* A trajectory of `rows` instants is as its checksum says, where it has one. */
+static bool is_whole(const struct results *r, const struct results_trajectory *t, size_t place,
+                     size_t rows)
+{
+    const struct {
+        const double *values;
+        size_t width;
+    } part[] = {{t->position, t->coordinates},
+                {t->velocity, t->coordinates},
+                {t->torque, t->actuators},
+                {t->force, 2 * t->contacts},
+                {t->gap, t->contacts}};
+    uint32_t crc = 0, expected;
+
+    for (size_t k = 0; k < sizeof part / sizeof part[0]; k++) {
+        if (part[k].values) {
+            crc = checksum_crc32c(crc, part[k].values, rows * part[k].width * sizeof(double));
+        }
+    }
+    return !store_trajectory_checksum(r->id, place, &expected) || crc == expected;
+}
+
 bool results_trajectory(const struct results *r, size_t place, uint64_t index,
                         struct results_trajectory *t, stance_message *message)
 {
@@ -730,6 +759,9 @@ bool results_trajectory(const struct results *r, size_t place, uint64_t index,
         read_track(r, "trajectory/gap", place, rows, t->contacts, &t->gap, message);
     if (good && !t->position) {
         good = damaged(r, "the trajectories have no positions", message);
+    }
+    if (good && r->kind[r->single ? 0 : index] != RESULTS_PENDING && !is_whole(r, t, place, rows)) {
+        good = damaged(r, "a trajectory is not as its checksum says", message);
     }
     if (good) {
         t->rows = count_rows(t, rows);

@@ -8,6 +8,7 @@
 #define STANCE_ANALYSIS_RESULTS_H
 
 #include "../runner/scenario.h"
+#include "../runner/store.h"
 
 /* What became of a case: its status and, where done, its outcome; in the order of legends. */
 #define RESULTS_KINDS(X)                                                                           \
@@ -52,15 +53,19 @@ struct results {
     int axes;
     struct results_axis axis[SCENARIO_MAX_AXES];
     uint64_t cases;
-    uint8_t *kind;    /* [cases] enum results_kind, row-major over the axes */
-    uint8_t *failure; /* [cases] enum stance_failure, or NULL: not stored */
-    int64_t id;       /* of the open file, for results.c */
+    struct store_damage damage; /* cases that do not verify, and therefore count as pending */
+    uint8_t *kind;              /* [cases] enum results_kind, row-major over the axes */
+    uint8_t *failure;           /* [cases] enum stance_failure, or NULL: not stored */
+    int64_t id;                 /* of the open file, for results.c */
 };
 
 /* Opens and reads all but the answers; verifies the checksums that the file has over its axes, its
- * designs and its scenario. On failure nothing is left open. */
+ * designs and its scenario, and over each case: cases that do not verify count as pending, and a
+ * line on standard error says so. On failure nothing is left open. */
 bool results_open(struct results *r, const char *file, stance_message *message);
 void results_close(struct results *r);
+/* That line; nothing when every case verifies. */
+void results_warn(const struct results *r);
 
 /* The numbers of a variable over the cases, NAN where a case is not done; *values[cases] is freed
  * by the caller. A variable that is not stored gives *values = NULL and true. */

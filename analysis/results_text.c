@@ -111,3 +111,15 @@ bool results_scenario(const struct results *r, struct scenario *s)
     free(said);
     return good;
 }
+
+void results_warn(const struct results *r)
+{
+    const bool one = r->damage.cases == 1;
+    if (r->damage.cases > 0) {
+        fprintf(stderr,
+                "stance: warning: %.200s: %llu case%s not verify and %s as pending, the first is "
+                "%llu; stance run --resume computes %s again\n",
+                r->file, (unsigned long long)r->damage.cases, one ? " does" : "s do",
+                one ? "counts" : "count", (unsigned long long)r->damage.first, one ? "it" : "them");
+    }
+}

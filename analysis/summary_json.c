@@ -69,6 +69,7 @@ static json_t *cases(const struct summary *summary, const struct results *r)
     put(object, "failed", whole(counts->kind[RESULTS_FAILED]));
     put(object, "pending", whole(counts->kind[RESULTS_PENDING]));
     put(object, "inferred", whole(summary->inferred));
+    put(object, "damaged", whole(r->damage.cases));
     return object;
 }
 

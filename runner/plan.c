@@ -265,23 +265,29 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
     const struct scenario *s = plan->scenario;
     size_t first;
     const size_t count = designs_here(plan, parallel, &first);
-    uint64_t found = 0;
+    uint64_t found[2] = {0}; /* designs that exist; ranks that were stopped */
 
     for (size_t d = first; d < first + count; d++) {
         struct scenario_values values;
         stance_message ignored;
-        scenario_case_values(s, design_case(plan, d), &values);
-        bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
-        plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
-        found += exists;
+        if (plan->stop && plan->stop(plan->stop_context)) {
+            found[1] = 1;
+            break;
+        }
+        if (plan->design_status[d] == STANCE_PENDING) {
+            scenario_case_values(s, design_case(plan, d), &values);
+            bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
+            plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
+        }
+        found[0] += plan->design_status[d] == STANCE_DONE;
     }
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
     parallel_gather_block(parallel, plan->design_status, 1, first, count);
-    parallel_sum(parallel, &found, 1);
-    if (found == 0) {
+    parallel_sum(parallel, found, 2);
+    if (found[0] == 0 && found[1] == 0) {
         blame_design(plan, 0, error);
     }
-    return found > 0;
+    return found[0] > 0 && found[1] == 0;
 }
 
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
@@ -298,8 +304,8 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
     for (size_t d = first; good && d < first + count; d++) {
         struct scenario_values values;
         stance_message why = {""}; /* there need not be a set */
-        if (plan->design_status[d] != STANCE_DONE) {
-            continue;
+        if (plan->design_status[d] != STANCE_DONE || plan->design[d].capture_time != 0) {
+            continue; /* none, or known from another file */
         }
         scenario_case_values(s, design_case(plan, d), &values);
         good = capture_estimate(s->scene, &values, &plan->design[d], s->seed, stop, context, NULL,

@@ -41,7 +41,7 @@ struct refine_map {
     size_t margin;                   /* cells */
     double probes;                   /* 0 ... 1 */
     uint64_t seed;
-    size_t samples; /* points of the last axis where that is sweep.sample's, else 1 */
+    size_t samples; /* points of the last axis where that is sweep.sample's, else 0 */
 };
 
 /* The map of a scenario that asks for refinement. */

@@ -355,9 +355,9 @@ static bool check_size(struct reader *r, const struct scenario_axis *axis)
     }
     if (points * axis->paths > MOST_NUMBERS) {
         problem_add(&r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
-                    "sweep.sample.count: %.0f points of %d values are more than the 2^25 numbers "
-                    "that can be kept in memory",
-                    points, axis->paths);
+                    "sweep.sample.count: %.0f points of %d value%s each are more than the 2^25 "
+                    "numbers that can be kept in memory",
+                    points, axis->paths, axis->paths == 1 ? "" : "s");
         return false;
     }
     if (points > MOST_CASES / (double)r->s->cases) {
