@@ -1,5 +1,6 @@
 /* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
 #include "plot.h"
+#include "sensitivity_study.h"
 
 #include "../runner/command.h"
 #include "../runner/supervise.h"
@@ -7,8 +8,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* The directory of a file, or "." */
 static void directory_of(const char *file, char *directory, size_t size)
@@ -19,23 +18,6 @@ static void directory_of(const char *file, char *directory, size_t size)
     } else {
         snprintf(directory, size, "%.*s", slash == file ? 1 : (int)(slash - file), file);
     }
-}
-
-/* Makes the directory when it is missing; says why nothing can be written there. */
-static bool prepare_directory(const char *directory)
-{
-    struct stat information;
-    bool good =
-        (mkdir(directory, 0777) == 0 || errno == EEXIST) && stat(directory, &information) == 0;
-    if (good && !S_ISDIR(information.st_mode)) {
-        errno = ENOTDIR;
-        good = false;
-    }
-    good = good && access(directory, W_OK | X_OK) == 0;
-    if (!good) {
-        fprintf(stderr, "%s: pictures cannot be written there: %s\n", directory, strerror(errno));
-    }
-    return good;
 }
 
 static bool parse_index(const char *text, uint64_t *index)
@@ -131,6 +113,30 @@ static int draw_sweep(const struct plot *plot)
     return EXIT_DONE;
 }
 
+/* ---- a sampled study ---------------------------------------------------------------------- */
+
+static int draw_sensitivity(const struct plot *plot)
+{
+    const struct sensitivity_request request = {
+        .unit = "",
+        .of = RESULTS_KIND_COUNT,
+        .bootstrap = SENSITIVITY_BOOTSTRAP,
+    };
+    struct sensitivity_study study;
+    stance_message message = {""};
+    char stem[400];
+    int code = sensitivity_study_make(&study, plot->r, &request, &message);
+    if (code == EXIT_DONE) {
+        snprintf(stem, sizeof stem, "%.300s-sensitivity", plot->stem);
+        code = sensitivity_picture(&study, plot->directory, stem, &message) ? EXIT_DONE : EXIT_IO;
+        sensitivity_study_free(&study);
+    }
+    if (code != EXIT_DONE) {
+        fprintf(stderr, "%s\n", message.text);
+    }
+    return code;
+}
+
 /* ---- an answer ---------------------------------------------------------------------------- */
 
 /* What --answer and --of ask for; false with a message when there is no such. */
@@ -205,12 +211,14 @@ static int draw(void *context)
         directory = own_directory;
     }
     const struct plot plot = {&r, directory, r.name};
-    if (!prepare_directory(directory)) {
+    if (!gnuplot_directory(directory)) {
         code = EXIT_IO;
     } else if (request->answer) {
         code = draw_answer(&plot, request->answer, request->of);
     } else if (index_text || r.single) {
         code = draw_case(&plot, index_text ? index : r.index, index_text != NULL);
+    } else if (sensitivity_study_fits(&r)) {
+        code = draw_sensitivity(&plot);
     } else {
         code = draw_sweep(&plot);
     }
@@ -264,6 +272,8 @@ const struct command command_plot = {
     "  one axis            NAME-curve: outcome, times and friction used along it\n"
     "  a first axis that   NAME-curve: the shares of stabilised and rested cases against it, with\n"
     "  is not an offset    Wilson's 95 % bands\n"
+    "  sampled factors     NAME-sensitivity: which of them decides; stance sensitivity -h says "
+    "more\n"
     "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"
     "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
     "\n"

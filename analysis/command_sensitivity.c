@@ -141,11 +141,13 @@ static int work(void *context)
 
 static int run(int argc, char **argv)
 {
-    const char *answer = NULL, *of = NULL, *resamples = "1000", *level = "0.95", *seed = "0";
+    const char *answer = NULL, *of = NULL, *resamples = NULL, *level = NULL, *seed = NULL;
     const char *failed = "drop", *by[MOST_BY];
     size_t given[7] = {0}, json = 0, csv = 0, operands = 0;
     bool help = false;
-    struct asked asked = {.request = {.unit = "", .of = RESULTS_KIND_COUNT, .by = by}};
+    struct asked asked = {
+        .request = {
+            .unit = "", .of = RESULTS_KIND_COUNT, .by = by, .bootstrap = SENSITIVITY_BOOTSTRAP}};
     const struct option_spec specs[] = {
         {"--answer", true, &answer, 1, &given[0]},
         {"--of", true, &of, 1, &given[1]},
@@ -178,11 +180,11 @@ static int run(int argc, char **argv)
     }
     struct sensitivity_request *request = &asked.request;
     if (!((!answer || read_answer(answer, request)) && (!of || read_outcome(of, request)) &&
-          read_failed(failed, request) && read_resamples(resamples, request) &&
-          read_level(level, request) && read_seed(seed, request))) {
+          read_failed(failed, request) && (!resamples || read_resamples(resamples, request)) &&
+          (!level || read_level(level, request)) && (!seed || read_seed(seed, request)))) {
         return EXIT_USAGE;
     }
-    if (asked.directory && !plot_directory(asked.directory)) {
+    if (asked.directory && !gnuplot_directory(asked.directory)) {
         return EXIT_IO;
     }
     asked.output = json ? OUTPUT_JSON : csv ? OUTPUT_CSV : OUTPUT_TEXT;

@@ -14,8 +14,11 @@ const char *const sensitivity_words[SENSITIVITY_MEASURE_COUNT] = {
 #undef SENSITIVITY_MEASURE
 };
 
+/* Share of resamples that must have an estimate for there to be an interval. */
+static const double LEAST_RESAMPLED = 0.9;
+
 /* Rows to estimate from: blocks, one after the other, and what an estimate needs beside them. */
-struct rows {
+struct block_rows {
     size_t factors, count, width;
     const double *value; /* [count][width] */
     bool second_order;   /* sobol */
@@ -26,9 +29,9 @@ struct rows {
 };
 
 /* Estimates from rows pick[count] (NULL: each of them once) into the flat list of quantities. */
-typedef void (*estimator)(const struct rows *rows, const uint32_t *pick, double *quantity);
+typedef void (*estimator)(const struct block_rows *rows, const uint32_t *pick, double *quantity);
 
-static const double *row_at(const struct rows *rows, const uint32_t *pick, size_t i)
+static const double *row_at(const struct block_rows *rows, const uint32_t *pick, size_t i)
 {
     return rows->value + (pick ? pick[i] : i) * rows->width;
 }
@@ -49,7 +52,7 @@ static size_t sums_size(size_t width, size_t factors, bool second_order)
     return 4 * width + (second_order ? factors * factors : 0);
 }
 
-static void add_row(const struct rows *rows, const double *y, struct sums *sums)
+static void add_row(const struct block_rows *rows, const double *y, struct sums *sums)
 {
     const size_t width = rows->width, k = rows->factors;
     const double a = y[0], b = y[width - 1];
@@ -87,7 +90,7 @@ static void regress(const struct sums *sums, double n, size_t c, size_t width, d
 }
 
 /* first[k], total[k], sum of first, second[k][k]. */
-static void estimate_sobol(const struct rows *rows, const uint32_t *pick, double *quantity)
+static void estimate_sobol(const struct block_rows *rows, const uint32_t *pick, double *quantity)
 {
     const size_t width = rows->width, k = rows->factors;
     const double n = (double)rows->count;
@@ -127,7 +130,7 @@ static void estimate_sobol(const struct rows *rows, const uint32_t *pick, double
 /* ---- Morris ------------------------------------------------------------------------------- */
 
 /* mu[k], mu_star[k], sigma[k]; rows are effects[k], NAN where there is none. */
-static void estimate_morris(const struct rows *rows, const uint32_t *pick, double *quantity)
+static void estimate_morris(const struct block_rows *rows, const uint32_t *pick, double *quantity)
 {
     const size_t k = rows->factors;
     double *mu = quantity, *mu_star = quantity + k, *sigma = quantity + 2 * k, *n = rows->work;
@@ -175,7 +178,7 @@ static void find_effects(const double *y, const double *u, size_t k, double *eff
 
 /* first[k], sum of first, what chance adds to each first[k] at the most; rows are single
  * responses. */
-static void estimate_given(const struct rows *rows, const uint32_t *pick, double *quantity)
+static void estimate_given(const struct block_rows *rows, const uint32_t *pick, double *quantity)
 {
     const size_t k = rows->factors;
     double *sum = rows->work, *number = rows->work + rows->bins, n = (double)rows->count;
@@ -251,14 +254,18 @@ static void draw(const struct sensitivity_bootstrap *bootstrap, size_t resample,
     }
 }
 
-/* Interval of an estimate from its resamples, which are sorted and lose what is no number. */
+/* Interval of an estimate from its resamples, which are sorted and lose what is no number: one that
+ * drew a few blocks many times may have no index. */
 static struct sensitivity_value interval_of(double estimate, double *resampled, size_t n,
                                             double level)
 {
     struct sensitivity_value value = {estimate, NAN, NAN};
     struct statistics_numbers numbers;
+    for (size_t b = 0; b < n; b++) {
+        resampled[b] = isfinite(resampled[b]) ? resampled[b] : NAN;
+    }
     statistics_summarise(resampled, n, &numbers);
-    if (!isfinite(estimate) || numbers.n < 2) {
+    if (!isfinite(estimate) || (double)numbers.n < LEAST_RESAMPLED * (double)n) {
         value.estimate = isfinite(estimate) ? estimate : NAN;
         return value;
     }
@@ -268,7 +275,7 @@ static struct sensitivity_value interval_of(double estimate, double *resampled, 
     return value;
 }
 
-static bool estimate_all(const struct rows *rows, estimator estimate, size_t quantities,
+static bool estimate_all(const struct block_rows *rows, estimator estimate, size_t quantities,
                          const struct sensitivity_bootstrap *bootstrap,
                          struct sensitivity_value *value)
 {
@@ -353,7 +360,7 @@ bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, si
     const size_t width = (second_order ? 2 * factors : factors) + 2;
     const size_t quantities = 2 * factors + 1 + (second_order ? factors * factors : 0);
     double *value = malloc((blocks + 1) * width * sizeof *value);
-    struct rows rows = {.factors = factors, .width = width, .value = value};
+    struct block_rows rows = {.factors = factors, .width = width, .value = value};
 
     rows.second_order = second_order;
     rows.work = malloc(sums_size(width, factors, second_order) * sizeof *rows.work);
@@ -387,7 +394,7 @@ bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u,
                         size_t factors, const struct sensitivity_bootstrap *bootstrap)
 {
     double *effect = malloc((blocks + 1) * factors * sizeof *effect);
-    struct rows rows = {.factors = factors, .width = factors, .value = effect};
+    struct block_rows rows = {.factors = factors, .width = factors, .value = effect};
 
     rows.work = malloc(factors * sizeof *rows.work);
     bool good = begin(s, factors, 3 * factors) && effect && rows.work;
@@ -408,6 +415,9 @@ bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u,
         describe(s, y, blocks * (factors + 1));
         good =
             rows.count < 2 || estimate_all(&rows, estimate_morris, 3 * factors, bootstrap, s->all);
+        for (size_t q = factors; q < 3 * factors; q++) { /* not below what can be */
+            s->all[q].low = s->all[q].low < 0 ? 0 : s->all[q].low;
+        }
     }
     free(effect);
     free(rows.work);
@@ -425,7 +435,8 @@ bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, 
     uint32_t *bin = malloc((points + 1) * factors * sizeof *bin);
     struct place *places = malloc((points + 1) * sizeof *places);
     size_t *kept = malloc((points + 1) * sizeof *kept);
-    struct rows rows = {.factors = factors, .width = 1, .value = value, .bin = bin, .even = even};
+    struct block_rows rows = {
+        .factors = factors, .width = 1, .value = value, .bin = bin, .even = even};
     bool good = begin(s, factors, quantities) && value && bin && places && kept;
 
     for (size_t i = 0; good && i < points; i++) {

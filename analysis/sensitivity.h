@@ -68,6 +68,12 @@ struct sensitivity_bootstrap {
     double level;     /* of the intervals, in (0, 1) */
     uint64_t seed;
 };
+/* Unless told otherwise. */
+#define SENSITIVITY_BOOTSTRAP                                                                      \
+    (struct sensitivity_bootstrap)                                                                 \
+    {                                                                                              \
+        1000, 0.95, 0                                                                              \
+    }
 
 struct sensitivity {
     size_t factors;

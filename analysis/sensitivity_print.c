@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { INTERVAL = 26 }; /* columns that an interval takes, and the blanks before it */
+
 static bool is_sobol(const struct sensitivity_study *study)
 {
     return study->design->method == SAMPLING_SALTELLI;
@@ -82,17 +84,19 @@ static void print_head(const struct sensitivity_study *study)
            study->request.bootstrap.resamples);
 }
 
-static void print_value(const struct sensitivity_value *v)
+/* Indices are shares, with as many decimals as matter; effects have a unit. */
+static void print_value(const struct sensitivity_value *v, bool share)
 {
-    char interval[48] = "";
+    char interval[64] = "";
     if (isnan(v->estimate)) {
-        printf(" %10s  %-22s", "-", "");
+        printf(" %10s  %*s", "-", INTERVAL, "");
         return;
     }
     if (!isnan(v->low)) {
-        snprintf(interval, sizeof interval, "(%.4g ... %.4g)", v->low, v->high);
+        snprintf(interval, sizeof interval, share ? "(%.4f ... %.4f)" : "(%.4g ... %.4g)", v->low,
+                 v->high);
     }
-    printf(" %10.4g  %-22s", v->estimate, interval);
+    printf(share ? " %10.4f  %-*s" : " %10.4g  %-*s", v->estimate, INTERVAL, interval);
 }
 
 static void print_factors(const struct sensitivity_study *study,
@@ -107,7 +111,7 @@ static void print_factors(const struct sensitivity_study *study,
     printf("  %-*s", width, "factor");
     for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++) {
         if (table->s.measure[m]) {
-            printf(" %10s  %-22s", sensitivity_words[m], "interval");
+            printf(" %10s  %-*s", sensitivity_words[m], INTERVAL, "interval");
         }
     }
     putchar('\n');
@@ -116,7 +120,7 @@ static void print_factors(const struct sensitivity_study *study,
         printf("  %-*s", width, name);
         for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++) {
             if (table->s.measure[m]) {
-                print_value(&table->s.measure[m][study->order[i]]);
+                print_value(&table->s.measure[m][study->order[i]], !is_morris(study));
             }
         }
         putchar('\n');
@@ -127,8 +131,8 @@ static void print_sum(const struct sensitivity_table *table)
 {
     const struct sensitivity_value *sum = &table->s.first_sum;
     if (!isnan(sum->estimate)) {
-        printf("  sum of first-order indices %.4g (%.4g ... %.4g); interactions of factors "
-               "account for the rest, %.4g\n",
+        printf("  sum of first-order indices %.4f (%.4f ... %.4f); interactions of factors "
+               "account for the rest, %.4f\n",
                sum->estimate, sum->low, sum->high, 1 - sum->estimate);
     }
 }
@@ -146,7 +150,7 @@ static void print_pairs(const struct sensitivity_study *study,
             if (v->low > 0) {
                 sensitivity_factor_text(study, i, one, sizeof one);
                 sensitivity_factor_text(study, j, other, sizeof other);
-                printf("%s    %s with %s %.4g (%.4g ... %.4g)\n",
+                printf("%s    %s with %s %.4f (%.4f ... %.4f)\n",
                        shown++ ? "" : "  second-order indices above zero\n", one, other,
                        v->estimate, v->low, v->high);
             }
@@ -175,6 +179,10 @@ static void print_counts(const struct sensitivity_study *study,
                unit[0] ? " " : "", unit);
     }
     putchar('\n');
+    const size_t all = table->blocks * (is_morris(study) ? study->factors : 1);
+    if (10 * table->lost > all) {
+        printf("  WARNING: what is left after so many losses is no fair sample of the ranges\n");
+    }
     if (s->deviation == 0) {
         puts("  the response is the same at all points: it depends on none of the factors");
     } else if (s->blocks < 2) {
