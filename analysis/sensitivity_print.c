@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { INTERVAL = 26 }; /* columns that an interval takes, and the blanks before it */
+enum { INTERVAL = 24 }; /* columns of an interval */
 
 static bool is_sobol(const struct sensitivity_study *study)
 {
@@ -89,14 +89,14 @@ static void print_value(const struct sensitivity_value *v, bool share)
 {
     char interval[64] = "";
     if (isnan(v->estimate)) {
-        printf(" %10s  %*s", "-", INTERVAL, "");
+        printf(" %10s %*s", "-", INTERVAL, "");
         return;
     }
     if (!isnan(v->low)) {
         snprintf(interval, sizeof interval, share ? "(%.4f ... %.4f)" : "(%.4g ... %.4g)", v->low,
                  v->high);
     }
-    printf(share ? " %10.4f  %-*s" : " %10.4g  %-*s", v->estimate, INTERVAL, interval);
+    printf(share ? " %10.4f %*s" : " %10.4g %*s", v->estimate, INTERVAL, interval);
 }
 
 static void print_factors(const struct sensitivity_study *study,
@@ -111,7 +111,7 @@ static void print_factors(const struct sensitivity_study *study,
     printf("  %-*s", width, "factor");
     for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++) {
         if (table->s.measure[m]) {
-            printf(" %10s  %-*s", sensitivity_words[m], INTERVAL, "interval");
+            printf(" %10s %*s", sensitivity_words[m], INTERVAL, "interval");
         }
     }
     putchar('\n');
@@ -172,7 +172,9 @@ static void print_counts(const struct sensitivity_study *study,
     }
     if (table->lost > 0) {
         printf(", %zu %s lost for want of a case", table->lost,
-               is_morris(study) ? "effects" : blocks_word(study));
+               is_morris(study)   ? "effects"
+               : table->lost == 1 ? block_word(study)
+                                  : blocks_word(study));
     }
     if (isfinite(s->deviation)) {
         printf("; response %.4g on the mean, standard deviation %.4g%s%s", s->mean, s->deviation,
@@ -190,7 +192,7 @@ static void print_counts(const struct sensitivity_study *study,
     }
 }
 
-/* Fewer points than these of a Sobol' sequence are not always even, nor as good as independent:
+/* Fewer blocks than these of a Sobol' sequence are not always even, nor as good as independent:
  * measured, see tests/test_sensitivity.c. */
 static void print_caution(const struct sensitivity_study *study, size_t blocks)
 {
@@ -204,16 +206,19 @@ static void print_caution(const struct sensitivity_study *study, size_t blocks)
 static void print_policies(const struct sensitivity_study *study,
                            const struct sensitivity_table *table)
 {
-    char name[128];
+    char name[128], now[32] = "nothing";
     if (table->moved) {
-        const struct sensitivity_value *v =
-            &table->s.measure[table->moved_measure][table->moved_factor];
+        const double estimate =
+            table->s.measure[table->moved_measure][table->moved_factor].estimate;
+        if (isfinite(estimate)) {
+            snprintf(now, sizeof now, "%.4f", estimate);
+        }
         sensitivity_factor_text(study, table->moved_factor, name, sizeof name);
-        printf("  WARNING: failed cases %s, %s of %s would be %.4g, not %.4g: find out why cases "
+        printf("  WARNING: failed cases %s, %s of %s would be %.4f, not %s: find out why cases "
                "fail\n",
                study->request.fallen ? "left out (--failed drop)"
                                      : "counted as fallen (--failed fallen)",
-               sensitivity_words[table->moved_measure], name, table->moved_to, v->estimate);
+               sensitivity_words[table->moved_measure], name, table->moved_to, now);
     }
 }
 
@@ -235,8 +240,8 @@ void sensitivity_print_text(const struct sensitivity_study *study)
                 print_pairs(study, table);
             }
             print_caution(study, table->s.blocks);
-            print_policies(study, table);
         }
+        print_policies(study, table);
     }
 }
 

@@ -210,7 +210,10 @@ static void compare(struct sensitivity_table *table, const struct sensitivity *o
         for (size_t j = 0; table->s.measure[m] && j < table->s.factors; j++) {
             const struct sensitivity_value *v = &table->s.measure[m][j];
             const double to = other->measure[m][j].estimate;
-            const double out = fmax(v->low - to, to - v->high) / (v->high - v->low);
+            double out = fmax(v->low - to, to - v->high) / (v->high - v->low);
+            if (isnan(v->estimate) && isfinite(to)) { /* no variance but for failed cases */
+                out = INFINITY;
+            }
             if (out > farthest) {
                 farthest = out;
                 table->moved = true;
