@@ -45,9 +45,18 @@ static void print_axes(const struct results *r)
         int length = (int)strlen(r->axis[a].name);
         width = length > width ? length : width;
     }
+    for (int k = 0; k < r->varied; k++) {
+        int length = (int)strlen(r->vary[k].of.name) + 2;
+        width = length > width ? length : width;
+    }
     puts("\nVaried");
     for (int a = 0; a < r->axes; a++) {
         const struct results_axis *axis = &r->axis[a];
+        if (a == r->sample) {
+            printf("  %-*s  %zu points, %s\n", width, axis->name, axis->count, r->method);
+            summary_print_varied(r, width > 2 ? width - 2 : width);
+            continue;
+        }
         results_value_text(axis, 0, false, first, sizeof first);
         results_value_text(axis, axis->count - 1, true, last, sizeof last);
         printf("  %-*s  %s ... %s, %zu value%s%s%s\n", width, axis->name, first, last, axis->count,
@@ -267,7 +276,7 @@ static void print_parameter(const struct summary *summary, const struct results 
     int offsets[2], shown = 0;
     char from[128], to[128];
 
-    for (int a = 0; summary->parameters == 1 && a < r->axes && shown < 2; a++) {
+    for (int a = 0; summary->parameters == 1 && r->sample < 0 && a < r->axes && shown < 2; a++) {
         if (r->axis[a].offset && r->axis[a].count > 1) {
             offsets[shown++] = a;
         }
@@ -529,7 +538,10 @@ static void print_text(const struct summary *summary, const struct results *r)
     if (summary->pair_counts && outcomes) {
         print_pairs(summary, r);
     }
-    if (r->axes == 1) {
+    if (outcomes) {
+        summary_print_sample(summary, r);
+    }
+    if (r->axes == 1 && r->sample < 0) {
         print_changes(r);
     }
     print_numbers(summary);
@@ -627,6 +639,11 @@ const struct command command_summary = {
     "    pairs        of two parameters, no more: {paths: [2], share: [[...]]}, a row for each\n"
     "                 value of the first, a column for each of the second; null where none done\n"
     "    changes      [{from, to, before, after}] along the axis of a sweep with one axis\n"
+    "    sample       null, or of sweep.sample {method, points, share_of, varied, rays}: varied\n"
+    "                 [{path, unit, factor, parts: [{from, to, done, share, low, high}]}], parts\n"
+    "                 of equally many points or one for each value; rays, beside one axis of\n"
+    "                 offsets, null or {path, points, smallest, median, largest, nearest, at,\n"
+    "                 reach_end, none, unknown}: where the stabilised set ends along it\n"
     "    numbers      {answer: {of, unit, count, smallest, median, q90, q99, largest}}\n"
     "    cost         steps, iterations, iterations_per_step, evaluations, events, events_cases,\n"
     "                 subdivided_steps, subdivided_cases, degraded_samples, degraded_cases,\n"

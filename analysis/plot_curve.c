@@ -315,7 +315,7 @@ static void choose_parameters(const struct results *r, int *along, int *second)
     *along = 0;
     *second = -1;
     for (int a = 1; a < r->axes; a++) {
-        if (!r->axis[a].offset) {
+        if (!r->axis[a].offset && a != r->sample) {
             *second = a;
             parameters++;
         }

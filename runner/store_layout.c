@@ -119,12 +119,18 @@ static double own_number(const void *context, uint64_t i)
     return (double)i;
 }
 
-/* Names of the paths that a sample varies, freed by the caller; NULL: no memory. */
-static char *sampled_paths(const struct scenario_axis *axis, char separator)
+/* Names of the paths that a sample varies, with such signs between those of a factor and between
+ * factors; freed by the caller, NULL: no memory. */
+static char *sampled_paths(const struct scenario *s, char within, char between)
 {
+    const struct scenario_axis *axis = &s->axis[s->axes - 1];
     char *text = calloc((size_t)axis->paths, sizeof axis->path[0] + 1), *end = text;
-    for (int k = 0; text && k < axis->paths; k++) {
-        end += sprintf(end, "%.*s%s", k > 0, &separator, axis->path[k]);
+    for (size_t j = 0; text && j < s->sample.design.factors; j++) {
+        const struct scenario_factor *f = &s->sample.factor[j];
+        for (int k = 0; k < f->paths; k++) {
+            end += sprintf(end, "%.*s%s", j > 0 || k > 0, k > 0 ? &within : &between,
+                           axis->path[f->first + k]);
+        }
     }
     return text;
 }
@@ -134,7 +140,7 @@ static bool make_sample(struct layout *layout, const struct scenario_axis *axis,
                         struct dimension *dimension)
 {
     const struct sampling *design = &layout->plan->scenario->sample.design;
-    char *paths = sampled_paths(axis, ',');
+    char *paths = sampled_paths(layout->plan->scenario, ',', ';');
     bool good =
         paths &&
         make_numbers(&layout->dimensions, layout->file, axis->name, KIND_int64_t, axis->count,
@@ -176,7 +182,7 @@ static bool put_coordinates(const struct layout *layout, hid_t dataset)
     if (!s->sample.given || layout->plan->single) {
         return true;
     }
-    char *paths = sampled_paths(&s->axis[s->axes - 1], ' ');
+    char *paths = sampled_paths(s, ' ', ' ');
     bool good = paths && put_text(dataset, "coordinates", paths);
     free(paths);
     return good;
