@@ -116,6 +116,7 @@ static int draw_sweep(const struct plot *plot)
 
 /* ---- a sampled study ---------------------------------------------------------------------- */
 
+/* The picture for which `stance sensitivity` has options; what a file is too short for is said. */
 static int draw_sensitivity(const struct plot *plot)
 {
     const struct sensitivity_request request = {
@@ -135,7 +136,7 @@ static int draw_sensitivity(const struct plot *plot)
     if (code != EXIT_DONE) {
         fprintf(stderr, "%s\n", message.text);
     }
-    return code;
+    return code == EXIT_USAGE ? EXIT_DONE : code;
 }
 
 /* ---- an answer ---------------------------------------------------------------------------- */
@@ -218,10 +219,11 @@ static int draw(void *context)
         code = draw_answer(&plot, request->answer, request->of);
     } else if (index_text || r.single) {
         code = draw_case(&plot, index_text ? index : r.index, index_text != NULL);
-    } else if (sensitivity_study_fits(&r)) {
-        code = draw_sensitivity(&plot);
     } else {
         code = draw_sweep(&plot);
+        if (code == EXIT_DONE && sensitivity_study_fits(&r)) {
+            code = draw_sensitivity(&plot);
+        }
     }
     results_close(&r);
     return code;
@@ -270,14 +272,13 @@ const struct command command_plot = {
     "\n"
     "  sweep.sample        NAME-sample: its points over the first two factors, coloured by "
     "outcome,\n"
-    "                      and the share of good ends against each path varied; no maps\n"
+    "                      and the share of good ends against each path varied; no maps;\n"
+    "                      NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
     "  two axes or more    NAME-map: the outcome of every case over the last two axes of numbers,\n"
     "                      one panel per point of the others; NAME-settle_time: when it settled\n"
     "  one axis            NAME-curve: outcome, times and friction used along it\n"
     "  a first axis that   NAME-curve: the shares of stabilised and rested cases against it, with\n"
     "  is not an offset    Wilson's 95 % bands\n"
-    "  sampled factors     NAME-sensitivity: which of them decides; stance sensitivity -h says "
-    "more\n"
     "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"
     "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
     "\n"

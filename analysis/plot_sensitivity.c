@@ -284,6 +284,16 @@ static void put_plane(struct drawing *d, size_t t)
 
 /* ---- the picture -------------------------------------------------------------------------- */
 
+static bool has_any(const struct sensitivity_study *study)
+{
+    for (size_t t = 0; t < study->response.tables; t++) {
+        if (study->table[t].s.blocks > 1 && study->table[t].s.deviation > 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool sensitivity_picture(const struct sensitivity_study *study, const char *directory,
                          const char *stem, stance_message *message)
 {
@@ -292,6 +302,11 @@ bool sensitivity_picture(const struct sensitivity_study *study, const char *dire
     struct drawing d = {.study = study};
     char subtitle[400];
 
+    if (!has_any(study)) {
+        fprintf(stderr, "%s: too few points, or none that differ: no picture of sensitivity\n",
+                r->file);
+        return true;
+    }
     lay_out(&d);
     subtitle_of(study, subtitle, sizeof subtitle);
     const int right = d.left + (int)d.columns * (d.width + d.gap);

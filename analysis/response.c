@@ -1,16 +1,12 @@
 /* response.c - means over the cases of each sample point. */
 #include "response.h"
 
+#include "../runner/command.h"
 #include "statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-bool response_is_sampled(const struct results *r)
-{
-    return !r->single && r->axes > 0 && strcmp(r->axis[r->axes - 1].name, "sample") == 0;
-}
 
 void response_free(struct response *response)
 {
@@ -105,25 +101,27 @@ static void take_means(struct response *response, const struct results *r,
     }
 }
 
-/* The answers, NAN where a refined map has not simulated a case. */
-static bool read_answers(const struct results *r, const char *name, double **answers,
-                         stance_message *message)
+/* The answers, NAN where a refined map has not simulated a case. Returns an exit code. */
+static int read_answers(const struct results *r, const char *name, double **answers,
+                        stance_message *message)
 {
     uint64_t inferred;
     bool *which = NULL;
     *answers = NULL;
-    bool good = statistics_inferred(r, &inferred, &which, message) &&
-                results_answer(r, name, answers, message);
-    if (good && !*answers) {
+    int code = statistics_inferred(r, &inferred, &which, message) &&
+                       results_answer(r, name, answers, message)
+                   ? EXIT_DONE
+                   : EXIT_IO;
+    if (code == EXIT_DONE && !*answers) {
         snprintf(message->text, sizeof message->text, "%.150s: does not store %.60s", r->file,
                  name);
-        good = false;
+        code = EXIT_USAGE;
     }
-    for (uint64_t i = 0; good && which && i < r->cases; i++) {
+    for (uint64_t i = 0; code == EXIT_DONE && which && i < r->cases; i++) {
         (*answers)[i] = which[i] ? NAN : (*answers)[i];
     }
     free(which);
-    return good;
+    return code;
 }
 
 static bool has_outcomes(const struct results *r)
@@ -136,18 +134,19 @@ static bool has_outcomes(const struct results *r)
     return true;
 }
 
-bool response_make(struct response *response, const struct results *r,
-                   const struct response_choice *choice, const bool *kept, stance_message *message)
+int response_make(struct response *response, const struct results *r,
+                  const struct response_choice *choice, const bool *kept, stance_message *message)
 {
     double *answers = NULL;
-    *response = (struct response){.points = r->axis[r->axes - 1].count};
-    memcpy(response->kept, kept, (size_t)(r->axes - 1) * sizeof *kept);
+    *response = (struct response){.points = r->axis[r->sample].count};
+    memcpy(response->kept, kept, (size_t)r->sample * sizeof *kept);
     if (choice->of != RESULTS_KIND_COUNT && !has_outcomes(r)) {
         snprintf(message->text, sizeof message->text, "%.200s: does not store outcomes", r->file);
-        return false;
+        return EXIT_USAGE;
     }
-    if (choice->answer && !read_answers(r, choice->answer, &answers, message)) {
-        return false;
+    int code = choice->answer ? read_answers(r, choice->answer, &answers, message) : EXIT_DONE;
+    if (code != EXIT_DONE) {
+        return code;
     }
     bool good = make_tables(response, r);
     uint32_t *numbers = good ? calloc(response->tables * response->points, sizeof *numbers) : NULL;
@@ -156,9 +155,9 @@ bool response_make(struct response *response, const struct results *r,
     } else {
         snprintf(message->text, sizeof message->text, "%.200s: not enough memory", r->file);
         response_free(response);
-        good = false;
+        code = EXIT_IO;
     }
     free(numbers);
     free(answers);
-    return good;
+    return code;
 }

@@ -34,12 +34,11 @@ struct response {
     struct response_table *table; /* row-major over the axes kept apart */
 };
 
-/* The last axis of the file is that of sweep.sample. */
-bool response_is_sampled(const struct results *r);
-/* kept[axes] says which grid axes are kept apart. False: a line in *message, and nothing is left.
- */
-bool response_make(struct response *response, const struct results *r,
-                   const struct response_choice *choice, const bool *kept, stance_message *message);
+/* Of a file with samples (r->sample); kept[axes] says which grid axes are kept apart. Returns an
+ * exit code: EXIT_USAGE when the file does not store what is asked for. Other than EXIT_DONE there
+ * is a line in *message, and nothing is left. */
+int response_make(struct response *response, const struct results *r,
+                  const struct response_choice *choice, const bool *kept, stance_message *message);
 void response_free(struct response *response);
 
 #endif

@@ -12,9 +12,9 @@
  * Softw. 37, 2012). On Ishigami's, Sobol's g- and another function (tests/test_sensitivity.c) their
  * errors are 13 to 32 % smaller than those of Saltelli's first-order and Jansen's total estimators
  * with the mean taken off (Comput. Phys. Commun. 181, 2010) where blocks are independent, and about
- * the same for blocks of a Sobol' sequence. The second-order index of i and j is what the correlation
- * of f(AB_i) and f(BA_j), which
- * share just i and j, has beyond S_i and S_j, with the same correction by chance.
+ * the same for blocks of a Sobol' sequence. The second-order index of i and j is what the
+ * correlation of f(AB_i) and f(BA_j), which share just i and j, has beyond S_i and S_j, with the
+ * same correction by chance.
  *
  * Morris trajectories: the elementary effect of a factor is the change of the response over the
  * change of the factor in the step that changes it alone, in units of the response per length of

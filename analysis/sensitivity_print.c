@@ -57,7 +57,7 @@ static void print_head(const struct sensitivity_study *study)
         printf(" (%s)", study->request.unit);
     }
     const char *separator = ", over ";
-    for (int a = 0; a < r->axes - 1; a++) {
+    for (int a = 0; a < r->sample; a++) {
         if (!study->response.kept[a]) {
             printf("%s%s", separator, r->axis[a].name);
             over *= r->axis[a].count;
@@ -343,7 +343,7 @@ bool sensitivity_print_json(const struct sensitivity_study *study)
     for (size_t t = 0; t < study->response.tables; t++) {
         json_array_append_new(tables, table_json(study, &study->table[t]));
     }
-    for (int a = 0; a < study->r->axes - 1; a++) {
+    for (int a = 0; a < study->r->sample; a++) {
         if (!study->response.kept[a]) {
             json_array_append_new(over, json_string(study->r->axis[a].name));
         }

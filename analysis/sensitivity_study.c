@@ -69,7 +69,7 @@ static int refuse(stance_message *message, const struct results *r, const char *
 static int choose_axes(const struct results *r, const struct sensitivity_request *request,
                        bool *kept, stance_message *message)
 {
-    const int grid = r->axes - 1;
+    const int grid = r->sample;
     for (int a = 0; a < grid; a++) {
         kept[a] = request->by_count == 0 && strncmp(r->axis[a].name, "initial.", 8) != 0;
     }
@@ -100,7 +100,7 @@ bool sensitivity_study_fits(const struct results *r)
 {
     struct scenario *s = calloc(1, sizeof *s);
     bool fits = false;
-    if (s && response_is_sampled(r) && results_scenario(r, s)) {
+    if (s && r->sample >= 0 && results_scenario(r, s)) {
         fits = s->sample.given && s->sample.design.method != SAMPLING_SPHERE;
         scenario_free(s);
     }
@@ -112,7 +112,7 @@ bool sensitivity_study_fits(const struct results *r)
 static int read_design(struct sensitivity_study *study, stance_message *message)
 {
     const struct results *r = study->r;
-    if (!response_is_sampled(r)) {
+    if (r->sample < 0) {
         return refuse(message, r,
                       "has no sampled factors: its scenario needs sweep.sample "
                       "(stance describe sweep.sample)");
@@ -127,7 +127,7 @@ static int read_design(struct sensitivity_study *study, stance_message *message)
     study->scenario = s;
     study->design = &s->sample.design;
     if (!s->sample.given || s->axes != r->axes ||
-        sampling_points(study->design) != r->axis[r->axes - 1].count) {
+        sampling_points(study->design) != r->axis[r->sample].count) {
         snprintf(message->text, sizeof message->text,
                  "%.150s: damaged: its samples are not those of its scenario", r->file);
         return EXIT_IO;
@@ -270,9 +270,9 @@ static int make_others(struct sensitivity_study *study, const double *u, stance_
     const struct response_choice choice = {NULL, study->request.of, !study->request.fallen};
     const struct sensitivity_bootstrap least = {2, study->request.bootstrap.level, 0};
     struct response other;
-    int code = EXIT_DONE;
-    if (!response_make(&other, study->r, &choice, study->response.kept, message)) {
-        return EXIT_IO;
+    int code = response_make(&other, study->r, &choice, study->response.kept, message);
+    if (code != EXIT_DONE) {
+        return code;
     }
     for (size_t t = 0; code == EXIT_DONE && t < other.tables; t++) {
         struct sensitivity s;
@@ -358,7 +358,7 @@ int sensitivity_study_make(struct sensitivity_study *study, const struct results
             study->request.of = summary_judged(study->scenario);
         }
         const struct response_choice choice = {request->answer, study->request.of, request->fallen};
-        code = response_make(&study->response, r, &choice, kept, message) ? EXIT_DONE : EXIT_IO;
+        code = response_make(&study->response, r, &choice, kept, message);
     }
     if (code == EXIT_DONE) {
         code = make_tables(study, message);
