@@ -116,12 +116,14 @@ static int draw_sweep(const struct plot *plot)
 
 /* ---- a sampled study ---------------------------------------------------------------------- */
 
-/* The picture for which `stance sensitivity` has options; what a file is too short for is said. */
-static int draw_sensitivity(const struct plot *plot)
+/* The picture for which `stance sensitivity` has options; what a file is too short for is said.
+ * answer NULL: of the share of cases that end well. */
+static int draw_sensitivity(const struct plot *plot, const struct plot_answer *answer)
 {
     const struct sensitivity_request request = {
-        .unit = "",
-        .of = RESULTS_KIND_COUNT,
+        .answer = answer ? answer->name : NULL,
+        .unit = answer ? answer->unit : "",
+        .of = answer ? answer->of : RESULTS_KIND_COUNT,
         .bootstrap = SENSITIVITY_BOOTSTRAP,
     };
     struct sensitivity_study study;
@@ -129,7 +131,8 @@ static int draw_sensitivity(const struct plot *plot)
     char stem[400];
     int code = sensitivity_study_make(&study, plot->r, &request, &message);
     if (code == EXIT_DONE) {
-        snprintf(stem, sizeof stem, "%.300s-sensitivity", plot->stem);
+        snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", plot->stem, answer ? "-" : "",
+                 answer ? answer->name : "");
         code = sensitivity_picture(&study, plot->directory, stem, &message) ? EXIT_DONE : EXIT_IO;
         sensitivity_study_free(&study);
     }
@@ -175,6 +178,9 @@ static int draw_answer(const struct plot *plot, const char *name, const char *of
     if (plot->r->single) {
         fprintf(stderr, "%s: holds one case; stance summary prints its numbers\n", plot->r->file);
         return EXIT_USAGE;
+    }
+    if (sensitivity_study_fits(plot->r)) {
+        return draw_sensitivity(plot, &answer);
     }
     if (!(plot->r->axes < 2 ? plot_answer_curve(plot, &answer, &message)
                             : plot_answer_map(plot, &answer, &message))) {
@@ -222,7 +228,7 @@ static int draw(void *context)
     } else {
         code = draw_sweep(&plot);
         if (code == EXIT_DONE && sensitivity_study_fits(&r)) {
-            code = draw_sensitivity(&plot);
+            code = draw_sensitivity(&plot, NULL);
         }
     }
     results_close(&r);
@@ -286,6 +292,6 @@ const struct command command_plot = {
     "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
     "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another number) of "
     "every\n"
-    "                 case, as a map or along the one axis\n"
+    "                 case, as a map or along the one axis; sampled factors: NAME-A-sensitivity\n"
     "  --of OUTCOME   only of the cases that were stabilised, rested, fell or stayed undecided\n",
 };

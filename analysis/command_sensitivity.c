@@ -111,7 +111,9 @@ static bool report(const struct asked *asked, const struct sensitivity_study *st
         snprintf(message->text, sizeof message->text,
                  "stance sensitivity: the result could not be written");
     } else if (asked->directory) {
-        snprintf(stem, sizeof stem, "%.300s-sensitivity", study->r->name);
+        const char *answer = study->request.answer;
+        snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", study->r->name, answer ? "-" : "",
+                 answer ? answer : "");
         good = sensitivity_picture(study, asked->directory, stem, message);
     }
     return good;
@@ -226,8 +228,8 @@ const struct command command_sensitivity = {
     "  --failed P      drop: as said (default); fallen: failed cases count as fallen\n"
     "  --resamples N   of the bootstrap, default 1000; --seed N: other ones, default 0\n"
     "  --level L       of the intervals, default 0.95\n"
-    "  -o DIR          draws NAME-sensitivity.svg and .png into DIR, too (stance plot FILE draws\n"
-    "                  it without options)\n"
+    "  -o DIR          draws NAME-sensitivity.svg and .png into DIR, too, with --answer\n"
+    "                  NAME-A-sensitivity (stance plot FILE draws these as well)\n"
     "  --csv           a row for each table and factor: values of the axes kept apart, factor "
     "(its\n"
     "                  first path), estimate, _low and _high of each measure, response,\n"

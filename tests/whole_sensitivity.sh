@@ -119,10 +119,10 @@ expect "counted as fallen" 0 "$stance" sensitivity shares.h5 --of undecided --fa
 says "... as it says" '^failed cases: .* counted as fallen$'
 
 expect "a picture" 0 "$stance" sensitivity g.h5 --answer end_time -o pictures
-[ -s pictures/g-sensitivity.svg ] && [ -s pictures/g-sensitivity.png ]
+[ -s pictures/g-end_time-sensitivity.svg ] && [ -s pictures/g-end_time-sensitivity.png ]
 result $? "... as SVG and PNG"
-expect "stance plot draws it" 0 "$stance" plot morris.h5 -o pictures
-[ -s pictures/morris-sensitivity.png ]
+expect "stance plot draws it" 0 "$stance" plot morris.h5 --answer end_time -o pictures
+[ -s pictures/morris-end_time-sensitivity.png ]
 result $? "... by itself"
 
 refused() { # name, code, pattern, command ...
