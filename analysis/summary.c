@@ -172,8 +172,17 @@ static bool collect_rays(struct summary *summary, const struct results *r, stanc
         }
     }
     statistics_summarise(end, points, &summary->rays->numbers);
+    const bool scaled = strcmp(r->axis[axis].name, "initial.offset.scale") == 0;
+    summary->rays->scale = scaled ? smallest : 1;
     free(end);
     return true;
+}
+
+double summary_nearest(const struct summary_rays *rays, const struct results *r, int k)
+{
+    const struct results_varied *v = &r->vary[k];
+    const bool offset = strncmp(v->of.name, "initial.offset.", strlen("initial.offset.")) == 0;
+    return v->of.value[rays->nearest] * (offset ? rays->scale : 1);
 }
 
 static bool collect_axes(struct summary *summary, const struct results *r, stance_message *message)

@@ -52,8 +52,12 @@ struct summary_count {
 struct summary_rays {
     struct statistics_numbers numbers;
     size_t nearest; /* point of the smallest */
+    double scale;   /* of the offsets that the sample varies, there */
     size_t open, none, unknown;
 };
+
+/* What path k of a sample is at the smallest end: an offset times the scale. */
+double summary_nearest(const struct summary_rays *rays, const struct results *r, int k);
 
 /* A field that the sweep leaves alone. */
 struct summary_field {
