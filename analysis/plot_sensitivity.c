@@ -246,19 +246,63 @@ static void put_indices(struct drawing *d, size_t t)
     fputs("\nunset arrow 1\n", script);
 }
 
+/* A place beside a point, right or left of it, above or below, where its number does not cover
+ * that of a factor before it; false: there is none. Places are in px from the panel's lower left
+ * corner; taken[n][2]: the numbers so far. */
+static bool find_place(const double *point, double (*taken)[2], size_t n, double *place)
+{
+    static const double tries[][2] = {{11, 9}, {11, -9}, {-11, 9}, {-11, -9}, {0, 14}, {0, -14}};
+    static const double wide = 17, high = 13; /* two digits */
+    for (size_t c = 0; c < sizeof tries / sizeof tries[0]; c++) {
+        bool free = true;
+        place[0] = point[0] + tries[c][0];
+        place[1] = point[1] + tries[c][1];
+        for (size_t i = 0; free && i < n; i++) {
+            free = fabs(taken[i][0] - place[0]) >= wide || fabs(taken[i][1] - place[1]) >= high;
+        }
+        if (free) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Numbers of the factors beside their points, the most important first; in a crowd the last go
+ * without. */
+static void put_places(struct drawing *d, const struct sensitivity *s, char name[32])
+{
+    double taken[SAMPLING_MAX_FACTORS][2];
+    const double across = d->width / d->high, up = d->height / d->high_sigma;
+    size_t n = 0;
+    FILE *data = gnuplot_data(&d->g, name);
+    for (size_t i = 0; i < d->study->factors; i++) {
+        const size_t j = d->study->order[i];
+        const double point[2] = {across * s->measure[SENSITIVITY_MU_STAR][j].estimate,
+                                 up * s->measure[SENSITIVITY_SIGMA][j].estimate};
+        if (isfinite(point[0]) && isfinite(point[1]) && find_place(point, taken, n, taken[n])) {
+            fprintf(data, "%.10g %.10g %zu\n", taken[n][0] / across, taken[n][1] / up, i + 1);
+            n++;
+        }
+    }
+    if (n == 0) {
+        fputs("NaN NaN 0\n", data);
+    }
+    gnuplot_close_data(&d->g, data);
+}
+
 static void put_plane(struct drawing *d, size_t t)
 {
     const struct sensitivity *s = &d->study->table[t].s;
     FILE *script = d->g.script;
-    char name[32];
+    char name[32], numbers[32];
 
+    put_places(d, s, numbers);
     FILE *data = gnuplot_data(&d->g, name);
-    for (size_t i = 0; i < d->study->factors; i++) {
-        const size_t j = d->study->order[i];
+    for (size_t j = 0; j < d->study->factors; j++) {
         put_value(data, &s->measure[SENSITIVITY_MU_STAR][j]);
         putc(' ', data);
         put_value(data, &s->measure[SENSITIVITY_SIGMA][j]);
-        fprintf(data, " %zu\n", i + 1);
+        putc('\n', data);
     }
     gnuplot_close_data(&d->g, data);
     fprintf(script,
@@ -278,8 +322,8 @@ static void put_plane(struct drawing *d, size_t t)
             "plot x with lines lc rgb '" PLOT_GREY "' dt 2 notitle,"
             " '%s' using 1:4:2:3:5:6 with xyerrorbars lc rgb '#9ecae1' lw 1 pt 0 notitle,"
             " '' using 1:4 with points pt 7 ps 0.8 lc rgb '" PLOT_ACCENT "' notitle,"
-            " '' using 1:4:7 with labels font ',10' offset char 0.8,0.6 notitle\n",
-            name);
+            " '%s' using 1:2:3 with labels font ',10' center notitle\n",
+            name, numbers);
 }
 
 /* ---- the picture -------------------------------------------------------------------------- */
