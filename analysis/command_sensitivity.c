@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_BY = SCENARIO_MAX_AXES, LEAST_RESAMPLES = 100, MOST_RESAMPLES = 1000000 };
+enum { MOST_BY = SCENARIO_MAX_AXES, LEAST_RESAMPLES = 100, MOST_RESAMPLES = 100000 };
 
 enum output { OUTPUT_TEXT, OUTPUT_JSON, OUTPUT_CSV };
 
@@ -68,7 +68,7 @@ static bool read_resamples(const char *text, struct sensitivity_request *request
     const long n = strtol(text, &end, 10);
     request->bootstrap.resamples = (size_t)n;
     return (end != text && !*end && errno == 0 && n >= LEAST_RESAMPLES && n <= MOST_RESAMPLES) ||
-           bad_use("--resamples takes a whole number from 100 to 1000000, not", text);
+           bad_use("--resamples takes a whole number from 100 to 100000, not", text);
 }
 
 static bool read_level(const char *text, struct sensitivity_request *request)

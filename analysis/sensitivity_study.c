@@ -295,9 +295,11 @@ static int make_tables(struct sensitivity_study *study, stance_message *message)
 {
     const size_t tables = study->response.tables;
     uint64_t failed = 0;
-    double *u = make_points(study);
+    const bool blind =
+        study->design->method == SAMPLING_SALTELLI; /* where its points are, is known */
+    double *u = blind ? NULL : make_points(study);
     study->table = calloc(tables, sizeof *study->table);
-    int code = u && study->table ? EXIT_DONE : no_memory(study->r, message);
+    int code = (u || blind) && study->table ? EXIT_DONE : no_memory(study->r, message);
 
     for (size_t t = 0; code == EXIT_DONE && t < tables; t++) {
         struct sensitivity_table *table = &study->table[t];
