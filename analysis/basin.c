@@ -73,6 +73,30 @@ static void add_unit(struct basin *b, const char *unit)
     }
 }
 
+/* Starts that are sampled: the points must be evenly distributed over their box. */
+static bool choose_sample(struct basin *b, stance_message *message)
+{
+    const struct basin_sample *sample = &b->sample;
+    const char *wrong = b->start_axes > 0 ? "starts are on axes of the grid and sampled at once"
+                        : sample->method == SAMPLING_MORRIS
+                            ? "Morris's trajectories do not cover the box of starts evenly"
+                        : sample->method == SAMPLING_SPHERE
+                            ? "method sphere has no volume without a grid axis initial.offset.scale"
+                            : NULL;
+    if (wrong) {
+        snprintf(message->text, sizeof message->text, "%.100s: %s", b->r->file, wrong);
+        return false;
+    }
+    b->starts = BASIN_SAMPLE;
+    b->averaged = -1;
+    b->start[b->start_axes++] = sample->axis;
+    b->box = isfinite(sample->box) ? sample->box : 1;
+    for (size_t k = 0; k < sample->factors && isfinite(sample->box); k++) {
+        add_unit(b, sample->factor[k].of->unit);
+    }
+    return true;
+}
+
 static bool choose_axes(struct basin *b, stance_message *message)
 {
     const struct results *r = b->r;
@@ -86,14 +110,19 @@ static bool choose_axes(struct basin *b, stance_message *message)
         if (!by && is_start(axis) && axis->count > 1) {
             b->start[b->start_axes++] = a;
             add_unit(b, axis->unit);
+        } else if (!by && strcmp(axis->name, "sample") == 0) {
+            b->averaged = a;
         } else if (!by && b->choice.by_count == 0 && !is_start(axis) && !r->single) {
             b->by[b->by_axes++] = a;
         }
     }
+    if (b->sample.axis >= 0) {
+        return choose_sample(b, message);
+    }
     if (b->start_axes == 0) {
         snprintf(message->text, sizeof message->text,
-                 "%.100s: no starts are varied along axes (initial.offset.*, initial.state.*), so "
-                 "there is no basin to measure",
+                 "%.100s: no starts are varied (initial.offset.*, initial.state.*), so there is no "
+                 "basin to measure",
                  r->file);
         return false;
     }
@@ -240,6 +269,7 @@ static void add_slice(struct basin *b, const struct lattice *lattice, const size
     b->box = volume.box;
     row->slices++;
     row->volume += volume.estimate;
+    row->squares += volume.estimate * volume.estimate;
     row->low += volume.low;
     row->high += volume.high;
     row->error += volume.variance;
@@ -257,14 +287,50 @@ static void add_slice(struct basin *b, const struct lattice *lattice, const size
     }
 }
 
-/* From sums over slices to means. */
-static void finish_row(struct basin_row *row)
+/* From sums over slices to means; over a sample of parameters these scatter, too. */
+static void finish_row(const struct basin *b, struct basin_row *row)
 {
     const double n = (double)row->slices;
     row->volume /= n;
     row->low /= n;
     row->high /= n;
-    row->error = sqrt(row->error) / n;
+    row->error /= n * n;
+    if (b->averaged >= 0 && n > 1) {
+        row->error += fmax(0, row->squares / n - row->volume * row->volume) / (n - 1);
+    }
+    row->error = sqrt(row->error);
+}
+
+/* Counts cases alone: a sample is no map. */
+static void add_sampled(struct basin *b, const struct lattice *lattice, const size_t *point)
+{
+    struct basin_row *row = row_of(b, point);
+    for (int k = 0; k < b->by_axes; k++) {
+        row->point[b->by[k]] = point[b->by[k]];
+    }
+    for (size_t i = 0; i < lattice->map.cases; i++) {
+        if (basin_sample_counts(&b->sample, i)) {
+            const uint8_t kind = lattice->kind[i];
+            row->cases++;
+            row->inside += kind == b->choice.of;
+            row->failed += kind == RESULTS_FAILED;
+            row->pending += kind == RESULTS_PENDING;
+        }
+    }
+    row->slices++;
+}
+
+static void finish_sampled(const struct basin *b, struct basin_row *row)
+{
+    const uint64_t unknown = row->failed + row->pending, known = row->cases - unknown;
+    const double share = known > 0 ? (double)row->inside / (double)known : NAN;
+    double ignored;
+    statistics_wilson_at(b->choice.level, row->inside, row->cases, &row->low, &ignored);
+    statistics_wilson_at(b->choice.level, row->inside + unknown, row->cases, &ignored, &row->high);
+    row->volume = b->box * share;
+    row->low *= b->box;
+    row->high *= b->box;
+    row->error = b->box * sqrt(share * (1 - share) / (double)known);
 }
 
 static bool make_rows(struct basin *b, stance_message *message)
@@ -282,34 +348,37 @@ static bool make_rows(struct basin *b, stance_message *message)
     }
     do {
         take_slice(&lattice, b, point);
-        add_slice(b, &lattice, point);
+        (b->starts == BASIN_GRID ? add_slice : add_sampled)(b, &lattice, point);
     } while (next_slice(b, point));
     for (size_t k = 0; k < b->rows; k++) {
-        finish_row(&b->row[k]);
+        (b->starts == BASIN_GRID ? finish_row : finish_sampled)(b, &b->row[k]);
     }
     free_lattice(&lattice);
     return true;
 }
 
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
-                bool *usage, stance_message *message)
+                struct basin_sample *sample, bool *usage, stance_message *message)
 {
-    *basin = (struct basin){.r = r, .choice = *choice, .starts = BASIN_GRID};
+    *basin = (struct basin){
+        .r = r, .choice = *choice, .starts = BASIN_GRID, .sample = *sample, .averaged = -1};
+    *sample = (struct basin_sample){.axis = -1};
     *usage = true;
-    if (!choose_axes(basin, message)) {
-        return false;
+    bool good = choose_axes(basin, message);
+    if (good) {
+        *usage = false;
+        good = make_rows(basin, message);
     }
-    *usage = false;
-    if (!make_rows(basin, message)) {
+    if (!good) {
         basin_free(basin);
-        return false;
     }
-    return true;
+    return good;
 }
 
 void basin_free(struct basin *basin)
 {
     free(basin->row);
+    basin_sample_free(&basin->sample);
     *basin = (struct basin){0};
 }
 
@@ -335,8 +404,8 @@ bool basin_boundary(const struct basin *basin,
 {
     struct visitor visitor = {.slice = {.basin = basin}, .visit = visit, .context = context};
     struct lattice lattice;
-    if (!make_lattice(&lattice, basin)) {
-        return false;
+    if (basin->starts != BASIN_GRID || !make_lattice(&lattice, basin)) {
+        return basin->starts != BASIN_GRID;
     }
     visitor.slice.map = lattice.map;
     bool good = true;

@@ -1,13 +1,15 @@
 /* basin.h - the basin of an outcome in a results file, as a function of what else is varied.
  *
  * Axes initial.offset.* and initial.state.* are starts; so is the dimension `sample` where every
- * factor is one. Every other axis is a parameter. A slice is a map over the starts at one point of
- * the parameters; a row is the slices that agree in the parameters that rows are made by, averaged.
+ * some factor is one. Every other axis is a parameter. A slice is a map over the starts at one
+ * point of the parameters; a row is the slices that agree in the parameters that rows are made by,
+ * averaged.
  */
 #ifndef STANCE_ANALYSIS_BASIN_H
 #define STANCE_ANALYSIS_BASIN_H
 
 #include "basin_map.h"
+#include "basin_sample.h"
 
 enum basin_starts {
     BASIN_GRID,   /* start axes of numbers: volumes as basin_map.h has them */
@@ -21,6 +23,7 @@ struct basin_row {
     uint64_t slices, cases, inside, failed, pending;
     double volume, low, high; /* mean of a slice; NAN: nothing is known */
     double error;             /* likely error of `volume`, one standard deviation */
+    double squares;           /* of the slices' volumes, summed */
     uint64_t cells, crossed;  /* grid */
     struct basin_entropy entropy;
     struct basin_uncertainty uncertainty;
@@ -40,19 +43,21 @@ struct basin {
     const struct results *r;
     struct basin_choice choice;
     enum basin_starts starts;
-    int start[SCENARIO_MAX_AXES], start_axes; /* axes of the file: of a grid those that vary */
+    int start[SCENARIO_MAX_AXES], start_axes; /* axes of the file: of a grid those that vary, or
+                                               * that of the sample */
     int by[SCENARIO_MAX_AXES], by_axes;
-    double box;      /* volume of the box of starts */
-    char unit[256];  /* of volumes, "" without one */
-    char design[32]; /* of sampled starts: random, lhs, sobol ... */
+    double box;                 /* volume of the box of starts */
+    char unit[256];             /* of volumes, "" without one */
+    struct basin_sample sample; /* of starts; with BASIN_GRID unused */
+    int averaged;               /* axis of a sample of parameters that is averaged over, or -1 */
     size_t rows;
     struct basin_row *row; /* [rows], row-major over by[] */
 };
 
-/* False: one line in *message. `*usage`: it is the request or the file's kind that is at fault.
- * Nothing is left allocated then. */
+/* Takes over the file's sample. False: one line in *message. `*usage`: it is the request or the
+ * file's kind that is at fault. Nothing is left allocated then. */
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
-                bool *usage, stance_message *message);
+                struct basin_sample *sample, bool *usage, stance_message *message);
 void basin_free(struct basin *basin);
 
 /* Calls visit for every pair of neighbouring starts whose outcomes differ, in every slice; `first`

@@ -24,6 +24,15 @@ static json_t *paths(const struct results *r, const int *list, int count)
     return names;
 }
 
+static json_t *factors(const struct basin_sample *sample)
+{
+    json_t *names = json_array();
+    for (size_t k = 0; k < sample->factors; k++) {
+        json_array_append_new(names, json_string(sample->factor[k].of->name));
+    }
+    return names;
+}
+
 static json_t *place(const struct basin *b, const struct basin_row *row)
 {
     json_t *at = json_object();
@@ -105,7 +114,12 @@ bool basin_print_json(const struct basin *b)
     json_object_set_new(root, "outcome", json_string(results_kind_names[b->choice.of]));
     json_object_set_new(root, "level", number(b->choice.level));
     json_object_set_new(root, "box_side", whole(b->choice.side));
-    json_object_set_new(root, "starts", paths(b->r, b->start, b->start_axes));
+    json_object_set_new(
+        root, "design",
+        json_string(b->starts == BASIN_GRID ? "grid" : sampling_words[b->sample.method]));
+    json_object_set_new(root, "starts",
+                        b->starts == BASIN_GRID ? paths(b->r, b->start, b->start_axes)
+                                                : factors(&b->sample));
     json_object_set_new(root, "parameters", paths(b->r, b->by, b->by_axes));
     json_object_set_new(root, "box", number(b->box));
     json_object_set_new(root, "unit", json_string(b->unit));

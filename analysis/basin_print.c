@@ -16,6 +16,44 @@ double basin_dimension(const struct basin *basin, const struct basin_row *row)
 
 /* ---- text --------------------------------------------------------------------------------- */
 
+/* Why Wilson's interval may be taken for the points of a design. */
+static const char *interval_reason(enum sampling_method method)
+{
+    switch (method) {
+    case SAMPLING_LHS:
+        return "Wilson's; wider than it need be, as Latin hypercubes scatter less than chance";
+    case SAMPLING_SOBOL:
+        return "Wilson's; mostly far wider than it need be: Sobol' points scatter less than chance";
+    case SAMPLING_SALTELLI:
+        return "Wilson's, of the first and the last point of each block: the others repeat them";
+    default:
+        return "Wilson's";
+    }
+}
+
+static void print_sample(const struct basin *b)
+{
+    const struct basin_sample *sample = &b->sample;
+    printf("\n\nStarts that end as %s, of %zu points (%s) over\n", results_kind_names[b->choice.of],
+           sample->points, sampling_words[sample->method]);
+    for (size_t k = 0; k < sample->factors; k++) {
+        const struct basin_factor *factor = &sample->factor[k];
+        printf("  %-24s", factor->of->name);
+        if (isnan(factor->from)) {
+            puts(" not evenly over a range: no volume, shares alone");
+        } else {
+            printf(" %.6g ... %.6g %s\n", factor->from, factor->to, factor->of->unit);
+        }
+    }
+    if (isfinite(sample->box)) {
+        printf("  a box of %.6g%s%s\n", b->box, b->unit[0] ? " " : "", b->unit);
+    }
+    if (sample->others) {
+        puts("  averaged over what else is sampled");
+    }
+    printf("  interval: %s\n", interval_reason(sample->method));
+}
+
 static void print_head(const struct basin *b)
 {
     const struct results *r = b->r;
@@ -29,6 +67,10 @@ static void print_head(const struct basin *b)
     if (failed + pending > 0) {
         printf(", %llu failed, %llu pending", (unsigned long long)failed,
                (unsigned long long)pending);
+    }
+    if (b->starts == BASIN_SAMPLE) {
+        print_sample(b);
+        return;
     }
     printf("\n\nStarts that end as %s, on a grid over\n", results_kind_names[b->choice.of]);
     for (int d = 0; d < b->start_axes; d++) {
@@ -99,7 +141,14 @@ static void print_shape(const struct basin *b, const struct basin_row *row)
 /* Row k of those shown: all, or some spread over them. */
 static const struct basin_row *shown(const struct basin *b, size_t k, size_t rows)
 {
-    return &b->row[rows == b->rows ? k : k * (b->rows - 1) / (rows - 1)];
+    return &b->row[rows == b->rows || rows < 2 ? k : k * (b->rows - 1) / (rows - 1)];
+}
+
+static void print_left_out(const struct basin *b, size_t rows)
+{
+    if (rows < b->rows) {
+        printf("  (%zu of %zu rows; --csv and --json have them all)\n", rows, b->rows);
+    }
 }
 
 static void print_distance(const struct basin *b, const struct basin_row *row)
@@ -139,9 +188,14 @@ bool basin_print_text(const struct basin *b)
     puts("\nVolume");
     snprintf(level, sizeof level, "+- %.4g %%", 100 * b->choice.level);
     print_labels(b, NULL);
-    printf(" %9s %11s %9s   %-25s %10s\n", "share", "volume", level, "bounds", "cases");
+    printf(" %9s %11s %9s   %-25s %10s\n", "share", "volume", level,
+           b->starts == BASIN_GRID ? "bounds" : "interval", "cases");
     for (size_t k = 0; k < rows; k++) {
         print_volume(b, shown(b, k, rows));
+    }
+    if (b->starts == BASIN_SAMPLE) {
+        print_left_out(b, rows);
+        return true;
     }
     puts("\nBoundary");
     print_labels(b, NULL);
@@ -155,9 +209,7 @@ bool basin_print_text(const struct basin *b)
     if (starred) {
         puts("  (* above log 2: fractal, unless three outcomes meet there)");
     }
-    if (rows < b->rows) {
-        printf("  (%zu of %zu rows; --csv and --json have them all)\n", rows, b->rows);
-    }
+    print_left_out(b, rows);
     if (b->rows == 1 && b->row[0].has_distance) {
         print_distance(b, &b->row[0]);
     }

@@ -1,6 +1,7 @@
 /* command_basin.c - `stance basin FILE`: how large the basin is, how sure that is, and what its
  * boundary looks like; as text, JSON or CSV. */
 #include "basin_print.h"
+#include "basin_rays.h"
 
 #include "../runner/command.h"
 #include "../runner/supervise.h"
@@ -41,40 +42,94 @@ static enum results_kind outcome_of(const struct results *r)
                : RESULTS_STABILISED;
 }
 
+static int unprinted(void)
+{
+    fputs("stance basin: not enough memory, or the output could not be written\n", stderr);
+    return EXIT_IO;
+}
+
 static int show(const struct request *request, const struct basin *basin)
 {
     const bool good = request->boundary ? basin_print_boundary(basin)
                       : request->json   ? basin_print_json(basin)
                       : request->csv    ? basin_print_csv(basin)
                                         : basin_print_text(basin);
-    if (!good) {
-        fputs("stance basin: not enough memory, or the output could not be written\n", stderr);
+    return good ? EXIT_DONE : unprinted();
+}
+
+static int fail(const stance_message *message, bool usage)
+{
+    fprintf(stderr, "%s\n", message->text);
+    return usage ? EXIT_USAGE : EXIT_IO;
+}
+
+static int show_rays(const struct request *request, const struct results *r,
+                     struct basin_sample *sample)
+{
+    struct basin_rays rays;
+    stance_message message = {""};
+    if (request->choice.by_count > 0) {
+        fputs("stance basin: --by has no meaning for rays: there is a row for every parameter\n",
+              stderr);
+        basin_sample_free(sample);
+        return EXIT_USAGE;
     }
-    return good ? EXIT_DONE : EXIT_IO;
+    if (!basin_rays_make(&rays, r, request->choice.of, sample, &message)) {
+        return fail(&message, false);
+    }
+    const bool good = request->boundary ? basin_rays_print_boundary(&rays)
+                      : request->json   ? basin_rays_print_json(&rays)
+                      : request->csv    ? basin_rays_print_csv(&rays)
+                                        : basin_rays_print_text(&rays);
+    basin_rays_free(&rays);
+    return good ? EXIT_DONE : unprinted();
+}
+
+static int show_basin(const struct request *request, const struct results *r,
+                      struct basin_sample *sample)
+{
+    struct basin basin;
+    stance_message message = {""};
+    bool usage = false;
+    int code = EXIT_USAGE;
+
+    if (!basin_make(&basin, r, &request->choice, sample, &usage, &message)) {
+        return fail(&message, usage);
+    }
+    if (request->boundary && basin.starts != BASIN_GRID) {
+        fprintf(stderr,
+                "stance basin: --boundary needs starts on a grid; those of %s are a sample\n",
+                request->file);
+    } else {
+        code = show(request, &basin);
+    }
+    basin_free(&basin);
+    return code;
 }
 
 static int work(void *context)
 {
     struct request *request = context;
     struct results r;
-    struct basin basin;
+    struct basin_sample sample;
     stance_message message = {""};
-    bool usage = false;
+    int code;
 
     if (!results_open(&r, request->file, &message)) {
-        fprintf(stderr, "%s\n", message.text);
-        return EXIT_IO;
+        return fail(&message, false);
     }
     if (!request->of) {
         request->choice.of = outcome_of(&r);
     }
-    int code;
-    if (basin_make(&basin, &r, &request->choice, &usage, &message)) {
-        code = show(request, &basin);
-        basin_free(&basin);
+    if (memchr(r.kind, RESULTS_DONE, r.cases)) {
+        fprintf(stderr, "%s: holds no outcomes (record.answers left them out)\n", request->file);
+        results_close(&r);
+        return EXIT_USAGE;
+    }
+    if (!basin_sample_make(&sample, &r, &message)) {
+        code = fail(&message, false);
     } else {
-        fprintf(stderr, "%s\n", message.text);
-        code = usage ? EXIT_USAGE : EXIT_IO;
+        code = (basin_is_rays(&r, &sample) ? show_rays : show_basin)(request, &r, &sample);
     }
     results_close(&r);
     return code;
@@ -161,8 +216,9 @@ const struct command command_basin = {
     "basin FILE [--by PATH]... [--of OUTCOME] [--level L] [--box N] [--boundary | --json | --csv]",
     "how large a basin is, how sure that is, and what its boundary is like",
     run,
-    "The starts are the axes initial.offset.* and initial.state.*; every other axis is a\n"
-    "parameter. For each point of the parameters, or of those that --by names, averaged over the\n"
+    "The starts are the axes initial.offset.* and initial.state.*, or a sample of these; every\n"
+    "other axis is a parameter. For each point of the parameters, or of those that --by names, "
+    "averaged over the\n"
     "others: how many of the starts end in the outcome, and what share of the box of starts that\n"
     "is. Cases inferred by sweep.refine or stop.capture count as simulated ones do.\n"
     "\n"
@@ -178,6 +234,9 @@ const struct command command_basin = {
     "the\n"
     "            volume of the cells inside, and of those not outside. Cases that failed or are\n"
     "            pending count as outside in the one and as inside in the other\n"
+    "            Of sampled starts: Wilson's interval at the level L, with failed and pending "
+    "cases\n"
+    "            outside for its lower end and inside for its upper one\n"
     "  S_b, S_bb basin entropy and boundary basin entropy (Daza et al. 2016): mean over boxes of\n"
     "            --box N (5) cases along each start, and over those with several outcomes. S_bb\n"
     "            above log 2 = 0.693 implies a fractal boundary; below it nothing follows. Small\n"
@@ -191,6 +250,12 @@ const struct command command_basin = {
     "  nearest   from the equilibrium to the nearest point out of the outcome, each offset in\n"
     "            units of its axis's range\n"
     "\n"
+    "A file of rays (a grid axis initial.offset.scale, and sweep.sample of method sphere over\n"
+    "offsets, mostly with sweep.refine) tells how far from the equilibrium the outcome reaches in\n"
+    "every direction: smallest, median and largest scale at which a ray loses it for the first\n"
+    "time, and for a single row the offsets at which the first one does. --boundary lists the "
+    "rays.\n"
+    "\n"
     "  --by PATH      a row for each value of this parameter alone; may be repeated; an axis of\n"
     "                 starts named here is a parameter\n"
     "  --of OUTCOME   stabilised (default; or rested, where nothing else was), rested, fell or\n"
@@ -200,11 +265,15 @@ const struct command command_basin = {
     "                 their distance as `half_width` and both outcomes\n"
     "  --csv          a row of numbers for each row of the tables\n"
     "  --json         the same as JSON, with the keys\n"
-    "    outcome, level, box_side, starts: [paths], parameters: [paths], box, unit\n"
+    "    outcome, level, box_side, design (grid, or the sample's method), starts: [paths],\n"
+    "    parameters: [paths], box, unit\n"
     "    rows           [{at: {path: value}, cases, inside, failed, pending, share, volume, error\n"
     "                   (one standard deviation), low, high, cells, crossed, entropy,\n"
     "                   boundary_entropy, boxes, mixed_boxes, alpha, alpha_error, dimension,\n"
     "                   distances: [cells], uncertain: [share], nearest, nearest_at: {path: "
     "value},\n"
-    "                   extent: {path: [low, high]}}]; null where there is none\n",
+    "                   extent: {path: [low, high]}}]; null where there is none\n"
+    "    and of rays: outcome, starts, rays (number), rows [{at, crossing, open, outside,\n"
+    "                   smallest, median, largest, first_ray, first_bracket: [low, high],\n"
+    "                   first_at: {path: value}}]\n",
 };

@@ -553,7 +553,7 @@ static void print_text(const struct summary *summary, const struct results *r)
 
 struct request {
     const char *file;
-    bool json;
+    bool json, csv;
 };
 
 static int summarise(void *context)
@@ -578,7 +578,9 @@ static int summarise(void *context)
     } else if (request->json && !summary_print_json(summary, &r)) {
         fputs("stance summary: the summary could not be written\n", stderr);
     } else {
-        if (!request->json) {
+        if (request->csv) {
+            summary_print_csv(summary, &r);
+        } else if (!request->json) {
             print_text(summary, &r);
         }
         code = EXIT_DONE;
@@ -592,11 +594,12 @@ static int summarise(void *context)
 static int run(int argc, char **argv)
 {
     const char *file = NULL;
-    size_t json = 0, operands = 0;
+    size_t json = 0, csv = 0, operands = 0;
     bool help = false;
-    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json}};
+    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
+                                        {"--csv", false, NULL, 0, &csv}};
 
-    if (!command_options(&command_summary, argc, argv, specs, 1, &file, 1, &operands, &help)) {
+    if (!command_options(&command_summary, argc, argv, specs, 2, &file, 1, &operands, &help)) {
         return EXIT_USAGE;
     }
     if (help) {
@@ -606,13 +609,17 @@ static int run(int argc, char **argv)
         fputs("stance summary: a results file is needed (stance summary -h explains)\n", stderr);
         return EXIT_USAGE;
     }
-    struct request request = {file, json > 0};
+    if (json && csv) {
+        fputs("stance summary: --json or --csv, not both\n", stderr);
+        return EXIT_USAGE;
+    }
+    struct request request = {file, json > 0, csv > 0};
     return supervise(summarise, &request, file);
 }
 
 const struct command command_summary = {
     "summary",
-    "summary FILE [--json]",
+    "summary FILE [--json | --csv]",
     "what came out: outcomes, extent of the stabilised set, extremes, cost",
     run,
     "Works on files that are not finished, too. Shares are of the cases that are done, with\n"
@@ -620,6 +627,11 @@ const struct command command_summary = {
     "equilibrium along one axis of offsets, on the line where the other offsets are nearest to\n"
     "zero; it ends midway between the last stabilised case and the next one.\n"
     "\n"
+    "  --csv    the counts of all cases, then a row for every value of every parameter: "
+    "parameter,\n"
+    "           value, done, failed, pending, stabilised, rested, fell, undecided, and the share\n"
+    "           of stabilised cases (without a controller that has a target: rested ones) with\n"
+    "           its interval low ... high; `stance table` has the cases themselves\n"
     "  --json   the same as JSON; what does not apply is left out or null. Keys\n"
     "    file, title, version, revision, date, ranks\n"
     "    axes         [{path, unit, long_name, count, first, last}]\n"

@@ -121,6 +121,8 @@ double summary_share(const struct summary *summary, const struct statistics_coun
 const char *summary_failure_name(int failure);
 const char *summary_failure_text(int failure);
 
+/* Prints the counts as CSV: of all cases, then of every value of every parameter. */
+void summary_print_csv(const struct summary *summary, const struct results *r);
 /* What a sample varies, a line for each path; how the shares depend on it. */
 void summary_print_varied(const struct results *r, int width);
 void summary_print_sample(const struct summary *summary, const struct results *r);

@@ -116,7 +116,8 @@ bool store_check(const char *file, bool resume, stance_message *message);
 /* What a file was made from, for a resume; release with store_origin_free. */
 struct store_origin {
     char *scenario; /* resolved text */
-    char revision[80];
+    char revision[80], date[40];
+    char *title, *hosts;
     int ranks;
 };
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);

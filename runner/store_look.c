@@ -65,18 +65,29 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     if (id < 0) {
         return store_failed(message, file, "open");
     }
-    char *revision = read_text(id, "git_revision");
+    char *revision = read_text(id, "git_revision"), *date = read_text(id, "date");
+    hid_t ranks = H5Aopen(id, "ranks", H5P_DEFAULT);
     origin->scenario = read_text(id, "scenario");
+    origin->title = read_text(id, "title");
+    origin->hosts = read_text(id, "hosts");
     snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
+    snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
+    if (ranks < 0 || H5Aread(ranks, H5T_NATIVE_INT, &origin->ranks) < 0) {
+        origin->ranks = 0;
+    }
+    H5Aclose(ranks);
     H5Fclose(id);
     free(revision);
+    free(date);
     return origin->scenario || not_resumable(file, message);
 }
 
 void store_origin_free(struct store_origin *origin)
 {
     free(origin->scenario);
-    origin->scenario = NULL;
+    free(origin->title);
+    free(origin->hosts);
+    *origin = (struct store_origin){0};
 }
 
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
