@@ -113,7 +113,8 @@ static double panel_left(const struct drawing *d, size_t t)
 
 static double panel_top(const struct drawing *d, size_t t)
 {
-    return d->top + TITLE + (double)(t / d->columns) * (d->height + TITLE + TICS);
+    const size_t row = t / d->columns;
+    return d->top + TITLE + (double)row * (d->height + TITLE + TICS);
 }
 
 /* ---- texts -------------------------------------------------------------------------------- */

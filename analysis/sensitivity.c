@@ -479,14 +479,10 @@ bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, 
 /* What factors are ordered by; what is no number comes last. */
 static double weight(const struct sensitivity *s, size_t factor)
 {
-    static const enum sensitivity_measure by[] = {SENSITIVITY_TOTAL, SENSITIVITY_MU_STAR,
-                                                  SENSITIVITY_FIRST};
-    size_t m = 0;
-    while (!s->measure[by[m]]) {
-        m++;
-    }
-    const double estimate = s->measure[by[m]][factor].estimate;
-    return isnan(estimate) ? -INFINITY : estimate;
+    const struct sensitivity_value *by = s->measure[SENSITIVITY_TOTAL];
+    by = by ? by : s->measure[SENSITIVITY_MU_STAR];
+    by = by ? by : s->measure[SENSITIVITY_FIRST];
+    return isnan(by[factor].estimate) ? -INFINITY : by[factor].estimate;
 }
 
 void sensitivity_order(const struct sensitivity *s, size_t *order)
