@@ -11,6 +11,7 @@
 #include "instruction_set.h"
 #include "report.h"
 #include "rounds.h"
+#include "succession.h"
 #include "supervise.h"
 
 #include <errno.h>
@@ -93,6 +94,9 @@ static bool check_options(struct options *o, const char *only, const char *limit
     if (o->force && o->resume) {
         return usage("--force and --resume exclude each other", NULL);
     }
+    if (o->force_scenario && !o->resume) {
+        return usage("--force-scenario needs --resume", NULL);
+    }
     if (o->trace && !only) {
         return usage("--trace needs --only CASE; `record` in the scenario records a sweep", NULL);
     }
@@ -118,11 +122,12 @@ static bool check_options(struct options *o, const char *only, const char *limit
 static bool read_options(struct options *o, int argc, char **argv)
 {
     const char *limit = NULL, *only = NULL;
-    size_t outputs, limits, onlys, force, resume, trace, dry_run, quiet, operands;
+    size_t outputs, limits, onlys, force, force_scenario, resume, trace, dry_run, quiet, operands;
     const struct option_spec specs[] = {
         {"-o", true, &o->output, 1, &outputs},
         {"--set", true, o->sets, (size_t)argc, &o->set_count},
         {"--force", false, NULL, 0, &force},
+        {"--force-scenario", false, NULL, 0, &force_scenario},
         {"--resume", false, NULL, 0, &resume},
         {"--time-limit", true, &limit, 1, &limits},
         {"--only", true, &only, 1, &onlys},
@@ -136,6 +141,7 @@ static bool read_options(struct options *o, int argc, char **argv)
         return false;
     }
     o->force = force > 0;
+    o->force_scenario = force_scenario > 0;
     o->resume = resume > 0;
     o->trace = trace > 0;
     o->dry_run = dry_run > 0;
@@ -243,29 +249,32 @@ static void name_file(struct run *run)
     }
 }
 
-/* Refuses a file that was made from another scenario; says where they begin to differ. */
-static bool same_scenario(struct run *run, const struct store_origin *origin)
+/* Refuses a file that was made from another scenario, and shows where they differ. */
+static bool same_scenario(struct run *run)
 {
-    const char *old = origin->scenario, *new = run->scenario->text;
-    int line = 1;
+    const char *old = run->origin.scenario, *new = run->scenario->text;
+    char *text = NULL; /* in one piece */
+    size_t size = 0;
 
-    if (strcmp(old, new) == 0) {
+    if (strcmp(old, new) == 0 || run->options.force_scenario) {
+        run->succeed = strcmp(old, new) != 0;
         return true;
     }
-    for (;;) {
-        size_t a = strcspn(old, "\n"), b = strcspn(new, "\n");
-        if (a != b || strncmp(old, new, a) != 0 || !old[a] || !new[b]) {
-            snprintf(run->failure.text, sizeof run->failure.text,
-                     "stance run: %.200s was made from another scenario: line %d of its resolved "
-                     "text is '%.*s', now it is '%.*s'",
-                     run->file, line, a < 90 ? (int)a : 90, old, b < 90 ? (int)b : 90, new);
-            run->failure.code = EXIT_USAGE;
-            return false;
+    const size_t lines = succession_count_differences(old, new);
+    FILE *to = open_memstream(&text, &size);
+    if (to) {
+        fprintf(to,
+                "stance run: %.200s was made from another scenario (--force-scenario goes on with "
+                "this one); %zu line%s of the resolved text differ%s:\n",
+                run->file, lines, lines == 1 ? "" : "s", lines == 1 ? "s" : "");
+        succession_print_difference(to, old, new);
+        if (fclose(to) == 0) {
+            fputs(text, stderr);
         }
-        old += a + 1;
-        new += b + 1;
-        line++;
+        free(text);
     }
+    run->failure.code = EXIT_USAGE;
+    return false;
 }
 
 /* In a process of its own: see store_check. */
@@ -284,31 +293,31 @@ static int check_file(void *file)
 /* An existing file that is to be gone on with. */
 static void look_into_file(struct run *run)
 {
-    struct store_origin origin;
     stance_message message = {""};
 
     run->failure.code = supervise(check_file, run->file, run->file);
     if (run->failure.code != EXIT_DONE) {
         return; /* it has been said why */
     }
-    if (!store_read_origin(run->file, &origin, &message)) {
+    if (!store_read_origin(run->file, &run->origin, &message)) {
         fail_io(run, &message);
         return;
     }
-    if (same_scenario(run, &origin)) {
-        if (strcmp(origin.revision, build_revision()) != 0) {
-            fprintf(stderr,
-                    "stance run: warning: %s was begun by revision %s, this is %s: results may "
-                    "differ\n",
-                    run->file, origin.revision, build_revision());
-        }
-        for (int a = 0; a < run->scenario->axes; a++) {
-            if (!store_read_axis(run->file, &run->scenario->axis[a], &message)) {
-                fail_io(run, &message);
-            }
+    if (!same_scenario(run)) {
+        return;
+    }
+    if (strcmp(run->origin.revision, build_revision()) != 0 && !run->succeed) {
+        fprintf(stderr,
+                "stance run: warning: %s was begun by revision %s, this is %s: results may "
+                "differ\n",
+                run->file, run->origin.revision, build_revision());
+    }
+    for (int a = 0; a < run->scenario->axes; a++) {
+        /* Another scenario may have other axes: that is refused later. */
+        if (!store_read_axis(run->file, &run->scenario->axis[a], &message) && !run->succeed) {
+            fail_io(run, &message);
         }
     }
-    store_origin_free(&origin);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -359,6 +368,7 @@ static void stage_claim(struct run *run)
         claim_file(run);
     }
     parallel_broadcast(&run->parallel, &run->resume, sizeof run->resume);
+    parallel_broadcast(&run->parallel, &run->succeed, sizeof run->succeed);
 }
 
 /* ---- the plan ----------------------------------------------------------------------------- */
@@ -408,6 +418,8 @@ static void stage_plan(struct run *run)
     } else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
         fail_scenario(run, &error);
     }
+    run->plan.ancestors = run->origin.ancestors;
+    parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
     run->plan.stop = out_of_time;
     run->plan.stop_context = run;
 }
@@ -489,14 +501,40 @@ static char *collect_hosts(const struct parallel *parallel)
     return list;
 }
 
+/* The file goes on with a scenario that is not its own. */
+static void succeed(struct run *run, const char *hosts)
+{
+    struct succession_counts counts;
+    stance_message message = {""};
+
+    if (succession_make(run->file, &run->origin, &run->plan, run->parallel.size, hosts, &counts,
+                        &message)) {
+        fprintf(stderr,
+                "stance run: %.200s goes on with another scenario; %" PRIu64 " of its %" PRIu64
+                " cases are done and stay as they are",
+                run->file, counts.kept, run->plan.rows);
+        if (counts.damaged > 0) {
+            fprintf(stderr, ", %" PRIu64 " did not verify", counts.damaged);
+        }
+        fputc('\n', stderr);
+    } else if (message.text[0]) {
+        fail_io(run, &message);
+        run->failure.code = counts.refused ? EXIT_USAGE : EXIT_IO;
+    } else {
+        stop_early(run, "stopped before the file could go on with another scenario");
+    }
+}
+
 static void stage_create(struct run *run)
 {
     stance_message message = {""};
-    if (run->resume) {
+    if (run->resume && !run->succeed) {
         return;
     }
     char *hosts = collect_hosts(&run->parallel);
-    if (run->parallel.rank == 0) {
+    if (run->parallel.rank == 0 && run->succeed) {
+        succeed(run, hosts);
+    } else if (run->parallel.rank == 0) {
         if (run->replace && unlink(run->file) != 0) {
             snprintf(message.text, sizeof message.text, "cannot replace %.150s: %s", run->file,
                      strerror(errno));
@@ -506,6 +544,7 @@ static void stage_create(struct run *run)
         }
     }
     free(hosts);
+    parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
 }
 
 static void stage_open(struct run *run)
@@ -640,6 +679,7 @@ static int run_run(int argc, char **argv)
     int code = go_through(run);
     store_abandon(run->store);
     plan_free(&run->plan);
+    store_origin_free(&run->origin);
     if (run->scenario) {
         scenario_free(run->scenario);
     }
@@ -654,7 +694,7 @@ static int run_run(int argc, char **argv)
 
 const struct command command_run = {
     "run",
-    "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume]\n"
+    "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume [--force-scenario]]\n"
     "           [--time-limit TIME] [--only CASE [--trace]] [--dry-run] [--quiet]",
     "compute every case of a scenario; alone or under mpirun -n N",
     run_run,
@@ -665,6 +705,11 @@ const struct command command_run = {
     "                     the link, not the file that it names\n"
     "  --resume           go on with an existing file of the same scenario: cases that it holds\n"
     "                     whole, as their checksums say, are kept. Begins when there is no file\n"
+    "  --force-scenario   ... of another scenario: what is done stays, what is pending is "
+    "computed\n"
+    "                     as this one says. The file keeps both texts and which case is whose\n"
+    "                     (group history, variable scenario_number). The sweep, the answers, the\n"
+    "                     records and the designs must be the same\n"
     "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
     "  --only CASE        compute one case of the sweep, by its flat index, to a file of its own\n"
     "  --trace            ... and record its trajectory, each 0.01 s unless record.every says\n"

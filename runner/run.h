@@ -10,7 +10,7 @@ struct options {
     const char *scenario, *output; /* output NULL: the default */
     const char **sets;
     size_t set_count;
-    bool force, resume, single, trace, dry_run, quiet, help;
+    bool force, force_scenario, resume, single, trace, dry_run, quiet, help;
     uint64_t single_case;
     double time_limit; /* s, INFINITY: none */
 };
@@ -27,7 +27,9 @@ struct run {
     struct options options;
     struct scenario *scenario;
     char file[1024];
-    bool resume, replace; /* the file exists and is gone on with, or replaced */
+    bool resume, replace;       /* the file exists and is gone on with, or replaced */
+    bool succeed;               /* ... gone on with by this scenario, which is not its own */
+    struct store_origin origin; /* of a file that is gone on with; on rank 0 */
     struct lock lock;
     struct pulse pulse; /* on rank 0, once the lock is taken */
     struct plan plan;

@@ -96,7 +96,7 @@ static bool checksum_of(hid_t dataset, const char *name, uint32_t *crc)
 
 struct walk {
     bool put, strict;
-    const char *group; /* "", "design", "trajectory" */
+    const char *group; /* "", "design", "trajectory", "history" */
     const char *name;  /* of the file */
     stance_message *message;
 };
@@ -200,7 +200,7 @@ static bool walk_group(hid_t file, struct walk *walk, const char *group)
 static bool walk_file(hid_t file, struct walk *walk)
 {
     return walk_group(file, walk, "") && walk_group(file, walk, "design") &&
-           walk_group(file, walk, "trajectory");
+           walk_group(file, walk, "trajectory") && walk_group(file, walk, "history");
 }
 
 /* ---- the structure ------------------------------------------------------------------------ */
@@ -228,7 +228,7 @@ static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void 
 /* Everything can be opened, in the order of its making, too: what other readers go by. */
 static bool verify_structure(hid_t file, struct walk *walk)
 {
-    static const char *const groups[] = {"", "design", "trajectory", "timing"};
+    static const char *const groups[] = {"", "design", "trajectory", "history", "timing"};
     bool good = true;
     for (size_t k = 0; good && k < sizeof groups / sizeof groups[0]; k++) {
         walk->group = groups[k];
@@ -254,6 +254,12 @@ bool seal_put(int64_t file)
 {
     struct walk walk = {.put = true};
     return walk_file((hid_t)file, &walk);
+}
+
+bool seal_put_group(int64_t file, const char *group)
+{
+    struct walk walk = {.put = true};
+    return walk_group((hid_t)file, &walk, group);
 }
 
 bool seal_verify(int64_t file, const char *name, const char *scenario, const char *hash,

@@ -14,26 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct store {
-    char file[1024];
-    const struct plan *plan;
-    hid_t id;
-    int ranks;                      /* that have it open together */
-    hid_t column[COLUMNS];          /* -1: not stored */
-    size_t width[COLUMNS];          /* elements per case */
-    struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
-    hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
-    hid_t trajectory_checksum;
-    int rank; /* dimensions of the cases */
-    hsize_t length[SCENARIO_MAX_AXES];
-};
-
-struct store_block {
-    const struct store *store;
-    size_t rows;
-    void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
-};
-
 /* ---- tables ------------------------------------------------------------------------------- */
 
 const struct store_column store_columns[COLUMNS] = {
@@ -43,6 +23,9 @@ const struct store_column store_columns[COLUMNS] = {
 #undef STORE_COLUMN
         [COLUMN_FINAL_STATE] = {"final_state", KIND_double, sizeof(double), NAN, true, NULL,
                                 "coordinates and their rates when the simulation stopped"},
+    [COLUMN_SCENARIO_NUMBER] = {"scenario_number", KIND_uint8_t, sizeof(uint8_t), 0, false, "1",
+                                "scenario that the case was computed with: places of the group "
+                                "history, then the file's own"},
     [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, sizeof(uint32_t), 0, false, "1",
                          "CRC-32C over the answers of the case"},
     [COLUMN_STATUS] = {"status", KIND_uint8_t, sizeof(uint8_t), 0, true, "1",
@@ -54,7 +37,8 @@ const char *const store_trajectories[TRAJECTORIES] = {"position", "velocity", "t
 
 bool store_has_column(const struct scenario *scenario, int column)
 {
-    return column > COLUMN_FINAL_STATE || (scenario->answers >> column & 1);
+    return column > COLUMN_SCENARIO_NUMBER ||
+           (column < COLUMN_SCENARIO_NUMBER && (scenario->answers >> column & 1));
 }
 
 size_t store_column_width(const struct scenario *scenario, int column)
@@ -323,7 +307,8 @@ static bool open_columns(struct store *store, stance_message *message)
     memcpy(length, store->length, sizeof store->length);
 
     for (int c = 0; c < COLUMNS; c++) {
-        if (!store_has_column(s, c)) {
+        const bool history = c == COLUMN_SCENARIO_NUMBER && store->plan->ancestors > 0;
+        if (!store_has_column(s, c) && !history) {
             continue;
         }
         size_t width = store->width[c] = store_column_width(s, c);
@@ -420,8 +405,6 @@ bool store_close(struct store *store, stance_message *message)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-enum direction { READ, WRITE };
-
 /* Moves n rows of one column, from `slot` of the block on, between the block and the file. */
 static bool move_column(struct store *store, int c, struct store_block *block, size_t slot,
                         hid_t space, size_t n, enum direction way, stance_message *message)
@@ -499,7 +482,7 @@ void store_block_free(struct store_block *block)
     free(block);
 }
 
-static uint32_t row_checksum(const struct store_block *block, size_t slot)
+uint32_t store_row_checksum(const struct store_block *block, size_t slot)
 {
     uint32_t crc = 0;
     for (int c = 0; c < COLUMNS; c++) {
@@ -525,8 +508,12 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
         memcpy(state, result->position, n * sizeof *state);
         memcpy(state + n, result->velocity, n * sizeof *state);
     }
+    if (block->column[COLUMN_SCENARIO_NUMBER]) {
+        ((uint8_t *)block->column[COLUMN_SCENARIO_NUMBER])[slot] =
+            (uint8_t)block->store->plan->ancestors;
+    }
     ((uint8_t *)block->column[COLUMN_STATUS])[slot] = (uint8_t)result->status;
-    ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = row_checksum(block, slot);
+    ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = store_row_checksum(block, slot);
 }
 
 void store_blank(stance_result *result)
@@ -558,9 +545,8 @@ static double *trajectory_data(const stance_trajectory *trajectory, int variable
     return data[variable];
 }
 
-/* Moves one case's part, `elements` long, of a variable whose first dimension is the case. */
-static bool move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
-                       enum direction way, void *data)
+bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
+                      enum direction way, void *data)
 {
     hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
     hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &elements, NULL);
@@ -592,9 +578,10 @@ bool store_write_trajectory(struct store *store, uint64_t place,
                           store_trajectory_width(store->plan->scenario->scene, v);
         double *data = trajectory_data(trajectory, v);
         crc = checksum_crc32c(crc, data, elements * sizeof *data);
-        good = move_place(store->trajectory[v], KIND_double, place, elements, WRITE, data);
+        good = store_move_place(store->trajectory[v], KIND_double, place, elements, WRITE, data);
     }
-    good = good && move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, WRITE, &crc);
+    good =
+        good && store_move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, WRITE, &crc);
     return good || store_failed(message, store->file, "write a trajectory");
 }
 
@@ -618,12 +605,13 @@ static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
         if (store->trajectory[v] >= 0) {
             size_t elements =
                 (size_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
-            good = move_place(store->trajectory[v], KIND_double, place, elements, READ, data);
+            good = store_move_place(store->trajectory[v], KIND_double, place, elements, READ, data);
             crc = checksum_crc32c(crc, data, elements * sizeof *data);
         }
     }
     free(data);
-    good = good && move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, READ, &expected);
+    good = good &&
+           store_move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, READ, &expected);
     *whole = crc == expected;
     return good || store_failed(message, store->file, "read a trajectory");
 }
@@ -644,7 +632,7 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
     for (size_t row = 0; row < rows->count; row++) {
         uint64_t place;
         whole[row] = (status[row] == STANCE_DONE || status[row] == STANCE_FAILED) &&
-                     checksum[row] == row_checksum(store->checked, row);
+                     checksum[row] == store_row_checksum(store->checked, row);
         if (whole[row] && plan_recorded(store->plan, rows_at(rows, row), &place) &&
             !verify_trajectory(store, place, &whole[row], message)) {
             return false;

@@ -128,8 +128,8 @@ static hid_t make_group(hid_t parent, const char *name)
 /* Contiguous, its place in the file given at once; nothing is written, so that large files start
  * fast. No times are kept, so that equal runs give equal bytes. Attributes in the order of their
  * making are netCDF's, and the header that this takes has a checksum of HDF5's own. */
-static hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank,
-                          const hsize_t *length)
+hid_t store_make_dataset(hid_t parent, const char *name, hid_t type, int rank,
+                         const hsize_t *length)
 {
     hid_t properties = H5Pcreate(H5P_DATASET_CREATE), dataset = -1;
     hid_t space = rank > 0 ? H5Screate_simple(rank, length, NULL) : H5Screate(H5S_SCALAR);
@@ -166,7 +166,7 @@ static hid_t make_variable(hid_t parent, const char *name, hid_t type,
     for (int d = 0; d < rank; d++) {
         length[d] = dimension[d] ? dimension[d]->length : 0;
     }
-    hid_t dataset = make_dataset(parent, name, type, rank, length);
+    hid_t dataset = store_make_dataset(parent, name, type, rank, length);
     if (dataset >= 0 && !(put_meaning(dataset, unit, text) && attach(dataset, dimension, rank))) {
         H5Dclose(dataset);
         return -1;
@@ -203,7 +203,7 @@ static bool write_words(hid_t dataset, hid_t type, const char *const *words)
 static bool make_words(struct layout *layout, hid_t parent, const char *name,
                        const char *const *words, hsize_t n, struct dimension *dimension)
 {
-    hid_t type = word_type(), dataset = make_dataset(parent, name, type, 1, &n);
+    hid_t type = word_type(), dataset = store_make_dataset(parent, name, type, 1, &n);
     bool good = dataset >= 0 && write_words(dataset, type, words) &&
                 make_scale(layout, dataset, name, n, dimension);
     H5Tclose(type);
@@ -238,7 +238,7 @@ static bool make_numbers(struct layout *layout, hid_t parent, const char *name,
                          enum store_kind kind, hsize_t n, value_function value, const void *context,
                          struct dimension *dimension)
 {
-    hid_t dataset = make_dataset(parent, name, store_file_type(kind), 1, &n);
+    hid_t dataset = store_make_dataset(parent, name, store_file_type(kind), 1, &n);
     return dataset >= 0 && write_values(dataset, n, value, context) &&
            make_scale(layout, dataset, name, n, dimension);
 }
@@ -301,7 +301,7 @@ static bool put_path(struct layout *layout, const struct axis_values *values,
     hsize_t n = over ? over->length : axis->count;
     const char *name = values->path == 0 ? axis->name : axis->path[values->path];
     hid_t type = axis_type(axis, values->path);
-    hid_t dataset = type < 0 ? -1 : make_dataset(layout->file, name, type, 1, &n);
+    hid_t dataset = type < 0 ? -1 : store_make_dataset(layout->file, name, type, 1, &n);
     bool good = dataset >= 0 &&
                 (has_words(axis, values->path) ? write_axis_words(dataset, type, values, n)
                                                : write_values(dataset, n, axis_value, values)) &&
@@ -616,8 +616,8 @@ static bool put_timing(struct layout *layout)
     snprintf(label, sizeof label, "This is a netCDF dimension but not a netCDF variable.%10d",
              layout->ranks);
     /* Such dimensions are known by their label; the type is what netCDF gives them. */
-    if (group < 0 ||
-        !make_scale(layout, make_dataset(group, "rank", H5T_IEEE_F32BE, 1, &n), label, n, &rank)) {
+    if (group < 0 || !make_scale(layout, store_make_dataset(group, "rank", H5T_IEEE_F32BE, 1, &n),
+                                 label, n, &rank)) {
         return false;
     }
     hid_t wall = make_variable(group, "wall_time", store_file_type(KIND_double), over, 1, "s",
@@ -731,8 +731,7 @@ static bool check_space(const char *file, uint64_t size, stance_message *message
     return true;
 }
 
-/* Reserves the space of the whole file and brings it to the disk. */
-static bool reserve(const char *file, stance_message *message)
+bool store_reserve(const char *file, stance_message *message)
 {
     struct stat information;
     int descriptor = open(file, O_RDWR | O_CLOEXEC);
@@ -790,7 +789,7 @@ bool store_create(const char *file, const struct plan *plan, int ranks, const ch
     if (H5Fclose(layout.file) < 0 && good) {
         good = store_failed(message, file, "write the layout");
     }
-    good = good && reserve(file, message);
+    good = good && store_reserve(file, message);
     if (!good) {
         unlink(file);
     }

@@ -65,18 +65,32 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     if (id < 0) {
         return store_failed(message, file, "open");
     }
-    char *revision = read_text(id, "git_revision");
+    char *revision = read_text(id, "git_revision"), *date = read_text(id, "date");
     origin->scenario = read_text(id, "scenario");
     snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
+    snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
+    bool good = store_read_history(id, origin);
     H5Fclose(id);
     free(revision);
-    return origin->scenario || not_resumable(file, message);
+    free(date);
+    if (!good || !origin->scenario) {
+        store_origin_free(origin);
+        return good ? not_resumable(file, message)
+                    : store_failed(message, file, "read its history");
+    }
+    return true;
 }
 
 void store_origin_free(struct store_origin *origin)
 {
+    for (size_t k = 0; k < origin->ancestors; k++) {
+        free(origin->ancestor[k].scenario);
+        free(origin->ancestor[k].revision);
+        free(origin->ancestor[k].date);
+    }
+    free(origin->ancestor);
     free(origin->scenario);
-    origin->scenario = NULL;
+    *origin = (struct store_origin){0};
 }
 
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)

@@ -1,6 +1,6 @@
 /* store_private.h - shared by store.c (rows), store_select.c (which elements those are),
- * store_layout.c (creation), store_look.c (questions) and seal.c (checksums); nothing else includes
- * it, so that HDF5 stays between them. */
+ * store_layout.c (creation), store_history.c (files of several scenarios), store_look.c (questions)
+ * and seal.c (checksums); nothing else includes it, so that HDF5 stays between them. */
 #ifndef STANCE_RUNNER_STORE_PRIVATE_H
 #define STANCE_RUNNER_STORE_PRIVATE_H
 
@@ -22,12 +22,13 @@ enum store_kind {
     KIND_double
 };
 
-/* The variables over the cases, in the order of the table, then the three of our own. */
+/* The variables over the cases, in the order of the table, then those of our own. */
 enum {
 #define STORE_COLUMN(name, type, field, fill, unit, text) COLUMN_##name,
     STORE_ANSWERS(STORE_COLUMN)
 #undef STORE_COLUMN
         COLUMN_FINAL_STATE,
+    COLUMN_SCENARIO_NUMBER, /* of files with a history only */
     COLUMN_CHECKSUM,
     COLUMN_STATUS,
     COLUMNS,
@@ -62,6 +63,43 @@ size_t store_trajectory_width(const stance_scene *scene, int variable);
 
 /* Lengths of the dimensions of the cases; returns how many (>= 1). */
 int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
+
+struct store {
+    char file[1024];
+    const struct plan *plan;
+    hid_t id;
+    int ranks;                      /* that have it open together */
+    hid_t column[COLUMNS];          /* -1: not stored */
+    size_t width[COLUMNS];          /* elements per case */
+    struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
+    hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
+    hid_t trajectory_checksum;
+    int rank; /* dimensions of the cases */
+    hsize_t length[SCENARIO_MAX_AXES];
+};
+
+struct store_block {
+    const struct store *store;
+    size_t rows;
+    void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
+};
+
+enum direction { READ, WRITE };
+
+/* The scenarios of a file before its own; none without a group `history`. false: no memory, or it
+ * cannot be read. */
+bool store_read_history(hid_t file, struct store_origin *origin);
+
+uint32_t store_row_checksum(const struct store_block *block, size_t slot);
+/* Moves one case's part, `elements` long, of a variable whose first dimension is the case. */
+bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
+                      enum direction way, void *data);
+
+/* A contiguous dataset, its place in the file given at once, its elements not written. */
+hid_t store_make_dataset(hid_t parent, const char *name, hid_t type, int rank,
+                         const hsize_t *length);
+/* Reserves the space of the whole file and brings it to the disk. */
+bool store_reserve(const char *file, stance_message *message);
 
 /* Dimensions of the columns of group `design` beside the axes. */
 enum design_dimension {

@@ -23,7 +23,7 @@ ANSWERS = """outcome evidence failure end_time settle_time fall_time steps itera
     ambiguous_steps subdivided_steps degraded_samples max_penetration slip_distance peak_torque
     friction_used least_normal_force
     impact_energy projection_energy events evaluations energy_gain signorini_residual
-    coulomb_residual dissipation_residual final_state status""".split()
+    coulomb_residual dissipation_residual final_state scenario_number status""".split()
 
 
 def contents(name):
