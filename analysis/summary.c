@@ -172,7 +172,7 @@ bool summary_make(struct summary *summary, const struct results *r, stance_messa
                 collect_count(&summary->degraded, r, "degraded_samples", message) &&
                 collect_count(&summary->evidence, r, "evidence", message) &&
                 statistics_inferred(r, &summary->inferred, NULL, message) &&
-                collect_axes(summary, r, message);
+                collect_axes(summary, r, message) && ancestry_read(r, &summary->ancestry, message);
     if (good) {
         summary->timed = results_timing(r, &summary->longest, &summary->total,
                                         &summary->timed_cases, &summary->ranks);
