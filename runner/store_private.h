@@ -1,5 +1,6 @@
 /* store_private.h - shared by store.c (rows), store_select.c (which elements those are),
- * store_layout.c (creation), store_history.c (files of several scenarios), store_look.c (questions)
+ * store_layout.c (creation), store_history.c (files of several scenarios),
+ * store_space.c (room on the disk), store_look.c (questions)
  * and seal.c (checksums); nothing else includes it, so that HDF5 stays between them. */
 #ifndef STANCE_RUNNER_STORE_PRIVATE_H
 #define STANCE_RUNNER_STORE_PRIVATE_H
@@ -98,6 +99,10 @@ bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize
 /* A contiguous dataset, its place in the file given at once, its elements not written. */
 hid_t store_make_dataset(hid_t parent, const char *name, hid_t type, int rank,
                          const hsize_t *length);
+/* "FILE: cannot ...: reason" of a system call. Returns false. */
+bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
+/* Whether a file of that size can fit at all, before HDF5 begins what it could not end. */
+bool store_fits(const char *file, uint64_t size, stance_message *message);
 /* Reserves the space of the whole file and brings it to the disk. */
 bool store_reserve(const char *file, stance_message *message);
 

@@ -324,7 +324,7 @@ bool succession_make(const char *file, const struct store_origin *origin, struct
     } else if (!scenario_read(old, file, origin->scenario, NULL, 0, nowhere)) {
         refuse(message, file, "a scenario that this version cannot read");
     } else {
-        snprintf(making.made, sizeof making.made, "%s.new", making.real);
+        snprintf(making.made, sizeof making.made, "%s.next", making.real);
         if (!plan_make(&before, old, plan->single, plan->single_case, plan->record_rows > 0,
                        &error)) {
             *message = error.message;
