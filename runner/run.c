@@ -299,6 +299,12 @@ static void look_into_file(struct run *run)
     if (run->failure.code != EXIT_DONE) {
         return; /* it has been said why */
     }
+    if (euidaccess(run->file, W_OK) != 0) {
+        snprintf(message.text, sizeof message.text, "%.150s: cannot write there: %s", run->file,
+                 strerror(errno));
+        fail_io(run, &message);
+        return;
+    }
     if (!store_read_origin(run->file, &run->origin, &message)) {
         fail_io(run, &message);
         return;
@@ -643,6 +649,7 @@ static int go_through(struct run *run)
     for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {
         crash_stage(stage[i].doing);
         run->pulse.doing = stage[i].doing;
+        run->pulse.due = 0;
         stage[i].go(run);
         if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
                             sizeof run->failure)) {

@@ -79,9 +79,9 @@ def whole(name, least=1):
 
 def damage(name, index):
     with h5py.File(name, "r+") as file:
-        data = file["end_time"][...]
+        data = file["steps"][...]
         data.flat[index] += 1
-        file["end_time"][...] = data
+        file["steps"][...] = data
 
 
 def sealed(name):
