@@ -723,8 +723,10 @@ const struct command command_run = {
     "  --dry-run          plan and estimate, write nothing\n"
     "  --quiet            neither progress nor summary\n"
     "\n"
-    "SIGINT, SIGTERM and SIGUSR1 stop at once: cases in hand are given up, what has ended is\n"
-    "written; mpirun forwards SIGUSR1 but kills its ranks soon after SIGINT or SIGTERM. Exit\n"
+    "SIGINT, SIGTERM and SIGUSR1 to any rank stop the job at once: cases in hand are given up,\n"
+    "what has ended is written, and the command that goes on is printed; mpirun forwards SIGUSR1\n"
+    "but kills its ranks a second after SIGINT or SIGTERM, and returns 1 then. Cases that do not\n"
+    "verify when a run is resumed are computed again and named. Exit\n"
     "codes: 0 done, 1 some cases failed, 2 bad use or scenario, 3 input or output, 4 stopped and\n"
     "resumable.\n",
 };

@@ -73,8 +73,8 @@ def must_be_same(good, file):
     finish([STANCE, "compare", good, file], (0,))
     try:
         results_tools.same(good, file)
-    except AssertionError as different:
-        raise Bad(str(different)) from different
+    except (AssertionError, OSError, RuntimeError, KeyError) as different:
+        raise Bad(f"{type(different).__name__}: {different}") from different
 
 
 def main(campaign, options):
