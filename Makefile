@@ -86,7 +86,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long bench bench-run profile lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills bench bench-run profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(BUILD)/libstance.a
@@ -190,6 +190,16 @@ test-long: packages-test
 	$(MAKE) $(PROGRAM) $(test_programs) golden
 	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
+# Runs that are killed and resumed, files that are damaged: tests/campaign_*.py. Ten minutes or so.
+KILLS ?= 200
+FLIPS ?= 200
+TRUNCATIONS ?= 50
+SEED ?= 1
+test-kills: packages-test
+	$(MAKE) $(PROGRAM)
+	@$(TEST_ENVIRONMENT) $(PYTHON) tests/campaign_kills.py --seed $(SEED) --kills $(KILLS)
+	@$(TEST_ENVIRONMENT) $(PYTHON) tests/campaign_damage.py --seed $(SEED) --flips $(FLIPS) --truncations $(TRUNCATIONS)
+
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
 packages packages-test packages-neon packages-bench: packages%:
@@ -240,6 +250,7 @@ help:
 	@echo 'make demo       install what is missing, build, map a stability domain, draw it'
 	@echo 'make test       install what is missing, build, run every test'
 	@echo 'make test-long  the same with the long tests'
+	@echo 'make test-kills kill runs at random, damage files at random (KILLS= FLIPS= TRUNCATIONS= SEED=)'
 	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'
 	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
 	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'
