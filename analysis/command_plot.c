@@ -114,10 +114,13 @@ static int draw_sweep(const struct plot *plot)
     size_t count;
     stance_message message = {""};
 
-    bool parameter = r->axes > 1 && !r->axis[0].offset;
-    bool good = (r->axes < 2 || plot_maps(plot, &message)) &&
-                ((r->axes > 1 && !parameter) || plot_curve(plot, &message)) &&
-                results_recorded(r, &list, &count, &message);
+    const bool sampled = r->sample >= 0, line = r->axes == 1 && !sampled;
+    const bool parameter = r->axes > 1 && !r->axis[0].offset;
+    bool good = sampled ? plot_sample(plot, &message) && plot_rays(plot, &message)
+                : !line ? plot_maps(plot, &message)
+                        : true;
+    good = good && (!(line || parameter) || plot_curve(plot, &message)) &&
+           results_recorded(r, &list, &count, &message);
     if (!good) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_IO;
@@ -259,11 +262,19 @@ const struct command command_plot = {
     "Draws with gnuplot what the file calls for, into DIR (made when missing; default: where the\n"
     "file is), and prints the path of every file written.\n"
     "\n"
+    "  sweep.sample        NAME-sample: its points over the first two factors, coloured by "
+    "outcome,\n"
+    "                      and the share of good ends against each path varied; no maps\n"
+    "  ... of rays         NAME-rays: where rays from the equilibrium lose the outcome, over two\n"
+    "                      factors as a curve around it, over more the share of directions by "
+    "scale\n"
     "  two axes or more    NAME-map: the outcome of every case over the last two axes of numbers,\n"
     "                      one panel per point of the others; NAME-settle_time: when it settled\n"
     "  one axis            NAME-curve: outcome, times and friction used along it\n"
     "  a first axis that   NAME-curve: the shares of stabilised and rested cases against it, with\n"
-    "  is not an offset    Wilson's 95 % bands\n"
+    "  is not an offset    Wilson's 95 % bands; of starts on a grid the basin's volume, between "
+    "what is\n"
+    "                      inside and what is not outside (stance basin -h)\n"
     "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"
     "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
     "\n"

@@ -11,8 +11,9 @@
 #include <unistd.h>
 
 static const struct command *const commands[] = {
-    &command_check, &command_design,  &command_run,      &command_status, &command_summary,
-    &command_plot,  &command_compare, &command_describe, &command_bench,
+    &command_check,   &command_design, &command_run,      &command_status,
+    &command_summary, &command_plot,   &command_compare,  &command_basin,
+    &command_merge,   &command_table,  &command_describe, &command_bench,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

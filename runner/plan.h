@@ -52,9 +52,9 @@ size_t plan_design(const struct plan *plan, uint64_t index);
 bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place);
 uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
 
-/* Collective: computes every design, each rank a block, and gathers them on rank 0. false on
- * every rank when no design exists at all, or plan->stop said true somewhere; the message is empty
- * then. */
+/* Collective: computes every design whose status is pending, each rank a block, and gathers them on
+ * rank 0. false on every rank when no design exists at all, or plan->stop said true somewhere; the
+ * message is empty then. */
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error);
 

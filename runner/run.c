@@ -24,13 +24,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static void fail(struct run *run, int code, const char *text)
+void run_fail(struct run *run, int code, const char *text)
 {
     run->failure.code = code;
     snprintf(run->failure.text, sizeof run->failure.text, "%s", text);
 }
 
-static void fail_io(struct run *run, const stance_message *message)
+void run_fail_io(struct run *run, const stance_message *message)
 {
     snprintf(run->failure.text, sizeof run->failure.text, "stance run: %s", message->text);
     run->failure.code = EXIT_IO;
@@ -50,108 +50,6 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
 
 /* ---- options ------------------------------------------------------------------------------ */
 
-/* Seconds from "90", "90s", "55m", "1h30m", "2d"; negative when it is none of these. */
-static double parse_duration(const char *text)
-{
-    double total = 0;
-    while (*text) {
-        char *end;
-        double value = strtod(text, &end), unit = 1;
-        if (end == text || !(value >= 0) || !isfinite(value)) {
-            return -1;
-        }
-        switch (*end) {
-        case 'd':
-            unit = 86400;
-            break;
-        case 'h':
-            unit = 3600;
-            break;
-        case 'm':
-            unit = 60;
-            break;
-        case 's':
-        case '\0':
-            break;
-        default:
-            return -1;
-        }
-        total += value * unit;
-        text = *end ? end + 1 : end;
-    }
-    return total;
-}
-
-static bool usage(const char *text, const char *word)
-{
-    fprintf(stderr, "stance run: %s%s%s (stance run -h explains)\n", text, word ? " " : "",
-            word ? word : "");
-    return false;
-}
-
-static bool check_options(struct options *o, const char *only, const char *limit)
-{
-    if (o->force && o->resume) {
-        return usage("--force and --resume exclude each other", NULL);
-    }
-    if (o->force_scenario && !o->resume) {
-        return usage("--force-scenario needs --resume", NULL);
-    }
-    if (o->trace && !only) {
-        return usage("--trace needs --only CASE; `record` in the scenario records a sweep", NULL);
-    }
-    if (o->resume && only) {
-        return usage("--only computes one case: there is nothing to resume", NULL);
-    }
-    if (limit && (o->time_limit = parse_duration(limit)) < 0) {
-        return usage("--time-limit takes a duration such as 90s, 55m or 1h30m, not", limit);
-    }
-    if (only) {
-        char *end;
-        errno = 0;
-        o->single_case = strtoull(only, &end, 10);
-        if (only[0] < '0' || only[0] > '9' || *end || errno) {
-            return usage("--only takes the flat index of a case, not", only);
-        }
-        o->single = true;
-    }
-    return true;
-}
-
-/* Prints what is wrong with them on standard error. */
-static bool read_options(struct options *o, int argc, char **argv)
-{
-    const char *limit = NULL, *only = NULL;
-    size_t outputs, limits, onlys, force, force_scenario, resume, trace, dry_run, quiet, operands;
-    const struct option_spec specs[] = {
-        {"-o", true, &o->output, 1, &outputs},
-        {"--set", true, o->sets, (size_t)argc, &o->set_count},
-        {"--force", false, NULL, 0, &force},
-        {"--force-scenario", false, NULL, 0, &force_scenario},
-        {"--resume", false, NULL, 0, &resume},
-        {"--time-limit", true, &limit, 1, &limits},
-        {"--only", true, &only, 1, &onlys},
-        {"--trace", false, NULL, 0, &trace},
-        {"--dry-run", false, NULL, 0, &dry_run},
-        {"--quiet", false, NULL, 0, &quiet},
-    };
-    o->time_limit = INFINITY;
-    if (!command_options(&command_run, argc, argv, specs, sizeof specs / sizeof specs[0],
-                         &o->scenario, 1, &operands, &o->help)) {
-        return false;
-    }
-    o->force = force > 0;
-    o->force_scenario = force_scenario > 0;
-    o->resume = resume > 0;
-    o->trace = trace > 0;
-    o->dry_run = dry_run > 0;
-    o->quiet = quiet > 0;
-    if (!o->help && operands != 1) {
-        return usage("a scenario file must be given", NULL);
-    }
-    return o->help || check_options(o, only, limit);
-}
-
 static void stage_options(struct run *run)
 {
     struct options *o = &run->options;
@@ -160,11 +58,11 @@ static void stage_options(struct run *run)
 
     o->sets = malloc((size_t)run->argc * sizeof *o->sets);
     if (!o->sets) {
-        fail(run, EXIT_IO, "stance run: not enough memory");
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
     }
     /* Rank 0 first: it says what is wrong, and the others need not. */
     if (run->parallel.rank == 0 && o->sets) {
-        good = read_options(o, run->argc, run->argv);
+        good = run_read_options(o, run->argc, run->argv);
     }
     parallel_broadcast(&run->parallel, &good, sizeof good);
     if (!good) {
@@ -174,7 +72,7 @@ static void stage_options(struct run *run)
     bool help = o->help;
     parallel_broadcast(&run->parallel, &help, sizeof help);
     if (run->parallel.rank != 0 && !help && o->sets) {
-        read_options(o, run->argc, run->argv);
+        run_read_options(o, run->argc, run->argv);
     }
     o->help = help;
     if (!help && !instruction_set_check(&message)) {
@@ -185,6 +83,26 @@ static void stage_options(struct run *run)
 
 /* ---- the scenario ------------------------------------------------------------------------- */
 
+/* From the file, with what --set changes; --extend changes the count of a sample that there is. */
+static bool read_scenario(struct run *run)
+{
+    const struct options *o = &run->options;
+    struct scenario *s = run->scenario;
+    const size_t own = o->set_count - (o->extend_count > 0);
+
+    if (o->extend_count > 0) {
+        if (!scenario_read(s, o->scenario, NULL, o->sets, own, stderr)) {
+            return false;
+        }
+        const bool good = run_extend_check(run);
+        scenario_free(s);
+        if (!good) {
+            return false;
+        }
+    }
+    return scenario_read(s, o->scenario, NULL, o->sets, o->set_count, stderr);
+}
+
 /* Rank 0 reads the file; the others read the text that it resolved to. */
 static void stage_scenario(struct run *run)
 {
@@ -194,9 +112,9 @@ static void stage_scenario(struct run *run)
 
     run->scenario = calloc(1, sizeof *run->scenario);
     if (run->parallel.rank == 0 && run->scenario) {
-        if (scenario_read(run->scenario, o->scenario, NULL, o->sets, o->set_count, stderr)) {
+        if (read_scenario(run)) {
             length = strlen(run->scenario->text) + 1;
-        } else {
+        } else if (run->failure.code == EXIT_DONE) {
             /* The reader has printed why. */
             run->failure.code = access(o->scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
         }
@@ -212,7 +130,7 @@ static void stage_scenario(struct run *run)
             !scenario_read(run->scenario, o->scenario, text, NULL, 0, nowhere)) {
             free(run->scenario);
             run->scenario = NULL;
-            fail(run, EXIT_IO, "stance run: a rank cannot read the scenario that rank 0 reads");
+            run_fail(run, EXIT_IO, "stance run: a rank cannot read the scenario that rank 0 reads");
         }
         free(text);
     } else if (length > 0) {
@@ -239,25 +157,33 @@ static void name_file(struct run *run)
     const struct options *o = &run->options;
     if (o->output) {
         if (snprintf(run->file, sizeof run->file, "%s", o->output) >= (int)sizeof run->file - 8) {
-            fail(run, EXIT_IO, "stance run: the name of the results file is too long");
+            run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
         }
     } else if (o->single) {
         snprintf(run->file, sizeof run->file, "results/%s-case%" PRIu64 ".h5", run->scenario->name,
                  o->single_case);
+    } else if (o->extend_count > 0) {
+        snprintf(run->file, sizeof run->file, "results/%s-%" PRIu64 ".h5", run->scenario->name,
+                 o->extend_count);
     } else {
         snprintf(run->file, sizeof run->file, "results/%s.h5", run->scenario->name);
     }
 }
 
-/* Refuses a file that was made from another scenario, and shows where they differ. */
-static bool same_scenario(struct run *run)
+/* Refuses a file that was made from another scenario, and shows where they differ; of the run's own
+ * file --force-scenario makes it go on all the same. */
+bool run_same_scenario(struct run *run, const char *file, const char *before)
 {
-    const char *old = run->origin.scenario, *new = run->scenario->text;
+    const char *old = before, *new = run->scenario->text;
+    const bool own = before == run->origin.scenario;
     char *text = NULL; /* in one piece */
     size_t size = 0;
 
-    if (strcmp(old, new) == 0 || run->options.force_scenario) {
-        run->succeed = strcmp(old, new) != 0;
+    if (strcmp(old, new) == 0) {
+        return true;
+    }
+    if (own && run->options.force_scenario) {
+        run->succeed = true;
         return true;
     }
     const size_t lines = succession_count_differences(old, new);
@@ -266,7 +192,7 @@ static bool same_scenario(struct run *run)
         fprintf(to,
                 "stance run: %.200s was made from another scenario (--force-scenario goes on with "
                 "this one); %zu line%s of the resolved text differ%s:\n",
-                run->file, lines, lines == 1 ? "" : "s", lines == 1 ? "s" : "");
+                file, lines, lines == 1 ? "" : "s", lines == 1 ? "s" : "");
         succession_print_difference(to, old, new);
         if (fclose(to) == 0) {
             fputs(text, stderr);
@@ -290,38 +216,50 @@ static int check_file(void *file)
     return good ? EXIT_DONE : EXIT_IO;
 }
 
+int run_check_file(const char *file)
+{
+    return supervise(check_file, (void *)(uintptr_t)file, file);
+}
+
+void run_warn_of_revision(const char *file, const char *revision)
+{
+    if (strcmp(revision, build_revision()) != 0) {
+        fprintf(stderr,
+                "stance run: warning: %s was begun by revision %s, this is %s: results may "
+                "differ\n",
+                file, revision, build_revision());
+    }
+}
+
 /* An existing file that is to be gone on with. */
 static void look_into_file(struct run *run)
 {
     stance_message message = {""};
 
-    run->failure.code = supervise(check_file, run->file, run->file);
+    run->failure.code = run_check_file(run->file);
     if (run->failure.code != EXIT_DONE) {
         return; /* it has been said why */
     }
     if (euidaccess(run->file, W_OK) != 0) {
         snprintf(message.text, sizeof message.text, "%.150s: cannot write there: %s", run->file,
                  strerror(errno));
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         return;
     }
     if (!store_read_origin(run->file, &run->origin, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         return;
     }
-    if (!same_scenario(run)) {
+    if (!run_same_scenario(run, run->file, run->origin.scenario)) {
         return;
     }
-    if (strcmp(run->origin.revision, build_revision()) != 0 && !run->succeed) {
-        fprintf(stderr,
-                "stance run: warning: %s was begun by revision %s, this is %s: results may "
-                "differ\n",
-                run->file, run->origin.revision, build_revision());
+    if (!run->succeed) {
+        run_warn_of_revision(run->file, run->origin.revision);
     }
     for (int a = 0; a < run->scenario->axes; a++) {
         /* Another scenario may have other axes: that is refused later. */
         if (!store_read_axis(run->file, &run->scenario->axis[a], &message) && !run->succeed) {
-            fail_io(run, &message);
+            run_fail_io(run, &message);
         }
     }
 }
@@ -343,27 +281,29 @@ static void claim_file(struct run *run)
     }
     if (exists && !S_ISREG(information.st_mode) && !S_ISLNK(information.st_mode)) {
         snprintf(message.text, sizeof message.text, "%.200s: not a regular file", run->file);
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         return;
     }
     if (!o->output && mkdir("results", 0777) != 0 && errno != EEXIST) {
         snprintf(message.text, sizeof message.text, "cannot make the directory results: %s",
                  strerror(errno));
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         return;
     }
     if (!lock_take(&run->lock, run->file, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         return;
     }
     if (!pulse_begin(&run->pulse, &run->lock, &run->parallel, "starting")) {
-        fail(run, EXIT_IO, "stance run: not enough memory");
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
         return;
     }
     run->resume = exists && o->resume;
     run->replace = exists && o->force;
     if (run->resume) {
         look_into_file(run);
+    } else if (o->extend_count > 0) {
+        run_extend_open(run);
     }
 }
 
@@ -379,14 +319,15 @@ static void stage_claim(struct run *run)
 
 /* ---- the plan ----------------------------------------------------------------------------- */
 
-/* Points of logarithmic axes come from the C library and may differ between machines: every rank
- * takes those of rank 0, which has them from the file when the run is resumed. */
+/* Points of logarithmic axes and of samples come from libraries and may differ between machines:
+ * every rank takes those of rank 0, which has them from the file when the run is resumed. */
 static void share_axes(struct run *run)
 {
     for (int a = 0; a < run->scenario->axes; a++) {
         struct scenario_axis *axis = &run->scenario->axis[a];
-        if (axis->log) {
-            parallel_broadcast(&run->parallel, axis->value, axis->count * sizeof *axis->value);
+        if (axis->log || axis->sample) {
+            parallel_broadcast(&run->parallel, axis->value,
+                               axis->count * (size_t)axis->paths * sizeof *axis->value);
         }
     }
 }
@@ -408,7 +349,7 @@ static bool out_of_time(void *context)
         parallel_beat(&run->parallel, ++run->work.beats);
     }
     if (message.text[0]) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     }
     return stop;
 }
@@ -420,7 +361,7 @@ static void stage_plan(struct run *run)
 
     share_axes(run);
     if (!parallel_share(&run->parallel)) {
-        fail(run, EXIT_IO, "stance run: not enough memory");
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
     } else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
         fail_scenario(run, &error);
     }
@@ -439,6 +380,28 @@ static void stop_early(struct run *run, const char *what)
     }
 }
 
+/* Those that --extend has from the old file; every rank is told which and what they are. */
+static bool take_designs(struct run *run)
+{
+    struct plan *plan = &run->plan;
+    stance_message message = {""};
+    bool good = true;
+
+    if (run->options.extend_count == 0 || run->options.dry_run) {
+        return true;
+    }
+    if (run->extension) {
+        good = run_extend_designs(run, &message);
+    }
+    parallel_broadcast(&run->parallel, &good, sizeof good);
+    if (!good && run->parallel.rank == 0) {
+        run_fail_io(run, &message);
+    }
+    parallel_broadcast(&run->parallel, plan->design, plan->designs * sizeof *plan->design);
+    parallel_broadcast(&run->parallel, plan->design_status, plan->designs);
+    return good;
+}
+
 static void stage_designs(struct run *run)
 {
     struct plan_error error = {0};
@@ -446,6 +409,9 @@ static void stage_designs(struct run *run)
 
     if (run->resume) {
         return; /* they are in the file */
+    }
+    if (!take_designs(run)) {
+        return;
     }
     good = plan_compute_designs(&run->plan, &run->parallel, &error);
     if (!good && !error.message.text[0]) {
@@ -472,7 +438,7 @@ static void stage_captures(struct run *run)
         return;
     }
     if (message.text[0]) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     } else {
         stop_early(run, "stopped while captured sets were estimated: nothing is stored");
     }
@@ -524,7 +490,7 @@ static void succeed(struct run *run, const char *hosts)
         }
         fputc('\n', stderr);
     } else if (message.text[0]) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         run->failure.code = counts.refused ? EXIT_USAGE : EXIT_IO;
     } else {
         stop_early(run, "stopped before the file could go on with another scenario");
@@ -544,9 +510,9 @@ static void stage_create(struct run *run)
         if (run->replace && unlink(run->file) != 0) {
             snprintf(message.text, sizeof message.text, "cannot replace %.150s: %s", run->file,
                      strerror(errno));
-            fail_io(run, &message);
+            run_fail_io(run, &message);
         } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &message)) {
-            fail_io(run, &message);
+            run_fail_io(run, &message);
         }
     }
     free(hosts);
@@ -561,8 +527,18 @@ static void stage_open(struct run *run)
     }
     if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &message) ||
         !store_read_designs(run->store, &run->plan, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     }
+}
+
+/* Rows of the old file. */
+static void stage_extend(struct run *run)
+{
+    stance_message message = {""};
+    if (run->extension && !run_extend_copy(run, &message)) {
+        run_fail_io(run, &message);
+    }
+    run_extend_close(run);
 }
 
 static void stage_compute(struct run *run)
@@ -574,14 +550,14 @@ static void stage_compute(struct run *run)
         .pulse = run->parallel.rank == 0 ? &run->pulse : NULL,
         .beats = run->work.beats,
         .store = run->store,
-        .resume = run->resume,
+        .resume = run->resume || run->options.extend_count > 0,
         .quiet = run->options.quiet,
         .start = run->start,
         .time_limit = run->options.time_limit,
     };
     const bool refined = run->scenario->refine.given && !run->plan.single;
     if (refined ? !rounds_run(&run->work, &message) : !work_run(&run->work, NULL, NULL, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     }
 }
 
@@ -601,7 +577,7 @@ static void stage_timing(struct run *run)
     parallel_gather(&run->parallel, &computed, sizeof computed, cases);
     if (run->parallel.rank == 0 &&
         !store_add_timing(run->store, run->parallel.size, seconds, cases, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     }
     free(seconds);
     free(cases);
@@ -614,13 +590,13 @@ static void stage_close(struct run *run)
 
     run->store = NULL;
     if (!store_close(store, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     } else if (run->parallel.rank == 0) {
         int descriptor = open(run->file, O_RDWR | O_CLOEXEC);
         if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0) {
             snprintf(message.text, sizeof message.text, "%.150s: cannot bring it to the disk: %s",
                      run->file, strerror(errno));
-            fail_io(run, &message);
+            run_fail_io(run, &message);
         }
     }
 }
@@ -642,6 +618,7 @@ static int go_through(struct run *run)
         {stage_captures, "estimating captured sets"},
         {stage_create, "creating the results file"},
         {stage_open, "opening the results file"},
+        {stage_extend, "copying the results of the old file"},
         {stage_compute, "computing"},
         {stage_timing, "storing times"},
         {stage_close, "closing the results file"},
@@ -690,6 +667,7 @@ static int run_run(int argc, char **argv)
     if (run->scenario) {
         scenario_free(run->scenario);
     }
+    run_extend_close(run);
     lock_release(&run->lock);
     pulse_end(&run->pulse);
     parallel_finish(&run->parallel);
@@ -702,6 +680,7 @@ static int run_run(int argc, char **argv)
 const struct command command_run = {
     "run",
     "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume [--force-scenario]]\n"
+    "           [--extend COUNT [--from FILE]]\n"
     "           [--time-limit TIME] [--only CASE [--trace]] [--dry-run] [--quiet]",
     "compute every case of a scenario; alone or under mpirun -n N",
     run_run,
@@ -720,6 +699,11 @@ const struct command command_run = {
     "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
     "  --only CASE        compute one case of the sweep, by its flat index, to a file of its own\n"
     "  --trace            ... and record its trajectory, each 0.01 s unless record.every says\n"
+    "  --extend COUNT     a new file with sweep.sample.count COUNT, by default\n"
+    "                     results/<scenario name>-COUNT.h5, which takes over what a file of the\n"
+    "                     same scenario with fewer points holds, and computes the rest. That file\n"
+    "                     need not be complete and stays as it is. Not for method lhs\n"
+    "  --from FILE        ... that file; default results/<scenario name>.h5\n"
     "  --dry-run          plan and estimate, write nothing\n"
     "  --quiet            neither progress nor summary\n"
     "\n"

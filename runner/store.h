@@ -30,6 +30,8 @@
  *     newest's. Then a variable `scenario_number` over the cases says which scenario a case was
  *     computed with, counted from 0; the newest has the highest number. Its checksum takes it after
  *     `final_state`.
+ *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
+ *     gives, merge_note.
  *   every variable but the answers, the trajectories' own and those of `timing` has an attribute
  *     `checksum` over its values (seal.h), which whoever reads the file verifies.
  * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as
@@ -132,15 +134,21 @@ struct store_origin {
     char revision[80], date[40];
     size_t ancestors; /* scenarios before that one, the first one first */
     struct store_ancestor *ancestor;
+    char *title, *hosts;
+    int ranks;
 };
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);
 void store_origin_free(struct store_origin *origin);
-/* Values of a logarithmic axis as the file has them, into axis->value; other axes are left. */
+/* Values of a logarithmic axis or of a sample as the file has them, into axis->value; other axes
+ * are left. */
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message);
 
 /* Collective when `ranks` > 1: opens a file of this plan for writing. */
 bool store_open(struct store **store, const char *file, const struct plan *plan, int ranks,
                 stance_message *message);
+/* The same, alone and for reading only. */
+bool store_open_to_read(struct store **store, const char *file, const struct plan *plan,
+                        stance_message *message);
 /* Collective: ends the writing; the store is freed in any case. After a failed write call
  * store_abandon instead, which leaves the file as it is. */
 bool store_close(struct store *store, stance_message *message);
@@ -174,8 +182,29 @@ bool store_add_history(const char *file, const struct plan *plan, const struct s
                        stance_message *message);
 /* Copies those of 1 to STORE_ROWS rows that are whole in `from`, with their trajectories, to the
  * same rows of its successor `to`; adds to *kept, and to *damaged those that are not. */
-bool store_copy(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
-                uint64_t *damaged, stance_message *message);
+bool store_take_over(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
+                     uint64_t *damaged, stance_message *message);
+/* What became of rows that were to be copied; the numbers add up over calls. */
+struct store_copied {
+    uint64_t copied;
+    uint64_t same;        /* were there already */
+    uint64_t pending;     /* are in neither file */
+    uint64_t damaged;     /* are not as their checksums say, and were left out */
+    uint64_t conflicting; /* differ from what was there; left as they were */
+    uint64_t conflict;    /* where the first of these is, in the file that is written */
+};
+/* Copies 1 to STORE_ROWS rows, with their trajectories, to the rows target[rows->count] (ascending)
+ * of a file whose cases have the same answers and the same instants, each once it has been
+ * verified. */
+bool store_copy(struct store *from, const struct rows *rows, struct store *to,
+                const uint64_t *target, struct store_copied *copied, stance_message *message);
+/* Appends the times of a file to those of another, rank after rank from *rank on, which moves on.
+ */
+bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_message *message);
+/* An attribute of the whole file. */
+bool store_annotate(struct store *store, const char *name, const char *text,
+                    stance_message *message);
+
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
                       stance_message *message);

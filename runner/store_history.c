@@ -1,6 +1,6 @@
 /* store_history.c - files that went on with another scenario: what they were made from before, and
  * the rows that they take over from their predecessor (succession.h). */
-#include "store_private.h"
+#include "store_make.h"
 
 #include "seal.h"
 
@@ -74,7 +74,7 @@ static bool put_texts(hid_t group, int k, const struct store_origin *origin)
     word[origin->ancestors] = *text_of(&own, k);
     hid_t type = H5Tcopy(H5T_C_S1);
     bool good = H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0;
-    hid_t dataset = store_make_dataset(group, text_names[k], type, 1, &n);
+    hid_t dataset = make_dataset(group, text_names[k], type, 1, &n);
     good =
         good && dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, word) >= 0;
     H5Dclose(dataset);
@@ -90,8 +90,7 @@ static bool put_numbers(hid_t file, const struct plan *plan)
     hsize_t length[SCENARIO_MAX_AXES];
     const int rank = store_dimensions(plan, length);
     const bool one = plan->single || s->axes == 0;
-    hid_t dataset =
-        store_make_dataset(file, column->name, store_file_type(column->kind), rank, length);
+    hid_t dataset = make_dataset(file, column->name, store_file_type(column->kind), rank, length);
     bool good = dataset >= 0 &&
                 H5LTset_attribute_string(file, column->name, "long_name", column->text) >= 0;
     for (int d = 0; good && d < rank; d++) {
@@ -145,28 +144,8 @@ static void take_row(const struct store_block *from, struct store_block *to, siz
     ((uint32_t *)to->column[COLUMN_CHECKSUM])[i] = store_row_checksum(to, i);
 }
 
-static bool copy_trajectory(struct store *from, struct store *to, uint64_t place)
-{
-    const struct plan *plan = to->plan;
-    uint32_t crc;
-    bool good = true;
-    for (int v = 0; good && v < TRAJECTORIES; v++) {
-        const hsize_t elements =
-            (hsize_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
-        double *data = elements > 0 ? malloc(elements * sizeof *data) : NULL;
-        good = elements == 0 ||
-               (data &&
-                store_move_place(from->trajectory[v], KIND_double, place, elements, READ, data) &&
-                store_move_place(to->trajectory[v], KIND_double, place, elements, WRITE, data));
-        free(data);
-    }
-    return good &&
-           store_move_place(from->trajectory_checksum, KIND_uint32_t, place, 1, READ, &crc) &&
-           store_move_place(to->trajectory_checksum, KIND_uint32_t, place, 1, WRITE, &crc);
-}
-
-bool store_copy(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
-                uint64_t *damaged, stance_message *message)
+bool store_take_over(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
+                     uint64_t *damaged, stance_message *message)
 {
     stance_result results[STORE_ROWS];
     bool whole[STORE_ROWS];
@@ -183,8 +162,8 @@ bool store_copy(struct store *from, struct store *to, const struct rows *rows, u
             uint64_t place;
             take_row(from->checked, to->checked, i + n);
             if (plan_recorded(to->plan, rows_at(rows, i + n), &place) &&
-                !copy_trajectory(from, to, place)) {
-                return store_failed(message, to->file, "copy a trajectory");
+                !store_copy_trajectory(from, place, to, place, message)) {
+                return false;
             }
         }
         const struct rows part = rows_part(rows, i, n);

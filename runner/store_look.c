@@ -66,9 +66,16 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
         return store_failed(message, file, "open");
     }
     char *revision = read_text(id, "git_revision"), *date = read_text(id, "date");
+    hid_t ranks = H5Aopen(id, "ranks", H5P_DEFAULT);
     origin->scenario = read_text(id, "scenario");
+    origin->title = read_text(id, "title");
+    origin->hosts = read_text(id, "hosts");
     snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
     snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
+    if (ranks < 0 || H5Aread(ranks, H5T_NATIVE_INT, &origin->ranks) < 0) {
+        origin->ranks = 0;
+    }
+    H5Aclose(ranks);
     bool good = store_read_history(id, origin);
     H5Fclose(id);
     free(revision);
@@ -90,29 +97,34 @@ void store_origin_free(struct store_origin *origin)
     }
     free(origin->ancestor);
     free(origin->scenario);
+    free(origin->title);
+    free(origin->hosts);
     *origin = (struct store_origin){0};
 }
 
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
 {
-    if (!axis->log) {
+    if (!axis->log && !axis->sample) {
         return true;
     }
-    hid_t id = open_to_read(file), dataset = H5Dopen2(id, axis->name, H5P_DEFAULT);
-    hsize_t length = axis->count;
+    hid_t id = open_to_read(file);
+    const size_t paths = (size_t)axis->paths;
+    const hsize_t length = axis->count;
     double *value = malloc(axis->count * sizeof *value);
-    bool good =
-        value && store_has_shape(dataset, 1, &length) &&
-        H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
-    H5Dclose(dataset);
-    H5Fclose(id);
-    if (!good) {
-        free(value);
-        return store_failed(message, file, "read an axis");
+    bool good = value != NULL && id >= 0;
+    for (size_t k = 0; good && k < paths; k++) {
+        hid_t dataset = H5Dopen2(id, axis->path[k], H5P_DEFAULT);
+        good = store_has_shape(dataset, 1, &length) &&
+               H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                       value) >= 0;
+        for (size_t i = 0; good && i < axis->count; i++) {
+            axis->value[i * paths + k] = value[i];
+        }
+        H5Dclose(dataset);
     }
-    free(axis->value);
-    axis->value = value;
-    return true;
+    free(value);
+    H5Fclose(id);
+    return good || store_failed(message, file, "read an axis");
 }
 
 /* Reads the status variable, whatever its shape, in pieces. */

@@ -248,8 +248,8 @@ static bool copy_rows(const struct making *making, struct store *from, struct st
             making->message->text[0] = '\0';
             return false;
         }
-        if (!store_copy(from, to, &rows, &making->counts->kept, &making->counts->damaged,
-                        making->message)) {
+        if (!store_take_over(from, to, &rows, &making->counts->kept, &making->counts->damaged,
+                             making->message)) {
             return false;
         }
     }
