@@ -172,8 +172,17 @@ static bool collect_rays(struct summary *summary, const struct results *r, stanc
         }
     }
     statistics_summarise(end, points, &summary->rays->numbers);
+    const bool scaled = strcmp(r->axis[axis].name, "initial.offset.scale") == 0;
+    summary->rays->scale = scaled ? smallest : 1;
     free(end);
     return true;
+}
+
+double summary_nearest(const struct summary_rays *rays, const struct results *r, int k)
+{
+    const struct results_varied *v = &r->vary[k];
+    const bool offset = strncmp(v->of.name, "initial.offset.", strlen("initial.offset.")) == 0;
+    return v->of.value[rays->nearest] * (offset ? rays->scale : 1);
 }
 
 static bool collect_axes(struct summary *summary, const struct results *r, stance_message *message)
@@ -220,15 +229,17 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
+enum results_kind summary_judged(const struct scenario *s)
+{
+    return s->base.law == LAW_STATE_FEEDBACK ? RESULTS_STABILISED : RESULTS_RESTED;
+}
+
 bool summary_make(struct summary *summary, const struct results *r, stance_message *message)
 {
     struct scenario s;
     /* A scenario of another version cannot be read: the summary goes without. */
     const bool readable = results_scenario(r, &s);
-    *summary = (struct summary){.judged = RESULTS_STABILISED};
-    if (readable && s.base.law != LAW_STATE_FEEDBACK) {
-        summary->judged = RESULTS_RESTED;
-    }
+    *summary = (struct summary){.judged = readable ? summary_judged(&s) : RESULTS_STABILISED};
     statistics_count(r, -1, 0, &summary->counts);
     collect_failures(summary, r);
     bool good = collect_numbers(summary, r, message) &&

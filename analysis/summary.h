@@ -53,8 +53,12 @@ struct summary_count {
 struct summary_rays {
     struct statistics_numbers numbers;
     size_t nearest; /* point of the smallest */
+    double scale;   /* of the offsets that the sample varies, there */
     size_t open, none, unknown;
 };
+
+/* What path k of a sample is at the smallest end: an offset times the scale. */
+double summary_nearest(const struct summary_rays *rays, const struct results *r, int k);
 
 /* A field that the sweep leaves alone. */
 struct summary_field {
@@ -107,6 +111,10 @@ void summary_collect_fields(struct summary *summary, const struct results *r,
 
 /* False when cases are done but the file stores no outcomes: record.answers left them out. */
 bool summary_has_outcomes(const struct summary *summary);
+
+/* What the cases of a scenario are judged by: STABILISED, or where no controller has a target
+ * RESTED. */
+enum results_kind summary_judged(const struct scenario *s);
 
 /* Share of the cases of the kind judged by among those done; NAN when there are none. */
 double summary_share(const struct summary *summary, const struct statistics_counts *counts);

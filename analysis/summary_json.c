@@ -273,7 +273,7 @@ static json_t *rays(const struct summary *summary, const struct results *r)
     const struct summary_rays *rays = summary->rays;
     json_t *object = json_object(), *at = json_object();
     for (int k = 0; rays->numbers.n > 0 && k < r->varied; k++) {
-        put(at, r->vary[k].of.name, sampled_value(&r->vary[k], r->vary[k].of.value[rays->nearest]));
+        put(at, r->vary[k].of.name, sampled_value(&r->vary[k], summary_nearest(rays, r, k)));
     }
     put(object, "path", json_string(r->axis[summary->ray_axis].name));
     put(object, "points", whole(rays->numbers.n));

@@ -51,7 +51,7 @@ static void print_bins(const struct summary *summary, const struct results *r, i
         const struct statistics_counts *counts = &bins->bin[b].counts;
         const uint64_t judged = counts->kind[summary->judged];
         bin_text(v, bins, &bins->bin[b], text, sizeof text);
-        printf("  %-32s %19s %9llu", b == 0 ? v->of.name : "", text,
+        printf("  %-32s %24s %9llu", b == 0 ? v->of.name : "", text,
                (unsigned long long)counts->done);
         if (counts->done == 0) {
             puts("         -   none done");
@@ -80,8 +80,11 @@ static void print_rays(const struct summary *summary, const struct results *r)
         }
         printf("\n  the smallest at point %zu:", rays->nearest);
         for (int k = 0; k < r->varied; k++) {
-            results_varied_text(&r->vary[k], rays->nearest, true, text, sizeof text);
-            printf("%s %s = %s", k ? "," : "", r->vary[k].of.name, text);
+            double value = summary_nearest(rays, r, k);
+            struct results_varied one = r->vary[k];
+            one.of.value = &value;
+            results_varied_text(&one, 0, true, text, sizeof text);
+            printf("%s %s = %s", k ? "," : "", one.of.name, text);
         }
         putchar('\n');
     }
@@ -103,7 +106,7 @@ void summary_print_sample(const struct summary *summary, const struct results *r
     if (!summary->bins) {
         return;
     }
-    printf("\n%s against what the sample varies, in parts of equally many points\n  %-32s %19s %9s "
+    printf("\n%s against what the sample varies, in parts of equally many points\n  %-32s %24s %9s "
            "%10s   %s\n",
            judged_word(summary), "", "values", "done", "share", "95 % interval");
     for (int k = 0; k < r->varied; k++) {

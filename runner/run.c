@@ -170,29 +170,25 @@ static void name_file(struct run *run)
     }
 }
 
-/* Refuses a file that was made from another scenario, and shows where they differ; of the run's own
- * file --force-scenario makes it go on all the same. */
-bool run_same_scenario(struct run *run, const char *file, const char *before)
+/* Shows where they differ. */
+bool run_same_scenario(struct run *run, const char *file, const char *old)
 {
-    const char *old = before, *new = run->scenario->text;
-    const bool own = before == run->origin.scenario;
+    const char *new = run->scenario->text;
     char *text = NULL; /* in one piece */
     size_t size = 0;
 
-    if (strcmp(old, new) == 0) {
-        return true;
-    }
-    if (own && run->options.force_scenario) {
-        run->succeed = true;
+    if (strcmp(old, new) == 0 || (file == run->file && run->options.force_scenario)) {
+        run->succeed = strcmp(old, new) != 0;
         return true;
     }
     const size_t lines = succession_count_differences(old, new);
     FILE *to = open_memstream(&text, &size);
     if (to) {
         fprintf(to,
-                "stance run: %.200s was made from another scenario (--force-scenario goes on with "
-                "this one); %zu line%s of the resolved text differ%s:\n",
-                file, lines, lines == 1 ? "" : "s", lines == 1 ? "s" : "");
+                "stance run: %.200s was made from another scenario%s; %zu line%s of the resolved "
+                "text differ%s:\n",
+                file, file == run->file ? " (--force-scenario goes on with this one)" : "", lines,
+                lines == 1 ? "" : "s", lines == 1 ? "s" : "");
         succession_print_difference(to, old, new);
         if (fclose(to) == 0) {
             fputs(text, stderr);

@@ -43,8 +43,9 @@ struct run {
     double start, look_at;  /* of plan_clock(): the beginning, the next look at the counters */
 };
 
-/* Prints what is wrong with them on standard error. o->sets has room for argc texts. */
+/* run_options.c. Prints what is wrong with them on standard error; false then. */
 bool run_read_options(struct options *o, int argc, char **argv);
+
 /* What ends the run, in a line. */
 void run_fail(struct run *run, int code, const char *text);
 void run_fail_io(struct run *run, const stance_message *message);

@@ -8,7 +8,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Seconds from "90", "90s", "55m", "1h30m", "2d"; negative when it is none of these. */
 static double parse_duration(const char *text)

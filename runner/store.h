@@ -25,13 +25,13 @@
  *     git_revision, compiler (with flags), library_versions, instruction_set (of rank 0), ranks,
  *     hosts, date, seed, scenario (text), axes (comma-separated dimension names, in order),
  *     scenario_sha256.
+ *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
+ *     gives, merge_note.
  *   group `history`, in a file that went on with another scenario: the texts of the earlier ones,
  *     `scenario`, and their `git_revision` and `date`, the first one first; root attributes are the
  *     newest's. Then a variable `scenario_number` over the cases says which scenario a case was
  *     computed with, counted from 0; the newest has the highest number. Its checksum takes it after
  *     `final_state`.
- *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
- *     gives, merge_note.
  *   every variable but the answers, the trajectories' own and those of `timing` has an attribute
  *     `checksum` over its values (seal.h), which whoever reads the file verifies.
  * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as
@@ -132,10 +132,10 @@ struct store_ancestor {
 struct store_origin {
     char *scenario; /* resolved text */
     char revision[80], date[40];
-    size_t ancestors; /* scenarios before that one, the first one first */
-    struct store_ancestor *ancestor;
     char *title, *hosts;
     int ranks;
+    size_t ancestors; /* scenarios before that one, the first one first */
+    struct store_ancestor *ancestor;
 };
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);
 void store_origin_free(struct store_origin *origin);
@@ -176,14 +176,6 @@ bool store_write_trajectory(struct store *store, uint64_t place,
  * cases are verified, too. */
 bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
                   stance_message *message);
-/* A file that goes on with another scenario (succession.h): for a file that store_create has just
- * made, the group `history` with the scenarios of `origin`, and the variable `scenario_number`. */
-bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
-                       stance_message *message);
-/* Copies those of 1 to STORE_ROWS rows that are whole in `from`, with their trajectories, to the
- * same rows of its successor `to`; adds to *kept, and to *damaged those that are not. */
-bool store_take_over(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
-                     uint64_t *damaged, stance_message *message);
 /* What became of rows that were to be copied; the numbers add up over calls. */
 struct store_copied {
     uint64_t copied;
@@ -205,6 +197,14 @@ bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_m
 bool store_annotate(struct store *store, const char *name, const char *text,
                     stance_message *message);
 
+/* A file that goes on with another scenario (succession.h): for a file that store_create has just
+ * made, the group `history` with the scenarios of `origin`, and the variable `scenario_number`. */
+bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
+                       stance_message *message);
+/* Copies those of 1 to STORE_ROWS rows that are whole in `from`, with their trajectories, to the
+ * same rows of its successor `to`; adds to *kept, and to *damaged those that are not. */
+bool store_hand_down(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
+                     uint64_t *damaged, stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
                       stance_message *message);

@@ -144,7 +144,28 @@ static void take_row(const struct store_block *from, struct store_block *to, siz
     ((uint32_t *)to->column[COLUMN_CHECKSUM])[i] = store_row_checksum(to, i);
 }
 
-bool store_take_over(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
+static bool copy_trajectory(struct store *from, struct store *to, uint64_t place)
+{
+    const struct plan *plan = to->plan;
+    uint32_t crc;
+    bool good = true;
+    for (int v = 0; good && v < TRAJECTORIES; v++) {
+        const hsize_t elements =
+            (hsize_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
+        double *data = elements > 0 ? malloc(elements * sizeof *data) : NULL;
+        good = elements == 0 || (data &&
+                                 store_move_place(from->trajectory[v], KIND_double, place, elements,
+                                                  STORE_READ, data) &&
+                                 store_move_place(to->trajectory[v], KIND_double, place, elements,
+                                                  STORE_WRITE, data));
+        free(data);
+    }
+    return good &&
+           store_move_place(from->trajectory_checksum, KIND_uint32_t, place, 1, STORE_READ, &crc) &&
+           store_move_place(to->trajectory_checksum, KIND_uint32_t, place, 1, STORE_WRITE, &crc);
+}
+
+bool store_hand_down(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
                      uint64_t *damaged, stance_message *message)
 {
     stance_result results[STORE_ROWS];

@@ -127,7 +127,7 @@ hid_t make_variable(hid_t parent, const char *name, hid_t type,
 {
     hsize_t length[SCENARIO_MAX_AXES + 2];
     for (int d = 0; d < rank; d++) {
-        length[d] = dimension[d] ? dimension[d]->length : 0;
+        length[d] = dimension[d]->length;
     }
     hid_t dataset = make_dataset(parent, name, type, rank, length);
     if (dataset >= 0 && !(put_meaning(dataset, unit, text) && attach(dataset, dimension, rank))) {

@@ -248,7 +248,7 @@ static bool copy_rows(const struct making *making, struct store *from, struct st
             making->message->text[0] = '\0';
             return false;
         }
-        if (!store_take_over(from, to, &rows, &making->counts->kept, &making->counts->damaged,
+        if (!store_hand_down(from, to, &rows, &making->counts->kept, &making->counts->damaged,
                              making->message)) {
             return false;
         }

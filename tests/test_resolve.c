@@ -104,6 +104,7 @@ static void offsets_of_translation(void **state)
     const stance_case halved = resolved(&v);
     assert_true(halved.position[0] == before.position[0] + 0.25);
     assert_true(halved.velocity[0] == -0.5 && halved.velocity[1] == 1);
+    v.offset_scale = 1;
     assert_memory_equal(after.position + 2, before.position + 2, 3 * sizeof(double));
     v.offset[1] = -1e-10; /* rounding, as far as a start goes */
     resolved(&v);
