@@ -39,8 +39,9 @@ static void move_slot(struct store_block *block, size_t from, size_t to)
     }
 }
 
-bool store_copy_trajectory(struct store *from, uint64_t place, struct store *to, uint64_t to_place,
-                           stance_message *message)
+/* The trajectory at one place of a file to a place of another, as it is, checksum included. */
+static bool copy_trajectory(struct store *from, uint64_t place, struct store *to, uint64_t to_place,
+                            stance_message *message)
 {
     const struct plan *plan = from->plan;
     uint32_t checksum = 0;
@@ -117,7 +118,7 @@ bool store_copy(struct store *from, const struct rows *rows, struct store *to,
         }
         if (plan_recorded(from->plan, rows_at(rows, i), &place) &&
             plan_recorded(to->plan, target[i], &to_place) &&
-            !store_copy_trajectory(from, place, to, to_place, message)) {
+            !copy_trajectory(from, place, to, to_place, message)) {
             return false;
         }
         kept[count] = target[i];

@@ -183,8 +183,8 @@ bool store_hand_down(struct store *from, struct store *to, const struct rows *ro
             uint64_t place;
             take_row(from->checked, to->checked, i + n);
             if (plan_recorded(to->plan, rows_at(rows, i + n), &place) &&
-                !store_copy_trajectory(from, place, to, place, message)) {
-                return false;
+                !copy_trajectory(from, to, place)) {
+                return store_failed(message, to->file, "copy a trajectory");
             }
         }
         const struct rows part = rows_part(rows, i, n);

@@ -1,6 +1,5 @@
 /* store_make.h - pieces that results files are made of: attributes, variables, dimensions, as
- * netCDF-4 has them. For store_layout.c, store_history.c and store_copy.c. -1 or false: HDF5
- * remembers why.
+ * netCDF-4 has them. For store_layout.c alone. -1 or false: HDF5 remembers why.
  */
 #ifndef STANCE_RUNNER_STORE_MAKE_H
 #define STANCE_RUNNER_STORE_MAKE_H

@@ -130,10 +130,6 @@ uint32_t store_row_checksum(const struct store_block *block, size_t slot);
 bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
                       enum store_direction way, void *data);
 
-/* The trajectory at one place of a file to a place of another, as it is, checksum included. */
-bool store_copy_trajectory(struct store *from, uint64_t place, struct store *to, uint64_t to_place,
-                           stance_message *message);
-
 /* The dataset has exactly this shape. */
 bool store_has_shape(hid_t dataset, int rank, const hsize_t *length);
 /* Adds to a selection the flat, row-major range [first, last) below dimension `level` of a grid: a
