@@ -1,5 +1,5 @@
-/* run.h - what the parts of `stance run` share: run.c (the stages), run_extend.c (rows of a smaller
- * design) and run_end.c (what is said at the end). */
+/* run.h - what the parts of `stance run` share: run.c (the stages), run_options.c, run_extend.c
+ * (rows of a smaller design) and run_end.c (what is said at the end). */
 #ifndef STANCE_RUNNER_RUN_H
 #define STANCE_RUNNER_RUN_H
 

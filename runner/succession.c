@@ -155,6 +155,12 @@ static bool same_axes(const struct scenario *a, const struct scenario *b)
     return equal;
 }
 
+/* Bit for bit, of structs whose memory was zero before they were filled in. */
+static bool same_bits(const void *a, const void *b, size_t size)
+{
+    return memcmp(a, b, size) == 0;
+}
+
 /* On some cases spread over the sweep: what differs in the base differs nearly everywhere. */
 static bool same_designs(const struct plan *before, const struct plan *after)
 {
@@ -173,7 +179,7 @@ static bool same_designs(const struct plan *before, const struct plan *after)
         scenario_case_values(b, index, &y);
         const bool exists = resolve_design(a->scene, &x, &p, &ignored);
         if (exists != resolve_design(b->scene, &y, &q, &ignored) ||
-            (exists && memcmp(&p, &q, sizeof p) != 0)) {
+            (exists && !same_bits(&p, &q, sizeof p))) {
             return false;
         }
     }
@@ -182,7 +188,7 @@ static bool same_designs(const struct plan *before, const struct plan *after)
 
 static bool same_cases(const struct scenario *a, const struct scenario *b)
 {
-    return memcmp(&a->base, &b->base, sizeof a->base) == 0 && a->seed == b->seed &&
+    return same_bits(&a->base, &b->base, sizeof a->base) && a->seed == b->seed &&
            a->refine.given == b->refine.given && a->refine.start == b->refine.start &&
            a->refine.margin == b->refine.margin && a->refine.probes == b->refine.probes;
 }
