@@ -164,7 +164,7 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
         return good;
     case FIELD_INTEGER:
         good = field_integer(&r->problems, field, field->path, node, &number);
-        word = (int)number;
+        word = good ? (int)number : 0; /* what is out of range need not fit */
         break;
     case FIELD_WORD:
         good = field_word(&r->problems, field, field->path, node, &word);
@@ -232,10 +232,10 @@ static void set_defaults(struct reader *r)
     }
     for (size_t i = 0; i < r->schema.count; i++) {
         const struct scenario_field *field = &r->schema.field[i];
-        char *place = (char *)base + field->offset;
         if (field->offset == NO_OFFSET || strchr(field->path, '[')) {
             continue;
         }
+        char *place = (char *)base + field->offset;
         if (field->type == FIELD_NUMBER) {
             memcpy(place, &field->fallback, sizeof field->fallback);
         } else if (field->type == FIELD_WORD) {
