@@ -652,9 +652,12 @@ static bool read_track(const struct results *r, const char *path, size_t place, 
 {
     hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
     int rank;
-    hid_t dataset = width ? open_dataset(r, path, &rank, length) : -1;
-    if (dataset < 0) {
+    if (width == 0 || !exists((hid_t)r->id, path)) {
         return true;
+    }
+    hid_t dataset = open_dataset(r, path, &rank, length);
+    if (dataset < 0) {
+        return failed(r, path, message);
     }
     size_t n = rank >= 3 && length[1] == rows && place < length[0] ? elements(r, rank, length) : 0;
     bool good = n > 0 && n / length[0] == rows * width && is_number(dataset);

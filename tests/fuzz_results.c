@@ -186,7 +186,8 @@ static unsigned lines_said(char *first, size_t size)
     for (char *line = said, *end; *line; line = end) {
         end = line + strcspn(line, "\n");
         end += *end == '\n';
-        if (strncmp(line, "==", 2) != 0) {
+        /* nor warnings, which may stand before what there is to say */
+        if (strncmp(line, "==", 2) != 0 && strncmp(line, "stance: warning:", 16) != 0) {
             if (lines++ == 0) {
                 snprintf(first, size, "%.*s", (int)(end - line), line);
             }
