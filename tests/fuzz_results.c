@@ -354,6 +354,14 @@ static bool hash_file(const char *file, struct numbers *numbers, stance_message 
     return whole;
 }
 
+/* `seconds`: 0: as long as a file usually may. */
+static void limit_time(int seconds)
+{
+    const struct itimerval limit = {
+        .it_value = {.tv_sec = seconds, .tv_usec = seconds ? 0 : MOST_MICROSECONDS}};
+    setitimer(ITIMER_PROF, &limit, NULL); /* SIGPROF ends the worker */
+}
+
 /* What `run --resume` reads before it writes. False: it stops with a reason. */
 static bool resume(size_t which, stance_message *message)
 {
@@ -368,6 +376,7 @@ static bool resume(size_t which, stance_message *message)
     shared->stage = STAGE_CHECK;
     bool fine = s && store_check(path, true, message);
     shared->stage = STAGE_RESUME; /* from here on nothing is supervised */
+    limit_time(10);               /* for certain */
     if (!fine || !store_read_origin(path, &origin, message)) {
         free(s);
         return false;
@@ -457,12 +466,6 @@ static void try_file(size_t which)
 
 /* ---- workers -------------------------------------------------------------------------------- */
 
-static void limit_time(void)
-{
-    const struct itimerval limit = {.it_value.tv_usec = MOST_MICROSECONDS};
-    setitimer(ITIMER_PROF, &limit, NULL); /* SIGPROF ends the worker */
-}
-
 static void prepare_worker(void)
 {
     log_file = open(log_path, O_RDWR | O_CREAT | O_TRUNC | O_APPEND, 0600);
@@ -484,7 +487,7 @@ static void work(uint64_t end)
     for (; data && shared->next < end; shared->next++) {
         const size_t which = shared->next % goods;
         size_t size;
-        limit_time();
+        limit_time(0);
         snprintf(shared->name, sizeof shared->name, "%s", good[which].name);
         shared->is_forged =
             damage_make(&good[which], shared->next / goods, data, ROOM, &size, shared->text);
@@ -493,7 +496,7 @@ static void work(uint64_t end)
         write_file(data, size);
         try_file(which);
     }
-    limit_time();
+    limit_time(0);
     free(data);
     if (__lsan_do_recoverable_leak_check()) {
         finding("leaks among the files up to %llu", (unsigned long long)end);
@@ -641,7 +644,7 @@ static void replay(const char *file)
     pid_t child = fork();
     if (child == 0) {
         prepare_worker();
-        limit_time();
+        limit_time(0);
         write_file(damaged.data, damaged.size);
         try_file(0);
         _exit(0);
