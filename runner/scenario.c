@@ -11,10 +11,13 @@
 #include "store.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define DEFAULT_RECORD_EVERY 0.01 /* s */
 
@@ -22,16 +25,43 @@ enum { PATH_SIZE = 160 };
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
+/* A pipe is waited for, but not for ever. NULL: see errno. */
+static FILE *open_file(const char *file)
+{
+    enum { PATIENCE = 900 }; /* ms until the writer of a pipe has something */
+    int descriptor = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    struct stat status;
+
+    if (descriptor < 0) {
+        return NULL;
+    }
+    if (fstat(descriptor, &status) == 0 && S_ISFIFO(status.st_mode)) {
+        struct pollfd waited = {.fd = descriptor, .events = POLLIN};
+        if (poll(&waited, 1, PATIENCE) == 0) {
+            close(descriptor);
+            errno = ETIMEDOUT;
+            return NULL;
+        }
+        fcntl(descriptor, F_SETFL, 0); /* now wait for whatever comes */
+    }
+    FILE *in = fdopen(descriptor, "rb");
+    if (!in) {
+        close(descriptor);
+    }
+    return in;
+}
+
 /* The whole file as a string, or NULL after a problem. */
 static char *read_file(struct reader *r, const char *file, size_t *length)
 {
     struct mark nowhere = {0};
     struct stat status;
     char *text = NULL;
-    FILE *in = fopen(file, "rb");
+    FILE *in = open_file(file);
 
     if (!in || fstat(fileno(in), &status) != 0) {
-        problem_add(&r->problems, nowhere, "%s", strerror(errno));
+        problem_add(&r->problems, nowhere, "%s",
+                    errno == ETIMEDOUT ? "a pipe into which nothing is written" : strerror(errno));
     } else if (S_ISDIR(status.st_mode)) {
         problem_add(&r->problems, nowhere, "is a directory, not a scenario file");
     } else if (!(text = malloc(TREE_MAX_BYTES + 2))) {
@@ -96,6 +126,10 @@ static void unknown_key(struct reader *r, const struct tree_key *key, const char
                         const char *name, const char *const *known, size_t count)
 {
     char near_path[PATH_SIZE], word[SHOWN_SIZE], list[500];
+    if (problems_full(&r->problems)) {
+        field_unknown(&r->problems, name, "key", key->name, key->mark, known, count);
+        return;
+    }
     const char *near = nearest_word(key->name, known, count);
     const struct scenario_field *other = elsewhere(&r->schema, key->name);
 

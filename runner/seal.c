@@ -6,6 +6,7 @@
 #include "seal.h"
 
 #include "checksum.h"
+#include "problem.h"
 #include "store_private.h"
 
 #include <stdio.h>
@@ -141,8 +142,9 @@ static bool put_checksum(hid_t dataset, const char *name)
 
 static bool complain(const struct walk *walk, const char *variable, const char *what)
 {
-    snprintf(walk->message->text, sizeof walk->message->text, "%.100s: damaged: %s%s%.80s %s",
-             walk->name, walk->group, walk->group[0] ? "/" : "", variable, what);
+    char word[SHOWN_SIZE]; /* a damaged name may hold anything */
+    snprintf(walk->message->text, sizeof walk->message->text, "%.100s: damaged: %s%s%s %s",
+             walk->name, walk->group, walk->group[0] ? "/" : "", shown(word, variable), what);
     return false;
 }
 
