@@ -35,7 +35,12 @@ accepted() { # name, command ...
     (ulimit -v "$memory" && exec timeout "$patience" "$@") >out 2>errors
     local status=$?
     count=$((count + 1))
-    ((status == 0)) && [ ! -s errors ] && echo "ok $count - $name" || { echo "not ok $count - $name"; sed 's/^/# /' errors; }
+    if ((status == 0)) && [ ! -s errors ]; then
+        echo "ok $count - $name"
+    else
+        echo "not ok $count - $name"
+        sed 's/^/# /' errors
+    fi
 }
 good=$root/scenarios/ball_bounce.yaml
 repeat() { # how often, text: as one line
@@ -113,6 +118,29 @@ refused "a table of something else" 3 'table.csv:1: not a line of a table of ben
 truncate -s 1T sparse.h5
 refused "a terabyte of nothing as results" 3 'sparse.h5: not an HDF5 file' "$stance" summary sparse.h5
 
+# ---- what fuzzing found in results files ------------------------------------------------------------
+accepted "a file with trajectories" "$stance" run "$root/scenarios/block_threshold.yaml" --quiet -o tracks.h5 \
+    --set 'record={every: 0.1, cases: [0]}' --set 'sweep.grid[0].count=3' --set 'sweep.grid[1].count=2'
+"${PYTHON:-/usr/bin/python3}" - >out 2>errors <<'END'
+import h5py
+data = bytearray(open("tracks.h5", "rb").read())
+with h5py.File("tracks.h5") as file:
+    names = ["/"]
+    file.visit(names.append)
+    at = {name: h5py.h5o.get_info(file[name].id).addr for name in names}
+# Headers of version 2 and later have a checksum.
+bare = [name for name in names if data[at[name]:at[name] + 4] != b"OHDR"]
+assert not bare, bare
+data[at["trajectory/force"] + 20] ^= 4
+open("force.h5", "wb").write(data)
+END
+status=$?
+count=$((count + 1))
+((status == 0)) && echo "ok $count - every header in a results file has a checksum"
+((status == 0)) || { echo "not ok $count - every header in a results file has a checksum" && sed 's/^/# /' errors; }
+refused "a trajectory that cannot be opened is no trajectory without it" 3 'force.h5: cannot read trajectory/force' \
+    "$stance" plot force.h5 --case 0
+
 # ---- numbers, names and counts beyond what there is ------------------------------------------------
 huge='sweep.grid=[{path: ground.restitution, from: 0, to: 0.9, count: 1e9}, {path: stop.time, from: 1, to: 2, count: 9e6}'
 biped=$root/scenarios/basin_one_foot.yaml
@@ -129,4 +157,3 @@ refused "a name longer than names are" 3 'too long' "$stance" run "$good" -o "$(
 refused "a scenario with such a name" 3 'too long' "$stance" check "$(head -c 5000 /dev/zero | tr '\0' x)"
 refused "an option that is none" 2 'unknown option' "$stance" check "--$(head -c 5000 /dev/zero | tr '\0' x)"
 refused "too many ranks to draw" 2 'stance bench schedule' "$stance" bench schedule one.h5 --ranks 99999999999999999999
-echo
