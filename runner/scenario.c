@@ -12,11 +12,13 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <math.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #define DEFAULT_RECORD_EVERY 0.01 /* s */
@@ -25,28 +27,34 @@ enum { PATH_SIZE = 160 };
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* A pipe is waited for, but not for ever. NULL: see errno. */
+/* Whether reading would wait for a writer who may never come. A pipe without a name, such as the
+ * shell's <(command), has one from the start. */
+static bool is_deserted(int descriptor)
+{
+    enum { PATIENCE = 900 }; /* ms */
+    struct pollfd waited = {.fd = descriptor, .events = POLLIN};
+    struct stat status;
+    struct statfs system;
+
+    return fstat(descriptor, &status) == 0 && S_ISFIFO(status.st_mode) &&
+           fstatfs(descriptor, &system) == 0 && system.f_type != PIPEFS_MAGIC &&
+           poll(&waited, 1, PATIENCE) == 0;
+}
+
+/* NULL: see errno. */
 static FILE *open_file(const char *file)
 {
-    enum { PATIENCE = 900 }; /* ms until the writer of a pipe has something */
-    int descriptor = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    struct stat status;
+    int descriptor = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC), error = ETIMEDOUT;
+    FILE *in = NULL;
 
-    if (descriptor < 0) {
-        return NULL;
-    }
-    if (fstat(descriptor, &status) == 0 && S_ISFIFO(status.st_mode)) {
-        struct pollfd waited = {.fd = descriptor, .events = POLLIN};
-        if (poll(&waited, 1, PATIENCE) == 0) {
-            close(descriptor);
-            errno = ETIMEDOUT;
-            return NULL;
-        }
+    if (descriptor >= 0 && !is_deserted(descriptor)) {
         fcntl(descriptor, F_SETFL, 0); /* now wait for whatever comes */
+        in = fdopen(descriptor, "rb");
+        error = errno;
     }
-    FILE *in = fdopen(descriptor, "rb");
-    if (!in) {
+    if (descriptor >= 0 && !in) {
         close(descriptor);
+        errno = error;
     }
     return in;
 }
@@ -61,7 +69,8 @@ static char *read_file(struct reader *r, const char *file, size_t *length)
 
     if (!in || fstat(fileno(in), &status) != 0) {
         problem_add(&r->problems, nowhere, "%s",
-                    errno == ETIMEDOUT ? "a pipe into which nothing is written" : strerror(errno));
+                    errno == ETIMEDOUT ? "a named pipe into which nothing is written"
+                                       : strerror(errno));
     } else if (S_ISDIR(status.st_mode)) {
         problem_add(&r->problems, nowhere, "is a directory, not a scenario file");
     } else if (!(text = malloc(TREE_MAX_BYTES + 2))) {

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A share of fuzzing: scenarios (fuzz_scenario.c) and damaged results files (fuzz_results.c), each in
-# a process of its own, for FUZZ_SECONDS or FUZZ_RUNS. What is found stays in $BUILD/fuzz/found.
+# a process of its own, for FUZZ_SECONDS or FUZZ_RUNS; the damage begins at number FUZZ_FROM. What is
+# found stays in $BUILD/fuzz/found.
 # Speaks TAP; lines that begin with ## tell how much was tried.
 set -u
 cd "$(dirname "$0")/.."
@@ -59,12 +60,12 @@ make_file captured --set stop.capture=estimated --set 'sweep.grid=[{path: initia
     from: -0.02, to: 0.02, count: 3}]'
 
 # ---- both campaigns, beside each other ----------------------------------------------------------
-scenario_limit=(-max_total_time="$seconds") results_limit=(-seconds "$seconds")
-[ -n "$runs" ] && scenario_limit=(-runs="$runs") results_limit=(-seconds 1e9 -runs "$runs")
+scenario_limit=(-max_total_time="$seconds") results_limit=(-seconds "$seconds" -from "${FUZZ_FROM:-0}")
+[ -n "$runs" ] && scenario_limit=(-runs="$runs") results_limit=(-seconds 1e9 -runs "$runs" -from "${FUZZ_FROM:-0}")
 # The seeds are joined by what earlier campaigns on this machine reached.
 fuzz_scenarios() {
     ASAN_OPTIONS=quarantine_size_mb=1:thread_local_quarantine_size_kb=64:allocator_release_to_os_interval_ms=-1 \
-        UBSAN_OPTIONS=print_stacktrace=1 nice -n 5 "$programs/fuzz_scenario" -timeout=5 -rss_limit_mb=2048 \
+        UBSAN_OPTIONS=print_stacktrace=1 nice -n 5 "$programs/fuzz_scenario" -timeout=25 -rss_limit_mb=2048 \
         -malloc_limit_mb=512 -max_len=4096 -print_final_stats=1 -artifact_prefix="$programs/found/" \
         "${scenario_limit[@]}" "$programs/corpus" "$root/tests/fuzz/scenario" \
         "$root/tests/fuzz/found" "$root/tests/bad" "$root/scenarios" >scenarios.log 2>&1

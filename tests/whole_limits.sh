@@ -90,10 +90,10 @@ accepted "lines that end as on other systems are taken" "$stance" check lines.ya
 # ---- what is no file ------------------------------------------------------------------------------
 mkdir folder.yaml && mkfifo pipe && ln -s loop loop && ln -s pipe to_pipe
 refused "a folder as scenario" 2 'folder.yaml: is a directory, not a scenario file' "$stance" check folder.yaml
-refused "a pipe without a writer as scenario" 2 'pipe: a pipe into which nothing is written' "$stance" check pipe
+refused "a pipe without a writer as scenario" 2 'pipe: a named pipe into which nothing is written' "$stance" check pipe
 refused "/dev/zero as scenario" 2 '/dev/zero: larger than 1 MiB' "$stance" run /dev/zero
 refused "a link to itself as scenario" 3 'loop: Too many levels of symbolic links' "$stance" design loop
-accepted "what another command writes is waited for" bash -c "'$stance' check <(sleep 0.2; cat '$good')"
+accepted "what another command writes is waited for" bash -c "'$stance' check <(sleep 1.2; cat '$good')"
 accepted "a file to compare with" "$stance" run "$good" --only 0 -o one.h5 --quiet
 for file in pipe to_pipe /dev/zero loop folder.yaml missing; do
     case $file in
