@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #ifdef STANCE_MPI
@@ -15,7 +16,7 @@
 #endif
 
 struct parallel_shared {
-    int64_t *counter; /* [COUNTERS] on rank 0, else none */
+    int64_t *counter; /* [COUNTERS], then [ranks] numbers of theirs; on rank 0, else none */
 #ifdef STANCE_MPI
     MPI_Win window; /* when there are several ranks */
 #endif
@@ -39,7 +40,7 @@ void parallel_host(char *name, size_t size)
 static bool share_alone(struct parallel *parallel)
 {
     struct parallel_shared *shared = calloc(1, sizeof *shared);
-    int64_t *counter = calloc(COUNTERS, sizeof *counter);
+    int64_t *counter = calloc(COUNTERS + 1, sizeof *counter);
     if (!shared || !counter) {
         free(shared);
         free(counter);
@@ -208,7 +209,8 @@ bool parallel_share(struct parallel *parallel)
         free(shared);
         return false;
     }
-    MPI_Aint size = parallel->rank == 0 ? COUNTERS * (MPI_Aint)sizeof(int64_t) : 0;
+    const MPI_Aint numbers = COUNTERS + (MPI_Aint)parallel->size;
+    MPI_Aint size = parallel->rank == 0 ? numbers * (MPI_Aint)sizeof(int64_t) : 0;
     MPI_Win_allocate(size, sizeof(int64_t), MPI_INFO_NULL, MPI_COMM_WORLD, &shared->counter,
                      &shared->window);
     MPI_Win_lock_all(0, shared->window);
@@ -248,6 +250,48 @@ int64_t parallel_add(const struct parallel *parallel, enum parallel_counter coun
                      parallel->shared->window);
     MPI_Win_flush(0, parallel->shared->window);
     return before;
+}
+
+void parallel_beat(const struct parallel *parallel, int64_t number)
+{
+    if (parallel->size == 1) {
+        parallel->shared->counter[COUNTERS] = number;
+        return;
+    }
+    MPI_Accumulate(&number, 1, MPI_INT64_T, 0, COUNTERS + (MPI_Aint)parallel->rank, 1, MPI_INT64_T,
+                   MPI_REPLACE, parallel->shared->window);
+    MPI_Win_flush(0, parallel->shared->window);
+}
+
+void parallel_beats(const struct parallel *parallel, int64_t *number)
+{
+    const int n = parallel->size;
+    if (n == 1) {
+        number[0] = parallel->shared->counter[COUNTERS];
+        return;
+    }
+    MPI_Get_accumulate(NULL, 0, MPI_INT64_T, number, n, MPI_INT64_T, 0, COUNTERS, n, MPI_INT64_T,
+                       MPI_NO_OP, parallel->shared->window);
+    MPI_Win_flush(0, parallel->shared->window);
+}
+
+void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context)
+{
+    enum { SHORTEST = 20000, LONGEST = 1000000 }; /* ns */
+    struct timespec pause = {.tv_nsec = SHORTEST};
+    MPI_Request request;
+    int done = 0;
+
+    if (parallel->size == 1) {
+        return;
+    }
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);
+    for (MPI_Test(&request, &done, MPI_STATUS_IGNORE); !done;
+         MPI_Test(&request, &done, MPI_STATUS_IGNORE)) {
+        wait(context);
+        nanosleep(&pause, NULL);
+        pause.tv_nsec = pause.tv_nsec < LONGEST / 2 ? 2 * pause.tv_nsec : LONGEST;
+    }
 }
 
 void parallel_library(char *text, size_t size)
@@ -326,6 +370,21 @@ void parallel_unshare(struct parallel *parallel)
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
 {
     return add_alone(parallel, counter, value);
+}
+
+void parallel_beat(const struct parallel *parallel, int64_t number)
+{
+    parallel->shared->counter[COUNTERS] = number;
+}
+
+void parallel_beats(const struct parallel *parallel, int64_t *number)
+{
+    number[0] = parallel->shared->counter[COUNTERS];
+}
+
+void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context)
+{
+    (void)parallel, (void)wait, (void)context;
 }
 
 void parallel_library(char *text, size_t size)

@@ -51,6 +51,8 @@ enum {
 /* Where a worker is. */
 enum stage {
     STAGE_SUMMARY,
+    STAGE_BASIN,
+    STAGE_SENSITIVITY,
     STAGE_STATUS,
     STAGE_PLOT,
     STAGE_COMPARE,
@@ -59,8 +61,9 @@ enum stage {
     STAGE_NUMBERS,
     STAGES
 };
-static const char *const stage_names[STAGES] = {"summary",           "status", "plot",   "compare",
-                                                "check of a resume", "resume", "numbers"};
+static const char *const stage_names[STAGES] = {"summary", "basin",   "sensitivity",       "status",
+                                                "plot",    "compare", "check of a resume", "resume",
+                                                "numbers"};
 
 enum verdict { HARMLESS, DETECTED, FLAGGED, DIFFERENT, VERDICTS };
 
@@ -87,7 +90,7 @@ struct numbers {
 
 static struct damage_file good[MOST_FILES];
 static char good_path[MOST_FILES][1024];
-static char *good_scenario[MOST_FILES];
+static struct store_origin good_origin[MOST_FILES];
 static struct numbers expected[MOST_FILES];
 static size_t goods;
 static char directory[64], path[128], log_path[128];
@@ -381,10 +384,10 @@ static bool resume(size_t which, stance_message *message)
         free(s);
         return false;
     }
-    bool same = strcmp(origin.scenario, good_scenario[which]) == 0;
+    bool same = strcmp(origin.scenario, good_origin[which].scenario) == 0;
     store_origin_free(&origin);
     snprintf(message->text, sizeof message->text, "made from another scenario");
-    if (!same || !scenario_read(s, "scenario", good_scenario[which], NULL, 0, stderr)) {
+    if (!same || !scenario_read(s, "scenario", good_origin[which].scenario, NULL, 0, stderr)) {
         free(s);
         return false;
     }
@@ -447,6 +450,10 @@ static void try_file(size_t which)
     if (code != EXIT_IO && turn == 3) {
         run_command(STAGE_PLOT, &command_plot, 4, plot);
         run_command(STAGE_COMPARE, &command_compare, 3, arguments);
+    }
+    if (code != EXIT_IO && turn == 2) {
+        run_command(STAGE_BASIN, &command_basin, 2, arguments);
+        run_command(STAGE_SENSITIVITY, &command_sensitivity, 2, arguments);
     }
     shared->stage = STAGE_NUMBERS;
     detected = detected || !hash_file(path, &numbers, &message);
@@ -660,13 +667,11 @@ static bool add_good(const char *file)
 {
     stance_message message = {""};
     snprintf(good_path[goods], sizeof good_path[0], "%s", file);
-    struct store_origin origin;
     if (!damage_load(&good[goods], file) || !hash_file(file, &expected[goods], &message) ||
-        !store_read_origin(file, &origin, &message)) {
+        !store_read_origin(file, &good_origin[goods], &message)) {
         fprintf(stderr, "%s: no good file: %s\n", file, message.text);
         return false;
     }
-    good_scenario[goods] = origin.scenario;
     goods++;
     return true;
 }

@@ -58,6 +58,10 @@ make_file refined --set "sweep.grid=[{path: initial.offset.theta, from: -0.1, to
     {path: initial.offset.vtheta, from: -0.5, to: 0.5, count: 9}]" --set 'sweep.refine={start: 3, margin: 1}'
 make_file captured --set stop.capture=estimated --set 'sweep.grid=[{path: initial.offset.theta,
     from: -0.02, to: 0.02, count: 3}]'
+make_file sampled --set 'sweep.sample={method: sobol, count: 4, vary: [
+    {path: ground.friction, from: 0.3, to: 1}, {path: controller.delay, values: [0, 1]}]}'
+make_file designs --set "sweep.grid=[$theta]" --set 'sweep.sample={method: morris, count: 2, levels: 4, vary: [
+    {path: robot.trunk_mass, from: 1.5, to: 2.1}, {path: controller.torque_limit, from: 5, to: 15}]}'
 
 # ---- both campaigns, beside each other ----------------------------------------------------------
 scenario_limit=(-max_total_time="$seconds") results_limit=(-seconds "$seconds" -from "${FUZZ_FROM:-0}")

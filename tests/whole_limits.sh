@@ -144,7 +144,7 @@ refused "a trajectory that cannot be opened is no trajectory without it" 3 'forc
 # ---- numbers, names and counts beyond what there is ------------------------------------------------
 huge='sweep.grid=[{path: ground.restitution, from: 0, to: 0.9, count: 1e9}, {path: stop.time, from: 1, to: 2, count: 9e6}'
 biped=$root/scenarios/basin_one_foot.yaml
-refused "more designs than can be" 2 'the sweep asks for 1000000000 controller designs; at most 1048576' "$stance" check "$biped" \
+refused "more designs than can be" 2 'more than the 4194304 controller designs that are kept in memory' "$stance" check "$biped" \
     --set 'sweep.grid=[{path: robot.trunk_mass, from: 1, to: 2, count: 1e9}]'
 refused "more cases than fit a number" 2 'make more than 2^53 cases' "$stance" check "$good" --set "$huge, {path: ground.friction, from: 0, to: 1, count: 2}]"
 refused "more instants than fit a file" 2 'record.every: .* instants' "$stance" check "$good" --set 'record={every: 1e-300, cases: all}'
