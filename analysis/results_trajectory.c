@@ -42,7 +42,7 @@ static bool read_track(const struct results *r, const char *path, size_t place, 
 {
     hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
     int rank;
-    if (width == 0 || !results_exists((hid_t)r->id, path)) {
+    if (rows == 0 || width == 0 || !results_exists((hid_t)r->id, path)) {
         return true;
     }
     hid_t dataset = results_dataset(r, path, &rank, length);
