@@ -87,7 +87,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long fuzz fuzz-programs bench bench-run profile lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills fuzz fuzz-programs bench bench-run profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(BUILD)/libstance.a
@@ -198,6 +198,16 @@ test-long: packages-test
 	$(MAKE) $(PROGRAM) $(test_programs) golden fuzz-programs
 	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
+# Runs that are killed and resumed, files that are damaged: tests/campaign_*.py. Ten minutes or so.
+KILLS ?= 200
+FLIPS ?= 200
+TRUNCATIONS ?= 50
+SEED ?= 1
+test-kills: packages-test
+	$(MAKE) $(PROGRAM)
+	@$(TEST_ENVIRONMENT) $(PYTHON) tests/campaign_kills.py --seed $(SEED) --kills $(KILLS)
+	@$(TEST_ENVIRONMENT) $(PYTHON) tests/campaign_damage.py --seed $(SEED) --flips $(FLIPS) --truncations $(TRUNCATIONS)
+
 # ---- fuzzing: clang's libFuzzer and sanitizers, see tests/whole_fuzz.sh ---------------------------
 # Everything but the kernels, which come from the library as it is: nothing is simulated.
 FUZZ_CC      ?= clang
@@ -278,6 +288,7 @@ help:
 	@echo 'make demo       install what is missing, build, map a stability domain, draw it'
 	@echo 'make test       install what is missing, build, run every test'
 	@echo 'make test-long  the same with the long tests'
+	@echo 'make test-kills kill runs at random, damage files at random (KILLS= FLIPS= TRUNCATIONS= SEED=)'
 	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'
 	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
 	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'

@@ -42,7 +42,7 @@ static bool read_track(const struct results *r, const char *path, size_t place, 
 {
     hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
     int rank;
-    if (rows == 0 || width == 0 || !results_exists((hid_t)r->id, path)) {
+    if (width == 0 || !results_exists((hid_t)r->id, path)) {
         return true;
     }
     hid_t dataset = results_dataset(r, path, &rank, length);
@@ -51,7 +51,7 @@ static bool read_track(const struct results *r, const char *path, size_t place, 
     }
     size_t n =
         rank >= 3 && length[1] == rows && place < length[0] ? results_elements(r, rank, length) : 0;
-    bool good = n > 0 && n / length[0] == rows * width && results_is_number(dataset);
+    bool good = rows > 0 && n > 0 && n / length[0] == rows * width && results_is_number(dataset);
     if (!good) {
         H5Dclose(dataset);
         return results_damaged(r, "a trajectory is not as its dimensions say", message);

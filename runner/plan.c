@@ -279,6 +279,20 @@ static size_t designs_here(const struct plan *plan, const struct parallel *paral
     return share + (rank < extra);
 }
 
+static void ask_to_stop(void *context)
+{
+    const struct plan *plan = context;
+    plan->stop(plan->stop_context); /* which tells the other ranks */
+}
+
+/* A rank that waits for others goes on asking: the signal may be its own. */
+static void meet(struct plan *plan, const struct parallel *parallel)
+{
+    if (plan->stop) {
+        parallel_meet(parallel, ask_to_stop, plan);
+    }
+}
+
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error)
 {
@@ -301,6 +315,7 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
         }
         found[0] += plan->design_status[d] == STANCE_DONE;
     }
+    meet(plan, parallel);
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
     parallel_gather_block(parallel, plan->design_status, 1, first, count);
     parallel_sum(parallel, found, 2);
@@ -334,6 +349,7 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
             *message = why;
         }
     }
+    meet(plan, parallel);
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
     return parallel_agree(parallel, good, message->text, sizeof message->text);
 }

@@ -101,7 +101,7 @@ static bool checksum_of(hid_t dataset, const char *name, uint32_t *crc)
 
 struct walk {
     bool put, strict;
-    const char *group; /* "", "design", "trajectory" */
+    const char *group; /* "", "design", "trajectory", "history" */
     const char *name;  /* of the file */
     stance_message *message;
 };
@@ -206,7 +206,7 @@ static bool walk_group(hid_t file, struct walk *walk, const char *group)
 static bool walk_file(hid_t file, struct walk *walk)
 {
     return walk_group(file, walk, "") && walk_group(file, walk, "design") &&
-           walk_group(file, walk, "trajectory");
+           walk_group(file, walk, "trajectory") && walk_group(file, walk, "history");
 }
 
 /* ---- the structure ------------------------------------------------------------------------ */
@@ -222,9 +222,15 @@ static herr_t touch_attribute(hid_t object, const char *name, const H5A_info_t *
 static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
     (void)info;
+    H5O_info_t all;
     hid_t object = H5Oopen(group, name, H5P_DEFAULT);
-    bool good = object >= 0 && (H5Iget_type(object) != H5I_DATASET || count_elements(object) > 0) &&
+    bool good = object >= 0 && H5Oget_info2(object, &all, H5O_INFO_ALL) >= 0 &&
+                (H5Iget_type(object) != H5I_DATASET || count_elements(object) > 0) &&
                 H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
+    if (good && H5Iget_type(object) == H5I_DATASET) { /* netCDF's order */
+        good =
+            H5Aiterate2(object, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
+    }
     if (object >= 0) {
         H5Oclose(object);
     }
@@ -234,7 +240,8 @@ static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void 
 /* Everything can be opened, in the order of its making, too: what other readers go by. */
 static bool verify_structure(hid_t file, struct walk *walk)
 {
-    static const char *const groups[] = {"", "design", "trajectory", "timing"};
+    static const char *const groups[] = {"", "design", "trajectory", "history", "timing"};
+    H5O_info_t all;
     bool good = true;
     for (size_t k = 0; good && k < sizeof groups / sizeof groups[0]; k++) {
         walk->group = groups[k];
@@ -242,7 +249,8 @@ static bool verify_structure(hid_t file, struct walk *walk)
             continue;
         }
         hid_t id = H5Gopen2(file, groups[k][0] ? groups[k] : "/", H5P_DEFAULT);
-        good = id >= 0 &&
+        good = id >= 0 && H5Oget_info2(id, &all, H5O_INFO_ALL) >= 0 &&
+               H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, NULL, touch, walk) >= 0 &&
                (k > 0 || H5Aiterate2(id, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch_attribute,
                                      NULL) >= 0) &&
                H5Literate(id, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch, walk) >= 0;
@@ -260,6 +268,12 @@ bool seal_put(int64_t file)
 {
     struct walk walk = {.put = true};
     return walk_file((hid_t)file, &walk);
+}
+
+bool seal_put_group(int64_t file, const char *group)
+{
+    struct walk walk = {.put = true};
+    return walk_group((hid_t)file, &walk, group);
 }
 
 bool seal_verify(int64_t file, const char *name, const char *scenario, const char *hash,

@@ -89,14 +89,26 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
         origin->ranks = 0;
     }
     H5Aclose(ranks);
+    bool good = store_read_history(id, origin);
     H5Fclose(id);
     free(revision);
     free(date);
-    return origin->scenario || not_resumable(file, message);
+    if (!good || !origin->scenario) {
+        store_origin_free(origin);
+        return good ? not_resumable(file, message)
+                    : store_failed(message, file, "read its history");
+    }
+    return true;
 }
 
 void store_origin_free(struct store_origin *origin)
 {
+    for (size_t k = 0; k < origin->ancestors; k++) {
+        free(origin->ancestor[k].scenario);
+        free(origin->ancestor[k].revision);
+        free(origin->ancestor[k].date);
+    }
+    free(origin->ancestor);
     free(origin->scenario);
     free(origin->title);
     free(origin->hosts);
