@@ -335,7 +335,7 @@ static bool read_axes(struct results *r, stance_message *message)
     if (!good) {
         return false;
     }
-    if (!good || !results_read_sample(r, message)) {
+    if (!results_read_sample(r, message)) {
         return false;
     }
     r->single = r->axes == 1 && strcmp(r->axis[0].name, "case") == 0 && r->axis[0].count == 1;
