@@ -17,7 +17,9 @@
 struct parallel_shared {
     int64_t *counter; /* [COUNTERS] on rank 0, else none */
 #ifdef STANCE_MPI
-    MPI_Win window; /* when there are several ranks */
+    MPI_Win window;        /* when there are several ranks */
+    int64_t added, before; /* of an addition that is under way, maybe for ever */
+    bool lost;             /* rank 0 has left an addition unanswered: no more of them */
 #endif
 };
 
@@ -92,11 +94,29 @@ static void skip_networks(void)
     }
 }
 
+/* Windows between machines are made of messages in Open MPI 4: they work over every network, and
+ * what goes through them is little. Its window for remote memory fails over TCP, and Debian's
+ * configuration leaves no other. Within one machine windows are shared memory. */
+static void choose_windows(void)
+{
+#if defined(OMPI_MAJOR_VERSION) && OMPI_MAJOR_VERSION < 5
+    setenv("OMPI_MCA_osc", "sm,pt2pt", 0);
+#endif
+}
+
+bool parallel_misses_launcher(bool *first)
+{
+    const char *tasks = getenv("SLURM_STEP_NUM_TASKS"), *task = getenv("SLURM_PROCID");
+    *first = !task || strcmp(task, "0") == 0;
+    return tasks && atoi(tasks) > 1 && !was_launched();
+}
+
 struct parallel parallel_start(void)
 {
     struct parallel parallel = parallel_alone();
     if (was_launched()) {
         skip_networks();
+        choose_windows();
         MPI_Init(NULL, NULL);
         MPI_Comm_rank(MPI_COMM_WORLD, &parallel.rank);
         MPI_Comm_size(MPI_COMM_WORLD, &parallel.size);
@@ -236,18 +256,47 @@ void parallel_unshare(struct parallel *parallel)
     parallel->shared = NULL;
 }
 
+/* Waits for rank 0's answer, but once this rank is to leave not for long: false. */
+static bool answered(const struct parallel *parallel, MPI_Request *request)
+{
+    const double patience = 0.5; /* mpirun kills a second after SIGTERM */
+    double asked = -1;
+    int done = 0;
+    for (;;) {
+        MPI_Test(request, &done, MPI_STATUS_IGNORE);
+        if (done) {
+            return true;
+        }
+        if (parallel->leave && parallel->leave(parallel->context)) {
+            const double now = MPI_Wtime();
+            asked = asked < 0 ? now : asked;
+            if (now - asked > patience) {
+                return false;
+            }
+        }
+    }
+}
+
 /* One-sided, so nobody serves the counters. Some networks move them on only while rank 0 is
  * inside MPI: rank 0 must come here often, too. */
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
 {
-    int64_t before = 0;
+    struct parallel_shared *shared = parallel->shared;
+    MPI_Request request;
     if (parallel->size == 1) {
         return add_alone(parallel, counter, value);
     }
-    MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)counter, MPI_SUM,
-                     parallel->shared->window);
-    MPI_Win_flush(0, parallel->shared->window);
-    return before;
+    if (parallel->rank == 0) {
+        int ignored; /* what rank 0 adds moves on nothing of the others */
+        MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &ignored, MPI_STATUS_IGNORE);
+    }
+    if (!shared->lost) {
+        shared->added = value;
+        MPI_Rget_accumulate(&shared->added, 1, MPI_INT64_T, &shared->before, 1, MPI_INT64_T, 0,
+                            (MPI_Aint)counter, 1, MPI_INT64_T, MPI_SUM, shared->window, &request);
+        shared->lost = !answered(parallel, &request);
+    }
+    return shared->lost ? INT64_MAX : shared->before;
 }
 
 void parallel_library(char *text, size_t size)
@@ -260,6 +309,12 @@ void parallel_library(char *text, size_t size)
 }
 
 #else
+
+bool parallel_misses_launcher(bool *first)
+{
+    *first = true;
+    return false;
+}
 
 struct parallel parallel_start(void)
 {

@@ -19,12 +19,17 @@ struct parallel_shared; /* the counters' memory, private to parallel.c */
 struct parallel {
     int rank, size;
     struct parallel_shared *shared;
+    bool (*leave)(void *context); /* whether this rank is to leave; NULL: never */
+    void *context;                /* of leave */
 };
 
 /* One rank, without starting MPI. */
 struct parallel parallel_alone(void);
 /* Starts MPI, once in a process, when a launcher (mpirun, srun) started it; else one rank. */
 struct parallel parallel_start(void);
+/* Whether srun started this process as one of several (*first: the first of them) without the MPI
+ * that would make them ranks. */
+bool parallel_misses_launcher(bool *first);
 /* Ends MPI; every rank must come here. */
 void parallel_finish(struct parallel *parallel);
 
@@ -48,7 +53,8 @@ bool parallel_agree(const struct parallel *parallel, bool good, char *text, size
 /* Collective: begin and end the use of the counters, all zero at first. false: no memory. */
 bool parallel_share(struct parallel *parallel);
 void parallel_unshare(struct parallel *parallel);
-/* Not collective: adds to a counter and returns what it held before; adding 0 reads it. */
+/* Not collective: adds to a counter and returns what it held before; adding 0 reads it. INT64_MAX
+ * when this rank is to leave and rank 0 does not answer, and from then on. */
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value);
 /* Collective: all counters but COUNTER_STOP are zero again. */
 void parallel_restart(const struct parallel *parallel);

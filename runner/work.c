@@ -12,6 +12,7 @@
  */
 #include "work.h"
 
+#include "deadline.h"
 #include "instruction_set.h"
 
 #include <inttypes.h>
@@ -34,6 +35,7 @@ static void ask_stop(int number)
 {
     (void)number;
     stop_asked = 1;
+    deadline_begin();
 }
 
 void work_catch_signals(void)
@@ -265,6 +267,14 @@ static void write_ended(struct job *job, double now)
             const double end = plan_clock();
             block->write_at = end + schedule_write_interval(job->work->parallel->size, end - start);
         }
+    }
+}
+
+/* All that has ended. */
+static void write_open(struct job *job)
+{
+    for (struct block *block = job->oldest; block; block = block->next) {
+        write_block(job, block, 1);
     }
 }
 
@@ -531,6 +541,7 @@ static bool attend(void *context)
         return true;
     }
     if (asked_to_stop(work, now)) {
+        write_open(job); /* before others are told: rank 0 may not answer */
         parallel_add(work->parallel, COUNTER_STOP, 1);
         job->leaving = true;
         return true;
@@ -621,8 +632,9 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
         job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
     }
     run_streams(&job);
-    for (struct block *block = job.oldest; block; block = block->next) {
-        write_block(&job, block, 1);
+    write_open(&job);
+    if (job.leaving) {
+        deadline_begin();
     }
     report(&job);
     if (job.progress.terminal && !work->quiet && work->parallel->rank == 0) {
