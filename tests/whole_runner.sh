@@ -144,6 +144,13 @@ scenario "$(grid 250 250)
 stop: {time: $span, settle: off}
 record: {every: 0.1, cases: [0, 100, 62499]}" >long.yaml
 expect "the whole job" 0 mpirun -n 2 "$stance" run long.yaml -o long.h5
+# As between machines: counters in messages that rank 0 must see to.
+expect "ranks that have no memory in common" 0 mpirun -n 2 --mca pml ob1 --mca btl tcp,self \
+    --mca osc pt2pt "$stance" run long.yaml -o messages.h5
+"$python" -c 'import h5py; c = h5py.File("messages.h5")["timing/cases"][...]
+assert min(c) > 10000, c' >log 2>&1
+result $? "... all compute"
+tool "... the same bits" same long.h5 messages.h5
 expect "status of a finished file" 0 "$stance" status long.h5 --json
 says "status counts 62500 cases" '"done": 62500'
 

@@ -81,7 +81,7 @@ while kill -0 $launcher 2>/dev/null; do
     wait $launcher # comes back at each signal, too
 done
 wait $launcher
-code=$?
+code=$? launcher=''
 [ -z "$killer" ] || kill "$killer" 2>/dev/null
 
 # What to do now. mpirun has exit codes of its own, 1 among them: the file tells whether all is done.
