@@ -5,6 +5,7 @@
  */
 #include "parallel.h"
 
+#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -274,6 +275,7 @@ static bool answered(const struct parallel *parallel, MPI_Request *request)
                 return false;
             }
         }
+        sched_yield(); /* perhaps it waits for this processor */
     }
 }
 
