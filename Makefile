@@ -18,7 +18,8 @@ STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-tree-slp-vectorize -fno
 # ---- libraries: found with pkg-config and mpicc; MPI=0 builds for one rank with serial HDF5 ------
 PKG_CONFIG ?= pkg-config
 PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
-                libslicot-dev libsundials-dev librandom123-dev libjansson-dev gnuplot-nox fonts-dejavu-core
+                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev gnuplot-nox \
+                fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
 PACKAGES_LINT = clang-format clang-tidy cppcheck
 PACKAGES_NEON = gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
@@ -34,8 +35,8 @@ MPI_LIBS     = $(shell mpicc --showme:link 2>/dev/null)
 else
 HDF5_PACKAGE = hdf5-serial
 endif
-LIBRARY_CFLAGS := $(shell $(PKG_CONFIG) --cflags $(HDF5_PACKAGE) yaml-0.1 jansson lapacke 2>/dev/null)
-LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson lapacke 2>/dev/null)
+LIBRARY_CFLAGS := $(shell $(PKG_CONFIG) --cflags $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl 2>/dev/null)
+LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl 2>/dev/null)
 PROGRAM_CFLAGS  = $(MPI_CFLAGS) $(LIBRARY_CFLAGS)
 LIBS            = $(LIBRARIES) -lhdf5_hl $(MPI_LIBS) -lslicot -llapack -lblas \
                   -lsundials_arkode -lsundials_nvecserial -lm

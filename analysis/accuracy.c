@@ -31,7 +31,7 @@ static size_t cases_per_row(const struct accuracy *a, const struct results *r)
 static bool make_rows(struct accuracy *a, const struct scenario *s, const struct results *r,
                       stance_message *message)
 {
-    if (s->axes < 1 || !path_is(&s->axis[0], 0, "method.name")) {
+    if (s->axes < 1 || s->sample.given || !path_is(&s->axis[0], 0, "method.name")) {
         return fail(message, "the first axis does not vary method.name");
     }
     a->rows = s->axis[0].count;

@@ -1,5 +1,6 @@
 /* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
 #include "plot.h"
+#include "sensitivity_study.h"
 
 #include "../runner/command.h"
 #include "../runner/supervise.h"
@@ -7,8 +8,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* The directory of a file, or "." */
 static void directory_of(const char *file, char *directory, size_t size)
@@ -19,23 +18,6 @@ static void directory_of(const char *file, char *directory, size_t size)
     } else {
         snprintf(directory, size, "%.*s", slash == file ? 1 : (int)(slash - file), file);
     }
-}
-
-/* Makes the directory when it is missing; says why nothing can be written there. */
-static bool prepare_directory(const char *directory)
-{
-    struct stat information;
-    bool good =
-        (mkdir(directory, 0777) == 0 || errno == EEXIST) && stat(directory, &information) == 0;
-    if (good && !S_ISDIR(information.st_mode)) {
-        errno = ENOTDIR;
-        good = false;
-    }
-    good = good && access(directory, W_OK | X_OK) == 0;
-    if (!good) {
-        fprintf(stderr, "%s: pictures cannot be written there: %s\n", directory, strerror(errno));
-    }
-    return good;
 }
 
 static bool parse_index(const char *text, uint64_t *index)
@@ -114,10 +96,13 @@ static int draw_sweep(const struct plot *plot)
     size_t count;
     stance_message message = {""};
 
-    bool parameter = r->axes > 1 && !r->axis[0].offset;
-    bool good = (r->axes < 2 || plot_maps(plot, &message)) &&
-                ((r->axes > 1 && !parameter) || plot_curve(plot, &message)) &&
-                results_recorded(r, &list, &count, &message);
+    const bool sampled = r->sample >= 0, line = r->axes == 1 && !sampled;
+    const bool parameter = r->axes > 1 && !r->axis[0].offset;
+    bool good = sampled ? plot_sample(plot, &message) && plot_rays(plot, &message)
+                : !line ? plot_maps(plot, &message)
+                        : true;
+    good = good && (!(line || parameter) || plot_curve(plot, &message)) &&
+           results_recorded(r, &list, &count, &message);
     if (!good) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_IO;
@@ -129,6 +114,34 @@ static int draw_sweep(const struct plot *plot)
     }
     free(list);
     return EXIT_DONE;
+}
+
+/* ---- a sampled study ---------------------------------------------------------------------- */
+
+/* The picture for which `stance sensitivity` has options; what a file is too short for is said.
+ * answer NULL: of the share of cases that end well. */
+static int draw_sensitivity(const struct plot *plot, const struct plot_answer *answer)
+{
+    const struct sensitivity_request request = {
+        .answer = answer ? answer->name : NULL,
+        .unit = answer ? answer->unit : "",
+        .of = answer ? answer->of : RESULTS_KIND_COUNT,
+        .bootstrap = SENSITIVITY_BOOTSTRAP,
+    };
+    struct sensitivity_study study;
+    stance_message message = {""};
+    char stem[400];
+    int code = sensitivity_study_make(&study, plot->r, &request, &message);
+    if (code == EXIT_DONE) {
+        snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", plot->stem, answer ? "-" : "",
+                 answer ? answer->name : "");
+        code = sensitivity_picture(&study, plot->directory, stem, &message) ? EXIT_DONE : EXIT_IO;
+        sensitivity_study_free(&study);
+    }
+    if (code != EXIT_DONE) {
+        fprintf(stderr, "%s\n", message.text);
+    }
+    return code == EXIT_USAGE ? EXIT_DONE : code;
 }
 
 /* ---- an answer ---------------------------------------------------------------------------- */
@@ -168,6 +181,9 @@ static int draw_answer(const struct plot *plot, const char *name, const char *of
         fprintf(stderr, "%s: holds one case; stance summary prints its numbers\n", plot->r->file);
         return EXIT_USAGE;
     }
+    if (sensitivity_study_fits(plot->r)) {
+        return draw_sensitivity(plot, &answer);
+    }
     if (!(plot->r->axes < 2 ? plot_answer_curve(plot, &answer, &message)
                             : plot_answer_map(plot, &answer, &message))) {
         fprintf(stderr, "%s\n", message.text);
@@ -205,7 +221,7 @@ static int draw(void *context)
         directory = own_directory;
     }
     const struct plot plot = {&r, directory, r.name};
-    if (!prepare_directory(directory)) {
+    if (!gnuplot_directory(directory)) {
         code = EXIT_IO;
     } else if (request->answer) {
         code = draw_answer(&plot, request->answer, request->of);
@@ -213,6 +229,9 @@ static int draw(void *context)
         code = draw_case(&plot, index_text ? index : r.index, index_text != NULL);
     } else {
         code = draw_sweep(&plot);
+        if (code == EXIT_DONE && sensitivity_study_fits(&r)) {
+            code = draw_sensitivity(&plot, NULL);
+        }
     }
     results_close(&r);
     return code;
@@ -259,11 +278,20 @@ const struct command command_plot = {
     "Draws with gnuplot what the file calls for, into DIR (made when missing; default: where the\n"
     "file is), and prints the path of every file written.\n"
     "\n"
+    "  sweep.sample        NAME-sample: its points over the first two factors, coloured by "
+    "outcome,\n"
+    "                      and the share of good ends against each path varied; no maps;\n"
+    "                      NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
+    "  ... of rays         NAME-rays: where rays from the equilibrium lose the outcome, over two\n"
+    "                      factors as a curve around it, over more the share of directions by "
+    "scale\n"
     "  two axes or more    NAME-map: the outcome of every case over the last two axes of numbers,\n"
     "                      one panel per point of the others; NAME-settle_time: when it settled\n"
     "  one axis            NAME-curve: outcome, times and friction used along it\n"
     "  a first axis that   NAME-curve: the shares of stabilised and rested cases against it, with\n"
-    "  is not an offset    Wilson's 95 % bands\n"
+    "  is not an offset    Wilson's 95 % bands; of starts on a grid the basin's volume, between "
+    "what is\n"
+    "                      inside and what is not outside (stance basin -h)\n"
     "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"
     "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
     "\n"
@@ -271,6 +299,6 @@ const struct command command_plot = {
     "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
     "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another number) of "
     "every\n"
-    "                 case, as a map or along the one axis\n"
+    "                 case, as a map or along the one axis; sampled factors: NAME-A-sensitivity\n"
     "  --of OUTCOME   only of the cases that were stabilised, rested, fell or stayed undecided\n",
 };

@@ -45,9 +45,18 @@ static void print_axes(const struct results *r)
         int length = (int)strlen(r->axis[a].name);
         width = length > width ? length : width;
     }
+    for (int k = 0; k < r->varied; k++) {
+        int length = (int)strlen(r->vary[k].of.name) + 2;
+        width = length > width ? length : width;
+    }
     puts("\nVaried");
     for (int a = 0; a < r->axes; a++) {
         const struct results_axis *axis = &r->axis[a];
+        if (a == r->sample) {
+            printf("  %-*s  %zu points, %s\n", width, axis->name, axis->count, r->method);
+            summary_print_varied(r, width > 2 ? width - 2 : width);
+            continue;
+        }
         results_value_text(axis, 0, false, first, sizeof first);
         results_value_text(axis, axis->count - 1, true, last, sizeof last);
         printf("  %-*s  %s ... %s, %zu value%s%s%s\n", width, axis->name, first, last, axis->count,
@@ -267,7 +276,7 @@ static void print_parameter(const struct summary *summary, const struct results 
     int offsets[2], shown = 0;
     char from[128], to[128];
 
-    for (int a = 0; summary->parameters == 1 && a < r->axes && shown < 2; a++) {
+    for (int a = 0; summary->parameters == 1 && r->sample < 0 && a < r->axes && shown < 2; a++) {
         if (r->axis[a].offset && r->axis[a].count > 1) {
             offsets[shown++] = a;
         }
@@ -529,7 +538,10 @@ static void print_text(const struct summary *summary, const struct results *r)
     if (summary->pair_counts && outcomes) {
         print_pairs(summary, r);
     }
-    if (r->axes == 1) {
+    if (outcomes) {
+        summary_print_sample(summary, r);
+    }
+    if (r->axes == 1 && r->sample < 0) {
         print_changes(r);
     }
     print_numbers(summary);
@@ -541,7 +553,7 @@ static void print_text(const struct summary *summary, const struct results *r)
 
 struct request {
     const char *file;
-    bool json;
+    bool json, csv;
 };
 
 static int summarise(void *context)
@@ -566,7 +578,9 @@ static int summarise(void *context)
     } else if (request->json && !summary_print_json(summary, &r)) {
         fputs("stance summary: the summary could not be written\n", stderr);
     } else {
-        if (!request->json) {
+        if (request->csv) {
+            summary_print_csv(summary, &r);
+        } else if (!request->json) {
             print_text(summary, &r);
         }
         code = EXIT_DONE;
@@ -580,11 +594,12 @@ static int summarise(void *context)
 static int run(int argc, char **argv)
 {
     const char *file = NULL;
-    size_t json = 0, operands = 0;
+    size_t json = 0, csv = 0, operands = 0;
     bool help = false;
-    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json}};
+    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
+                                        {"--csv", false, NULL, 0, &csv}};
 
-    if (!command_options(&command_summary, argc, argv, specs, 1, &file, 1, &operands, &help)) {
+    if (!command_options(&command_summary, argc, argv, specs, 2, &file, 1, &operands, &help)) {
         return EXIT_USAGE;
     }
     if (help) {
@@ -594,13 +609,17 @@ static int run(int argc, char **argv)
         fputs("stance summary: a results file is needed (stance summary -h explains)\n", stderr);
         return EXIT_USAGE;
     }
-    struct request request = {file, json > 0};
+    if (json && csv) {
+        fputs("stance summary: --json or --csv, not both\n", stderr);
+        return EXIT_USAGE;
+    }
+    struct request request = {file, json > 0, csv > 0};
     return supervise(summarise, &request, file);
 }
 
 const struct command command_summary = {
     "summary",
-    "summary FILE [--json]",
+    "summary FILE [--json | --csv]",
     "what came out: outcomes, extent of the stabilised set, extremes, cost",
     run,
     "Works on files that are not finished, too. Shares are of the cases that are done, with\n"
@@ -608,12 +627,18 @@ const struct command command_summary = {
     "equilibrium along one axis of offsets, on the line where the other offsets are nearest to\n"
     "zero; it ends midway between the last stabilised case and the next one.\n"
     "\n"
+    "  --csv    the counts of all cases, then a row for every value of every parameter: "
+    "parameter,\n"
+    "           value, done, failed, pending, stabilised, rested, fell, undecided, and the share\n"
+    "           of stabilised cases (without a controller that has a target: rested ones) with\n"
+    "           its interval low ... high; `stance table` has the cases themselves\n"
     "  --json   the same as JSON; what does not apply is left out or null. Keys\n"
     "    file, title, version, revision, date, ranks\n"
     "    axes         [{path, unit, long_name, count, first, last}]\n"
     "    fixed        {path: value} of the fields that do not vary\n"
     "    cases        total, done, failed, pending; inferred: done, but not simulated (refined "
-    "map)\n"
+    "map);\n"
+    "                 damaged: pending, because their checksums do not fit\n"
     "    failures     {reason: count}\n"
     "    outcomes     {name: {count, share, low, high}} of the cases done\n"
     "    extents      [{path, unit, outcome, stabilised, low, high, low_at_end, high_at_end,\n"
@@ -626,6 +651,12 @@ const struct command command_summary = {
     "    pairs        of two parameters, no more: {paths: [2], share: [[...]]}, a row for each\n"
     "                 value of the first, a column for each of the second; null where none done\n"
     "    changes      [{from, to, before, after}] along the axis of a sweep with one axis\n"
+    "    sample       null, or of sweep.sample {method, points, share_of, varied, rays}: varied\n"
+    "                 [{path, unit, factor, parts: [{from, to, done, share, low, high}]}], parts\n"
+    "                 of equally many points or one for each value; rays, beside one axis of\n"
+    "                 offsets, null or {path, points, smallest, median, largest, nearest, at,\n"
+    "                 reach_end, none, unknown}: where the stabilised set ends along it; `at`\n"
+    "                 the values at the point of the smallest, offsets times the scale\n"
     "    numbers      {answer: {of, unit, count, smallest, median, q90, q99, largest}}\n"
     "    cost         steps, iterations, iterations_per_step, evaluations, events, events_cases,\n"
     "                 subdivided_steps, subdivided_cases, degraded_samples, degraded_cases,\n"

@@ -35,7 +35,7 @@ static struct lattice find_lattice(const struct results *first, const struct res
     struct lattice lattice = {.r = first};
     const bool one = find_refined(first, lattice.along), two = find_refined(second, lattice.along);
     for (int a = 0; !one && !two && a < first->axes; a++) {
-        lattice.along[a] = first->axis[a].word == NULL;
+        lattice.along[a] = first->axis[a].word == NULL && a != first->sample;
     }
     return lattice;
 }

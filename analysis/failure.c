@@ -82,7 +82,8 @@ static bool answers_read(struct answers *x, const struct results *r, const stanc
 static bool make_rows(struct failure *f, const struct scenario *s, const struct results *r,
                       stance_message *message)
 {
-    if (s->axes != 3 || r->single || strcmp(s->axis[0].path[0], "method.name") != 0) {
+    if (s->axes != 3 || s->sample.given || r->single ||
+        strcmp(s->axis[0].path[0], "method.name") != 0) {
         return fail(message, "three axes are needed: method.name, then the two of the map");
     }
     for (int a = 0; a < 3; a++) {

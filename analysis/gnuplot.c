@@ -19,6 +19,24 @@ extern char **environ;
 static const double png_scale = 1.6; /* pixels of the PNG per pixel of the SVG */
 enum { TITLE_SIZE = 15, TEXT_SIZE = 12, MARGIN = 18 };
 
+/* ---- directories --------------------------------------------------------------------------- */
+
+bool gnuplot_directory(const char *directory)
+{
+    struct stat information;
+    bool good =
+        (mkdir(directory, 0777) == 0 || errno == EEXIST) && stat(directory, &information) == 0;
+    if (good && !S_ISDIR(information.st_mode)) {
+        errno = ENOTDIR;
+        good = false;
+    }
+    good = good && access(directory, W_OK | X_OK) == 0;
+    if (!good) {
+        fprintf(stderr, "%s: pictures cannot be written there: %s\n", directory, strerror(errno));
+    }
+    return good;
+}
+
 /* ---- the scratch directory ---------------------------------------------------------------- */
 
 static void scratch_path(const struct gnuplot *g, const char *name, char path[320])

@@ -22,6 +22,10 @@ struct gnuplot {
     int error;         /* errno of that */
 };
 
+/* Makes the directory for pictures when it is missing. False, with the reason on standard error:
+ * nothing can be written there. */
+bool gnuplot_directory(const char *directory);
+
 /* Begins a picture. False: no scratch directory; nothing is left behind. */
 bool gnuplot_begin(struct gnuplot *g, int width, int height, stance_message *message);
 /* Runs gnuplot, writes DIRECTORY/STEM.svg and .png and prints both paths. Ends the picture in any

@@ -86,6 +86,11 @@ bool plot_maps(const struct plot *plot, stance_message *message);
 /* STEM-curve of sweeps over one axis, and of those whose first axis is not an offset: the share of
  * stabilised cases against it. */
 bool plot_curve(const struct plot *plot, stance_message *message);
+/* STEM-sample of a file with a sample: its points and what became of them, and shares against each
+ * path that it varies. */
+bool plot_sample(const struct plot *plot, stance_message *message);
+/* STEM-rays of files of rays (basin_rays.h); of others nothing. */
+bool plot_rays(const struct plot *plot, stance_message *message);
 /* STEM-NAME of an answer: a map of sweeps over two axes or more, a curve of those over one. */
 bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
                      stance_message *message);

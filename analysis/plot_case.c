@@ -156,7 +156,16 @@ static void swept_text(const struct scenario *s, uint64_t index, char *text, siz
     }
     text[0] = '\0';
     for (int a = 0; a < s->axes && used < size; a++) {
-        swept_value(&s->axis[a], point[a], value, sizeof value);
+        const struct scenario_axis *axis = &s->axis[a];
+        for (int k = 0; axis->sample && k < axis->paths && used < size; k++) {
+            scenario_axis_text(axis, point[a], k, value, sizeof value);
+            used += (size_t)snprintf(text + used, size - used, "%s%s = %s", a || k ? ", " : "",
+                                     axis->path[k], value);
+        }
+        if (axis->sample) {
+            continue;
+        }
+        swept_value(axis, point[a], value, sizeof value);
         used += (size_t)snprintf(text + used, size - used, "%s%s = %s", a ? ", " : "",
                                  s->axis[a].name, value);
     }

@@ -1,5 +1,6 @@
 /* plot_curve.c - curves against one axis: what every case of a line did, or how the shares of
  * stabilised and rested cases and the extent of the stabilised set depend on a parameter. */
+#include "basin.h"
 #include "plot.h"
 #include "statistics.h"
 
@@ -259,31 +260,75 @@ struct share {
     size_t stride;
     const char *colour;
     char label[96];
+    /* Starts on a grid: its volume, bounded as basin_map.h has it, for each value; else NULL. */
+    struct basin_row *rows;
+    double box;
 };
 enum { SHARES = 6 };
 
-/* Share with Wilson's interval, in per cent. Words have bars, numbers a band. */
+static void share_at(const struct share *share, size_t i, double part[3])
+{
+    const struct statistics_counts *c = &share->counts[i * share->stride];
+    part[0] = part[1] = part[2] = NAN;
+    if (share->rows) {
+        part[0] = share->rows[i].volume / share->box;
+        part[1] = share->rows[i].low / share->box;
+        part[2] = share->rows[i].high / share->box;
+    } else if (c->done > 0) {
+        part[0] = (double)c->kind[share->kind] / (double)c->done;
+        statistics_wilson(c->kind[share->kind], c->done, &part[1], &part[2]);
+    }
+}
+
+/* Share with its interval, in per cent. Words have bars, numbers a band. */
 static double put_share_data(struct page *page, const struct sample *samples,
                              const struct share *share, char name[32])
 {
-    double highest = 0;
+    double highest = 0, part[3];
     FILE *data = gnuplot_data(&page->g, name);
     for (size_t i = 0; i < page->along->axis->count; i++) {
-        const struct statistics_counts *c = &share->counts[samples[i].index * share->stride];
-        double low, high;
-        statistics_wilson(c->kind[share->kind], c->done, &low, &high);
-        bool any = c->done > 0;
-        fprintf(data, "%.17g ", samples[i].place);
-        gnuplot_number(data, any ? 100 * (double)c->kind[share->kind] / (double)c->done : NAN);
-        putc(' ', data);
-        gnuplot_number(data, any ? 100 * low : NAN);
-        putc(' ', data);
-        gnuplot_number(data, any ? 100 * high : NAN);
+        share_at(share, samples[i].index, part);
+        fprintf(data, "%.17g", samples[i].place);
+        for (int k = 0; k < 3; k++) {
+            putc(' ', data);
+            gnuplot_number(data, 100 * part[k]);
+        }
         putc('\n', data);
-        highest = any ? fmax(highest, 100 * high) : highest;
+        highest = part[2] > highest / 100 ? 100 * part[2] : highest; /* false for NAN */
     }
     gnuplot_close_data(&page->g, data);
     return highest;
+}
+
+/* The volumes of basins whose starts are on a grid: no sample, for which Wilson's interval would
+ * be. Where the file is none of these the shares are left as they are. */
+static bool measure_volumes(const struct results *r, int axis, struct share *shares, int count,
+                            stance_message *message)
+{
+    const char *by[] = {r->axis[axis].name};
+    for (int k = 0; k < count; k++) {
+        const struct basin_choice choice = {.of = (enum results_kind)shares[k].kind,
+                                            .by = by,
+                                            .by_count = 1,
+                                            .side = 5,
+                                            .level = 0.95};
+        struct basin_sample sample;
+        struct basin basin;
+        bool usage = false;
+        if (!basin_sample_make(&sample, r, message)) {
+            return false;
+        }
+        if (!basin_make(&basin, r, &choice, &sample, &usage, message)) {
+            return usage;
+        }
+        if (basin.starts == BASIN_GRID && basin.averaged < 0) {
+            shares[k].rows = basin.row;
+            shares[k].box = basin.box;
+            basin.row = NULL;
+        }
+        basin_free(&basin);
+    }
+    return true;
 }
 
 /* Kinds whose shares are drawn: of stabilised and rested those that there are, or the first. */
@@ -298,7 +343,7 @@ static int choose_kinds(const struct statistics_counts *counts, size_t n, struct
         }
         if (any || (k == 1 && found == 0)) {
             int kind = any ? wanted[k] : wanted[0];
-            shares[found] = (struct share){kind, counts, 1, plot_colours[kind], ""};
+            shares[found] = (struct share){kind, counts, 1, plot_colours[kind], "", NULL, 0};
             snprintf(shares[found].label, sizeof shares[found].label, "%s",
                      results_kind_names[kind]);
             found++;
@@ -315,7 +360,7 @@ static void choose_parameters(const struct results *r, int *along, int *second)
     *along = 0;
     *second = -1;
     for (int a = 1; a < r->axes; a++) {
-        if (!r->axis[a].offset) {
+        if (!r->axis[a].offset && a != r->sample) {
             *second = a;
             parameters++;
         }
@@ -342,7 +387,7 @@ static int choose_values(const struct results *r, int along, int second,
     struct share kinds[2];
     choose_kinds(counts, r->axis[along].count * n, kinds);
     for (size_t k = 0; k < n; k++) {
-        shares[k] = (struct share){kinds[0].kind, counts + k, n, colours[k], ""};
+        shares[k] = (struct share){kinds[0].kind, counts + k, n, colours[k], "", NULL, 0};
         results_value_text(&r->axis[second], k, true, shares[k].label, sizeof shares[k].label);
     }
     return (int)n;
@@ -444,7 +489,8 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
     double x = LEFT + PLOT_WIDTH + 20, y = page->top + 10;
     char text[160];
 
-    gnuplot_label(&page->g, 24, page->top + SHARE_HEIGHT / 2.0, "share of the cases done (%)",
+    gnuplot_label(&page->g, 24, page->top + SHARE_HEIGHT / 2.0,
+                  shares[0].rows ? "share of the box of starts (%)" : "share of the cases done (%)",
                   "center", 12, true);
     if (of) {
         gnuplot_label(&page->g, x, y, of, "left", 11, false);
@@ -454,9 +500,12 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
         gnuplot_legend(&page->g, x, y, shares[k].colour, shares[k].label);
         y += 24;
     }
+    const bool word = page->along->axis->word != NULL;
     gnuplot_label(&page->g, x, y + 2,
-                  page->along->axis->word ? "bars: 95 % interval" : "band: 95 % interval", "left",
-                  11, false);
+                  shares[0].rows ? (word ? "bars: its bounds" : "band: its bounds")
+                  : word         ? "bars: 95 % interval"
+                                 : "band: 95 % interval",
+                  "left", 11, false);
     y = page->top + SHARE_HEIGHT + GAP;
     for (int k = 0; k < extent_count; k++) {
         const struct results_axis *axis = &r->axis[extents[k]];
@@ -508,7 +557,7 @@ static bool draw_shares(const struct plot *plot, stance_message *message)
     const struct results *r = plot->r;
     struct plot_axis along;
     struct share shares[SHARES];
-    int first, second;
+    int first, second, drawn = 0;
     choose_parameters(r, &first, &second);
     plot_axis_make_curve(&along, &r->axis[first]);
     struct sample *samples = make_samples(&along);
@@ -520,11 +569,16 @@ static bool draw_shares(const struct plot *plot, stance_message *message)
         if (second < 0) {
             statistics_count_axis(r, first, counts);
             count = choose_kinds(counts, counted, shares);
+            drawn = count;
+            good = measure_volumes(r, first, shares, count, message);
         } else {
             statistics_count_pair(r, first, second, counts);
             count = choose_values(r, first, second, counts, shares);
         }
-        good = draw_share_page(plot, &along, samples, shares, count, second, message);
+        good = good && draw_share_page(plot, &along, samples, shares, count, second, message);
+    }
+    for (int k = 0; k < drawn; k++) {
+        free(shares[k].rows);
     }
     free(samples);
     free(counts);

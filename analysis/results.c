@@ -1,11 +1,12 @@
 /* results.c - reads results files with HDF5's serial driver; trusts nothing that it finds. */
-#include "results.h"
+#include "results_private.h"
 
+#include "../runner/checksum.h"
 #include "../runner/seal.h"
+#include "../runner/store.h"
 #include "../runner/supervise.h"
 
 #include <errno.h>
-#include <hdf5.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +33,7 @@ static herr_t innermost(unsigned n, const H5E_error2_t *error, void *reason)
     return 0;
 }
 
-static bool failed(const struct results *r, const char *what, stance_message *message)
+bool results_failed(const struct results *r, const char *what, stance_message *message)
 {
     char reason[100] = "";
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost, reason);
@@ -42,13 +43,13 @@ static bool failed(const struct results *r, const char *what, stance_message *me
     return false;
 }
 
-static bool damaged(const struct results *r, const char *what, stance_message *message)
+bool results_damaged(const struct results *r, const char *what, stance_message *message)
 {
     snprintf(message->text, sizeof message->text, "%.100s: damaged: %.100s", r->file, what);
     return false;
 }
 
-static bool no_memory(const struct results *r, stance_message *message)
+bool results_no_memory(const struct results *r, stance_message *message)
 {
     snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
     return false;
@@ -57,7 +58,7 @@ static bool no_memory(const struct results *r, stance_message *message)
 /* ---- attributes --------------------------------------------------------------------------- */
 
 /* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
-static char *read_text(hid_t object, const char *name)
+char *results_attribute(hid_t object, const char *name)
 {
     if (H5Aexists(object, name) <= 0) {
         return NULL;
@@ -87,9 +88,9 @@ static char *read_text(hid_t object, const char *name)
     return text;
 }
 
-static void copy_text(hid_t object, const char *name, char *buffer, size_t size)
+void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t size)
 {
-    char *text = read_text(object, name);
+    char *text = results_attribute(object, name);
     snprintf(buffer, size, "%s", text ? text : "");
     results_clean(buffer);
     free(text);
@@ -114,7 +115,7 @@ static int read_int(hid_t object, const char *name, int fallback)
 /* ---- datasets ----------------------------------------------------------------------------- */
 
 /* Every link of a path such as "trajectory/time" exists. */
-static bool exists(hid_t file, const char *path)
+bool results_exists(hid_t file, const char *path)
 {
     char part[128];
     for (const char *slash = strchr(path, '/'); slash; slash = strchr(slash + 1, '/')) {
@@ -127,10 +128,10 @@ static bool exists(hid_t file, const char *path)
 }
 
 /* Opens a dataset and its shape; -1 when it does not exist or is none. */
-static hid_t open_dataset(const struct results *r, const char *path, int *rank,
-                          hsize_t length[H5S_MAX_RANK])
+hid_t results_dataset(const struct results *r, const char *path, int *rank,
+                      hsize_t length[H5S_MAX_RANK])
 {
-    if (!exists(r->id, path)) {
+    if (!results_exists(r->id, path)) {
         return -1;
     }
     hid_t dataset = H5Dopen2(r->id, path, H5P_DEFAULT);
@@ -144,7 +145,7 @@ static hid_t open_dataset(const struct results *r, const char *path, int *rank,
     return dataset;
 }
 
-static H5T_class_t class_of(hid_t dataset)
+H5T_class_t results_class(hid_t dataset)
 {
     hid_t type = H5Dget_type(dataset);
     H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
@@ -152,15 +153,15 @@ static H5T_class_t class_of(hid_t dataset)
     return class;
 }
 
-static bool is_number(hid_t dataset)
+bool results_is_number(hid_t dataset)
 {
-    H5T_class_t class = class_of(dataset);
+    H5T_class_t class = results_class(dataset);
     return class == H5T_INTEGER || class == H5T_FLOAT;
 }
 
 /* Product of lengths, 0 when it overflows. A damaged header must not make us ask for terabytes:
  * no array of ours has more elements than its file has bytes. */
-static size_t elements(const struct results *r, int rank, const hsize_t *length)
+size_t results_elements(const struct results *r, int rank, const hsize_t *length)
 {
     hsize_t size = 0, product = 1;
     if (H5Fget_filesize((hid_t)r->id, &size) < 0) {
@@ -188,12 +189,12 @@ size_t results_numbers(const struct results *r, const char *path, double *values
 {
     hsize_t length[H5S_MAX_RANK];
     int rank;
-    hid_t dataset = open_dataset(r, path, &rank, length);
+    hid_t dataset = results_dataset(r, path, &rank, length);
     if (dataset < 0) {
         return 0;
     }
-    size_t n = elements(r, rank, length);
-    if (n > room || !is_number(dataset) ||
+    size_t n = results_elements(r, rank, length);
+    if (n > room || !results_is_number(dataset) ||
         (n && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)) {
         n = 0;
     }
@@ -244,11 +245,11 @@ size_t results_words(const struct results *r, const char *path, char word[][32],
 {
     hsize_t length[H5S_MAX_RANK];
     int rank;
-    hid_t dataset = open_dataset(r, path, &rank, length);
+    hid_t dataset = results_dataset(r, path, &rank, length);
     if (dataset < 0) {
         return 0;
     }
-    size_t n = rank == 1 ? elements(r, rank, length) : 0;
+    size_t n = rank == 1 ? results_elements(r, rank, length) : 0;
     char **words = n && n <= room ? read_strings(dataset, n) : NULL;
     H5Dclose(dataset);
     for (size_t i = 0; words && i < n; i++) {
@@ -267,22 +268,22 @@ static bool read_axis_values(const struct results *r, hid_t dataset, struct resu
 {
     axis->value = malloc(axis->count * sizeof *axis->value);
     if (!axis->value) {
-        return no_memory(r, message);
+        return results_no_memory(r, message);
     }
-    if (class_of(dataset) == H5T_STRING) {
+    if (results_class(dataset) == H5T_STRING) {
         axis->word = read_strings(dataset, axis->count);
         for (size_t i = 0; i < axis->count; i++) {
             axis->value[i] = (double)i;
         }
-        return axis->word || failed(r, axis->name, message);
+        return axis->word || results_failed(r, axis->name, message);
     }
-    if (!is_number(dataset) ||
+    if (!results_is_number(dataset) ||
         H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, axis->value) < 0) {
-        return failed(r, axis->name, message);
+        return results_failed(r, axis->name, message);
     }
     for (size_t i = 0; i < axis->count; i++) {
         if (!isfinite(axis->value[i])) {
-            return damaged(r, "an axis has values that are not finite", message);
+            return results_damaged(r, "an axis has values that are not finite", message);
         }
     }
     return true;
@@ -295,40 +296,43 @@ static bool read_axis(struct results *r, const char *name, stance_message *messa
     int rank;
 
     snprintf(axis->name, sizeof axis->name, "%s", name);
-    hid_t dataset = open_dataset(r, name, &rank, length);
+    hid_t dataset = results_dataset(r, name, &rank, length);
     if (dataset < 0) {
-        return failed(r, name, message);
+        return results_failed(r, name, message);
     }
     r->axes++;
-    axis->count = rank == 1 ? elements(r, rank, length) : 0;
+    axis->count = rank == 1 ? results_elements(r, rank, length) : 0;
     axis->offset = strncmp(name, "initial.offset.", strlen("initial.offset.")) == 0;
     results_clean(axis->name);
-    copy_text(dataset, "units", axis->unit, sizeof axis->unit);
-    copy_text(dataset, "long_name", axis->text, sizeof axis->text);
+    results_copy_attribute(dataset, "units", axis->unit, sizeof axis->unit);
+    results_copy_attribute(dataset, "long_name", axis->text, sizeof axis->text);
     if (strcmp(axis->unit, "1") == 0) {
         axis->unit[0] = '\0';
     }
     bool good = axis->count > 0 ? read_axis_values(r, dataset, axis, message)
-                                : damaged(r, "an axis has no values", message);
+                                : results_damaged(r, "an axis has no values", message);
     H5Dclose(dataset);
     return good;
 }
 
 static bool read_axes(struct results *r, stance_message *message)
 {
-    char *names = read_text((hid_t)r->id, "axes"), *rest = NULL;
+    char *names = results_attribute((hid_t)r->id, "axes"), *rest = NULL;
     bool good = names != NULL;
 
     for (char *name = names ? strtok_r(names, ",", &rest) : NULL; good && name;
          name = strtok_r(NULL, ",", &rest)) {
         good = r->axes < SCENARIO_MAX_AXES ? read_axis(r, name, message)
-                                           : damaged(r, "too many axes", message);
+                                           : results_damaged(r, "too many axes", message);
     }
     free(names);
     if (!names || (good && r->axes == 0)) {
-        return damaged(r, "it does not name its axes", message);
+        return results_damaged(r, "it does not name its axes", message);
     }
     if (!good) {
+        return false;
+    }
+    if (!good || !results_read_sample(r, message)) {
         return false;
     }
     r->single = r->axes == 1 && strcmp(r->axis[0].name, "case") == 0 && r->axis[0].count == 1;
@@ -347,21 +351,21 @@ static bool read_bytes(const struct results *r, const char *name, uint8_t **byte
     hsize_t length[H5S_MAX_RANK];
     int rank;
     *bytes = NULL;
-    if (!exists((hid_t)r->id, name)) {
+    if (!results_exists((hid_t)r->id, name)) {
         return true;
     }
-    hid_t dataset = open_dataset(r, name, &rank, length);
+    hid_t dataset = results_dataset(r, name, &rank, length);
     if (dataset < 0) {
-        return failed(r, name, message);
+        return results_failed(r, name, message);
     }
     bool good = false;
-    if (!has_case_shape(r, rank, length) || class_of(dataset) != H5T_INTEGER) {
-        damaged(r, "a variable is not as its axes say", message);
+    if (!has_case_shape(r, rank, length) || results_class(dataset) != H5T_INTEGER) {
+        results_damaged(r, "a variable is not as its axes say", message);
     } else if (!(*bytes = malloc(r->cases))) {
-        no_memory(r, message);
+        results_no_memory(r, message);
     } else {
         good = H5Dread(dataset, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, *bytes) >= 0 ||
-               failed(r, name, message);
+               results_failed(r, name, message);
     }
     H5Dclose(dataset);
     if (!good) {
@@ -401,7 +405,7 @@ static void translate_failures(struct results *r)
 #undef FAILURE_NAME
     uint8_t now[UINT8_MAX + 1] = {0};
     hid_t dataset = H5Dopen2((hid_t)r->id, "failure", H5P_DEFAULT);
-    char *words = read_text(dataset, "flag_meanings"), *rest = words;
+    char *words = results_attribute(dataset, "flag_meanings"), *rest = words;
     for (size_t k = 0; rest && k < sizeof now; k++) {
         const char *word = strsep(&rest, " ");
         for (size_t f = 0; f < sizeof names / sizeof names[0]; f++)
@@ -420,9 +424,9 @@ static bool read_kinds(struct results *r, stance_message *message)
     for (int a = 0; a < r->axes; a++) {
         length[a] = r->axis[a].count;
     }
-    r->cases = elements(r, r->axes, length);
+    r->cases = results_elements(r, r->axes, length);
     if (r->cases == 0) {
-        return damaged(r, "it is shorter than its axes say", message);
+        return results_damaged(r, "it is shorter than its axes say", message);
     }
     if (!read_bytes(r, "status", &r->kind, message) ||
         !read_bytes(r, "outcome", &outcome, message) ||
@@ -433,11 +437,13 @@ static bool read_kinds(struct results *r, stance_message *message)
     if (r->failure) {
         translate_failures(r);
     }
-    bool good = r->kind || damaged(r, "it has no variable 'status'", message);
+    bool good = r->kind || results_damaged(r, "it has no variable 'status'", message);
+    good = good && (store_distrust(r->id, r->kind, r->cases, &r->damage) ||
+                    results_failed(r, "the answers", message));
     for (uint64_t i = 0; good && i < r->cases; i++) {
         r->kind[i] = kind_of(r->kind[i], outcome ? &outcome[i] : NULL);
         good = r->kind[i] < RESULTS_KIND_COUNT ||
-               damaged(r, "a case has a status or an outcome that does not exist", message);
+               results_damaged(r, "a case has a status or an outcome that does not exist", message);
     }
     free(outcome);
     return good;
@@ -449,21 +455,21 @@ bool results_answer(const struct results *r, const char *name, double **values,
     hsize_t length[H5S_MAX_RANK];
     int rank;
     *values = NULL;
-    if (!exists((hid_t)r->id, name)) {
+    if (!results_exists((hid_t)r->id, name)) {
         return true;
     }
-    hid_t dataset = open_dataset(r, name, &rank, length);
+    hid_t dataset = results_dataset(r, name, &rank, length);
     if (dataset < 0) {
-        return failed(r, name, message);
+        return results_failed(r, name, message);
     }
     bool good = false;
-    if (!has_case_shape(r, rank, length) || !is_number(dataset)) {
-        damaged(r, "a variable is not as its axes say", message);
+    if (!has_case_shape(r, rank, length) || !results_is_number(dataset)) {
+        results_damaged(r, "a variable is not as its axes say", message);
     } else if (!(*values = malloc(r->cases * sizeof **values))) {
-        no_memory(r, message);
+        results_no_memory(r, message);
     } else {
         good = H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values) >= 0 ||
-               failed(r, name, message);
+               results_failed(r, name, message);
     }
     H5Dclose(dataset);
     for (uint64_t i = 0; good && i < r->cases; i++) {
@@ -530,14 +536,14 @@ static bool open_file(struct results *r, stance_message *message)
     }
     r->id = H5Fopen(r->file, H5F_ACC_RDONLY, access);
     H5Pclose(access);
-    return r->id >= 0 || failed(r, "the file", message);
+    return r->id >= 0 || results_failed(r, "the file", message);
 }
 
 static bool read_provenance(struct results *r, stance_message *message)
 {
     hid_t id = (hid_t)r->id;
     int version = read_int(id, "format_version", -1);
-    r->scenario = read_text(id, "scenario");
+    r->scenario = results_attribute(id, "scenario");
     if (version < 0 || H5Aexists(id, "axes") <= 0 || !r->scenario) {
         snprintf(message->text, sizeof message->text, "%.100s: not a results file of stance",
                  r->file);
@@ -549,11 +555,11 @@ static bool read_provenance(struct results *r, stance_message *message)
                  FORMAT_VERSION);
         return false;
     }
-    copy_text(id, "title", r->title, sizeof r->title);
-    copy_text(id, "program_version", r->version, sizeof r->version);
-    copy_text(id, "git_revision", r->revision, sizeof r->revision);
-    copy_text(id, "date", r->date, sizeof r->date);
-    copy_text(id, "hosts", r->hosts, sizeof r->hosts);
+    results_copy_attribute(id, "title", r->title, sizeof r->title);
+    results_copy_attribute(id, "program_version", r->version, sizeof r->version);
+    results_copy_attribute(id, "git_revision", r->revision, sizeof r->revision);
+    results_copy_attribute(id, "date", r->date, sizeof r->date);
+    results_copy_attribute(id, "hosts", r->hosts, sizeof r->hosts);
     r->ranks = read_int(id, "ranks", 0);
     return true;
 }
@@ -561,7 +567,7 @@ static bool read_provenance(struct results *r, stance_message *message)
 /* What the file says of itself is as its checksums say, where it has any. */
 static bool verify(const struct results *r, stance_message *message)
 {
-    char *hash = read_text((hid_t)r->id, "scenario_sha256");
+    char *hash = results_attribute((hid_t)r->id, "scenario_sha256");
     bool good = seal_verify(r->id, r->file, r->scenario, hash, false, message);
     H5Eclear2(H5E_DEFAULT);
     free(hash);
@@ -571,12 +577,12 @@ static bool verify(const struct results *r, stance_message *message)
 static bool read_all(struct results *r, stance_message *message)
 {
     return open_file(r, message) && read_provenance(r, message) && verify(r, message) &&
-           read_axes(r, message) && read_kinds(r, message);
+           read_axes(r, message);
 }
 
 bool results_open(struct results *r, const char *file, stance_message *message)
 {
-    *r = (struct results){.id = -1};
+    *r = (struct results){.id = -1, .sample = -1};
     if (strlen(file) >= sizeof r->file) {
         snprintf(message->text, sizeof message->text, "%.60s...: %s", file, strerror(ENAMETOOLONG));
         return false;
@@ -591,7 +597,10 @@ bool results_open(struct results *r, const char *file, stance_message *message)
     supervise_limit(true);
     bool good = read_all(r, message);
     supervise_limit(false);
-    if (!good) {
+    good = good && read_kinds(r, message);
+    if (good) {
+        results_warn(r);
+    } else {
         results_close(r);
     }
     return good;
@@ -606,6 +615,7 @@ void results_close(struct results *r)
         free(r->axis[a].word);
         free(r->axis[a].value);
     }
+    results_free_sample(r);
     free(r->scenario);
     free(r->kind);
     free(r->failure);
@@ -613,139 +623,4 @@ void results_close(struct results *r)
         H5Fclose((hid_t)r->id);
     }
     *r = (struct results){.id = -1};
-}
-
-/* ---- trajectories ------------------------------------------------------------------------- */
-
-bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
-                      stance_message *message)
-{
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
-    *list = NULL;
-    *count = 0;
-    if (!exists((hid_t)r->id, "trajectory/case")) {
-        return true;
-    }
-    hid_t dataset = open_dataset(r, "trajectory/case", &rank, length);
-    if (dataset < 0) {
-        return failed(r, "trajectory/case", message);
-    }
-    size_t n = rank == 1 ? elements(r, rank, length) : 0;
-    *list = n ? malloc(n * sizeof **list) : NULL;
-    bool good = *list && class_of(dataset) == H5T_INTEGER &&
-                H5Dread(dataset, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, *list) >= 0;
-    H5Dclose(dataset);
-    if (!good) {
-        free(*list);
-        *list = NULL;
-        return failed(r, "trajectory/case", message);
-    }
-    *count = n;
-    return true;
-}
-
-/* One case of a variable (case, time, ...) of `width` numbers per instant; *values NULL when the
- * variable does not exist. */
-static bool read_track(const struct results *r, const char *path, size_t place, size_t rows,
-                       size_t width, double **values, stance_message *message)
-{
-    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
-    int rank;
-    hid_t dataset = width ? open_dataset(r, path, &rank, length) : -1;
-    if (dataset < 0) {
-        return true;
-    }
-    size_t n = rank >= 3 && length[1] == rows && place < length[0] ? elements(r, rank, length) : 0;
-    bool good = n > 0 && n / length[0] == rows * width && is_number(dataset);
-    if (!good) {
-        H5Dclose(dataset);
-        return damaged(r, "a trajectory is not as its dimensions say", message);
-    }
-    hsize_t number = rows * width;
-    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &number, NULL);
-    start[0] = place;
-    length[0] = 1;
-    *values = malloc(rows * width * sizeof **values);
-    good = *values && H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, length, NULL) >= 0 &&
-           H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, *values) >= 0;
-    H5Sclose(memory);
-    H5Sclose(space);
-    H5Dclose(dataset);
-    return good || failed(r, path, message);
-}
-
-static size_t count_instants(const struct results *r)
-{
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
-    hid_t dataset = open_dataset(r, "trajectory/time", &rank, length);
-    if (dataset < 0) {
-        return 0;
-    }
-    H5Dclose(dataset);
-    return rank == 1 ? elements(r, rank, length) : 0;
-}
-
-static bool is_finite(const double *values, size_t n)
-{
-    for (size_t i = 0; values && i < n; i++) {
-        if (!isfinite(values[i])) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* Rows before the first that is not a number: a case ends there. */
-static size_t count_rows(const struct results_trajectory *t, size_t rows)
-{
-    size_t k = 0;
-    while (k < rows && isfinite(t->time[k]) &&
-           is_finite(t->position + k * t->coordinates, t->coordinates)) {
-        k++;
-    }
-    return k;
-}
-
-bool results_trajectory(const struct results *r, size_t place, uint64_t index,
-                        struct results_trajectory *t, stance_message *message)
-{
-    *t = (struct results_trajectory){.index = index};
-    size_t rows = count_instants(r);
-    t->coordinates =
-        results_words(r, "trajectory/coordinate", t->coordinate, STANCE_MAX_COORDINATES);
-    t->actuators = results_words(r, "trajectory/actuator", t->actuator, STANCE_MAX_ACTUATORS);
-    t->contacts = results_words(r, "trajectory/contact", t->contact, STANCE_MAX_CONTACTS);
-    t->time = rows ? malloc(rows * sizeof *t->time) : NULL;
-    bool good = t->time && t->coordinates > 0 &&
-                results_numbers(r, "trajectory/time", t->time, rows) == rows;
-    good = good || damaged(r, "the trajectories lack a dimension", message);
-    good =
-        good &&
-        read_track(r, "trajectory/position", place, rows, t->coordinates, &t->position, message) &&
-        read_track(r, "trajectory/velocity", place, rows, t->coordinates, &t->velocity, message) &&
-        read_track(r, "trajectory/torque", place, rows, t->actuators, &t->torque, message) &&
-        read_track(r, "trajectory/force", place, rows, 2 * t->contacts, &t->force, message) &&
-        read_track(r, "trajectory/gap", place, rows, t->contacts, &t->gap, message);
-    if (good && !t->position) {
-        good = damaged(r, "the trajectories have no positions", message);
-    }
-    if (good) {
-        t->rows = count_rows(t, rows);
-    } else {
-        results_trajectory_free(t);
-    }
-    return good;
-}
-
-void results_trajectory_free(struct results_trajectory *t)
-{
-    free(t->time);
-    free(t->position);
-    free(t->velocity);
-    free(t->torque);
-    free(t->force);
-    free(t->gap);
-    *t = (struct results_trajectory){0};
 }

@@ -8,6 +8,7 @@
 #define STANCE_ANALYSIS_RESULTS_H
 
 #include "../runner/scenario.h"
+#include "../runner/store.h"
 
 /* What became of a case: its status and, where done, its outcome; in the order of legends. */
 #define RESULTS_KINDS(X)                                                                           \
@@ -41,6 +42,14 @@ struct results_axis {
     bool offset;   /* initial.offset.*: zero is the equilibrium */
 };
 
+/* A path that sweep.sample varies. */
+struct results_varied {
+    struct results_axis of; /* name, unit, text, value[points]; of words their places in `word` */
+    int factor;             /* which moves it, 0 ... */
+    char (*word)[32];       /* [words], or NULL: numbers, which may be infinite */
+    int words;
+};
+
 struct results {
     char file[1024];
     char name[256]; /* file name without directory and .h5 */
@@ -51,16 +60,24 @@ struct results {
     uint64_t index;
     int axes;
     struct results_axis axis[SCENARIO_MAX_AXES];
+    int sample;      /* the axis of the points of sweep.sample, the last one; -1: there is none */
+    char method[16]; /* of the design */
+    int varied;
+    struct results_varied *vary; /* [varied], in the order of the scenario */
     uint64_t cases;
-    uint8_t *kind;    /* [cases] enum results_kind, row-major over the axes */
-    uint8_t *failure; /* [cases] enum stance_failure, or NULL: not stored */
-    int64_t id;       /* of the open file, for results.c */
+    struct store_damage damage; /* cases that do not verify, and therefore count as pending */
+    uint8_t *kind;              /* [cases] enum results_kind, row-major over the axes */
+    uint8_t *failure;           /* [cases] enum stance_failure, or NULL: not stored */
+    int64_t id;                 /* of the open file, for results.c */
 };
 
 /* Opens and reads all but the answers; verifies the checksums that the file has over its axes, its
- * designs and its scenario. On failure nothing is left open. */
+ * designs and its scenario, and over each case: cases that do not verify count as pending, and a
+ * line on standard error says so. On failure nothing is left open. */
 bool results_open(struct results *r, const char *file, stance_message *message);
 void results_close(struct results *r);
+/* That line; nothing when every case verifies. */
+void results_warn(const struct results *r);
 
 /* The numbers of a variable over the cases, NAN where a case is not done; *values[cases] is freed
  * by the caller. A variable that is not stored gives *values = NULL and true. */
@@ -88,7 +105,11 @@ void results_number_text(double value, double gap, char *buffer, size_t size);
 /* Text of a value of an axis, with its unit when `unit`; no other of the axis has the same. */
 void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,
                         size_t size);
-/* "initial.offset.theta = -0.04 rad, ..." of a case; "" in a file of one case. */
+/* The same of a point of a sample. */
+void results_varied_text(const struct results_varied *v, size_t i, bool unit, char *buffer,
+                         size_t size);
+/* "initial.offset.theta = -0.04 rad, sample = 3 (ground.friction = 0.4), ..." of a case; "" in a
+ * file of one case. */
 void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size);
 
 /* Bytes of the UTF-8 letter at `text`, 0 when there is none: what a damaged file holds is not

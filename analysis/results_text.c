@@ -84,6 +84,21 @@ void results_value_text(const struct results_axis *axis, size_t i, bool unit, ch
     }
 }
 
+void results_varied_text(const struct results_varied *v, size_t i, bool unit, char *buffer,
+                         size_t size)
+{
+    char number[32];
+    if (v->word) {
+        snprintf(buffer, size, "%s", v->word[(int)v->of.value[i]]);
+    } else if (isinf(v->of.value[i])) {
+        snprintf(buffer, size, "none");
+    } else {
+        results_number_text(v->of.value[i], 0, number, sizeof number);
+        snprintf(buffer, size, "%s%s%s", number, unit && v->of.unit[0] ? " " : "",
+                 unit ? v->of.unit : "");
+    }
+}
+
 void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size)
 {
     size_t point[SCENARIO_MAX_AXES], used = 0;
@@ -95,6 +110,11 @@ void results_case_text(const struct results *r, uint64_t index, char *buffer, si
         results_value_text(&r->axis[a], point[a], true, text, sizeof text);
         used += (size_t)snprintf(buffer + used, size - used, "%s%s = %s", a ? ", " : "",
                                  r->axis[a].name, text);
+    }
+    for (int k = 0; k < r->varied && used < size; k++) {
+        results_varied_text(&r->vary[k], point[r->sample], true, text, sizeof text);
+        used += (size_t)snprintf(buffer + used, size - used, "%s%s = %s%s", k ? ", " : " (",
+                                 r->vary[k].of.name, text, k + 1 == r->varied ? ")" : "");
     }
 }
 
@@ -110,4 +130,16 @@ bool results_scenario(const struct results *r, struct scenario *s)
     fclose(errors);
     free(said);
     return good;
+}
+
+void results_warn(const struct results *r)
+{
+    const bool one = r->damage.cases == 1;
+    if (r->damage.cases > 0) {
+        fprintf(stderr,
+                "stance: warning: %.200s: %llu case%s not verify and %s as pending, the first is "
+                "%llu; stance run --resume computes %s again\n",
+                r->file, (unsigned long long)r->damage.cases, one ? " does" : "s do",
+                one ? "counts" : "count", (unsigned long long)r->damage.first, one ? "it" : "them");
+    }
 }

@@ -1,13 +1,24 @@
 /* statistics.c - counts, Wilson intervals, quantiles and extents. */
 #include "statistics.h"
 
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+double statistics_deviations(double level)
+{
+    return gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * level);
+}
+
 void statistics_wilson(uint64_t k, uint64_t n, double *low, double *high)
 {
-    static const double z = 1.959963984540054; /* 97.5 % quantile of the normal distribution */
+    statistics_wilson_at(0.95, k, n, low, high);
+}
+
+void statistics_wilson_at(double level, uint64_t k, uint64_t n, double *low, double *high)
+{
+    const double z = statistics_deviations(level);
     if (n == 0) {
         *low = 0;
         *high = 1;

@@ -110,11 +110,86 @@ static bool collect_pair(struct summary *summary, const struct results *r, stanc
     return true;
 }
 
+enum { BINS = 4 };
+
+/* By the values of what a sample varies. */
+static bool collect_bins(struct summary *summary, const struct results *r, stance_message *message)
+{
+    bool good = true;
+    if (r->sample < 0) {
+        return true;
+    }
+    summary->bins = calloc((size_t)r->varied, sizeof *summary->bins);
+    if (!summary->bins) {
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        return false;
+    }
+    for (int k = 0; good && k < r->varied; k++) {
+        good = sample_bins_make(&summary->bins[k], r, k, BINS, message);
+    }
+    return good;
+}
+
+/* Along the rays that an axis of offsets makes of the points of a sample. */
+static bool collect_rays(struct summary *summary, const struct results *r, stance_message *message)
+{
+    int axis = -1;
+    for (int a = 0; a < r->axes; a++) {
+        if (a != r->sample && (axis >= 0 || !r->axis[a].offset)) {
+            return true;
+        }
+        axis = a != r->sample ? a : axis;
+    }
+    if (r->sample < 0 || axis < 0) {
+        return true;
+    }
+    const size_t points = r->axis[r->sample].count;
+    double *end = malloc(points * sizeof *end), smallest = INFINITY;
+    summary->ray_axis = axis;
+    summary->rays = calloc(1, sizeof *summary->rays);
+    if (!end || !summary->rays) {
+        free(end);
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        return false;
+    }
+    for (size_t i = 0; i < points; i++) {
+        size_t point[SCENARIO_MAX_AXES] = {0};
+        struct statistics_extent extent;
+        point[r->sample] = i;
+        end[i] = NAN;
+        if (!statistics_extent(r, axis, point, &extent)) {
+            summary->rays->unknown++;
+        } else if (!extent.any) {
+            summary->rays->none += !extent.low_unknown;
+            summary->rays->unknown += extent.low_unknown;
+        } else if (extent.high_unknown) {
+            summary->rays->unknown++;
+        } else {
+            end[i] = extent.high;
+            summary->rays->open += extent.high_open;
+            summary->rays->nearest = extent.high < smallest ? i : summary->rays->nearest;
+            smallest = fmin(smallest, extent.high);
+        }
+    }
+    statistics_summarise(end, points, &summary->rays->numbers);
+    const bool scaled = strcmp(r->axis[axis].name, "initial.offset.scale") == 0;
+    summary->rays->scale = scaled ? smallest : 1;
+    free(end);
+    return true;
+}
+
+double summary_nearest(const struct summary_rays *rays, const struct results *r, int k)
+{
+    const struct results_varied *v = &r->vary[k];
+    const bool offset = strncmp(v->of.name, "initial.offset.", strlen("initial.offset.")) == 0;
+    return v->of.value[rays->nearest] * (offset ? rays->scale : 1);
+}
+
 static bool collect_axes(struct summary *summary, const struct results *r, stance_message *message)
 {
     const size_t origin[SCENARIO_MAX_AXES] = {0};
     for (int a = 0; !r->single && a < r->axes; a++) {
-        if (!r->axis[a].offset) {
+        if (!r->axis[a].offset && a != r->sample) {
             summary->pair[summary->parameters < 2 ? summary->parameters : 1] = a;
             summary->parameters++;
         }
@@ -124,9 +199,12 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
     }
     for (int a = 0; !r->single && a < r->axes; a++) {
         const struct results_axis *axis = &r->axis[a];
+        if (a == r->sample) {
+            continue;
+        }
         if (axis->offset) {
-            summary->has_extent[a] =
-                summary->parameters == 0 && statistics_extent(r, a, origin, &summary->extent[a]);
+            summary->has_extent[a] = summary->parameters == 0 && r->sample < 0 &&
+                                     statistics_extent(r, a, origin, &summary->extent[a]);
             continue;
         }
         struct statistics_counts *counts = malloc(axis->count * sizeof *counts);
@@ -151,15 +229,17 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
+enum results_kind summary_judged(const struct scenario *s)
+{
+    return s->base.law == LAW_STATE_FEEDBACK ? RESULTS_STABILISED : RESULTS_RESTED;
+}
+
 bool summary_make(struct summary *summary, const struct results *r, stance_message *message)
 {
     struct scenario s;
     /* A scenario of another version cannot be read: the summary goes without. */
     const bool readable = results_scenario(r, &s);
-    *summary = (struct summary){.judged = RESULTS_STABILISED};
-    if (readable && s.base.law != LAW_STATE_FEEDBACK) {
-        summary->judged = RESULTS_RESTED;
-    }
+    *summary = (struct summary){.judged = readable ? summary_judged(&s) : RESULTS_STABILISED};
     statistics_count(r, -1, 0, &summary->counts);
     collect_failures(summary, r);
     bool good = collect_numbers(summary, r, message) &&
@@ -172,7 +252,8 @@ bool summary_make(struct summary *summary, const struct results *r, stance_messa
                 collect_count(&summary->degraded, r, "degraded_samples", message) &&
                 collect_count(&summary->evidence, r, "evidence", message) &&
                 statistics_inferred(r, &summary->inferred, NULL, message) &&
-                collect_axes(summary, r, message);
+                collect_axes(summary, r, message) && collect_bins(summary, r, message) &&
+                collect_rays(summary, r, message);
     if (good) {
         summary->timed = results_timing(r, &summary->longest, &summary->total,
                                         &summary->timed_cases, &summary->ranks);
@@ -194,5 +275,7 @@ void summary_free(struct summary *summary)
         free(summary->by_value[a]);
     }
     free(summary->pair_counts);
+    free(summary->bins);
+    free(summary->rays);
     *summary = (struct summary){0};
 }

@@ -2,7 +2,7 @@
 #ifndef STANCE_ANALYSIS_SUMMARY_H
 #define STANCE_ANALYSIS_SUMMARY_H
 
-#include "statistics.h"
+#include "sample_bins.h"
 
 /* The answers that are summarised: name, kind of the cases looked at (RESULTS_KIND_COUNT: all that
  * are done; RESULTS_STABILISED: those that the study judges by, see struct summary), unit. */
@@ -47,6 +47,18 @@ struct summary_count {
     uint64_t cases;
 };
 
+/* Ends of the stabilised set along an axis, a number for each point of a sample: n points where
+ * they are known, of which `open` reach the end of the axis. */
+struct summary_rays {
+    struct statistics_numbers numbers;
+    size_t nearest; /* point of the smallest */
+    double scale;   /* of the offsets that the sample varies, there */
+    size_t open, none, unknown;
+};
+
+/* What path k of a sample is at the smallest end: an offset times the scale. */
+double summary_nearest(const struct summary_rays *rays, const struct results *r, int k);
+
 /* A field that the sweep leaves alone. */
 struct summary_field {
     char path[96], unit[16], text[160];
@@ -72,7 +84,13 @@ struct summary {
      * kind judged by changes most: from `steepest` to the next value. */
     struct statistics_counts *by_value[SCENARIO_MAX_AXES];
     size_t steepest[SCENARIO_MAX_AXES];
-    int parameters; /* how many such axes */
+    int parameters; /* how many such axes; the points of a sample are none */
+    /* By the values of each path that a sample varies, [varied]. */
+    struct sample_bins *bins;
+    /* Of a sample beside one axis of offsets: where along this axis the stabilised set through the
+     * equilibrium ends, over all points. NULL: neither. */
+    int ray_axis;
+    struct summary_rays *rays;
     /* Two such axes, no more: the counts of every pair of their values, pair_counts[first axis's
      * count][second's]; else NULL. */
     int pair[2];
@@ -92,12 +110,22 @@ void summary_collect_fields(struct summary *summary, const struct results *r,
 /* False when cases are done but the file stores no outcomes: record.answers left them out. */
 bool summary_has_outcomes(const struct summary *summary);
 
+/* What the cases of a scenario are judged by: STABILISED, or where no controller has a target
+ * RESTED. */
+enum results_kind summary_judged(const struct scenario *s);
+
 /* Share of the cases of the kind judged by among those done; NAN when there are none. */
 double summary_share(const struct summary *summary, const struct statistics_counts *counts);
 
 /* Name and text of a failure, from the engine's table. */
 const char *summary_failure_name(int failure);
 const char *summary_failure_text(int failure);
+
+/* Prints the counts as CSV: of all cases, then of every value of every parameter. */
+void summary_print_csv(const struct summary *summary, const struct results *r);
+/* What a sample varies, a line for each path; how the shares depend on it. */
+void summary_print_varied(const struct results *r, int width);
+void summary_print_sample(const struct summary *summary, const struct results *r);
 
 /* Prints it as JSON; false when memory or the output fails. */
 bool summary_print_json(const struct summary *summary, const struct results *r);

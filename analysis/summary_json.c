@@ -69,6 +69,7 @@ static json_t *cases(const struct summary *summary, const struct results *r)
     put(object, "failed", whole(counts->kind[RESULTS_FAILED]));
     put(object, "pending", whole(counts->kind[RESULTS_PENDING]));
     put(object, "inferred", whole(summary->inferred));
+    put(object, "damaged", whole(r->damage.cases));
     return object;
 }
 
@@ -175,7 +176,7 @@ static json_t *parameter(const struct summary *summary, const struct results *r,
         put(entry, "stabilised", whole(counts->kind[RESULTS_STABILISED]));
         put(entry, "rested", whole(counts->kind[RESULTS_RESTED]));
         put_share(entry, counts->kind[summary->judged], counts->done);
-        if (summary->parameters == 1) {
+        if (summary->parameters == 1 && r->sample < 0) {
             put(entry, "extents", extents_at(r, a, i));
         }
         json_array_append_new(list, entry);
@@ -224,10 +225,75 @@ static json_t *pairs(const struct summary *summary, const struct results *r)
     return object;
 }
 
+static json_t *sampled_value(const struct results_varied *v, double value)
+{
+    return v->word        ? json_string(v->word[(int)value])
+           : isinf(value) ? json_string("none")
+                          : number(value);
+}
+
+static json_t *sampled(const struct summary *summary, const struct results *r, int k)
+{
+    const struct results_varied *v = &r->vary[k];
+    json_t *entry = json_object(), *list = json_array();
+    for (size_t b = 0; b < summary->bins[k].count; b++) {
+        const struct sample_bin *bin = &summary->bins[k].bin[b];
+        json_t *part = json_object();
+        put(part, "from", sampled_value(v, bin->low));
+        put(part, "to", sampled_value(v, bin->high));
+        put(part, "done", whole(bin->counts.done));
+        double low, high;
+        sample_bin_interval(bin, summary->judged, &low, &high);
+        put(part, "share", number(summary_share(summary, &bin->counts)));
+        put(part, "low", number(low));
+        put(part, "high", number(high));
+        json_array_append_new(list, part);
+    }
+    put(entry, "path", json_string(v->of.name));
+    put(entry, "unit", text_or_null(v->of.unit));
+    put(entry, "factor", whole((uint64_t)v->factor));
+    put(entry, "parts", list);
+    return entry;
+}
+
+static json_t *rays(const struct summary *summary, const struct results *r)
+{
+    const struct summary_rays *rays = summary->rays;
+    json_t *object = json_object(), *at = json_object();
+    for (int k = 0; rays->numbers.n > 0 && k < r->varied; k++) {
+        put(at, r->vary[k].of.name, sampled_value(&r->vary[k], summary_nearest(rays, r, k)));
+    }
+    put(object, "path", json_string(r->axis[summary->ray_axis].name));
+    put(object, "points", whole(rays->numbers.n));
+    put(object, "smallest", number(rays->numbers.low));
+    put(object, "median", number(rays->numbers.median));
+    put(object, "largest", number(rays->numbers.high));
+    put(object, "nearest", rays->numbers.n > 0 ? whole(rays->nearest) : json_null());
+    put(object, "at", at);
+    put(object, "reach_end", whole(rays->open));
+    put(object, "none", whole(rays->none));
+    put(object, "unknown", whole(rays->unknown));
+    return object;
+}
+
+static json_t *sample(const struct summary *summary, const struct results *r)
+{
+    json_t *object = json_object(), *list = json_array();
+    for (int k = 0; k < r->varied; k++) {
+        json_array_append_new(list, sampled(summary, r, k));
+    }
+    put(object, "method", json_string(r->method));
+    put(object, "points", whole(r->axis[r->sample].count));
+    put(object, "share_of", json_string(results_kind_names[summary->judged]));
+    put(object, "varied", list);
+    put(object, "rays", summary->rays ? rays(summary, r) : json_null());
+    return object;
+}
+
 static json_t *changes(const struct results *r)
 {
     json_t *list = json_array();
-    for (size_t i = 0; r->axes == 1 && i + 1 < r->cases; i++) {
+    for (size_t i = 0; r->axes == 1 && r->sample < 0 && i + 1 < r->cases; i++) {
         if (r->kind[i] != r->kind[i + 1]) {
             json_t *entry = json_object();
             put(entry, "from", axis_value(&r->axis[0], i));
@@ -346,6 +412,7 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
         if (summary->pair_counts && known) {
             put(root, "pairs", pairs(summary, r));
         }
+        put(root, "sample", r->sample >= 0 && known ? sample(summary, r) : json_null());
         put(root, "changes", known ? changes(r) : json_null());
     }
     put(root, "numbers", numbers(summary));

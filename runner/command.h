@@ -23,7 +23,8 @@ struct command {
 };
 
 extern const struct command command_check, command_design, command_run, command_status,
-    command_summary, command_plot, command_compare, command_describe, command_bench;
+    command_summary, command_plot, command_compare, command_describe, command_bench, command_basin,
+    command_merge, command_table, command_sensitivity;
 /* `stance bench accuracy`, `failure`, `schedule` and `plot`, which command_bench hands over to. */
 extern const struct command command_accuracy, command_failure, command_schedule, command_speed;
 

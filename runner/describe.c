@@ -99,7 +99,11 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         snprintf(buffer, size, "one of: %s; or a list of cases", words);
         break;
     case FIELD_AXES:
+    case FIELD_FACTORS:
         snprintf(buffer, size, "list of mappings");
+        break;
+    case FIELD_ENDS:
+        snprintf(buffer, size, "number, or list of numbers");
         break;
     case FIELD_PATH:
         snprintf(buffer, size, "path");
@@ -163,7 +167,8 @@ static void print_field(FILE *out, const struct schema *schema, const struct sce
                                     : "May be swept.",
                       TEXT_INDENT);
     }
-    snprintf(path, sizeof path, "%s%s", field->path, field->type == FIELD_AXES ? "[]" : "");
+    const bool is_list = field->type == FIELD_AXES || field->type == FIELD_FACTORS;
+    snprintf(path, sizeof path, "%s%s", field->path, is_list ? "[]" : "");
     size_t n = schema_children(schema, path, names, SCHEMA_MAX_FIELDS);
     if (n > 0) {
         snprintf(line, sizeof line, "Keys: %s", word_list(list, sizeof list, names, n));
@@ -236,8 +241,16 @@ static json_t *number_schema(const struct scenario_field *field)
     return schema;
 }
 
+static bool is_truth(const struct scenario_field *field)
+{
+    return field->word_count == 2 && strcmp(field->words[0], "false") == 0;
+}
+
 static json_t *words_schema(const struct scenario_field *field)
 {
+    if (is_truth(field)) {
+        return json_pack("{s:s}", "type", "boolean");
+    }
     json_t *words = json_array();
     for (size_t i = 0; i < field->word_count; i++) {
         json_array_append_new(words, json_string(field->words[i]));
@@ -264,14 +277,22 @@ static json_t *values_schema(void)
     return list_schema(json_pack("{s:[o,o]}", "anyOf", scalar, row), 0);
 }
 
-static json_t *axes_schema(const struct schema *schema)
+/* A list of mappings of a path or several. */
+static json_t *varied_schema(const struct schema *schema, const char *path, int most)
 {
-    json_t *axis = map_schema(schema, "sweep.grid[]");
-    json_object_set_new(axis, "oneOf",
+    json_t *entry = map_schema(schema, path);
+    json_object_set_new(entry, "oneOf",
                         json_pack("[{s:[s]},{s:[s]}]", "required", "path", "required", "paths"));
-    json_t *axes = list_schema(axis, 0);
-    json_object_set_new(axes, "maxItems", json_integer(SCENARIO_MAX_AXES));
-    return axes;
+    json_t *list = list_schema(entry, 0);
+    json_object_set_new(list, "maxItems", json_integer(most));
+    return list;
+}
+
+static json_t *ends_schema(void)
+{
+    json_t *number = json_pack("{s:s}", "type", "number");
+    json_t *list = list_schema(json_copy(number), 0);
+    return json_pack("{s:[o,o]}", "anyOf", number, list);
 }
 
 static json_t *complex_schema(const struct schema *schema)
@@ -315,7 +336,11 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
         return json_pack("{s:[o,o]}", "anyOf", words_schema(field),
                          list_schema(json_pack("{s:s,s:i}", "type", "integer", "minimum", 0), 0));
     case FIELD_AXES:
-        return axes_schema(schema);
+        return varied_schema(schema, "sweep.grid[]", SCENARIO_MAX_AXES);
+    case FIELD_FACTORS:
+        return varied_schema(schema, "sweep.sample.vary[]", SAMPLING_MAX_FACTORS);
+    case FIELD_ENDS:
+        return ends_schema();
     case FIELD_PATHS: {
         json_t *list = list_schema(json_pack("{s:s}", "type", "string"), 0);
         json_object_set_new(list, "maxItems", json_integer(SCENARIO_MAX_PATHS));
@@ -340,6 +365,9 @@ static json_t *default_value(const struct scenario_field *field)
     }
     if (field->fallback_text) {
         return NULL;
+    }
+    if (word && is_truth(field)) {
+        return json_boolean(field->fallback != 0);
     }
     return word ? json_string(field->words[(size_t)field->fallback]) : json_number(field->fallback);
 }
@@ -388,6 +416,9 @@ static json_t *map_schema(const struct schema *schema, const char *path)
         json_object_set(object, "required", required);
     }
     json_decref(required);
+    if (strcmp(path, "sweep.sample") == 0) {
+        json_object_set_new(object, "required", json_pack("[s,s,s]", "method", "count", "vary"));
+    }
     if (strcmp(path, "initial") == 0) {
         json_object_set_new(object, "not",
                             json_pack("{s:[s,s]}", "required", "equilibrium", "state"));

@@ -4,7 +4,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -22,13 +21,20 @@ static bool failed(stance_message *message, const char *file, int error)
     return false;
 }
 
+/* The name still stands for the file that is open. */
+static bool has_name(const struct lock *lock, int descriptor)
+{
+    struct stat held, named;
+    return fstat(descriptor, &held) == 0 && stat(lock->file, &named) == 0 &&
+           held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+}
+
 bool lock_take(struct lock *lock, const char *file, stance_message *message)
 {
     lock->descriptor = -1;
     snprintf(lock->file, sizeof lock->file, "%s.lock", file);
     for (;;) {
         struct flock range = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
-        struct stat held, named;
         int descriptor = open(lock->file, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (descriptor < 0) {
             /* EACCES means something else here than below. */
@@ -40,13 +46,25 @@ bool lock_take(struct lock *lock, const char *file, stance_message *message)
             return failed(message, file, error);
         }
         /* Its owner may have removed the file between our two calls: then the lock is worthless. */
-        if (fstat(descriptor, &held) == 0 && stat(lock->file, &named) == 0 &&
-            held.st_ino == named.st_ino && held.st_dev == named.st_dev) {
+        if (has_name(lock, descriptor)) {
             lock->descriptor = descriptor;
             return true;
         }
         close(descriptor);
     }
+}
+
+bool lock_keep(struct lock *lock, stance_message *message)
+{
+    char file[sizeof lock->file];
+    if (lock->descriptor < 0 || has_name(lock, lock->descriptor)) {
+        return true;
+    }
+    const int before = lock->descriptor;
+    snprintf(file, sizeof file, "%.*s", (int)(strlen(lock->file) - strlen(".lock")), lock->file);
+    const bool taken = lock_take(lock, file, message);
+    close(before);
+    return taken;
 }
 
 void lock_release(struct lock *lock)
@@ -58,33 +76,30 @@ void lock_release(struct lock *lock)
     }
 }
 
-/* A note that cannot be written costs others the rate, nothing else. */
-void lock_write_note(const struct lock *lock, const struct lock_note *note)
+void lock_write_note(const struct lock *lock, const char *note)
 {
-    if (lock->descriptor >= 0 && ftruncate(lock->descriptor, 0) == 0) {
-        dprintf(lock->descriptor, "%.3f %" PRIu64 "\n", note->start, note->finished);
+    char text[LOCK_NOTE];
+    snprintf(text, sizeof text, "%-*s", LOCK_NOTE - 2, note);
+    text[LOCK_NOTE - 2] = '\n';
+    if (lock->descriptor >= 0 && pwrite(lock->descriptor, text, LOCK_NOTE - 1, 0) < 0) {
+        return;
     }
 }
 
-bool lock_is_held(const char *file, struct lock_note *note)
+bool lock_is_held(const char *file, char note[LOCK_NOTE])
 {
-    char path[1100], text[80];
+    char path[1100];
     struct flock range = {.l_type = F_RDLCK, .l_whence = SEEK_SET};
 
-    *note = (struct lock_note){0};
+    note[0] = '\0';
     snprintf(path, sizeof path, "%s.lock", file);
     int descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) {
         return false;
     }
-    bool held = fcntl(descriptor, F_OFD_GETLK, &range) == 0 && range.l_type != F_UNLCK;
-    ssize_t length = held ? read(descriptor, text, sizeof text - 1) : 0;
-    if (length > 0) {
-        text[length] = '\0';
-        if (sscanf(text, "%lf %" SCNu64, &note->start, &note->finished) != 2) {
-            *note = (struct lock_note){0};
-        }
-    }
+    const bool held = fcntl(descriptor, F_OFD_GETLK, &range) == 0 && range.l_type != F_UNLCK;
+    const ssize_t length = read(descriptor, note, LOCK_NOTE - 1);
+    note[length > 0 ? length : 0] = '\0';
     close(descriptor);
     return held;
 }

@@ -18,14 +18,18 @@ struct lock {
 bool lock_take(struct lock *lock, const char *file, stance_message *message);
 void lock_release(struct lock *lock);
 
-/* What the writer tells others: when it began (seconds since 1970) and how many cases were
- * finished then. */
-struct lock_note {
-    double start;
-    uint64_t finished;
-};
-void lock_write_note(const struct lock *lock, const struct lock_note *note);
-/* Whether somebody is writing FILE now; *note is zero when it left none. */
-bool lock_is_held(const char *file, struct lock_note *note);
+/* Sees to it that the file behind the lock still has its name; takes the lock anew when somebody
+ * has removed it. false: another process has taken it meanwhile. */
+bool lock_keep(struct lock *lock, stance_message *message);
+
+/* What the writer tells others, a text of less than LOCK_NOTE bytes. It always takes the same place
+ * on the disk: what could be written once can be written again. A note that cannot be written costs
+ * others what it says, nothing else. */
+enum { LOCK_NOTE = 1024 };
+void lock_write_note(const struct lock *lock, const char *note);
+/* Whether a process is writing FILE now, as far as locks reach: over some network file systems only
+ * those of this machine are seen. The last note, also of a writer that died: "" when there is none.
+ */
+bool lock_is_held(const char *file, char note[LOCK_NOTE]);
 
 #endif

@@ -11,8 +11,9 @@
 #include <unistd.h>
 
 static const struct command *const commands[] = {
-    &command_check, &command_design,  &command_run,      &command_status, &command_summary,
-    &command_plot,  &command_compare, &command_describe, &command_bench,
+    &command_check, &command_design,   &command_run,   &command_status,      &command_summary,
+    &command_plot,  &command_compare,  &command_basin, &command_sensitivity, &command_merge,
+    &command_table, &command_describe, &command_bench,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -22,7 +23,7 @@ static void print_usage(FILE *out)
           "usage: stance COMMAND [ARGUMENTS]\n\n",
           out);
     for (size_t i = 0; i < COMMANDS; i++) {
-        fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
+        fprintf(out, "  %-12s %s\n", commands[i]->name, commands[i]->summary);
     }
     fputs(
         "\nstance COMMAND -h explains a command; stance --version says what was built.\n"

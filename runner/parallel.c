@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #ifdef STANCE_MPI
@@ -16,11 +17,11 @@
 #endif
 
 struct parallel_shared {
-    int64_t *counter; /* [COUNTERS] on rank 0, else none */
+    int64_t *counter; /* [COUNTERS], then [ranks] numbers of theirs; on rank 0, else none */
 #ifdef STANCE_MPI
-    MPI_Win window;        /* when there are several ranks */
-    int64_t added, before; /* of an addition that is under way, maybe for ever */
-    bool lost;             /* rank 0 has left an addition unanswered: no more of them */
+    MPI_Win window;      /* when there are several ranks */
+    int64_t put, before; /* of an exchange that is under way, maybe for ever */
+    bool lost;           /* rank 0 has left one unanswered: no more of them */
 #endif
 };
 
@@ -42,7 +43,7 @@ void parallel_host(char *name, size_t size)
 static bool share_alone(struct parallel *parallel)
 {
     struct parallel_shared *shared = calloc(1, sizeof *shared);
-    int64_t *counter = calloc(COUNTERS, sizeof *counter);
+    int64_t *counter = calloc(COUNTERS + 1, sizeof *counter);
     if (!shared || !counter) {
         free(shared);
         free(counter);
@@ -229,7 +230,8 @@ bool parallel_share(struct parallel *parallel)
         free(shared);
         return false;
     }
-    MPI_Aint size = parallel->rank == 0 ? COUNTERS * (MPI_Aint)sizeof(int64_t) : 0;
+    const MPI_Aint numbers = COUNTERS + (MPI_Aint)parallel->size;
+    MPI_Aint size = parallel->rank == 0 ? numbers * (MPI_Aint)sizeof(int64_t) : 0;
     MPI_Win_allocate(size, sizeof(int64_t), MPI_INFO_NULL, MPI_COMM_WORLD, &shared->counter,
                      &shared->window);
     MPI_Win_lock_all(0, shared->window);
@@ -279,26 +281,70 @@ static bool answered(const struct parallel *parallel, MPI_Request *request)
     }
 }
 
-/* One-sided, so nobody serves the counters. Some networks move them on only while rank 0 is
- * inside MPI: rank 0 must come here often, too. */
-int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
+/* Puts `value` into one of the numbers on rank 0, by MPI_SUM or MPI_REPLACE; what it was before.
+ * One-sided, so nobody serves the numbers. Some networks move them on only while rank 0 is inside
+ * MPI: rank 0 must come here often, too. */
+static int64_t exchange(const struct parallel *parallel, MPI_Aint place, int64_t value, MPI_Op op)
 {
     struct parallel_shared *shared = parallel->shared;
     MPI_Request request;
-    if (parallel->size == 1) {
-        return add_alone(parallel, counter, value);
-    }
     if (parallel->rank == 0) {
-        int ignored; /* what rank 0 adds moves on nothing of the others */
+        int ignored; /* what rank 0 does to itself moves on nothing of the others */
         MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &ignored, MPI_STATUS_IGNORE);
     }
     if (!shared->lost) {
-        shared->added = value;
-        MPI_Rget_accumulate(&shared->added, 1, MPI_INT64_T, &shared->before, 1, MPI_INT64_T, 0,
-                            (MPI_Aint)counter, 1, MPI_INT64_T, MPI_SUM, shared->window, &request);
+        shared->put = value;
+        MPI_Rget_accumulate(&shared->put, 1, MPI_INT64_T, &shared->before, 1, MPI_INT64_T, 0, place,
+                            1, MPI_INT64_T, op, shared->window, &request);
         shared->lost = !answered(parallel, &request);
     }
     return shared->lost ? INT64_MAX : shared->before;
+}
+
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
+{
+    return parallel->size == 1 ? add_alone(parallel, counter, value)
+                               : exchange(parallel, (MPI_Aint)counter, value, MPI_SUM);
+}
+
+void parallel_beat(const struct parallel *parallel, int64_t number)
+{
+    if (parallel->size == 1) {
+        parallel->shared->counter[COUNTERS] = number;
+    } else {
+        exchange(parallel, COUNTERS + (MPI_Aint)parallel->rank, number, MPI_REPLACE);
+    }
+}
+
+void parallel_beats(const struct parallel *parallel, int64_t *number)
+{
+    const int n = parallel->size;
+    if (n == 1) {
+        number[0] = parallel->shared->counter[COUNTERS];
+        return;
+    }
+    MPI_Get_accumulate(NULL, 0, MPI_INT64_T, number, n, MPI_INT64_T, 0, COUNTERS, n, MPI_INT64_T,
+                       MPI_NO_OP, parallel->shared->window);
+    MPI_Win_flush(0, parallel->shared->window);
+}
+
+void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context)
+{
+    enum { SHORTEST = 20000, LONGEST = 1000000 }; /* ns */
+    struct timespec pause = {.tv_nsec = SHORTEST};
+    MPI_Request request;
+    int done = 0;
+
+    if (parallel->size == 1) {
+        return;
+    }
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);
+    for (MPI_Test(&request, &done, MPI_STATUS_IGNORE); !done;
+         MPI_Test(&request, &done, MPI_STATUS_IGNORE)) {
+        wait(context);
+        nanosleep(&pause, NULL);
+        pause.tv_nsec = pause.tv_nsec < LONGEST / 2 ? 2 * pause.tv_nsec : LONGEST;
+    }
 }
 
 void parallel_library(char *text, size_t size)
@@ -383,6 +429,21 @@ void parallel_unshare(struct parallel *parallel)
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
 {
     return add_alone(parallel, counter, value);
+}
+
+void parallel_beat(const struct parallel *parallel, int64_t number)
+{
+    parallel->shared->counter[COUNTERS] = number;
+}
+
+void parallel_beats(const struct parallel *parallel, int64_t *number)
+{
+    number[0] = parallel->shared->counter[COUNTERS];
+}
+
+void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context)
+{
+    (void)parallel, (void)wait, (void)context;
 }
 
 void parallel_library(char *text, size_t size)

@@ -59,6 +59,14 @@ int64_t parallel_add(const struct parallel *parallel, enum parallel_counter coun
 /* Collective: all counters but COUNTER_STOP are zero again. */
 void parallel_restart(const struct parallel *parallel);
 
+/* Beside the counters each rank has a number that tells rank 0 that it lives. Not collective: sets
+ * it. And on rank 0 alone: reads those of all ranks, number[size]. */
+void parallel_beat(const struct parallel *parallel, int64_t number);
+void parallel_beats(const struct parallel *parallel, int64_t *number);
+/* Collective: waits until every rank has come here; meanwhile calls wait(context) every millisecond
+ * or so. */
+void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context);
+
 /* Name of this machine. */
 void parallel_host(char *name, size_t size);
 /* Name and version of the MPI library, or "no MPI". */

@@ -11,6 +11,7 @@
 #include <time.h>
 
 enum {
+    MOST_DESIGNS = 1 << 22, /* 2.2 GB */
     CHECKED_CASES = 4096,
     CORNER_AXES = 11, /* 2048 corners */
     TRACE_ROWS = 1000000,
@@ -125,9 +126,17 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
         return false;
     }
     for (int a = 0; !single && a < scenario->axes; a++) {
-        if (scenario->axis[a].design) {
-            plan->designs *= scenario->axis[a].count;
+        const struct scenario_axis *axis = &scenario->axis[a];
+        if (axis->design && axis->count > MOST_DESIGNS / plan->designs) {
+            snprintf(error->message.text, sizeof error->message.text,
+                     "along its axes the scenario has more than the %d controller designs that are "
+                     "kept in memory",
+                     MOST_DESIGNS);
+            error->line = axis->line;
+            error->column = axis->column;
+            return false;
         }
+        plan->designs *= axis->design ? axis->count : 1;
     }
     plan_trajectories(plan, trace);
     plan->design = calloc(plan->designs, sizeof *plan->design);
@@ -256,23 +265,29 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
     const struct scenario *s = plan->scenario;
     size_t first;
     const size_t count = designs_here(plan, parallel, &first);
-    uint64_t found = 0;
+    uint64_t found[2] = {0}; /* designs that exist; ranks that were stopped */
 
     for (size_t d = first; d < first + count; d++) {
         struct scenario_values values;
         stance_message ignored;
-        scenario_case_values(s, design_case(plan, d), &values);
-        bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
-        plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
-        found += exists;
+        if (plan->stop && plan->stop(plan->stop_context)) {
+            found[1] = 1;
+            break;
+        }
+        if (plan->design_status[d] == STANCE_PENDING) {
+            scenario_case_values(s, design_case(plan, d), &values);
+            bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
+            plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
+        }
+        found[0] += plan->design_status[d] == STANCE_DONE;
     }
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
     parallel_gather_block(parallel, plan->design_status, 1, first, count);
-    parallel_sum(parallel, &found, 1);
-    if (found == 0) {
+    parallel_sum(parallel, found, 2);
+    if (found[0] == 0 && found[1] == 0) {
         blame_design(plan, 0, error);
     }
-    return found > 0;
+    return found[0] > 0 && found[1] == 0;
 }
 
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
@@ -289,8 +304,8 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
     for (size_t d = first; good && d < first + count; d++) {
         struct scenario_values values;
         stance_message why = {""}; /* there need not be a set */
-        if (plan->design_status[d] != STANCE_DONE) {
-            continue;
+        if (plan->design_status[d] != STANCE_DONE || plan->design[d].capture_time != 0) {
+            continue; /* none, or known from another file */
         }
         scenario_case_values(s, design_case(plan, d), &values);
         good = capture_estimate(s->scene, &values, &plan->design[d], s->seed, stop, context, NULL,
@@ -323,8 +338,12 @@ bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *
 
     scenario_case_values(s, index, &values);
     *method = values.method;
-    return plan->design_status[design] == STANCE_DONE &&
-           resolve_case(s->scene, &values, &plan->design[design], s->seed, index, out, &ignored);
+    if (plan->design_status[design] != STANCE_DONE ||
+        !resolve_case(s->scene, &values, &plan->design[design], s->seed, index, out, &ignored)) {
+        return false;
+    }
+    scenario_case_keys(s, index, &out->grid_index, &out->sample_index);
+    return true;
 }
 
 /* ---- checking ----------------------------------------------------------------------------- */

@@ -22,6 +22,10 @@ struct plan {
     struct resolved_design *design; /* [designs] */
     uint8_t *design_status;         /* [designs] enum stance_status */
 
+    /* Asked about every millisecond while designs are computed; NULL: never. */
+    bool (*stop)(void *context);
+    void *stop_context;
+
     double record_interval; /* s; 0: no trajectories */
     int64_t record_rows;    /* instants k * record_interval, k = 0 ... record_rows - 1 */
     uint64_t record_cases;  /* cases with a trajectory */
@@ -46,8 +50,9 @@ size_t plan_design(const struct plan *plan, uint64_t index);
 bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place);
 uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
 
-/* Collective: computes every design, each rank a block, and gathers them on rank 0. false on
- * every rank when no design exists at all. */
+/* Collective: computes every design whose status is pending, each rank a block, and gathers them on
+ * rank 0. false on every rank when no design exists at all, or plan->stop said true somewhere; the
+ * message is empty then. */
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error);
 

@@ -1,4 +1,5 @@
-/* reader.h - the state of reading a scenario, shared by scenario.c and sweep.c. */
+/* reader.h - the state of reading a scenario, shared by scenario.c, scenario_check.c, sweep.c and
+ * sample.c. */
 #ifndef STANCE_RUNNER_READER_H
 #define STANCE_RUNNER_READER_H
 
@@ -48,6 +49,35 @@ void reader_check_keys(struct reader *r, const struct tree_node *map, const char
 
 /* scenario_check.c: what the keys mean for each other; completes the base values. */
 void scenario_cross_check(struct reader *r);
+
+/* The axis being read: its place in the scenario and in the file. */
+enum { AXIS_NAME = 48 };
+struct axis_reader {
+    struct reader *r;
+    struct scenario_axis *axis;
+    struct swept_field *swept;    /* [axis->paths] */
+    const struct tree_node *node; /* the mapping */
+    int number;                   /* of the axis */
+    char name[AXIS_NAME];         /* sweep.grid[0], sweep.sample.vary[0] */
+};
+
+/* sweep.c: the path or paths of the mapping, behind those that the axis has. False: a problem. */
+bool axis_read_paths(struct axis_reader *a);
+/* sweep.c: a value of path k. False: a problem. */
+bool axis_read_value(struct axis_reader *a, const struct tree_node *node, int k, double *value);
+/* sweep.c: one of from and to of a range of path k, a finite number. False: a problem. */
+bool axis_read_end(struct axis_reader *a, const char *key, const struct tree_node *node, int k,
+                   double *value);
+/* sweep.c: unit and text of path k. */
+void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[160]);
+/* A problem of the mapping as a whole. */
+void axis_complain(struct axis_reader *a, const char *what);
+/* "sweep.grid[2]" or "sweep.sample". */
+const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME]);
+
+/* sample.c: the last axis from sweep.sample, after the others. */
+void sample_read(struct reader *r);
+void sample_free(struct scenario_sample *sample);
 
 /* sweep.c: the axes from the value of sweep.grid, into r->s. */
 void sweep_read(struct reader *r, const struct tree_node *grid);

@@ -48,6 +48,7 @@ struct refine_map refine_map_of(const struct scenario *scenario)
     for (int a = 0; a < scenario->axes; a++) {
         map.count[a] = scenario->axis[a].count;
         map.refined[a] = scenario->axis[a].refined;
+        map.samples = scenario->axis[a].sample ? map.count[a] : 0;
     }
     return map;
 }
@@ -83,7 +84,8 @@ uint64_t refine_coarse(const struct refine_map *map)
 static bool is_probe(const struct refine_map *map, uint64_t row)
 {
     const philox4x64_key_t key = {{map->seed, 0x726566696e65}};
-    const philox4x64_ctr_t counter = {{row, 0, 0, 0}};
+    const uint64_t samples = map->samples ? map->samples : 1;
+    const philox4x64_ctr_t counter = {{row / samples, row % samples, 0, 0}};
     const philox4x64_ctr_t random = philox4x64(counter, key);
     return (double)(random.v[0] >> 11) * 0x1p-53 < map->probes;
 }

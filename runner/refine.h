@@ -14,8 +14,9 @@
  *
  * A cell that is not refined has one label, which all of its points take. Cells that meet agree,
  * since the smaller one's corners between them are simulated and in both. Nothing fails by
- * inference. The probes, each point with probability `probes`, by a pure function of (seed, row),
- * find islands: one of k points that the lattice misses stays unseen with (1 - probes)^k.
+ * inference. The probes, each point with probability `probes`, by a pure function of (seed, place
+ * on the grid, sample), find islands: one of k points that the lattice misses stays unseen with (1
+ * - probes)^k.
  *
  * Axes that are not refined are taken in full: each combination of their points is a map of its
  * own.
@@ -40,6 +41,7 @@ struct refine_map {
     size_t margin;                   /* cells */
     double probes;                   /* 0 ... 1 */
     uint64_t seed;
+    size_t samples; /* points of the last axis where that is sweep.sample's, else 0 */
 };
 
 /* The map of a scenario that asks for refinement. */

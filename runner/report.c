@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <jansson.h>
 #include <math.h>
+#include <string.h>
 
 static const double cost_budget = 0.2; /* s spent on trying cases */
 
@@ -59,6 +60,100 @@ static struct estimate estimate(const struct plan *plan, int ranks)
     return e;
 }
 
+/* "[0.1, 1.5] ... [2, 3] kg", "a, b, c": where a factor leads; the units are those of its first
+ * path. */
+static void factor_text(const struct scenario_axis *axis, const struct scenario_factor *f,
+                        char *text, size_t size)
+{
+    enum { SHOWN = 4 };
+    const struct scenario_axis listed = {.paths = f->paths,
+                                         .count = f->points,
+                                         .value = f->value,
+                                         .meaning = axis->meaning + f->first};
+    size_t used = 0;
+    for (size_t i = 0; i < f->points && used < size; i++) {
+        if (i == SHOWN) {
+            used += (size_t)snprintf(text + used, size - used, ", ... (%zu values)", f->points);
+            break;
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%s",
+                                 i == 0      ? ""
+                                 : f->listed ? ", "
+                                             : " ... ",
+                                 f->paths > 1 ? "[" : "");
+        for (int k = 0; k < f->paths && used < size; k++) {
+            char value[64];
+            scenario_axis_text(&listed, i, k, value, sizeof value);
+            used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", value);
+        }
+        if (used < size) {
+            used += (size_t)snprintf(text + used, size - used, "%s", f->paths > 1 ? "]" : "");
+        }
+    }
+    if (used < size && f->paths == 1 && !listed.meaning[0].words &&
+        strcmp(listed.meaning[0].unit, "1") != 0) {
+        used += (size_t)snprintf(text + used, size - used, " %s", listed.meaning[0].unit);
+    }
+    if (used < size && f->log) {
+        snprintf(text + used, size - used, ", log");
+    }
+}
+
+static json_t *factor_json(const struct scenario_axis *axis, const struct scenario_factor *f)
+{
+    json_t *paths = json_array();
+    char text[400];
+    for (int k = 0; k < f->paths; k++) {
+        json_array_append_new(paths, json_string(axis->path[f->first + k]));
+    }
+    factor_text(axis, f, text, sizeof text);
+    return json_pack("{s:o, s:s}", "paths", paths, "range", text);
+}
+
+static json_t *sample_json(const struct plan *plan)
+{
+    const struct scenario *s = plan->scenario;
+    const struct sampling *design = &s->sample.design;
+    if (!s->sample.given || plan->single) {
+        return json_null();
+    }
+    json_t *factors = json_array();
+    for (size_t j = 0; j < design->factors; j++) {
+        json_array_append_new(factors, factor_json(&s->axis[s->axes - 1], &s->sample.factor[j]));
+    }
+    return json_pack("{s:s, s:I, s:I, s:I, s:o}", "method", sampling_words[design->method], "count",
+                     (json_int_t)design->count, "block", (json_int_t)sampling_block(design),
+                     "points", (json_int_t)sampling_points(design), "factors", factors);
+}
+
+static void report_sample(const struct scenario *s, FILE *out)
+{
+    static const char *const blocks[] = {
+        [SAMPLING_SALTELLI] = "blocks", [SAMPLING_MORRIS] = "trajectories"};
+    const struct sampling *design = &s->sample.design;
+    const struct scenario_axis *axis = &s->axis[s->axes - 1];
+    const uint64_t block = sampling_block(design);
+
+    fprintf(out, "  %-32s %8zu  points, %s: ", axis->name, axis->count,
+            sampling_words[design->method]);
+    if (block > 1) {
+        fprintf(out, "%" PRIu64 " %s of %" PRIu64 ", ", design->count, blocks[design->method],
+                block);
+    }
+    fprintf(out, "%zu factor%s\n", design->factors, design->factors == 1 ? "" : "s");
+    for (size_t j = 0; j < design->factors; j++) {
+        const struct scenario_factor *f = &s->sample.factor[j];
+        char text[400];
+        factor_text(axis, f, text, sizeof text);
+        fprintf(out, "    ");
+        int used = 0;
+        for (int k = 0; k < f->paths; k++) {
+            used += fprintf(out, "%s%s", k ? ", " : "", axis->path[f->first + k]);
+        }
+        fprintf(out, "%*s  %s\n", used < 39 ? 39 - used : 0, "", text);
+    }
+}
+
 static void report_json(const struct plan *plan, const struct estimate *e, int ranks,
                         const char *file, FILE *out)
 {
@@ -72,16 +167,17 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
         json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
     }
     json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o}", "scenario",
-        s->file, "title", s->title, "scene", s->scene->name, "cases", (json_int_t)plan->rows,
-        "dimensions", dimensions, "designs", (json_int_t)plan->designs, "designs_failed",
-        (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
-        file, "file_bytes", (json_int_t)e->size, "ranks", ranks, "seconds_on_one_rank",
-        e->seconds < 0 ? json_null() : json_real(e->seconds), "seconds_is_upper_bound", e->bound,
-        "capture_seconds_on_one_rank", e->capture, "refine",
+        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o, s:o}",
+        "scenario", s->file, "title", s->title, "scene", s->scene->name, "cases",
+        (json_int_t)plan->rows, "dimensions", dimensions, "designs", (json_int_t)plan->designs,
+        "designs_failed", (json_int_t)e->designs_failed, "recorded_cases",
+        (json_int_t)plan->record_cases, "file", file, "file_bytes", (json_int_t)e->size, "ranks",
+        ranks, "seconds_on_one_rank", e->seconds < 0 ? json_null() : json_real(e->seconds),
+        "seconds_is_upper_bound", e->bound, "capture_seconds_on_one_rank", e->capture, "refine",
         e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
                               (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
-                  : json_null());
+                  : json_null(),
+        "sample", sample_json(plan));
     json_dumpf(root, out, JSON_INDENT(2));
     fputc('\n', out);
     json_decref(root);
@@ -101,6 +197,10 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
     fputc('\n', out);
     for (int a = 0; !plan->single && a < s->axes; a++) {
         char first[64], last[64];
+        if (s->axis[a].sample) {
+            report_sample(s, out);
+            continue;
+        }
         scenario_axis_text(&s->axis[a], 0, 0, first, sizeof first);
         scenario_axis_text(&s->axis[a], s->axis[a].count - 1, 0, last, sizeof last);
         fprintf(out, "  %-32s %8zu  %s ... %s %s\n", s->axis[a].name, s->axis[a].count, first, last,

@@ -204,16 +204,17 @@ static void place_robot(const stance_scene *scene, const struct scenario_values 
                         const double *start, stance_case *out)
 {
     const int n = scene->coordinates;
+    const double scale = values->offset_scale;
     for (int i = 0; i < n; i++) {
         const bool angle = is_posture(scene, i);
-        out->position[i] = start[i] + (angle ? values->offset[i] : 0);
-        out->velocity[i] = angle ? values->offset[n + i] : 0;
+        out->position[i] = start[i] + (angle ? scale * values->offset[i] : 0);
+        out->velocity[i] = angle ? scale * values->offset[n + i] : 0;
     }
     scene->stand(out->robot, support_of(values), out->position, out->velocity);
     for (int i = 0; i < n; i++) {
         if (!is_posture(scene, i)) {
-            out->position[i] += values->offset[i];
-            out->velocity[i] += values->offset[n + i];
+            out->position[i] += scale * values->offset[i];
+            out->velocity[i] += scale * values->offset[n + i];
         }
     }
 }

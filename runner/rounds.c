@@ -82,6 +82,29 @@ static void infer(struct store_block *block, size_t slot, int label)
     store_put(block, slot, &result);
 }
 
+/* Whether the file holds all of these rows already, as a resumed run may find; what is damaged is
+ * counted. */
+static bool are_stored(struct rounds *rounds, const struct rows *list, bool *stored,
+                       stance_message *message)
+{
+    stance_result results[STORE_ROWS];
+    bool whole[STORE_ROWS];
+
+    *stored = rounds->work->resume;
+    for (uint64_t at = 0, n; rounds->work->resume && at < list->count; at += n) {
+        n = list->count - at < STORE_ROWS ? list->count - at : STORE_ROWS;
+        const struct rows rows = rows_part(list, at, n);
+        if (!work_verify(rounds->work, &rows, results, whole, message)) {
+            return false;
+        }
+        for (uint64_t i = 0; i < n; i++) {
+            const int label = refine_label(rounds->refine, rows_at(&rows, i));
+            *stored = *stored && whole[i] && (int)results[i].outcome == label - 1;
+        }
+    }
+    return true;
+}
+
 /* Writes the inferred rows of this rank's part of the file, INFER_ROWS at a time. */
 static bool write_inferred(struct rounds *rounds, stance_message *message)
 {
@@ -102,7 +125,9 @@ static bool write_inferred(struct rounds *rounds, stance_message *message)
         if (work_told_to_stop(work)) {
             return true;
         }
-        if (!store_write(work->store, rounds->block, 0, &list, message)) {
+        bool stored;
+        if (!are_stored(rounds, &list, &stored, message) ||
+            (!stored && !store_write(work->store, rounds->block, 0, &list, message))) {
             return false;
         }
         for (size_t k = 0; k < list.count; k++) {

@@ -3,12 +3,13 @@
  * The run is a list of stages. Every rank goes through each, then all agree on how it went: an
  * error of any rank is printed once, and all leave together with its exit code.
  */
+#include "run.h"
+
 #include "build_info.h"
-#include "checksum.h"
 #include "command.h"
+#include "crash.h"
 #include "deadline.h"
 #include "instruction_set.h"
-#include "lock.h"
 #include "report.h"
 #include "rounds.h"
 #include "supervise.h"
@@ -21,46 +22,15 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
-struct options {
-    const char *scenario, *output; /* output NULL: the default */
-    const char **sets;
-    size_t set_count;
-    bool force, resume, single, trace, dry_run, quiet, help;
-    uint64_t single_case;
-    double time_limit; /* s, INFINITY: none */
-};
-
-struct failure {
-    int code;       /* EXIT_DONE: none */
-    char text[600]; /* one line; empty when it has been printed already */
-};
-
-struct run {
-    int argc;
-    char **argv;
-    struct parallel parallel;
-    struct options options;
-    struct scenario *scenario;
-    char file[1024];
-    bool resume, replace; /* the file exists and is gone on with, or replaced */
-    struct lock lock;
-    struct plan plan;
-    struct store *store;
-    struct work work;
-    struct failure failure; /* of this rank */
-    double start;
-};
-
-static void fail(struct run *run, int code, const char *text)
+void run_fail(struct run *run, int code, const char *text)
 {
     run->failure.code = code;
     snprintf(run->failure.text, sizeof run->failure.text, "%s", text);
 }
 
-static void fail_io(struct run *run, const stance_message *message)
+void run_fail_io(struct run *run, const stance_message *message)
 {
     snprintf(run->failure.text, sizeof run->failure.text, "stance run: %s", message->text);
     run->failure.code = EXIT_IO;
@@ -119,6 +89,31 @@ static bool usage(const char *text, const char *word)
     return false;
 }
 
+/* A number without sign. */
+static bool parse_number(const char *text, uint64_t *number)
+{
+    char *end;
+    errno = 0;
+    *number = strtoull(text, &end, 10);
+    return text[0] >= '0' && text[0] <= '9' && !*end && errno == 0;
+}
+
+static bool check_extend(struct options *o, const char *extend, const char *only)
+{
+    if (!extend) {
+        return !o->from || usage("--from names the file that --extend begins with", NULL);
+    }
+    if (only) {
+        return usage("--extend and --only exclude each other", NULL);
+    }
+    if (!parse_number(extend, &o->extend_count) || o->extend_count == 0) {
+        return usage("--extend takes the new sweep.sample.count, not", extend);
+    }
+    snprintf(o->extend_set, sizeof o->extend_set, "sweep.sample.count=%" PRIu64, o->extend_count);
+    o->sets[o->set_count++] = o->extend_set;
+    return true;
+}
+
 static bool check_options(struct options *o, const char *only, const char *limit)
 {
     if (o->force && o->resume) {
@@ -134,10 +129,7 @@ static bool check_options(struct options *o, const char *only, const char *limit
         return usage("--time-limit takes a duration such as 90s, 55m or 1h30m, not", limit);
     }
     if (only) {
-        char *end;
-        errno = 0;
-        o->single_case = strtoull(only, &end, 10);
-        if (only[0] < '0' || only[0] > '9' || *end || errno) {
+        if (!parse_number(only, &o->single_case)) {
             return usage("--only takes the flat index of a case, not", only);
         }
         o->single = true;
@@ -148,8 +140,8 @@ static bool check_options(struct options *o, const char *only, const char *limit
 /* Prints what is wrong with them on standard error. */
 static bool read_options(struct options *o, int argc, char **argv)
 {
-    const char *limit = NULL, *only = NULL;
-    size_t outputs, limits, onlys, force, resume, trace, dry_run, quiet, operands;
+    const char *limit = NULL, *only = NULL, *extend = NULL;
+    size_t extends, froms, outputs, limits, onlys, force, resume, trace, dry_run, quiet, operands;
     const struct option_spec specs[] = {
         {"-o", true, &o->output, 1, &outputs},
         {"--set", true, o->sets, (size_t)argc, &o->set_count},
@@ -160,6 +152,8 @@ static bool read_options(struct options *o, int argc, char **argv)
         {"--trace", false, NULL, 0, &trace},
         {"--dry-run", false, NULL, 0, &dry_run},
         {"--quiet", false, NULL, 0, &quiet},
+        {"--extend", true, &extend, 1, &extends},
+        {"--from", true, &o->from, 1, &froms},
     };
     o->time_limit = INFINITY;
     if (!command_options(&command_run, argc, argv, specs, sizeof specs / sizeof specs[0],
@@ -174,7 +168,7 @@ static bool read_options(struct options *o, int argc, char **argv)
     if (!o->help && operands != 1) {
         return usage("a scenario file must be given", NULL);
     }
-    return o->help || check_options(o, only, limit);
+    return o->help || (check_options(o, only, limit) && check_extend(o, extend, only));
 }
 
 static void stage_options(struct run *run)
@@ -185,7 +179,7 @@ static void stage_options(struct run *run)
 
     o->sets = malloc((size_t)run->argc * sizeof *o->sets);
     if (!o->sets) {
-        fail(run, EXIT_IO, "stance run: not enough memory");
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
     }
     /* Rank 0 first: it says what is wrong, and the others need not. */
     if (run->parallel.rank == 0 && o->sets) {
@@ -211,6 +205,26 @@ static void stage_options(struct run *run)
 
 /* ---- the scenario ------------------------------------------------------------------------- */
 
+/* From the file, with what --set changes; --extend changes the count of a sample that there is. */
+static bool read_scenario(struct run *run)
+{
+    const struct options *o = &run->options;
+    struct scenario *s = run->scenario;
+    const size_t own = o->set_count - (o->extend_count > 0);
+
+    if (o->extend_count > 0) {
+        if (!scenario_read(s, o->scenario, NULL, o->sets, own, stderr)) {
+            return false;
+        }
+        const bool good = run_extend_check(run);
+        scenario_free(s);
+        if (!good) {
+            return false;
+        }
+    }
+    return scenario_read(s, o->scenario, NULL, o->sets, o->set_count, stderr);
+}
+
 /* Rank 0 reads the file; the others read the text that it resolved to. */
 static void stage_scenario(struct run *run)
 {
@@ -220,9 +234,9 @@ static void stage_scenario(struct run *run)
 
     run->scenario = calloc(1, sizeof *run->scenario);
     if (run->parallel.rank == 0 && run->scenario) {
-        if (scenario_read(run->scenario, o->scenario, NULL, o->sets, o->set_count, stderr)) {
+        if (read_scenario(run)) {
             length = strlen(run->scenario->text) + 1;
-        } else {
+        } else if (run->failure.code == EXIT_DONE) {
             /* The reader has printed why. */
             run->failure.code = access(o->scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
         }
@@ -238,7 +252,7 @@ static void stage_scenario(struct run *run)
             !scenario_read(run->scenario, o->scenario, text, NULL, 0, nowhere)) {
             free(run->scenario);
             run->scenario = NULL;
-            fail(run, EXIT_IO, "stance run: a rank cannot read the scenario that rank 0 reads");
+            run_fail(run, EXIT_IO, "stance run: a rank cannot read the scenario that rank 0 reads");
         }
         free(text);
     } else if (length > 0) {
@@ -265,20 +279,23 @@ static void name_file(struct run *run)
     const struct options *o = &run->options;
     if (o->output) {
         if (snprintf(run->file, sizeof run->file, "%s", o->output) >= (int)sizeof run->file - 8) {
-            fail(run, EXIT_IO, "stance run: the name of the results file is too long");
+            run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
         }
     } else if (o->single) {
         snprintf(run->file, sizeof run->file, "results/%s-case%" PRIu64 ".h5", run->scenario->name,
                  o->single_case);
+    } else if (o->extend_count > 0) {
+        snprintf(run->file, sizeof run->file, "results/%s-%" PRIu64 ".h5", run->scenario->name,
+                 o->extend_count);
     } else {
         snprintf(run->file, sizeof run->file, "results/%s.h5", run->scenario->name);
     }
 }
 
-/* Refuses a file that was made from another scenario; says where they begin to differ. */
-static bool same_scenario(struct run *run, const struct store_origin *origin)
+/* Says where they begin to differ. */
+bool run_same_scenario(struct run *run, const char *file, const char *text)
 {
-    const char *old = origin->scenario, *new = run->scenario->text;
+    const char *old = text, *new = run->scenario->text;
     int line = 1;
 
     if (strcmp(old, new) == 0) {
@@ -290,7 +307,7 @@ static bool same_scenario(struct run *run, const struct store_origin *origin)
             snprintf(run->failure.text, sizeof run->failure.text,
                      "stance run: %.200s was made from another scenario: line %d of its resolved "
                      "text is '%.*s', now it is '%.*s'",
-                     run->file, line, a < 90 ? (int)a : 90, old, b < 90 ? (int)b : 90, new);
+                     file, line, a < 90 ? (int)a : 90, old, b < 90 ? (int)b : 90, new);
             run->failure.code = EXIT_USAGE;
             return false;
         }
@@ -313,40 +330,44 @@ static int check_file(void *file)
     return good ? EXIT_DONE : EXIT_IO;
 }
 
+int run_check_file(const char *file)
+{
+    return supervise(check_file, (void *)(uintptr_t)file, file);
+}
+
+void run_warn_of_revision(const char *file, const char *revision)
+{
+    if (strcmp(revision, build_revision()) != 0) {
+        fprintf(stderr,
+                "stance run: warning: %s was begun by revision %s, this is %s: results may "
+                "differ\n",
+                file, revision, build_revision());
+    }
+}
+
 /* An existing file that is to be gone on with. */
 static void look_into_file(struct run *run)
 {
     struct store_origin origin;
-    struct store_counts counts = {0};
     stance_message message = {""};
 
-    run->failure.code = supervise(check_file, run->file, run->file);
+    run->failure.code = run_check_file(run->file);
     if (run->failure.code != EXIT_DONE) {
         return; /* it has been said why */
     }
     if (!store_read_origin(run->file, &origin, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         return;
     }
-    if (same_scenario(run, &origin)) {
-        if (strcmp(origin.revision, build_revision()) != 0) {
-            fprintf(stderr,
-                    "stance run: warning: %s was begun by revision %s, this is %s: results may "
-                    "differ\n",
-                    run->file, origin.revision, build_revision());
-        }
+    if (run_same_scenario(run, run->file, origin.scenario)) {
+        run_warn_of_revision(run->file, origin.revision);
         for (int a = 0; a < run->scenario->axes; a++) {
             if (!store_read_axis(run->file, &run->scenario->axis[a], &message)) {
-                fail_io(run, &message);
+                run_fail_io(run, &message);
             }
-        }
-        if (!store_count(run->file, &counts, &message)) {
-            fail_io(run, &message);
         }
     }
     store_origin_free(&origin);
-    struct lock_note note = {(double)time(NULL), counts.done + counts.failed};
-    lock_write_note(&run->lock, &note);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -366,23 +387,29 @@ static void claim_file(struct run *run)
     }
     if (exists && !S_ISREG(information.st_mode) && !S_ISLNK(information.st_mode)) {
         snprintf(message.text, sizeof message.text, "%.200s: not a regular file", run->file);
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         return;
     }
     if (!o->output && mkdir("results", 0777) != 0 && errno != EEXIST) {
         snprintf(message.text, sizeof message.text, "cannot make the directory results: %s",
                  strerror(errno));
-        fail_io(run, &message);
+        run_fail_io(run, &message);
         return;
     }
     if (!lock_take(&run->lock, run->file, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
+        return;
+    }
+    if (!pulse_begin(&run->pulse, &run->lock, &run->parallel, "starting")) {
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
         return;
     }
     run->resume = exists && o->resume;
     run->replace = exists && o->force;
     if (run->resume) {
         look_into_file(run);
+    } else if (o->extend_count > 0) {
+        run_extend_open(run);
     }
 }
 
@@ -397,16 +424,39 @@ static void stage_claim(struct run *run)
 
 /* ---- the plan ----------------------------------------------------------------------------- */
 
-/* Points of logarithmic axes come from the C library and may differ between machines: every rank
- * takes those of rank 0, which has them from the file when the run is resumed. */
+/* Points of logarithmic axes and of samples come from libraries and may differ between machines:
+ * every rank takes those of rank 0, which has them from the file when the run is resumed. */
 static void share_axes(struct run *run)
 {
     for (int a = 0; a < run->scenario->axes; a++) {
         struct scenario_axis *axis = &run->scenario->axis[a];
-        if (axis->log) {
-            parallel_broadcast(&run->parallel, axis->value, axis->count * sizeof *axis->value);
+        if (axis->log || axis->sample) {
+            parallel_broadcast(&run->parallel, axis->value,
+                               axis->count * (size_t)axis->paths * sizeof *axis->value);
         }
     }
+}
+
+/* While designs and captured sets are computed: whether any rank is to stop. */
+static bool out_of_time(void *context)
+{
+    struct run *run = context;
+    stance_message message = {""};
+    const double now = plan_clock();
+    bool stop = work_stop_asked() || now - run->start > run->options.time_limit;
+
+    if (run->parallel.rank == 0 && run->pulse.lock) {
+        stop = !pulse_beat(&run->pulse, now, 0, 0, 0, &message) || stop;
+    }
+    if (stop || run->parallel.rank == 0 || now >= run->look_at) {
+        run->look_at = now + schedule_look_interval(run->parallel.size);
+        stop = parallel_add(&run->parallel, COUNTER_STOP, stop) != 0 || stop;
+        parallel_beat(&run->parallel, ++run->work.beats);
+    }
+    if (message.text[0]) {
+        run_fail_io(run, &message);
+    }
+    return stop;
 }
 
 static void stage_plan(struct run *run)
@@ -415,9 +465,44 @@ static void stage_plan(struct run *run)
     const struct options *o = &run->options;
 
     share_axes(run);
-    if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
+    if (!parallel_share(&run->parallel)) {
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
+    } else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
         fail_scenario(run, &error);
     }
+    run->plan.stop = out_of_time;
+    run->plan.stop_context = run;
+}
+
+/* A stop before there is a file. */
+static void stop_early(struct run *run, const char *what)
+{
+    if (run->failure.code == EXIT_DONE) {
+        run->failure.code = EXIT_INTERRUPTED;
+        run_say_stopped(run, what);
+    }
+}
+
+/* Those that --extend has from the old file; every rank is told which and what they are. */
+static bool take_designs(struct run *run)
+{
+    struct plan *plan = &run->plan;
+    stance_message message = {""};
+    bool good = true;
+
+    if (run->options.extend_count == 0 || run->options.dry_run) {
+        return true;
+    }
+    if (run->extension) {
+        good = run_extend_designs(run, &message);
+    }
+    parallel_broadcast(&run->parallel, &good, sizeof good);
+    if (!good && run->parallel.rank == 0) {
+        run_fail_io(run, &message);
+    }
+    parallel_broadcast(&run->parallel, plan->design, plan->designs * sizeof *plan->design);
+    parallel_broadcast(&run->parallel, plan->design_status, plan->designs);
+    return good;
 }
 
 static void stage_designs(struct run *run)
@@ -428,7 +513,14 @@ static void stage_designs(struct run *run)
     if (run->resume) {
         return; /* they are in the file */
     }
+    if (!take_designs(run)) {
+        return;
+    }
     good = plan_compute_designs(&run->plan, &run->parallel, &error);
+    if (!good && !error.message.text[0]) {
+        stop_early(run, "stopped while designs were computed: nothing is stored");
+        return;
+    }
     if (good && run->parallel.rank == 0) {
         good = plan_check_cases(&run->plan, &error);
     }
@@ -439,14 +531,7 @@ static void stage_designs(struct run *run)
     }
 }
 
-static bool out_of_time(void *context)
-{
-    const struct run *run = context;
-    return work_stop_asked() || plan_clock() - run->start > run->options.time_limit;
-}
-
-/* Sets in which cases are captured, where the scenario asks for them. A stop meanwhile leaves no
- * file. */
+/* Sets in which cases are captured, where the scenario asks for them. */
 static void stage_captures(struct run *run)
 {
     stance_message message = {""};
@@ -456,11 +541,9 @@ static void stage_captures(struct run *run)
         return;
     }
     if (message.text[0]) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     } else {
-        snprintf(run->failure.text, sizeof run->failure.text,
-                 "stance run: stopped while captured sets were estimated: nothing is stored");
-        run->failure.code = EXIT_INTERRUPTED;
+        stop_early(run, "stopped while captured sets were estimated: nothing is stored");
     }
 }
 
@@ -504,12 +587,9 @@ static void stage_create(struct run *run)
         if (run->replace && unlink(run->file) != 0) {
             snprintf(message.text, sizeof message.text, "cannot replace %.150s: %s", run->file,
                      strerror(errno));
-            fail_io(run, &message);
+            run_fail_io(run, &message);
         } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &message)) {
-            fail_io(run, &message);
-        } else {
-            struct lock_note note = {(double)time(NULL), 0};
-            lock_write_note(&run->lock, &note);
+            run_fail_io(run, &message);
         }
     }
     free(hosts);
@@ -518,10 +598,23 @@ static void stage_create(struct run *run)
 static void stage_open(struct run *run)
 {
     stance_message message = {""};
+    if (run->parallel.rank == 0) {
+        pulse_guard(&run->pulse, run->file);
+    }
     if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &message) ||
         !store_read_designs(run->store, &run->plan, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     }
+}
+
+/* Rows of the old file. */
+static void stage_extend(struct run *run)
+{
+    stance_message message = {""};
+    if (run->extension && !run_extend_copy(run, &message)) {
+        run_fail_io(run, &message);
+    }
+    run_extend_close(run);
 }
 
 static void stage_compute(struct run *run)
@@ -529,20 +622,18 @@ static void stage_compute(struct run *run)
     stance_message message = {""};
     run->work = (struct work){
         .plan = &run->plan,
+        .parallel = &run->parallel,
+        .pulse = run->parallel.rank == 0 ? &run->pulse : NULL,
+        .beats = run->work.beats,
         .store = run->store,
-        .resume = run->resume,
+        .resume = run->resume || run->options.extend_count > 0,
         .quiet = run->options.quiet,
         .start = run->start,
         .time_limit = run->options.time_limit,
     };
-    if (!parallel_share(&run->parallel)) {
-        fail(run, EXIT_IO, "stance run: not enough memory");
-        return;
-    }
-    run->work.parallel = &run->parallel;
     const bool refined = run->scenario->refine.given && !run->plan.single;
     if (refined ? !rounds_run(&run->work, &message) : !work_run(&run->work, NULL, NULL, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     }
 }
 
@@ -562,7 +653,7 @@ static void stage_timing(struct run *run)
     parallel_gather(&run->parallel, &computed, sizeof computed, cases);
     if (run->parallel.rank == 0 &&
         !store_add_timing(run->store, run->parallel.size, seconds, cases, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     }
     free(seconds);
     free(cases);
@@ -575,130 +666,43 @@ static void stage_close(struct run *run)
 
     run->store = NULL;
     if (!store_close(store, &message)) {
-        fail_io(run, &message);
+        run_fail_io(run, &message);
     } else if (run->parallel.rank == 0) {
         int descriptor = open(run->file, O_RDWR | O_CLOEXEC);
         if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0) {
             snprintf(message.text, sizeof message.text, "%.150s: cannot bring it to the disk: %s",
                      run->file, strerror(errno));
-            fail_io(run, &message);
+            run_fail_io(run, &message);
         }
     }
 }
 
-/* ---- the end ------------------------------------------------------------------------------ */
-
-static void print_word(FILE *to, const char *word)
-{
-    if (word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                          "_-+./,:=@%")] == '\0' &&
-        word[0]) {
-        fprintf(to, " %s", word);
-        return;
-    }
-    fputs(" '", to);
-    for (; *word; word++) {
-        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, to);
-    }
-    fputc('\'', to);
-}
-
-/* The command that goes on: the same one with --resume. */
-static void print_interrupted(const struct run *run, uint64_t finished)
-{
-    char *line = NULL; /* in one piece: a launcher mixes what ranks write in pieces */
-    size_t size = 0;
-    FILE *to = open_memstream(&line, &size);
-    if (!to) {
-        return;
-    }
-    fprintf(to, "stance run: stopped at %" PRIu64 " of %" PRIu64 " cases; go on with:", finished,
-            run->plan.rows);
-    if (run->parallel.size > 1) {
-        fprintf(to, " mpirun -n %d", run->parallel.size);
-    }
-    fprintf(to, " stance run");
-    for (int i = 1; i < run->argc; i++) {
-        if (strcmp(run->argv[i], "--force") != 0 && strcmp(run->argv[i], "--resume") != 0) {
-            print_word(to, run->argv[i]);
-        }
-    }
-    fputs(run->options.single ? " --force\n" : " --resume\n", to);
-    if (fclose(to) == 0) {
-        fputs(line, stderr);
-    }
-    free(line);
-}
-
-/* What came out, over all ranks. */
-struct sums {
-    uint64_t outcome[WORK_OUTCOMES], failed, finished, computed, inferred;
-};
-
-static void print_summary(const struct run *run, const struct sums *sums)
-{
-    static const char *const name[WORK_OUTCOMES] = {"without outcome", "stabilised", "fell",
-                                                    "rested", "undecided"};
-    double wall = plan_clock() - run->start;
-    const char *separator = ": ";
-
-    printf("%s: %" PRIu64 " case%s", run->file, sums->finished, sums->finished == 1 ? "" : "s");
-    for (int i = 0; i < WORK_OUTCOMES; i++) {
-        if (sums->outcome[i] > 0) {
-            printf("%s%" PRIu64 " %s", separator, sums->outcome[i], name[i]);
-            separator = ", ";
-        }
-    }
-    if (sums->failed > 0) {
-        printf("%s%" PRIu64 " failed", separator, sums->failed);
-    }
-    if (sums->inferred > 0) {
-        printf("; %" PRIu64 " of them inferred", sums->inferred);
-    }
-    if (sums->computed + sums->inferred < sums->finished) {
-        printf("; %" PRIu64 " of them computed now", sums->computed);
-    }
-    printf("; %.1f s on %d rank%s\n", wall, run->parallel.size, run->parallel.size == 1 ? "" : "s");
-    fflush(stdout);
-}
-
-/* Adds up over the ranks and says what came out. */
-static int conclude(struct run *run)
-{
-    const struct work *work = &run->work;
-    struct sums sums = {.failed = work->failed,
-                        .finished = work->finished,
-                        .computed = work->computed,
-                        .inferred = work->inferred};
-    memcpy(sums.outcome, work->outcome, sizeof sums.outcome);
-    parallel_sum(&run->parallel, (uint64_t *)&sums, sizeof sums / sizeof(uint64_t));
-    bool complete = sums.finished == run->plan.rows;
-
-    if (run->parallel.rank == 0) {
-        if (!run->options.quiet) {
-            print_summary(run, &sums);
-        }
-        if (!complete) {
-            print_interrupted(run, sums.finished);
-        } else if (sums.failed > 0) {
-            fprintf(stderr,
-                    "stance run: %" PRIu64
-                    " case%s failed; the variable `failure` in %s says why\n",
-                    sums.failed, sums.failed == 1 ? "" : "s", run->file);
-        }
-    }
-    return !complete ? EXIT_INTERRUPTED : sums.failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
-}
+/* ---- the whole ----------------------------------------------------------------------------- */
 
 /* Goes through the stages; stops where one failed on any rank. */
 static int go_through(struct run *run)
 {
-    static void (*const stage[])(struct run *) = {
-        stage_options, stage_scenario, stage_claim,   stage_plan,   stage_designs, stage_captures,
-        stage_create,  stage_open,     stage_compute, stage_timing, stage_close,
+    static const struct {
+        void (*go)(struct run *);
+        const char *doing;
+    } stage[] = {
+        {stage_options, "reading its options"},
+        {stage_scenario, "reading the scenario"},
+        {stage_claim, "looking into the results file"},
+        {stage_plan, "making the plan"},
+        {stage_designs, "computing designs"},
+        {stage_captures, "estimating captured sets"},
+        {stage_create, "creating the results file"},
+        {stage_open, "opening the results file"},
+        {stage_extend, "copying the results of the old file"},
+        {stage_compute, "computing"},
+        {stage_timing, "storing times"},
+        {stage_close, "closing the results file"},
     };
     for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {
-        stage[i](run);
+        crash_stage(stage[i].doing);
+        run->pulse.doing = stage[i].doing;
+        stage[i].go(run);
         if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
                             sizeof run->failure)) {
             if (run->parallel.rank == 0 && run->failure.text[0]) {
@@ -706,14 +710,14 @@ static int go_through(struct run *run)
             }
             return run->failure.code;
         }
-        if (stage[i] == stage_options && run->options.help) {
+        if (stage[i].go == stage_options && run->options.help) {
             return EXIT_DONE;
         }
-        if (stage[i] == stage_designs && run->options.dry_run) {
+        if (stage[i].go == stage_designs && run->options.dry_run) {
             return EXIT_DONE;
         }
     }
-    return conclude(run);
+    return run_conclude(run);
 }
 
 static int run_run(int argc, char **argv)
@@ -743,6 +747,7 @@ static int run_run(int argc, char **argv)
     if (run->parallel.size > 1) {
         deadline_prepare(run->parallel.rank);
     }
+    crash_watch(run->parallel.rank);
     work_catch_signals();
     int code = go_through(run);
     store_abandon(run->store);
@@ -750,7 +755,9 @@ static int run_run(int argc, char **argv)
     if (run->scenario) {
         scenario_free(run->scenario);
     }
+    run_extend_close(run);
     lock_release(&run->lock);
+    pulse_end(&run->pulse);
     parallel_finish(&run->parallel);
     free(run->options.sets);
     free(run->scenario);
@@ -761,6 +768,7 @@ static int run_run(int argc, char **argv)
 const struct command command_run = {
     "run",
     "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume]\n"
+    "           [--extend COUNT [--from FILE]]\n"
     "           [--time-limit TIME] [--only CASE [--trace]] [--dry-run] [--quiet]",
     "compute every case of a scenario; alone or under mpirun -n N",
     run_run,
@@ -774,6 +782,11 @@ const struct command command_run = {
     "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
     "  --only CASE        compute one case of the sweep, by its flat index, to a file of its own\n"
     "  --trace            ... and record its trajectory, each 0.01 s unless record.every says\n"
+    "  --extend COUNT     a new file with sweep.sample.count COUNT, by default\n"
+    "                     results/<scenario name>-COUNT.h5, which takes over what a file of the\n"
+    "                     same scenario with fewer points holds, and computes the rest. That file\n"
+    "                     need not be complete and stays as it is. Not for method lhs\n"
+    "  --from FILE        ... that file; default results/<scenario name>.h5\n"
     "  --dry-run          plan and estimate, write nothing\n"
     "  --quiet            neither progress nor summary\n"
     "\n"

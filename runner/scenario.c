@@ -468,6 +468,7 @@ static void read_by_hand(struct reader *r)
     if (grid && r->s->scene) {
         sweep_read(r, grid);
     }
+    sample_read(r);
     read_record(r);
     sweep_read_refine(r);
 }
@@ -681,6 +682,7 @@ void scenario_free(struct scenario *s)
     for (int a = 0; a < s->axes; a++) {
         sweep_free(&s->axis[a]);
     }
+    sample_free(&s->sample);
     free(s->record_list);
     free(s->text);
     free(s->place);

@@ -8,12 +8,13 @@
 #define STANCE_RUNNER_SCENARIO_H
 
 #include "../engine/stance.h"
+#include "sampling.h"
 
 #include <stdio.h>
 
 enum {
     SCENARIO_MAX_AXES = 24,
-    SCENARIO_MAX_PATHS = 8, /* paths that one axis varies together */
+    SCENARIO_MAX_PATHS = 48, /* paths of one axis */
     SCENARIO_MAX_STATES = 2 * STANCE_MAX_COORDINATES,
     SCENARIO_MAX_GAINS = STANCE_MAX_ACTUATORS * 2 * STANCE_MAX_POSTURE,
     SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
@@ -42,6 +43,7 @@ struct scenario_values {
     struct scenario_equilibrium equilibrium; /* initial.equilibrium */
     int support_foot;                        /* 1-based contact; 0: none */
     double offset[SCENARIO_MAX_STATES];      /* positions, then velocities, in the scene's order */
+    double offset_scale;                     /* of all of them */
     int state_given;                         /* initial.state instead of an equilibrium */
     double state[SCENARIO_MAX_STATES];
 
@@ -79,9 +81,16 @@ struct scenario_values {
 
 struct scenario_field; /* a row of the schema, see schema.h */
 
-/* One axis of the grid: `count` points; along it `paths` fields change together. */
+/* What there is to know of a path that sweep.sample varies. */
+struct scenario_meaning {
+    char unit[24], text[160]; /* as of an axis */
+    char *words;              /* of an enumeration, separated by blanks; NULL: it is none */
+};
+
+/* One axis of the grid: `count` points; along it `paths` fields change together. The last axis may
+ * be that of sweep.sample: its points are those of the design. */
 struct scenario_axis {
-    char name[96];  /* the path as written (the first one), used as dimension name */
+    char name[96];  /* the path as written (the first one), used as dimension name; or "sample" */
     char unit[24];  /* of the first path, "1" where it has none */
     char text[160]; /* its documentation, as long_name */
     int paths;
@@ -99,8 +108,27 @@ struct scenario_axis {
     char **word;
     double from, to;
     bool log;
-    bool refined; /* sweep.refine leaves points of it out */
+    bool refined;                     /* sweep.refine leaves points of it out */
+    bool sample;                      /* the points of sweep.sample; `words` is false */
+    struct scenario_meaning *meaning; /* sample: [paths] */
     int line, column;
+};
+
+/* One entry of sweep.sample.vary: where the unit interval goes. */
+struct scenario_factor {
+    int first, paths; /* of the axis: what it moves together */
+    bool listed;      /* `values`, each equally likely */
+    bool log;
+    size_t points; /* listed: how many; else 2: from and to */
+    double *value; /* [points * paths] */
+};
+
+/* sweep.sample: a design in the unit cube, and what its factors are; the axis of its points is the
+ * last one. Without it `given` is false. */
+struct scenario_sample {
+    bool given;
+    struct sampling design;         /* without its tables: sampling_begin makes them */
+    struct scenario_factor *factor; /* [design.factors] */
 };
 
 /* sweep.refine: which cases are simulated depends on what others became, see refine.h. */
@@ -126,6 +154,7 @@ struct scenario {
     int axes;
     struct scenario_axis axis[SCENARIO_MAX_AXES];
     uint64_t cases; /* product of the counts; 1 without a sweep */
+    struct scenario_sample sample;
     struct scenario_refine refine;
 
     double record_every; /* s; 0: not given, and no trajectories */
@@ -155,9 +184,13 @@ bool scenario_place(const struct scenario *s, const char *text, int *line, int *
 
 /* Value k of point `i` of an axis (k < paths); for words the enumeration's number. */
 double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);
-/* Text of that value, for messages and pictures. */
+/* Text of that value, for messages and pictures; of an infinite one "none". */
 void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer,
                         size_t size);
+
+/* Where a case stands on the grid axes alone, flat, and which point of sweep.sample it has (0
+ * without one). By these random numbers are keyed: they do not depend on sweep.sample.count. */
+void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid, uint64_t *sample);
 
 /* Fields of case `index` (flat, row-major in the order of the axes): base, then the axes. */
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);

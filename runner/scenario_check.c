@@ -207,9 +207,9 @@ static void check_uses(struct reader *r, const struct situation *is)
             const struct swept_field *swept = &r->swept[a][k];
             needed = obstacle(r, is, swept->field->use, &instead);
             if (needed) {
-                problem_add(&r->problems, swept->mark,
-                            "sweep.grid[%d]: %s is used only with %s (here: %s)", a,
-                            r->s->axis[a].path[k], needed, instead);
+                char name[AXIS_NAME];
+                problem_add(&r->problems, swept->mark, "%s: %s is used only with %s (here: %s)",
+                            axis_key(r->s, a, name), r->s->axis[a].path[k], needed, instead);
             }
         }
     }
@@ -366,9 +366,10 @@ static void check_controller(struct reader *r, const struct situation *is)
             const struct swept_field *swept = &r->swept[a][k];
             if (strcmp(swept->field->path, "controller.poles[]") == 0 &&
                 base->pole_im[swept->index[0]] != 0) {
+                char name[AXIS_NAME];
                 problem_add(&r->problems, swept->mark,
-                            "sweep.grid[%d]: %s is complex; only a real pole can be swept", a,
-                            r->s->axis[a].path[k]);
+                            "%s: %s is complex; only a real pole can be swept",
+                            axis_key(r->s, a, name), r->s->axis[a].path[k]);
             }
         }
     }

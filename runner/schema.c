@@ -18,6 +18,7 @@ static const char *const design_words[] = {"place", "place-schur", "lqr", "gains
 static const char *const design_time_words[] = {"continuous", "sampled"};
 static const char *const branch_words[] = {"upper", "lower"};
 static const char *const spacing_words[] = {"linear", "log"};
+static const char *const truth_words[] = {"false", "true"};
 static const char *const record_words[] = {"none", "all"};
 static const char *const settle_words[] = {"off"};
 static const char *const capture_words[] = {"off", "estimated"};
@@ -121,6 +122,12 @@ static const struct row rows[] = {
     {FAMILY_OFFSET, {.path = "initial.offset.*", .type = FIELD_NUMBER, .by_scene = true,
                      .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset),
                      .text = "initial offset: %s", .need = NEED_EQUILIBRIUM}},
+    {0, {.path = "initial.offset.scale", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset_scale), .unit = "1", .fallback = 1,
+         .low = -1e6, .high = 1e6, .text = "factor of all other offsets",
+         .more = "Swept beside directions (sweep.sample.method sphere) it goes along rays from the "
+                 "equilibrium.",
+         .need = NEED_EQUILIBRIUM}},
     {0, {.path = "initial.state", .type = FIELD_MAP, .by_scene = true, .use = USE_STATE, BY_HAND,
          .text = "the whole initial state by hand", .more = "Excludes initial.equilibrium."}},
     {FAMILY_STATE, {.path = "initial.state.*", .type = FIELD_NUMBER, .by_scene = true,
@@ -371,6 +378,46 @@ static const struct row rows[] = {
          WORDS(spacing_words), .text = "equal differences or equal ratios between points"}},
     {0, {.path = "sweep.grid[].values", .type = FIELD_VALUES, BY_HAND,
          .text = "the points one by one: numbers or words, with `paths` a list for each point"}},
+    {0, {.path = "sweep.sample", .type = FIELD_MAP, BY_HAND,
+         .text = "a designed sample of several fields, at each point of the grid",
+         .more = "A further dimension, sample, after the grid's. Points follow from seed and their "
+                 "number alone, whatever count is (but for lhs): stance run --extend adds some."}},
+    {0, {.path = "sweep.sample.method", .type = FIELD_WORD, BY_HAND, .fallback = NAN,
+         .words = sampling_words, .word_count = SAMPLING_METHODS,
+         .text = "how points are chosen",
+         .more = "random: independent. lhs: Latin hypercube, each of count strata of each factor "
+                 "holds one point. sobol: Sobol' sequence, shifted digitally; best with a power of "
+                 "two. saltelli: blocks of factors + 2 points for Sobol' indices. morris: "
+                 "trajectories of factors + 1 points for elementary effects. sphere: directions, "
+                 "uniform on the ellipsoid inscribed in the box of the ranges."}},
+    {0, {.path = "sweep.sample.count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN, .low = 1,
+         .high = 1 << SAMPLING_MAX_BITS,
+         .text = "number of points; of blocks with saltelli, of trajectories with morris"}},
+    {0, {.path = "sweep.sample.second_order", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(truth_words), .text = "whether saltelli's blocks have what second-order indices need",
+         .more = "2 factors + 2 points in each. Only with method saltelli."}},
+    {0, {.path = "sweep.sample.levels", .type = FIELD_INTEGER, BY_HAND, .fallback = 4, .low = 2,
+         .high = 1000, .text = "levels of each factor, an even number",
+         .more = "A step of a trajectory is levels / (2 (levels - 1)) of the range. Only with method "
+                 "morris."}},
+    {0, {.path = "sweep.sample.vary", .type = FIELD_FACTORS, BY_HAND,
+         .text = "the factors: what varies, and within which bounds",
+         .more = "A factor is {path, from, to, spacing}, {path, values: [...]}, or of several fields "
+                 "that move together {paths: [...], from: [...], to: [...]} or {paths: [...], "
+                 "values: [[...], ...]}."}},
+    {0, {.path = "sweep.sample.vary[].path", .type = FIELD_PATH, BY_HAND,
+         .text = "the field that the factor varies", .more = "Whatever may be swept."}},
+    {0, {.path = "sweep.sample.vary[].paths", .type = FIELD_PATHS, BY_HAND,
+         .high = SCENARIO_MAX_PATHS, .text = "fields that the factor varies together"}},
+    {0, {.path = "sweep.sample.vary[].from", .type = FIELD_ENDS, BY_HAND,
+         .text = "lower bound; with paths a list, one end of the segment",
+         .more = "Whole numbers between the bounds are equally likely, both included."}},
+    {0, {.path = "sweep.sample.vary[].to", .type = FIELD_ENDS, BY_HAND,
+         .text = "upper bound; with paths a list, the other end"}},
+    {0, {.path = "sweep.sample.vary[].spacing", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(spacing_words), .text = "uniform in the value or in its logarithm"}},
+    {0, {.path = "sweep.sample.vary[].values", .type = FIELD_VALUES, BY_HAND,
+         .text = "equally likely values: numbers or words, with paths a list for each"}},
     {0, {.path = "sweep.refine", .type = FIELD_MAP, BY_HAND,
          .text = "map the outcomes adaptively: simulate a coarse lattice, then only where they differ",
          .more = "Along axes of numbers with more than start points; others are taken in full, each "
@@ -665,98 +712,4 @@ bool schema_build(struct schema *schema, const stance_scene *scene)
         schema->field[i].design = false;
     }
     return true;
-}
-
-/* ---- looking up ------------------------------------------------------------------------------ */
-
-const struct scenario_field *schema_find(const struct schema *schema, const char *path)
-{
-    for (size_t i = 0; i < schema->count; i++) {
-        if (strcmp(schema->field[i].path, path) == 0) {
-            return &schema->field[i];
-        }
-    }
-    return NULL;
-}
-
-const struct scenario_field *schema_find_concrete(const struct schema *schema, const char *path,
-                                                  size_t index[2])
-{
-    char general[128] = "", name[TREE_MAX_NAME];
-    size_t length = 0, indices = 0, number;
-
-    index[0] = index[1] = 0;
-    for (const char *at = path; at == path || *at;) {
-        bool first = at == path;
-        if (!tree_path_step(&at, first, name, &number)) {
-            return NULL;
-        }
-        int n = snprintf(general + length, sizeof general - length, "%s%s",
-                         name[0] && !first ? "." : "", name[0] ? name : "[]");
-        length += (size_t)n;
-        if (length >= sizeof general) {
-            return NULL;
-        }
-        if (!name[0]) {
-            if (indices == 2) {
-                return NULL;
-            }
-            index[indices++] = number;
-        }
-    }
-    return schema_find(schema, general);
-}
-
-const stance_scene *schema_scene_with(const char *path)
-{
-    const stance_scene *found = NULL;
-    struct schema *schema = malloc(sizeof *schema);
-    size_t index[2];
-    for (const stance_scene *const *scene = stance_scenes(); schema && !found && *scene; scene++) {
-        if (schema_build(schema, *scene) &&
-            (schema_find(schema, path) || schema_find_concrete(schema, path, index))) {
-            found = *scene;
-        }
-    }
-    free(schema);
-    return found;
-}
-
-const char *schema_last_name(const char *path)
-{
-    const char *dot = strrchr(path, '.');
-    return dot ? dot + 1 : path;
-}
-
-size_t schema_children(const struct schema *schema, const char *path, const char **names,
-                       size_t room)
-{
-    size_t length = strlen(path), n = 0;
-    for (size_t i = 0; i < schema->count && n < room; i++) {
-        const char *child = schema->field[i].path;
-        const char *rest = child + length + (length > 0);
-        if (length > 0 && (strncmp(child, path, length) != 0 || child[length] != '.')) {
-            continue;
-        }
-        if (!strpbrk(rest, ".[")) {
-            names[n++] = rest;
-        }
-    }
-    return n;
-}
-
-const char *schema_range_text(const struct scenario_field *field, char *buffer, size_t size)
-{
-    if (field->low == field->high) {
-        snprintf(buffer, size, "%.9g", field->low);
-    } else if (isinf(field->low)) {
-        snprintf(buffer, size, "any finite number");
-    } else if (field->high_open) {
-        snprintf(buffer, size, "less than %.9g, at least %.9g", field->high, field->low);
-    } else if (field->low_open) {
-        snprintf(buffer, size, "more than %.9g, at most %.9g", field->low, field->high);
-    } else {
-        snprintf(buffer, size, "%.9g ... %.9g", field->low, field->high);
-    }
-    return buffer;
 }

@@ -21,9 +21,11 @@ enum field_type {
     FIELD_NUMBERS, /* a list of numbers */
     FIELD_MATRIX,  /* a list of lists of numbers */
     FIELD_MAP_OR_WORD,
-    FIELD_CASES, /* a word or a list of case indices */
-    FIELD_AXES,  /* a list of mappings */
-    FIELD_PATH,  /* path of a field that may be swept */
+    FIELD_CASES,   /* a word or a list of case indices */
+    FIELD_AXES,    /* a list of mappings */
+    FIELD_FACTORS, /* the same, of sweep.sample */
+    FIELD_ENDS,    /* a number, or a list of as many as there are paths */
+    FIELD_PATH,    /* path of a field that may be swept */
     FIELD_PATHS,
     FIELD_VALUES, /* what an axis lists */
 };

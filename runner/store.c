@@ -14,26 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct store {
-    char file[1024];
-    const struct plan *plan;
-    hid_t id;
-    int ranks;                      /* that have it open together */
-    hid_t column[COLUMNS];          /* -1: not stored */
-    size_t width[COLUMNS];          /* elements per case */
-    struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
-    hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
-    hid_t trajectory_checksum;
-    int rank; /* dimensions of the cases */
-    hsize_t length[SCENARIO_MAX_AXES];
-};
-
-struct store_block {
-    const struct store *store;
-    size_t rows;
-    void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
-};
-
 /* ---- tables ------------------------------------------------------------------------------- */
 
 const struct store_column store_columns[COLUMNS] = {
@@ -362,11 +342,11 @@ static bool open_trajectories(struct store *store, stance_message *message)
            store_failed(message, store->file, "open the trajectories");
 }
 
-bool store_open(struct store **result, const char *file, const struct plan *plan, int ranks,
-                stance_message *message)
+/* `id`: the file, open; below 0: it could not be. */
+static bool open_store(struct store **result, hid_t id, const char *file, const struct plan *plan,
+                       int ranks, stance_message *message)
 {
     struct store *store = calloc(1, sizeof *store);
-    hid_t id = open_for_ranks(file, ranks); /* collective: before anything that can fail alone */
 
     *result = NULL;
     if (!store) {
@@ -387,9 +367,25 @@ bool store_open(struct store **result, const char *file, const struct plan *plan
     }
     *result = store;
     if (id < 0) {
-        return store_failed(message, file, "open for writing");
+        return store_failed(message, file, "open");
     }
     return open_columns(store, message) && open_trajectories(store, message);
+}
+
+bool store_open(struct store **result, const char *file, const struct plan *plan, int ranks,
+                stance_message *message)
+{
+    /* Collective: before anything that can fail alone. */
+    const hid_t id = open_for_ranks(file, ranks);
+    return open_store(result, id, file, plan, ranks, message);
+}
+
+bool store_open_to_read(struct store **result, const char *file, const struct plan *plan,
+                        stance_message *message)
+{
+    const hid_t access = store_serial_access(), id = H5Fopen(file, H5F_ACC_RDONLY, access);
+    H5Pclose(access);
+    return open_store(result, id, file, plan, 1, message);
 }
 
 void store_abandon(struct store *store)
@@ -420,30 +416,28 @@ bool store_close(struct store *store, stance_message *message)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-enum direction { READ, WRITE };
-
 /* Moves n rows of one column, from `slot` of the block on, between the block and the file. */
 static bool move_column(struct store *store, int c, struct store_block *block, size_t slot,
-                        hid_t space, size_t n, enum direction way, stance_message *message)
+                        hid_t space, size_t n, enum store_direction way, stance_message *message)
 {
     hid_t type = store_memory_type(store_columns[c].kind);
     hsize_t elements = n * store->width[c];
     char *data = (char *)block->column[c] + slot * store->width[c] * store_columns[c].size;
     hid_t memory = H5Screate_simple(1, &elements, NULL);
     herr_t status = memory < 0 ? -1
-                    : way == WRITE
+                    : way == STORE_WRITE
                         ? H5Dwrite(store->column[c], type, memory, space, H5P_DEFAULT, data)
                         : H5Dread(store->column[c], type, memory, space, H5P_DEFAULT, data);
     bool good =
-        status >= 0 ||
-        store_failed(message, store->file, way == WRITE ? "write the results" : "read the results");
+        status >= 0 || store_failed(message, store->file,
+                                    way == STORE_WRITE ? "write the results" : "read the results");
     H5Sclose(memory);
     return good;
 }
 
 /* All columns, in order: the checksum and then the status are the last ones. */
-static bool move_rows(struct store *store, struct store_block *block, size_t slot,
-                      const struct rows *rows, enum direction way, stance_message *message)
+bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
+                     const struct rows *rows, enum store_direction way, stance_message *message)
 {
     const size_t state = 2 * (size_t)store->plan->scenario->scene->coordinates;
     hid_t narrow = store_select_rows(store->rank, store->length, 1, rows);
@@ -499,7 +493,7 @@ void store_block_free(struct store_block *block)
     free(block);
 }
 
-static uint32_t row_checksum(const struct store_block *block, size_t slot)
+uint32_t store_row_checksum(const struct store_block *block, size_t slot)
 {
     uint32_t crc = 0;
     for (int c = 0; c < COLUMNS; c++) {
@@ -526,7 +520,7 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
         memcpy(state + n, result->velocity, n * sizeof *state);
     }
     ((uint8_t *)block->column[COLUMN_STATUS])[slot] = (uint8_t)result->status;
-    ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = row_checksum(block, slot);
+    ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = store_row_checksum(block, slot);
 }
 
 void store_blank(stance_result *result)
@@ -543,7 +537,7 @@ void store_blank(stance_result *result)
 bool store_write(struct store *store, struct store_block *block, size_t slot,
                  const struct rows *rows, stance_message *message)
 {
-    return move_rows(store, block, slot, rows, WRITE, message);
+    return store_move_rows(store, block, slot, rows, STORE_WRITE, message);
 }
 
 /* ---- trajectories ------------------------------------------------------------------------- */
@@ -559,8 +553,8 @@ static double *trajectory_data(const stance_trajectory *trajectory, int variable
 }
 
 /* Moves one case's part, `elements` long, of a variable whose first dimension is the case. */
-static bool move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
-                       enum direction way, void *data)
+bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
+                      enum store_direction way, void *data)
 {
     hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
     hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &elements, NULL);
@@ -569,7 +563,7 @@ static bool move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsiz
     start[0] = place;
     length[0] = 1;
     good = good && H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, length, NULL) >= 0;
-    if (good && way == WRITE) {
+    if (good && way == STORE_WRITE) {
         good = H5Dwrite(dataset, store_memory_type(kind), memory, space, H5P_DEFAULT, data) >= 0;
     } else if (good) {
         good = H5Dread(dataset, store_memory_type(kind), memory, space, H5P_DEFAULT, data) >= 0;
@@ -592,9 +586,11 @@ bool store_write_trajectory(struct store *store, uint64_t place,
                           store_trajectory_width(store->plan->scenario->scene, v);
         double *data = trajectory_data(trajectory, v);
         crc = checksum_crc32c(crc, data, elements * sizeof *data);
-        good = move_place(store->trajectory[v], KIND_double, place, elements, WRITE, data);
+        good =
+            store_move_place(store->trajectory[v], KIND_double, place, elements, STORE_WRITE, data);
     }
-    good = good && move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, WRITE, &crc);
+    good = good &&
+           store_move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, STORE_WRITE, &crc);
     return good || store_failed(message, store->file, "write a trajectory");
 }
 
@@ -618,12 +614,14 @@ static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
         if (store->trajectory[v] >= 0) {
             size_t elements =
                 (size_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
-            good = move_place(store->trajectory[v], KIND_double, place, elements, READ, data);
+            good = store_move_place(store->trajectory[v], KIND_double, place, elements, STORE_READ,
+                                    data);
             crc = checksum_crc32c(crc, data, elements * sizeof *data);
         }
     }
     free(data);
-    good = good && move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, READ, &expected);
+    good = good && store_move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, STORE_READ,
+                                    &expected);
     *whole = crc == expected;
     return good || store_failed(message, store->file, "read a trajectory");
 }
@@ -635,7 +633,7 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
         snprintf(message->text, sizeof message->text, "not enough memory");
         return false;
     }
-    if (!move_rows(store, store->checked, 0, rows, READ, message)) {
+    if (!store_move_rows(store, store->checked, 0, rows, STORE_READ, message)) {
         return false;
     }
     const uint8_t *status = store->checked->column[COLUMN_STATUS];
@@ -644,7 +642,7 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
     for (size_t row = 0; row < rows->count; row++) {
         uint64_t place;
         whole[row] = (status[row] == STANCE_DONE || status[row] == STANCE_FAILED) &&
-                     checksum[row] == row_checksum(store->checked, row);
+                     checksum[row] == store_row_checksum(store->checked, row);
         if (whole[row] && plan_recorded(store->plan, rows_at(rows, row), &place) &&
             !verify_trajectory(store, place, &whole[row], message)) {
             return false;

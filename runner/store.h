@@ -25,6 +25,8 @@
  *     git_revision, compiler (with flags), library_versions, instruction_set (of rank 0), ranks,
  *     hosts, date, seed, scenario (text), axes (comma-separated dimension names, in order),
  *     scenario_sha256.
+ *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
+ *     gives, merge_note.
  *   every variable but the answers, the trajectories' own and those of `timing` has an attribute
  *     `checksum` over its values (seal.h), which whoever reads the file verifies.
  * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as
@@ -116,17 +118,22 @@ bool store_check(const char *file, bool resume, stance_message *message);
 /* What a file was made from, for a resume; release with store_origin_free. */
 struct store_origin {
     char *scenario; /* resolved text */
-    char revision[80];
+    char revision[80], date[40];
+    char *title, *hosts;
     int ranks;
 };
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);
 void store_origin_free(struct store_origin *origin);
-/* Values of a logarithmic axis as the file has them, into axis->value; other axes are left. */
+/* Values of a logarithmic axis or of a sample as the file has them, into axis->value; other axes
+ * are left. */
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message);
 
 /* Collective when `ranks` > 1: opens a file of this plan for writing. */
 bool store_open(struct store **store, const char *file, const struct plan *plan, int ranks,
                 stance_message *message);
+/* The same, alone and for reading only. */
+bool store_open_to_read(struct store **store, const char *file, const struct plan *plan,
+                        stance_message *message);
 /* Collective: ends the writing; the store is freed in any case. After a failed write call
  * store_abandon instead, which leaves the file as it is. */
 bool store_close(struct store *store, stance_message *message);
@@ -149,14 +156,46 @@ bool store_write(struct store *store, struct store_block *block, size_t slot,
 /* The trajectory at one place of the recorded cases; before the row itself. */
 bool store_write_trajectory(struct store *store, uint64_t place,
                             const stance_trajectory *trajectory, stance_message *message);
-/* Which of 1 to STORE_ROWS rows are whole: done or failed, and as their checksums say; of these,
- * status and outcome (where stored) are filled in. Trajectories of recorded cases are verified,
- * too. */
+/* Which of 1 to STORE_ROWS rows are whole: done or failed, and as their checksums say; status (of
+ * all rows, as the file has it) and outcome (where stored) are filled in. Trajectories of recorded
+ * cases are verified, too. */
 bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
                   stance_message *message);
+/* What became of rows that were to be copied; the numbers add up over calls. */
+struct store_copied {
+    uint64_t copied;
+    uint64_t same;        /* were there already */
+    uint64_t pending;     /* are in neither file */
+    uint64_t damaged;     /* are not as their checksums say, and were left out */
+    uint64_t conflicting; /* differ from what was there; left as they were */
+    uint64_t conflict;    /* where the first of these is, in the file that is written */
+};
+/* Copies 1 to STORE_ROWS rows, with their trajectories, to the rows target[rows->count] (ascending)
+ * of a file whose cases have the same answers and the same instants, each once it has been
+ * verified. */
+bool store_copy(struct store *from, const struct rows *rows, struct store *to,
+                const uint64_t *target, struct store_copied *copied, stance_message *message);
+/* Appends the times of a file to those of another, rank after rank from *rank on, which moves on.
+ */
+bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_message *message);
+/* An attribute of the whole file. */
+bool store_annotate(struct store *store, const char *name, const char *text,
+                    stance_message *message);
+
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
                       stance_message *message);
+
+/* Rows of an open file (HDF5 identifier) whose answers are not as their checksums say become
+ * pending in status[cases], which holds the file's own; trajectories are not looked at. false: the
+ * rows cannot be read, or no memory. A file without checksums is taken as it is. */
+struct store_damage {
+    uint64_t cases, first; /* how many, the lowest of them */
+};
+bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage);
+
+/* The checksum that an open file has for the trajectory at a place; false: none. */
+bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc);
 
 /* Counts the cases of a file, which another process may be writing. */
 struct store_counts {

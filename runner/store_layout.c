@@ -4,7 +4,7 @@
  * attached to the variables over it, so that dimensions of equal length are not confused.
  * Done by rank 0 alone with the serial driver, closed and reserved before any case is computed.
  */
-#include "store_private.h"
+#include "store_make.h"
 
 #include "build_info.h"
 #include "checksum.h"
@@ -25,12 +25,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { FORMAT_VERSION = 1, PIECE = 1 << 16, METADATA_SIZE = 96 * 1024, DATASET_SIZE = 1024 };
-
-struct dimension {
-    hid_t id;
-    hsize_t length;
-};
+enum { FORMAT_VERSION = 1, METADATA_SIZE = 96 * 1024, DATASET_SIZE = 1024 };
 
 struct layout {
     const struct plan *plan;
@@ -41,207 +36,6 @@ struct layout {
     int ranks;
     const char *hosts;
 };
-
-/* ---- attributes --------------------------------------------------------------------------- */
-
-static bool put_attribute(hid_t object, const char *name, hid_t type, hid_t space,
-                          const void *value)
-{
-    hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    bool good = attribute >= 0 && H5Awrite(attribute, type, value) >= 0;
-    H5Aclose(attribute);
-    H5Sclose(space);
-    return good;
-}
-
-static bool put_text(hid_t object, const char *name, const char *text)
-{
-    hid_t type = H5Tcopy(H5T_C_S1);
-    size_t size = text[0] ? strlen(text) : 1;
-    bool good = H5Tset_size(type, size) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0 &&
-                H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0 &&
-                put_attribute(object, name, type, H5Screate(H5S_SCALAR), text);
-    H5Tclose(type);
-    return good;
-}
-
-static bool put_number(hid_t object, const char *name, enum store_kind kind, const void *value)
-{
-    hsize_t one = 1;
-    return put_attribute(object, name, store_file_type(kind), H5Screate_simple(1, &one, NULL),
-                         value);
-}
-
-static bool put_int(hid_t object, const char *name, int value)
-{
-    int32_t number = value;
-    return put_number(object, name, KIND_int32_t, &number);
-}
-
-static bool put_meaning(hid_t object, const char *unit, const char *text)
-{
-    return (!unit || put_text(object, "units", unit)) &&
-           (!text || !text[0] || put_text(object, "long_name", text));
-}
-
-/* CF's flags: the values 0 ... n - 1 and a word for each. */
-static bool put_flags(hid_t object, const char *words)
-{
-    uint8_t values[32];
-    hsize_t n = 1;
-    for (const char *c = words; *c; c++) {
-        n += *c == ' ';
-    }
-    for (hsize_t i = 0; i < n; i++) {
-        values[i] = (uint8_t)i;
-    }
-    return put_attribute(object, "flag_values", store_file_type(KIND_uint8_t),
-                         H5Screate_simple(1, &n, NULL), values) &&
-           put_text(object, "flag_meanings", words);
-}
-
-/* `_FillValue` in the variable's own type. */
-static bool put_fill(hid_t object, enum store_kind kind, double fill)
-{
-    uint8_t flag = 0;
-    int64_t count = 0;
-    const void *value = kind == KIND_uint8_t   ? (const void *)&flag
-                        : kind == KIND_int64_t ? (const void *)&count
-                                               : (const void *)&fill;
-    return put_number(object, "_FillValue", kind, value);
-}
-
-/* ---- groups and datasets ------------------------------------------------------------------ */
-
-static hid_t make_group(hid_t parent, const char *name)
-{
-    hid_t properties = H5Pcreate(H5P_GROUP_CREATE), group = -1;
-    if (H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
-            0 &&
-        H5Pset_obj_track_times(properties, false) >= 0) {
-        group = H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT);
-    }
-    H5Pclose(properties);
-    return group;
-}
-
-/* Contiguous, its place in the file given at once; nothing is written, so that large files start
- * fast. No times are kept, so that equal runs give equal bytes. Attributes in the order of their
- * making are netCDF's, and the header that this takes has a checksum of HDF5's own. */
-static hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank,
-                          const hsize_t *length)
-{
-    hid_t properties = H5Pcreate(H5P_DATASET_CREATE), dataset = -1;
-    hid_t space = rank > 0 ? H5Screate_simple(rank, length, NULL) : H5Screate(H5S_SCALAR);
-    bool string = H5Tis_variable_str(type) > 0; /* pointers need their zeros */
-    if (space >= 0 && H5Pset_layout(properties, H5D_CONTIGUOUS) >= 0 &&
-        H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY) >= 0 &&
-        H5Pset_fill_time(properties, string ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER) >= 0 &&
-        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
-            0 &&
-        H5Pset_obj_track_times(properties, false) >= 0) {
-        dataset = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
-    }
-    H5Sclose(space);
-    H5Pclose(properties);
-    return dataset;
-}
-
-static bool attach(hid_t dataset, const struct dimension *const *dimension, int rank)
-{
-    for (int d = 0; d < rank; d++) {
-        if (H5DSattach_scale(dataset, dimension[d]->id, (unsigned)d) < 0) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/* A variable over dimensions; -1 on failure. */
-static hid_t make_variable(hid_t parent, const char *name, hid_t type,
-                           const struct dimension *const *dimension, int rank, const char *unit,
-                           const char *text)
-{
-    hsize_t length[SCENARIO_MAX_AXES + 2];
-    for (int d = 0; d < rank; d++) {
-        length[d] = dimension[d] ? dimension[d]->length : 0;
-    }
-    hid_t dataset = make_dataset(parent, name, type, rank, length);
-    if (dataset >= 0 && !(put_meaning(dataset, unit, text) && attach(dataset, dimension, rank))) {
-        H5Dclose(dataset);
-        return -1;
-    }
-    return dataset;
-}
-
-/* Turns a one-dimensional dataset into a dimension. `label` is what netCDF looks at. */
-static bool make_scale(struct layout *layout, hid_t dataset, const char *label, hsize_t length,
-                       struct dimension *dimension)
-{
-    dimension->id = dataset;
-    dimension->length = length;
-    return dataset >= 0 && H5DSset_scale(dataset, label) >= 0 &&
-           put_int(dataset, "_Netcdf4Dimid", layout->dimensions++);
-}
-
-static hid_t word_type(void)
-{
-    hid_t type = H5Tcopy(H5T_C_S1);
-    if (H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0) {
-        H5Tclose(type);
-        return -1;
-    }
-    return type;
-}
-
-static bool write_words(hid_t dataset, hid_t type, const char *const *words)
-{
-    return H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, words) >= 0;
-}
-
-/* A dimension whose points are words. */
-static bool make_words(struct layout *layout, hid_t parent, const char *name,
-                       const char *const *words, hsize_t n, struct dimension *dimension)
-{
-    hid_t type = word_type(), dataset = make_dataset(parent, name, type, 1, &n);
-    bool good = dataset >= 0 && write_words(dataset, type, words) &&
-                make_scale(layout, dataset, name, n, dimension);
-    H5Tclose(type);
-    return good;
-}
-
-/* Value i of a coordinate. */
-typedef double (*value_function)(const void *context, uint64_t i);
-
-static bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context)
-{
-    double *buffer = malloc((n < PIECE ? n : PIECE) * sizeof *buffer);
-    hid_t space = H5Screate_simple(1, &n, NULL);
-    bool good = buffer && space >= 0;
-    for (hsize_t at = 0; good && at < n; at += PIECE) {
-        hsize_t count = n - at < PIECE ? n - at : PIECE;
-        hid_t memory = H5Screate_simple(1, &count, NULL);
-        for (hsize_t i = 0; i < count; i++) {
-            buffer[i] = value(context, at + i);
-        }
-        good = H5Sselect_hyperslab(space, H5S_SELECT_SET, &at, NULL, &count, NULL) >= 0 &&
-               H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, buffer) >= 0;
-        H5Sclose(memory);
-    }
-    H5Sclose(space);
-    free(buffer);
-    return good;
-}
-
-/* A dimension whose points are numbers. */
-static bool make_numbers(struct layout *layout, hid_t parent, const char *name,
-                         enum store_kind kind, hsize_t n, value_function value, const void *context,
-                         struct dimension *dimension)
-{
-    hid_t dataset = make_dataset(parent, name, store_file_type(kind), 1, &n);
-    return dataset >= 0 && write_values(dataset, n, value, context) &&
-           make_scale(layout, dataset, name, n, dimension);
-}
 
 /* ---- the axes ----------------------------------------------------------------------------- */
 
@@ -311,11 +105,90 @@ static bool put_path(struct layout *layout, const struct axis_values *values,
         good = good && attach(dataset, &over, 1);
         H5Dclose(dataset);
     } else {
-        good = good && make_scale(layout, dataset, name, n, dimension);
+        good = good && make_scale(&layout->dimensions, dataset, name, n, dimension);
     }
     H5Tclose(type);
     return good;
 }
+
+/* ---- the sample --------------------------------------------------------------------------- */
+
+static double own_number(const void *context, uint64_t i)
+{
+    (void)context;
+    return (double)i;
+}
+
+/* Names of the paths that a sample varies, with such signs between those of a factor and between
+ * factors; freed by the caller, NULL: no memory. */
+static char *sampled_paths(const struct scenario *s, char within, char between)
+{
+    const struct scenario_axis *axis = &s->axis[s->axes - 1];
+    char *text = calloc((size_t)axis->paths, sizeof axis->path[0] + 1), *end = text;
+    for (size_t j = 0; text && j < s->sample.design.factors; j++) {
+        const struct scenario_factor *f = &s->sample.factor[j];
+        for (int k = 0; k < f->paths; k++) {
+            end += sprintf(end, "%.*s%s", j > 0 || k > 0, k > 0 ? &within : &between,
+                           axis->path[f->first + k]);
+        }
+    }
+    return text;
+}
+
+/* The dimension: numbers of the points, and what design they are of. */
+static bool make_sample(struct layout *layout, const struct scenario_axis *axis,
+                        struct dimension *dimension)
+{
+    const struct sampling *design = &layout->plan->scenario->sample.design;
+    char *paths = sampled_paths(layout->plan->scenario, ',', ';');
+    bool good =
+        paths &&
+        make_numbers(&layout->dimensions, layout->file, axis->name, KIND_int64_t, axis->count,
+                     own_number, NULL, dimension) &&
+        put_meaning(dimension->id, axis->unit, axis->text) &&
+        put_text(dimension->id, "method", sampling_words[design->method]) &&
+        put_number(dimension->id, "count", KIND_uint64_t, &design->count) &&
+        put_int(dimension->id, "factors", (int)design->factors) &&
+        put_int(dimension->id, "block", (int)sampling_block(design)) &&
+        (design->method != SAMPLING_MORRIS || put_int(dimension->id, "levels", design->levels)) &&
+        (design->method != SAMPLING_SALTELLI ||
+         put_int(dimension->id, "second_order", design->second_order)) &&
+        put_text(dimension->id, "paths", paths);
+    free(paths);
+    return good;
+}
+
+/* The values of one path of a sample, over the sample or the one case of a file. */
+static bool put_sampled(struct layout *layout, const struct axis_values *values,
+                        const struct dimension *over)
+{
+    const struct scenario_axis *axis = values->axis;
+    const struct scenario_meaning *meaning = &axis->meaning[values->path];
+    const enum store_kind kind = meaning->words                ? KIND_uint8_t
+                                 : axis->integer[values->path] ? KIND_int32_t
+                                                               : KIND_double;
+    hid_t dataset = make_variable(layout->file, axis->path[values->path], store_file_type(kind),
+                                  &over, 1, meaning->words ? NULL : meaning->unit, meaning->text);
+    bool good = dataset >= 0 && write_values(dataset, over->length, axis_value, values) &&
+                (!meaning->words || put_flags(dataset, meaning->words));
+    H5Dclose(dataset);
+    return good;
+}
+
+/* CF's `coordinates`: the sampled values are those of the sample's points. */
+static bool put_coordinates(const struct layout *layout, hid_t dataset)
+{
+    const struct scenario *s = layout->plan->scenario;
+    if (!s->sample.given || layout->plan->single) {
+        return true;
+    }
+    char *paths = sampled_paths(s, ' ', ' ');
+    bool good = paths && put_text(dataset, "coordinates", paths);
+    free(paths);
+    return good;
+}
+
+/* ---- all axes ----------------------------------------------------------------------------- */
 
 static double case_value(const void *context, uint64_t i)
 {
@@ -330,7 +203,8 @@ static bool put_axes(struct layout *layout)
 
     if (plan->single || s->axes == 0) {
         one = &layout->axis[0];
-        if (!make_numbers(layout, layout->file, "case", KIND_int64_t, 1, case_value, plan, one) ||
+        if (!make_numbers(&layout->dimensions, layout->file, "case", KIND_int64_t, 1, case_value,
+                          plan, one) ||
             !put_meaning(one->id, "1", "flat index of the case, row-major over the axes")) {
             return false;
         }
@@ -340,9 +214,16 @@ static bool put_axes(struct layout *layout)
         if (plan->single) {
             values.point = axis_point(s, a, plan->single_case);
         }
+        const bool sample = s->axis[a].sample;
+        if (sample && !one && !make_sample(layout, &s->axis[a], &layout->axis[a])) {
+            return false;
+        }
         for (; values.path < s->axis[a].paths; values.path++) {
-            const struct dimension *over = one ? one : values.path > 0 ? &layout->axis[a] : NULL;
-            if (!put_path(layout, &values, over, &layout->axis[a])) {
+            const struct dimension *over = one                         ? one
+                                           : sample || values.path > 0 ? &layout->axis[a]
+                                                                       : NULL;
+            if (sample ? !put_sampled(layout, &values, over)
+                       : !put_path(layout, &values, over, &layout->axis[a])) {
                 return false;
             }
         }
@@ -388,7 +269,7 @@ static bool make_state_names(struct layout *layout, hid_t parent, const char *na
     for (int i = 0; i < 2 * n; i++) {
         words[i] = text[i];
     }
-    return make_words(layout, parent, name, words, 2 * (hsize_t)n, dimension);
+    return make_words(&layout->dimensions, parent, name, words, 2 * (hsize_t)n, dimension);
 }
 
 static bool put_answers(struct layout *layout)
@@ -415,7 +296,7 @@ static bool put_answers(struct layout *layout)
                                       over, rank, flags ? NULL : column->unit, column->text);
         bool good = dataset >= 0 &&
                     (!column->filled || put_fill(dataset, column->kind, column->fill)) &&
-                    (!flags || put_flags(dataset, flags));
+                    (!flags || put_flags(dataset, flags)) && put_coordinates(layout, dataset);
         H5Dclose(dataset);
         if (!good) {
             return false;
@@ -433,14 +314,16 @@ static bool make_coordinates(struct layout *layout, hid_t parent, struct dimensi
     for (int i = 0; i < scene->coordinates; i++) {
         words[i] = scene->coordinate[i].name;
     }
-    return make_words(layout, parent, "coordinate", words, (hsize_t)scene->coordinates, dimension);
+    return make_words(&layout->dimensions, parent, "coordinate", words, (hsize_t)scene->coordinates,
+                      dimension);
 }
 
 static bool make_actuators(struct layout *layout, hid_t parent, struct dimension *dimension)
 {
     const stance_scene *scene = layout->plan->scenario->scene;
-    return scene->actuators == 0 || make_words(layout, parent, "actuator", scene->actuator_name,
-                                               (hsize_t)scene->actuators, dimension);
+    return scene->actuators == 0 ||
+           make_words(&layout->dimensions, parent, "actuator", scene->actuator_name,
+                      (hsize_t)scene->actuators, dimension);
 }
 
 /* ---- the designs -------------------------------------------------------------------------- */
@@ -568,17 +451,17 @@ static bool put_trajectories(struct layout *layout)
     }
     hid_t group = make_group(layout->file, "trajectory");
     bool good = group >= 0 &&
-                make_numbers(layout, group, "case", KIND_int64_t, plan->record_cases, recorded_case,
-                             plan, &number) &&
+                make_numbers(&layout->dimensions, group, "case", KIND_int64_t, plan->record_cases,
+                             recorded_case, plan, &number) &&
                 put_meaning(number.id, "1", "flat index of the case, row-major over the axes") &&
-                make_numbers(layout, group, "time", KIND_double, (hsize_t)plan->record_rows,
-                             recorded_time, plan, &time) &&
+                make_numbers(&layout->dimensions, group, "time", KIND_double,
+                             (hsize_t)plan->record_rows, recorded_time, plan, &time) &&
                 put_meaning(time.id, "s", "instant; the step that ends nearest to it is stored") &&
                 make_coordinates(layout, group, &coordinate) &&
                 make_actuators(layout, group, &actuator) &&
-                make_words(layout, group, "contact", scene->contact_name, (hsize_t)scene->contacts,
-                           &contact) &&
-                make_words(layout, group, "component", components, 2, &component);
+                make_words(&layout->dimensions, group, "contact", scene->contact_name,
+                           (hsize_t)scene->contacts, &contact) &&
+                make_words(&layout->dimensions, group, "component", components, 2, &component);
     const struct dimension *last[TRAJECTORIES] = {&coordinate, &coordinate, &actuator, &contact,
                                                   &contact};
     for (int v = 0; good && v < TRAJECTORIES; v++) {
@@ -617,7 +500,8 @@ static bool put_timing(struct layout *layout)
              layout->ranks);
     /* Such dimensions are known by their label; the type is what netCDF gives them. */
     if (group < 0 ||
-        !make_scale(layout, make_dataset(group, "rank", H5T_IEEE_F32BE, 1, &n), label, n, &rank)) {
+        !make_scale(&layout->dimensions, make_dataset(group, "rank", H5T_IEEE_F32BE, 1, &n), label,
+                    n, &rank)) {
         return false;
     }
     hid_t wall = make_variable(group, "wall_time", store_file_type(KIND_double), over, 1, "s",
@@ -683,7 +567,9 @@ uint64_t store_size(const struct plan *plan, int ranks)
     }
     for (int a = 0; a < s->axes; a++) {
         datasets += (uint64_t)s->axis[a].paths;
-        size += plan->single ? 0 : 32 * s->axis[a].count * (uint64_t)s->axis[a].paths;
+        const uint64_t point = s->axis[a].sample ? sizeof(double) : 32; /* words take more */
+        size += plan->single ? 0 : point * s->axis[a].count * (1 + (uint64_t)s->axis[a].paths);
+        size += s->axis[a].sample ? COLUMNS * sizeof s->axis[a].path[0] : 0;
     }
     size += sizeof(double) * (uint64_t)plan->record_rows;
     size += plan->record_cases * (12 + (uint64_t)plan->record_rows * per_instant);

@@ -2,6 +2,7 @@
  * whether they are whole. */
 #include "store_private.h"
 
+#include "checksum.h"
 #include "seal.h"
 
 #include <stdio.h>
@@ -64,40 +65,54 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     if (id < 0) {
         return store_failed(message, file, "open");
     }
-    char *revision = read_text(id, "git_revision");
+    char *revision = read_text(id, "git_revision"), *date = read_text(id, "date");
+    hid_t ranks = H5Aopen(id, "ranks", H5P_DEFAULT);
     origin->scenario = read_text(id, "scenario");
+    origin->title = read_text(id, "title");
+    origin->hosts = read_text(id, "hosts");
     snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
+    snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
+    if (ranks < 0 || H5Aread(ranks, H5T_NATIVE_INT, &origin->ranks) < 0) {
+        origin->ranks = 0;
+    }
+    H5Aclose(ranks);
     H5Fclose(id);
     free(revision);
+    free(date);
     return origin->scenario || not_resumable(file, message);
 }
 
 void store_origin_free(struct store_origin *origin)
 {
     free(origin->scenario);
-    origin->scenario = NULL;
+    free(origin->title);
+    free(origin->hosts);
+    *origin = (struct store_origin){0};
 }
 
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
 {
-    if (!axis->log) {
+    if (!axis->log && !axis->sample) {
         return true;
     }
-    hid_t id = open_to_read(file), dataset = H5Dopen2(id, axis->name, H5P_DEFAULT);
-    hsize_t length = axis->count;
+    hid_t id = open_to_read(file);
+    const size_t paths = (size_t)axis->paths;
+    const hsize_t length = axis->count;
     double *value = malloc(axis->count * sizeof *value);
-    bool good =
-        value && store_has_shape(dataset, 1, &length) &&
-        H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
-    H5Dclose(dataset);
-    H5Fclose(id);
-    if (!good) {
-        free(value);
-        return store_failed(message, file, "read an axis");
+    bool good = value != NULL && id >= 0;
+    for (size_t k = 0; good && k < paths; k++) {
+        hid_t dataset = H5Dopen2(id, axis->path[k], H5P_DEFAULT);
+        good = store_has_shape(dataset, 1, &length) &&
+               H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                       value) >= 0;
+        for (size_t i = 0; good && i < axis->count; i++) {
+            axis->value[i * paths + k] = value[i];
+        }
+        H5Dclose(dataset);
     }
-    free(axis->value);
-    axis->value = value;
-    return true;
+    free(value);
+    H5Fclose(id);
+    return good || store_failed(message, file, "read an axis");
 }
 
 /* Reads the status variable, whatever its shape, in pieces. */
@@ -144,5 +159,129 @@ bool store_count(const char *file, struct store_counts *counts, stance_message *
     }
     H5Dclose(dataset);
     H5Fclose(id);
+    return good;
+}
+
+/* ---- rows that are not what their checksums say -------------------------------------------- */
+
+enum { VERIFIED_ROWS = 1 << 16 }; /* at a time */
+
+/* Elements [at, at + n) of a variable of any shape, in row-major order. */
+static bool read_range(hid_t dataset, hid_t type, hsize_t at, hsize_t n, void *values)
+{
+    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
+    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &n, NULL);
+    const int rank = H5Sget_simple_extent_dims(space, length, NULL);
+    bool good = memory >= 0 && rank >= 1 && H5Sselect_none(space) >= 0 &&
+                store_select_range(space, rank, length, 0, start, at, at + n) &&
+                H5Dread(dataset, type, memory, space, H5P_DEFAULT, values) >= 0;
+    H5Sclose(memory);
+    H5Sclose(space);
+    return good;
+}
+
+/* The columns of a file that is only looked at. */
+struct columns {
+    hid_t dataset[COLUMNS]; /* -1: not stored */
+    size_t width[COLUMNS];  /* elements per case */
+    size_t largest;         /* bytes per case of the widest */
+};
+
+static bool columns_open(struct columns *columns, hid_t file, uint64_t cases)
+{
+    bool good = true;
+    *columns = (struct columns){.largest = 1};
+    for (int c = 0; c < COLUMNS; c++) {
+        const char *name = store_columns[c].name;
+        const bool stored = H5Lexists(file, name, H5P_DEFAULT) > 0;
+        hid_t dataset = stored ? H5Dopen2(file, name, H5P_DEFAULT) : -1, space = -1;
+        hssize_t elements = 0;
+        columns->dataset[c] = dataset;
+        if (!stored) {
+            continue;
+        }
+        space = H5Dget_space(dataset);
+        elements = H5Sget_simple_extent_npoints(space);
+        H5Sclose(space);
+        good = good && elements > 0 && (uint64_t)elements % cases == 0 &&
+               (uint64_t)elements / cases <= SCENARIO_MAX_STATES;
+        columns->width[c] = good ? (size_t)((uint64_t)elements / cases) : 1;
+        const size_t size = columns->width[c] * store_columns[c].size;
+        columns->largest = size > columns->largest ? size : columns->largest;
+    }
+    return good;
+}
+
+static void columns_close(struct columns *columns)
+{
+    for (int c = 0; c < COLUMNS; c++) {
+        H5Dclose(columns->dataset[c]);
+    }
+}
+
+/* Checksums of rows [at, at + n) as they follow from the answers, crc[n]. */
+static bool work_out(const struct columns *columns, hsize_t at, hsize_t n, char *values,
+                     uint32_t *crc)
+{
+    memset(crc, 0, n * sizeof *crc);
+    for (int c = 0; c < COLUMNS; c++) {
+        const size_t width = columns->width[c], size = width * store_columns[c].size;
+        if (columns->dataset[c] < 0 || c == COLUMN_CHECKSUM) {
+            continue;
+        }
+        if (!read_range(columns->dataset[c], store_memory_type(store_columns[c].kind), at * width,
+                        n * width, values)) {
+            return false;
+        }
+        for (hsize_t i = 0; i < n; i++) {
+            crc[i] = checksum_crc32c(crc[i], values + i * size, size);
+        }
+    }
+    return true;
+}
+
+bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage)
+{
+    struct columns columns;
+    bool good = columns_open(&columns, (hid_t)file, cases);
+    char *values = malloc(VERIFIED_ROWS * columns.largest);
+    uint32_t *crc = malloc(VERIFIED_ROWS * sizeof *crc);
+    uint32_t *stored = malloc(VERIFIED_ROWS * sizeof *stored);
+    const hid_t checksum = columns.dataset[COLUMN_CHECKSUM];
+
+    *damage = (struct store_damage){0};
+    good = good && values && crc && stored;
+    for (uint64_t at = 0, n; good && checksum >= 0 && at < cases; at += n) {
+        n = cases - at < VERIFIED_ROWS ? cases - at : VERIFIED_ROWS;
+        bool marked = false;
+        for (uint64_t i = at; i < at + n && !marked; i++) {
+            marked = status[i] != STANCE_PENDING;
+        }
+        if (!marked) {
+            continue;
+        }
+        good = read_range(checksum, store_memory_type(KIND_uint32_t), at, n, stored) &&
+               work_out(&columns, at, n, values, crc);
+        for (uint64_t i = 0; good && i < n; i++) {
+            if (status[at + i] != STANCE_PENDING &&
+                (crc[i] != stored[i] || status[at + i] > STANCE_FAILED)) {
+                damage->first = damage->cases++ == 0 ? at + i : damage->first;
+                status[at + i] = STANCE_PENDING;
+            }
+        }
+    }
+    columns_close(&columns);
+    free(values);
+    free(crc);
+    free(stored);
+    return good;
+}
+
+bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc)
+{
+    hid_t dataset = H5Dopen2((hid_t)file, "trajectory/checksum", H5P_DEFAULT);
+    bool good =
+        dataset >= 0 && read_range(dataset, store_memory_type(KIND_uint32_t), place, 1, crc);
+    H5Dclose(dataset);
     return good;
 }

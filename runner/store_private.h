@@ -1,6 +1,6 @@
-/* store_private.h - shared by store.c (rows), store_select.c (which elements those are),
- * store_layout.c (creation), store_look.c (questions) and seal.c (checksums); nothing else includes
- * it, so that HDF5 stays between them. */
+/* store_private.h - shared by store.c (rows), store_copy.c (rows of another file), store_select.c
+ * (which elements those are), store_layout.c (creation), store_look.c (questions) and seal.c
+ * (checksums); nothing else includes it, so that HDF5 stays between them. */
 #ifndef STANCE_RUNNER_STORE_PRIVATE_H
 #define STANCE_RUNNER_STORE_PRIVATE_H
 
@@ -83,6 +83,39 @@ struct store_design_column {
 enum { DESIGN_COLUMNS = 9 };
 void store_design_columns(const struct scenario *scenario,
                           struct store_design_column columns[DESIGN_COLUMNS]);
+
+struct store {
+    char file[1024];
+    const struct plan *plan;
+    hid_t id;
+    int ranks;                      /* that have it open together */
+    hid_t column[COLUMNS];          /* -1: not stored */
+    size_t width[COLUMNS];          /* elements per case */
+    struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
+    hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
+    hid_t trajectory_checksum;
+    int rank; /* dimensions of the cases */
+    hsize_t length[SCENARIO_MAX_AXES];
+};
+
+/* Rows in memory, column after column. */
+struct store_block {
+    const struct store *store;
+    size_t rows;
+    void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
+};
+
+enum store_direction { STORE_READ, STORE_WRITE };
+
+/* Moves rows between the file and a block, from `slot` on: all columns in order, the checksum and
+ * then the status last. */
+bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
+                     const struct rows *rows, enum store_direction way, stance_message *message);
+/* What the checksum of a row of a block ought to be. */
+uint32_t store_row_checksum(const struct store_block *block, size_t slot);
+/* Moves one case's part, `elements` long, of a variable whose first dimension is the case. */
+bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
+                      enum store_direction way, void *data);
 
 /* The dataset has exactly this shape. */
 bool store_has_shape(hid_t dataset, int rank, const hsize_t *length);

@@ -12,21 +12,19 @@
 #define MOST_CASES 0x1p53   /* exact as a double, and within what HDF5 can address */
 #define MOST_LOG_POINTS 1e7 /* these are computed beforehand */
 
-enum { AXIS_NAME = 48 };
-
-/* The axis being read: its place in the scenario and in the file. */
-struct axis_reader {
-    struct reader *r;
-    struct scenario_axis *axis;
-    struct swept_field *swept; /* [axis->paths] */
-    const struct tree_node *node;
-    int number;
-    char name[AXIS_NAME]; /* sweep.grid[number] */
-};
-
-static void missing(struct axis_reader *a, const char *what)
+void axis_complain(struct axis_reader *a, const char *what)
 {
     problem_add(&a->r->problems, a->node->mark, "%s: %s", a->name, what);
+}
+
+const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME])
+{
+    if (s->axis[axis].sample) {
+        snprintf(name, AXIS_NAME, "sweep.sample");
+    } else {
+        snprintf(name, AXIS_NAME, "sweep.grid[%d]", axis);
+    }
+    return name;
 }
 
 /* ---- paths ----------------------------------------------------------------------------------- */
@@ -94,9 +92,9 @@ static bool swept_before(struct axis_reader *a, const struct tree_node *node)
         const struct scenario_axis *axis = &a->r->s->axis[i];
         for (int k = 0; k < axis->paths; k++) {
             if (strcmp(axis->path[k], node->text) == 0) {
-                problem_add(&a->r->problems, node->mark,
-                            "%s: %s is swept twice (first in sweep.grid[%d])", a->name, node->text,
-                            i);
+                char first[AXIS_NAME];
+                problem_add(&a->r->problems, node->mark, "%s: %s is swept twice (first in %s)",
+                            a->name, node->text, axis_key(a->r->s, i, first));
                 return true;
             }
         }
@@ -147,15 +145,15 @@ static bool read_path(struct axis_reader *a, const struct tree_node *node)
     return true;
 }
 
-static bool read_paths(struct axis_reader *a)
+bool axis_read_paths(struct axis_reader *a)
 {
     const struct tree_node *path = tree_find(a->node, "path"), *paths = tree_find(a->node, "paths");
     if (!path && !paths) {
-        missing(a, "path is missing");
+        axis_complain(a, "path is missing");
         return false;
     }
     if (path && paths) {
-        missing(a, "path and paths exclude each other");
+        axis_complain(a, "path and paths exclude each other");
         return false;
     }
     if (path) {
@@ -164,7 +162,7 @@ static bool read_paths(struct axis_reader *a)
     if (!field_list(&a->r->problems, a->name, "a list of paths", paths)) {
         return false;
     }
-    if (paths->count > SCENARIO_MAX_PATHS) {
+    if (paths->count > SCENARIO_MAX_PATHS - (size_t)a->axis->paths) {
         problem_add(&a->r->problems, paths->mark, "%s: more than %d paths", a->name,
                     SCENARIO_MAX_PATHS);
         return false;
@@ -178,22 +176,26 @@ static bool read_paths(struct axis_reader *a)
 
 /* ---- points ---------------------------------------------------------------------------------- */
 
-static bool read_point(struct axis_reader *a, const struct tree_node *node, size_t at, int k)
+bool axis_read_value(struct axis_reader *a, const struct tree_node *node, int k, double *value)
 {
-    struct scenario_axis *axis = a->axis;
     const struct scenario_field *field = a->swept[k].field;
-    double *value = &axis->value[at];
-    bool good;
+    const char *path = a->axis->path[k];
 
     if (field->type == FIELD_WORD) {
         int place = 0;
-        good = field_word(&a->r->problems, field, axis->path[k], node, &place);
+        bool good = field_word(&a->r->problems, field, path, node, &place);
         *value = place;
-    } else if (field->type == FIELD_INTEGER) {
-        good = field_integer(&a->r->problems, field, axis->path[k], node, value);
-    } else {
-        good = field_number(&a->r->problems, field, axis->path[k], node, value);
+        return good;
     }
+    return field->type == FIELD_INTEGER ? field_integer(&a->r->problems, field, path, node, value)
+                                        : field_number(&a->r->problems, field, path, node, value);
+}
+
+static bool read_point(struct axis_reader *a, const struct tree_node *node, size_t at, int k)
+{
+    struct scenario_axis *axis = a->axis;
+    bool good = axis_read_value(a, node, k, &axis->value[at]);
+
     if (good && axis->word) {
         axis->word[at] = strdup(node->text);
         if (!axis->word[at]) {
@@ -260,18 +262,22 @@ static bool read_values(struct axis_reader *a, const struct tree_node *values, b
     return good;
 }
 
-static bool read_end(struct axis_reader *a, const char *key, double *value)
+bool axis_read_end(struct axis_reader *a, const char *key, const struct tree_node *node, int k,
+                   double *value)
 {
-    const struct tree_node *node = tree_find(a->node, key);
-    const struct scenario_field *field = a->swept[0].field;
-    bool good = field->type == FIELD_INTEGER
-                    ? field_integer(&a->r->problems, field, a->axis->path[0], node, value)
-                    : field_number(&a->r->problems, field, a->axis->path[0], node, value);
-    if (good && !isfinite(*value)) {
+    if (!axis_read_value(a, node, k, value)) {
+        return false;
+    }
+    if (!isfinite(*value)) {
         problem_add(&a->r->problems, node->mark, "%s: %s must be a number", a->name, key);
         return false;
     }
-    return good;
+    return true;
+}
+
+static bool read_end(struct axis_reader *a, const char *key, double *value)
+{
+    return axis_read_end(a, key, tree_find(a->node, key), 0, value);
 }
 
 static bool compute_log_points(struct axis_reader *a, struct mark mark)
@@ -319,7 +325,7 @@ static bool check_range(struct axis_reader *a, bool has_to)
         wrong = "this count leads to values that are not whole numbers";
     }
     if (wrong) {
-        missing(a, wrong);
+        axis_complain(a, wrong);
     }
     return !wrong;
 }
@@ -338,18 +344,19 @@ static bool read_range(struct axis_reader *a)
     if (axis->enumeration[0]) {
         char what[160];
         snprintf(what, sizeof what, "%s takes words: list them as values", axis->path[0]);
-        missing(a, what);
+        axis_complain(a, what);
         return false;
     }
     if (!tree_find(a->node, "from")) {
-        missing(a, count || has_to ? "from is missing" : "give from, to and count, or values");
+        axis_complain(a,
+                      count || has_to ? "from is missing" : "give from, to and count, or values");
         return false;
     }
     bool good = read_end(a, "from", &axis->from);
     axis->to = axis->from;
     good = (!has_to || read_end(a, "to", &axis->to)) && good;
     if (!count) {
-        missing(a, "count is missing");
+        axis_complain(a, "count is missing");
         return false;
     }
     snprintf(name, sizeof name, "%s.count", a->name);
@@ -372,6 +379,17 @@ static bool read_range(struct axis_reader *a)
 
 /* ---- axes ------------------------------------------------------------------------------------ */
 
+void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[160])
+{
+    const struct scenario_field *field = a->swept[k].field;
+    snprintf(unit, 24, "%s", field->unit[0] ? field->unit : "1");
+    if (field->columns > 0) { /* gains on angles, then on rates */
+        const bool angle = a->swept[k].index[1] < field->columns / 2;
+        snprintf(unit, 24, "%s", angle ? "N m/rad" : "N m s/rad");
+    }
+    snprintf(text, 160, "%s", field->text);
+}
+
 static bool read_axis(struct axis_reader *a)
 {
     struct scenario_axis *axis = a->axis;
@@ -386,22 +404,15 @@ static bool read_axis(struct axis_reader *a)
     axis->column = a->node->mark.column;
     reader_check_keys(a->r, a->node, "sweep.grid[]", a->name);
     bool keys_good = problems == a->r->problems.count + a->r->problems.lost;
-    if (!keys_good || !read_paths(a)) {
+    if (!keys_good || !axis_read_paths(a)) {
         return false;
     }
-    const struct scenario_field *first = a->swept[0].field;
     snprintf(axis->name, sizeof axis->name, "%s", axis->path[0]);
-    snprintf(axis->unit, sizeof axis->unit, "%s", first->unit[0] ? first->unit : "1");
-    if (first->columns > 0) {
-        size_t half = first->columns / 2;
-        snprintf(axis->unit, sizeof axis->unit, "%s",
-                 a->swept[0].index[1] < half ? "N m/rad" : "N m s/rad");
-    }
-    snprintf(axis->text, sizeof axis->text, "%s", first->text);
+    axis_describe(a, 0, axis->unit, axis->text);
     paths = tree_find(a->node, "paths");
     values = tree_find(a->node, "values");
     if (paths && !values) {
-        missing(a, "paths needs values, a list for each point");
+        axis_complain(a, "paths needs values, a list for each point");
         return false;
     }
     return values ? read_values(a, values, paths != NULL) : read_range(a);
@@ -495,7 +506,7 @@ void sweep_read_refine(struct reader *r)
     s->refine = (struct scenario_refine){true, (size_t)start, (size_t)margin, probes};
     for (int a = 0; a < s->axes; a++) {
         struct scenario_axis *axis = &s->axis[a];
-        axis->refined = !axis->words && axis->count > s->refine.start;
+        axis->refined = !axis->words && !axis->sample && axis->count > s->refine.start;
         any = any || axis->refined;
     }
     if (!any) {
@@ -517,10 +528,15 @@ void sweep_free(struct scenario_axis *axis)
             free(axis->word[i]);
         }
     }
+    for (int k = 0; axis->meaning && k < axis->paths; k++) {
+        free(axis->meaning[k].words);
+    }
     free(axis->word);
     free(axis->value);
+    free(axis->meaning);
     axis->word = NULL;
     axis->value = NULL;
+    axis->meaning = NULL;
 }
 
 /* ---- values of cases ------------------------------------------------------------------------- */
@@ -544,6 +560,14 @@ void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char 
         return;
     }
     double value = scenario_axis_value(axis, i, k);
+    if (axis->meaning && axis->meaning[k].words) {
+        const char *word = axis->meaning[k].words;
+        for (int skipped = 0; skipped < (int)value && strchr(word, ' '); skipped++) {
+            word = strchr(word, ' ') + 1;
+        }
+        snprintf(buffer, size, "%.*s", (int)strcspn(word, " "), word);
+        return;
+    }
     if (isinf(value)) {
         snprintf(buffer, size, "none");
         return;
@@ -554,6 +578,13 @@ void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char 
             return;
         }
     }
+}
+
+void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid, uint64_t *sample)
+{
+    const uint64_t points = s->sample.given ? s->axis[s->axes - 1].count : 1;
+    *grid = index / points;
+    *sample = index % points;
 }
 
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values)

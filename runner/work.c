@@ -12,6 +12,7 @@
  */
 #include "work.h"
 
+#include "crash.h"
 #include "deadline.h"
 #include "instruction_set.h"
 
@@ -80,6 +81,7 @@ struct task {
     uint64_t place;  /* of the trajectory in the file */
     struct block *block;
     size_t slot;
+    int hand; /* place in the list of what is in hand, see crash.h */
     struct task *next, *next_idle;
 };
 
@@ -106,7 +108,9 @@ struct job {
     double look_at;                 /* when next */
     double checking;                /* s spent on what the file already holds */
     bool leaving;                   /* no more cases: told to stop, or broken */
-    bool broken;                    /* *message says why */
+    bool broken;                    /* nothing can be written; *message says why */
+    bool told;                      /* ... and the others know that we are to stop */
+    bool lost;                      /* the file or its lock is; *message says why */
     stance_message *message;
     struct progress progress;
 };
@@ -192,6 +196,7 @@ static struct task *task_take(struct job *job)
         out_of_memory(job, "the cases");
         return NULL;
     }
+    task->hand = -1;
     task->next = job->tasks;
     job->tasks = task;
     return task;
@@ -199,6 +204,8 @@ static struct task *task_take(struct job *job)
 
 static void task_leave(struct job *job, struct task *task)
 {
+    crash_leave(task->hand);
+    task->hand = -1;
     task->next_idle = job->idle_task;
     job->idle_task = task;
 }
@@ -334,6 +341,38 @@ static void case_done(void *context, const stance_case *input, stance_result *re
 
 static bool attend(void *context);
 
+/* Counts a row that is marked done but does not verify; the lowest ones are named. */
+static void note_damage(struct work *work, uint64_t row)
+{
+    uint64_t index = plan_case(work->plan, row);
+    const uint64_t named = work->damaged < WORK_NAMED ? work->damaged : WORK_NAMED;
+    work->damaged++;
+    for (uint64_t k = 0; k < named; k++) {
+        if (index < work->damaged_case[k]) {
+            const uint64_t higher = work->damaged_case[k];
+            work->damaged_case[k] = index;
+            index = higher;
+        }
+    }
+    if (named < WORK_NAMED) {
+        work->damaged_case[named] = index;
+    }
+}
+
+bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,
+                 stance_message *message)
+{
+    if (!store_verify(work->store, rows, results, whole, message)) {
+        return false;
+    }
+    for (size_t i = 0; i < rows->count; i++) {
+        if (!whole[i] && results[i].status != STANCE_PENDING) {
+            note_damage(work, rows_at(rows, i));
+        }
+    }
+    return true;
+}
+
 /* Rows that the file of a resumed run holds whole are as good as ended. */
 static void keep_rows(struct job *job, struct block *block)
 {
@@ -344,7 +383,7 @@ static void keep_rows(struct job *job, struct block *block)
     for (size_t slot = 0, n; slot < block->count && !job->broken; slot += n) {
         n = block->count - slot < STORE_ROWS ? block->count - slot : STORE_ROWS;
         const struct rows rows = rows_part(&job->schedule.rows, block->first + slot, n);
-        if (!store_verify(job->work->store, &rows, results, whole, job->message)) {
+        if (!work_verify(job->work, &rows, results, whole, job->message)) {
             break_off(job);
             return;
         }
@@ -458,6 +497,7 @@ static bool next_case(void *context, const stance_case **input, stance_result **
         }
         block->state[slot] = RUNNING;
         if (exists) {
+            task->hand = crash_take(plan_case(job->plan, row));
             *input = &task->input;
             *result = &task->result;
             return true;
@@ -522,6 +562,22 @@ static bool asked_to_stop(const struct work *work, double now)
     return stop_asked || now - work->start > work->time_limit;
 }
 
+/* Rank 0's sign of life for the whole job. */
+static void keep_pulse(struct job *job, double now)
+{
+    struct work *work = job->work;
+    if (!work->pulse || now < work->pulse->due || job->broken || job->lost) {
+        return;
+    }
+    const uint64_t done = work->before + (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
+    const uint64_t kept =
+        work->kept_before + (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
+    if (!pulse_beat(work->pulse, now, done, done - kept, work->round, job->message)) {
+        job->lost = job->leaving = true;
+        parallel_add(work->parallel, COUNTER_STOP, 1);
+    }
+}
+
 bool work_told_to_stop(const struct work *work)
 {
     const bool asked = asked_to_stop(work, plan_clock());
@@ -543,19 +599,46 @@ static bool attend(void *context)
     if (asked_to_stop(work, now)) {
         write_open(job); /* before others are told: rank 0 may not answer */
         parallel_add(work->parallel, COUNTER_STOP, 1);
-        job->leaving = true;
+        job->leaving = job->told = true;
         return true;
     }
     write_ended(job, now);
     if (now >= job->look_at) {
         report(job);
+        parallel_beat(work->parallel, ++job->work->beats);
         job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
         job->look_at = now + schedule_look_interval(ranks);
     } else if (work->parallel->rank == 0) {
         job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
     }
+    keep_pulse(job, now);
     show_progress(job, now);
     return job->leaving;
+}
+
+/* While other ranks still work. */
+static void wait_for_others(void *context)
+{
+    struct job *job = context;
+    const double now = plan_clock();
+    if (!job->told && asked_to_stop(job->work, now)) {
+        parallel_add(job->work->parallel, COUNTER_STOP, 1);
+        job->told = true;
+    }
+    keep_pulse(job, now);
+    show_progress(job, now);
+}
+
+/* The ranks come together again; rank 0 remembers what this was. */
+static void meet(struct job *job)
+{
+    struct work *work = job->work;
+    parallel_beat(work->parallel, PULSE_WAITS);
+    parallel_meet(work->parallel, wait_for_others, job);
+    if (work->parallel->rank == 0) {
+        work->before += (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
+        work->kept_before += (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
+    }
 }
 
 /* ---- the whole ---------------------------------------------------------------------------- */
@@ -603,6 +686,7 @@ static void job_free(struct job *job)
     }
     for (struct task *task = job->tasks, *next; task; task = next) {
         next = task->next;
+        crash_leave(task->hand);
         free(task->samples);
         free(task);
     }
@@ -637,10 +721,11 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
         deadline_begin();
     }
     report(&job);
+    work->seconds += plan_clock() - start - job.checking;
+    meet(&job);
     if (job.progress.terminal && !work->quiet && work->parallel->rank == 0) {
         fputs("\r\033[K", stderr);
     }
-    work->seconds += plan_clock() - start - job.checking;
     job_free(&job);
-    return !job.broken;
+    return !job.broken && !job.lost;
 }

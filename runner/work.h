@@ -8,10 +8,11 @@
 #define STANCE_RUNNER_WORK_H
 
 #include "plan.h"
+#include "pulse.h"
 #include "schedule.h"
 #include "store.h"
 
-enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1, WORK_FAILED = WORK_OUTCOMES + 1 };
+enum { WORK_OUTCOMES = STANCE_UNDECIDED + 1, WORK_FAILED = WORK_OUTCOMES + 1, WORK_NAMED = 5 };
 
 struct work {
     const struct plan *plan;
@@ -21,6 +22,7 @@ struct work {
     bool quiet;                      /* no progress */
     double start;                    /* plan_clock() when the program began */
     double time_limit;               /* s since then, INFINITY: none */
+    struct pulse *pulse;             /* on rank 0, may be NULL: signs of life of the job */
     int round;           /* of several, counted from 1, for the progress; 0: there is one only */
     double progress_due; /* when to show it next; 0: not shown yet */
 
@@ -30,6 +32,13 @@ struct work {
     uint64_t inferred; /* of these, now and without simulation */
     uint64_t outcome[WORK_OUTCOMES], failed;
     double seconds;
+    int64_t beats; /* this rank's sign of life */
+    uint64_t before,
+        kept_before; /* all ranks' cases of earlier rounds, on rank 0; of these, kept */
+
+    /* Cases that the file marks as done but whose answers do not verify, and the lowest of them:
+     * they are computed again. */
+    uint64_t damaged, damaged_case[WORK_NAMED];
 };
 
 /* From now on SIGINT, SIGTERM and SIGUSR1 ask for a stop: cases in hand are given up, what has
@@ -46,11 +55,15 @@ bool work_told_to_stop(const struct work *work);
 /* Counts a case whose answer is in the file, or will be. */
 void work_tally(struct work *work, stance_status status, stance_outcome outcome);
 
-/* Computes all rows of the plan, or `only` some. Not collective, but every rank calls it, with the
- * same rows and with counters that are new (parallel_share, parallel_restart). Leaves early when
- * any rank fails, or is told to stop; false when this rank failed. What came out adds to what *work
- * holds. label[rows], unless NULL: of each row that this rank has dealt with, outcome + 1, or
- * WORK_FAILED. */
+/* store_verify for a resumed run: counts what is damaged. */
+bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,
+                 stance_message *message);
+
+/* Collective: computes all rows of the plan, or `only` some, the same on every rank, with counters
+ * that are new (parallel_share, parallel_restart); returns when every rank has done its part.
+ * Leaves early when any rank fails, is told to stop, or the file is gone; false when this rank
+ * failed. What came out adds to what *work holds. label[rows], unless NULL: of each row that this
+ * rank has dealt with, outcome + 1, or WORK_FAILED. */
 bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance_message *message);
 
 #endif

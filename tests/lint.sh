@@ -31,7 +31,7 @@ cppcheck --quiet --std=c11 --error-exitcode=1 --inline-suppr --enable=warning,pe
     runner analysis engine/*.c engine/control engine/scenes || complain "cppcheck"
 
 kernel='-DSTANCE_LANES=1 -DSTANCE_SCENE=biped -DSTANCE_ISA=scalar -DSTANCE_SCENE_LANES=\"../scenes/biped_lanes.h\"'
-flags="$kernel -std=c17 -D_GNU_SOURCE -DSTANCE_MPI $(mpicc --showme:compile) $(pkg-config --cflags hdf5-openmpi yaml-0.1 jansson lapacke)"
+flags="$kernel -std=c17 -D_GNU_SOURCE -DSTANCE_MPI $(mpicc --showme:compile) $(pkg-config --cflags hdf5-openmpi yaml-0.1 jansson lapacke gsl)"
 checks='-*,bugprone-*,-bugprone-easily-swappable-parameters,-bugprone-reserved-identifier,-bugprone-narrowing-conversions,-bugprone-implicit-widening-of-multiplication-result,-bugprone-assignment-in-if-condition,-bugprone-macro-parentheses,clang-analyzer-*,-clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling,-clang-analyzer-optin.mpi*'
 git ls-files 'runner/*.c' 'analysis/*.c' 'engine/*.c' |
     xargs -P 2 -I{} sh -c "clang-tidy --quiet --warnings-as-errors='*' --checks='$checks' {} -- $flags 2>/dev/null" ||

@@ -34,6 +34,8 @@ import sys
 import h5py
 import numpy as np
 
+from results_tools import ANSWERS, crc32c
+
 SCENARIO = """stance: 1
 title: {title}
 scene: biped
@@ -68,6 +70,14 @@ MEANINGS = {
 }
 UNITS = {"end_time": "s", "settle_time": "s", "fall_time": "s", "max_penetration": "m",
          "peak_torque": "N m", "impact_energy": "J", "projection_energy": "J"}
+
+
+def put_checksums(file):
+    """Checksums that fit the answers of each case."""
+    n = file["status"].shape
+    parts = [np.frombuffer(file[name][...].tobytes(), np.uint8).reshape(file["status"].size, -1)
+             for name in ANSWERS if name in file]
+    file["checksum"][...] = crc32c(np.hstack(parts)).reshape(n)
 
 
 class File:
@@ -192,6 +202,7 @@ class File:
 
     def close(self):
         """Brings it to the disk."""
+        put_checksums(self.file)
         self.file.close()
 
 
@@ -329,6 +340,7 @@ def make_others(where):
         file["end_time"][3, 4] += 1e-15
         file["timing/wall_time"][0] = 99
         file.attrs["hosts"] = "there"
+        put_checksums(file)
     shutil.copy(where("partial"), where("rubbish"))
     with h5py.File(where("rubbish"), "r+") as file:
         file["end_time"][8, 2] = 99
@@ -337,10 +349,12 @@ def make_others(where):
     shutil.copy(where("partial"), where("unfinished"))
     with h5py.File(where("unfinished"), "r+") as file:
         file["status"][4, 2] = 0
+        put_checksums(file)
     shutil.copy(where("friction"), where("unlucky"))
     with h5py.File(where("unlucky"), "r+") as file:
         file["status"][2, 10, 5] = 2
         file["status"][3, 10, 5] = 0
+        put_checksums(file)
     shutil.copy(where("basin"), where("bytes"))
     with h5py.File(where("bytes"), "r+") as file:
         del file.attrs["title"]

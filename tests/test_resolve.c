@@ -18,6 +18,7 @@ static struct scenario_values balance_values(void)
         .design = DESIGN_PLACE,
         .design_point = {false, {NAN, NAN, NAN}, 0},
         .target = {NAN, NAN, NAN},
+        .offset_scale = 1,
         .sample_time = 0.001,
         .torque_limit = 10,
         .step = 0.001,
@@ -70,8 +71,9 @@ static void balance(void **state)
 {
     (void)state;
     struct scenario_values v = balance_values();
-    v.offset[2] = -0.04;
-    v.offset[5 + 2] = 0.3;
+    v.offset[2] = -0.02;
+    v.offset[5 + 2] = 0.15;
+    v.offset_scale = 2;
     const stance_case c = resolved(&v), wanted = balance_case(-0.04, 0.3);
     assert_memory_equal(c.position, wanted.position, sizeof c.position);
     assert_memory_equal(c.velocity, wanted.velocity, sizeof c.velocity);
@@ -98,6 +100,11 @@ static void offsets_of_translation(void **state)
     assert_true(after.position[0] == before.position[0] + 0.5);
     assert_true(after.position[1] == before.position[1] + 0.25);
     assert_true(after.velocity[0] == -1 && after.velocity[1] == 2);
+    v.offset_scale = 0.5;
+    const stance_case halved = resolved(&v);
+    assert_true(halved.position[0] == before.position[0] + 0.25);
+    assert_true(halved.velocity[0] == -0.5 && halved.velocity[1] == 1);
+    v.offset_scale = 1;
     assert_memory_equal(after.position + 2, before.position + 2, 3 * sizeof(double));
     v.offset[1] = -1e-10; /* rounding, as far as a start goes */
     resolved(&v);

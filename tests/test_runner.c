@@ -523,18 +523,28 @@ static void test_lock(void **state)
 {
     struct fixture *f = *state;
     struct lock lock, second;
-    struct lock_note note = {1.5, 77}, found;
+    char found[LOCK_NOTE];
     stance_message message;
-    assert_false(lock_is_held(f->file, &found));
+    assert_false(lock_is_held(f->file, found));
     assert_true(lock_take(&lock, f->file, &message));
-    lock_write_note(&lock, &note);
-    assert_true(lock_is_held(f->file, &found));
-    assert_true(found.start == 1.5 && found.finished == 77);
+    lock_write_note(&lock, "a long note");
+    lock_write_note(&lock, "a note");
+    assert_true(lock_is_held(f->file, found));
+    assert_int_equal(strspn(found, "a note"), strlen(found) - 1); /* blanks and a line's end */
+    assert_memory_equal(found, "a note ", 7);
     assert_false(lock_take(&second, f->file, &message));
     assert_non_null(strstr(message.text, "another process"));
-    lock_release(&lock);
-    assert_false(lock_is_held(f->file, &found));
-    assert_int_not_equal(access(lock.file, F_OK), 0);
+    /* Its file is removed: it is taken anew, unless another was quicker. */
+    unlink(lock.file);
+    assert_true(lock_keep(&lock, &message));
+    assert_true(lock_is_held(f->file, found));
+    unlink(lock.file);
+    assert_true(lock_take(&second, f->file, &message));
+    assert_false(lock_keep(&lock, &message));
+    assert_non_null(strstr(message.text, "another process"));
+    lock_release(&second);
+    assert_false(lock_is_held(f->file, found));
+    assert_int_not_equal(access(second.file, F_OK), 0);
     /* The death of its owner releases it. */
     pid_t child = fork();
     if (child == 0) {
@@ -543,7 +553,7 @@ static void test_lock(void **state)
     }
     waitpid(child, NULL, 0);
     assert_int_equal(access(lock.file, F_OK), 0);
-    assert_false(lock_is_held(f->file, &found));
+    assert_false(lock_is_held(f->file, found));
     assert_true(lock_take(&lock, f->file, &message));
     lock_release(&lock);
     assert_false(lock_take(&lock, "/nowhere/file.h5", &message));

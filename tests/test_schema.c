@@ -167,6 +167,9 @@ static void check_scene_schema(json_t *root, const stance_scene *scene)
         } else if (strcmp(field->path, "scene") == 0) {
             json_t *word = json_array_get(json_object_get(object, "enum"), 0);
             assert_string_equal(json_string_value(word), scene->name);
+        } else if (strcmp(json_string_value(json_object_get(object, "type")) ?: "", "boolean") ==
+                   0) {
+            assert_string_equal(field->words[1], "true");
         } else if (field->type == FIELD_WORD) {
             assert_int_equal(json_array_size(json_object_get(object, "enum")), field->word_count);
         } else if (field->type == FIELD_MAP) {

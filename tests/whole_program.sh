@@ -42,6 +42,10 @@ for scenario in scenarios/*.yaml scenarios/controllers/*.yaml; do
     friction | noise | torque_limit | friction_needed)
         reduce=(--set 'sweep.grid[0].count=13' --set 'sweep.grid[1].count=13') ;;
     delay) reduce=(--set 'sweep.grid[1].count=13' --set 'sweep.grid[2].count=13') ;;
+    sampled) reduce=(--set sweep.sample.count=100) ;;
+    what_decides)
+        reduce=(--set 'sweep.grid[0].count=4' --set 'sweep.grid[1].count=4' --set sweep.sample.count=8) ;;
+    topple) reduce=(--set 'sweep.grid[0].count=65' --set sweep.sample.count=40) ;;
     decoupling_*) reduce=(--set 'sweep.grid[1].count=7') ;;
     esac
     check "$name: check" "$stance" check "$scenario"

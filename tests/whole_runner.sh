@@ -233,7 +233,7 @@ says "... says so" 'design/gain has no checksum'
 expect "... but a summary" 0 "$stance" summary old.h5
 
 expect "a time limit" 4 mpirun -n 2 "$stance" run long.yaml -o limited.h5 --time-limit 1s
-says "... says how to go on" 'go on with: mpirun -n 2 stance run long.yaml .*--resume'
+says "... says how to go on" 'go on with: mpirun -n 2 .* run long.yaml .*--resume'
 expect "... and it does" 0 "$stance" run long.yaml -o limited.h5 --resume
 tool "stopped and resumed: the same bits" same long.h5 limited.h5
 # Cases that would take minutes each: nobody waits for their ends.

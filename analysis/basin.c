@@ -1,0 +1,418 @@
+/* basin.c - cuts a results file into maps over the starts and sums up what these say. */
+#include "basin.h"
+
+#include "statistics.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool no_memory(const struct results *r, stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+    return false;
+}
+
+/* ---- which axis is what ------------------------------------------------------------------- */
+
+static bool is_start(const struct results_axis *axis)
+{
+    return !axis->word && strcmp(axis->name, "initial.offset.scale") != 0 &&
+           (axis->offset || strncmp(axis->name, "initial.state.", 14) == 0);
+}
+
+static int find_axis(const struct results *r, const char *name)
+{
+    for (int a = 0; a < r->axes; a++) {
+        if (strcmp(r->axis[a].name, name) == 0) {
+            return a;
+        }
+    }
+    return -1;
+}
+
+static bool contains(const int *list, int count, int axis)
+{
+    for (int k = 0; k < count; k++) {
+        if (list[k] == axis) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* The axes that --by names, in the file's order. */
+static bool choose_by(struct basin *b, stance_message *message)
+{
+    const struct results *r = b->r;
+    bool wanted[SCENARIO_MAX_AXES] = {false};
+    for (size_t k = 0; k < b->choice.by_count; k++) {
+        const int a = find_axis(r, b->choice.by[k]);
+        if (a < 0 || strcmp(r->axis[a].name, "sample") == 0) {
+            snprintf(message->text, sizeof message->text,
+                     "stance basin: --by takes an axis of the grid, and '%.60s' is none of %.90s",
+                     b->choice.by[k], r->file);
+            return false;
+        }
+        wanted[a] = true;
+    }
+    for (int a = 0; a < r->axes; a++) {
+        if (wanted[a]) {
+            b->by[b->by_axes++] = a;
+        }
+    }
+    return true;
+}
+
+static void add_unit(struct basin *b, const char *unit)
+{
+    const size_t used = strlen(b->unit);
+    if (unit[0] && strcmp(unit, "1") != 0) {
+        snprintf(b->unit + used, sizeof b->unit - used, "%s%s", used ? " * " : "", unit);
+    }
+}
+
+/* Starts that are sampled: the points must be evenly distributed over their box. */
+static bool choose_sample(struct basin *b, stance_message *message)
+{
+    const struct basin_sample *sample = &b->sample;
+    const char *wrong = b->start_axes > 0 ? "starts are on axes of the grid and sampled at once"
+                        : sample->method == SAMPLING_MORRIS
+                            ? "Morris's trajectories do not cover the box of starts evenly"
+                        : sample->method == SAMPLING_SPHERE
+                            ? "method sphere has no volume without a grid axis initial.offset.scale"
+                            : NULL;
+    if (wrong) {
+        snprintf(message->text, sizeof message->text, "%.100s: %s", b->r->file, wrong);
+        return false;
+    }
+    b->starts = BASIN_SAMPLE;
+    b->averaged = -1;
+    b->start[b->start_axes++] = sample->axis;
+    b->box = isfinite(sample->box) ? sample->box : 1;
+    for (size_t k = 0; k < sample->factors && isfinite(sample->box); k++) {
+        add_unit(b, sample->factor[k].of->unit);
+    }
+    return true;
+}
+
+static bool choose_axes(struct basin *b, stance_message *message)
+{
+    const struct results *r = b->r;
+    if (!choose_by(b, message)) {
+        return false;
+    }
+    b->box = 1;
+    for (int a = 0; a < r->axes; a++) {
+        const struct results_axis *axis = &r->axis[a];
+        const bool by = contains(b->by, b->by_axes, a);
+        if (!by && is_start(axis) && axis->count > 1) {
+            b->start[b->start_axes++] = a;
+            add_unit(b, axis->unit);
+        } else if (!by && strcmp(axis->name, "sample") == 0) {
+            b->averaged = a;
+        } else if (!by && b->choice.by_count == 0 && !is_start(axis) && !r->single) {
+            b->by[b->by_axes++] = a;
+        }
+    }
+    if (b->sample.axis >= 0) {
+        return choose_sample(b, message);
+    }
+    if (b->start_axes == 0) {
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: no starts are varied (initial.offset.*, initial.state.*), so there is no "
+                 "basin to measure",
+                 r->file);
+        return false;
+    }
+    return true;
+}
+
+/* ---- slices ------------------------------------------------------------------------------- */
+
+/* What all slices share. */
+struct lattice {
+    size_t *order[SCENARIO_MAX_AXES]; /* of the start axes: points by rising value */
+    double *place[SCENARIO_MAX_AXES];
+    uint64_t stride[SCENARIO_MAX_AXES]; /* of the file's axes */
+    size_t origin[SCENARIO_MAX_AXES];   /* the place nearest to zero */
+    struct basin_map map;
+    uint8_t *kind; /* [map.cases] */
+};
+
+static void free_lattice(struct lattice *lattice)
+{
+    for (int d = 0; d < SCENARIO_MAX_AXES; d++) {
+        free(lattice->order[d]);
+        free(lattice->place[d]);
+    }
+    free(lattice->kind);
+}
+
+static int by_value(const void *left, const void *right, void *values)
+{
+    const double *value = values, x = value[*(const size_t *)left],
+                 y = value[*(const size_t *)right];
+    return (x > y) - (x < y);
+}
+
+/* The places of a start axis, sorted. */
+static bool sort_axis(struct lattice *lattice, int d, const struct results_axis *axis)
+{
+    size_t *order = lattice->order[d] = malloc(axis->count * sizeof *order);
+    double *place = lattice->place[d] = malloc(axis->count * sizeof *place);
+    if (!order || !place) {
+        return false;
+    }
+    for (size_t i = 0; i < axis->count; i++) {
+        order[i] = i;
+    }
+    qsort_r(order, axis->count, sizeof *order, by_value, axis->value);
+    const size_t zero = statistics_nearest_zero(axis);
+    for (size_t i = 0; i < axis->count; i++) {
+        place[i] = axis->value[order[i]];
+        lattice->origin[d] = order[i] == zero ? i : lattice->origin[d];
+    }
+    lattice->map.count[d] = axis->count;
+    lattice->map.place[d] = place;
+    lattice->map.cases *= axis->count;
+    return true;
+}
+
+static bool make_lattice(struct lattice *lattice, const struct basin *b)
+{
+    const struct results *r = b->r;
+    uint64_t product = 1;
+    *lattice = (struct lattice){.map = {.axes = b->start_axes, .cases = 1}};
+    for (int a = r->axes - 1; a >= 0; a--) {
+        lattice->stride[a] = product;
+        product *= r->axis[a].count;
+    }
+    bool good = true;
+    for (int d = 0; good && d < b->start_axes; d++) {
+        good = sort_axis(lattice, d, &r->axis[b->start[d]]);
+    }
+    lattice->kind = good ? malloc(lattice->map.cases) : NULL;
+    lattice->map.kind = lattice->kind;
+    if (!lattice->kind) {
+        free_lattice(lattice);
+    }
+    return lattice->kind != NULL;
+}
+
+/* The kinds of the cases of one slice, into lattice->kind. */
+static void take_slice(struct lattice *lattice, const struct basin *b, const size_t *point)
+{
+    size_t at[SCENARIO_MAX_AXES] = {0};
+    uint64_t base = 0;
+    for (int a = 0; a < b->r->axes; a++) {
+        base += contains(b->start, b->start_axes, a) ? 0 : point[a] * lattice->stride[a];
+    }
+    for (uint64_t i = 0; i < lattice->map.cases; i++) {
+        uint64_t index = base;
+        for (int d = 0; d < b->start_axes; d++) {
+            index += lattice->order[d][at[d]] * lattice->stride[b->start[d]];
+        }
+        lattice->kind[i] = b->r->kind[index];
+        for (int d = b->start_axes - 1; d >= 0 && ++at[d] == lattice->map.count[d]; d--) {
+            at[d] = 0;
+        }
+    }
+}
+
+/* The next point of the axes that are no starts; false after the last. */
+static bool next_slice(const struct basin *b, size_t *point)
+{
+    for (int a = b->r->axes - 1; a >= 0; a--) {
+        if (contains(b->start, b->start_axes, a)) {
+            continue;
+        }
+        if (++point[a] < b->r->axis[a].count) {
+            return true;
+        }
+        point[a] = 0;
+    }
+    return false;
+}
+
+static struct basin_row *row_of(const struct basin *b, const size_t *point)
+{
+    size_t row = 0;
+    for (int k = 0; k < b->by_axes; k++) {
+        row = row * b->r->axis[b->by[k]].count + point[b->by[k]];
+    }
+    return &b->row[row];
+}
+
+/* ---- rows --------------------------------------------------------------------------------- */
+
+static void count_cases(const struct lattice *lattice, enum results_kind of, struct basin_row *row)
+{
+    for (uint64_t i = 0; i < lattice->map.cases; i++) {
+        row->inside += lattice->kind[i] == of;
+        row->failed += lattice->kind[i] == RESULTS_FAILED;
+        row->pending += lattice->kind[i] == RESULTS_PENDING;
+    }
+    row->cases += lattice->map.cases;
+}
+
+static void add_slice(struct basin *b, const struct lattice *lattice, const size_t *point)
+{
+    struct basin_row *row = row_of(b, point);
+    struct basin_volume volume;
+    for (int k = 0; k < b->by_axes; k++) {
+        row->point[b->by[k]] = point[b->by[k]];
+    }
+    count_cases(lattice, b->choice.of, row);
+    basin_map_volume(&lattice->map, b->choice.of, &volume);
+    b->box = volume.box;
+    row->slices++;
+    row->volume += volume.estimate;
+    row->squares += volume.estimate * volume.estimate;
+    row->low += volume.low;
+    row->high += volume.high;
+    row->error += volume.variance;
+    row->cells += volume.cells;
+    row->crossed += volume.crossed;
+    basin_map_entropy(&lattice->map, b->choice.side, &row->entropy);
+    row->uncertainty.scales = basin_map_scales(&lattice->map);
+    basin_map_uncertainty(&lattice->map, &row->uncertainty);
+    row->has_distance = row->slices == 1;
+    for (int d = 0; d < b->start_axes; d++) {
+        row->has_distance = row->has_distance && b->r->axis[b->start[d]].offset;
+    }
+    if (row->has_distance) {
+        basin_map_distance(&lattice->map, b->choice.of, lattice->origin, &row->distance);
+    }
+}
+
+/* From sums over slices to means; over a sample of parameters these scatter, too. */
+static void finish_row(const struct basin *b, struct basin_row *row)
+{
+    const double n = (double)row->slices;
+    row->volume /= n;
+    row->low /= n;
+    row->high /= n;
+    row->error /= n * n;
+    if (b->averaged >= 0 && n > 1) {
+        row->error += fmax(0, row->squares / n - row->volume * row->volume) / (n - 1);
+    }
+    row->error = sqrt(row->error);
+}
+
+/* Counts cases alone: a sample is no map. */
+static void add_sampled(struct basin *b, const struct lattice *lattice, const size_t *point)
+{
+    struct basin_row *row = row_of(b, point);
+    for (int k = 0; k < b->by_axes; k++) {
+        row->point[b->by[k]] = point[b->by[k]];
+    }
+    for (size_t i = 0; i < lattice->map.cases; i++) {
+        if (basin_sample_counts(&b->sample, i)) {
+            const uint8_t kind = lattice->kind[i];
+            row->cases++;
+            row->inside += kind == b->choice.of;
+            row->failed += kind == RESULTS_FAILED;
+            row->pending += kind == RESULTS_PENDING;
+        }
+    }
+    row->slices++;
+}
+
+static void finish_sampled(const struct basin *b, struct basin_row *row)
+{
+    const uint64_t unknown = row->failed + row->pending, known = row->cases - unknown;
+    const double share = known > 0 ? (double)row->inside / (double)known : NAN;
+    double ignored;
+    statistics_wilson_at(b->choice.level, row->inside, row->cases, &row->low, &ignored);
+    statistics_wilson_at(b->choice.level, row->inside + unknown, row->cases, &ignored, &row->high);
+    row->volume = b->box * share;
+    row->low *= b->box;
+    row->high *= b->box;
+    row->error = b->box * sqrt(share * (1 - share) / (double)known);
+}
+
+static bool make_rows(struct basin *b, stance_message *message)
+{
+    struct lattice lattice;
+    size_t point[SCENARIO_MAX_AXES] = {0};
+
+    b->rows = 1;
+    for (int k = 0; k < b->by_axes; k++) {
+        b->rows *= b->r->axis[b->by[k]].count;
+    }
+    b->row = calloc(b->rows, sizeof *b->row);
+    if (!b->row || !make_lattice(&lattice, b)) {
+        return no_memory(b->r, message);
+    }
+    do {
+        take_slice(&lattice, b, point);
+        (b->starts == BASIN_GRID ? add_slice : add_sampled)(b, &lattice, point);
+    } while (next_slice(b, point));
+    for (size_t k = 0; k < b->rows; k++) {
+        (b->starts == BASIN_GRID ? finish_row : finish_sampled)(b, &b->row[k]);
+    }
+    free_lattice(&lattice);
+    return true;
+}
+
+bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
+                struct basin_sample *sample, bool *usage, stance_message *message)
+{
+    *basin = (struct basin){
+        .r = r, .choice = *choice, .starts = BASIN_GRID, .sample = *sample, .averaged = -1};
+    *sample = (struct basin_sample){.axis = -1};
+    *usage = true;
+    bool good = choose_axes(basin, message);
+    if (good) {
+        *usage = false;
+        good = make_rows(basin, message);
+    }
+    if (!good) {
+        basin_free(basin);
+    }
+    return good;
+}
+
+void basin_free(struct basin *basin)
+{
+    free(basin->row);
+    basin_sample_free(&basin->sample);
+    *basin = (struct basin){0};
+}
+
+/* ---- the boundary ------------------------------------------------------------------------- */
+
+struct visitor {
+    struct basin_slice slice;
+    bool (*visit)(void *context, const struct basin_slice *slice,
+                  const struct basin_crossing *crossing);
+    void *context;
+};
+
+static bool visit_crossing(void *context, const struct basin_crossing *crossing)
+{
+    const struct visitor *visitor = context;
+    return visitor->visit(visitor->context, &visitor->slice, crossing);
+}
+
+bool basin_boundary(const struct basin *basin,
+                    bool (*visit)(void *context, const struct basin_slice *slice,
+                                  const struct basin_crossing *crossing),
+                    void *context)
+{
+    struct visitor visitor = {.slice = {.basin = basin}, .visit = visit, .context = context};
+    struct lattice lattice;
+    if (basin->starts != BASIN_GRID || !make_lattice(&lattice, basin)) {
+        return basin->starts != BASIN_GRID;
+    }
+    visitor.slice.map = lattice.map;
+    bool good = true;
+    do {
+        take_slice(&lattice, basin, visitor.slice.point);
+        good = basin_map_boundary(&lattice.map, visit_crossing, &visitor);
+    } while (good && next_slice(basin, visitor.slice.point));
+    free_lattice(&lattice);
+    return good;
+}

@@ -1,0 +1,87 @@
+/* sample_bins.c - see sample_bins.h. */
+#include "sample_bins.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct place {
+    double value;
+    size_t point;
+};
+
+static int by_value(const void *left, const void *right)
+{
+    const struct place *a = left, *b = right;
+    return a->value != b->value ? (a->value > b->value) - (a->value < b->value)
+                                : (a->point > b->point) - (a->point < b->point);
+}
+
+static size_t count_values(const struct place *place, size_t n)
+{
+    size_t values = 1;
+    for (size_t i = 1; i < n; i++) {
+        values += place[i].value != place[i - 1].value;
+    }
+    return values;
+}
+
+static void add(struct statistics_counts *to, const struct statistics_counts *counts)
+{
+    for (int kind = 0; kind < RESULTS_KIND_COUNT; kind++) {
+        to->kind[kind] += counts->kind[kind];
+    }
+    to->done += counts->done;
+}
+
+bool sample_bins_make(struct sample_bins *bins, const struct results *r, int k, size_t most,
+                      stance_message *message)
+{
+    const struct results_varied *v = &r->vary[k];
+    const size_t n = v->of.count;
+    struct place *place = malloc(n * sizeof *place);
+    struct statistics_counts *counts = malloc(n * sizeof *counts);
+
+    *bins = (struct sample_bins){0};
+    if (!place || !counts) {
+        free(place);
+        free(counts);
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        return false;
+    }
+    statistics_count_axis(r, r->sample, counts);
+    for (size_t i = 0; i < n; i++) {
+        place[i] = (struct place){v->of.value[i], i};
+    }
+    qsort(place, n, sizeof *place, by_value);
+    const size_t values = count_values(place, n);
+    bins->listed = values <= (v->word ? SAMPLE_BINS : most);
+    for (size_t b = 0, begin = 0; begin < n; b++) {
+        size_t end = (b + 1) * n / most;
+        if (bins->listed) {
+            for (end = begin + 1; end < n && place[end].value == place[begin].value; end++) {
+            }
+        } else if (end <= begin) {
+            continue;
+        }
+        struct sample_bin *bin = &bins->bin[bins->count++];
+        bin->low = place[begin].value;
+        bin->high = place[end - 1].value;
+        bin->centre = place[begin + (end - begin) / 2].value;
+        for (size_t i = begin; i < end; i++) {
+            add(&bin->counts, &counts[place[i].point]);
+            bin->points += counts[place[i].point].done > 0;
+        }
+        begin = end;
+    }
+    free(place);
+    free(counts);
+    return true;
+}
+
+void sample_bin_interval(const struct sample_bin *bin, enum results_kind kind, double *low,
+                         double *high)
+{
+    const uint64_t done = bin->counts.done;
+    const double share = done ? (double)bin->counts.kind[kind] / (double)done : 0;
+    statistics_wilson((uint64_t)llround(share * (double)bin->points), bin->points, low, high);
+}

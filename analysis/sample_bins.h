@@ -1,0 +1,35 @@
+/* sample_bins.h - what became of the cases of a sample, by the values of one path that it varies.
+ *
+ * Few different values have a bin each. Many are put in order and cut into bins of equally many
+ * points, so that every share rests on as many cases as the others, whatever the spacing.
+ */
+#ifndef STANCE_ANALYSIS_SAMPLE_BINS_H
+#define STANCE_ANALYSIS_SAMPLE_BINS_H
+
+#include "statistics.h"
+
+enum { SAMPLE_BINS = 32 }; /* most */
+
+struct sample_bin {
+    double low, high, centre; /* least, largest and median value; one value: all equal */
+    struct statistics_counts counts;
+    uint64_t points; /* of the sample that have cases done */
+};
+
+struct sample_bins {
+    bool listed; /* a bin for each value */
+    size_t count;
+    struct sample_bin bin[SAMPLE_BINS];
+};
+
+/* Path k of those that the sample varies, in at most `most` bins (2 ... SAMPLE_BINS); of as many
+ * values or fewer, and of words, each is a bin. */
+bool sample_bins_make(struct sample_bins *bins, const struct results *r, int k, size_t most,
+                      stance_message *message);
+
+/* Interval of the share of a kind at 95 %. The cases of one point, where a grid stands beside the
+ * sample, are no independent ones: a point counts once, which errs on the wide side. */
+void sample_bin_interval(const struct sample_bin *bin, enum results_kind kind, double *low,
+                         double *high);
+
+#endif

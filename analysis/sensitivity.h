@@ -1,0 +1,110 @@
+/* sensitivity.h - which factors of a sampled study its response depends on, with intervals.
+ *
+ * Everything here is a function of plain arrays: a response y for each point of a design whose
+ * points come in blocks (runner/sampling.h). Factors are independent and uniform on the unit cube.
+ *
+ * Saltelli blocks A, AB_1 ... AB_k, [BA_1 ... BA_k,] B: Sobol' indices. f(AB_j) shares all factors
+ * but j with f(A), and j alone with f(B). With every column standardised, the least squares
+ *     f(AB_j) = a f(A) + b f(B) + rest
+ * give the first-order index S_j = b and the total index T_j = 1 - a; with BA_j, where A and B
+ * change places, the mean of both. Without the term that they share by chance these are the
+ * correlations of J.-M. Martinez (2011); to take it out is Glen's and Isaacs' idea (Environ. Model.
+ * Softw. 37, 2012). On Ishigami's, Sobol's g- and another function (tests/test_sensitivity.c) their
+ * errors are 13 to 32 % smaller than those of Saltelli's first-order and Jansen's total estimators
+ * with the mean taken off (Comput. Phys. Commun. 181, 2010) where blocks are independent, and about
+ * the same for blocks of a Sobol' sequence. The second-order index of i and j is what the
+ * correlation of f(AB_i) and f(BA_j), which share just i and j, has beyond S_i and S_j, with the
+ * same correction by chance.
+ *
+ * Morris trajectories: the elementary effect of a factor is the change of the response over the
+ * change of the factor in the step that changes it alone, in units of the response per length of
+ * the cube. mu is their mean, mu_star that of their magnitudes (Campolongo, Cariboni, Saltelli,
+ * Environ. Model. Softw. 22, 2007), sigma their standard deviation.
+ *
+ * Any other points: first-order indices from given data (Plischke, Borgonovo, Smith, Eur. J. Oper.
+ * Res. 226, 2013). Points are put into sqrt(n) bins of equally many along a factor, points with
+ * equal values always into the same; the index is the share of the variance between the bins, less
+ * what chance alone would give: 1 - (within / (n - bins)) / (all / (n - 1)) of sums of squares
+ * (Kelley's epsilon squared). Points of a Sobol' sequence fill the bins so evenly that chance
+ * hardly adds anything: nothing is taken off then, but the interval reaches down as far as that
+ * would.
+ *
+ * Intervals are percentiles of bootstrap estimates in which whole blocks are drawn with
+ * replacement, moved by their mean's distance from the estimate: to draw a block twice biases
+ * estimates of variances within bins, and of sigma. Blocks of a Sobol' sequence are more even than
+ * independent ones, so that intervals are rather too wide than too narrow. The draws are a function
+ * of the seed.
+ */
+#ifndef STANCE_ANALYSIS_SENSITIVITY_H
+#define STANCE_ANALYSIS_SENSITIVITY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* An estimate and its interval; NAN where it cannot be had. */
+struct sensitivity_value {
+    double estimate, low, high;
+};
+
+/* What is known of each factor. */
+#define SENSITIVITY_MEASURES(X)                                                                    \
+    X(FIRST, "first") /* share of the variance that the factor alone accounts for */               \
+    X(TOTAL, "total") /* ... that vanishes when all others are known */                            \
+    X(MU, "mu")                                                                                    \
+    X(MU_STAR, "mu_star")                                                                          \
+    X(SIGMA, "sigma")
+
+enum sensitivity_measure {
+#define SENSITIVITY_MEASURE(NAME, text) SENSITIVITY_##NAME,
+    SENSITIVITY_MEASURES(SENSITIVITY_MEASURE)
+#undef SENSITIVITY_MEASURE
+        SENSITIVITY_MEASURE_COUNT,
+};
+
+extern const char *const sensitivity_words[SENSITIVITY_MEASURE_COUNT];
+
+struct sensitivity_bootstrap {
+    size_t resamples; /* at least 2 */
+    double level;     /* of the intervals, in (0, 1) */
+    uint64_t seed;
+};
+/* Unless told otherwise. */
+#define SENSITIVITY_BOOTSTRAP                                                                      \
+    (struct sensitivity_bootstrap)                                                                 \
+    {                                                                                              \
+        1000, 0.95, 0                                                                              \
+    }
+
+struct sensitivity {
+    size_t factors;
+    size_t blocks;          /* that the estimates rest on; Morris: with any effect */
+    double mean, deviation; /* of the responses of these */
+    struct sensitivity_value *measure[SENSITIVITY_MEASURE_COUNT]; /* [factors], or NULL */
+    struct sensitivity_value *second;   /* [factors][factors], upper triangle, or NULL */
+    struct sensitivity_value first_sum; /* of first-order indices; NAN for Morris */
+    struct sensitivity_value *all;      /* memory of the above */
+};
+
+/* Each takes y with NAN where a response is missing. False: no memory; nothing is left then. To be
+ * released with sensitivity_free. With fewer than two blocks left all is NAN. */
+
+/* y[blocks][factors + 2], second_order: [blocks][2 factors + 2]; a missing response takes its block
+ * out. */
+bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, size_t factors,
+                       bool second_order, const struct sensitivity_bootstrap *bootstrap);
+/* y[blocks][factors + 1], u[blocks][factors + 1][factors]: the points; a missing response takes the
+ * effects out that need it. */
+bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u, size_t blocks,
+                        size_t factors, const struct sensitivity_bootstrap *bootstrap);
+/* y[points], u[points][factors]: any numbers in the order of the factor's values, equal ones for
+ * equal values; even: the points are a Sobol' sequence. */
+bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, size_t points,
+                       size_t factors, bool even, const struct sensitivity_bootstrap *bootstrap);
+void sensitivity_free(struct sensitivity *s);
+
+/* Factors in the order of what matters most: total index, mu_star or first-order index, the largest
+ * first; order[factors]. */
+void sensitivity_order(const struct sensitivity *s, size_t *order);
+
+#endif

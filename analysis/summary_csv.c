@@ -1,0 +1,50 @@
+/* summary_csv.c - the counts of a summary as a table for other programs. */
+#include "summary.h"
+
+#include "csv.h"
+
+#include <math.h>
+
+static void put_counts(struct csv *csv, const struct summary *summary,
+                       const struct statistics_counts *counts)
+{
+    const bool known = counts->done > 0 && summary_has_outcomes(summary);
+    double low = NAN, high = NAN;
+    if (known) {
+        statistics_wilson(counts->kind[summary->judged], counts->done, &low, &high);
+    }
+    csv_number(csv, (double)counts->done);
+    csv_number(csv, (double)counts->kind[RESULTS_FAILED]);
+    csv_number(csv, (double)counts->kind[RESULTS_PENDING]);
+    for (int k = RESULTS_STABILISED; k <= RESULTS_UNDECIDED; k++) {
+        csv_number(csv, (double)counts->kind[k]);
+    }
+    csv_number(csv, known ? summary_share(summary, counts) : NAN);
+    csv_number(csv, low);
+    csv_number(csv, high);
+    csv_end_row(csv);
+}
+
+void summary_print_csv(const struct summary *summary, const struct results *r)
+{
+    static const char *const head[] = {"parameter", "value",      "done",   "failed",
+                                       "pending",   "stabilised", "rested", "fell",
+                                       "undecided", "share",      "low",    "high"};
+    struct csv csv = {.file = stdout};
+    csv_row(&csv, head, sizeof head / sizeof head[0]);
+    csv_text(&csv, "");
+    csv_text(&csv, "");
+    put_counts(&csv, summary, &summary->counts);
+    for (int a = 0; a < r->axes; a++) {
+        const struct results_axis *axis = &r->axis[a];
+        for (size_t i = 0; summary->by_value[a] && i < axis->count; i++) {
+            csv_text(&csv, axis->name);
+            if (axis->word) {
+                csv_text(&csv, axis->word[i]);
+            } else {
+                csv_number(&csv, axis->value[i]);
+            }
+            put_counts(&csv, summary, &summary->by_value[a][i]);
+        }
+    }
+}

@@ -1,0 +1,271 @@
+/* sampling.c - experimental designs, see sampling.h. */
+#include "sampling.h"
+
+#include <Random123/philox.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_qrng.h>
+#include <math.h>
+#include <stdlib.h>
+
+const char *const sampling_words[SAMPLING_METHODS] = {"random",   "lhs",    "sobol",
+                                                      "saltelli", "morris", "sphere"};
+
+enum {
+    SOBOL_BITS = 30, /* of GSL's integers */
+    UNIT_BITS = 53,  /* of a coordinate */
+};
+
+/* What random numbers of one method are for: different ones for each. */
+enum purpose { PURPOSE_POINT, PURPOSE_ORDER, PURPOSE_SHIFT };
+
+/* ---- random numbers -------------------------------------------------------------------------- */
+
+static uint64_t random_bits(const struct sampling *s, enum purpose purpose, uint64_t a, uint64_t b)
+{
+    const philox4x64_key_t key = {
+        {s->seed, 0x73616d706c650000 | (uint64_t)s->method << 8 | (uint64_t)purpose}};
+    const philox4x64_ctr_t counter = {{a, b, 0, 0}};
+    return philox4x64(counter, key).v[0];
+}
+
+/* Uniform on 0 ... n - 1, n < 2^32; its bias is below n / 2^64. */
+static uint32_t below(uint64_t bits, uint64_t n)
+{
+    return (uint32_t)(((unsigned __int128)bits * n) >> 64);
+}
+
+/* The multiples of 2^-53 in [0, 1). */
+static double unit_number(uint64_t bits)
+{
+    return ldexp((double)bits, -UNIT_BITS);
+}
+
+static double random_unit(const struct sampling *s, uint64_t point, size_t factor)
+{
+    return unit_number(random_bits(s, PURPOSE_POINT, point, factor) >> (64 - UNIT_BITS));
+}
+
+/* A random order of 0 ... n - 1 (Fisher, Yates), the same for the same `which`. */
+static void random_order(const struct sampling *s, uint64_t which, uint32_t *order, uint64_t n)
+{
+    for (uint64_t i = 0; i < n; i++) {
+        const uint32_t j = below(random_bits(s, PURPOSE_ORDER, which, i), i + 1);
+        order[i] = (uint32_t)i;
+        const uint32_t swapped = order[j];
+        order[j] = order[i];
+        order[i] = swapped;
+    }
+}
+
+/* ---- Sobol' sequences ------------------------------------------------------------------------ */
+
+/* Coordinates of the Sobol' sequence that the method rests on; 0: on none. */
+static size_t dimensions(const struct sampling *s)
+{
+    switch (s->method) {
+    case SAMPLING_SOBOL:
+        return s->factors;
+    case SAMPLING_SALTELLI:
+        return 2 * s->factors;
+    case SAMPLING_SPHERE:
+        return s->factors == 2 ? 1 : s->factors;
+    default:
+        return 0;
+    }
+}
+
+/* GSL has the sequence but neither its direction numbers nor point i. From point 2^j - 1 to 2^j
+ * Gray's code changes bit j alone: their difference is direction number j. GSL leaves out point 0,
+ * which is zero. */
+static bool make_directions(struct sampling *s, size_t n)
+{
+    double x[SAMPLING_MAX_FACTORS];
+    uint32_t before[SAMPLING_MAX_FACTORS] = {0};
+    gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort */
+    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)n);
+    gsl_set_error_handler(handler);
+
+    s->direction = calloc(SAMPLING_MAX_BITS * n, sizeof *s->direction);
+    s->shift = calloc(n, sizeof *s->shift);
+    const bool good = sequence && s->direction && s->shift;
+    size_t bit = 0;
+    for (uint64_t point = 1; good && point < s->count; point++) {
+        gsl_qrng_get(sequence, x);
+        const bool power = point >> bit == 1;
+        for (size_t d = 0; d < n; d++) {
+            const uint32_t now = (uint32_t)ldexp(x[d], SOBOL_BITS);
+            if (power) {
+                s->direction[bit * n + d] = now ^ before[d];
+            }
+            before[d] = now;
+        }
+        bit += power;
+    }
+    for (size_t d = 0; good && d < n; d++) {
+        s->shift[d] = random_bits(s, PURPOSE_SHIFT, 0, d) >> (64 - UNIT_BITS);
+    }
+    if (sequence) {
+        gsl_qrng_free(sequence);
+    }
+    return good;
+}
+
+/* Shifted point as integers of 53 bits. */
+static void sobol_point(const struct sampling *s, size_t n, uint64_t point, uint64_t *x)
+{
+    const uint64_t gray = point ^ point >> 1;
+    for (size_t d = 0; d < n; d++) {
+        uint32_t bits = 0;
+        for (size_t bit = 0; gray >> bit; bit++) {
+            bits ^= gray >> bit & 1 ? s->direction[bit * n + d] : 0;
+        }
+        x[d] = (uint64_t)bits << (UNIT_BITS - SOBOL_BITS) ^ s->shift[d];
+    }
+}
+
+/* ---- methods --------------------------------------------------------------------------------- */
+
+static void saltelli_unit(const struct sampling *s, uint64_t point, double *u)
+{
+    const size_t k = s->factors;
+    const uint64_t block = sampling_block(s), place = point % block;
+    uint64_t x[SAMPLING_MAX_FACTORS];
+
+    sobol_point(s, 2 * k, point / block, x);
+    /* B and BA_j take after the second half but for factor j, A and AB_j after the first. */
+    const bool second = place > k;
+    const size_t other = place == 0 || place + 1 == block ? k : (size_t)(place - 1) % k;
+    for (size_t j = 0; j < k; j++) {
+        u[j] = unit_number(x[second != (j == other) ? k + j : j]);
+    }
+}
+
+static void morris_unit(const struct sampling *s, uint64_t point, double *u)
+{
+    const uint64_t block = sampling_block(s), trajectory = point / block, place = point % block;
+    const uint32_t half = (uint32_t)s->levels / 2;
+    uint32_t order[SAMPLING_MAX_FACTORS];
+
+    random_order(s, trajectory, order, s->factors);
+    for (uint64_t i = 0; i < s->factors; i++) {
+        /* A lower level, its partner half the levels above it, and which of the two is first. */
+        const uint32_t draw =
+            below(random_bits(s, PURPOSE_POINT, trajectory, order[i]), (uint64_t)half * 2);
+        const bool upper = (draw >= half) != (i < place);
+        u[order[i]] = (double)(draw % half + (upper ? half : 0)) / (double)(s->levels - 1);
+    }
+}
+
+/* The odd multiples of 2^-53: inside (0, 1), and never a half. */
+static double inner_number(uint64_t bits)
+{
+    return unit_number(bits | 1);
+}
+
+static void sphere_unit(const struct sampling *s, uint64_t point, double *u)
+{
+    const size_t k = s->factors;
+    uint64_t x[SAMPLING_MAX_FACTORS];
+    double direction[SAMPLING_MAX_FACTORS], square = 0;
+
+    sobol_point(s, dimensions(s), point, x);
+    if (k == 2) {
+        const double angle = 2 * M_PI * unit_number(x[0]);
+        u[0] = 0.5 + 0.5 * cos(angle);
+        u[1] = 0.5 + 0.5 * sin(angle);
+        return;
+    }
+    for (size_t j = 0; j < k; j++) {
+        direction[j] = gsl_cdf_ugaussian_Pinv(inner_number(x[j]));
+        square += direction[j] * direction[j];
+    }
+    for (size_t j = 0; j < k; j++) {
+        u[j] = 0.5 + 0.5 * direction[j] / sqrt(square);
+    }
+}
+
+/* ---- the interface --------------------------------------------------------------------------- */
+
+size_t sampling_most_factors(enum sampling_method method)
+{
+    return method == SAMPLING_SALTELLI ? SAMPLING_MAX_FACTORS / 2 : SAMPLING_MAX_FACTORS;
+}
+
+uint64_t sampling_block(const struct sampling *s)
+{
+    switch (s->method) {
+    case SAMPLING_SALTELLI:
+        return (s->second_order ? 2 : 1) * s->factors + 2;
+    case SAMPLING_MORRIS:
+        return s->factors + 1;
+    default:
+        return 1;
+    }
+}
+
+uint64_t sampling_points(const struct sampling *s)
+{
+    return s->count * sampling_block(s);
+}
+
+bool sampling_begin(struct sampling *s)
+{
+    const size_t n = dimensions(s);
+
+    s->direction = NULL;
+    s->shift = NULL;
+    s->stratum = NULL;
+    if (s->method == SAMPLING_LHS) {
+        s->stratum = calloc(s->factors * s->count, sizeof *s->stratum);
+        for (size_t j = 0; s->stratum && j < s->factors; j++) {
+            random_order(s, j, s->stratum + j * s->count, s->count);
+        }
+        return s->stratum != NULL;
+    }
+    return n == 0 || make_directions(s, n);
+}
+
+void sampling_end(struct sampling *s)
+{
+    free(s->direction);
+    free(s->shift);
+    free(s->stratum);
+    s->direction = NULL;
+    s->shift = NULL;
+    s->stratum = NULL;
+}
+
+void sampling_unit(const struct sampling *s, uint64_t point, double *u)
+{
+    uint64_t x[SAMPLING_MAX_FACTORS];
+
+    switch (s->method) {
+    case SAMPLING_SALTELLI:
+        saltelli_unit(s, point, u);
+        return;
+    case SAMPLING_MORRIS:
+        morris_unit(s, point, u);
+        return;
+    case SAMPLING_SPHERE:
+        sphere_unit(s, point, u);
+        return;
+    case SAMPLING_SOBOL:
+        sobol_point(s, s->factors, point, x);
+        break;
+    default:
+        break;
+    }
+    for (size_t j = 0; j < s->factors; j++) {
+        if (s->method == SAMPLING_SOBOL) {
+            u[j] = unit_number(x[j]);
+        } else if (s->method == SAMPLING_LHS) {
+            const double place = s->stratum[j * s->count + point] + random_unit(s, point, j);
+            /* The last number below the stratum's end where rounding would leave it. */
+            const double end = (s->stratum[j * s->count + point] + 1.0) / (double)s->count;
+            u[j] = fmin(place / (double)s->count, nextafter(end, 0));
+        } else {
+            u[j] = random_unit(s, point, j);
+        }
+    }
+}

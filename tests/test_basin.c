@@ -1,0 +1,415 @@
+/* test_basin.c - basins against sets whose volume, entropy and dimension are known. */
+#include "support.h"
+
+#include "../analysis/basin_map.h"
+
+#include <string.h>
+
+static void assert_near(double found, double wanted, double tolerance)
+{
+    if (!(fabs(found - wanted) <= tolerance))
+        fail_msg("%.17g is not %.17g +- %g", found, wanted, tolerance);
+}
+
+/* ---- maps --------------------------------------------------------------------------------- */
+
+/* What stands at a point of the unit cube. */
+typedef enum results_kind (*painter)(const double *at);
+
+struct drawn {
+    struct basin_map map;
+    uint8_t *kind;
+    double *place;
+};
+
+/* n places along each axis; centred: in the middles of n cells, else from 0 to 1. */
+static struct drawn draw(int axes, size_t n, bool centred, painter colour)
+{
+    struct drawn d = {.map = {.axes = axes, .cases = 1}};
+    d.place = malloc(n * sizeof *d.place);
+    assert_non_null(d.place);
+    for (size_t i = 0; i < n; i++)
+        d.place[i] = centred ? ((double)i + 0.5) / (double)n : (double)i / (double)(n - 1);
+    for (int a = 0; a < axes; a++) {
+        d.map.count[a] = n;
+        d.map.place[a] = d.place;
+        d.map.cases *= n;
+    }
+    d.kind = malloc(d.map.cases);
+    assert_non_null(d.kind);
+    for (uint64_t i = 0; i < d.map.cases; i++) {
+        double at[SCENARIO_MAX_AXES];
+        uint64_t rest = i;
+        for (int a = axes - 1; a >= 0; a--, rest /= n)
+            at[a] = d.place[rest % n];
+        d.kind[i] = (uint8_t)colour(at);
+    }
+    d.map.kind = d.kind;
+    return d;
+}
+
+static void erase(struct drawn *d)
+{
+    free(d->kind);
+    free(d->place);
+}
+
+static struct basin_exponent exponent_of(const struct basin_map *map)
+{
+    struct basin_uncertainty u = {.scales = basin_map_scales(map)};
+    basin_map_uncertainty(map, &u);
+    return basin_exponent(&u);
+}
+
+static enum results_kind in(bool inside)
+{
+    return inside ? RESULTS_STABILISED : RESULTS_FELL;
+}
+
+static enum results_kind interval(const double *at)
+{
+    return in(at[0] > 0.3 && at[0] < 0.73);
+}
+
+static enum results_kind line(const double *at)
+{
+    return in(0.4 * at[0] + 0.61 * at[1] < 0.503);
+}
+
+static enum results_kind disc(const double *at)
+{
+    return in(hypot(at[0] - 0.5, at[1] - 0.5) < 0.35);
+}
+
+static enum results_kind sphere(const double *at)
+{
+    return in(hypot(hypot(at[0] - 0.5, at[1] - 0.5), at[2] - 0.5) < 0.35);
+}
+
+static enum results_kind everything(const double *at)
+{
+    (void)at;
+    return RESULTS_STABILISED;
+}
+
+/* Two colours that follow each other in the gaps of Cantor's set of middle thirds. */
+static enum results_kind cantor(const double *at)
+{
+    double x = at[0];
+    int stage = 0;
+    for (; stage < 30 && (x <= 1 / 3.0 || x >= 2 / 3.0); stage++)
+        x = x <= 1 / 3.0 ? 3 * x : 3 * x - 2;
+    return in(stage % 2);
+}
+
+/* Koch's snowflake, from its triangle inwards: is the point on the island's side of the curve over
+ * the edge from (0, 0) to (1, 0)? The bumps point to negative y. */
+static bool below_koch(double x, double y, int depth)
+{
+    const double high = sqrt(3) / 6; /* of the first bump */
+    if (y >= 0)
+        return true;
+    if (depth == 0 || y < -high)
+        return false;
+    if (x < 1 / 3.0)
+        return x >= 0 && below_koch(3 * x, 3 * y, depth - 1);
+    if (x > 2 / 3.0)
+        return x <= 1 && below_koch(3 * (1 - x), 3 * y, depth - 1);
+    /* The sides of the bump, mirrored onto one: turned by 60 degrees and stretched threefold. */
+    const double u = 3 * ((x < 0.5 ? x : 1 - x) - 1 / 3.0), v = 3 * y;
+    return below_koch(0.5 * u - 0.5 * sqrt(3) * v, 0.5 * sqrt(3) * u + 0.5 * v, depth - 1);
+}
+
+static enum results_kind koch(const double *at)
+{
+    return in(below_koch(at[0], at[1] - 0.6, 12));
+}
+
+static enum results_kind coin(const double *at)
+{
+    static uint64_t state = 88172645463325252u;
+    (void)at;
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return in(state >> 40 & 1);
+}
+
+static double entropy_of(double p)
+{
+    return p > 0 && p < 1 ? -p * log(p) - (1 - p) * log(1 - p) : 0;
+}
+
+/* ---- volume ------------------------------------------------------------------------------- */
+
+static void volumes_are_bounded(void **state)
+{
+    static const struct {
+        int axes;
+        size_t n;
+        painter colour;
+        double volume;
+    } sets[] = {{1, 101, interval, 0.43},
+                {2, 101, disc, M_PI * 0.35 * 0.35},
+                {2, 100, line, 0},
+                {3, 41, sphere, 4 * M_PI / 3 * 0.35 * 0.35 * 0.35},
+                {2, 10, everything, 1}};
+    (void)state;
+    for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
+        struct drawn d = draw(sets[k].axes, sets[k].n, false, sets[k].colour);
+        struct basin_volume v;
+        /* Under the line: integral of (0.503 - 0.4 x) / 0.61, below 1 all the way. */
+        const double wanted = sets[k].colour == line ? (0.503 - 0.2) / 0.61 : sets[k].volume;
+        basin_map_volume(&d.map, RESULTS_STABILISED, &v);
+        assert_near(v.box, 1, 1e-12);
+        assert_true(v.low <= wanted + 1e-12 && wanted <= v.high + 1e-12);
+        assert_true(v.low <= v.estimate + 1e-12 && v.estimate <= v.high + 1e-12);
+        assert_true(fabs(v.estimate - wanted) <= 3 * sqrt(v.variance) + 1e-12);
+        assert_int_equal(v.cells, pow((double)sets[k].n - 1, sets[k].axes) + 0.5);
+        erase(&d);
+    }
+}
+
+/* Two ends somewhere in their cells, evenly: the variance is that of the estimate's error. */
+static void the_likely_error_of_an_interval_is_right(void **state)
+{
+    enum { TRIES = 400, N = 21 };
+    double squares = 0, expected = 0, place[N];
+    (void)state;
+    for (int i = 0; i < N; i++)
+        place[i] = i / (N - 1.0);
+    for (int t = 0; t < TRIES; t++) {
+        const double low = 0.2 + 0.05 * fmod(t * 0.618034, 1),
+                     high = 0.7 + 0.05 * fmod(t * 0.754878, 1);
+        uint8_t kind[N];
+        struct basin_volume v;
+        for (int i = 0; i < N; i++)
+            kind[i] = (uint8_t)in(place[i] > low && place[i] < high);
+        const struct basin_map map = {1, {N}, {place}, N, kind};
+        basin_map_volume(&map, RESULTS_STABILISED, &v);
+        squares += pow(v.estimate - (high - low), 2);
+        expected += v.variance;
+    }
+    assert_near(squares / expected, 1, 0.1);
+}
+
+static void unknown_cases_widen_the_bound(void **state)
+{
+    static const double place[] = {0, 1, 2, 4};
+    const uint8_t kind[] = {RESULTS_STABILISED, RESULTS_STABILISED, RESULTS_FAILED, RESULTS_FELL};
+    const struct basin_map map = {1, {4}, {place}, 4, kind};
+    struct basin_volume v;
+    (void)state;
+    basin_map_volume(&map, RESULTS_STABILISED, &v);
+    assert_near(v.box, 4, 0);
+    assert_near(v.low, 1, 0);
+    assert_near(v.high, 4, 0);
+    /* Of the known length 0.5 + 1 + 1 the first 1.5 are inside. */
+    assert_near(v.estimate, 4 * 1.5 / 2.5, 1e-12);
+    assert_int_equal(v.crossed, 2);
+}
+
+/* ---- entropy ------------------------------------------------------------------------------ */
+
+/* A straight edge parallel to an axis leaves m of the 5 columns of its boxes on one side. */
+static void entropy_of_a_half_plane(void **state)
+{
+    (void)state;
+    for (int m = 0; m < 5; m++) {
+        double place[30];
+        uint8_t kind[900];
+        for (int i = 0; i < 30; i++)
+            place[i] = i;
+        for (int i = 0; i < 900; i++)
+            kind[i] = (uint8_t)in(i % 30 < 15 + m);
+        const struct basin_map map = {2, {30, 30}, {place, place}, 900, kind};
+        struct basin_entropy e = {0};
+        basin_map_entropy(&map, 5, &e);
+        assert_int_equal(e.boxes, 36);
+        assert_int_equal(e.mixed, m > 0 ? 6 : 0);
+        assert_near(basin_entropy(&e), entropy_of(m / 5.0) / 6, 1e-12);
+        if (m > 0)
+            assert_near(basin_boundary_entropy(&e), entropy_of(m / 5.0), 1e-12);
+        else
+            assert_true(isnan(basin_boundary_entropy(&e)));
+    }
+}
+
+static void entropy_of_coins_is_log_2(void **state)
+{
+    struct drawn d = draw(2, 500, true, coin);
+    struct basin_entropy e = {0};
+    double expected = 0;
+    (void)state;
+    /* Of 25 coins, exactly: a little below log 2. */
+    for (int k = 0; k <= 25; k++)
+        expected +=
+            exp(lgamma(26) - lgamma(k + 1) - lgamma(26 - k) - 25 * log(2)) * entropy_of(k / 25.0);
+    assert_near(expected, log(2) - 0.02, 0.001);
+    basin_map_entropy(&d.map, 5, &e);
+    assert_near(basin_boundary_entropy(&e), expected, 0.001);
+    assert_near(exponent_of(&d.map).alpha, 0, 0.01);
+    erase(&d);
+    /* Larger boxes see the coins' own entropy. */
+    d = draw(2, 500, true, coin);
+    e = (struct basin_entropy){0};
+    basin_map_entropy(&d.map, 50, &e);
+    assert_near(basin_boundary_entropy(&e), log(2), 0.001);
+    erase(&d);
+}
+
+/* Three colours in every box, and failed cases that belong to none. */
+static void entropy_counts_all_outcomes(void **state)
+{
+    static const uint8_t kind[] = {RESULTS_FELL,       RESULTS_RESTED, RESULTS_FAILED,
+                                   RESULTS_STABILISED, RESULTS_FAILED, RESULTS_FAILED,
+                                   RESULTS_PENDING,    RESULTS_FELL};
+    static const double place[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    const struct basin_map map = {1, {8}, {place}, 8, kind};
+    struct basin_entropy e = {0};
+    (void)state;
+    basin_map_entropy(&map, 4, &e);
+    assert_int_equal(e.boxes, 2);
+    assert_int_equal(e.mixed, 1);
+    assert_near(basin_boundary_entropy(&e), log(3), 1e-12);
+    basin_map_entropy(&map, 9, &e);
+    assert_int_equal(e.boxes, 2);
+}
+
+/* ---- uncertainty exponent ----------------------------------------------------------------- */
+
+static void smooth_boundaries_have_exponent_1(void **state)
+{
+    static const struct {
+        int axes;
+        size_t n;
+        painter colour;
+    } sets[] = {{1, 400, interval}, {2, 256, line}, {2, 256, disc}, {3, 64, sphere}};
+    (void)state;
+    for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
+        struct drawn d = draw(sets[k].axes, sets[k].n, true, sets[k].colour);
+        assert_near(exponent_of(&d.map).alpha, 1, 0.05);
+        erase(&d);
+    }
+}
+
+static void koch_curve_has_its_exponent(void **state)
+{
+    struct drawn d = draw(2, 729, true, koch);
+    const struct basin_exponent e = exponent_of(&d.map);
+    (void)state;
+    print_message("Koch: alpha %.4f +- %.4f, wanted %.4f\n", e.alpha, e.error, 2 - log(4) / log(3));
+    assert_near(e.alpha, 2 - log(4) / log(3), 0.03);
+    assert_true(e.error > 0 && e.error < 0.05);
+    erase(&d);
+}
+
+static void cantor_stripes_have_their_exponent(void **state)
+{
+    const double wanted = 1 - log(2) / log(3);
+    struct drawn d = draw(1, 59049, true, cantor);
+    struct basin_exponent e = exponent_of(&d.map);
+    (void)state;
+    print_message("Cantor: alpha %.4f +- %.4f, wanted %.4f\n", e.alpha, e.error, wanted);
+    assert_near(e.alpha, wanted, 0.03);
+    erase(&d);
+    d = draw(2, 729, true, cantor);
+    e = exponent_of(&d.map);
+    print_message("Cantor stripes: alpha %.4f +- %.4f\n", e.alpha, e.error);
+    assert_near(e.alpha, wanted, 0.05);
+    erase(&d);
+}
+
+static void too_small_or_empty_maps_have_none(void **state)
+{
+    struct drawn small = draw(2, 47, true, line), whole = draw(2, 60, true, everything);
+    (void)state;
+    assert_int_equal(basin_map_scales(&small.map), 2);
+    assert_true(isnan(exponent_of(&small.map).alpha));
+    assert_true(isnan(exponent_of(&whole.map).alpha));
+    erase(&small);
+    erase(&whole);
+}
+
+/* ---- boundary and distance ---------------------------------------------------------------- */
+
+struct tally {
+    int count;
+    double farthest; /* from the circle */
+    double spacing;
+};
+
+static bool measure(void *context, const struct basin_crossing *crossing)
+{
+    struct tally *tally = context;
+    double at[2];
+    for (int a = 0; a < 2; a++)
+        at[a] =
+            a == crossing->axis ? crossing->middle : (double)crossing->point[a] * tally->spacing;
+    tally->count++;
+    tally->farthest = fmax(tally->farthest, fabs(hypot(at[0] - 0.5, at[1] - 0.5) - 0.35));
+    assert_near(crossing->half_width, tally->spacing / 2, 1e-12);
+    assert_true(crossing->from != crossing->to);
+    return true;
+}
+
+static void boundary_points_lie_on_the_boundary(void **state)
+{
+    struct drawn d = draw(2, 101, false, disc);
+    struct tally tally = {.spacing = 0.01};
+    (void)state;
+    assert_true(basin_map_boundary(&d.map, measure, &tally));
+    /* A line of each row and each column between -0.35 and 0.35 crosses twice. */
+    assert_in_range(tally.count, 4 * 69, 4 * 71);
+    assert_true(tally.farthest <= 0.005 + 1e-9);
+    erase(&d);
+}
+
+static void distances_from_the_equilibrium(void **state)
+{
+    /* An ellipse (x / 2)^2 + y^2 < 1 around zero in a box of 8 x 4, one failed case beyond it. */
+    enum { NX = 81, NY = 81 };
+    static double x[NX], y[NY];
+    static uint8_t kind[NX * NY];
+    const size_t origin[] = {40, 40}, beyond[] = {75, 40};
+    struct basin_distance distance;
+    (void)state;
+    for (int i = 0; i < NX; i++)
+        x[i] = -4 + 0.1 * i;
+    for (int i = 0; i < NY; i++)
+        y[i] = -2 + 0.05 * i;
+    for (int i = 0; i < NX * NY; i++)
+        kind[i] = (uint8_t)in(pow(x[i / NY] / 2.01, 2) + pow(y[i % NY] / 1.001, 2) < 1);
+    kind[61 * NY + 40] = RESULTS_FAILED;
+    const struct basin_map map = {2, {NX, NY}, {x, y}, NX * NY, kind};
+    basin_map_distance(&map, RESULTS_STABILISED, origin, &distance);
+    assert_true(distance.inside);
+    assert_near(distance.low[0], -2.05, 1e-9);
+    assert_true(isnan(distance.high[0])); /* the next case failed */
+    assert_near(distance.low[1], -1.025, 1e-9);
+    assert_near(distance.high[1], 1.025, 1e-9);
+    /* In units of the ranges it is a circle of radius a quarter. */
+    assert_near(distance.nearest, 0.25, 0.01);
+    basin_map_distance(&map, RESULTS_STABILISED, beyond, &distance);
+    assert_false(distance.inside);
+    assert_true(isnan(distance.nearest));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(volumes_are_bounded),
+        cmocka_unit_test(the_likely_error_of_an_interval_is_right),
+        cmocka_unit_test(unknown_cases_widen_the_bound),
+        cmocka_unit_test(entropy_of_a_half_plane),
+        cmocka_unit_test(entropy_of_coins_is_log_2),
+        cmocka_unit_test(entropy_counts_all_outcomes),
+        cmocka_unit_test(smooth_boundaries_have_exponent_1),
+        cmocka_unit_test(koch_curve_has_its_exponent),
+        cmocka_unit_test(cantor_stripes_have_their_exponent),
+        cmocka_unit_test(too_small_or_empty_maps_have_none),
+        cmocka_unit_test(boundary_points_lie_on_the_boundary),
+        cmocka_unit_test(distances_from_the_equilibrium),
+    };
+    return cmocka_run_group_tests_name("basin", tests, NULL, NULL);
+}

@@ -1,0 +1,482 @@
+/* test_sensitivity.c - sensitivity indices against functions whose indices are known in closed
+ * form, how often their intervals hold these, and tables of comma-separated values. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../analysis/csv.h"
+#include "../analysis/sensitivity.h"
+#include "../runner/sampling.h"
+
+#include <Random123/philox.h>
+
+/* ---- functions on the unit cube ----------------------------------------------------------- */
+
+enum { MOST = 20 };
+static const double pi = 3.14159265358979323846;
+
+struct function {
+    const char *name;
+    size_t factors;
+    double (*value)(const double *u);
+    void (*indices)(double *first, double *total);
+};
+
+/* Ishigami and Homma (1990): sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1, x uniform on -pi ... pi. The
+ * means of sin^2, sin^4 and x^8 give the parts of the variance: V1 = (1 + b pi^4 / 5)^2 / 2,
+ * V2 = a^2 / 8, V13 = 8 b^2 pi^8 / 225. */
+static double ishigami(const double *u)
+{
+    const double x = pi * (2 * u[0] - 1), y = pi * (2 * u[1] - 1), z = pi * (2 * u[2] - 1);
+    return sin(x) + 7 * sin(y) * sin(y) + 0.1 * z * z * z * z * sin(x);
+}
+static void ishigami_indices(double *first, double *total)
+{
+    const double one = 1 + 0.1 * pow(pi, 4) / 5, v1 = one * one / 2, v2 = 49.0 / 8;
+    const double v13 = 8 * 0.01 * pow(pi, 8) / 225, v = v1 + v2 + v13;
+    const double f[3] = {v1 / v, v2 / v, 0}, t[3] = {(v1 + v13) / v, v2 / v, v13 / v};
+    memcpy(first, f, sizeof f);
+    memcpy(total, t, sizeof t);
+}
+
+/* Sobol's g-function: product of (|4 u - 2| + a) / (1 + a), each factor of mean 1 and variance
+ * 1 / (3 (1 + a)^2). */
+enum { G = 8 };
+static const double weights[G] = {0, 1, 4.5, 9, 99, 99, 99, 99};
+static double g_function(const double *u)
+{
+    double product = 1;
+    for (size_t j = 0; j < G; j++)
+        product *= (fabs(4 * u[j] - 2) + weights[j]) / (1 + weights[j]);
+    return product;
+}
+static void g_indices(double *first, double *total)
+{
+    double all = 1;
+    for (size_t j = 0; j < G; j++)
+        all *= 1 + 1 / (3 * (1 + weights[j]) * (1 + weights[j]));
+    for (size_t j = 0; j < G; j++) {
+        const double v = 1 / (3 * (1 + weights[j]) * (1 + weights[j]));
+        first[j] = v / (all - 1);
+        total[j] = v * all / (1 + v) / (all - 1);
+    }
+}
+
+/* Far from zero, with a product: x1 + x2 / 2 + 3 (x1 - 1/2) (x3 - 1/2) + 1000; variances 1/12,
+ * 1/48 and 9/144. */
+static double shifted(const double *u)
+{
+    return 1000 + u[0] + u[1] / 2 + 3 * (u[0] - 0.5) * (u[2] - 0.5);
+}
+static void shifted_indices(double *first, double *total)
+{
+    const double v1 = 1.0 / 12, v2 = 1.0 / 48, v13 = 9.0 / 144, v = v1 + v2 + v13;
+    const double f[3] = {v1 / v, v2 / v, 0}, t[3] = {(v1 + v13) / v, v2 / v, v13 / v};
+    memcpy(first, f, sizeof f);
+    memcpy(total, t, sizeof t);
+}
+
+static const struct function functions[] = {
+    {"Ishigami", 3, ishigami, ishigami_indices},
+    {"Sobol' g", G, g_function, g_indices},
+    {"shifted", 3, shifted, shifted_indices},
+};
+enum { FUNCTIONS = sizeof functions / sizeof functions[0] };
+
+/* ---- designs ------------------------------------------------------------------------------ */
+
+struct data {
+    struct sampling sampling;
+    size_t points, factors;
+    double *u, *y;
+};
+
+/* A design's responses; `independent`: blocks of Saltelli's order from random points. */
+static struct data make(enum sampling_method method, const struct function *f, uint64_t count,
+                        uint64_t seed, bool second_order, bool independent)
+{
+    struct data d = {.sampling = {.method = method,
+                                  .count = count,
+                                  .factors = f->factors,
+                                  .levels = 4,
+                                  .second_order = second_order,
+                                  .seed = seed}};
+    const size_t k = f->factors;
+    assert_true(sampling_begin(&d.sampling));
+    d.points = (size_t)sampling_points(&d.sampling);
+    d.factors = k;
+    d.u = malloc(d.points * k * sizeof *d.u);
+    d.y = malloc(d.points * sizeof *d.y);
+    const size_t block = (size_t)sampling_block(&d.sampling);
+    for (size_t i = 0; i < d.points; i++) {
+        double *u = d.u + i * k;
+        sampling_unit(&d.sampling, i, u);
+        if (independent) {
+            for (size_t j = 0; j < k; j++) {
+                const bool from_b = i % block == block - 1 || i % block == j + 1;
+                const philox4x64_key_t key = {{seed, 7}};
+                const philox4x64_ctr_t counter = {{i / block, j, from_b, 0}};
+                u[j] = (double)(philox4x64(counter, key).v[0] >> 11) * 0x1p-53;
+            }
+        }
+        d.y[i] = f->value(u);
+    }
+    sampling_end(&d.sampling);
+    return d;
+}
+
+static void release(struct data *d)
+{
+    free(d->u);
+    free(d->y);
+}
+
+static void analyse(struct sensitivity *s, const struct data *d,
+                    const struct sensitivity_bootstrap *bootstrap)
+{
+    const struct sampling *p = &d->sampling;
+    const bool good =
+        p->method == SAMPLING_SALTELLI
+            ? sensitivity_sobol(s, d->y, p->count, d->factors, p->second_order, bootstrap)
+        : p->method == SAMPLING_MORRIS
+            ? sensitivity_morris(s, d->y, d->u, p->count, d->factors, bootstrap)
+            : sensitivity_given(s, d->y, d->u, d->points, d->factors, p->method == SAMPLING_SOBOL,
+                                bootstrap);
+    assert_true(good);
+}
+
+/* ---- coverage ----------------------------------------------------------------------------- */
+
+static bool holds(const struct sensitivity_value *v, double truth)
+{
+    return v->low <= truth && truth <= v->high;
+}
+
+/* The estimators of Saltelli et al. (2010), table 2 (b) and (f), less the mean: what ours are to be
+ * at least as good as. */
+static void find_rivals(const struct data *d, double *index)
+{
+    const size_t k = d->factors, n = (size_t)d->sampling.count;
+    double mean = 0, variance = 0;
+    memset(index, 0, 2 * k * sizeof *index);
+    for (size_t i = 0; i < n; i++)
+        mean += (d->y[i * (k + 2)] + d->y[i * (k + 2) + k + 1]) / (2 * (double)n);
+    for (size_t i = 0; i < n; i++) {
+        const double *y = d->y + i * (k + 2), a = y[0] - mean, b = y[k + 1] - mean;
+        variance += (a * a + b * b) / (2 * (double)n);
+        for (size_t j = 0; j < k; j++) {
+            const double ab = y[1 + j] - mean;
+            index[j] += b * (ab - a) / (double)n;
+            index[k + j] += (a - ab) * (a - ab) / (2 * (double)n);
+        }
+    }
+    for (size_t q = 0; q < 2 * k; q++)
+        index[q] /= variance;
+}
+
+/* How often intervals hold the truth, on the mean over the indices and for the worst; root mean
+ * square error of the estimates; mean width of the intervals. */
+struct tally {
+    double held[2 * MOST], error, rival, width, mean, least;
+    size_t quantities;
+};
+
+static struct tally cover(enum sampling_method method, const struct function *f, uint64_t count,
+                          int seeds, bool independent)
+{
+    struct tally t = {.quantities = method == SAMPLING_SALTELLI ? 2 * f->factors : f->factors};
+    double truth[2 * MOST];
+    const struct sensitivity_bootstrap bootstrap = {300, 0.95, 1};
+    f->indices(truth, truth + f->factors);
+    for (int seed = 0; seed < seeds; seed++) {
+        struct sensitivity s;
+        struct data d = make(method, f, count, (uint64_t)seed, false, independent);
+        double rivals[2 * MOST] = {0};
+        analyse(&s, &d, &bootstrap);
+        if (method == SAMPLING_SALTELLI)
+            find_rivals(&d, rivals);
+        for (size_t q = 0; q < t.quantities; q++) {
+            const double share = 1 / (double)t.quantities / seeds;
+            t.held[q] += holds(&s.all[q], truth[q]);
+            t.error += share * pow(s.all[q].estimate - truth[q], 2);
+            t.rival += share * pow(rivals[q] - truth[q], 2);
+            t.width += share * (s.all[q].high - s.all[q].low);
+        }
+        sensitivity_free(&s);
+        release(&d);
+    }
+    t.least = 1;
+    t.error = sqrt(t.error);
+    t.rival = method == SAMPLING_SALTELLI ? sqrt(t.rival) : NAN;
+    for (size_t q = 0; q < t.quantities; q++) {
+        t.mean += t.held[q] / seeds / (double)t.quantities;
+        t.least = fmin(t.least, t.held[q] / seeds);
+    }
+    printf("# %s, %s %llu%s: intervals hold the truth in %.1f %% (worst index %.1f %%), error %.4f "
+           "(rivals' %.4f), "
+           "width %.4f\n",
+           f->name, sampling_words[method], (unsigned long long)count,
+           independent ? " independent" : "", 100 * t.mean, 100 * t.least, t.error, t.rival,
+           t.width);
+    return t;
+}
+
+/* Of independent blocks the intervals hold the truth as often as they say, and for a design's own
+ * blocks, which are more even, more often. */
+static void test_coverage(void **state)
+{
+    const bool patient = getenv("STANCE_TEST_LONG") != NULL;
+    const int seeds = patient ? 1000 : 100;
+    (void)state;
+    for (size_t f = 0; f < FUNCTIONS; f++) {
+        const struct function *own = &functions[f];
+        const struct tally t = cover(SAMPLING_SALTELLI, own, 256, seeds, true);
+        assert_in_range((int)(1000 * t.mean), 915, 985);
+        assert_true(t.least > 0.85);
+        assert_true(t.error < t.rival);
+        const struct tally even = cover(SAMPLING_SALTELLI, own, 128, seeds, false);
+        assert_true(even.least > 0.9 && even.error < 1.05 * even.rival);
+        for (int m = 0; m < 3; m++) {
+            const enum sampling_method method = (enum sampling_method)m; /* random, lhs, sobol */
+            assert_true(cover(method, own, 512, seeds, false).mean > 0.93);
+        }
+        for (uint64_t n = 32; patient && n <= 1024; n *= 2) {
+            cover(SAMPLING_SALTELLI, own, n, seeds, true);
+            cover(SAMPLING_SALTELLI, own, n, seeds, false);
+            for (int m = 0; m < 3; m++)
+                cover((enum sampling_method)m, own, n, seeds, false);
+        }
+    }
+}
+
+/* ---- single designs ----------------------------------------------------------------------- */
+
+static const struct sensitivity_bootstrap usual = {500, 0.95, 1};
+
+static void test_indices(void **state)
+{
+    double first[MOST], total[MOST];
+    (void)state;
+    for (size_t f = 0; f < FUNCTIONS; f++) {
+        struct sensitivity s;
+        struct data d = make(SAMPLING_SALTELLI, &functions[f], 4096, 3, false, false);
+        analyse(&s, &d, &usual);
+        functions[f].indices(first, total);
+        assert_int_equal(s.blocks, 4096);
+        for (size_t j = 0; j < d.factors; j++) {
+            assert_true(holds(&s.measure[SENSITIVITY_FIRST][j], first[j]));
+            assert_true(holds(&s.measure[SENSITIVITY_TOTAL][j], total[j]));
+            assert_float_equal(s.measure[SENSITIVITY_FIRST][j].estimate, first[j], 0.01);
+            assert_float_equal(s.measure[SENSITIVITY_TOTAL][j].estimate, total[j], 0.01);
+        }
+        assert_null(s.second);
+        assert_null(s.measure[SENSITIVITY_MU]);
+        sensitivity_free(&s);
+        release(&d);
+    }
+}
+
+/* What factors share two at a time: of Ishigami's function 1 and 3 alone, of the g-function
+ * V1 V2 / V and so on. */
+static void test_pairs(void **state)
+{
+    double first[MOST], total[MOST];
+    (void)state;
+    for (size_t f = 0; f < FUNCTIONS; f++) {
+        struct sensitivity s;
+        struct data d = make(SAMPLING_SALTELLI, &functions[f], 2048, 5, true, false);
+        const size_t k = d.factors;
+        analyse(&s, &d, &usual);
+        functions[f].indices(first, total);
+        double variance = 1;
+        for (size_t j = 0; j < G; j++)
+            variance *= 1 + 1 / (3 * (1 + weights[j]) * (1 + weights[j]));
+        for (size_t i = 0; i < k; i++) {
+            for (size_t j = i + 1; j < k; j++) {
+                const double truth = f == 1             ? first[i] * first[j] * (variance - 1)
+                                     : i == 0 && j == 2 ? total[2]
+                                                        : 0;
+                assert_float_equal(s.second[i * k + j].estimate, truth, 0.01);
+                assert_true(holds(&s.second[i * k + j], truth));
+            }
+        }
+        sensitivity_free(&s);
+        release(&d);
+    }
+}
+
+/* Indices do not depend on the response's zero and unit; nor does anything on the order of calls.
+ */
+static void test_units(void **state)
+{
+    struct sensitivity s, other;
+    struct data d = make(SAMPLING_SALTELLI, &functions[0], 128, 2, true, false);
+    (void)state;
+    analyse(&s, &d, &usual);
+    for (size_t i = 0; i < d.points; i++)
+        d.y[i] = 1e6 - 1e-3 * d.y[i];
+    analyse(&other, &d, &usual);
+    for (size_t q = 0; q < 2 * d.factors + 1; q++) {
+        assert_float_equal(other.all[q].estimate, s.all[q].estimate, 1e-6);
+        assert_float_equal(other.all[q].low, s.all[q].low, 1e-6);
+        assert_float_equal(other.all[q].high, s.all[q].high, 1e-6);
+    }
+    sensitivity_free(&s);
+    analyse(&s, &d, &usual);
+    assert_memory_equal(s.all, other.all, (2 * d.factors + 1) * sizeof *s.all);
+    const struct sensitivity_bootstrap seeded = {500, 0.95, 2};
+    sensitivity_free(&s);
+    analyse(&s, &d, &seeded);
+    assert_true(s.all[0].estimate == other.all[0].estimate && s.all[0].low != other.all[0].low);
+    sensitivity_free(&s);
+    sensitivity_free(&other);
+    release(&d);
+}
+
+static double linear(const double *u)
+{
+    return 3 + 2 * u[0] - 5 * u[1] + 0 * u[2] + u[3] / 2;
+}
+static const struct function straight = {"linear", 4, linear, NULL};
+
+static void test_morris(void **state)
+{
+    static const double slopes[4] = {2, -5, 0, 0.5};
+    struct sensitivity s;
+    struct data d = make(SAMPLING_MORRIS, &straight, 10, 1, false, false);
+    size_t order[4];
+    (void)state;
+    analyse(&s, &d, &usual);
+    for (size_t j = 0; j < 4; j++) {
+        assert_float_equal(s.measure[SENSITIVITY_MU][j].estimate, slopes[j], 1e-12);
+        assert_float_equal(s.measure[SENSITIVITY_MU_STAR][j].estimate, fabs(slopes[j]), 1e-12);
+        assert_float_equal(s.measure[SENSITIVITY_SIGMA][j].estimate, 0, 1e-12);
+        assert_float_equal(s.measure[SENSITIVITY_MU][j].low, slopes[j], 1e-12);
+        assert_float_equal(s.measure[SENSITIVITY_MU][j].high, slopes[j], 1e-12);
+    }
+    sensitivity_order(&s, order);
+    assert_memory_equal(order, ((size_t[]){1, 0, 3, 2}), sizeof order);
+    sensitivity_free(&s);
+    /* Without one response the effects of the two steps to and from it are gone, no more. */
+    d.y[2] = NAN;
+    analyse(&s, &d, &usual);
+    assert_int_equal(s.blocks, 10);
+    assert_float_equal(s.measure[SENSITIVITY_MU][1].estimate, -5, 1e-12);
+    sensitivity_free(&s);
+    for (size_t i = 5; i < d.points; i++)
+        d.y[i] = NAN;
+    analyse(&s, &d, &usual);
+    assert_int_equal(s.blocks, 1);
+    sensitivity_free(&s);
+    release(&d);
+}
+
+/* A missing response is as if its block had never been. */
+static void test_missing(void **state)
+{
+    struct sensitivity s, other;
+    struct data d = make(SAMPLING_SALTELLI, &functions[0], 65, 4, false, false);
+    const size_t block = 5;
+    (void)state;
+    d.y[7 * block + 3] = NAN;
+    analyse(&s, &d, &usual);
+    memmove(d.y + 7 * block, d.y + 8 * block, 57 * block * sizeof *d.y);
+    d.sampling.count = 64;
+    analyse(&other, &d, &usual);
+    assert_int_equal(s.blocks, 64);
+    assert_memory_equal(s.all, other.all, 7 * sizeof *s.all);
+    sensitivity_free(&s);
+    sensitivity_free(&other);
+    release(&d);
+}
+
+/* Factors of few values: their bins are the values, in whatever numbers of points. */
+static void test_listed(void **state)
+{
+    enum { N = 400 };
+    double y[N], u[2 * N], first = 0;
+    struct sensitivity s;
+    (void)state;
+    for (size_t i = 0; i < N; i++) {
+        u[2 * i] = i % 3 == 2;
+        u[2 * i + 1] = (double)(i * 7 % N);
+        y[i] = i % 3 == 2 ? 1 : i % 2 ? 0.25 : -0.25;
+    }
+    for (size_t i = 0; i < N; i++) /* two groups: exact */
+        first += i % 3 == 2;
+    const double share = first / N, between = share * (1 - share), within = (1 - share) / 16;
+    assert_true(sensitivity_given(&s, y, u, N, 2, false, &usual));
+    const double truth = between / (between + within);
+    assert_float_equal(s.measure[SENSITIVITY_FIRST][0].estimate, truth, 2.0 / N);
+    assert_true(holds(&s.measure[SENSITIVITY_FIRST][0], truth));
+    sensitivity_free(&s);
+}
+
+/* Nothing to say: no number rather than a wrong one, and no crash. */
+static void test_nothing(void **state)
+{
+    double y[24], u[24 * 2] = {0};
+    struct sensitivity s;
+    (void)state;
+    for (size_t i = 0; i < 24; i++)
+        y[i] = 0.5;
+    assert_true(sensitivity_sobol(&s, y, 6, 2, false, &usual));
+    assert_true(isnan(s.all[0].estimate) && isnan(s.first_sum.estimate) && s.deviation == 0);
+    sensitivity_free(&s);
+    assert_true(sensitivity_given(&s, y, u, 24, 2, false, &usual));
+    assert_true(isnan(s.all[0].estimate));
+    sensitivity_free(&s);
+    assert_true(sensitivity_morris(&s, y, u, 8, 2, &usual)); /* points that never move */
+    assert_true(s.blocks == 0 && isnan(s.all[0].estimate));
+    sensitivity_free(&s);
+    for (size_t i = 0; i < 24; i++)
+        y[i] = NAN;
+    assert_true(sensitivity_sobol(&s, y, 6, 2, false, &usual));
+    assert_true(s.blocks == 0 && isnan(s.mean) && isnan(s.all[3].low));
+    sensitivity_free(&s);
+    assert_true(sensitivity_given(&s, y, u, 24, 2, true, &usual));
+    assert_true(s.blocks == 0 && isnan(s.all[0].estimate));
+    sensitivity_free(&s);
+}
+
+/* ---- comma-separated values --------------------------------------------------------------- */
+
+static void test_csv(void **state)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    struct csv csv = {.file = file};
+    (void)state;
+    csv_row(&csv, (const char *const[]){"plain", "a,b", "he said \"so\"", "two\nlines", ""}, 5);
+    const double numbers[] = {0.1, 1.0 / 3, -2, 1e-300, INFINITY, NAN, 123456789012345678.0};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        csv_number(&csv, numbers[i]);
+    csv_end_row(&csv);
+    csv_text(&csv, "last");
+    csv_end_row(&csv);
+    fclose(file);
+    assert_string_equal(text, "plain,\"a,b\",\"he said \"\"so\"\"\",\"two\nlines\",\r\n"
+                              "0.1,0.3333333333333333,-2,1e-300,inf,,1.2345678901234568e+17\r\n"
+                              "last\r\n");
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_indices),  cmocka_unit_test(test_pairs),
+        cmocka_unit_test(test_units),    cmocka_unit_test(test_morris),
+        cmocka_unit_test(test_missing),  cmocka_unit_test(test_listed),
+        cmocka_unit_test(test_nothing),  cmocka_unit_test(test_csv),
+        cmocka_unit_test(test_coverage),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

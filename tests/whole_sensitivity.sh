@@ -1,0 +1,147 @@
+#!/usr/bin/env bash
+# `stance sensitivity` from outside: `stance run` makes the files of sampled studies, an answer of
+# which then becomes a function with known indices; what failed and pending cases do; bad use.
+# Speaks TAP. Uses bin/stance, or the program that STANCE names; STANCE_SLOW: that is a slow one.
+set -u
+cd "$(dirname "$0")/.."
+export STANCE=${STANCE:-$PWD/bin/stance}
+stance=$STANCE python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
+scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
+cd "$scratch" || exit 1
+count=0 patience=60 blocks=512
+[ -n "${STANCE_SLOW:-}" ] && patience=300 blocks=256
+
+. "$tests/outside.sh"
+
+known() { # name, task ...
+    local name=$1
+    shift
+    "$python" "$tests/sensitivity_tools.py" "$@" >log 2>&1
+    result $? "$name"
+}
+# A study of a known function: FILE.h5, as `stance run` and the tool make it.
+study() { # FILE, function, method, count, keys ...
+    local file=$1 function=$2
+    shift
+    "$python" "$tests/sensitivity_tools.py" scenario "$@" >"$file.yaml"
+    expect "$file: $1, $2 of $3" 0 "$stance" run "$file.yaml" -o "$file.h5" --quiet
+    known "... end_time becomes the function" answer "$file.h5" "$function"
+    tool "... every case is whole" whole "$file.h5"
+}
+# Text, JSON and CSV of it; the intervals hold the truth.
+indices() { # FILE, function
+    local file=$1 ask=(--answer end_time)
+    "$stance" sensitivity "$file.h5" "${ask[@]}" --json >"$file.json" 2>log
+    result $? "$file: --json"
+    known "... intervals hold the published values" check "$2" "$file.json"
+    sed 's/^/# /' log | tail -n 1
+    "$stance" sensitivity "$file.h5" "${ask[@]}" --json --level 0.999 --resamples 4000 >wide.json 2>log &&
+        "$python" "$tests/sensitivity_tools.py" check "$2" wide.json >log 2>&1
+    result $? "... all of them at 99.9 %"
+    "$stance" sensitivity "$file.h5" "${ask[@]}" --csv >"$file.csv" 2>log
+    result $? "... --csv"
+    known "... says the same" table "$file.json" "$file.csv"
+}
+
+study ishigami ishigami saltelli $blocks "second_order: true"
+indices ishigami ishigami
+study g sobol_g saltelli $blocks
+indices g sobol_g
+study morris morris morris 100 "levels: 4"
+indices morris morris
+# The first ten factors matter, the others do not.
+"$python" - morris.json >log 2>&1 <<'END'
+import json, sys
+factors = json.load(open(sys.argv[1]))["tables"][0]["factors"]
+assert factors[9]["mu_star"]["low"] > factors[10]["mu_star"]["high"]
+END
+result $? "... ten factors stand apart"
+
+ask=(sensitivity ishigami.h5 --answer end_time)
+expect "text" 0 "$stance" "${ask[@]}"
+says "... a table for each method" '^method.name = midpoint$'
+says "... the mean over the starts" 'over initial.state.z: 3 cases$'
+[ "$(grep -c 'initial.state.x with initial.state.q1 0.2' log)" = 2 ]
+result $? "... and the one pair that interacts"
+cp log first
+expect "the same again" 0 "$stance" "${ask[@]}"
+cmp -s log first
+result $? "... to the letter"
+expect "other resamples" 0 "$stance" "${ask[@]}" --seed 7
+! cmp -s log first
+result $? "... other intervals"
+expect "--by none" 0 "$stance" "${ask[@]}" --by none
+says "... a single table" '^  factor'
+expect "--by a start" 0 "$stance" "${ask[@]}" --by initial.state.z
+[ "$(grep -c '^initial.state.z = ' log)" = 3 ]
+result $? "... a table for each of its values"
+study lhs ishigami lhs 1000
+"$stance" sensitivity lhs.h5 --answer end_time --json >lhs.json 2>log &&
+    "$python" - lhs.json >log 2>&1 <<'END'
+import json, sys
+for table in json.load(open(sys.argv[1]))["tables"]:
+    found = {f["path"]: f["first"] for f in table["factors"]}
+    for path, truth in zip(("initial.state.x", "initial.state.theta", "initial.state.q1"),
+                           (0.3139, 0.4424, 0)):
+        assert found[path]["low"] < truth < found[path]["high"], (path, found[path])
+END
+result $? "... hold the published values, too"
+
+# Sample points are the fastest axis: case 1 is in block 0; a block has 8 points with second_order.
+points=$((8 * blocks))
+cp ishigami.h5 lost.h5
+known "a point whose three starts failed" mark lost.h5 2 1 $((points + 1)) $((2 * points + 1))
+expect "... takes its block out" 0 "$stance" sensitivity lost.h5 --answer end_time
+says "... of one table" "^  $((blocks - 1)) blocks, 1 block lost for want of a case; "
+says "... and the policy is said" '^failed cases: 3 of .* left out; '
+known "a start that failed" mark lost.h5 1 1
+expect "... only leaves the mean" 0 "$stance" sensitivity lost.h5 --answer end_time
+[ "$(grep -c "^  $blocks blocks; " log)" = 2 ]
+result $? "... and no block"
+cp ishigami.h5 pending.h5
+known "a case is pending" mark pending.h5 0 9
+expect "... whose block waits" 0 "$stance" sensitivity pending.h5 --answer end_time
+says "... and is counted" "^  $((blocks - 1)) blocks, 1 not complete yet; "
+
+# Shares: all cases of a short flight are undecided, but those marked as failed.
+expect "a share that does not vary" 0 "$stance" sensitivity ishigami.h5 --of undecided
+[ "$(grep -c 'depends on none of the factors' log)" = 2 ]
+result $? "... depends on nothing"
+cp ishigami.h5 shares.h5
+# shellcheck disable=SC2046
+known "a fifth of a table's cases failed" mark shares.h5 2 $(seq 3 5 $((3 * points - 1)))
+expect "left out" 0 "$stance" sensitivity shares.h5 --of undecided --failed drop
+[ "$(grep -c 'WARNING: failed cases counted as fallen (--failed fallen), first of ' log)" = 1 ]
+result $? "... with a warning that it matters, in the table that has any"
+expect "counted as fallen" 0 "$stance" sensitivity shares.h5 --of undecided --failed fallen
+says "... as it says" '^failed cases: .* counted as fallen$'
+
+expect "a picture" 0 "$stance" sensitivity g.h5 --answer end_time -o pictures
+[ -s pictures/g-end_time-sensitivity.svg ] && [ -s pictures/g-end_time-sensitivity.png ]
+result $? "... as SVG and PNG"
+expect "stance plot draws it" 0 "$stance" plot morris.h5 --answer end_time -o pictures
+[ -s pictures/morris-end_time-sensitivity.png ]
+result $? "... by itself"
+
+refused() { # name, code, pattern, command ...
+    local name=$1 code=$2 pattern=$3
+    shift 3
+    expect "$name" "$code" "$stance" sensitivity "$@"
+    says "... in one line" "$pattern"
+}
+refused "no file" 2 'a results file is needed'
+refused "a file that is not there" 3 'No such file' nowhere.h5
+refused "an axis that is none" 2 "did you mean 'method.name'" ishigami.h5 --by method.nam
+refused "the sample as an axis" 2 'not a grid axis' ishigami.h5 --by sample
+refused "an answer that is none" 2 'takes one of end_time' ishigami.h5 --answer end
+refused "an outcome that is none" 2 'takes an outcome' ishigami.h5 --of fallen
+refused "an answer of failed cases" 2 'has no meaning with --answer' ishigami.h5 --answer steps --failed fallen
+refused "a level beyond" 2 'takes a number from 0.5' ishigami.h5 --level 95
+refused "a level that is none" 2 'takes a number from 0.5' ishigami.h5 --level nan
+refused "too few resamples" 2 'takes a whole number from 100' ishigami.h5 --resamples 10
+refused "two outputs" 2 'not both' ishigami.h5 --json --csv
+expect "a study without samples" 0 "$stance" run ishigami.yaml -o grid.h5 --quiet --set 'sweep={grid: [{path: method.name, values: [implicit, midpoint]}]}'
+refused "... is refused" 2 'has no sampled factors' grid.h5
+echo "1..$count"
