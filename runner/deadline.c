@@ -30,7 +30,7 @@ void deadline_prepare(int rank)
     parallel_host(host, sizeof host);
     snprintf(last_words, sizeof last_words,
              "stance run: rank %d on %s: told to stop, and in %d s not every rank has come: left; "
-             "what had ended is written\n",
+             "what is marked done is whole, --resume goes on\n",
              rank, host, (int)DEADLINE_PATIENCE);
     sigemptyset(&action.sa_mask);
     prepared = sigaction(SIGALRM, &action, NULL) == 0;

@@ -2,6 +2,8 @@
  *
  * A rank that stops writes what has ended and then meets the others, who may never come: their
  * machine is cut off or frozen. MPI has no way out of such a wait, so an alarm ends the process.
+ * One that waits for a counter of a rank 0 that is gone leaves so, too; it loses what has ended
+ * since its last write, a second or so.
  */
 #ifndef STANCE_RUNNER_DEADLINE_H
 #define STANCE_RUNNER_DEADLINE_H

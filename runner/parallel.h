@@ -19,8 +19,6 @@ struct parallel_shared; /* the counters' memory, private to parallel.c */
 struct parallel {
     int rank, size;
     struct parallel_shared *shared;
-    bool (*leave)(void *context); /* whether this rank is to leave; NULL: never */
-    void *context;                /* of leave */
 };
 
 /* One rank, without starting MPI. */
@@ -53,8 +51,7 @@ bool parallel_agree(const struct parallel *parallel, bool good, char *text, size
 /* Collective: begin and end the use of the counters, all zero at first. false: no memory. */
 bool parallel_share(struct parallel *parallel);
 void parallel_unshare(struct parallel *parallel);
-/* Not collective: adds to a counter and returns what it held before; adding 0 reads it. INT64_MAX
- * when this rank is to leave and rank 0 does not answer, and from then on. */
+/* Not collective: adds to a counter and returns what it held before; adding 0 reads it. */
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value);
 /* Collective: all counters but COUNTER_STOP are zero again. */
 void parallel_restart(const struct parallel *parallel);

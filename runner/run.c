@@ -742,8 +742,6 @@ static int run_run(int argc, char **argv)
     run->start = plan_clock();
     run->lock.descriptor = -1;
     run->parallel = parallel_start();
-    run->parallel.leave = out_of_time;
-    run->parallel.context = run;
     if (run->parallel.size > 1) {
         deadline_prepare(run->parallel.rank);
     }

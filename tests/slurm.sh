@@ -379,7 +379,7 @@ submit --ntasks=2 --time=1 --export=ALL,RESERVE=56 "$scripts/one_job.sh"
 ended "one job that stops before Slurm's limit" "$job" FAILED
 [ "$(known "$job" ExitCode)" = 4:0 ]
 result $? "... has exit code 4"
-logged "... and says how to go on" "$job" 1 'go on with: mpirun -n 2 stance run .*--resume'
+logged "... and says how to go on" "$job" 1 'go on with: mpirun -n 2 .*stance run .*--resume'
 left=$(pending results/one.h5)
 submit --ntasks=2 --time=10 "$scripts/one_job.sh"
 for _ in $(seq 600); do
