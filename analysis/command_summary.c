@@ -512,9 +512,24 @@ static void print_case(const struct summary *summary, const struct results *r)
     }
 }
 
+/* Of a run that went on with another scenario. */
+static void print_ancestry(const struct ancestry *ancestry)
+{
+    if (ancestry->scenarios == 1) {
+        return;
+    }
+    printf("\nMade from %zu scenarios; what is said below of their keys is of the last one\n",
+           ancestry->scenarios);
+    for (size_t k = 0; k < ancestry->scenarios; k++) {
+        printf("  since %-22s%12llu cases done\n", ancestry->date[k],
+               (unsigned long long)ancestry->done[k]);
+    }
+}
+
 static void print_text(const struct summary *summary, const struct results *r)
 {
     print_head(r);
+    print_ancestry(&summary->ancestry);
     if (!r->single) {
         print_axes(r);
     }
@@ -634,6 +649,8 @@ const struct command command_summary = {
     "           its interval low ... high; `stance table` has the cases themselves\n"
     "  --json   the same as JSON; what does not apply is left out or null. Keys\n"
     "    file, title, version, revision, date, ranks\n"
+    "    scenarios    [{date, done}] of a file that went on with another scenario, the first one\n"
+    "                 first: since when, cases done with it\n"
     "    axes         [{path, unit, long_name, count, first, last}]\n"
     "    fixed        {path: value} of the fields that do not vary\n"
     "    cases        total, done, failed, pending; inferred: done, but not simulated (refined "

@@ -623,6 +623,11 @@ static bool open_parts(struct merge *m, const char *const *files, size_t count,
             !store_read_origin(part->file, &part->origin, message)) {
             return false;
         }
+        if (part->origin.ancestors > 0) {
+            snprintf(message->text, sizeof message->text,
+                     "%.120s: was made from several scenarios: it cannot be merged", part->file);
+            return false;
+        }
     }
     return true;
 }

@@ -149,6 +149,9 @@ H5T_class_t results_class(hid_t dataset)
 {
     hid_t type = H5Dget_type(dataset);
     H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+    if (class != H5T_STRING && H5Tget_size(type) > sizeof(double)) {
+        class = H5T_NO_CLASS;
+    }
     H5Tclose(type);
     return class;
 }

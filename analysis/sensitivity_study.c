@@ -17,13 +17,30 @@ const char *sensitivity_factor_path(const struct sensitivity_study *study, size_
     return k < f->paths ? axis->path[f->first + k] : NULL;
 }
 
+/* Bytes that `path` has in common with the one named before it: up to a dot. */
+static size_t same_folder(const char *before, const char *path)
+{
+    const char *dot = strrchr(before, '.');
+    const size_t length = dot ? (size_t)(dot - before) + 1 : 0;
+    return strncmp(before, path, length) == 0 ? length : 0;
+}
+
 void sensitivity_factor_text(const struct sensitivity_study *study, size_t factor, char *text,
                              size_t size)
 {
-    const int more = study->scenario->sample.factor[factor].paths - 1;
-    size_t used = (size_t)snprintf(text, size, "%s", sensitivity_factor_path(study, factor, 0));
-    if (more > 0 && used < size) {
-        snprintf(text + used, size - used, " and %d more", more);
+    enum { NAMED = 3 }; /* most paths that are named */
+    const int paths = study->scenario->sample.factor[factor].paths;
+    const char *path = sensitivity_factor_path(study, factor, 0), *before;
+    size_t used = (size_t)snprintf(text, size, "%s", path);
+    for (int k = 1; k < paths && used < size; k++) {
+        if (paths > NAMED && k + 1 == NAMED) {
+            snprintf(text + used, size - used, " and %d more", paths - k);
+            return;
+        }
+        before = path;
+        path = sensitivity_factor_path(study, factor, k);
+        used +=
+            (size_t)snprintf(text + used, size - used, ", %s", path + same_folder(before, path));
     }
 }
 

@@ -253,7 +253,7 @@ bool summary_make(struct summary *summary, const struct results *r, stance_messa
                 collect_count(&summary->evidence, r, "evidence", message) &&
                 statistics_inferred(r, &summary->inferred, NULL, message) &&
                 collect_axes(summary, r, message) && collect_bins(summary, r, message) &&
-                collect_rays(summary, r, message);
+                collect_rays(summary, r, message) && ancestry_read(r, &summary->ancestry, message);
     if (good) {
         summary->timed = results_timing(r, &summary->longest, &summary->total,
                                         &summary->timed_cases, &summary->ranks);

@@ -2,6 +2,7 @@
 #ifndef STANCE_ANALYSIS_SUMMARY_H
 #define STANCE_ANALYSIS_SUMMARY_H
 
+#include "ancestry.h"
 #include "sample_bins.h"
 
 /* The answers that are summarised: name, kind of the cases looked at (RESULTS_KIND_COUNT: all that
@@ -97,6 +98,7 @@ struct summary {
     struct statistics_counts *pair_counts;
     size_t fields;
     struct summary_field field[SUMMARY_FIELDS];
+    struct ancestry ancestry;
 };
 
 /* Reads what it needs. A failure leaves nothing allocated. */

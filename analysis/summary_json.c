@@ -73,6 +73,18 @@ static json_t *cases(const struct summary *summary, const struct results *r)
     return object;
 }
 
+static json_t *scenarios(const struct ancestry *ancestry)
+{
+    json_t *array = json_array();
+    for (size_t k = 0; k < ancestry->scenarios; k++) {
+        json_t *entry = json_object();
+        put(entry, "date", json_string(ancestry->date[k]));
+        put(entry, "done", whole(ancestry->done[k]));
+        json_array_append_new(array, entry);
+    }
+    return array;
+}
+
 static json_t *failures(const struct summary *summary)
 {
     json_t *object = json_object();
@@ -398,6 +410,9 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
     put(root, "revision", json_string(r->revision));
     put(root, "date", json_string(r->date));
     put(root, "ranks", json_integer(r->ranks));
+    if (summary->ancestry.scenarios > 1) {
+        put(root, "scenarios", scenarios(&summary->ancestry));
+    }
     put(root, "axes", axes(r));
     put(root, "fixed", fixed(summary));
     put(root, "cases", cases(summary, r));

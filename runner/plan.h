@@ -16,6 +16,8 @@ struct plan {
     uint64_t single_case; /* its flat index */
     uint64_t rows;        /* cases in the file: 1, or all of the scenario's */
 
+    size_t ancestors; /* scenarios that the file was made from before this one, see succession.h */
+
     bool methods_swept; /* some axis lists methods */
 
     size_t designs;                 /* distinct ones, row-major over the axes flagged `design` */

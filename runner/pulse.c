@@ -155,6 +155,17 @@ bool pulse_beat(struct pulse *pulse, double now, uint64_t finished, uint64_t com
 
 /* ---- the other side ----------------------------------------------------------------------- */
 
+/* Somebody else's words, fit to be printed. */
+static void copy_word(char *to, size_t size, const char *from)
+{
+    snprintf(to, size, "%s", from);
+    for (; *to; to++) {
+        if ((unsigned char)*to < ' ' || (unsigned char)*to >= 0x7f) {
+            *to = '?';
+        }
+    }
+}
+
 static void take_note(struct pulse_note *note, const char *text)
 {
     const char *host, *doing;
@@ -167,8 +178,8 @@ static void take_note(struct pulse_note *note, const char *text)
                             &note->ranks, "alive", &note->alive, "round", &note->round, "kept",
                             &kept, "computed", &computed, "rate", &note->rate) == 0;
     if (note->exists) {
-        snprintf(note->host, sizeof note->host, "%s", host);
-        snprintf(note->doing, sizeof note->doing, "%s", doing);
+        copy_word(note->host, sizeof note->host, host);
+        copy_word(note->doing, sizeof note->doing, doing);
         note->age = wall_clock() - time;
         note->age = note->age > 0 ? note->age : 0;
         note->spent = time - start;

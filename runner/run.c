@@ -12,6 +12,7 @@
 #include "instruction_set.h"
 #include "report.h"
 #include "rounds.h"
+#include "succession.h"
 #include "supervise.h"
 
 #include <errno.h>
@@ -50,127 +51,6 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
 
 /* ---- options ------------------------------------------------------------------------------ */
 
-/* Seconds from "90", "90s", "55m", "1h30m", "2d"; negative when it is none of these. */
-static double parse_duration(const char *text)
-{
-    double total = 0;
-    while (*text) {
-        char *end;
-        double value = strtod(text, &end), unit = 1;
-        if (end == text || !(value >= 0) || !isfinite(value)) {
-            return -1;
-        }
-        switch (*end) {
-        case 'd':
-            unit = 86400;
-            break;
-        case 'h':
-            unit = 3600;
-            break;
-        case 'm':
-            unit = 60;
-            break;
-        case 's':
-        case '\0':
-            break;
-        default:
-            return -1;
-        }
-        total += value * unit;
-        text = *end ? end + 1 : end;
-    }
-    return total;
-}
-
-static bool usage(const char *text, const char *word)
-{
-    fprintf(stderr, "stance run: %s%s%s (stance run -h explains)\n", text, word ? " " : "",
-            word ? word : "");
-    return false;
-}
-
-/* A number without sign. */
-static bool parse_number(const char *text, uint64_t *number)
-{
-    char *end;
-    errno = 0;
-    *number = strtoull(text, &end, 10);
-    return text[0] >= '0' && text[0] <= '9' && !*end && errno == 0;
-}
-
-static bool check_extend(struct options *o, const char *extend, const char *only)
-{
-    if (!extend) {
-        return !o->from || usage("--from names the file that --extend begins with", NULL);
-    }
-    if (only) {
-        return usage("--extend and --only exclude each other", NULL);
-    }
-    if (!parse_number(extend, &o->extend_count) || o->extend_count == 0) {
-        return usage("--extend takes the new sweep.sample.count, not", extend);
-    }
-    snprintf(o->extend_set, sizeof o->extend_set, "sweep.sample.count=%" PRIu64, o->extend_count);
-    o->sets[o->set_count++] = o->extend_set;
-    return true;
-}
-
-static bool check_options(struct options *o, const char *only, const char *limit)
-{
-    if (o->force && o->resume) {
-        return usage("--force and --resume exclude each other", NULL);
-    }
-    if (o->trace && !only) {
-        return usage("--trace needs --only CASE; `record` in the scenario records a sweep", NULL);
-    }
-    if (o->resume && only) {
-        return usage("--only computes one case: there is nothing to resume", NULL);
-    }
-    if (limit && (o->time_limit = parse_duration(limit)) < 0) {
-        return usage("--time-limit takes a duration such as 90s, 55m or 1h30m, not", limit);
-    }
-    if (only) {
-        if (!parse_number(only, &o->single_case)) {
-            return usage("--only takes the flat index of a case, not", only);
-        }
-        o->single = true;
-    }
-    return true;
-}
-
-/* Prints what is wrong with them on standard error. */
-static bool read_options(struct options *o, int argc, char **argv)
-{
-    const char *limit = NULL, *only = NULL, *extend = NULL;
-    size_t extends, froms, outputs, limits, onlys, force, resume, trace, dry_run, quiet, operands;
-    const struct option_spec specs[] = {
-        {"-o", true, &o->output, 1, &outputs},
-        {"--set", true, o->sets, (size_t)argc, &o->set_count},
-        {"--force", false, NULL, 0, &force},
-        {"--resume", false, NULL, 0, &resume},
-        {"--time-limit", true, &limit, 1, &limits},
-        {"--only", true, &only, 1, &onlys},
-        {"--trace", false, NULL, 0, &trace},
-        {"--dry-run", false, NULL, 0, &dry_run},
-        {"--quiet", false, NULL, 0, &quiet},
-        {"--extend", true, &extend, 1, &extends},
-        {"--from", true, &o->from, 1, &froms},
-    };
-    o->time_limit = INFINITY;
-    if (!command_options(&command_run, argc, argv, specs, sizeof specs / sizeof specs[0],
-                         &o->scenario, 1, &operands, &o->help)) {
-        return false;
-    }
-    o->force = force > 0;
-    o->resume = resume > 0;
-    o->trace = trace > 0;
-    o->dry_run = dry_run > 0;
-    o->quiet = quiet > 0;
-    if (!o->help && operands != 1) {
-        return usage("a scenario file must be given", NULL);
-    }
-    return o->help || (check_options(o, only, limit) && check_extend(o, extend, only));
-}
-
 static void stage_options(struct run *run)
 {
     struct options *o = &run->options;
@@ -183,7 +63,7 @@ static void stage_options(struct run *run)
     }
     /* Rank 0 first: it says what is wrong, and the others need not. */
     if (run->parallel.rank == 0 && o->sets) {
-        good = read_options(o, run->argc, run->argv);
+        good = run_read_options(o, run->argc, run->argv);
     }
     parallel_broadcast(&run->parallel, &good, sizeof good);
     if (!good) {
@@ -193,7 +73,7 @@ static void stage_options(struct run *run)
     bool help = o->help;
     parallel_broadcast(&run->parallel, &help, sizeof help);
     if (run->parallel.rank != 0 && !help && o->sets) {
-        read_options(o, run->argc, run->argv);
+        run_read_options(o, run->argc, run->argv);
     }
     o->help = help;
     deadline_limit(o->time_limit - (plan_clock() - run->start));
@@ -292,29 +172,33 @@ static void name_file(struct run *run)
     }
 }
 
-/* Says where they begin to differ. */
-bool run_same_scenario(struct run *run, const char *file, const char *text)
+/* Shows where they differ. */
+bool run_same_scenario(struct run *run, const char *file, const char *old)
 {
-    const char *old = text, *new = run->scenario->text;
-    int line = 1;
+    const char *new = run->scenario->text;
+    char *text = NULL; /* in one piece */
+    size_t size = 0;
 
-    if (strcmp(old, new) == 0) {
+    if (strcmp(old, new) == 0 || (file == run->file && run->options.force_scenario)) {
+        run->succeed = strcmp(old, new) != 0;
         return true;
     }
-    for (;;) {
-        size_t a = strcspn(old, "\n"), b = strcspn(new, "\n");
-        if (a != b || strncmp(old, new, a) != 0 || !old[a] || !new[b]) {
-            snprintf(run->failure.text, sizeof run->failure.text,
-                     "stance run: %.200s was made from another scenario: line %d of its resolved "
-                     "text is '%.*s', now it is '%.*s'",
-                     file, line, a < 90 ? (int)a : 90, old, b < 90 ? (int)b : 90, new);
-            run->failure.code = EXIT_USAGE;
-            return false;
+    const size_t lines = succession_count_differences(old, new);
+    FILE *to = open_memstream(&text, &size);
+    if (to) {
+        fprintf(to,
+                "stance run: %.200s was made from another scenario%s; %zu line%s of the resolved "
+                "text differ%s:\n",
+                file, file == run->file ? " (--force-scenario goes on with this one)" : "", lines,
+                lines == 1 ? "" : "s", lines == 1 ? "s" : "");
+        succession_print_difference(to, old, new);
+        if (fclose(to) == 0) {
+            fputs(text, stderr);
         }
-        old += a + 1;
-        new += b + 1;
-        line++;
+        free(text);
     }
+    run->failure.code = EXIT_USAGE;
+    return false;
 }
 
 /* In a process of its own: see store_check. */
@@ -348,26 +232,34 @@ void run_warn_of_revision(const char *file, const char *revision)
 /* An existing file that is to be gone on with. */
 static void look_into_file(struct run *run)
 {
-    struct store_origin origin;
     stance_message message = {""};
 
     run->failure.code = run_check_file(run->file);
     if (run->failure.code != EXIT_DONE) {
         return; /* it has been said why */
     }
-    if (!store_read_origin(run->file, &origin, &message)) {
+    if (euidaccess(run->file, W_OK) != 0) {
+        snprintf(message.text, sizeof message.text, "%.150s: cannot write there: %s", run->file,
+                 strerror(errno));
         run_fail_io(run, &message);
         return;
     }
-    if (run_same_scenario(run, run->file, origin.scenario)) {
-        run_warn_of_revision(run->file, origin.revision);
-        for (int a = 0; a < run->scenario->axes; a++) {
-            if (!store_read_axis(run->file, &run->scenario->axis[a], &message)) {
-                run_fail_io(run, &message);
-            }
+    if (!store_read_origin(run->file, &run->origin, &message)) {
+        run_fail_io(run, &message);
+        return;
+    }
+    if (!run_same_scenario(run, run->file, run->origin.scenario)) {
+        return;
+    }
+    if (!run->succeed) {
+        run_warn_of_revision(run->file, run->origin.revision);
+    }
+    for (int a = 0; a < run->scenario->axes; a++) {
+        /* Another scenario may have other axes: that is refused later. */
+        if (!store_read_axis(run->file, &run->scenario->axis[a], &message) && !run->succeed) {
+            run_fail_io(run, &message);
         }
     }
-    store_origin_free(&origin);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
@@ -420,6 +312,7 @@ static void stage_claim(struct run *run)
         claim_file(run);
     }
     parallel_broadcast(&run->parallel, &run->resume, sizeof run->resume);
+    parallel_broadcast(&run->parallel, &run->succeed, sizeof run->succeed);
 }
 
 /* ---- the plan ----------------------------------------------------------------------------- */
@@ -470,6 +363,8 @@ static void stage_plan(struct run *run)
     } else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error)) {
         fail_scenario(run, &error);
     }
+    run->plan.ancestors = run->origin.ancestors;
+    parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
     run->plan.stop = out_of_time;
     run->plan.stop_context = run;
 }
@@ -576,14 +471,40 @@ static char *collect_hosts(const struct parallel *parallel)
     return list;
 }
 
+/* The file goes on with a scenario that is not its own. */
+static void succeed(struct run *run, const char *hosts)
+{
+    struct succession_counts counts;
+    stance_message message = {""};
+
+    if (succession_make(run->file, &run->origin, &run->plan, run->parallel.size, hosts, &counts,
+                        &message)) {
+        fprintf(stderr,
+                "stance run: %.200s goes on with another scenario; %" PRIu64 " of its %" PRIu64
+                " cases are done and stay as they are",
+                run->file, counts.kept, run->plan.rows);
+        if (counts.damaged > 0) {
+            fprintf(stderr, ", %" PRIu64 " did not verify", counts.damaged);
+        }
+        fputc('\n', stderr);
+    } else if (message.text[0]) {
+        run_fail_io(run, &message);
+        run->failure.code = counts.refused ? EXIT_USAGE : EXIT_IO;
+    } else {
+        stop_early(run, "stopped before the file could go on with another scenario");
+    }
+}
+
 static void stage_create(struct run *run)
 {
     stance_message message = {""};
-    if (run->resume) {
+    if (run->resume && !run->succeed) {
         return;
     }
     char *hosts = collect_hosts(&run->parallel);
-    if (run->parallel.rank == 0) {
+    if (run->parallel.rank == 0 && run->succeed) {
+        succeed(run, hosts);
+    } else if (run->parallel.rank == 0) {
         if (run->replace && unlink(run->file) != 0) {
             snprintf(message.text, sizeof message.text, "cannot replace %.150s: %s", run->file,
                      strerror(errno));
@@ -593,6 +514,7 @@ static void stage_create(struct run *run)
         }
     }
     free(hosts);
+    parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
 }
 
 static void stage_open(struct run *run)
@@ -702,6 +624,7 @@ static int go_through(struct run *run)
     for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {
         crash_stage(stage[i].doing);
         run->pulse.doing = stage[i].doing;
+        run->pulse.due = 0;
         stage[i].go(run);
         if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
                             sizeof run->failure)) {
@@ -750,6 +673,7 @@ static int run_run(int argc, char **argv)
     int code = go_through(run);
     store_abandon(run->store);
     plan_free(&run->plan);
+    store_origin_free(&run->origin);
     if (run->scenario) {
         scenario_free(run->scenario);
     }
@@ -765,7 +689,7 @@ static int run_run(int argc, char **argv)
 
 const struct command command_run = {
     "run",
-    "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume]\n"
+    "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume [--force-scenario]]\n"
     "           [--extend COUNT [--from FILE]]\n"
     "           [--time-limit TIME] [--only CASE [--trace]] [--dry-run] [--quiet]",
     "compute every case of a scenario; alone or under mpirun -n N",
@@ -777,6 +701,11 @@ const struct command command_run = {
     "                     the link, not the file that it names\n"
     "  --resume           go on with an existing file of the same scenario: cases that it holds\n"
     "                     whole, as their checksums say, are kept. Begins when there is no file\n"
+    "  --force-scenario   ... of another scenario: what is done stays, what is pending is "
+    "computed\n"
+    "                     as this one says. The file keeps both texts and which case is whose\n"
+    "                     (group history, variable scenario_number). The sweep, the answers, the\n"
+    "                     records and the designs must be the same\n"
     "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
     "  --only CASE        compute one case of the sweep, by its flat index, to a file of its own\n"
     "  --trace            ... and record its trajectory, each 0.01 s unless record.every says\n"
@@ -788,8 +717,10 @@ const struct command command_run = {
     "  --dry-run          plan and estimate, write nothing\n"
     "  --quiet            neither progress nor summary\n"
     "\n"
-    "SIGINT, SIGTERM and SIGUSR1 stop at once: cases in hand are given up, what has ended is\n"
-    "written; mpirun forwards SIGUSR1 but kills its ranks soon after SIGINT or SIGTERM. Exit\n"
+    "SIGINT, SIGTERM and SIGUSR1 to any rank stop the job at once: cases in hand are given up,\n"
+    "what has ended is written, and the command that goes on is printed; mpirun forwards SIGUSR1\n"
+    "but kills its ranks a second after SIGINT or SIGTERM, and returns 1 then. Cases that do not\n"
+    "verify when a run is resumed are computed again and named. Exit\n"
     "codes: 0 done, 1 some cases failed, 2 bad use or scenario, 3 input or output, 4 stopped and\n"
     "resumable.\n",
 };

@@ -1,5 +1,5 @@
-/* run.h - what the parts of `stance run` share: run.c (the stages), run_extend.c (rows of a smaller
- * design) and run_end.c (what is said at the end). */
+/* run.h - what the parts of `stance run` share: run.c (the stages), run_options.c, run_extend.c
+ * (rows of a smaller design) and run_end.c (what is said at the end). */
 #ifndef STANCE_RUNNER_RUN_H
 #define STANCE_RUNNER_RUN_H
 
@@ -10,7 +10,7 @@ struct options {
     const char *scenario, *output; /* output NULL: the default */
     const char **sets;
     size_t set_count;
-    bool force, resume, single, trace, dry_run, quiet, help;
+    bool force, force_scenario, resume, single, trace, dry_run, quiet, help;
     uint64_t single_case;
     double time_limit;     /* s, INFINITY: none */
     uint64_t extend_count; /* --extend; 0: not given */
@@ -30,7 +30,9 @@ struct run {
     struct options options;
     struct scenario *scenario;
     char file[1024];
-    bool resume, replace; /* the file exists and is gone on with, or replaced */
+    bool resume, replace;       /* the file exists and is gone on with, or replaced */
+    bool succeed;               /* ... gone on with by this scenario, which is not its own */
+    struct store_origin origin; /* of a file that is gone on with; on rank 0 */
     struct lock lock;
     struct extension *extension; /* --extend, on rank 0 until its rows have been copied */
     struct pulse pulse;          /* on rank 0, once the lock is taken */
@@ -40,6 +42,9 @@ struct run {
     struct failure failure; /* of this rank */
     double start, look_at;  /* of plan_clock(): the beginning, the next look at the counters */
 };
+
+/* run_options.c. Prints what is wrong with them on standard error; false then. */
+bool run_read_options(struct options *o, int argc, char **argv);
 
 /* What ends the run, in a line. */
 void run_fail(struct run *run, int code, const char *text);

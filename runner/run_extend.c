@@ -123,6 +123,20 @@ static bool check_count(struct run *run, const struct extension *e)
     return false;
 }
 
+/* Cases of other scenarios (--force-scenario) are none of the new file's. */
+static bool check_ancestors(struct run *run, const struct extension *e,
+                            const struct store_origin *origin)
+{
+    if (origin->ancestors == 0) {
+        return true;
+    }
+    snprintf(run->failure.text, sizeof run->failure.text,
+             "stance run: --extend: %.300s holds cases of several scenarios: begin a new file",
+             e->file);
+    run->failure.code = EXIT_USAGE;
+    return false;
+}
+
 static bool look_into_old(struct run *run, struct extension *e)
 {
     struct store_origin origin;
@@ -140,7 +154,8 @@ static bool look_into_old(struct run *run, struct extension *e)
         run_fail_io(run, &message);
         return false;
     }
-    bool good = read_old_scenario(run, e, origin.scenario) && check_count(run, e);
+    bool good = read_old_scenario(run, e, origin.scenario) && check_count(run, e) &&
+                check_ancestors(run, e, &origin);
     if (good) {
         run_warn_of_revision(e->file, origin.revision);
     }

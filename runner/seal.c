@@ -6,6 +6,7 @@
 #include "seal.h"
 
 #include "checksum.h"
+#include "problem.h"
 #include "store_private.h"
 
 #include <stdio.h>
@@ -14,15 +15,19 @@
 
 /* ---- the checksum of a variable ----------------------------------------------------------- */
 
-/* Number of elements; 0 when a damaged header claims more than the file can hold. */
+/* Number of elements; 0 when a damaged header claims more than the file can hold. (Variables of
+ * ours are contiguous.) */
 static size_t count_elements(hid_t dataset)
 {
-    hid_t space = H5Dget_space(dataset), file = H5Iget_file_id(dataset);
+    hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset);
+    hid_t file = H5Iget_file_id(dataset);
     hsize_t size = 0;
     hssize_t points = space < 0 ? -1 : H5Sget_simple_extent_npoints(space);
-    bool good =
-        file >= 0 && H5Fget_filesize(file, &size) >= 0 && points > 0 && (hsize_t)points <= size;
+    const size_t width = type < 0 ? 0 : H5Tget_size(type);
+    bool good = file >= 0 && H5Fget_filesize(file, &size) >= 0 && points > 0 && width > 0 &&
+                (hsize_t)points <= size / width;
     H5Sclose(space);
+    H5Tclose(type);
     H5Fclose(file);
     return good ? (size_t)points : 0;
 }
@@ -96,7 +101,7 @@ static bool checksum_of(hid_t dataset, const char *name, uint32_t *crc)
 
 struct walk {
     bool put, strict;
-    const char *group; /* "", "design", "trajectory" */
+    const char *group; /* "", "design", "trajectory", "history" */
     const char *name;  /* of the file */
     stance_message *message;
 };
@@ -137,8 +142,9 @@ static bool put_checksum(hid_t dataset, const char *name)
 
 static bool complain(const struct walk *walk, const char *variable, const char *what)
 {
-    snprintf(walk->message->text, sizeof walk->message->text, "%.100s: damaged: %s%s%.80s %s",
-             walk->name, walk->group, walk->group[0] ? "/" : "", variable, what);
+    char word[SHOWN_SIZE]; /* a damaged name may hold anything */
+    snprintf(walk->message->text, sizeof walk->message->text, "%.100s: damaged: %s%s%s %s",
+             walk->name, walk->group, walk->group[0] ? "/" : "", shown(word, variable), what);
     return false;
 }
 
@@ -200,7 +206,7 @@ static bool walk_group(hid_t file, struct walk *walk, const char *group)
 static bool walk_file(hid_t file, struct walk *walk)
 {
     return walk_group(file, walk, "") && walk_group(file, walk, "design") &&
-           walk_group(file, walk, "trajectory");
+           walk_group(file, walk, "trajectory") && walk_group(file, walk, "history");
 }
 
 /* ---- the structure ------------------------------------------------------------------------ */
@@ -216,9 +222,15 @@ static herr_t touch_attribute(hid_t object, const char *name, const H5A_info_t *
 static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void *context)
 {
     (void)info;
+    H5O_info_t all;
     hid_t object = H5Oopen(group, name, H5P_DEFAULT);
-    bool good = object >= 0 &&
+    bool good = object >= 0 && H5Oget_info2(object, &all, H5O_INFO_ALL) >= 0 &&
+                (H5Iget_type(object) != H5I_DATASET || count_elements(object) > 0) &&
                 H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
+    if (good && H5Iget_type(object) == H5I_DATASET) { /* netCDF's order */
+        good =
+            H5Aiterate2(object, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
+    }
     if (object >= 0) {
         H5Oclose(object);
     }
@@ -228,7 +240,8 @@ static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void 
 /* Everything can be opened, in the order of its making, too: what other readers go by. */
 static bool verify_structure(hid_t file, struct walk *walk)
 {
-    static const char *const groups[] = {"", "design", "trajectory", "timing"};
+    static const char *const groups[] = {"", "design", "trajectory", "history", "timing"};
+    H5O_info_t all;
     bool good = true;
     for (size_t k = 0; good && k < sizeof groups / sizeof groups[0]; k++) {
         walk->group = groups[k];
@@ -236,7 +249,8 @@ static bool verify_structure(hid_t file, struct walk *walk)
             continue;
         }
         hid_t id = H5Gopen2(file, groups[k][0] ? groups[k] : "/", H5P_DEFAULT);
-        good = id >= 0 &&
+        good = id >= 0 && H5Oget_info2(id, &all, H5O_INFO_ALL) >= 0 &&
+               H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, NULL, touch, walk) >= 0 &&
                (k > 0 || H5Aiterate2(id, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch_attribute,
                                      NULL) >= 0) &&
                H5Literate(id, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch, walk) >= 0;
@@ -254,6 +268,12 @@ bool seal_put(int64_t file)
 {
     struct walk walk = {.put = true};
     return walk_file((hid_t)file, &walk);
+}
+
+bool seal_put_group(int64_t file, const char *group)
+{
+    struct walk walk = {.put = true};
+    return walk_group((hid_t)file, &walk, group);
 }
 
 bool seal_verify(int64_t file, const char *name, const char *scenario, const char *hash,

@@ -1,5 +1,5 @@
-/* seal.h - checksums over what a results file holds besides its rows: the axes, the group `design`,
- * the names and instants of the trajectories, the scenario's text.
+/* seal.h - checksums over what a results file holds besides its rows: the axes, the groups `design`
+ * and `history`, the names and instants of the trajectories, the scenario's text.
  *
  * Each such variable has an attribute `checksum`: CRC-32C over its name (without the group) and its
  * elements in their order; numbers as eight little-endian bytes (int64 or double), the name and
@@ -18,6 +18,8 @@
 /* Gives every such variable its attribute. `file`: HDF5 identifier of a file open for writing, all
  * of whose variables exist. */
 bool seal_put(int64_t file);
+/* The same for the variables of one group. */
+bool seal_put_group(int64_t file, const char *group);
 
 /* Verifies them, and that `scenario` (the file's attribute of that name) has the SHA-256 `hash`
  * (`scenario_sha256`; NULL or "": there is none). False, with the one-line reason in *message,

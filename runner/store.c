@@ -23,6 +23,9 @@ const struct store_column store_columns[COLUMNS] = {
 #undef STORE_COLUMN
         [COLUMN_FINAL_STATE] = {"final_state", KIND_double, sizeof(double), NAN, true, NULL,
                                 "coordinates and their rates when the simulation stopped"},
+    [COLUMN_SCENARIO_NUMBER] = {"scenario_number", KIND_uint8_t, sizeof(uint8_t), 0, false, "1",
+                                "scenario that the case was computed with: places of the group "
+                                "history, then the file's own"},
     [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, sizeof(uint32_t), 0, false, "1",
                          "CRC-32C over the answers of the case"},
     [COLUMN_STATUS] = {"status", KIND_uint8_t, sizeof(uint8_t), 0, true, "1",
@@ -34,7 +37,8 @@ const char *const store_trajectories[TRAJECTORIES] = {"position", "velocity", "t
 
 bool store_has_column(const struct scenario *scenario, int column)
 {
-    return column > COLUMN_FINAL_STATE || (scenario->answers >> column & 1);
+    return column > COLUMN_SCENARIO_NUMBER ||
+           (column < COLUMN_SCENARIO_NUMBER && (scenario->answers >> column & 1));
 }
 
 size_t store_column_width(const struct scenario *scenario, int column)
@@ -303,7 +307,8 @@ static bool open_columns(struct store *store, stance_message *message)
     memcpy(length, store->length, sizeof store->length);
 
     for (int c = 0; c < COLUMNS; c++) {
-        if (!store_has_column(s, c)) {
+        const bool history = c == COLUMN_SCENARIO_NUMBER && store->plan->ancestors > 0;
+        if (!store_has_column(s, c) && !history) {
             continue;
         }
         size_t width = store->width[c] = store_column_width(s, c);
@@ -518,6 +523,10 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
         double *state = (double *)block->column[COLUMN_FINAL_STATE] + 2 * n * slot;
         memcpy(state, result->position, n * sizeof *state);
         memcpy(state + n, result->velocity, n * sizeof *state);
+    }
+    if (block->column[COLUMN_SCENARIO_NUMBER]) {
+        ((uint8_t *)block->column[COLUMN_SCENARIO_NUMBER])[slot] =
+            (uint8_t)block->store->plan->ancestors;
     }
     ((uint8_t *)block->column[COLUMN_STATUS])[slot] = (uint8_t)result->status;
     ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = store_row_checksum(block, slot);

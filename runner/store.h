@@ -27,6 +27,11 @@
  *     scenario_sha256.
  *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
  *     gives, merge_note.
+ *   group `history`, in a file that went on with another scenario: the texts of the earlier ones,
+ *     `scenario`, and their `git_revision` and `date`, the first one first; root attributes are the
+ *     newest's. Then a variable `scenario_number` over the cases says which scenario a case was
+ *     computed with, counted from 0; the newest has the highest number. Its checksum takes it after
+ *     `final_state`.
  *   every variable but the answers, the trajectories' own and those of `timing` has an attribute
  *     `checksum` over its values (seal.h), which whoever reads the file verifies.
  * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as
@@ -115,12 +120,22 @@ bool store_create(const char *file, const struct plan *plan, int ranks, const ch
  * crash the HDF5 library: call it where that does no harm (supervise.h). */
 bool store_check(const char *file, bool resume, stance_message *message);
 
+enum { STORE_MOST_ANCESTORS = 200 };
+
+/* A scenario that cases of a file were computed with before it went on with another. */
+struct store_ancestor {
+    char *scenario; /* resolved text */
+    char *revision, *date;
+};
+
 /* What a file was made from, for a resume; release with store_origin_free. */
 struct store_origin {
     char *scenario; /* resolved text */
     char revision[80], date[40];
     char *title, *hosts;
     int ranks;
+    size_t ancestors; /* scenarios before that one, the first one first */
+    struct store_ancestor *ancestor;
 };
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);
 void store_origin_free(struct store_origin *origin);
@@ -182,6 +197,14 @@ bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_m
 bool store_annotate(struct store *store, const char *name, const char *text,
                     stance_message *message);
 
+/* A file that goes on with another scenario (succession.h): for a file that store_create has just
+ * made, the group `history` with the scenarios of `origin`, and the variable `scenario_number`. */
+bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
+                       stance_message *message);
+/* Copies those of 1 to STORE_ROWS rows that are whole in `from`, with their trajectories, to the
+ * same rows of its successor `to`; adds to *kept, and to *damaged those that are not. */
+bool store_hand_down(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
+                     uint64_t *damaged, stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
                       stance_message *message);
@@ -194,7 +217,8 @@ struct store_damage {
 };
 bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage);
 
-/* The checksum that an open file has for the trajectory at a place; false: none. */
+/* The checksum that an open file has for the trajectory at a place; false: none that can be read.
+ */
 bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc);
 
 /* Counts the cases of a file, which another process may be writing. */

@@ -14,14 +14,11 @@
 #include "seal.h"
 
 #include <errno.h>
-#include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <sys/statvfs.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -577,70 +574,6 @@ uint64_t store_size(const struct plan *plan, int ranks)
            plan->designs * sizeof(struct resolved_design);
 }
 
-static bool system_failed(stance_message *message, const char *file, const char *what, int error)
-{
-    snprintf(message->text, sizeof message->text, "%.100s: cannot %s: %s", file, what,
-             strerror(error));
-    return false;
-}
-
-/* Whether the file can fit at all, before HDF5 begins what it could not end. */
-static bool check_space(const char *file, uint64_t size, stance_message *message)
-{
-    struct statvfs system;
-    struct rlimit limit;
-    char directory[1024], needed[32], there[32];
-
-    snprintf(directory, sizeof directory, "%s", file);
-    char *slash = strrchr(directory, '/');
-    if (!slash) {
-        snprintf(directory, sizeof directory, ".");
-    } else {
-        slash[slash == directory] = '\0';
-    }
-    report_bytes(needed, sizeof needed, (double)size);
-    if (statvfs(directory, &system) == 0 && (uint64_t)system.f_bavail * system.f_frsize < size) {
-        report_bytes(there, sizeof there, (double)system.f_bavail * (double)system.f_frsize);
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: needs about %s but only %s are free: %s", file, needed, there,
-                 strerror(ENOSPC));
-        return false;
-    }
-    if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-        limit.rlim_cur < size) {
-        report_bytes(there, sizeof there, (double)limit.rlim_cur);
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: needs about %s but the limit on file sizes is %s: %s", file, needed,
-                 there, strerror(EFBIG));
-        return false;
-    }
-    return true;
-}
-
-/* Reserves the space of the whole file and brings it to the disk. */
-static bool reserve(const char *file, stance_message *message)
-{
-    struct stat information;
-    int descriptor = open(file, O_RDWR | O_CLOEXEC);
-    if (descriptor < 0 || fstat(descriptor, &information) != 0) {
-        bool result = system_failed(message, file, "open", errno);
-        if (descriptor >= 0) {
-            close(descriptor);
-        }
-        return result;
-    }
-    /* Where the file system cannot reserve, a full disk shows when rows are written. */
-    int error = fallocate(descriptor, 0, 0, information.st_size) == 0 ? 0 : errno;
-    error = error == EOPNOTSUPP ? 0 : error;
-    if (error == 0 && fsync(descriptor) != 0) {
-        error = errno;
-    }
-    if (close(descriptor) != 0 && error == 0) {
-        error = errno;
-    }
-    return error == 0 || system_failed(message, file, "reserve its space", error);
-}
-
 static hid_t create_file(const char *file)
 {
     hid_t access = store_serial_access(), properties = H5Pcreate(H5P_FILE_CREATE), id = -1;
@@ -657,15 +590,22 @@ static hid_t create_file(const char *file)
     return id;
 }
 
+/* Under another name until it is whole, so that a killed creation leaves no file to be resumed. */
 bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
                   stance_message *message)
 {
     struct layout layout = {.plan = plan, .ranks = ranks, .hosts = hosts};
+    char part[PATH_MAX];
 
-    if (!check_space(file, store_size(plan, ranks), message)) {
+    if (access(file, F_OK) == 0) {
+        return store_system_failed(message, file, "create", EEXIST);
+    }
+    snprintf(part, sizeof part, "%s.part", file);
+    unlink(part); /* of a creation that was killed */
+    if (!store_fits(file, store_size(plan, ranks), message)) {
         return false;
     }
-    layout.file = create_file(file);
+    layout.file = create_file(part);
     if (layout.file < 0) {
         return store_failed(message, file, "create");
     }
@@ -676,9 +616,10 @@ bool store_create(const char *file, const struct plan *plan, int ranks, const ch
     if (H5Fclose(layout.file) < 0 && good) {
         good = store_failed(message, file, "write the layout");
     }
-    good = good && reserve(file, message);
+    good = good && store_reserve(part, message) &&
+           (rename(part, file) == 0 || store_system_failed(message, file, "create", errno));
     if (!good) {
-        unlink(file);
+        unlink(part);
     }
     return good;
 }

@@ -1,6 +1,7 @@
 /* store_private.h - shared by store.c (rows), store_copy.c (rows of another file), store_select.c
- * (which elements those are), store_layout.c (creation), store_look.c (questions) and seal.c
- * (checksums); nothing else includes it, so that HDF5 stays between them. */
+ * (which elements those are), store_layout.c (creation), store_history.c (files of several
+ * scenarios), store_space.c (room on the disk), store_look.c (questions) and seal.c (checksums);
+ * nothing else includes it, so that HDF5 stays between them. */
 #ifndef STANCE_RUNNER_STORE_PRIVATE_H
 #define STANCE_RUNNER_STORE_PRIVATE_H
 
@@ -22,12 +23,13 @@ enum store_kind {
     KIND_double
 };
 
-/* The variables over the cases, in the order of the table, then the three of our own. */
+/* The variables over the cases, in the order of the table, then those of our own. */
 enum {
 #define STORE_COLUMN(name, type, field, fill, unit, text) COLUMN_##name,
     STORE_ANSWERS(STORE_COLUMN)
 #undef STORE_COLUMN
         COLUMN_FINAL_STATE,
+    COLUMN_SCENARIO_NUMBER, /* of files with a history only */
     COLUMN_CHECKSUM,
     COLUMN_STATUS,
     COLUMNS,
@@ -62,6 +64,17 @@ size_t store_trajectory_width(const stance_scene *scene, int variable);
 
 /* Lengths of the dimensions of the cases; returns how many (>= 1). */
 int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
+
+/* The scenarios of a file before its own; none without a group `history`. false: no memory, or it
+ * cannot be read. */
+bool store_read_history(hid_t file, struct store_origin *origin);
+
+/* "FILE: cannot ...: reason" of a system call. Returns false. */
+bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
+/* Whether a file of that size can fit at all, before HDF5 begins what it could not end. */
+bool store_fits(const char *file, uint64_t size, stance_message *message);
+/* Reserves the space of the whole file and brings it to the disk. */
+bool store_reserve(const char *file, stance_message *message);
 
 /* Dimensions of the columns of group `design` beside the axes. */
 enum design_dimension {

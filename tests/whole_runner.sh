@@ -186,7 +186,7 @@ for n in 0 2; do
     cp killed.h5 first.h5
     expect "killed $name: another scenario is refused" 2 "$stance" run long.yaml --set seed=2 \
         -o killed.h5 --resume
-    says "... and told what differs" "made from another scenario: line .*seed"
+    says "... and told what differs" "^  + seed: 2$"
     "$python" "$tests/results_tools.py" damage killed.h5 3
     expect "killed $name, damaged, and resumed" 0 mpirun -n 3 "$stance" run long.yaml \
         -o killed.h5 --resume

@@ -1,0 +1,184 @@
+/* test_robust.c - signs of life and what others make of them, the difference of two scenarios. */
+#include "support.h"
+
+#include "../runner/pulse.h"
+#include "../runner/succession.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- differences -------------------------------------------------------------------------- */
+
+static void expect_difference(const char *before, const char *after, const char *expected)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *to = open_memstream(&text, &size);
+    assert_non_null(to);
+    succession_print_difference(to, before, after);
+    fclose(to);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void test_differences(void **state)
+{
+    (void)state;
+    expect_difference("a\nb\nc\n", "a\nb\nc\n", "");
+    expect_difference("a\nb\nc\n", "a\nx\nc\n", "  - b\n  + x\n");
+    expect_difference("a\nb\nc\nd\n", "a\nc\nd\ne\n", "  - b\n  + e\n");
+    expect_difference("", "a\n", "  + a\n");
+    expect_difference("a\n", "", "  - a\n");
+    expect_difference("a\nb", "a", "  - b\n");
+    assert_int_equal(succession_count_differences("a\nb\nc\n", "c\nb\n"), 3);
+}
+
+/* Of many differences the first ones are shown, of long lines the beginning. */
+static void test_long_differences(void **state)
+{
+    enum { LINES = 5000, WIDTH = 300 };
+    char *before = malloc(LINES * 8), *after = malloc(LINES * 8), *text = NULL;
+    char wide[WIDTH + 1];
+    size_t size = 0, lines = 0;
+    (void)state;
+    assert_non_null(before);
+    assert_non_null(after);
+    for (int k = 0, at = 0; k < LINES; k++) {
+        sprintf(before + at, "a%05d\n", k);
+        at += sprintf(after + at, "b%05d\n", k);
+    }
+    assert_int_equal(succession_count_differences(before, after), 2 * LINES);
+    FILE *to = open_memstream(&text, &size);
+    assert_non_null(to);
+    succession_print_difference(to, before, after);
+    fclose(to);
+    for (const char *c = text; *c; c++) {
+        lines += *c == '\n';
+    }
+    assert_int_equal(lines, 13);
+    assert_non_null(strstr(text, "  ... and 9988 more\n"));
+    free(text);
+    memset(wide, 'w', WIDTH);
+    wide[WIDTH] = '\0';
+    to = open_memstream(&text, &size);
+    assert_non_null(to);
+    succession_print_difference(to, wide, "");
+    fclose(to);
+    assert_true(strlen(text) < 140);
+    free(text);
+    free(before);
+    free(after);
+}
+
+/* ---- signs of life ------------------------------------------------------------------------ */
+
+struct place {
+    char file[64], lock[80];
+};
+
+static int make_place(void **state)
+{
+    struct place *place = calloc(1, sizeof *place);
+    snprintf(place->file, sizeof place->file, "/tmp/stance-pulse-%d.h5", getpid());
+    snprintf(place->lock, sizeof place->lock, "%s.lock", place->file);
+    *state = place;
+    return 0;
+}
+
+static int remove_place(void **state)
+{
+    struct place *place = *state;
+    unlink(place->file);
+    unlink(place->lock);
+    free(place);
+    return 0;
+}
+
+static void put(const char *file, const char *text)
+{
+    FILE *to = fopen(file, "w");
+    assert_non_null(to);
+    fputs(text, to);
+    fclose(to);
+}
+
+static void test_pulse(void **state)
+{
+    const struct place *place = *state;
+    struct parallel alone = parallel_alone();
+    struct lock lock;
+    struct pulse pulse;
+    struct pulse_note note;
+    stance_message message = {""};
+
+    pulse_read(place->file, &note);
+    assert_false(note.running || note.exists);
+    assert_true(parallel_share(&alone));
+    assert_true(lock_take(&lock, place->file, &message));
+    assert_true(pulse_begin(&pulse, &lock, &alone, "testing"));
+    put(place->file, "results");
+    pulse_guard(&pulse, place->file);
+    pulse_read(place->file, &note);
+    assert_true(note.running && note.here && note.exists);
+    assert_string_equal(note.doing, "testing");
+    assert_true(note.rate < 0);
+    /* The rate is that of the last minute, whatever was before. */
+    const double begin = pulse.due;
+    uint64_t computed = 0;
+    for (int k = 0; k <= 100; k++) {
+        computed += k < 50 ? 7000 : 10;
+        assert_true(pulse_beat(&pulse, begin + 2 * k, computed + 5, computed, 3, &message));
+        assert_true(pulse_beat(&pulse, begin + 2 * k + 1, 0, 0, 3, &message)); /* not yet */
+    }
+    pulse_read(place->file, &note);
+    assert_true(fabs(note.rate - 5) < 1e-9);
+    assert_true(note.computed == computed && note.kept == 5 && note.round == 3);
+    assert_true(note.ranks == 1 && note.alive == 1);
+    /* Another file of that name, and none. */
+    put(place->lock, "");
+    unlink(place->file);
+    assert_false(pulse_beat(&pulse, begin + 300, 0, 0, 0, &message));
+    assert_non_null(strstr(message.text, "was removed, moved or replaced"));
+    pulse_end(&pulse);
+    lock_release(&lock);
+    parallel_unshare(&alone);
+}
+
+/* Whatever the note holds. */
+static void test_strange_notes(void **state)
+{
+    static const char *const notes[] = {
+        "",
+        "{",
+        "rubbish",
+        "[1, 2]",
+        "{\"host\": 1}",
+        "{\"host\": \"x\"}",
+        "{\"host\":\"x\",\"doing\":\"y\",\"start\":\"0\"}",
+    };
+    const struct place *place = *state;
+    struct pulse_note note;
+    for (size_t k = 0; k < sizeof notes / sizeof notes[0]; k++) {
+        put(place->lock, notes[k]);
+        pulse_read(place->file, &note);
+        assert_false(note.exists || note.running);
+    }
+    put(place->lock, "{\"host\":\"a\\u001b[2Jb\",\"doing\":\"y\",\"start\":0,\"time\":1,"
+                     "\"ranks\":1,\"alive\":1,\"round\":0,\"kept\":0,\"computed\":1,\"rate\":-1}");
+    pulse_read(place->file, &note);
+    assert_true(note.exists && !note.running && note.age > 1e6);
+    assert_string_equal(note.host, "a?[2Jb");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_differences),
+        cmocka_unit_test(test_long_differences),
+        cmocka_unit_test_setup_teardown(test_pulse, make_place, remove_place),
+        cmocka_unit_test_setup_teardown(test_strange_notes, make_place, remove_place),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
