@@ -218,7 +218,7 @@ test-slurm test-hosts: test-%: packages-%
 # ---- fuzzing: clang's libFuzzer and sanitizers, see tests/whole_fuzz.sh ---------------------------
 # Everything but the kernels, which come from the library as it is: nothing is simulated.
 FUZZ_CC      ?= clang
-FUZZ_SECONDS ?= 55
+FUZZ_SECONDS ?= 30
 FUZZ          = $(BUILD)/fuzz
 FUZZ_CFLAGS   = -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined \
                 -fsanitize-coverage=inline-8bit-counters,pc-table $(FUZZ_COVERAGE) -Wno-bitwise-instead-of-logical \
@@ -304,6 +304,6 @@ help:
 	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
 	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'
-	@echo 'make fuzz       damaged scenarios and results files, FUZZ_SECONDS=55 long or FUZZ_RUNS= many'
+	@echo 'make fuzz       damaged scenarios and results files, FUZZ_SECONDS=30 long or FUZZ_RUNS= many'
 	@echo 'make install    PREFIX=/usr/local DESTDIR='
 	@echo 'make MPI=0      a build for one rank, with serial HDF5 and without MPI'

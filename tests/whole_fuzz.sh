@@ -6,7 +6,7 @@
 set -u
 cd "$(dirname "$0")/.."
 root=$PWD stance=${STANCE:-$PWD/bin/stance} programs=$(realpath "${BUILD:-build}")/fuzz
-seconds=${FUZZ_SECONDS:-55} runs=${FUZZ_RUNS:-}
+seconds=${FUZZ_SECONDS:-30} runs=${FUZZ_RUNS:-}
 if [ ! -x "$programs/fuzz_scenario" ]; then
     echo "ok 1 - skipped: clang's sanitizers are not installed, or not meant to be used"
     echo "## skipped: no clang with its sanitizers"
