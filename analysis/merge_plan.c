@@ -664,6 +664,7 @@ bool merge_plan(struct merge *m, const char *const *files, size_t count, bool *u
     }
     free(trees);
     m->keyed = good && m->kind != MERGE_EQUAL && has_random_numbers(&m->scenario);
+    m->refined = good && m->kind != MERGE_EQUAL && m->scenario.axis[m->axis].refined;
     return good;
 }
 

@@ -8,6 +8,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+
+/* A pipe would keep the library waiting for ever. */
+static bool is_readable(const char *file, stance_message *message)
+{
+    struct stat information;
+    if (stat(file, &information) == 0 && !S_ISREG(information.st_mode)) {
+        snprintf(message->text, sizeof message->text, "%.200s: not a regular file", file);
+        return false;
+    }
+    return true;
+}
 
 static hid_t open_to_read(const char *file)
 {
@@ -44,6 +56,9 @@ static bool not_resumable(const char *file, stance_message *message)
 
 bool store_check(const char *file, bool resume, stance_message *message)
 {
+    if (!is_readable(file, message)) {
+        return false;
+    }
     hid_t id = open_to_read(file);
     if (id < 0) {
         return store_failed(message, file, "open");
@@ -159,6 +174,9 @@ static bool count_status(hid_t dataset, struct store_counts *counts)
 
 bool store_count(const char *file, struct store_counts *counts, stance_message *message)
 {
+    if (!is_readable(file, message)) {
+        return false;
+    }
     *counts = (struct store_counts){0};
     hid_t id = open_to_read(file);
     if (id < 0) {
