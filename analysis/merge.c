@@ -107,8 +107,8 @@ static bool check_axes(struct merge *m, const struct merge_part *part,
         const double distance = axis_distance(axis, &m->scenario.axis[a + shift]);
         if (distance > last_bits) {
             snprintf(message->text, sizeof message->text,
-                     "%.70s: its points along %.50s are not those of %.70s", part->file,
-                     axis->name, m->part[0].file);
+                     "%.70s: its points along %.50s are not those of %.70s", part->file, axis->name,
+                     m->part[0].file);
             return false;
         }
         m->designs_differ = m->designs_differ || distance > 0;

@@ -332,7 +332,7 @@ END
 expect "a sample and a logarithmic axis" 0 "$stance" run drawn.yaml -o drawn.h5 --quiet
 cp drawn.h5 drawn-before.h5
 # Their values are in the file: nobody must take these for the new scenario's own.
-for change in seed=2 'sweep.sample.vary[0].to=2' sweep.sample.method=sobol 'sweep.grid[0].from=0.01'; do
+for change in seed=2 'sweep.sample.vary[0].to=0.5' sweep.sample.method=sobol 'sweep.grid[0].from=0.01'; do
     expect "what does not fit is refused: $change" 2 "$stance" run drawn.yaml --set "$change" \
         -o drawn.h5 --resume --force-scenario
     says "... in one line" '^stance run: drawn.h5: --force-scenario cannot change '
