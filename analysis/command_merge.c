@@ -45,6 +45,16 @@ static void print_result(const struct request *request, const struct merge *m)
                 "stance merge: random numbers are keyed by the cases' indices in the parts: one "
                 "run of the whole has other ones (attribute merge_note)\n");
     }
+    for (size_t p = 1; p < m->parts; p++) {
+        if (strcmp(m->part[p].origin.revision, m->part[0].origin.revision) != 0) {
+            fprintf(stderr,
+                    "stance merge: warning: %s was begun by revision %s, %s by %s: results "
+                    "may differ\n",
+                    m->part[p].file, m->part[p].origin.revision, m->part[0].file,
+                    m->part[0].origin.revision);
+            break;
+        }
+    }
     if (m->refined) {
         fprintf(stderr,
                 "stance merge: the parts were refined each for itself: one run of the whole "

@@ -7,6 +7,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- the difference between two texts ------------------------------------------------------- */
@@ -291,7 +292,13 @@ static bool copy_rows(const struct making *making, struct store *from, struct st
 static bool take_place(const struct making *making)
 {
     char directory[PATH_MAX];
+    struct stat before;
     int descriptor = open(making->made, O_RDWR | O_CLOEXEC);
+    /* Whoever may write the old file may write this one, as far as the system lets us see to it. */
+    if (descriptor >= 0 && stat(making->real, &before) == 0 &&
+        fchown(descriptor, before.st_uid, before.st_gid) == 0) {
+        (void)fchmod(descriptor, before.st_mode & 0777);
+    }
     if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0) {
         return system_failed(making, "bring its successor to the disk");
     }
