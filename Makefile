@@ -24,6 +24,8 @@ PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python
 PACKAGES_LINT = clang-format clang-tidy cppcheck
 PACKAGES_FUZZ = clang libclang-rt-dev
 PACKAGES_NEON = gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
+PACKAGES_SLURM = munge slurmctld slurmd slurm-client
+PACKAGES_HOSTS = iproute2
 PACKAGES_BENCH = libmujoco-dev valgrind linux-perf
 BUILD_TOOLS   = gcc make pkg-config
 
@@ -87,7 +89,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills fuzz fuzz-programs bench bench-run profile lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills test-slurm test-hosts fuzz fuzz-programs bench bench-run profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(BUILD)/libstance.a
@@ -208,6 +210,11 @@ test-kills: packages-test
 	@$(TEST_ENVIRONMENT) $(PYTHON) tests/campaign_kills.py --seed $(SEED) --kills $(KILLS)
 	@$(TEST_ENVIRONMENT) $(PYTHON) tests/campaign_damage.py --seed $(SEED) --flips $(FLIPS) --truncations $(TRUNCATIONS)
 
+# Batch scripts under a Slurm of the test's own; a run on several hosts, one cut off. As root.
+test-slurm test-hosts: test-%: packages-%
+	$(MAKE) $(PROGRAM)
+	@$(TEST_ENVIRONMENT) bash tests/$*.sh
+
 # ---- fuzzing: clang's libFuzzer and sanitizers, see tests/whole_fuzz.sh ---------------------------
 # Everything but the kernels, which come from the library as it is: nothing is simulated.
 FUZZ_CC      ?= clang
@@ -240,8 +247,9 @@ fuzz-programs: $(fuzz_programs)
 
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
-packages packages-test packages-neon packages-bench: packages%:
+packages packages-test packages-neon packages-slurm packages-hosts packages-bench: packages%:
 	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT) $(PACKAGES_FUZZ)) \
+	    $(if $(filter -slurm,$*),$(PACKAGES_SLURM) python3-h5py) $(if $(filter -hosts,$*),$(PACKAGES_HOSTS) python3-h5py) \
 	    $(if $(filter -neon,$*),$(PACKAGES_NEON)) $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
 	missing=; for p in $$need; do \
 	    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
@@ -278,7 +286,7 @@ sanitize:
 
 install: bin/stance
 	install -D -m 755 bin/stance $(DESTDIR)$(PREFIX)/bin/stance
-	for f in scenarios/*.yaml scenarios/*/*.yaml; do install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/stance/$$f; done
+	for f in scenarios/*.yaml scenarios/*/*.yaml scenarios/*/*.sh; do install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/stance/$$f; done
 
 clean:
 	rm -rf build bin
@@ -290,6 +298,8 @@ help:
 	@echo 'make test-long  the same with the long tests'
 	@echo 'make test-kills kill runs at random, damage files at random (KILLS= FLIPS= TRUNCATIONS= SEED=)'
 	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'
+	@echo 'make test-slurm install Slurm, run the batch scripts of scenarios/cluster under one of its own'
+	@echo 'make test-hosts run on three hosts (network namespaces), one of them cut off in mid-run'
 	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
 	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
