@@ -45,6 +45,21 @@ static void print_result(const struct request *request, const struct merge *m)
                 "stance merge: random numbers are keyed by the cases' indices in the parts: one "
                 "run of the whole has other ones (attribute merge_note)\n");
     }
+    for (size_t p = 1; p < m->parts; p++) {
+        if (strcmp(m->part[p].origin.revision, m->part[0].origin.revision) != 0) {
+            fprintf(stderr,
+                    "stance merge: warning: %s was begun by revision %s, %s by %s: results "
+                    "may differ\n",
+                    m->part[p].file, m->part[p].origin.revision, m->part[0].file,
+                    m->part[0].origin.revision);
+            break;
+        }
+    }
+    if (m->refined) {
+        fprintf(stderr,
+                "stance merge: the parts were refined each for itself: one run of the whole "
+                "simulates other cases (attribute merge_note)\n");
+    }
     if (m->designs_differ) {
         fprintf(stderr, "stance merge: the parts' designs differ in last bits; those of the first "
                         "part that has them are in the file (attribute merge_note)\n");
@@ -191,7 +206,8 @@ const struct command command_merge = {
     "\n"
     "Random numbers are keyed by a case's index in its own file: with torque noise, "
     "stop.capture\n"
-    "or sweep.refine.probes the merged file is not what one run of the whole gives. This is said,\n"
+    "or sweep.refine.probes the merged file is not what one run of the whole gives. Nor is it\n"
+    "along an axis that sweep.refine refines: each part was refined for itself. This is said,\n"
     "also in the attribute `merge_note`.\n"
     "\n"
     "  --force   replace OUT\n",

@@ -75,6 +75,47 @@ static struct opened *open_part(const struct merge_part *part, stance_message *m
     return opened;
 }
 
+/* ---- axes --------------------------------------------------------------------------------- */
+
+/* How far the values of two axes are apart, relative to the largest of each path. */
+static double axis_distance(const struct scenario_axis *a, const struct scenario_axis *b)
+{
+    double most = 0;
+    for (int k = 0; k < a->paths; k++) {
+        double scale = 0, distance = 0;
+        for (size_t i = 0; i < a->count; i++) {
+            const double x = scenario_axis_value(a, i, k), y = scenario_axis_value(b, i, k);
+            scale = isfinite(x) ? fmax(scale, fabs(x)) : scale;
+            distance = x == y ? distance : fmax(distance, fabs(x - y));
+        }
+        most = distance > 0 ? fmax(most, distance / scale) : most;
+    }
+    return most;
+}
+
+/* The points of a sample or of a logarithmic axis are what the program that made the part computed:
+ * equal scenarios of two versions need not have equal ones. */
+static bool check_axes(struct merge *m, const struct merge_part *part,
+                       const struct scenario *scenario, stance_message *message)
+{
+    const int shift = m->kind == MERGE_VALUE; /* the new axis is the first one */
+    for (int a = 0; a < scenario->axes; a++) {
+        const struct scenario_axis *axis = &scenario->axis[a];
+        if ((!axis->log && !axis->sample) || (m->kind == MERGE_AXIS && a == m->axis)) {
+            continue;
+        }
+        const double distance = axis_distance(axis, &m->scenario.axis[a + shift]);
+        if (distance > last_bits) {
+            snprintf(message->text, sizeof message->text,
+                     "%.70s: its points along %.50s are not those of %.70s", part->file, axis->name,
+                     m->part[0].file);
+            return false;
+        }
+        m->designs_differ = m->designs_differ || distance > 0;
+    }
+    return true;
+}
+
 /* ---- designs ------------------------------------------------------------------------------ */
 
 /* A row of a plan that has design `design`: the first point of the axes that it does not depend
@@ -151,7 +192,8 @@ static bool collect_designs(struct merge *m, struct plan *plan, bool *usage,
             good = false;
         }
         if (good) {
-            good = take_designs(m, &m->part[p], opened, plan, taken, message);
+            good = check_axes(m, &m->part[p], &opened->scenario, message) &&
+                   take_designs(m, &m->part[p], opened, plan, taken, message);
             *usage = !good;
         }
         if (opened) {
@@ -219,6 +261,8 @@ static bool copy_parts(struct merge *m, struct store *store, bool *usage, stance
 static const char keys_note[] =
     "Random numbers (torque noise, captured sets, probes) are keyed by the indices that cases had "
     "in their parts: one run of this scenario has other ones.";
+static const char refined_note[] =
+    "The parts were refined each for itself: one run of this scenario simulates other cases.";
 static const char designs_note[] =
     "The parts' controller designs or computed axes differ in last bits; those of the first part "
     "that has them are in this file.";
@@ -244,10 +288,14 @@ static char *history(const struct merge *m)
 
 static bool annotate(const struct merge *m, struct store *store, stance_message *message)
 {
-    char note[600];
+    const char *const notes[] = {m->keyed ? keys_note : "", m->refined ? refined_note : "",
+                                 m->designs_differ ? designs_note : ""};
+    char note[800] = "";
     char *text = history(m);
-    snprintf(note, sizeof note, "%s%s%s", m->keyed ? keys_note : "",
-             m->keyed && m->designs_differ ? " " : "", m->designs_differ ? designs_note : "");
+    for (size_t i = 0, used = 0; i < sizeof notes / sizeof notes[0]; i++) {
+        used += (size_t)snprintf(note + used, sizeof note - used, "%s%s",
+                                 used > 0 && notes[i][0] ? " " : "", notes[i]);
+    }
     bool good = (text || no_memory(message)) &&
                 store_annotate(store, "merged_from", text, message) &&
                 (!note[0] || store_annotate(store, "merge_note", note, message));

@@ -34,7 +34,8 @@ struct merge {
     uint64_t inner;           /* cases in one point of it, of those axes that come after it */
     struct scenario scenario; /* merged */
     bool keyed;               /* has random numbers that are not those of one run */
-    bool designs_differ;      /* in last bits between parts: the first one's are in the file */
+    bool refined;             /* along the merged axis, each part for itself */
+    bool designs_differ;      /* or computed axes, in last bits: the first part's are in the file */
     struct store_copied copied;
 };
 

@@ -608,6 +608,21 @@ bool merge_read_part(const struct merge_part *part, struct scenario *scenario,
     return good;
 }
 
+/* Of the values of keys that cases of several scenarios have, a file tells those of the last one.
+ */
+static bool have_one_scenario(const struct merge *m, stance_message *message)
+{
+    for (size_t p = 0; p < m->parts; p++) {
+        if (m->part[p].origin.ancestors > 0) {
+            snprintf(message->text, sizeof message->text,
+                     "%.120s: was made from several scenarios: it cannot be merged",
+                     m->part[p].file);
+            return false;
+        }
+    }
+    return true;
+}
+
 static bool open_parts(struct merge *m, const char *const *files, size_t count,
                        stance_message *message)
 {
@@ -621,11 +636,6 @@ static bool open_parts(struct merge *m, const char *const *files, size_t count,
         part->points = 1;
         if (!store_check(part->file, true, message) ||
             !store_read_origin(part->file, &part->origin, message)) {
-            return false;
-        }
-        if (part->origin.ancestors > 0) {
-            snprintf(message->text, sizeof message->text,
-                     "%.120s: was made from several scenarios: it cannot be merged", part->file);
             return false;
         }
     }
@@ -657,13 +667,15 @@ bool merge_plan(struct merge *m, const char *const *files, size_t count, bool *u
     }
     if (good) {
         *usage = true;
-        good = classify(m, trees, message) && make_scenario(m, trees, message);
+        good = have_one_scenario(m, message) && classify(m, trees, message) &&
+               make_scenario(m, trees, message);
     }
     for (size_t p = 0; trees && p < count; p++) {
         tree_free(&trees[p]);
     }
     free(trees);
     m->keyed = good && m->kind != MERGE_EQUAL && has_random_numbers(&m->scenario);
+    m->refined = good && m->kind != MERGE_EQUAL && m->scenario.axis[m->axis].refined;
     return good;
 }
 

@@ -4,7 +4,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -27,6 +29,25 @@ static bool has_name(const struct lock *lock, int descriptor)
     struct stat held, named;
     return fstat(descriptor, &held) == 0 && stat(lock->file, &named) == 0 &&
            held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+}
+
+/* The name of the file that is written through `file`. */
+static const char *behind_links(const char *file, char real[PATH_MAX])
+{
+    struct stat information;
+    const bool link = lstat(file, &information) == 0 && S_ISLNK(information.st_mode);
+    return link && realpath(file, real) ? real : file;
+}
+
+bool lock_take_through(struct lock *lock, const char *file, stance_message *message)
+{
+    char real[PATH_MAX];
+    const char *name = behind_links(file, real);
+    lock->descriptor = -1;
+    if (strlen(name) + sizeof ".lock" > sizeof lock->file) {
+        return failed(message, file, ENAMETOOLONG);
+    }
+    return lock_take(lock, name, message);
 }
 
 bool lock_take(struct lock *lock, const char *file, stance_message *message)
@@ -88,11 +109,11 @@ void lock_write_note(const struct lock *lock, const char *note)
 
 bool lock_is_held(const char *file, char note[LOCK_NOTE])
 {
-    char path[1100];
+    char path[PATH_MAX + 8], real[PATH_MAX];
     struct flock range = {.l_type = F_RDLCK, .l_whence = SEEK_SET};
 
     note[0] = '\0';
-    snprintf(path, sizeof path, "%s.lock", file);
+    snprintf(path, sizeof path, "%s.lock", behind_links(file, real));
     int descriptor = open(path, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0) {
         return false;

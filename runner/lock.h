@@ -16,6 +16,9 @@ struct lock {
 
 /* false: another process writes FILE, or the lock file cannot be made; *message says which. */
 bool lock_take(struct lock *lock, const char *file, stance_message *message);
+/* The same of the file that is written through FILE: where FILE is a symbolic link, the one that it
+ * names, lest two jobs write one file under two names. */
+bool lock_take_through(struct lock *lock, const char *file, stance_message *message);
 void lock_release(struct lock *lock);
 
 /* Sees to it that the file behind the lock still has its name; takes the lock anew when somebody
@@ -27,8 +30,9 @@ bool lock_keep(struct lock *lock, stance_message *message);
  * others what it says, nothing else. */
 enum { LOCK_NOTE = 1024 };
 void lock_write_note(const struct lock *lock, const char *note);
-/* Whether a process is writing FILE now, as far as locks reach: over some network file systems only
- * those of this machine are seen. The last note, also of a writer that died: "" when there is none.
+/* Whether a process is writing FILE, or what it links to, now, as far as locks reach: over some
+ * network file systems only those of this machine are seen. The last note, also of a writer that
+ * died: "" when there is none.
  */
 bool lock_is_held(const char *file, char note[LOCK_NOTE]);
 

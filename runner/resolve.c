@@ -161,6 +161,23 @@ static void clear_design(struct resolved_design *design)
     }
 }
 
+void resolve_keep_design_inputs(struct scenario_values *values, bool sampled)
+{
+#define LEAVE_OUT(field) memset(&values->field, 0, sizeof values->field)
+    LEAVE_OUT(friction), LEAVE_OUT(restitution), LEAVE_OUT(contacts);
+    LEAVE_OUT(offset), LEAVE_OUT(offset_scale), LEAVE_OUT(state);
+    LEAVE_OUT(kp), LEAVE_OUT(kd), LEAVE_OUT(target);
+    LEAVE_OUT(controlled), LEAVE_OUT(proportional), LEAVE_OUT(integral), LEAVE_OUT(derivative);
+    LEAVE_OUT(integral_limit), LEAVE_OUT(setpoint), LEAVE_OUT(ramp), LEAVE_OUT(ramp_time);
+    LEAVE_OUT(far), LEAVE_OUT(near_angle), LEAVE_OUT(near_rate);
+    LEAVE_OUT(delay), LEAVE_OUT(torque_limit), LEAVE_OUT(noise);
+    LEAVE_OUT(method), LEAVE_OUT(step), LEAVE_OUT(tolerance);
+    LEAVE_OUT(stop_time), LEAVE_OUT(settle), LEAVE_OUT(settle_angle), LEAVE_OUT(settle_rate);
+    LEAVE_OUT(settle_hold), LEAVE_OUT(fall_height);
+#undef LEAVE_OUT
+    values->sample_time = sampled ? values->sample_time : 0;
+}
+
 bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
                     struct resolved_design *design, stance_message *message)
 {

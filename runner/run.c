@@ -251,12 +251,16 @@ static void look_into_file(struct run *run)
     if (!run_same_scenario(run, run->file, run->origin.scenario)) {
         return;
     }
+    if (run->succeed && !succession_check_sweep(run->file, &run->origin, run->scenario, &message)) {
+        run_fail_io(run, &message);
+        run->failure.code = EXIT_USAGE;
+        return;
+    }
     if (!run->succeed) {
         run_warn_of_revision(run->file, run->origin.revision);
     }
     for (int a = 0; a < run->scenario->axes; a++) {
-        /* Another scenario may have other axes: that is refused later. */
-        if (!store_read_axis(run->file, &run->scenario->axis[a], &message) && !run->succeed) {
+        if (!store_read_axis(run->file, &run->scenario->axis[a], &message)) {
             run_fail_io(run, &message);
         }
     }
@@ -288,7 +292,9 @@ static void claim_file(struct run *run)
         run_fail_io(run, &message);
         return;
     }
-    if (!lock_take(&run->lock, run->file, &message)) {
+    /* A link that is replaced is a file of its own; through others the file they name is written.
+     */
+    if (!(o->force ? lock_take : lock_take_through)(&run->lock, run->file, &message)) {
         run_fail_io(run, &message);
         return;
     }

@@ -62,7 +62,7 @@ static bool lock_old(struct extension *e, stance_message *message)
     } else {
         slash[slash == directory] = '\0';
     }
-    return access(directory, W_OK) != 0 || lock_take(&e->lock, e->file, message);
+    return access(directory, W_OK) != 0 || lock_take_through(&e->lock, e->file, message);
 }
 
 /* The scenario of the old file, as it is and with the new count. */

@@ -671,8 +671,9 @@ static void read_all(struct reader *r, const char *file, const char *text, const
     }
 }
 
-/* The file's name without its directory and .yaml. */
-static bool set_names(struct scenario *s, const char *file)
+/* The file's name without its directory and .yaml. That of a text that is given, most often out of
+ * a results file, names no results: it may be cut. */
+static bool set_names(struct scenario *s, const char *file, bool given)
 {
     const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
     size_t length = strlen(name);
@@ -685,12 +686,11 @@ static bool set_names(struct scenario *s, const char *file)
             break;
         }
     }
-    if (length >= sizeof s->name || strlen(file) >= sizeof s->file) {
+    if (!given && (length >= sizeof s->name || strlen(file) >= sizeof s->file)) {
         return false;
     }
-    memcpy(s->file, file, strlen(file) + 1);
-    memcpy(s->name, name, length);
-    s->name[length] = '\0';
+    snprintf(s->file, sizeof s->file, "%s", file);
+    snprintf(s->name, sizeof s->name, "%.*s", (int)length, name);
     return true;
 }
 
@@ -705,7 +705,7 @@ bool scenario_read(struct scenario *s, const char *file, const char *text, const
         return false;
     }
     r->s = s;
-    if (!set_names(s, file)) {
+    if (!set_names(s, file, text != NULL)) {
         problem_add(&r->problems, (struct mark){0}, "the file's name is too long");
     } else {
         read_all(r, file, text, sets, set_count);

@@ -187,7 +187,7 @@ struct store_copied {
 };
 /* Copies 1 to STORE_ROWS rows, with their trajectories, to the rows target[rows->count] (ascending)
  * of a file whose cases have the same answers and the same instants, each once it has been
- * verified. */
+ * verified. Where only that file has numbers of scenarios, the rows are of the first one, 0. */
 bool store_copy(struct store *from, const struct rows *rows, struct store *to,
                 const uint64_t *target, struct store_copied *copied, stance_message *message);
 /* Appends the times of a file to those of another, rank after rank from *rank on, which moves on.
@@ -201,10 +201,6 @@ bool store_annotate(struct store *store, const char *name, const char *text,
  * made, the group `history` with the scenarios of `origin`, and the variable `scenario_number`. */
 bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
                        stance_message *message);
-/* Copies those of 1 to STORE_ROWS rows that are whole in `from`, with their trajectories, to the
- * same rows of its successor `to`; adds to *kept, and to *damaged those that are not. */
-bool store_hand_down(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
-                     uint64_t *damaged, stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
 bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
                       stance_message *message);

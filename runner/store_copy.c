@@ -28,15 +28,20 @@ static bool same_row(const struct store_block *a, const struct store_block *b, s
     return true;
 }
 
-static void move_slot(struct store_block *block, size_t from, size_t to)
+/* A slot of one file's block into one of the other's. */
+static void take_row(const struct store_block *from, size_t slot, struct store_block *to,
+                     size_t to_slot)
 {
     for (int c = 0; c < COLUMNS; c++) {
-        const size_t size = block->store->width[c] * store_columns[c].size;
-        if (block->column[c]) {
-            memmove((char *)block->column[c] + to * size,
-                    (const char *)block->column[c] + from * size, size);
+        const size_t size = to->store->width[c] * store_columns[c].size;
+        if (to->column[c] && from->column[c]) {
+            memcpy((char *)to->column[c] + to_slot * size,
+                   (const char *)from->column[c] + slot * size, size);
+        } else if (to->column[c]) { /* scenario_number */
+            memset((char *)to->column[c] + to_slot * size, 0, size);
         }
     }
+    ((uint32_t *)to->column[COLUMN_CHECKSUM])[to_slot] = store_row_checksum(to, to_slot);
 }
 
 /* The trajectory at one place of a file to a place of another, as it is, checksum included. */
@@ -122,10 +127,10 @@ bool store_copy(struct store *from, const struct rows *rows, struct store *to,
             return false;
         }
         kept[count] = target[i];
-        move_slot(from->checked, i, count++);
+        take_row(from->checked, i, to->checked, count++); /* count <= i: a slot already looked at */
     }
     const struct rows written = {kept, count, 0};
-    return count == 0 || store_write(to, from->checked, 0, &written, message);
+    return count == 0 || store_write(to, to->checked, 0, &written, message);
 }
 
 bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_message *message)

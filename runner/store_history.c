@@ -1,5 +1,5 @@
-/* store_history.c - files that went on with another scenario: what they were made from before, and
- * the rows that they take over from their predecessor (succession.h). */
+/* store_history.c - what files that went on with another scenario (succession.h) were made from
+ * before. */
 #include "store_make.h"
 
 #include "seal.h"
@@ -124,78 +124,4 @@ bool store_add_history(const char *file, const struct plan *plan, const struct s
         good = store_failed(message, file, "write its history");
     }
     return good && store_reserve(file, message);
-}
-
-/* ---- rows that are taken over --------------------------------------------------------------- */
-
-/* Row i of the rows that `from` has just verified, into slot i of the successor's block. */
-static void take_row(const struct store_block *from, struct store_block *to, size_t i)
-{
-    for (int c = 0; c < COLUMNS; c++) {
-        if (to->column[c] && from->column[c]) {
-            const size_t size = to->store->width[c] * store_columns[c].size;
-            memcpy((char *)to->column[c] + i * size, (const char *)from->column[c] + i * size,
-                   size);
-        }
-    }
-    if (!from->column[COLUMN_SCENARIO_NUMBER]) {
-        ((uint8_t *)to->column[COLUMN_SCENARIO_NUMBER])[i] = 0;
-    }
-    ((uint32_t *)to->column[COLUMN_CHECKSUM])[i] = store_row_checksum(to, i);
-}
-
-static bool copy_trajectory(struct store *from, struct store *to, uint64_t place)
-{
-    const struct plan *plan = to->plan;
-    uint32_t crc;
-    bool good = true;
-    for (int v = 0; good && v < TRAJECTORIES; v++) {
-        const hsize_t elements =
-            (hsize_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
-        double *data = elements > 0 ? malloc(elements * sizeof *data) : NULL;
-        good = elements == 0 || (data &&
-                                 store_move_place(from->trajectory[v], KIND_double, place, elements,
-                                                  STORE_READ, data) &&
-                                 store_move_place(to->trajectory[v], KIND_double, place, elements,
-                                                  STORE_WRITE, data));
-        free(data);
-    }
-    return good &&
-           store_move_place(from->trajectory_checksum, KIND_uint32_t, place, 1, STORE_READ, &crc) &&
-           store_move_place(to->trajectory_checksum, KIND_uint32_t, place, 1, STORE_WRITE, &crc);
-}
-
-bool store_hand_down(struct store *from, struct store *to, const struct rows *rows, uint64_t *kept,
-                     uint64_t *damaged, stance_message *message)
-{
-    stance_result results[STORE_ROWS];
-    bool whole[STORE_ROWS];
-
-    if (!to->checked && !(to->checked = store_block_make(to, STORE_ROWS))) {
-        snprintf(message->text, sizeof message->text, "not enough memory");
-        return false;
-    }
-    if (!store_verify(from, rows, results, whole, message)) {
-        return false;
-    }
-    for (size_t i = 0, n; i < rows->count; i += n) {
-        for (n = 0; i + n < rows->count && whole[i + n]; n++) {
-            uint64_t place;
-            take_row(from->checked, to->checked, i + n);
-            if (plan_recorded(to->plan, rows_at(rows, i + n), &place) &&
-                !copy_trajectory(from, to, place)) {
-                return store_failed(message, to->file, "copy a trajectory");
-            }
-        }
-        const struct rows part = rows_part(rows, i, n);
-        if (n > 0 && !store_write(to, to->checked, i, &part, message)) {
-            return false;
-        }
-        *kept += n;
-        if (n == 0) {
-            *damaged += results[i].status != STANCE_PENDING;
-            n = 1;
-        }
-    }
-    return true;
 }

@@ -124,12 +124,12 @@ bool store_read_axis(const char *file, struct scenario_axis *axis, stance_messag
     const size_t paths = (size_t)axis->paths;
     const hsize_t length = axis->count;
     double *value = malloc(axis->count * sizeof *value);
-    bool good = value != NULL && id >= 0;
+    bool good = value != NULL && id >= 0, fits = true;
     for (size_t k = 0; good && k < paths; k++) {
         hid_t dataset = H5Dopen2(id, axis->path[k], H5P_DEFAULT);
-        good = store_has_shape(dataset, 1, &length) &&
-               H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                       value) >= 0;
+        fits = dataset < 0 || store_has_shape(dataset, 1, &length);
+        good = fits && H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL,
+                               H5P_DEFAULT, value) >= 0;
         for (size_t i = 0; good && i < axis->count; i++) {
             axis->value[i * paths + k] = value[i];
         }
@@ -137,6 +137,11 @@ bool store_read_axis(const char *file, struct scenario_axis *axis, stance_messag
     }
     free(value);
     H5Fclose(id);
+    if (!fits) {
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: holds one case of a sweep (run --only), not the sweep", file);
+        return false;
+    }
     return good || store_failed(message, file, "read an axis");
 }
 

@@ -7,11 +7,12 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* ---- the difference between two texts ------------------------------------------------------- */
 
-enum { MOST_LINES = 2000, MOST_SHOWN = 12, SHOWN_COLUMNS = 120, COMPARED_DESIGNS = 16 };
+enum { MOST_LINES = 2000, MOST_SHOWN = 12, SHOWN_COLUMNS = 120 };
 
 struct line {
     const char *text;
@@ -139,8 +140,7 @@ static bool same_axis(const struct scenario_axis *a, const struct scenario_axis 
                 (a->value || (a->from == b->from && a->to == b->to));
         for (size_t i = 0; equal && a->value && i < a->count; i++) {
             const double x = scenario_axis_value(a, i, k), y = scenario_axis_value(b, i, k);
-            /* Points of logarithmic axes may differ between machines; the file's are taken. */
-            equal = x == y || (a->log && b->log && a->from == b->from && a->to == b->to);
+            equal = x == y;
         }
     }
     return equal;
@@ -155,35 +155,38 @@ static bool same_axes(const struct scenario *a, const struct scenario *b)
     return equal;
 }
 
+/* The seed is among what its points are made from. */
+static bool same_sample(const struct scenario *a, const struct scenario *b)
+{
+    const struct sampling *x = &a->sample.design, *y = &b->sample.design;
+    return a->sample.given == b->sample.given &&
+           (!a->sample.given ||
+            (x->method == y->method && x->count == y->count && x->factors == y->factors &&
+             x->levels == y->levels && x->second_order == y->second_order && x->seed == y->seed));
+}
+
 /* Bit for bit, of structs whose memory was zero before they were filled in. */
 static bool same_bits(const void *a, const void *b, size_t size)
 {
     return memcmp(a, b, size) == 0;
 }
 
-/* On some cases spread over the sweep: what differs in the base differs nearly everywhere. */
-static bool same_designs(const struct plan *before, const struct plan *after)
+/* A design changes for some words of a sweep only: its inputs are compared, not some designs. */
+static bool same_designs(const struct scenario *a, const struct scenario *b)
 {
-    const struct scenario *a = before->scenario, *b = after->scenario;
-    const uint64_t most = before->designs == 1 && after->designs == 1 ? 1 : COMPARED_DESIGNS;
-    const uint64_t tried = a->cases < most ? a->cases : most;
-    for (uint64_t k = 0; k < tried; k++) {
-        const uint64_t index =
-            tried > 1 ? (uint64_t)((double)(a->cases - 1) * (double)k / (double)(tried - 1)) : 0;
-        struct scenario_values x, y;
-        struct resolved_design p, q;
-        stance_message ignored;
-        memset(&p, 0, sizeof p);
-        memset(&q, 0, sizeof q);
-        scenario_case_values(a, index, &x);
-        scenario_case_values(b, index, &y);
-        const bool exists = resolve_design(a->scene, &x, &p, &ignored);
-        if (exists != resolve_design(b->scene, &y, &q, &ignored) ||
-            (exists && !same_bits(&p, &q, sizeof p))) {
-            return false;
+    struct scenario_values x, y;
+    bool sampled = a->base.design_time == DESIGN_SAMPLED;
+    for (int k = 0; k < a->axes; k++) {
+        for (int p = 0; p < a->axis[k].paths; p++) {
+            const size_t offset = a->axis[k].offset[p];
+            sampled = sampled || offset == offsetof(struct scenario_values, design_time);
         }
     }
-    return true;
+    memcpy(&x, &a->base, sizeof x);
+    memcpy(&y, &b->base, sizeof y);
+    resolve_keep_design_inputs(&x, sampled);
+    resolve_keep_design_inputs(&y, sampled);
+    return same_bits(&x, &y, sizeof x);
 }
 
 static bool same_cases(const struct scenario *a, const struct scenario *b)
@@ -208,16 +211,39 @@ static bool may_follow(const char *file, const struct plan *before, const struct
 {
     const struct scenario *a = before->scenario, *b = after->scenario;
     const bool equal = same_cases(a, b);
-    return (same_axes(a, b) || refuse(message, file, "the scene or the sweep")) &&
-           (a->answers == b->answers || refuse(message, file, "which answers are stored")) &&
+    return (a->answers == b->answers || refuse(message, file, "which answers are stored")) &&
            (same_record(before, after) ||
             refuse(message, file, "which trajectories are recorded, and when")) &&
            (equal || !(a->refine.given || b->refine.given) ||
             refuse(message, file, "the cases of a refined map, which follow from each other")) &&
            (equal || !(a->base.capture || b->base.capture) ||
             refuse(message, file, "cases that rest on captured sets")) &&
-           (equal || same_designs(before, after) ||
+           (equal || same_designs(a, b) ||
             refuse(message, file, "what its controller designs depend on"));
+}
+
+bool succession_check_sweep(const char *file, const struct store_origin *origin,
+                            const struct scenario *scenario, stance_message *message)
+{
+    struct scenario *old = calloc(1, sizeof *old);
+    FILE *nowhere = fopen("/dev/null", "w");
+    bool good = false;
+
+    if (!old || !nowhere) {
+        snprintf(message->text, sizeof message->text, "not enough memory");
+    } else if (!scenario_read(old, file, origin->scenario, NULL, 0, nowhere)) {
+        refuse(message, file, "a scenario that this version cannot read");
+    } else {
+        good = (same_sample(old, scenario) ||
+                refuse(message, file, "sweep.sample or the seed of its points")) &&
+               (same_axes(old, scenario) || refuse(message, file, "the scene or the sweep"));
+        scenario_free(old);
+    }
+    if (nowhere) {
+        fclose(nowhere);
+    }
+    free(old);
+    return good;
 }
 
 /* ---- the successor -------------------------------------------------------------------------- */
@@ -241,26 +267,38 @@ static bool system_failed(const struct making *making, const char *what)
 /* Copies the rows that verify, some at a time. */
 static bool copy_rows(const struct making *making, struct store *from, struct store *to)
 {
-    for (uint64_t row = 0, n; row < making->plan->rows; row += n) {
-        n = making->plan->rows - row < STORE_ROWS ? making->plan->rows - row : STORE_ROWS;
+    const struct plan *plan = making->plan;
+    struct store_copied copied = {0};
+    uint64_t target[STORE_ROWS];
+    bool good = true;
+
+    for (uint64_t row = 0, n; good && row < plan->rows; row += n) {
+        n = plan->rows - row < STORE_ROWS ? plan->rows - row : STORE_ROWS;
         const struct rows rows = {.count = n, .first = row};
-        if (making->plan->stop && making->plan->stop(making->plan->stop_context)) {
+        for (uint64_t i = 0; i < n; i++) {
+            target[i] = row + i;
+        }
+        if (plan->stop && plan->stop(plan->stop_context)) {
             making->message->text[0] = '\0';
             return false;
         }
-        if (!store_hand_down(from, to, &rows, &making->counts->kept, &making->counts->damaged,
-                             making->message)) {
-            return false;
-        }
+        good = store_copy(from, &rows, to, target, &copied, making->message);
     }
-    return true;
+    *making->counts = (struct succession_counts){copied.copied, copied.damaged, false};
+    return good;
 }
 
 /* To the disk, then under the old one's name. */
 static bool take_place(const struct making *making)
 {
     char directory[PATH_MAX];
+    struct stat before;
     int descriptor = open(making->made, O_RDWR | O_CLOEXEC);
+    /* Whoever may write the old file may write this one, as far as the system lets us see to it. */
+    if (descriptor >= 0 && stat(making->real, &before) == 0 &&
+        fchown(descriptor, before.st_uid, before.st_gid) == 0) {
+        (void)fchmod(descriptor, before.st_mode & 0777);
+    }
     if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0) {
         return system_failed(making, "bring its successor to the disk");
     }

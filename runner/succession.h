@@ -20,10 +20,14 @@ void succession_print_difference(FILE *to, const char *before, const char *after
 /* Number of lines that are in one of the texts only. */
 size_t succession_count_differences(const char *before, const char *after);
 
-/* On rank 0, with the lock: puts the successor in the place of `file`, whose origin is given; the
- * scenario is the plan's. Reads the plan's designs from the file, and sets plan->ancestors. False
- * with the reason in *message, which is empty where `plan->stop` said to stop; then the file is as
- * it was. */
+/* Whether a scenario, whose axes are still its own and not the file's, has the axes and the sample
+ * of a file's: false with the reason in *message. */
+bool succession_check_sweep(const char *file, const struct store_origin *origin,
+                            const struct scenario *scenario, stance_message *message);
+/* On rank 0, with the lock, after that: puts the successor in the place of `file`, whose origin is
+ * given; the scenario is the plan's. Reads the plan's designs from the file, and sets
+ * plan->ancestors. False with the reason in *message, which is empty where `plan->stop` said to
+ * stop; then the file is as it was. */
 struct succession_counts { /* rows that were copied; that did not verify and are pending again */
     uint64_t kept, damaged;
     bool refused; /* this scenario cannot follow that one */

@@ -124,6 +124,29 @@ expect "one file" 2 "$stance" merge bad.h5 f0.1.h5
 [ ! -e bad.h5 ] && [ ! -e bad.h5.merging ]
 result $? "nothing is left of what was refused"
 
+# Another version may have drawn other points for the same scenario.
+sample='sweep={sample: {method: random, count: 8, vary: [{path: ground.friction, from: 0.2, to: 1}]}}'
+for half in drawn1 drawn2; do
+    "$stance" run map.yaml --quiet --set "$sample" --set record.cases=none -o $half.h5 >>log 2>&1
+done
+PYTHONPATH=$tests "$python" - >>log 2>&1 <<'END'
+import h5py, numpy, results_tools
+with h5py.File("drawn2.h5", "r+") as file:
+    points = file["ground.friction"]
+    points[3] *= 1.01
+    data = b"ground.friction\0" + points[...].tobytes()
+    points.attrs.modify("checksum", results_tools.crc32c(numpy.frombuffer(data, numpy.uint8).reshape(1, -1)))
+END
+expect "other points of the same scenario" 2 "$stance" merge bad.h5 drawn1.h5 drawn2.h5
+says "... are refused" '^stance merge: drawn2.h5: its points along sample are not those of drawn1.h5$'
+refine='sweep.refine={start: 8, probes: 0}'
+"$stance" run map.yaml --quiet --set "$starts" --set "$refine" --set record.cases=none -o low.h5 \
+    --set 'sweep.grid[0].to=-0.04' --set 'sweep.grid[0].count=20' >>log 2>&1
+"$stance" run map.yaml --quiet --set "$starts" --set "$refine" --set record.cases=none -o high.h5 \
+    --set 'sweep.grid[0].from=-0.03' --set 'sweep.grid[0].count=20' >>log 2>&1
+expect "refined maps are merged" 0 "$stance" merge refined.h5 low.h5 high.h5
+says "... with a word about what was simulated" 'the parts were refined each for itself'
+
 for f in 0.2 0.4; do
     "$stance" run map.yaml --quiet --set "$starts" --set ground.friction=$f -o "noise$f.h5" \
         --set controller.noise=0.1 --set record.cases=none >>log 2>&1

@@ -178,6 +178,11 @@ for _ in $(seq 200); do
 done
 expect "a lock that was removed is there again" 3 "$stance" run long.yaml -o seen.h5 --resume
 says "... and holds" 'another process is writing it'
+ln -s seen.h5 link.h5
+expect "... also against who comes through a link" 3 "$stance" run long.yaml -o link.h5 --resume
+says "... says so" 'seen.h5: another process is writing it'
+expect "status through the link" 0 "$stance" status link.h5
+says "... sees the job" '^link.h5: .*; running on 2 ranks'
 kill -USR1 "$job"
 cp log said
 ends "... and the job runs on" 4
@@ -310,6 +315,50 @@ for change in 'sweep.grid[0].count=61' 'record={answers: [outcome]}' 'controller
         -o changed.h5 --resume --force-scenario
     says "... in one line" '^stance run: changed.h5: --force-scenario cannot change '
 done
+cat >drawn.yaml <<END
+stance: 1
+scene: block
+initial: {state: {x: 0}}
+method: {name: capturing, step: 0.01}
+stop: {time: 0.1}
+sweep:
+  grid:
+    - {path: ground.friction, from: 0.1, to: 1, spacing: log, count: 4}
+  sample:
+    method: random
+    count: 10
+    vary: [{path: robot.slope, from: 0, to: 0.6}]
+END
+expect "a sample and a logarithmic axis" 0 "$stance" run drawn.yaml -o drawn.h5 --quiet
+cp drawn.h5 drawn-before.h5
+# Their values are in the file: nobody must take these for the new scenario's own.
+for change in seed=2 'sweep.sample.vary[0].to=0.5' sweep.sample.method=sobol 'sweep.grid[0].from=0.01'; do
+    expect "what does not fit is refused: $change" 2 "$stance" run drawn.yaml --set "$change" \
+        -o drawn.h5 --resume --force-scenario
+    says "... in one line" '^stance run: drawn.h5: --force-scenario cannot change '
+done
+cmp -s drawn.h5 drawn-before.h5
+result $? "... and the file stays"
+# One case of many has a design that changes.
+cat >words.yaml <<END
+stance: 1
+scene: biped
+ground: {contacts: [foot1]}
+initial: {equilibrium: {theta: -0.41, q2: 0.82}}
+controller: {kind: state-feedback, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
+             weights: {states: [1, 1, 1, 1, 1, 1], torques: [1, 1]}}
+method: {name: midpoint, step: 0.01}
+stop: {time: 0.1}
+sweep:
+  sample:
+    method: random
+    count: 40
+    vary: [{path: controller.design, values: [$(printf 'place, %.0s' {1..19}) lqr]}]
+END
+expect "many designs" 0 "$stance" run words.yaml -o words.h5 --quiet
+expect "a change in a few of them is refused" 2 "$stance" run words.yaml -o words.h5 --resume \
+    --force-scenario --set 'controller.weights.torques=[9, 9]'
+says "... in one line" '^stance run: words.h5: --force-scenario cannot change what its controller designs depend on'
 cmp -s changed.h5 before.h5
 result $? "... and the file stays"
 "$python" "$tests/results_tools.py" damage changed.h5 4
