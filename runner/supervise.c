@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -68,28 +69,30 @@ static void work_and_exit(int (*work)(void *context), void *context, int message
     _exit(code);
 }
 
-static void pass_on(int messages)
+static void pass_on(FILE *messages)
 {
-    char buffer[4096];
-    ssize_t n;
-    if (messages < 0 || lseek(messages, 0, SEEK_SET) != 0) {
-        return;
+    char *line = NULL;
+    size_t size = 0;
+    rewind(messages);
+    while (getline(&line, &size, messages) > 0) {
+        if (supervise_own_line(line)) {
+            fputs(line, stderr);
+        }
     }
-    while ((n = read(messages, buffer, sizeof buffer)) > 0) {
-        fwrite(buffer, 1, (size_t)n, stderr);
-    }
+    free(line);
 }
 
 int supervise(int (*work)(void *context), void *context, const char *files)
 {
-    int status = 0, messages = memfd_create("messages", MFD_CLOEXEC);
+    int status = 0, descriptor = memfd_create("messages", MFD_CLOEXEC);
+    FILE *messages = descriptor < 0 ? NULL : fdopen(descriptor, "r");
     pid_t parent = getpid();
 
     fflush(stdout);
     fflush(stderr);
     pid_t child = fork();
     if (child == 0) {
-        work_and_exit(work, context, messages, parent);
+        work_and_exit(work, context, messages ? descriptor : -1, parent);
     }
     if (child < 0) {
         fprintf(stderr, "stance: no process can be started: %s\n", strerror(errno));
@@ -100,11 +103,11 @@ int supervise(int (*work)(void *context), void *context, const char *files)
     bool crashed = child > 0 && WIFSIGNALED(status) && is_crash(WTERMSIG(status));
     if (crashed) {
         fprintf(stderr, "%s: damaged: the HDF5 library cannot cope with it\n", files);
-    } else {
+    } else if (messages) {
         pass_on(messages);
     }
-    if (messages >= 0) {
-        close(messages);
+    if (messages) {
+        fclose(messages);
     }
     if (child < 0 || crashed) {
         return EXIT_IO;

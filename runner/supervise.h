@@ -6,14 +6,23 @@
 #define STANCE_RUNNER_SUPERVISE_H
 
 #include <stdbool.h>
+#include <string.h>
 
 /* Runs work(context), which returns an exit code, in a child process, and returns that code. A
  * child that crashes gives exit code EXIT_IO and the one line "FILES: damaged: ..."; `files` names
- * what it reads. What it writes to standard error comes out when it ends. */
+ * what it reads. What it writes to standard error comes out when it ends, line by line where
+ * supervise_own_line. */
 int supervise(int (*work)(void *context), void *context, const char *files);
 
 /* Begins and ends a part that takes a few seconds of computing at the most; a supervised process
  * that takes far more is ended as if it had crashed. */
 void supervise_limit(bool begin);
+
+/* Whether a line is this program's: HDF5 prints some remarks by itself ("H5HF_op: Heap ID type not
+ * supported yet!"), and the error that follows them is enough. */
+static inline bool supervise_own_line(const char *line)
+{
+    return strncmp(line, "H5", 2) != 0;
+}
 
 #endif

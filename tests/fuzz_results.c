@@ -20,6 +20,7 @@
 #include "../runner/command.h"
 #include "../runner/plan.h"
 #include "../runner/store.h"
+#include "../runner/supervise.h"
 #include "damage.h"
 
 #include <dlfcn.h>
@@ -190,7 +191,8 @@ static unsigned lines_said(char *first, size_t size)
         end = line + strcspn(line, "\n");
         end += *end == '\n';
         /* nor warnings, which may stand before what there is to say */
-        if (strncmp(line, "==", 2) != 0 && strncmp(line, "stance: warning:", 16) != 0) {
+        if (supervise_own_line(line) && strncmp(line, "==", 2) != 0 &&
+            strncmp(line, "stance: warning:", 16) != 0) {
             if (lines++ == 0) {
                 snprintf(first, size, "%.*s", (int)(end - line), line);
             }
