@@ -568,6 +568,7 @@ static bool draw_share_page(const struct plot *plot, const struct plot_axis *alo
              along->axis->name, second < 0 ? "" : " and ", second < 0 ? "" : r->axis[second].name,
              (unsigned long long)(r->cases / (values ? values : 1)),
              second < 0 ? "value" : "pair of values");
+    plot_failed_text(r, what, sizeof what);
     if (!begin_page(&page, what, SHARE_HEIGHT + extent_count * (EXTENT_HEIGHT + GAP), message)) {
         return false;
     }
