@@ -160,6 +160,7 @@ assert d["end_time"]["differing"] == 0 and d["end_time"]["largest_at"]["index"] 
 result $? "... with its keys"
 expect "a tolerance that is none" 2 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6x
 expect "a variable that is none" 2 "$stance" compare whole.h5 moved.h5 --tolerance end=1
+expect "words have no tolerance" 2 "$stance" compare whole.h5 moved.h5 --tolerance outcome=1
 
 # ---- tables ----------------------------------------------------------------------------------
 expect "every case as CSV" 0 "$stance" table whole.h5
@@ -324,6 +325,10 @@ expect "pictures of rays" 0 "$stance" plot rays.h5
 says "... show the curve" '^rays-rays.png$'
 expect "--by has no meaning for rays" 2 "$stance" basin rays.h5 --by ground.friction
 expect "pictures of basins" 0 "$stance" plot whole.h5
+expect "what a refined map has inferred" 0 "$stance" table rays.h5 --answer evidence --answer steps
+"$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
+assert {(r["evidence"], bool(r["steps"])) for r in rows} == {("inferred", False), ("simulated", True)}' >>log 2>&1
+result $? "... has no numbers"
 expect "rays as a table" 0 "$stance" table rays.h5 --answer outcome --of fell
 "$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
 assert list(rows[0])[1:6] == ["ground.friction", "initial.offset.scale", "sample", "initial.offset.theta", "initial.offset.vtheta"]' >>log 2>&1
