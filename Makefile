@@ -22,7 +22,10 @@ PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev libla
                 fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
 PACKAGES_LINT = clang-format clang-tidy cppcheck
+PACKAGES_FUZZ = clang libclang-rt-dev
 PACKAGES_NEON = gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
+PACKAGES_SLURM = munge slurmctld slurmd slurm-client
+PACKAGES_HOSTS = iproute2
 PACKAGES_BENCH = libmujoco-dev valgrind linux-perf
 BUILD_TOOLS   = gcc make pkg-config
 
@@ -86,7 +89,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills bench bench-run profile lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills test-slurm test-hosts fuzz fuzz-programs bench bench-run profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(BUILD)/libstance.a
@@ -144,6 +147,12 @@ $(BUILD)/tests/lanes_fma-%.o: tests/lanes_fma.c Makefile
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(isa_flags_$*) -DSTANCE_ISA=$* -MMD -MP -c -o $@ $<
 $(BUILD)/tests/test_fma: $(fused_objects) $(BUILD)/kernels
+# What fuzzing calls, here with what it found.
+$(BUILD)/tests/fuzz_scenario.o: tests/fuzz_scenario.c Makefile
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
+$(BUILD)/tests/test_fuzz: $(BUILD)/tests/fuzz_scenario.o
+$(BUILD)/tests/test_fuzz: test_objects = $(BUILD)/tests/fuzz_scenario.o
 $(BUILD)/tests/test_fma: test_objects = $(fused_objects)
 
 # Hashes of what the kernels compute, by a program of the engine alone that other machines run too.
@@ -174,7 +183,8 @@ $(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(BUILD)/libstance.a
 # What Open MPI wants in a container, as root, on few cores.
 MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
                   OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
-TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(abspath $(PROGRAM))
+TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(abspath $(PROGRAM)) \
+                   FUZZ_SECONDS=$(FUZZ_SECONDS) FUZZ_RUNS=$(FUZZ_RUNS)
 
 # ARM's kernels against this machine's, in an emulator. `check` does so where the packages are, with
 # kernels that are quicker to compile.
@@ -184,10 +194,10 @@ test-neon: packages-neon
 
 test: packages-test
 	$(MAKE) check
-check: $(PROGRAM) $(test_programs) golden
+check: $(PROGRAM) $(test_programs) golden fuzz-programs
 	@$(TEST_ENVIRONMENT) bash tests/run.sh
 test-long: packages-test
-	$(MAKE) $(PROGRAM) $(test_programs) golden
+	$(MAKE) $(PROGRAM) $(test_programs) golden fuzz-programs
 	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
 # Runs that are killed and resumed, files that are damaged: tests/campaign_*.py. Ten minutes or so.
@@ -200,10 +210,46 @@ test-kills: packages-test
 	@$(TEST_ENVIRONMENT) $(PYTHON) tests/campaign_kills.py --seed $(SEED) --kills $(KILLS)
 	@$(TEST_ENVIRONMENT) $(PYTHON) tests/campaign_damage.py --seed $(SEED) --flips $(FLIPS) --truncations $(TRUNCATIONS)
 
+# Batch scripts under a Slurm of the test's own; a run on several hosts, one cut off. As root.
+test-slurm test-hosts: test-%: packages-%
+	$(MAKE) $(PROGRAM)
+	@$(TEST_ENVIRONMENT) bash tests/$*.sh
+
+# ---- fuzzing: clang's libFuzzer and sanitizers, see tests/whole_fuzz.sh ---------------------------
+# Everything but the kernels, which come from the library as it is: nothing is simulated.
+FUZZ_CC      ?= clang
+FUZZ_SECONDS ?= 55
+FUZZ          = $(BUILD)/fuzz
+FUZZ_CFLAGS   = -O1 -g1 -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined \
+                -fsanitize-coverage=inline-8bit-counters,pc-table $(FUZZ_COVERAGE) -Wno-bitwise-instead-of-logical \
+                '-DCMPLX(a,b)=__builtin_complex((double)(a),(double)(b))'
+fuzz_sources := $(filter-out runner/main.c,$(program_sources)) $(filter-out engine/kernels.c,$(engine_sources))
+fuzz_objects := $(fuzz_sources:%.c=$(FUZZ)/%.o)
+# The sanitizers as a library, so that a crash tells their functions from ours; none: no fuzzing.
+fuzz_library := $(filter /%,$(shell $(FUZZ_CC) -print-file-name=libclang_rt.asan-$(MACHINE).so 2>/dev/null))
+fuzz_programs = $(if $(fuzz_library),$(FUZZ)/fuzz_scenario $(FUZZ)/fuzz_results)
+
+$(FUZZ)/%.o: %.c Makefile
+	@mkdir -p $(@D)
+	$(call QUIET,fuzz,$@)$(FUZZ_CC) $(STRICT) $(WARNINGS) $(FUZZ_CFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
+$(FUZZ)/runner/build_info.o: EXTRA = $(BUILD_INFO)
+$(FUZZ)/fuzz_scenario: $(FUZZ)/tests/fuzz_scenario.o $(FUZZ)/tests/fuzz_mutate.o $(fuzz_objects) $(BUILD)/libstance.a
+	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined,fuzzer $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
+$(FUZZ)/fuzz_results: $(FUZZ)/tests/fuzz_results.o $(FUZZ)/tests/damage.o $(fuzz_objects) $(BUILD)/libstance.a
+	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined -shared-libasan -Wl,-rpath,$(dir $(fuzz_library)) \
+	    $(foreach f,supervise supervise_limit gnuplot_end,-Wl,--wrap=$(f)) $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
+
+# A longer campaign: FUZZ_SECONDS=3600, or FUZZ_RUNS=1000000; `test` runs a share, too.
+fuzz: packages-test
+	$(MAKE) $(PROGRAM) fuzz-programs
+	@$(TEST_ENVIRONMENT) bash tests/run.sh whole_fuzz
+fuzz-programs: $(fuzz_programs)
+
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
-packages packages-test packages-neon packages-bench: packages%:
-	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT)) \
+packages packages-test packages-neon packages-slurm packages-hosts packages-bench: packages%:
+	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT) $(PACKAGES_FUZZ)) \
+	    $(if $(filter -slurm,$*),$(PACKAGES_SLURM) python3-h5py) $(if $(filter -hosts,$*),$(PACKAGES_HOSTS) python3-h5py) \
 	    $(if $(filter -neon,$*),$(PACKAGES_NEON)) $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
 	missing=; for p in $$need; do \
 	    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
@@ -236,11 +282,11 @@ lint: packages-test
 
 sanitize:
 	STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g' \
-	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' check
+	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' FUZZ_CC=none check
 
 install: bin/stance
 	install -D -m 755 bin/stance $(DESTDIR)$(PREFIX)/bin/stance
-	for f in scenarios/*.yaml scenarios/*/*.yaml; do install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/stance/$$f; done
+	for f in scenarios/*.yaml scenarios/*/*.yaml scenarios/*/*.sh; do install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/stance/$$f; done
 
 clean:
 	rm -rf build bin
@@ -252,9 +298,12 @@ help:
 	@echo 'make test-long  the same with the long tests'
 	@echo 'make test-kills kill runs at random, damage files at random (KILLS= FLIPS= TRUNCATIONS= SEED=)'
 	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'
+	@echo 'make test-slurm install Slurm, run the batch scripts of scenarios/cluster under one of its own'
+	@echo 'make test-hosts run on three hosts (network namespaces), one of them cut off in mid-run'
 	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
 	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
 	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'
+	@echo 'make fuzz       damaged scenarios and results files, FUZZ_SECONDS=55 long or FUZZ_RUNS= many'
 	@echo 'make install    PREFIX=/usr/local DESTDIR='
 	@echo 'make MPI=0      a build for one rank, with serial HDF5 and without MPI'

@@ -350,7 +350,7 @@ static bool place_points(struct merge *m, struct points *points, stance_message 
 /* Values `first`, `last` and their number give all of them, to the bit. */
 static bool is_range(const struct points *points, size_t count)
 {
-    if (!points->numbers || count < 3 || !points->point) {
+    if (!points->numbers || count < 3) {
         return false;
     }
     const double from = points->point[0].number, to = points->point[count - 1].number;
@@ -367,7 +367,7 @@ static char *axis_setting(const struct merge *m, const struct points *points, in
 {
     char *text = NULL;
     size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = points->point ? open_memstream(&text, &size) : NULL;
     if (!out) {
         return NULL;
     }

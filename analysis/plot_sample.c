@@ -256,8 +256,9 @@ static bool put_scatter(struct page *page, stance_message *message)
 
 static void panel_place(const struct page *page, int k, double *x, double *y)
 {
-    *x = LEFT - 20 + k % COLUMNS * ACROSS;
-    *y = page->top + SCATTER_HEIGHT + LABELS + 40 + (double)(k / COLUMNS) * DOWN;
+    const int row = k / COLUMNS, column = k % COLUMNS;
+    *x = LEFT - 20 + column * ACROSS;
+    *y = page->top + SCATTER_HEIGHT + LABELS + 40 + row * DOWN;
 }
 
 /* Share of the kind judged by in each bin, with its interval, against the bin's median. */

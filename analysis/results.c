@@ -149,6 +149,9 @@ H5T_class_t results_class(hid_t dataset)
 {
     hid_t type = H5Dget_type(dataset);
     H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
+    if (class != H5T_STRING && H5Tget_size(type) > sizeof(double)) {
+        class = H5T_NO_CLASS;
+    }
     H5Tclose(type);
     return class;
 }
@@ -332,7 +335,7 @@ static bool read_axes(struct results *r, stance_message *message)
     if (!good) {
         return false;
     }
-    if (!good || !results_read_sample(r, message)) {
+    if (!results_read_sample(r, message)) {
         return false;
     }
     r->single = r->axes == 1 && strcmp(r->axis[0].name, "case") == 0 && r->axis[0].count == 1;

@@ -90,8 +90,11 @@ bool results_read_sample(struct results *r, stance_message *message)
     results_copy_attribute(dataset, "method", r->method, sizeof r->method);
     H5Dclose(dataset);
     r->vary = calloc(MOST, sizeof *r->vary);
-    bool good = (paths || results_damaged(r, "it does not say what its sample varies", message)) &&
-                (r->vary || results_no_memory(r, message));
+    if (!r->vary) {
+        free(paths);
+        return results_no_memory(r, message);
+    }
+    bool good = paths || results_damaged(r, "it does not say what its sample varies", message);
     r->sample = good ? last : -1;
     while (good && rest) { /* "a;b,c": two factors, the second of two paths */
         const size_t end = strcspn(rest, ",;");

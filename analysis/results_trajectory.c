@@ -42,13 +42,16 @@ static bool read_track(const struct results *r, const char *path, size_t place, 
 {
     hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
     int rank;
-    hid_t dataset = width ? results_dataset(r, path, &rank, length) : -1;
-    if (dataset < 0) {
+    if (width == 0 || !results_exists((hid_t)r->id, path)) {
         return true;
+    }
+    hid_t dataset = results_dataset(r, path, &rank, length);
+    if (dataset < 0) {
+        return results_failed(r, path, message);
     }
     size_t n =
         rank >= 3 && length[1] == rows && place < length[0] ? results_elements(r, rank, length) : 0;
-    bool good = n > 0 && n / length[0] == rows * width && results_is_number(dataset);
+    bool good = rows > 0 && n > 0 && n / length[0] == rows * width && results_is_number(dataset);
     if (!good) {
         H5Dclose(dataset);
         return results_damaged(r, "a trajectory is not as its dimensions say", message);
@@ -118,7 +121,8 @@ static bool is_whole(const struct results *r, const struct results_trajectory *t
             crc = checksum_crc32c(crc, part[k].values, rows * part[k].width * sizeof(double));
         }
     }
-    return !store_trajectory_checksum(r->id, place, &expected) || crc == expected;
+    return !results_exists((hid_t)r->id, "trajectory/checksum") ||
+           (store_trajectory_checksum(r->id, place, &expected) && crc == expected);
 }
 
 bool results_trajectory(const struct results *r, size_t place, uint64_t index,

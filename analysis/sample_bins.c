@@ -42,6 +42,7 @@ bool sample_bins_make(struct sample_bins *bins, const struct results *r, int k, 
     struct statistics_counts *counts = malloc(n * sizeof *counts);
 
     *bins = (struct sample_bins){0};
+    most = most < 2 ? 2 : most;
     if (!place || !counts) {
         free(place);
         free(counts);

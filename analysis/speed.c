@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum column {
     SUBJECT,
@@ -35,19 +36,38 @@ static const char *const names[COLUMNS] = {
     "step_s",  "cases",    "repeats",  "quantity", "unit",      "median",  "lowest",
     "highest", "revision", "compiler", "flags",    "processor", "machine", "date"};
 
+enum { MOST_BYTES = 1 << 24 };
+
+/* Why the file cannot be read into memory; NULL: it can, and has *size bytes. */
+static const char *refuse(const char *path, size_t *size)
+{
+    struct stat information;
+    if (stat(path, &information) != 0) {
+        return strerror(errno);
+    }
+    if (!S_ISREG(information.st_mode)) {
+        return S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file";
+    }
+    *size = (size_t)information.st_size;
+    return information.st_size > MOST_BYTES
+               ? "larger than 16 MiB, the most a table of benchmarks may take"
+               : NULL;
+}
+
 static char *read_text(const char *path, stance_message *message)
 {
-    errno = 0;
-    FILE *file = fopen(path, "r");
-    char *text = NULL;
-    long size = -1;
-    if (file && fseek(file, 0, SEEK_END) == 0 && (size = ftell(file)) >= 0 &&
-        fseek(file, 0, SEEK_SET) == 0 && (text = malloc((size_t)size + 1)) != NULL &&
-        fread(text, 1, (size_t)size, file) == (size_t)size) {
+    size_t size = 0;
+    const char *wrong = refuse(path, &size);
+    FILE *file = wrong ? NULL : fopen(path, "rb");
+    char *text = file ? malloc(size + 1) : NULL;
+
+    if (text && fread(text, 1, size, file) == size) {
         text[size] = '\0';
     } else {
         snprintf(message->text, sizeof message->text, "%.150s: %s", path,
-                 errno ? strerror(errno) : "cannot be read");
+                 wrong   ? wrong
+                 : !file ? strerror(errno)
+                         : "cannot be read");
         free(text);
         text = NULL;
     }

@@ -157,12 +157,10 @@ static bool collect_rays(struct summary *summary, const struct results *r, stanc
         struct statistics_extent extent;
         point[r->sample] = i;
         end[i] = NAN;
-        if (!statistics_extent(r, axis, point, &extent)) {
-            summary->rays->unknown++;
-        } else if (!extent.any) {
-            summary->rays->none += !extent.low_unknown;
-            summary->rays->unknown += extent.low_unknown;
-        } else if (extent.high_unknown) {
+        const bool found = statistics_extent(r, axis, point, &extent);
+        if (found && !extent.any && !extent.low_unknown) {
+            summary->rays->none++;
+        } else if (!found || !extent.any || extent.high_unknown) {
             summary->rays->unknown++;
         } else {
             end[i] = extent.high;

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { MAX_SETS = 64 };
 
@@ -122,6 +123,8 @@ static int run(int argc, char **argv)
     if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
         code = design(s, json > 0);
         scenario_free(s);
+    } else if (access(file, R_OK) != 0) {
+        code = EXIT_IO;
     }
     free(s);
     return code;

@@ -101,7 +101,7 @@ bool field_unknown(struct problems *problems, const char *name, const char *what
                    struct mark mark, const char *const *known, size_t count)
 {
     char wrong[SHOWN_SIZE], list[500], hint[2 * SHOWN_SIZE] = "";
-    const char *near = nearest_word(word, known, count);
+    const char *near = problems_full(problems) ? NULL : nearest_word(word, known, count);
 
     if (near) {
         snprintf(hint, sizeof hint, "; did you mean '%.96s'?", near);

@@ -25,6 +25,9 @@ struct parallel {
 struct parallel parallel_alone(void);
 /* Starts MPI, once in a process, when a launcher (mpirun, srun) started it; else one rank. */
 struct parallel parallel_start(void);
+/* Whether srun started this process as one of several (*first: the first of them) without the MPI
+ * that would make them ranks. */
+bool parallel_misses_launcher(bool *first);
 /* Ends MPI; every rank must come here. */
 void parallel_finish(struct parallel *parallel);
 

@@ -20,6 +20,8 @@ enum {
     COST_STEPS = 500, /* length of the beginnings tried first */
 };
 static const double trace_interval = 0.01;
+static const double most_instants = 1e8;    /* in one trajectory */
+static const double most_recorded = 0x1p48; /* in all of them: the file's size is a 64-bit number */
 
 double plan_clock(void)
 {
@@ -45,16 +47,19 @@ static double largest_value(const struct scenario *s, size_t offset)
             if (s->axis[a].offset[k] != offset) {
                 continue;
             }
-            largest = -INFINITY;
-            for (size_t i = 0; i < s->axis[a].count; i++) {
-                largest = fmax(largest, scenario_axis_value(&s->axis[a], i, k));
+            const struct scenario_axis *axis = &s->axis[a];
+            largest = fmax(axis->from, axis->to); /* a range, of any number of points */
+            for (size_t i = 0; axis->value && i < axis->count; i++) {
+                const double value = scenario_axis_value(axis, i, k);
+                largest = i == 0 ? value : fmax(largest, value);
             }
         }
     }
     return largest;
 }
 
-static void plan_trajectories(struct plan *plan, bool trace)
+/* false: more instants than can be. */
+static bool plan_trajectories(struct plan *plan, bool trace, struct plan_error *error)
 {
     const struct scenario *s = plan->scenario;
     double stop = largest_value(s, offsetof(struct scenario_values, stop_time));
@@ -64,7 +69,7 @@ static void plan_trajectories(struct plan *plan, bool trace)
         scenario_case_values(s, plan->single_case, &values);
         stop = values.stop_time;
         if (!trace) {
-            return;
+            return true;
         }
         plan->record_interval = s->record_every;
         if (plan->record_interval <= 0) {
@@ -73,13 +78,26 @@ static void plan_trajectories(struct plan *plan, bool trace)
         plan->record_cases = 1;
     } else {
         if (s->record_cases == RECORD_NONE || s->record_every <= 0) {
-            return;
+            return true;
         }
         plan->record_interval = s->record_every;
         plan->record_cases = s->record_cases == RECORD_ALL ? s->cases : s->record_count;
     }
     /* A run counts whole steps and may end a hair before its last instant. */
-    plan->record_rows = (int64_t)floor(stop / plan->record_interval + 1e-6) + 1;
+    const double rows = floor(stop / plan->record_interval + 1e-6) + 1;
+    const double cases = (double)plan->record_cases;
+    if (rows > most_instants || rows * cases > most_recorded) {
+        snprintf(
+            error->message.text, sizeof error->message.text,
+            "record.every: %.6g s makes %.6g instants in %.6g trajector%s; at most %.3g in one "
+            "and %.3g in all are recorded",
+            plan->record_interval, rows, cases, plan->record_cases == 1 ? "y" : "ies",
+            most_instants, most_recorded);
+        scenario_place(s, error->message.text, &error->line, &error->column);
+        return false;
+    }
+    plan->record_rows = (int64_t)rows;
+    return true;
 }
 
 static bool method_runs(const struct scenario *s, int method, struct plan_error *error)
@@ -138,7 +156,9 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
         }
         plan->designs *= axis->design ? axis->count : 1;
     }
-    plan_trajectories(plan, trace);
+    if (!plan_trajectories(plan, trace, error)) {
+        return false;
+    }
     plan->design = calloc(plan->designs, sizeof *plan->design);
     plan->design_status = calloc(plan->designs, sizeof *plan->design_status);
     if (!plan->design || !plan->design_status) {

@@ -12,7 +12,7 @@ static bool same_place(struct mark a, struct mark b)
 
 void problem_add(struct problems *problems, struct mark mark, const char *format, ...)
 {
-    if (problems->count >= PROBLEMS_KEPT) {
+    if (problems_full(problems)) {
         problems->lost++;
         return;
     }

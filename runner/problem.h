@@ -34,6 +34,12 @@ struct problems {
 void problem_add(struct problems *problems, struct mark mark, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* No more is kept: hints, which take time to find, need not be looked for. */
+static inline bool problems_full(const struct problems *problems)
+{
+    return problems->count >= PROBLEMS_KEPT;
+}
+
 /* Sorts and prints: those of the file by position, then those of each --set (`sets`, PATH=VALUE).
  */
 void problems_print(struct problems *problems, const char *file, const char *const *sets,

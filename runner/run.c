@@ -8,6 +8,7 @@
 #include "build_info.h"
 #include "command.h"
 #include "crash.h"
+#include "deadline.h"
 #include "instruction_set.h"
 #include "report.h"
 #include "rounds.h"
@@ -75,6 +76,7 @@ static void stage_options(struct run *run)
         run_read_options(o, run->argc, run->argv);
     }
     o->help = help;
+    deadline_limit(o->time_limit - (plan_clock() - run->start));
     if (!help && !instruction_set_check(&message)) {
         snprintf(run->failure.text, sizeof run->failure.text, "stance run: %s", message.text);
         run->failure.code = EXIT_USAGE;
@@ -648,12 +650,24 @@ static int run_run(int argc, char **argv)
         fprintf(stderr, "stance run: not enough memory\n");
         return EXIT_IO;
     }
+    bool first;
+    if (parallel_misses_launcher(&first)) {
+        if (first) {
+            fprintf(stderr, "stance run: srun started several of these without an MPI that joins "
+                            "them: use mpirun, or srun --mpi=pmix\n");
+        }
+        free(run);
+        return EXIT_USAGE;
+    }
     store_prepare();
     run->argc = argc;
     run->argv = argv;
     run->start = plan_clock();
     run->lock.descriptor = -1;
     run->parallel = parallel_start();
+    if (run->parallel.size > 1) {
+        deadline_prepare(run->parallel.rank);
+    }
     crash_watch(run->parallel.rank);
     work_catch_signals();
     int code = go_through(run);

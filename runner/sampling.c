@@ -130,7 +130,7 @@ static void saltelli_unit(const struct sampling *s, uint64_t point, double *u)
 {
     const size_t k = s->factors;
     const uint64_t block = sampling_block(s), place = point % block;
-    uint64_t x[SAMPLING_MAX_FACTORS];
+    uint64_t x[SAMPLING_MAX_FACTORS] = {0};
 
     sobol_point(s, 2 * k, point / block, x);
     /* B and BA_j take after the second half but for factor j, A and AB_j after the first. */

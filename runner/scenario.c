@@ -11,10 +11,15 @@
 #include "store.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <linux/magic.h>
 #include <math.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
 
 #define DEFAULT_RECORD_EVERY 0.01 /* s */
 
@@ -22,16 +27,50 @@ enum { PATH_SIZE = 160 };
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
+/* Whether reading would wait for a writer who may never come. A pipe without a name, such as the
+ * shell's <(command), has one from the start. */
+static bool is_deserted(int descriptor)
+{
+    enum { PATIENCE = 900 }; /* ms */
+    struct pollfd waited = {.fd = descriptor, .events = POLLIN};
+    struct stat status;
+    struct statfs system;
+
+    return fstat(descriptor, &status) == 0 && S_ISFIFO(status.st_mode) &&
+           fstatfs(descriptor, &system) == 0 && system.f_type != PIPEFS_MAGIC &&
+           poll(&waited, 1, PATIENCE) == 0;
+}
+
+/* NULL: see errno. */
+static FILE *open_file(const char *file)
+{
+    int descriptor = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC), error = ETIMEDOUT;
+    FILE *in = NULL;
+
+    if (descriptor >= 0 && !is_deserted(descriptor)) {
+        fcntl(descriptor, F_SETFL, 0); /* now wait for whatever comes */
+        in = fdopen(descriptor, "rb");
+        error = errno;
+    }
+    if (descriptor >= 0 && !in) {
+        close(descriptor);
+        errno = error;
+    }
+    return in;
+}
+
 /* The whole file as a string, or NULL after a problem. */
 static char *read_file(struct reader *r, const char *file, size_t *length)
 {
     struct mark nowhere = {0};
     struct stat status;
     char *text = NULL;
-    FILE *in = fopen(file, "rb");
+    FILE *in = open_file(file);
 
     if (!in || fstat(fileno(in), &status) != 0) {
-        problem_add(&r->problems, nowhere, "%s", strerror(errno));
+        problem_add(&r->problems, nowhere, "%s",
+                    errno == ETIMEDOUT ? "a named pipe into which nothing is written"
+                                       : strerror(errno));
     } else if (S_ISDIR(status.st_mode)) {
         problem_add(&r->problems, nowhere, "is a directory, not a scenario file");
     } else if (!(text = malloc(TREE_MAX_BYTES + 2))) {
@@ -96,6 +135,10 @@ static void unknown_key(struct reader *r, const struct tree_key *key, const char
                         const char *name, const char *const *known, size_t count)
 {
     char near_path[PATH_SIZE], word[SHOWN_SIZE], list[500];
+    if (problems_full(&r->problems)) {
+        field_unknown(&r->problems, name, "key", key->name, key->mark, known, count);
+        return;
+    }
     const char *near = nearest_word(key->name, known, count);
     const struct scenario_field *other = elsewhere(&r->schema, key->name);
 
@@ -164,7 +207,7 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
         return good;
     case FIELD_INTEGER:
         good = field_integer(&r->problems, field, field->path, node, &number);
-        word = (int)number;
+        word = good ? (int)number : 0; /* what is out of range need not fit */
         break;
     case FIELD_WORD:
         good = field_word(&r->problems, field, field->path, node, &word);
@@ -232,10 +275,10 @@ static void set_defaults(struct reader *r)
     }
     for (size_t i = 0; i < r->schema.count; i++) {
         const struct scenario_field *field = &r->schema.field[i];
-        char *place = (char *)base + field->offset;
         if (field->offset == NO_OFFSET || strchr(field->path, '[')) {
             continue;
         }
+        char *place = (char *)base + field->offset;
         if (field->type == FIELD_NUMBER) {
             memcpy(place, &field->fallback, sizeof field->fallback);
         } else if (field->type == FIELD_WORD) {

@@ -6,6 +6,7 @@
 #include "seal.h"
 
 #include "checksum.h"
+#include "problem.h"
 #include "store_private.h"
 
 #include <stdio.h>
@@ -14,15 +15,19 @@
 
 /* ---- the checksum of a variable ----------------------------------------------------------- */
 
-/* Number of elements; 0 when a damaged header claims more than the file can hold. */
+/* Number of elements; 0 when a damaged header claims more than the file can hold. (Variables of
+ * ours are contiguous.) */
 static size_t count_elements(hid_t dataset)
 {
-    hid_t space = H5Dget_space(dataset), file = H5Iget_file_id(dataset);
+    hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset);
+    hid_t file = H5Iget_file_id(dataset);
     hsize_t size = 0;
     hssize_t points = space < 0 ? -1 : H5Sget_simple_extent_npoints(space);
-    bool good =
-        file >= 0 && H5Fget_filesize(file, &size) >= 0 && points > 0 && (hsize_t)points <= size;
+    const size_t width = type < 0 ? 0 : H5Tget_size(type);
+    bool good = file >= 0 && H5Fget_filesize(file, &size) >= 0 && points > 0 && width > 0 &&
+                (hsize_t)points <= size / width;
     H5Sclose(space);
+    H5Tclose(type);
     H5Fclose(file);
     return good ? (size_t)points : 0;
 }
@@ -137,8 +142,9 @@ static bool put_checksum(hid_t dataset, const char *name)
 
 static bool complain(const struct walk *walk, const char *variable, const char *what)
 {
-    snprintf(walk->message->text, sizeof walk->message->text, "%.100s: damaged: %s%s%.80s %s",
-             walk->name, walk->group, walk->group[0] ? "/" : "", variable, what);
+    char word[SHOWN_SIZE]; /* a damaged name may hold anything */
+    snprintf(walk->message->text, sizeof walk->message->text, "%.100s: damaged: %s%s%s %s",
+             walk->name, walk->group, walk->group[0] ? "/" : "", shown(word, variable), what);
     return false;
 }
 
@@ -219,6 +225,7 @@ static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void 
     H5O_info_t all;
     hid_t object = H5Oopen(group, name, H5P_DEFAULT);
     bool good = object >= 0 && H5Oget_info2(object, &all, H5O_INFO_ALL) >= 0 &&
+                (H5Iget_type(object) != H5I_DATASET || count_elements(object) > 0) &&
                 H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
     if (good && H5Iget_type(object) == H5I_DATASET) { /* netCDF's order */
         good =

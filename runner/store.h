@@ -217,7 +217,8 @@ struct store_damage {
 };
 bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage);
 
-/* The checksum that an open file has for the trajectory at a place; false: none. */
+/* The checksum that an open file has for the trajectory at a place; false: none that can be read.
+ */
 bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc);
 
 /* Counts the cases of a file, which another process may be writing. */

@@ -5,14 +5,27 @@
 #include "checksum.h"
 #include "seal.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-static hid_t open_to_read(const char *file)
+/* Files only: to open a pipe would wait for its writer. What the system says of a file that is not
+ * there, HDF5 passes on. */
+static hid_t open_to_read(const char *file, stance_message *message)
 {
+    struct stat information;
+    if (stat(file, &information) == 0 && !S_ISREG(information.st_mode)) {
+        snprintf(message->text, sizeof message->text, "%.120s: %s", file,
+                 S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file");
+        return -1;
+    }
     hid_t access = store_serial_access();
     hid_t id = H5Fopen(file, H5F_ACC_RDONLY, access);
+    if (id < 0) {
+        store_failed(message, file, "open");
+    }
     H5Pclose(access);
     return id;
 }
@@ -44,9 +57,9 @@ static bool not_resumable(const char *file, stance_message *message)
 
 bool store_check(const char *file, bool resume, stance_message *message)
 {
-    hid_t id = open_to_read(file);
+    hid_t id = open_to_read(file, message);
     if (id < 0) {
-        return store_failed(message, file, "open");
+        return false;
     }
     /* The last attribute written says that the creation came to its end. */
     char *hash = read_text(id, "scenario_sha256"), *scenario = read_text(id, "scenario");
@@ -61,9 +74,9 @@ bool store_check(const char *file, bool resume, stance_message *message)
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message)
 {
     *origin = (struct store_origin){0};
-    hid_t id = open_to_read(file);
+    hid_t id = open_to_read(file, message);
     if (id < 0) {
-        return store_failed(message, file, "open");
+        return false;
     }
     char *revision = read_text(id, "git_revision"), *date = read_text(id, "date");
     hid_t ranks = H5Aopen(id, "ranks", H5P_DEFAULT);
@@ -107,7 +120,7 @@ bool store_read_axis(const char *file, struct scenario_axis *axis, stance_messag
     if (!axis->log && !axis->sample) {
         return true;
     }
-    hid_t id = open_to_read(file);
+    hid_t id = open_to_read(file, message);
     const size_t paths = (size_t)axis->paths;
     const hsize_t length = axis->count;
     double *value = malloc(axis->count * sizeof *value);
@@ -160,9 +173,9 @@ static bool count_status(hid_t dataset, struct store_counts *counts)
 bool store_count(const char *file, struct store_counts *counts, stance_message *message)
 {
     *counts = (struct store_counts){0};
-    hid_t id = open_to_read(file);
+    hid_t id = open_to_read(file, message);
     if (id < 0) {
-        return store_failed(message, file, "open");
+        return false;
     }
     hid_t dataset = H5Dopen2(id, "status", H5P_DEFAULT);
     bool good = dataset >= 0 && count_status(dataset, counts);

@@ -77,10 +77,13 @@ bool put_fill(hid_t object, enum store_kind kind, double fill)
 
 /* ---- groups and datasets ------------------------------------------------------------------ */
 
+/* Like datasets, see make_dataset: without its checksum a flipped bit makes variables vanish. */
 hid_t make_group(hid_t parent, const char *name)
 {
     hid_t properties = H5Pcreate(H5P_GROUP_CREATE), group = -1;
     if (H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
+            0 &&
+        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
             0 &&
         H5Pset_obj_track_times(properties, false) >= 0) {
         group = H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT);

@@ -13,6 +13,7 @@
 #include "work.h"
 
 #include "crash.h"
+#include "deadline.h"
 #include "instruction_set.h"
 
 #include <inttypes.h>
@@ -35,6 +36,7 @@ static void ask_stop(int number)
 {
     (void)number;
     stop_asked = 1;
+    deadline_begin();
 }
 
 void work_catch_signals(void)
@@ -272,6 +274,14 @@ static void write_ended(struct job *job, double now)
             const double end = plan_clock();
             block->write_at = end + schedule_write_interval(job->work->parallel->size, end - start);
         }
+    }
+}
+
+/* All that has ended. */
+static void write_open(struct job *job)
+{
+    for (struct block *block = job->oldest; block; block = block->next) {
+        write_block(job, block, 1);
     }
 }
 
@@ -587,6 +597,7 @@ static bool attend(void *context)
         return true;
     }
     if (asked_to_stop(work, now)) {
+        write_open(job); /* before others are told: rank 0 may not answer */
         parallel_add(work->parallel, COUNTER_STOP, 1);
         job->leaving = job->told = true;
         return true;
@@ -705,8 +716,9 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
         job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
     }
     run_streams(&job);
-    for (struct block *block = job.oldest; block; block = block->next) {
-        write_block(&job, block, 1);
+    write_open(&job);
+    if (job.leaving) {
+        deadline_begin();
     }
     report(&job);
     work->seconds += plan_clock() - start - job.checking;

@@ -1,12 +1,15 @@
 # shellcheck shell=bash disable=SC2154
 # What tests of the whole program share: commands with the exit codes and lines that they must give.
-# Sourced in a scratch folder by a script that sets count=0, patience (s), python and tests.
+# Sourced in a scratch folder by a script that sets count=0, patience (s), python and tests; failed
+# counts what was not ok.
+failed=0
 
 result() { # status, name
     count=$((count + 1))
     if (($1 == 0)); then
         echo "ok $count - $2"
     else
+        failed=$((failed + 1))
         echo "not ok $count - $2"
         sed 's/^/# /' log 2>/dev/null | tail -n 20
     fi

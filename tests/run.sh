@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Runs every test program and whole-program test; each speaks TAP. Ends with "N passed, N failed".
+# Lines of a test that begin with ## are shown.
 # Usage: tests/run.sh [PATTERN]  (only tests whose name contains PATTERN)
 set -u
 cd "$(dirname "$0")/.."
@@ -21,6 +22,7 @@ run() { # name, command ...
     # A program that dies, or that tests nothing, has failed whatever it printed.
     if ((status != 0 && bad == 0)) || ((ok + bad == 0)); then bad=$((bad + 1)); fi
     printf '%-28s %4d passed %4d failed  %3d s\n' "$name" "$ok" "$bad" $((SECONDS - begin))
+    sed -n 's/^## /    /p' "$log"
     if ((bad > 0)); then
         grep -v '^ok' "$log" | tail -n 60
         tail -n 40 "$log.err"

@@ -88,6 +88,15 @@ for n in 1 2 3 5; do
     expect "$n ranks" 0 mpirun -n $n "$stance" run ranks.yaml -o ranks$n.h5
     tool "$n ranks give the same bits as none" same ranks0.h5 ranks$n.h5
 done
+# As between machines: counters in messages that rank 0 must see to.
+expect "ranks that have no memory in common" 0 mpirun -n 3 --mca pml ob1 --mca btl tcp,self \
+    --mca osc pt2pt "$stance" run ranks.yaml -o messages.h5
+tool "... the same bits" same ranks0.h5 messages.h5
+mpirun -n 2 --mca pml ob1 --mca btl tcp,self --mca osc pt2pt "$stance" run ranks.yaml --force \
+    -o messages.h5 --set stop.time="${span}0" --set stop.settle=off --set record.cases=none >log 2>&1
+"$python" -c 'import h5py; c = h5py.File("messages.h5")["timing/cases"][...]
+assert min(c) > 0, c' >>log 2>&1
+result $? "... and all compute"
 for isa in scalar sse2; do
     STANCE_ISA=$isa expect "instruction set $isa" 0 "$stance" run ranks.yaml -o $isa.h5
     tool "$isa gives the same bits" same ranks0.h5 $isa.h5

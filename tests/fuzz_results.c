@@ -1,0 +1,778 @@
+/* fuzz_results.c - damaged results files as commands meet them.
+ *
+ *   fuzz_results [-seconds S] [-runs N] [-from NUMBER] FILE...    damages each in turn
+ *   fuzz_results -replay GOOD DAMAGED...                          tries files that are damaged
+ *
+ * A worker process damages a good file in memory (damage.c), writes it to shared memory's file
+ * system and runs summary, status, plot (but for gnuplot), compare and what a resume reads, all in
+ * itself and under the sanitizers. The HDF5 library crashes on damaged files: the commands read
+ * in a process of their own for that (runner/supervise.h) and here a new worker goes on. Allowed
+ * are therefore crashes and loops within the library while it is supervised. Findings are
+ *   - anything a sanitizer says of code of ours, or an allocation of ours out of all proportion,
+ *   - a crash or a loop where nothing supervises: in a resume that goes on after its check,
+ *   - an error that is not one line and exit code 3 (2 from plot and resume),
+ *   - numbers that differ from those of the good file without an error, unless checksums were
+ *     forged to make them so.
+ */
+#include "../analysis/gnuplot.h"
+#include "../analysis/results.h"
+#include "../runner/checksum.h"
+#include "../runner/command.h"
+#include "../runner/plan.h"
+#include "../runner/store.h"
+#include "damage.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <execinfo.h>
+#include <fcntl.h>
+#include <math.h>
+#include <sanitizer/allocator_interface.h>
+#include <sanitizer/lsan_interface.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum {
+    FILES_PER_WORKER = 500,
+    MOST_FILES = 64,
+    MOST_MICROSECONDS = 400000, /* of one file, which takes a hundredth of it */
+    MOST_ALLOCATED = 64 << 20,
+    MOST_FINDINGS = 20,
+    ROOM = 4 << 20,
+};
+
+/* Where a worker is. */
+enum stage {
+    STAGE_SUMMARY,
+    STAGE_BASIN,
+    STAGE_SENSITIVITY,
+    STAGE_STATUS,
+    STAGE_PLOT,
+    STAGE_COMPARE,
+    STAGE_CHECK,
+    STAGE_RESUME,
+    STAGE_NUMBERS,
+    STAGES
+};
+static const char *const stage_names[STAGES] = {"summary", "basin",   "sensitivity",       "status",
+                                                "plot",    "compare", "check of a resume", "resume",
+                                                "numbers"};
+
+enum verdict { HARMLESS, DETECTED, FLAGGED, DIFFERENT, VERDICTS };
+
+/* What workers and their starter share. */
+static struct shared {
+    uint64_t next, tried, forged;
+    uint64_t verdicts[2][VERDICTS]; /* by accident, forged */
+    uint64_t crashes, loops, large, astray;
+    enum stage stage;
+    bool is_forged;
+    char text[200]; /* what was done to the file */
+    char name[64];
+} * shared;
+
+/* What a file says, as hashes; a case that is pending says nothing. */
+struct numbers {
+    uint32_t axes, designs;
+    uint64_t cases;
+    uint32_t *row; /* [cases] */
+    uint8_t *kind; /* [cases] */
+    uint32_t *trajectory;
+    size_t trajectories;
+};
+
+static struct damage_file good[MOST_FILES];
+static char good_path[MOST_FILES][1024];
+static struct store_origin good_origin[MOST_FILES];
+static struct numbers expected[MOST_FILES];
+static size_t goods;
+static char directory[64], path[128], log_path[128];
+static int log_file = -1;
+static unsigned findings;
+
+/* ---- the program's edges ------------------------------------------------------------------ */
+
+/* Commands work here instead of in a process of their own. */
+int __wrap_supervise(int (*work)(void *context), void *context, const char *files);
+int __wrap_supervise(int (*work)(void *context), void *context, const char *files)
+{
+    (void)files;
+    return work(context);
+}
+
+void __wrap_supervise_limit(bool begin);
+void __wrap_supervise_limit(bool begin)
+{
+    (void)begin; /* the timer of the worker is stricter */
+}
+
+bool __wrap_gnuplot_end(struct gnuplot *g, const char *where, const char *stem,
+                        stance_message *message);
+bool __wrap_gnuplot_end(struct gnuplot *g, const char *where, const char *stem,
+                        stance_message *message)
+{
+    (void)where, (void)stem, (void)message;
+    gnuplot_abandon(g);
+    return true;
+}
+
+/* ---- findings inside a worker --------------------------------------------------------------- */
+
+static void finding(const char *format, ...) __attribute__((format(printf, 1, 2), noreturn));
+static void finding(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fputs("finding: ", stderr);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    fputc('\n', stderr);
+    fflush(stderr);
+    abort();
+}
+
+/* The first function on the way here that belongs to neither the sanitizer nor the C library: is
+ * it the HDF5 library's? */
+static bool called_by_library(void)
+{
+    void *frame[24];
+    Dl_info info;
+    int n = backtrace(frame, 24);
+    for (int i = 1; i < n; i++) {
+        if (!dladdr(frame[i], &info) || !info.dli_fname || strstr(info.dli_fname, "clang_rt") ||
+            strstr(info.dli_fname, "/libc.so")) {
+            continue;
+        }
+        if (!strstr(info.dli_fname, "fuzz_results")) {
+            return true;
+        }
+        if (i > 2) { /* beyond this function and the hook: the caller of malloc */
+            return false;
+        }
+    }
+    return false;
+}
+
+static void watch_allocation(const volatile void *memory, size_t size)
+{
+    if (memory && size > MOST_ALLOCATED && shared) {
+        if (!called_by_library()) {
+            finding("%zu bytes allocated", size);
+        }
+        shared->large++;
+    }
+}
+
+static void ignore_release(const volatile void *memory)
+{
+    (void)memory;
+}
+
+/* ---- one damaged file ----------------------------------------------------------------------- */
+
+/* What was said since the last time; sanitizers' own remarks left out. */
+static unsigned lines_said(char *first, size_t size)
+{
+    static char said[1 << 16];
+    fflush(stderr);
+    ssize_t n = pread(log_file, said, sizeof said - 1, 0);
+    unsigned lines = 0;
+    said[n > 0 ? n : 0] = '\0';
+    first[0] = '\0';
+    for (char *line = said, *end; *line; line = end) {
+        end = line + strcspn(line, "\n");
+        end += *end == '\n';
+        /* nor warnings, which may stand before what there is to say */
+        if (strncmp(line, "==", 2) != 0 && strncmp(line, "stance: warning:", 16) != 0) {
+            if (lines++ == 0) {
+                snprintf(first, size, "%.*s", (int)(end - line), line);
+            }
+        }
+    }
+    if (ftruncate(log_file, 0) != 0) {
+        abort();
+    }
+    lseek(log_file, 0, SEEK_SET);
+    return lines;
+}
+
+static int run_command(enum stage stage, const struct command *command, int argc, char **argv)
+{
+    char first[1000];
+    shared->stage = stage;
+    int code = command->run(argc, argv);
+    unsigned lines = lines_said(first, sizeof first);
+    bool fits = code == EXIT_IO ? lines == 1 : code == EXIT_USAGE ? lines == 1 : lines <= 1;
+    for (const unsigned char *s = (const unsigned char *)first; *s; s++) {
+        fits = fits && (*s >= 0x20 || (*s == '\n' && !s[1])) && *s != 0x7f;
+    }
+    if (!fits || code < 0 || code > EXIT_IO) {
+        finding("%s: exit code %d with %u lines: %s", stage_names[stage], code, lines, first);
+    }
+    return code;
+}
+
+static uint32_t add(uint32_t crc, const void *data, size_t size)
+{
+    return data ? checksum_crc32c(crc, data, size) : crc;
+}
+
+static bool hash_rows(const struct results *r, struct numbers *numbers, stance_message *message)
+{
+    static const char *const answers[] = {
+#define ANSWER(name, type, field, fill, unit, text) #name,
+        STORE_ANSWERS(ANSWER)
+#undef ANSWER
+    };
+    numbers->cases = r->cases;
+    numbers->row = calloc(r->cases, sizeof *numbers->row);
+    numbers->kind = malloc(r->cases);
+    if (!numbers->row || !numbers->kind) {
+        abort();
+    }
+    memcpy(numbers->kind, r->kind, r->cases);
+    for (size_t k = 0; k < sizeof answers / sizeof answers[0]; k++) {
+        double *values;
+        if (!results_answer(r, answers[k], &values, message)) {
+            return false;
+        }
+        for (uint64_t i = 0; values && i < r->cases; i++) {
+            numbers->row[i] = add(numbers->row[i], &values[i], sizeof *values);
+        }
+        free(values);
+    }
+    return true;
+}
+
+static uint32_t hash_trajectory(const struct results_trajectory *t)
+{
+    const size_t n = t->rows * sizeof(double);
+    uint32_t crc = add(0, &t->index, sizeof t->index);
+    crc = add(crc, t->time, n);
+    crc = add(crc, t->position, n * t->coordinates);
+    crc = add(crc, t->velocity, n * t->coordinates);
+    crc = add(crc, t->torque, n * t->actuators);
+    crc = add(crc, t->force, 2 * n * t->contacts);
+    crc = add(crc, t->gap, n * t->contacts);
+    crc = add(crc, t->coordinate, t->coordinates * sizeof t->coordinate[0]);
+    crc = add(crc, t->actuator, t->actuators * sizeof t->actuator[0]);
+    return add(crc, t->contact, t->contacts * sizeof t->contact[0]);
+}
+
+static bool hash_trajectories(const struct results *r, struct numbers *numbers,
+                              stance_message *message)
+{
+    uint64_t *list;
+    bool whole = results_recorded(r, &list, &numbers->trajectories, message);
+    numbers->trajectory = calloc(numbers->trajectories + 1, sizeof *numbers->trajectory);
+    for (size_t k = 0; whole && numbers->trajectory && k < numbers->trajectories; k++) {
+        struct results_trajectory t;
+        uint64_t row = r->single ? 0 : list[k];
+        if (row >= r->cases) {
+            snprintf(message->text, sizeof message->text, "a trajectory of no case");
+            whole = false;
+        } else if (r->kind[row] != RESULTS_PENDING) {
+            whole = results_trajectory(r, k, list[k], &t, message);
+            numbers->trajectory[k] = whole ? hash_trajectory(&t) : 0;
+            results_trajectory_free(&t);
+        }
+    }
+    free(list);
+    return whole;
+}
+
+static void numbers_free(struct numbers *numbers)
+{
+    free(numbers->row);
+    free(numbers->kind);
+    free(numbers->trajectory);
+}
+
+/* What differs, but for cases that count as pending; "": nothing. *pending: how many do more than
+ * in the good file. */
+static const char *difference(const struct numbers *a, const struct numbers *b, uint64_t *pending)
+{
+    *pending = 0;
+    if (a->axes != b->axes || a->cases != b->cases) {
+        return "axes";
+    }
+    for (uint64_t i = 0; i < a->cases; i++) {
+        if (a->kind[i] == RESULTS_PENDING) {
+            *pending += b->kind[i] != RESULTS_PENDING;
+        } else if (a->kind[i] != b->kind[i] || a->row[i] != b->row[i]) {
+            return "rows";
+        }
+    }
+    if (a->trajectories != b->trajectories) {
+        return "number of trajectories";
+    }
+    for (size_t k = 0; k < a->trajectories && *pending == 0; k++) {
+        if (a->trajectory[k] != b->trajectory[k]) {
+            return "trajectories";
+        }
+    }
+    return a->designs != b->designs ? "designs" : "";
+}
+
+/* false: something cannot be read. */
+static bool hash_file(const char *file, struct numbers *numbers, stance_message *message)
+{
+    enum { MOST_NUMBERS = 1 << 16 };
+    static const char *const designs[] = {"design/gain",
+                                          "design/equilibrium_position",
+                                          "design/equilibrium_torque",
+                                          "design/start_position",
+                                          "design/status",
+                                          "design/captured"};
+    struct results r;
+    *numbers = (struct numbers){0};
+    if (!results_open(&r, file, message)) {
+        return false;
+    }
+    for (int a = 0; a < r.axes; a++) {
+        const struct results_axis *axis = &r.axis[a];
+        numbers->axes = add(numbers->axes, axis->name, strlen(axis->name) + 1);
+        numbers->axes = add(numbers->axes, axis->unit, strlen(axis->unit) + 1);
+        numbers->axes = add(numbers->axes, axis->value, axis->count * sizeof *axis->value);
+        for (size_t i = 0; axis->word && i < axis->count; i++) {
+            numbers->axes = add(numbers->axes, axis->word[i], strlen(axis->word[i]) + 1);
+        }
+    }
+    numbers->axes = add(numbers->axes, r.scenario, strlen(r.scenario));
+    double *values = calloc(MOST_NUMBERS, sizeof *values);
+    for (size_t i = 0; values && i < sizeof designs / sizeof designs[0]; i++) {
+        size_t n = results_numbers(&r, designs[i], values, MOST_NUMBERS);
+        numbers->designs = add(numbers->designs, values, n * sizeof *values);
+    }
+    free(values);
+    bool whole = hash_rows(&r, numbers, message) && hash_trajectories(&r, numbers, message);
+    results_close(&r);
+    return whole;
+}
+
+/* `seconds`: 0: as long as a file usually may. */
+static void limit_time(int seconds)
+{
+    const struct itimerval limit = {
+        .it_value = {.tv_sec = seconds, .tv_usec = seconds ? 0 : MOST_MICROSECONDS}};
+    setitimer(ITIMER_PROF, &limit, NULL); /* SIGPROF ends the worker */
+}
+
+/* What `run --resume` reads before it writes. False: it stops with a reason. */
+static bool resume(size_t which, stance_message *message)
+{
+    struct store_origin origin;
+    struct store_counts counts;
+    struct scenario *s = malloc(sizeof *s);
+    struct plan plan;
+    struct plan_error error;
+    struct store *store;
+    uint64_t only = 0;
+
+    shared->stage = STAGE_CHECK;
+    bool fine = s && store_check(path, true, message);
+    shared->stage = STAGE_RESUME; /* from here on nothing is supervised */
+    limit_time(10);               /* for certain */
+    if (!fine || !store_read_origin(path, &origin, message)) {
+        free(s);
+        return false;
+    }
+    bool same = strcmp(origin.scenario, good_origin[which].scenario) == 0;
+    store_origin_free(&origin);
+    snprintf(message->text, sizeof message->text, "made from another scenario");
+    if (!same || !scenario_read(s, "scenario", good_origin[which].scenario, NULL, 0, stderr)) {
+        free(s);
+        return false;
+    }
+    for (int a = 0; a < s->axes && fine; a++) {
+        fine = store_read_axis(path, &s->axis[a], message);
+    }
+    fine = fine && store_count(path, &counts, message);
+    bool single = strstr(good[which].name, "case") != NULL;
+    fine = fine && plan_make(&plan, s, single, only, single, &error);
+    if (fine) {
+        fine = store_open(&store, path, &plan, 1, message) &&
+               store_read_designs(store, &plan, message);
+        for (uint64_t row = 0; fine && row < plan.rows; row += STORE_ROWS) {
+            stance_result *results = calloc(STORE_ROWS, sizeof *results);
+            bool whole[STORE_ROWS];
+            uint64_t n = plan.rows - row < STORE_ROWS ? plan.rows - row : STORE_ROWS;
+            const struct rows rows = {.first = row, .count = n};
+            fine = results && store_verify(store, &rows, results, whole, message);
+            free(results);
+        }
+        if (store && fine) {
+            fine = store_close(store, message);
+        } else {
+            store_abandon(store);
+        }
+        plan_free(&plan);
+    }
+    scenario_free(s);
+    free(s);
+    return fine;
+}
+
+static void write_file(const uint8_t *data, size_t size)
+{
+    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (file < 0 || write(file, data, size) != (ssize_t)size) {
+        abort();
+    }
+    close(file);
+}
+
+/* All but the costly commands, which every fourth file is tried with. */
+static void try_file(size_t which)
+{
+    struct numbers numbers = {0};
+    stance_message message = {""};
+    char first[1000];
+    char *arguments[] = {"", path, good_path[which], NULL};
+    char *plot[] = {"plot", path, "-o", directory, NULL};
+    char *json[] = {"", path, "--json", NULL};
+    const uint64_t turn = shared->next / goods % 4;
+    uint64_t pending;
+
+    int code =
+        run_command(STAGE_SUMMARY, &command_summary, turn & 1 ? 3 : 2, turn & 1 ? json : arguments);
+    bool detected = code == EXIT_IO;
+    if (turn == 3) {
+        run_command(STAGE_STATUS, &command_status, 2, arguments);
+    }
+    if (code != EXIT_IO && turn == 3) {
+        run_command(STAGE_PLOT, &command_plot, 4, plot);
+        run_command(STAGE_COMPARE, &command_compare, 3, arguments);
+    }
+    if (code != EXIT_IO && turn == 2) {
+        run_command(STAGE_BASIN, &command_basin, 2, arguments);
+        run_command(STAGE_SENSITIVITY, &command_sensitivity, 2, arguments);
+    }
+    shared->stage = STAGE_NUMBERS;
+    detected = detected || !hash_file(path, &numbers, &message);
+    const char *what = detected ? "" : difference(&numbers, &expected[which], &pending);
+    enum verdict verdict = detected ? DETECTED : what[0] ? DIFFERENT : pending ? FLAGGED : HARMLESS;
+    numbers_free(&numbers);
+    if (verdict == DIFFERENT && !shared->is_forged) {
+        finding("silently different: %s", what);
+    }
+    message.text[0] = '\0';
+    if (!resume(which, &message) && message.text[0] == '\0') {
+        finding("a resume stops without a reason");
+    }
+    lines_said(first, sizeof first);
+    shared->verdicts[shared->is_forged][verdict]++;
+}
+
+/* ---- workers -------------------------------------------------------------------------------- */
+
+static void prepare_worker(void)
+{
+    log_file = open(log_path, O_RDWR | O_CREAT | O_TRUNC | O_APPEND, 0600);
+    int nowhere = open("/dev/null", O_WRONLY);
+    if (log_file < 0 || nowhere < 0) {
+        abort();
+    }
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(log_file, STDERR_FILENO);
+    store_prepare();
+    __sanitizer_install_malloc_and_free_hooks(watch_allocation, ignore_release);
+}
+
+/* Damages and tries file after file up to number `end`. */
+static void work(uint64_t end)
+{
+    uint8_t *data = malloc(ROOM);
+    prepare_worker();
+    for (; data && shared->next < end; shared->next++) {
+        const size_t which = shared->next % goods;
+        size_t size;
+        limit_time(0);
+        snprintf(shared->name, sizeof shared->name, "%s", good[which].name);
+        shared->is_forged =
+            damage_make(&good[which], shared->next / goods, data, ROOM, &size, shared->text);
+        shared->tried++;
+        shared->forged += shared->is_forged;
+        write_file(data, size);
+        try_file(which);
+    }
+    limit_time(0);
+    free(data);
+    if (__lsan_do_recoverable_leak_check()) {
+        finding("leaks among the files up to %llu", (unsigned long long)end);
+    }
+    _exit(0);
+}
+
+/* What a worker that died has said: whether the HDF5 library is to blame. */
+static bool is_library(const char *said)
+{
+    if (strstr(said, "runtime error:") || strstr(said, "finding:")) {
+        return false;
+    }
+    for (const char *frame = strstr(said, "    #"); frame; frame = strstr(frame + 1, "\n    #")) {
+        size_t length = strcspn(frame + 1, "\n");
+        char line[512];
+        snprintf(line, sizeof line, "%.*s", (int)(length < 500 ? length : 500), frame + 1);
+        if (strstr(line, "clang_rt") || strstr(line, "libc.so")) {
+            continue;
+        }
+        return strstr(line, "libhdf5") != NULL;
+    }
+    return false;
+}
+
+static void report(const char *what, const char *said, const uint8_t *data, size_t size)
+{
+    char name[64];
+    snprintf(name, sizeof name, "finding-%llu.h5", (unsigned long long)shared->next);
+    FILE *out = fopen(name, "wb");
+    if (out) {
+        fwrite(data, 1, size, out);
+        fclose(out);
+    }
+    fprintf(stderr, "%s: %s in %s, number %llu, %s (%s), kept as %s\n%.3000s\n", shared->name, what,
+            stage_names[shared->stage], (unsigned long long)shared->next,
+            shared->is_forged ? "forged" : "by accident", shared->text, name, said);
+    findings++;
+}
+
+/* Reads what the worker said and what it was given. */
+static size_t read_all(const char *name, void *data, size_t room)
+{
+    FILE *in = fopen(name, "rb");
+    size_t n = in ? fread(data, 1, room, in) : 0;
+    if (in) {
+        fclose(in);
+    }
+    return n;
+}
+
+/* A worker has died: where the library may crash or loop, that is counted; else it is a finding.
+ */
+static bool is_finding(int status)
+{
+    static char said[1 << 16];
+    const bool supervised = shared->stage != STAGE_RESUME;
+    said[read_all(log_path, said, sizeof said - 1)] = '\0';
+    const bool loop = WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF;
+    if (!supervised || (!loop && !is_library(said))) {
+        return true;
+    }
+    shared->loops += loop;
+    shared->crashes += !loop;
+    shared->verdicts[shared->is_forged][DETECTED]++;
+    return false;
+}
+
+/* Tries one file in a process of its own, as commands do: one that went before may have led the
+ * library astray. Returns the worker's status. */
+static int try_alone(void)
+{
+    const struct shared before = *shared;
+    int status;
+    pid_t child = fork();
+    if (child == 0) {
+        work(shared->next + 1);
+    }
+    if (child < 0 || waitpid(child, &status, 0) < 0) {
+        abort();
+    }
+    const enum stage stage = shared->stage;
+    *shared = before;
+    shared->stage = stage;
+    return status;
+}
+
+static void judge(int status, bool alone)
+{
+    static char said[1 << 16];
+    static uint8_t data[ROOM];
+    if (!is_finding(status)) {
+        return;
+    }
+    said[read_all(log_path, said, sizeof said - 1)] = '\0';
+    if (!alone && !strstr(said, "finding: leaks")) {
+        status = try_alone();
+        if (status == 0) {
+            shared->astray++;
+            return;
+        }
+        if (!is_finding(status)) {
+            return;
+        }
+    }
+    said[read_all(log_path, said, sizeof said - 1)] = '\0';
+    size_t size = read_all(path, data, sizeof data);
+    shared->verdicts[shared->is_forged][strstr(said, "silently") ? DIFFERENT : DETECTED]++;
+    report(WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF ? "endless" : "wrong", said, data,
+           size);
+}
+
+static double seconds_now(void)
+{
+    struct timeval now;
+    gettimeofday(&now, NULL);
+    return (double)now.tv_sec + 1e-6 * (double)now.tv_usec;
+}
+
+static void campaign(double seconds, uint64_t runs, uint64_t from)
+{
+    const double begin = seconds_now();
+    shared->next = from;
+    while (findings < MOST_FINDINGS && seconds_now() - begin < seconds &&
+           shared->next - from < runs) {
+        uint64_t end = shared->next + FILES_PER_WORKER;
+        end = end - from < runs ? end : from + runs;
+        int status;
+        pid_t child = fork();
+        if (child == 0) {
+            work(end);
+        }
+        if (child < 0 || waitpid(child, &status, 0) < 0) {
+            abort();
+        }
+        if (status != 0) {
+            judge(status, false);
+            shared->next++;
+        }
+    }
+    const struct shared *c = shared;
+    printf("%llu damaged files in %.0f s, %llu of them with checksums forged to fit\n",
+           (unsigned long long)c->tried, seconds_now() - begin, (unsigned long long)c->forged);
+    for (int forged = 0; forged < 2; forged++) {
+        printf("  %-12s harmless %llu, detected %llu, cases pending %llu, different %llu\n",
+               forged ? "forged" : "by accident", (unsigned long long)c->verdicts[forged][HARMLESS],
+               (unsigned long long)c->verdicts[forged][DETECTED],
+               (unsigned long long)c->verdicts[forged][FLAGGED],
+               (unsigned long long)c->verdicts[forged][DIFFERENT]);
+    }
+    printf("  supervised: %llu crashes and %llu loops of the HDF5 library, %llu large "
+           "allocations of it,\n  %llu files read wrongly only after others had led it astray; "
+           "findings %u\n",
+           (unsigned long long)c->crashes, (unsigned long long)c->loops,
+           (unsigned long long)c->large, (unsigned long long)c->astray, findings);
+}
+
+/* ---- the program ---------------------------------------------------------------------------- */
+
+static bool add_good(const char *file)
+{
+    stance_message message = {""};
+    snprintf(good_path[goods], sizeof good_path[0], "%s", file);
+    if (!damage_load(&good[goods], file) || !hash_file(file, &expected[goods], &message) ||
+        !store_read_origin(file, &good_origin[goods], &message)) {
+        fprintf(stderr, "%s: no good file: %s\n", file, message.text);
+        return false;
+    }
+    goods++;
+    return true;
+}
+
+static void replay(const char *file)
+{
+    struct damage_file damaged;
+    if (!damage_load(&damaged, file)) {
+        fprintf(stderr, "%s: cannot be read\n", file);
+        findings++;
+        return;
+    }
+    int status;
+    shared->is_forged = true;
+    snprintf(shared->name, sizeof shared->name, "%s", damaged.name);
+    pid_t child = fork();
+    if (child == 0) {
+        prepare_worker();
+        limit_time(0);
+        write_file(damaged.data, damaged.size);
+        try_file(0);
+        _exit(0);
+    }
+    if (child < 0 || waitpid(child, &status, 0) < 0) {
+        abort();
+    }
+    if (status != 0) {
+        judge(status, true);
+    }
+    free(damaged.data);
+    free(damaged.block);
+}
+
+const char *__asan_default_options(void);
+const char *__asan_default_options(void)
+{
+    return "symbolize=0:abort_on_error=1:handle_abort=0:allocator_may_return_null=1:"
+           "max_allocation_size_mb=2048:hard_rss_limit_mb=3000:quarantine_size_mb=1:allocator_"
+           "release_to_os_interval_ms=-1:"
+           "detect_stack_use_after_return=0:disable_coredump=1";
+}
+const char *__ubsan_default_options(void);
+const char *__ubsan_default_options(void)
+{
+    return "print_stacktrace=1";
+}
+/* The library does not release all that it has when it fails. */
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libhdf5\nleak:libopen\nleak:libmpi\n";
+}
+
+int main(int argc, char **argv)
+{
+    double seconds = 60;
+    uint64_t runs = UINT64_MAX / 4, from = 0;
+    bool replays = false;
+    int i = 1;
+
+    for (; i < argc && argv[i][0] == '-'; i++) {
+        if (strcmp(argv[i], "-replay") == 0) {
+            replays = true;
+        } else if (i + 1 < argc && strcmp(argv[i], "-seconds") == 0) {
+            seconds = atof(argv[++i]);
+        } else if (i + 1 < argc && strcmp(argv[i], "-runs") == 0) {
+            runs = strtoull(argv[++i], NULL, 10);
+        } else if (i + 1 < argc && strcmp(argv[i], "-from") == 0) {
+            from = strtoull(argv[++i], NULL, 10);
+        } else {
+            fprintf(stderr, "%s: unknown option\n", argv[i]);
+            return EXIT_USAGE;
+        }
+    }
+    const struct rlimit none = {0, 0};
+    setrlimit(RLIMIT_CORE, &none);
+    shared = mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    snprintf(directory, sizeof directory, "/dev/shm/fuzz-XXXXXX");
+    if (shared == MAP_FAILED || i == argc || !mkdtemp(directory)) {
+        fprintf(stderr, "fuzz_results: cannot begin\n");
+        return EXIT_USAGE;
+    }
+    setenv("TMPDIR", directory, 1);
+    snprintf(path, sizeof path, "%s/file.h5", directory);
+    snprintf(log_path, sizeof log_path, "%s/log", directory);
+    store_prepare();
+    if (replays) {
+        bool begun = add_good(argv[i++]);
+        for (; begun && i < argc; i++) {
+            replay(argv[i]);
+        }
+        findings += !begun;
+    } else {
+        for (; i < argc && goods < MOST_FILES; i++) {
+            findings += !add_good(argv[i]);
+        }
+        if (findings == 0) {
+            campaign(seconds, runs, from);
+        }
+    }
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf %s", directory);
+    return system(command) != 0 || findings > 0;
+}

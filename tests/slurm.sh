@@ -1,0 +1,404 @@
+#!/usr/bin/env bash
+# The batch scripts of scenarios/cluster under a Slurm of two nodes that runs on this machine alone:
+# time limits that strike, requeues, a cancelled job, a node whose power is cut, a killed rank. What
+# comes out is compared, bit by bit, with runs that nothing disturbed.
+#
+# Everything is the test's own and in a scratch folder: configuration, ports, munge's key and
+# socket, spools. A Slurm or munge that this machine runs is not touched. Speaks TAP, ends with
+# "N passed, N failed"; takes some five minutes. Needs root, as slurmd does.
+# Usage: tests/slurm.sh   (make test-slurm)
+set -u
+cd "$(dirname "$0")/.." || exit 1
+stance=${STANCE:-$PWD/bin/stance} python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
+scripts=$PWD/scenarios/cluster
+PATH=$PATH:/usr/sbin:/sbin
+missing=
+for program in munged slurmctld slurmd sbatch mpirun; do
+    command -v $program >/dev/null || missing="$missing $program"
+done
+[ "$(id -u)" = 0 ] || missing="$missing root"
+[ "$(uname -s)" = Linux ] || missing="$missing Linux"
+if [ -n "$missing" ]; then
+    echo "test-slurm skips everything: it needs$missing (make test-slurm installs programs)"
+    echo "0 passed, 0 failed"
+    exit 0
+fi
+
+# ---- a cluster of our own, and its end -----------------------------------------------------------
+scratch=$(mktemp -d)
+chmod 755 "$scratch" # munge wants its socket where others may come
+cluster=$scratch/cluster work=$scratch/work
+mkdir "$cluster" "$cluster/controller" "$cluster/n1" "$cluster/n2" "$work" "$work/results"
+
+# Processes of jobs, and those that look after them: they alone have this configuration and a job's
+# number in their environment, or are called slurmstepd.
+job_processes() {
+    local file pid
+    for file in /proc/[0-9]*/environ; do
+        pid=${file//[!0-9]/}
+        # shellcheck disable=SC2015
+        grep -qzx "SLURM_CONF=$cluster/slurm.conf" "$file" 2>/dev/null &&
+            { grep -qz '^SLURM_JOB_ID=' "$file" 2>/dev/null ||
+                [ "$(cat "/proc/$pid/comm" 2>/dev/null)" = slurmstepd ]; } && echo "$pid"
+    done
+}
+# shellcheck disable=SC2317 # what the trap calls
+{
+stop_daemon() { # name: waits until it has gone
+    local pid
+    pid=$(cat "$cluster/$1.pid" 2>/dev/null) || return 0
+    kill "$pid" 2>/dev/null
+    for _ in $(seq 50); do
+        kill -0 "$pid" 2>/dev/null || break
+        sleep 0.1
+    done
+    kill -9 "$pid" 2>/dev/null
+    rm -f "$cluster/$1.pid"
+}
+# shellcheck disable=SC2046 # a list of numbers
+clean_up() {
+    trap '' INT TERM
+    stop_daemon controller
+    stop_daemon n1
+    stop_daemon n2
+    kill -9 $(job_processes) 2>/dev/null
+    stop_daemon munged
+    wait
+    rm -rf "$scratch"
+}
+}
+trap clean_up EXIT
+trap 'exit 130' INT TERM HUP
+
+is_free() { ! (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null; }
+port=21800
+until is_free $port && is_free $((port + 1)) && is_free $((port + 2)); do
+    port=$((port + 10))
+done
+
+head -c 1024 /dev/urandom >"$cluster/munge.key" && chmod 400 "$cluster/munge.key"
+cat >"$cluster/slurm.conf" <<END_OF_FILE
+ClusterName=stance
+SlurmctldHost=$(hostname)(127.0.0.1)
+SlurmUser=root
+SlurmdUser=root
+SlurmctldPort=$port
+AuthType=auth/munge
+CredType=cred/munge
+# A job that is put back may start after so many seconds (the least there may be; by default 120).
+AuthInfo=socket=$cluster/munge.socket,cred_expire=5
+StateSaveLocation=$cluster/controller
+SlurmdSpoolDir=$cluster/%n
+SlurmctldPidFile=$cluster/controller.pid
+SlurmdPidFile=$cluster/%n.pid
+SlurmctldLogFile=$cluster/controller.log
+SlurmdLogFile=$cluster/%n.log
+JobCompType=jobcomp/none
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+SwitchType=switch/none
+MpiDefault=none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_Core
+SlurmdParameters=config_overrides
+ReturnToService=2
+SlurmdTimeout=10
+KillWait=20
+SchedulerParameters=batch_sched_delay=1,sched_interval=2,bf_interval=2
+NodeName=n1 NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=$((port + 1)) CPUs=2
+NodeName=n2 NodeHostname=$(hostname) NodeAddr=127.0.0.1 Port=$((port + 2)) CPUs=2
+PartitionName=batch Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
+END_OF_FILE
+echo 'CgroupPlugin=autodetect' >"$cluster/cgroup.conf"
+export SLURM_CONF=$cluster/slurm.conf
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
+# Both nodes are one machine: neither may take processors for itself.
+export OMPI_MCA_hwloc_base_binding_policy=none
+
+cd "$work" || exit 1
+count=0 patience=300
+# shellcheck source=tests/outside.sh
+. "$tests/outside.sh"
+die() {
+    echo "Bail out! $1"
+    tail -n 20 "$cluster"/*.log | sed 's/^/# /'
+    echo "$((count - failed)) passed, $((failed + 1)) failed"
+    exit 1
+}
+note() { sed 's/^/# /'; }
+
+munged --key-file="$cluster/munge.key" --socket="$cluster/munge.socket" \
+    --pid-file="$cluster/munged.pid" --log-file="$cluster/munged.log" \
+    --seed-file="$cluster/munge.seed" || die "munged does not start"
+slurmctld -f "$SLURM_CONF" || die "slurmctld does not start"
+start_node() { slurmd -f "$SLURM_CONF" -N "$1" || die "slurmd does not start"; }
+start_node n1
+start_node n2
+idle_nodes() { sinfo --noheader --Node --states=idle --format=%N 2>/dev/null | wc -l; }
+await_nodes() {
+    for _ in $(seq 60); do
+        (($(idle_nodes) == 2)) && return 0
+        sleep 1
+    done
+    return 1
+}
+await_nodes || die "the nodes do not come up"
+sinfo | note
+
+# ---- jobs ----------------------------------------------------------------------------------------
+# What Slurm knows of a job: state, restarts, exit code ...
+known() { # job, key
+    scontrol --oneliner show job "$1" 2>/dev/null | tr ' ' '\n' | sed -n "s/^$2=//p" | head -n 1
+}
+watch() { squeue --noheader --job="$1" --format='%.6i %.9j %.10T %.6M %.8l  %N %r' 2>/dev/null; }
+submit() { # options and script; sets job
+    job=$(sbatch --parsable "$@") || die "sbatch $*"
+}
+# Until the job is in none of the states of one that is not over; notes what squeue says meanwhile.
+await_end() { # job
+    local state last=
+    for _ in $(seq 900); do
+        state=$(known "$1" JobState)
+        [ "$state" = "$last" ] || watch "$1" | note
+        last=$state
+        case $state in
+        PENDING | RUNNING | COMPLETING | SUSPENDED | CONFIGURING | REQUEUED) ;;
+        *) return 0 ;;
+        esac
+        sleep 1
+    done
+    echo "job $1 is still $state" >>log
+    return 1
+}
+ended() { # name, job, state
+    await_end "$2"
+    local state
+    state=$(known "$2" JobState)
+    echo "job $2 is $state, exit code $(known "$2" ExitCode), expected $3" >log
+    tail -n 15 "$work"/*"-$2.log" >>log 2>&1
+    [ "$state" = "$3" ]
+    result $? "$1"
+}
+# Until a job's run has written some cases to this file.
+await_cases() { # file
+    for _ in $(seq 600); do
+        "$stance" status "$1" 2>/dev/null | grep -q ': [1-9][0-9]* of .*running' && return 0
+        sleep 0.1
+    done
+    return 1
+}
+pending() { "$stance" status "$1" --json 2>/dev/null | sed -n 's/.*"pending": \([0-9]*\).*/\1/p'; }
+logged() { # name, job, least, pattern
+    cat "$work"/*"-$2.log" >log 2>&1
+    (($(grep -c -- "$4" log) >= $3))
+    result $? "$1"
+}
+same() { # name, file, file
+    expect "$1" 0 "$stance" compare "$2" "$3"
+    says "... bit by bit" '^identical'
+}
+
+# Jobs compute with one lane, the runs that they are compared with as fast as they can.
+export STANCE SCENARIO RESULTS STANCE_ISA
+STANCE=$stance STANCE_ISA=scalar
+scenario() { # points of each of two axes, s that a case lasts
+    cat <<END_OF_FILE
+stance: 1
+title: Balance under Slurm
+scene: biped
+ground: {friction: 0.8, contacts: [foot1]}
+initial:
+  equilibrium: {theta: -0.41, q2: 0.82}
+  support_foot: 1
+controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
+             sample_time: 0.001, torque_limit: 10}
+method: {name: implicit, step: 0.001}
+stop: {time: $2, settle: off}
+record: {every: 0.1, cases: [0, 7]}
+sweep:
+  grid:
+    - {path: initial.offset.theta, from: -0.05, to: 0.01, count: $1}
+    - {path: initial.offset.vtheta, from: -0.2, to: 0.05, count: $1}
+END_OF_FILE
+}
+undisturbed() { # file, scenario, options
+    local file=$1 yaml=$2
+    shift 2
+    expect "... and $yaml $* with nothing to disturb it" 0 env -u STANCE_ISA \
+        mpirun -n 2 "$stance" run "$yaml" "$@" -o "$file" --quiet --force
+}
+
+# How fast one lane on two ranks is here: points per axis for so many seconds.
+scenario 20 5 >probe.yaml
+expect "a run to see how fast this machine is" 0 mpirun -n 2 "$stance" run probe.yaml -o probe.h5
+cases_a_second=$("$python" -c 'import h5py
+print(400 / h5py.File("probe.h5")["timing/wall_time"][...].max())')
+points() { "$python" -c "print(int(($1 * $cases_a_second) ** 0.5) + 1)"; }
+echo "# $cases_a_second cases per second on two ranks of one lane"
+
+# ---- time limits that strike, and an array beside it ---------------------------------------------
+# Slurm counts in minutes and looks every 30 s: with a warning 20 s before the end a turn lasts
+# between 10 and 40 s. 90 s of work cannot do with two, unless the machine has become faster.
+scenario "$(points 90)" 5 >sweep.yaml
+SCENARIO=sweep.yaml RESULTS=results/requeued.h5
+echo "# \$ sbatch --ntasks=2 --time=1 --signal=B:USR1@20 scenarios/cluster/requeue.sh"
+submit --nodelist=n1 --ntasks=2 --time=1 --signal=B:USR1@20 "$scripts/requeue.sh"
+echo "# Submitted batch job $job"
+requeued=$job
+
+scenario "$(points 3)" 5 >small.yaml
+SCENARIO=small.yaml
+submit --nodelist=n2 "$scripts/array.sh"
+for k in 0 1 2; do
+    await_end "${job}_$k"
+    state=$(known "${job}_$k" JobState)
+    cat "$work"/*"-$job-$k.log" >log 2>&1
+    [ "$state" = COMPLETED ]
+    result $? "task $k of an array is COMPLETED ($state)"
+done
+frictions=(0.2 0.4 0.8)
+for k in 0 1 2; do
+    undisturbed alone.h5 small.yaml --set "ground.friction=${frictions[k]}"
+    same "... equals task $k's file" alone.h5 "results/sweep-$k.h5"
+done
+submit --nodelist=n2 --array=1 "$scripts/array.sh"
+await_end "${job}_1"
+cat "$work"/*"-$job-1.log" >log
+grep -q 'computed now\|0 of them' log
+result $? "a task that is complete computes nothing when it is submitted again"
+if "$stance" merge -h >/dev/null 2>&1; then
+    expect "the array's files become one" 0 "$stance" merge results/sweep.h5 \
+        results/sweep-[012].h5
+    "$python" -c 'import h5py; f = h5py.File("results/sweep.h5"); s = f["status"][...]
+assert s.shape[0] == 3 and (s == 1).all(), s' >log 2>&1
+    result $? "... of all cases"
+fi
+
+await_end "$requeued"
+if (($(known "$requeued" Restarts) < 2)); then
+    echo "# too quick: once more, with more cases"
+    scenario "$(points 360)" 5 >sweep.yaml
+    rm -f results/requeued.h5
+    SCENARIO=sweep.yaml RESULTS=results/requeued.h5
+    submit --nodelist=n1 --ntasks=2 --time=1 --signal=B:USR1@20 "$scripts/requeue.sh"
+    requeued=$job
+fi
+ended "a job that was put back until it was done" "$requeued" COMPLETED
+note <stance-"$requeued".log
+logged "... at least twice" "$requeued" 2 'back into the queue'
+(($(known "$requeued" Restarts) >= 2))
+result $? "... as Slurm counts, too"
+scontrol show job "$requeued" | grep -E 'JobState|Restarts|RunTime' | note
+undisturbed whole.h5 sweep.yaml
+same "... equals the file of the job" whole.h5 results/requeued.h5
+sed 's/^/# /' log
+
+# ---- cancelled, submitted again ------------------------------------------------------------------
+scenario "$(points 16)" 5 >middle.yaml
+undisturbed middle.h5 middle.yaml
+SCENARIO=middle.yaml RESULTS=results/cancelled.h5
+submit --ntasks=2 --time=10 "$scripts/requeue.sh"
+await_cases results/cancelled.h5
+scancel "$job"
+ended "a job cancelled in mid-run" "$job" CANCELLED
+left=$(pending results/cancelled.h5)
+echo "${left:-no} cases left" >log
+((${left:-0} > 0))
+result $? "... leaves a file with cases to do"
+(($(known "$job" Restarts) == 0))
+result $? "... and is not put back"
+submit --ntasks=2 --time=10 "$scripts/requeue.sh"
+ended "submitted again" "$job" COMPLETED
+logged "... it goes on where it stopped" "$job" 1 "turn 1 on n[12]: $left cases to do"
+same "... and ends with the same file" middle.h5 results/cancelled.h5
+
+# ---- power of a node cut off ---------------------------------------------------------------------
+RESULTS=results/node.h5
+submit --ntasks=2 --time=10 "$scripts/requeue.sh"
+await_cases results/node.h5
+node=$(known "$job" NodeList)
+# shellcheck disable=SC2046
+kill -9 "$(cat "$cluster/$node.pid")" $(job_processes)
+ended "a job whose node dies" "$job" COMPLETED
+(($(known "$job" Restarts) == 1))
+result $? "... is put back once, by Slurm"
+other=$(known "$job" NodeList)
+echo "$node, then $other" >log
+[ -n "$other" ] && [ "$other" != "$node" ]
+result $? "... and goes on on another node"
+same "... and ends with the same file" middle.h5 results/node.h5
+start_node "$node"
+await_nodes
+result $? "the node comes back"
+
+# ---- a rank killed -------------------------------------------------------------------------------
+kill_rank() { # of the one job there is
+    local pid
+    for pid in $(job_processes); do
+        if grep -qz '^OMPI_COMM_WORLD_RANK=1$' "/proc/$pid/environ" 2>/dev/null &&
+            [ "$(readlink -f "/proc/$pid/exe")" = "$(readlink -f "$stance")" ]; then
+            kill -9 "$pid"
+            return
+        fi
+    done
+    echo "there is no rank 1" >&2
+}
+RESULTS=results/rank.h5
+submit --ntasks=2 --time=10 "$scripts/requeue.sh"
+await_cases results/rank.h5
+kill_rank
+ended "a job one of whose ranks is killed soon" "$job" FAILED
+logged "... is not put back, and says so" "$job" 1 'crashed within 600 s: not put back'
+rm results/rank.h5
+submit --ntasks=2 --time=10 --export=ALL,SHORTEST_TURN=0 "$scripts/requeue.sh"
+await_cases results/rank.h5
+kill_rank
+ended "a job one of whose ranks is killed later" "$job" COMPLETED
+(($(known "$job" Restarts) == 1))
+result $? "... is put back once"
+same "... and ends with the same file" middle.h5 results/rank.h5
+
+# ---- errors: nothing is put back -----------------------------------------------------------------
+SCENARIO=nowhere.yaml RESULTS=results/never.h5
+submit --ntasks=2 --time=10 "$scripts/requeue.sh"
+ended "a job without its scenario" "$job" FAILED
+echo "$(known "$job" ExitCode), $(known "$job" Restarts) restarts" >log
+[ "$(known "$job" ExitCode)" = 3:0 ] && (($(known "$job" Restarts) == 0))
+result $? "... has exit code 3 and is not put back"
+SCENARIO=small.yaml RESULTS=results/rank.h5
+submit --ntasks=2 --time=10 "$scripts/requeue.sh"
+ended "a job for another scenario's file that is whole" "$job" FAILED
+[ "$(known "$job" ExitCode)" = 2:0 ]
+result $? "... has exit code 2"
+
+# ---- one job with a limit of its own; two nodes; srun --------------------------------------------
+SCENARIO=middle.yaml RESULTS=results/one.h5
+submit --ntasks=2 --time=1 --export=ALL,RESERVE=56 "$scripts/one_job.sh"
+ended "one job that stops before Slurm's limit" "$job" FAILED
+[ "$(known "$job" ExitCode)" = 4:0 ]
+result $? "... has exit code 4"
+logged "... and says how to go on" "$job" 1 'go on with: mpirun -n 2 .*stance run .*--resume'
+left=$(pending results/one.h5)
+submit --ntasks=2 --time=10 "$scripts/one_job.sh"
+for _ in $(seq 600); do
+    (($(pending results/one.h5) < left)) && break
+    sleep 0.1
+done
+scancel --batch --signal=USR1 "$job"
+ended "submitted again, and told to stop by Slurm's signal" "$job" FAILED
+[ "$(known "$job" ExitCode)" = 4:0 ]
+result $? "... it has exit code 4"
+submit --nodes=2 --ntasks=2 --time=10 "$scripts/one_job.sh"
+ended "submitted again, for two nodes" "$job" COMPLETED
+logged "... with a rank on each" "$job" 1 'on 2 ranks'
+same "... and ends with the same file" middle.h5 results/one.h5
+expect "srun --mpi=pmix" 0 srun --nodes=1 --ntasks=2 --mpi=pmix "$stance" run small.yaml -o pmix.h5
+says "... makes ranks" 'on 2 ranks$'
+expect "srun without MPI" 2 srun --nodes=1 --ntasks=2 --mpi=none "$stance" run small.yaml -o none.h5
+says "... is refused" 'stance run: srun started several of these without an MPI that joins them'
+
+echo "1..$count"
+echo "$((count - failed)) passed, $failed failed"
+exit $((failed > 0))
