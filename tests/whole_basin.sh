@@ -325,7 +325,10 @@ expect "pictures of rays" 0 "$stance" plot rays.h5
 says "... show the curve" '^rays-rays.png$'
 expect "--by has no meaning for rays" 2 "$stance" basin rays.h5 --by ground.friction
 expect "pictures of basins" 0 "$stance" plot whole.h5
-expect "what a refined map has inferred" 0 "$stance" table rays.h5 --answer evidence --answer steps
+expect "a refined map" 0 "$stance" run map.yaml --quiet -o refined.h5 --set record.cases=none \
+    --set 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 33},
+        {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 33}], refine: {start: 8}}'
+expect "what it has inferred" 0 "$stance" table refined.h5 --answer evidence --answer steps
 "$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
 assert {(r["evidence"], bool(r["steps"])) for r in rows} == {("inferred", False), ("simulated", True)}' >>log 2>&1
 result $? "... has no numbers"
