@@ -257,7 +257,21 @@ static void count_cases(const struct lattice *lattice, enum results_kind of, str
     row->cases += lattice->map.cases;
 }
 
-static void add_slice(struct basin *b, const struct lattice *lattice, const size_t *point)
+/* What the slices of one block of a sample of parameters add up to. The points of a block share
+ * coordinates (saltelli, morris): independent of each other are blocks. */
+struct block {
+    double volume;
+    uint64_t slices;
+};
+
+static size_t blocks_of(const struct basin *b)
+{
+    return b->averaged >= 0 ? b->sample.points / b->sample.block : 0;
+}
+
+/* blocks[rows][blocks_of] */
+static void add_slice(struct basin *b, const struct lattice *lattice, const size_t *point,
+                      struct block *blocks)
 {
     struct basin_row *row = row_of(b, point);
     struct basin_volume volume;
@@ -268,11 +282,19 @@ static void add_slice(struct basin *b, const struct lattice *lattice, const size
     basin_map_volume(&lattice->map, b->choice.of, &volume);
     b->box = volume.box;
     row->slices++;
-    row->volume += volume.estimate;
-    row->squares += volume.estimate * volume.estimate;
     row->low += volume.low;
     row->high += volume.high;
-    row->error += volume.variance;
+    if (isfinite(volume.estimate)) {
+        row->known++;
+        row->volume += volume.estimate;
+        row->error += volume.variance;
+        if (b->averaged >= 0) {
+            struct block *block = &blocks[(size_t)(row - b->row) * blocks_of(b) +
+                                          point[b->averaged] / b->sample.block];
+            block->volume += volume.estimate;
+            block->slices++;
+        }
+    }
     row->cells += volume.cells;
     row->crossed += volume.crossed;
     basin_map_entropy(&lattice->map, b->choice.side, &row->entropy);
@@ -287,16 +309,30 @@ static void add_slice(struct basin *b, const struct lattice *lattice, const size
     }
 }
 
-/* From sums over slices to means; over a sample of parameters these scatter, too. */
-static void finish_row(const struct basin *b, struct basin_row *row)
+/* Variance of the mean of blocks; NAN: fewer than two of them are known. */
+static double scatter(const struct block *blocks, size_t count)
 {
-    const double n = (double)row->slices;
-    row->volume /= n;
+    double mean = 0, squares = 0, n = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (blocks[k].slices > 0) {
+            const double step = blocks[k].volume / (double)blocks[k].slices - mean;
+            mean += step / ++n; /* Welford's recurrence */
+            squares += step * step * (n - 1) / n;
+        }
+    }
+    return n > 1 ? squares / (n - 1) / n : NAN;
+}
+
+/* From sums over slices to means; over a sample of parameters these scatter, too. */
+static void finish_row(const struct basin *b, struct basin_row *row, const struct block *blocks)
+{
+    const double n = (double)row->slices, known = row->known > 0 ? (double)row->known : NAN;
     row->low /= n;
     row->high /= n;
-    row->error /= n * n;
-    if (b->averaged >= 0 && n > 1) {
-        row->error += fmax(0, row->squares / n - row->volume * row->volume) / (n - 1);
+    row->volume /= known;
+    row->error /= known * known;
+    if (b->averaged >= 0) {
+        row->error += scatter(blocks + (size_t)(row - b->row) * blocks_of(b), blocks_of(b));
     }
     row->error = sqrt(row->error);
 }
@@ -320,17 +356,22 @@ static void add_sampled(struct basin *b, const struct lattice *lattice, const si
     row->slices++;
 }
 
+/* A point that counts in several slices, averaged over, is one draw: the interval is that of as
+ * many draws as a slice has, which errs on the wide side. */
 static void finish_sampled(const struct basin *b, struct basin_row *row)
 {
     const uint64_t unknown = row->failed + row->pending, known = row->cases - unknown;
     const double share = known > 0 ? (double)row->inside / (double)known : NAN;
+    const double n = (double)row->slices;
+    const uint64_t draws = row->cases / row->slices, least = (uint64_t)((double)row->inside / n),
+                   most = (uint64_t)ceil((double)(row->inside + unknown) / n);
     double ignored;
-    statistics_wilson_at(b->choice.level, row->inside, row->cases, &row->low, &ignored);
-    statistics_wilson_at(b->choice.level, row->inside + unknown, row->cases, &ignored, &row->high);
+    statistics_wilson_at(b->choice.level, least, draws, &row->low, &ignored);
+    statistics_wilson_at(b->choice.level, most, draws, &ignored, &row->high);
     row->volume = b->box * share;
     row->low *= b->box;
     row->high *= b->box;
-    row->error = b->box * sqrt(share * (1 - share) / (double)known);
+    row->error = b->box * sqrt(share * (1 - share) / ((double)known / n));
 }
 
 static bool make_rows(struct basin *b, stance_message *message)
@@ -343,17 +384,28 @@ static bool make_rows(struct basin *b, stance_message *message)
         b->rows *= b->r->axis[b->by[k]].count;
     }
     b->row = calloc(b->rows, sizeof *b->row);
-    if (!b->row || !make_lattice(&lattice, b)) {
+    struct block *blocks = calloc(b->rows * blocks_of(b) + 1, sizeof *blocks);
+    if (!b->row || !blocks || !make_lattice(&lattice, b)) {
+        free(blocks);
         return no_memory(b->r, message);
     }
     do {
         take_slice(&lattice, b, point);
-        (b->starts == BASIN_GRID ? add_slice : add_sampled)(b, &lattice, point);
+        if (b->starts == BASIN_GRID) {
+            add_slice(b, &lattice, point, blocks);
+        } else {
+            add_sampled(b, &lattice, point);
+        }
     } while (next_slice(b, point));
     for (size_t k = 0; k < b->rows; k++) {
-        (b->starts == BASIN_GRID ? finish_row : finish_sampled)(b, &b->row[k]);
+        if (b->starts == BASIN_GRID) {
+            finish_row(b, &b->row[k], blocks);
+        } else {
+            finish_sampled(b, &b->row[k]);
+        }
     }
     free_lattice(&lattice);
+    free(blocks);
     return true;
 }
 
@@ -373,6 +425,24 @@ bool basin_make(struct basin *basin, const struct results *r, const struct basin
         basin_free(basin);
     }
     return good;
+}
+
+size_t basin_averaged(const struct basin *basin, const char **paths, size_t most)
+{
+    const struct results *r = basin->r;
+    size_t count = 0;
+    for (int a = 0; a < r->axes; a++) {
+        if (contains(basin->start, basin->start_axes, a) || r->axis[a].count < 2 ||
+            contains(basin->by, basin->by_axes, a)) {
+            continue;
+        }
+        for (int k = 0; k < (a == basin->averaged ? r->varied : 1); k++) {
+            if (count < most) {
+                paths[count++] = a == basin->averaged ? r->vary[k].of.name : r->axis[a].name;
+            }
+        }
+    }
+    return count;
 }
 
 void basin_free(struct basin *basin)

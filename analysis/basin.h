@@ -21,9 +21,10 @@ enum basin_starts {
 struct basin_row {
     size_t point[SCENARIO_MAX_AXES]; /* of the axes that rows are made by; 0 elsewhere */
     uint64_t slices, cases, inside, failed, pending;
-    double volume, low, high; /* mean of a slice; NAN: nothing is known */
-    double error;             /* likely error of `volume`, one standard deviation */
-    double squares;           /* of the slices' volumes, summed */
+    uint64_t known;           /* grid: slices of which some case is known */
+    double volume, low, high; /* mean of a slice (volume: of those known); NAN: nothing is known */
+    double error;             /* likely error of `volume`, one standard deviation: over a sample of
+                               * parameters with the scatter of its blocks; NAN: one block alone */
     uint64_t cells, crossed;  /* grid */
     struct basin_entropy entropy;
     struct basin_uncertainty uncertainty;
@@ -59,6 +60,8 @@ struct basin {
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
                 struct basin_sample *sample, bool *usage, stance_message *message);
 void basin_free(struct basin *basin);
+/* The paths of parameters that rows are averaged over, in paths[most]; how many there are. */
+size_t basin_averaged(const struct basin *basin, const char **paths, size_t most);
 
 /* Calls visit for every pair of neighbouring starts whose outcomes differ, in every slice; `first`
  * is the slice's point of all axes of the file, 0 along those of the starts. Stops, and returns

@@ -24,6 +24,17 @@ static json_t *paths(const struct results *r, const int *list, int count)
     return names;
 }
 
+static json_t *averaged(const struct basin *b)
+{
+    const char *path[256];
+    const size_t count = basin_averaged(b, path, sizeof path / sizeof path[0]);
+    json_t *names = json_array();
+    for (size_t k = 0; k < count; k++) {
+        json_array_append_new(names, json_string(path[k]));
+    }
+    return names;
+}
+
 static json_t *factors(const struct basin_sample *sample)
 {
     json_t *names = json_array();
@@ -121,6 +132,7 @@ bool basin_print_json(const struct basin *b)
                         b->starts == BASIN_GRID ? paths(b->r, b->start, b->start_axes)
                                                 : factors(&b->sample));
     json_object_set_new(root, "parameters", paths(b->r, b->by, b->by_axes));
+    json_object_set_new(root, "averaged", averaged(b));
     json_object_set_new(root, "box", number(b->box));
     json_object_set_new(root, "unit", json_string(b->unit));
     json_object_set_new(root, "rows", rows);

@@ -31,6 +31,30 @@ static const char *interval_reason(enum sampling_method method)
     }
 }
 
+/* What rows are averaged over, where they are. */
+static void print_averaged(const struct basin *b)
+{
+    enum { MOST = 64, WIDTH = 96 };
+    const char *path[MOST];
+    const size_t count = basin_averaged(b, path, MOST);
+    size_t column = 0;
+    for (size_t k = 0; k < count; k++) {
+        const char *before = k == 0                                 ? "  averaged over "
+                             : column + strlen(path[k]) + 2 > WIDTH ? ",\n    "
+                                                                    : ", ";
+        column = before[0] == ',' && before[1] == ' ' ? column : 0;
+        column += (size_t)printf("%s%s", before, path[k]);
+    }
+    if (count > 0) {
+        putchar('\n');
+    }
+    if (b->averaged >= 0) {
+        printf("  (%zu sampled points, %s%s: +- has their scatter in it, bounds have not)\n",
+               b->sample.points, sampling_words[b->sample.method],
+               b->sample.method == SAMPLING_MORRIS ? ", on levels of the ranges" : "");
+    }
+}
+
 static void print_sample(const struct basin *b)
 {
     const struct basin_sample *sample = &b->sample;
@@ -51,6 +75,7 @@ static void print_sample(const struct basin *b)
     if (sample->others) {
         puts("  averaged over what else is sampled");
     }
+    print_averaged(b);
     printf("  interval: %s\n", interval_reason(sample->method));
 }
 
@@ -81,6 +106,7 @@ static void print_head(const struct basin *b)
         printf("  %-24s %s ... %s, %zu places\n", axis->name, first, last, axis->count);
     }
     printf("  a box of %.6g%s%s\n", b->box, b->unit[0] ? " " : "", b->unit);
+    print_averaged(b);
 }
 
 static void print_labels(const struct basin *b, const struct basin_row *row)

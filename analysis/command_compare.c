@@ -2,6 +2,7 @@
 #include "compare.h"
 #include "compare_labels.h"
 #include "csv.h"
+#include "results_rows.h"
 
 #include "../runner/command.h"
 #include "../runner/supervise.h"
@@ -296,6 +297,17 @@ static bool read_tolerance(const char *text, char name[96], struct compare_toler
     return false;
 }
 
+/* Whether an answer stands for words (outcome, status ...), which have no tolerance. */
+static bool is_flag(const struct results *r, const char *name)
+{
+    struct results_column column = {.id = -1};
+    stance_message ignored = {""};
+    const bool flag =
+        results_column_open(r, name, &column, &ignored) && column.id >= 0 && column.words != NULL;
+    results_column_close(&column);
+    return flag;
+}
+
 static int compare_all(const struct results r[2], const struct request *request)
 {
     struct compare_tolerances tolerances = {.count = request->tolerance_count};
@@ -311,6 +323,10 @@ static int compare_all(const struct results r[2], const struct request *request)
         if (name && !compare_has(&r[0], name) && !compare_has(&r[1], name)) {
             fprintf(stderr, "stance compare: --tolerance: neither file has a variable '%.60s'\n",
                     name);
+            return EXIT_USAGE;
+        }
+        if (name && is_flag(&r[0], name)) {
+            fprintf(stderr, "stance compare: --tolerance: '%.60s' is no number\n", name);
             return EXIT_USAGE;
         }
     }
@@ -443,7 +459,9 @@ const struct command command_compare = {
     "           another label than its own in the first file (1: beside it). For a refined map "
     "and\n"
     "           a full one, or maps of two methods; exit code 2 when the axes differ\n"
-    "  --csv    a row for each variable or attribute that differs\n"
+    "  --csv    a row for each variable or attribute that differs: name, reason, differing, of,\n"
+    "           largest, largest_case (without a tolerance the first case that differs), and both\n"
+    "           values there as first and second\n"
     "  --json   the same as JSON, with the keys\n"
     "    files         both paths\n"
     "    identical     true or false (false with a tolerance, as not all is compared)\n"

@@ -105,7 +105,7 @@ static void print_share(const char *name, uint64_t k, uint64_t n)
            percent(k, n), 100 * low, 100 * high);
 }
 
-static void print_outcomes(const struct summary *summary)
+static void print_outcomes(const struct summary *summary, const struct results *r)
 {
     const struct statistics_counts *counts = &summary->counts;
     printf("\nOutcomes of the %llu case%s done, with 95 %% intervals (Wilson)\n",
@@ -118,6 +118,10 @@ static void print_outcomes(const struct summary *summary)
     }
     if (!summary_has_outcomes(summary)) {
         puts("  not stored in this file");
+    } else if (r->sample >= 0 && r->cases > r->axis[r->sample].count) {
+        puts("  (cases at one point of the sample are not independent: where several are counted, "
+             "here\n"
+             "  or against other axes, these intervals are too narrow)");
     }
     if (summary->inferred > 0) {
         printf("  of these %14llu  %7.3f %%   not simulated: inferred from neighbours that agree\n",
@@ -540,7 +544,7 @@ static void print_text(const struct summary *summary, const struct results *r)
         print_cost(summary);
         return;
     }
-    print_outcomes(summary);
+    print_outcomes(summary, r);
     bool outcomes = summary_has_outcomes(summary);
     if (outcomes) {
         print_extents(summary, r);
@@ -638,7 +642,8 @@ const struct command command_summary = {
     "what came out: outcomes, extent of the stabilised set, extremes, cost",
     run,
     "Works on files that are not finished, too. Shares are of the cases that are done, with\n"
-    "Wilson's 95 % intervals. An extent is the unbroken stretch of stabilised cases through the\n"
+    "Wilson's 95 % intervals, as if cases were independent draws. An extent is the unbroken "
+    "stretch of stabilised cases through the\n"
     "equilibrium along one axis of offsets, on the line where the other offsets are nearest to\n"
     "zero; it ends midway between the last stabilised case and the next one.\n"
     "\n"

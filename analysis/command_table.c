@@ -1,6 +1,7 @@
 /* command_table.c - `stance table FILE`: every case as a row of CSV, a block of rows at a time. */
 #include "csv.h"
 #include "results_rows.h"
+#include "statistics.h"
 
 #include "../runner/command.h"
 #include "../runner/store.h"
@@ -35,6 +36,7 @@ struct table {
     double *block[MOST_COLUMNS]; /* [ROWS][width] */
     struct parameter parameter[MOST_PATHS];
     const char *of; /* outcome, NULL: all cases */
+    bool *inferred; /* [cases] of a refined map: not simulated; NULL: none */
 };
 
 /* ---- what there is ------------------------------------------------------------------------ */
@@ -109,6 +111,7 @@ static void close_table(struct table *t)
     for (size_t k = 0; k < t->parameters; k++) {
         free(t->parameter[k].value);
     }
+    free(t->inferred);
 }
 
 /* ---- rows --------------------------------------------------------------------------------- */
@@ -201,6 +204,8 @@ static void put_case(struct table *t, uint64_t first, size_t row)
             /* What stands in the row of a pending case means nothing. */
             if (kind == RESULTS_PENDING && strcmp(column->name, "status") != 0) {
                 csv_text(&t->csv, "");
+            } else if (!column->words && t->inferred && t->inferred[first + row]) {
+                csv_text(&t->csv, ""); /* no answer, where counts say 0 */
             } else if (column->words) {
                 put_flag(&t->csv, column->words, value);
             } else {
@@ -257,7 +262,9 @@ static int work(void *context)
     t->r = &r;
     t->csv.file = stdout;
     t->of = request->of;
+    uint64_t ignored;
     bool good = find_parameters(t, &message) &&
+                statistics_inferred(&r, &ignored, &t->inferred, &message) &&
                 open_columns(t, request->answers ? request->answer : answers,
                              request->answers ? request->answers : ANSWERS, &message);
     if (good) {
@@ -321,7 +328,8 @@ const struct command command_table = {
     "values of the axes, of what varies with them (further paths of an axis, sampled\n"
     "parameters), and its answers as the file has them: status, outcome, evidence and failure\n"
     "as words, numbers as short as gives the same double again, nothing for NAN, nothing but the\n"
-    "status for cases that are pending. Units are those of `stance describe`: SI and radians.\n"
+    "status for cases that are pending, nothing but words for those that a refined map has\n"
+    "inferred. Units are those of `stance describe`: SI and radians.\n"
     "Files of any length are read a few thousand cases at a time.\n"
     "\n"
     "  --answer NAME    these answers alone, in this order; may be repeated\n"

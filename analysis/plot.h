@@ -54,6 +54,8 @@ void plot_value_tics(FILE *script, double low, double high, double height);
 
 /* ---- legends ------------------------------------------------------------------------------ */
 
+/* Adds to a subtitle how many cases have failed, where some have. */
+void plot_failed_text(const struct results *r, char *text, size_t size);
 /* One entry per kind of case that occurs, with its share of all cases; returns the height. */
 double plot_kind_legend(const struct plot *plot, struct gnuplot *g, double x, double y);
 

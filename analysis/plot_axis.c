@@ -235,6 +235,17 @@ void plot_axis_label(const struct results_axis *axis, struct gnuplot *g, double 
     }
 }
 
+void plot_failed_text(const struct results *r, char *text, size_t size)
+{
+    struct statistics_counts counts;
+    const size_t used = strlen(text);
+    statistics_count(r, -1, 0, &counts);
+    if (counts.kind[RESULTS_FAILED] > 0 && used < size) {
+        snprintf(text + used, size - used, ", %llu failed in all",
+                 (unsigned long long)counts.kind[RESULTS_FAILED]);
+    }
+}
+
 double plot_kind_legend(const struct plot *plot, struct gnuplot *g, double x, double y)
 {
     struct statistics_counts counts;

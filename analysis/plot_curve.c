@@ -260,9 +260,8 @@ struct share {
     size_t stride;
     const char *colour;
     char label[96];
-    /* Starts on a grid: its volume, bounded as basin_map.h has it, for each value; else NULL. */
-    struct basin_row *rows;
-    double box;
+    /* Starts on a grid: shares of their box with both ends, [values][3]; else NULL. */
+    double *parts;
 };
 enum { SHARES = 6 };
 
@@ -270,10 +269,8 @@ static void share_at(const struct share *share, size_t i, double part[3])
 {
     const struct statistics_counts *c = &share->counts[i * share->stride];
     part[0] = part[1] = part[2] = NAN;
-    if (share->rows) {
-        part[0] = share->rows[i].volume / share->box;
-        part[1] = share->rows[i].low / share->box;
-        part[2] = share->rows[i].high / share->box;
+    if (share->parts) {
+        memcpy(part, share->parts + 3 * i, 3 * sizeof *part);
     } else if (c->done > 0) {
         part[0] = (double)c->kind[share->kind] / (double)c->done;
         statistics_wilson(c->kind[share->kind], c->done, &part[1], &part[2]);
@@ -285,6 +282,7 @@ static double put_share_data(struct page *page, const struct sample *samples,
                              const struct share *share, char name[32])
 {
     double highest = 0, part[3];
+    bool any = false;
     FILE *data = gnuplot_data(&page->g, name);
     for (size_t i = 0; i < page->along->axis->count; i++) {
         share_at(share, samples[i].index, part);
@@ -294,22 +292,45 @@ static double put_share_data(struct page *page, const struct sample *samples,
             gnuplot_number(data, 100 * part[k]);
         }
         putc('\n', data);
+        any = any || part[0] > 0;
         highest = part[2] > highest / 100 ? 100 * part[2] : highest; /* false for NAN */
     }
     gnuplot_close_data(&page->g, data);
-    return highest;
+    return any ? highest : 0; /* of no case at all: not the tiny end of its interval */
 }
 
-/* The volumes of basins whose starts are on a grid: no sample, for which Wilson's interval would
- * be. Where the file is none of these the shares are left as they are. */
-static bool measure_volumes(const struct results *r, int axis, struct share *shares, int count,
-                            stance_message *message)
+/* Ends of a basin's share: certain bounds, or over a sample of parameters the likely error. */
+static void find_ends(const struct basin *basin, const struct basin_row *row, double part[3])
 {
-    const char *by[] = {r->axis[axis].name};
+    const double error = statistics_deviations(basin->choice.level) * row->error;
+    part[0] = row->volume / basin->box;
+    part[1] = row->low / basin->box;
+    part[2] = row->high / basin->box;
+    if (basin->averaged >= 0) {
+        part[1] = fmax(0, (row->volume - error) / basin->box);
+        part[2] = fmin(1, (row->volume + error) / basin->box);
+    }
+}
+
+/* Which row has point i of `axis` and point k of `second`, rows being in the order of the axes. */
+static size_t row_at(const struct results *r, int axis, int second, size_t i, size_t k)
+{
+    return second < 0      ? i
+           : axis < second ? i * r->axis[second].count + k
+                           : k * r->axis[axis].count + i;
+}
+
+/* The volumes of basins whose starts are on a grid: no sample of independent cases, for which
+ * Wilson's interval would be. Share k is of its own kind or, with a second axis, of its point k.
+ * Where the file is none of these the shares are left as they are. */
+static bool measure_volumes(const struct results *r, int axis, int second, struct share *shares,
+                            int count, bool *sampled, stance_message *message)
+{
+    const char *by[] = {r->axis[axis].name, second < 0 ? NULL : r->axis[second].name};
     for (int k = 0; k < count; k++) {
         const struct basin_choice choice = {.of = (enum results_kind)shares[k].kind,
                                             .by = by,
-                                            .by_count = 1,
+                                            .by_count = second < 0 ? 1 : 2,
                                             .side = 5,
                                             .level = 0.95};
         struct basin_sample sample;
@@ -321,12 +342,20 @@ static bool measure_volumes(const struct results *r, int axis, struct share *sha
         if (!basin_make(&basin, r, &choice, &sample, &usage, message)) {
             return usage;
         }
-        if (basin.starts == BASIN_GRID && basin.averaged < 0) {
-            shares[k].rows = basin.row;
-            shares[k].box = basin.box;
-            basin.row = NULL;
+        if (basin.starts == BASIN_GRID) {
+            const size_t values = r->axis[axis].count;
+            shares[k].parts = malloc(3 * values * sizeof *shares[k].parts);
+            for (size_t i = 0; shares[k].parts && i < values; i++) {
+                find_ends(&basin, &basin.row[row_at(r, axis, second, i, (size_t)k)],
+                          shares[k].parts + 3 * i);
+            }
         }
+        const bool good = basin.starts != BASIN_GRID || shares[k].parts;
+        *sampled = basin.averaged >= 0;
         basin_free(&basin);
+        if (!good) {
+            return no_memory(message);
+        }
     }
     return true;
 }
@@ -343,7 +372,7 @@ static int choose_kinds(const struct statistics_counts *counts, size_t n, struct
         }
         if (any || (k == 1 && found == 0)) {
             int kind = any ? wanted[k] : wanted[0];
-            shares[found] = (struct share){kind, counts, 1, plot_colours[kind], "", NULL, 0};
+            shares[found] = (struct share){kind, counts, 1, plot_colours[kind], "", NULL};
             snprintf(shares[found].label, sizeof shares[found].label, "%s",
                      results_kind_names[kind]);
             found++;
@@ -387,7 +416,7 @@ static int choose_values(const struct results *r, int along, int second,
     struct share kinds[2];
     choose_kinds(counts, r->axis[along].count * n, kinds);
     for (size_t k = 0; k < n; k++) {
-        shares[k] = (struct share){kinds[0].kind, counts + k, n, colours[k], "", NULL, 0};
+        shares[k] = (struct share){kinds[0].kind, counts + k, n, colours[k], "", NULL};
         results_value_text(&r->axis[second], k, true, shares[k].label, sizeof shares[k].label);
     }
     return (int)n;
@@ -483,14 +512,15 @@ static int choose_extents(const struct results *r, int *axes)
 }
 
 static void label_share_page(struct page *page, const int *extents, int extent_count,
-                             const struct share *shares, int count, const char *of)
+                             const struct share *shares, int count, const char *of, bool bounds)
 {
     const struct results *r = page->plot->r;
     double x = LEFT + PLOT_WIDTH + 20, y = page->top + 10;
     char text[160];
 
     gnuplot_label(&page->g, 24, page->top + SHARE_HEIGHT / 2.0,
-                  shares[0].rows ? "share of the box of starts (%)" : "share of the cases done (%)",
+                  shares[0].parts ? "share of the box of starts (%)"
+                                  : "share of the cases done (%)",
                   "center", 12, true);
     if (of) {
         gnuplot_label(&page->g, x, y, of, "left", 11, false);
@@ -502,9 +532,9 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
     }
     const bool word = page->along->axis->word != NULL;
     gnuplot_label(&page->g, x, y + 2,
-                  shares[0].rows ? (word ? "bars: its bounds" : "band: its bounds")
-                  : word         ? "bars: 95 % interval"
-                                 : "band: 95 % interval",
+                  bounds ? (word ? "bars: its bounds" : "band: its bounds")
+                  : word ? "bars: 95 % interval"
+                         : "band: 95 % interval",
                   "left", 11, false);
     y = page->top + SHARE_HEIGHT + GAP;
     for (int k = 0; k < extent_count; k++) {
@@ -523,7 +553,7 @@ static void label_share_page(struct page *page, const int *extents, int extent_c
 /* `second`: the axis whose values have a curve each, or -1. */
 static bool draw_share_page(const struct plot *plot, const struct plot_axis *along,
                             const struct sample *samples, const struct share *shares, int count,
-                            int second, stance_message *message)
+                            int second, bool bounds, stance_message *message)
 {
     struct page page = {.plot = plot, .along = along};
     const struct results *r = plot->r;
@@ -538,11 +568,12 @@ static bool draw_share_page(const struct plot *plot, const struct plot_axis *alo
              along->axis->name, second < 0 ? "" : " and ", second < 0 ? "" : r->axis[second].name,
              (unsigned long long)(r->cases / (values ? values : 1)),
              second < 0 ? "value" : "pair of values");
+    plot_failed_text(r, what, sizeof what);
     if (!begin_page(&page, what, SHARE_HEIGHT + extent_count * (EXTENT_HEIGHT + GAP), message)) {
         return false;
     }
     label_share_page(&page, extents, extent_count, shares, count,
-                     second < 0 ? NULL : r->axis[second].name);
+                     second < 0 ? NULL : r->axis[second].name, bounds);
     gnuplot_decorate(&page.g);
     put_shares(&page, samples, shares, count, extent_count == 0);
     for (int k = 0; k < extent_count; k++) {
@@ -557,28 +588,27 @@ static bool draw_shares(const struct plot *plot, stance_message *message)
     const struct results *r = plot->r;
     struct plot_axis along;
     struct share shares[SHARES];
-    int first, second, drawn = 0;
+    int first, second, count = 0;
     choose_parameters(r, &first, &second);
     plot_axis_make_curve(&along, &r->axis[first]);
     struct sample *samples = make_samples(&along);
     size_t counted = r->axis[first].count * (second < 0 ? 1 : r->axis[second].count);
     struct statistics_counts *counts = malloc(counted * sizeof *counts);
-    bool good = (samples && counts) || no_memory(message);
+    bool good = (samples && counts) || no_memory(message), sampled = false;
     if (good) {
-        int count;
         if (second < 0) {
             statistics_count_axis(r, first, counts);
             count = choose_kinds(counts, counted, shares);
-            drawn = count;
-            good = measure_volumes(r, first, shares, count, message);
         } else {
             statistics_count_pair(r, first, second, counts);
             count = choose_values(r, first, second, counts, shares);
         }
-        good = good && draw_share_page(plot, &along, samples, shares, count, second, message);
+        good = measure_volumes(r, first, second, shares, count, &sampled, message) &&
+               draw_share_page(plot, &along, samples, shares, count, second,
+                               shares[0].parts && !sampled, message);
     }
-    for (int k = 0; k < drawn; k++) {
-        free(shares[k].rows);
+    for (int k = 0; k < count; k++) {
+        free(shares[k].parts);
     }
     free(samples);
     free(counts);

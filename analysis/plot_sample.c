@@ -289,6 +289,8 @@ static bool put_panel(struct page *page, int k, double most, stance_message *mes
     if (!put_range(page, k, 'x', 4, message)) {
         return false;
     }
+    fprintf(page->g.script, "set xtics font '%s'\n", /* words are long, panels are not */
+            page->plot->r->vary[k].word ? ",8" : "");
     fprintf(page->g.script,
             "set yrange [0:%.10g]\nset format y '%%.10g'\n"
             "set grid lt 1 lc rgb '#e6e6e6' lw 0.8\n",
@@ -362,6 +364,7 @@ bool plot_sample(const struct plot *plot, stance_message *message)
     choose_scatter(&page);
     snprintf(what, sizeof what, "%llu cases at %zu points of a design, %s",
              (unsigned long long)r->cases, r->axis[r->sample].count, r->method);
+    plot_failed_text(r, what, sizeof what);
     page.top = gnuplot_title_height(width, title, what);
     if (!find_most(&page, panels, &most, message) ||
         !gnuplot_begin(&page.g, width, (int)page.top + SCATTER_HEIGHT + LABELS + 40 + rows * DOWN,

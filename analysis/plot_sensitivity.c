@@ -268,8 +268,36 @@ static bool find_place(const double *point, double (*taken)[2], size_t n, double
     return false;
 }
 
+/* Whether the factors a and b, by their places in the order, stand at the very same point. */
+static bool are_together(const struct drawing *d, const struct sensitivity *s, size_t a, size_t b)
+{
+    const size_t one = d->study->order[a], other = d->study->order[b];
+    return s->measure[SENSITIVITY_MU_STAR][one].estimate ==
+               s->measure[SENSITIVITY_MU_STAR][other].estimate &&
+           s->measure[SENSITIVITY_SIGMA][one].estimate ==
+               s->measure[SENSITIVITY_SIGMA][other].estimate;
+}
+
+/* "3,4,6": number i and those at the same point; false where a number before it has said that. */
+static bool number_text(const struct drawing *d, const struct sensitivity *s, size_t i, char *text,
+                        size_t size)
+{
+    size_t used = (size_t)snprintf(text, size, "%zu", i + 1);
+    for (size_t b = 0; b < i; b++) {
+        if (are_together(d, s, b, i)) {
+            return false;
+        }
+    }
+    for (size_t b = i + 1; b < d->study->factors && used < size; b++) {
+        if (are_together(d, s, i, b)) {
+            used += (size_t)snprintf(text + used, size - used, ",%zu", b + 1);
+        }
+    }
+    return true;
+}
+
 /* Numbers of the factors beside their points, the most important first; in a crowd the last go
- * without. */
+ * without. Those at the very same place share one. */
 static void put_places(struct drawing *d, const struct sensitivity *s, char name[32])
 {
     double taken[SAMPLING_MAX_FACTORS][2];
@@ -280,8 +308,10 @@ static void put_places(struct drawing *d, const struct sensitivity *s, char name
         const size_t j = d->study->order[i];
         const double point[2] = {across * s->measure[SENSITIVITY_MU_STAR][j].estimate,
                                  up * s->measure[SENSITIVITY_SIGMA][j].estimate};
-        if (isfinite(point[0]) && isfinite(point[1]) && find_place(point, taken, n, taken[n])) {
-            fprintf(data, "%.10g %.10g %zu\n", taken[n][0] / across, taken[n][1] / up, i + 1);
+        char text[64];
+        if (isfinite(point[0]) && isfinite(point[1]) && number_text(d, s, i, text, sizeof text) &&
+            find_place(point, taken, n, taken[n])) {
+            fprintf(data, "%.10g %.10g %s\n", (taken[n][0] - 4) / across, taken[n][1] / up, text);
             n++;
         }
     }
@@ -323,7 +353,7 @@ static void put_plane(struct drawing *d, size_t t)
             "plot x with lines lc rgb '" PLOT_GREY "' dt 2 notitle,"
             " '%s' using 1:4:2:3:5:6 with xyerrorbars lc rgb '#9ecae1' lw 1 pt 0 notitle,"
             " '' using 1:4 with points pt 7 ps 0.8 lc rgb '" PLOT_ACCENT "' notitle,"
-            " '%s' using 1:2:3 with labels font ',10' center notitle\n",
+            " '%s' using 1:2:3 with labels font ',10' left notitle\n",
             name, numbers);
 }
 

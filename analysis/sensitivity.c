@@ -476,23 +476,10 @@ bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, 
     return good;
 }
 
-/* What factors are ordered by; what is no number comes last. */
-static double weight(const struct sensitivity *s, size_t factor)
+double sensitivity_weight(const struct sensitivity *s, size_t factor)
 {
     const struct sensitivity_value *by = s->measure[SENSITIVITY_TOTAL];
     by = by ? by : s->measure[SENSITIVITY_MU_STAR];
     by = by ? by : s->measure[SENSITIVITY_FIRST];
-    return isnan(by[factor].estimate) ? -INFINITY : by[factor].estimate;
-}
-
-void sensitivity_order(const struct sensitivity *s, size_t *order)
-{
-    for (size_t i = 0; i < s->factors; i++) {
-        size_t at = i;
-        while (at > 0 && weight(s, i) > weight(s, order[at - 1])) {
-            at--;
-        }
-        memmove(order + at + 1, order + at, (i - at) * sizeof *order);
-        order[at] = i;
-    }
+    return by[factor].estimate;
 }

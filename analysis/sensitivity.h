@@ -103,8 +103,7 @@ bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, 
                        size_t factors, bool even, const struct sensitivity_bootstrap *bootstrap);
 void sensitivity_free(struct sensitivity *s);
 
-/* Factors in the order of what matters most: total index, mu_star or first-order index, the largest
- * first; order[factors]. */
-void sensitivity_order(const struct sensitivity *s, size_t *order);
+/* How much a factor matters: its total index, mu_star or first-order index; NAN without. */
+double sensitivity_weight(const struct sensitivity *s, size_t factor);
 
 #endif

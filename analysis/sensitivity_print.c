@@ -130,11 +130,17 @@ static void print_factors(const struct sensitivity_study *study,
 static void print_sum(const struct sensitivity_table *table)
 {
     const struct sensitivity_value *sum = &table->s.first_sum;
-    if (!isnan(sum->estimate)) {
-        printf("  sum of first-order indices %.4f (%.4f ... %.4f); interactions of factors "
-               "account for the rest, %.4f\n",
-               sum->estimate, sum->low, sum->high, 1 - sum->estimate);
+    if (isnan(sum->estimate)) {
+        return;
     }
+    printf("  sum of first-order indices %.4f", sum->estimate);
+    if (!isnan(sum->low)) {
+        printf(" (%.4f ... %.4f)", sum->low, sum->high);
+    }
+    if (sum->estimate < 1) {
+        printf("; interactions of factors account for the rest, %.4f", 1 - sum->estimate);
+    }
+    putchar('\n');
 }
 
 /* Pairs whose interval is above zero. */

@@ -335,29 +335,29 @@ static int make_tables(struct sensitivity_study *study, stance_message *message)
     return code;
 }
 
-/* By the sum of the places that a factor has in the tables. */
+/* By the mean over the tables of what a table is ordered by. */
 static bool make_order(struct sensitivity_study *study)
 {
-    const size_t k = study->factors;
-    size_t *own = calloc(k, sizeof *own), *places = calloc(k, sizeof *places);
+    const size_t k = study->factors, tables = study->response.tables;
+    double *weight = calloc(k, sizeof *weight);
     study->order = calloc(k, sizeof *study->order);
-    const bool good = own && places && study->order;
-    for (size_t t = 0; good && t < study->response.tables; t++) {
-        sensitivity_order(&study->table[t].s, own);
-        for (size_t i = 0; i < k; i++) {
-            places[own[i]] += i;
-        }
-    }
+    const bool good = weight && study->order;
     for (size_t i = 0; good && i < k; i++) {
+        size_t found = 0;
+        for (size_t t = 0; t < tables; t++) { /* a table that has none says nothing */
+            const double own = sensitivity_weight(&study->table[t].s, i);
+            found += isfinite(own);
+            weight[i] += isfinite(own) ? own : 0;
+        }
+        weight[i] = found > 0 ? weight[i] : -INFINITY;
         size_t at = i;
-        while (at > 0 && places[i] < places[study->order[at - 1]]) {
+        while (at > 0 && weight[i] > weight[study->order[at - 1]]) {
             study->order[at] = study->order[at - 1];
             at--;
         }
         study->order[at] = i;
     }
-    free(own);
-    free(places);
+    free(weight);
     return good;
 }
 

@@ -42,7 +42,7 @@ struct sensitivity_study {
     size_t block, factors;
     struct response response;
     struct sensitivity_table *table; /* [response.tables] */
-    size_t *order;                   /* [factors]: what matters most, over all tables, first */
+    size_t *order; /* [factors]: what matters most, on the mean of tables, first */
 };
 
 /* Returns an exit code; other than EXIT_DONE with a line in *message, and nothing is left. */

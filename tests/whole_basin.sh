@@ -183,6 +183,7 @@ assert d["end_time"]["differing"] == 0 and d["end_time"]["largest_at"]["index"] 
 result $? "... with its keys"
 expect "a tolerance that is none" 2 "$stance" compare whole.h5 moved.h5 --tolerance 1e-6x
 expect "a variable that is none" 2 "$stance" compare whole.h5 moved.h5 --tolerance end=1
+expect "words have no tolerance" 2 "$stance" compare whole.h5 moved.h5 --tolerance outcome=1
 
 # ---- tables ----------------------------------------------------------------------------------
 expect "every case as CSV" 0 "$stance" table whole.h5
@@ -283,6 +284,30 @@ END
 result $? "... with Wilson's interval, in which the grid's volume lies"
 expect "points on a boundary need a grid" 2 "$stance" basin sample.h5 --boundary
 
+# A sample of parameters beside starts on a grid: points of a block share coordinates, blocks do not.
+expect "basins over sampled parameters" 0 "$stance" run map.yaml --quiet -o over.h5 --set record.cases=none \
+    --set 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 9},
+        {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 8}], sample: {method: saltelli, count: 8,
+        vary: [{path: ground.friction, from: 0.05, to: 1}, {path: controller.torque_limit, from: 5, to: 20}]}}'
+expect "... are averaged" 0 "$stance" basin over.h5 --json
+"$python" - >>log 2>&1 <<'END'
+import json, h5py, numpy
+found = json.load(open("log"))
+inside = (h5py.File("over.h5")["outcome"][...] == 1).astype(float)
+assert inside.shape == (9, 8, 32) and 0.05 < inside.mean() < 0.95
+edge = lambda n: numpy.where((numpy.arange(n) % (n - 1)) == 0, 0.5, 1)
+volume = numpy.einsum("ijp,i,j->p", inside, edge(9), edge(8)) * 0.18 / 8 * 1.2 / 7
+blocks = volume.reshape(8, 4).mean(1)
+row, = found["rows"]
+assert found["averaged"] == ["ground.friction", "controller.torque_limit"], found["averaged"]
+assert abs(row["volume"] - volume.mean()) < 1e-12
+scatter = blocks.std(ddof=1) / 8 ** 0.5
+assert scatter <= row["error"] < 1.05 * scatter, (row["error"], scatter)
+END
+result $? "... and their error is the scatter of whole blocks"
+expect "... as text" 0 "$stance" basin over.h5
+says "... which says over what" 'averaged over ground.friction, controller.torque_limit'
+
 # ---- rays ------------------------------------------------------------------------------------
 cat >rays.sets <<'END'
 sweep={grid: [{path: ground.friction, values: [0.2, 0.4]}, {path: initial.offset.scale, from: 0.02, to: 1, count: 50}],
@@ -323,6 +348,13 @@ expect "pictures of rays" 0 "$stance" plot rays.h5
 says "... show the curve" '^rays-rays.png$'
 expect "--by has no meaning for rays" 2 "$stance" basin rays.h5 --by ground.friction
 expect "pictures of basins" 0 "$stance" plot whole.h5
+expect "a refined map" 0 "$stance" run map.yaml --quiet -o refined.h5 --set record.cases=none \
+    --set 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 33},
+        {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 33}], refine: {start: 8}}'
+expect "what it has inferred" 0 "$stance" table refined.h5 --answer evidence --answer steps
+"$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
+assert {(r["evidence"], bool(r["steps"])) for r in rows} == {("inferred", False), ("simulated", True)}' >>log 2>&1
+result $? "... has no numbers"
 expect "rays as a table" 0 "$stance" table rays.h5 --answer outcome --of fell
 "$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
 assert list(rows[0])[1:6] == ["ground.friction", "initial.offset.scale", "sample", "initial.offset.theta", "initial.offset.vtheta"]' >>log 2>&1
