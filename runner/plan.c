@@ -300,6 +300,7 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
     size_t first;
     const size_t count = designs_here(plan, parallel, &first);
     uint64_t found[2] = {0}; /* designs that exist; ranks that were stopped */
+    const double start = plan_clock();
 
     for (size_t d = first; d < first + count; d++) {
         struct scenario_values values;
@@ -314,6 +315,9 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
             plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
         }
         found[0] += plan->design_status[d] == STANCE_DONE;
+    }
+    if (count > 0) {
+        plan->design_seconds = (plan_clock() - start) * (double)plan->designs / (double)count;
     }
     meet(plan, parallel);
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);

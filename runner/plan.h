@@ -23,6 +23,7 @@ struct plan {
     size_t designs;                 /* distinct ones, row-major over the axes flagged `design` */
     struct resolved_design *design; /* [designs] */
     uint8_t *design_status;         /* [designs] enum stance_status */
+    double design_seconds;          /* what plan_compute_designs takes on one rank */
 
     /* Asked about every millisecond while designs are computed; NULL: never. */
     bool (*stop)(void *context);

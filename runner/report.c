@@ -49,6 +49,7 @@ static struct estimate estimate(const struct plan *plan, int ranks)
         e.designs_failed += plan->design_status[d] != STANCE_DONE;
     }
     e.seconds = plan_cost(plan, cost_budget, &e.bound);
+    e.seconds += e.seconds >= 0 ? plan->design_seconds : 0;
     e.capture = plan_capture_cost(plan);
     e.bound = e.bound || e.capture > 0; /* captured cases cost less */
     if (plan->scenario->refine.given && !plan->single) {
