@@ -278,7 +278,7 @@ profile: $(PROGRAM)
 	@$(TEST_ENVIRONMENT) bash tests/profile.sh
 
 lint: packages-test
-	@bash tests/lint.sh
+	@+bash tests/lint.sh
 
 sanitize:
 	STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g' \

@@ -1,27 +1,12 @@
 #!/usr/bin/env bash
 # What is made of campaigns, from outside: basins, files of an array merged into one, comparison with
-# a tolerance, tables for other programs. Speaks TAP. Uses bin/stance, or the program that STANCE
-# names; STANCE_SLOW: that is a slow one.
+# a tolerance, tables for other programs. Speaks TAP.
 set -u
-cd "$(dirname "$0")/.."
-export STANCE=${STANCE:-$PWD/bin/stance}
-stance=$STANCE python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-count=0 patience=60
-[ -n "${STANCE_SLOW:-}" ] && patience=300
+. "$(dirname "$0")/scratch.sh"
 
-. "$tests/outside.sh"
-
-cat >map.yaml <<END
-stance: 1
-scene: biped
-ground: {friction: 0.8, contacts: [foot1]}
-initial: {equilibrium: {theta: -0.41, q2: 0.82}, support_foot: 1}
-controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
-             sample_time: 0.01, torque_limit: 10}
-method: {name: implicit, step: 0.01}
+{
+    balance
+    cat <<END
 stop: {time: 4}
 sweep:
   grid:
@@ -30,6 +15,7 @@ sweep:
     - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 48}
 record: {every: 0.1, cases: [3, 2403, 4803]}
 END
+} >map.yaml
 starts='sweep.grid=[{path: initial.offset.theta, from: -0.12, to: 0.06, count: 50},
                     {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 48}]'
 expect "a map for each friction" 0 "$stance" run map.yaml -o whole.h5 --quiet
@@ -348,10 +334,10 @@ expect "pictures of rays" 0 "$stance" plot rays.h5
 says "... show the curve" '^rays-rays.png$'
 expect "--by has no meaning for rays" 2 "$stance" basin rays.h5 --by ground.friction
 expect "pictures of basins" 0 "$stance" plot whole.h5
-expect "a refined map" 0 "$stance" run map.yaml --quiet -o refined.h5 --set record.cases=none \
+expect "a refined map" 0 "$stance" run map.yaml --quiet -o inferred.h5 --set record.cases=none \
     --set 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 33},
         {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 33}], refine: {start: 8}}'
-expect "what it has inferred" 0 "$stance" table refined.h5 --answer evidence --answer steps
+expect "what it has inferred" 0 "$stance" table inferred.h5 --answer evidence --answer steps
 "$python" -c 'import csv; rows = list(csv.DictReader(open("log", newline="")))
 assert {(r["evidence"], bool(r["steps"])) for r in rows} == {("inferred", False), ("simulated", True)}' >>log 2>&1
 result $? "... has no numbers"

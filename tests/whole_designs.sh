@@ -1,19 +1,11 @@
 #!/usr/bin/env bash
 # Samples from outside: the points that other programs read, the same file whatever the ranks, kills
 # and resumes, larger designs from smaller ones, and what the other commands make of them.
-# Speaks TAP. Uses bin/stance, or the program that STANCE names; STANCE_SLOW: that is a slow one.
+# Speaks TAP.
 set -u
-cd "$(dirname "$0")/.."
-export STANCE=${STANCE:-$PWD/bin/stance}
-stance=$STANCE python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests shipped=$PWD/scenarios
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
-scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-count=0 patience=60 points=150
-[ -n "${STANCE_SLOW:-}" ] && patience=300 points=130
-
-. "$tests/outside.sh"
+. "$(dirname "$0")/scratch.sh"
+points=150
+[ -n "${STANCE_SLOW:-}" ] && points=130
 
 # Torque noise, a grid beside the sample, factors of every kind, designs of their own, trajectories.
 cat >set.yaml <<END

@@ -1,29 +1,16 @@
 #!/usr/bin/env bash
 # Refined maps from outside: the labels of the full map at a part of its cost, the same file whatever
 # the ranks, the lanes, kills and resumes; what the other commands make of it.
-# Speaks TAP. Uses bin/stance, or the program that STANCE names; STANCE_SLOW: that is a slow one.
+# Speaks TAP.
 set -u
-cd "$(dirname "$0")/.."
-export STANCE=${STANCE:-$PWD/bin/stance}
-stance=$STANCE python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
-scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-count=0 patience=60 points=150
-[ -n "${STANCE_SLOW:-}" ] && patience=300 points=60
-
-. "$tests/outside.sh"
+. "$(dirname "$0")/scratch.sh"
+points=150
+[ -n "${STANCE_SLOW:-}" ] && points=60
 
 # Two maps beside each other: the axis of words is taken in full.
-cat >map.yaml <<END
-stance: 1
-scene: biped
-ground: {friction: 0.8, contacts: [foot1]}
-initial: {equilibrium: {theta: -0.41, q2: 0.82}, support_foot: 1}
-controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
-             sample_time: 0.01, torque_limit: 10}
-method: {name: implicit, step: 0.01}
+{
+    balance
+    cat <<END
 stop: {time: 4}
 sweep:
   grid:
@@ -32,6 +19,7 @@ sweep:
     - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: $points}
 record: {every: 0.1, cases: [0, 1003]}
 END
+} >map.yaml
 refine=(--set 'sweep.refine={start: 16, margin: 1, probes: 0.01}')
 
 expect "the full map" 0 "$stance" run map.yaml -o full.h5 --quiet

@@ -2,20 +2,10 @@
 # What a week on a cluster brings: crashes, signals to any rank, files that vanish, disks that fill,
 # answers that rot, scenarios that change on the way. Each ends with one clear line, the right exit
 # code, and every finished case in the file.
-# Speaks TAP. Uses bin/stance, or the program that STANCE names; STANCE_SLOW: that is a slow one.
+# Speaks TAP.
 set -u
-cd "$(dirname "$0")/.."
-stance=${STANCE:-$PWD/bin/stance} python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
-scratch=$(mktemp -d)
-disk=$scratch/disk
-trap 'umount "$disk" 2>/dev/null; rm -rf "$scratch"' EXIT
+. "$(dirname "$0")/scratch.sh"
 chmod 755 "$scratch"
-cd "$scratch" && mkdir "$disk" || exit 1
-count=0
-patience=60
-[ -n "${STANCE_SLOW:-}" ] && patience=300
 # Which of many alike are tried; STANCE_TEST_LONG: all.
 crashes=(SEGV:139:3 ABRT:134:0) signals=(TERM) attempts=4 fills=(2)
 losses=("0 rm folder/gone.h5" "2 mv folder moved")
@@ -24,9 +14,6 @@ if [ -n "${STANCE_TEST_LONG:-}" ]; then
     losses+=("0 mv folder moved" "0 mv folder/gone.h5 folder/moved.h5" "0 rm -r folder"
         "2 rm folder/gone.h5" "2 mv folder/gone.h5 folder/moved.h5" "2 rm -r folder")
 fi
-
-. "$tests/outside.sh"
-skip() { echo "ok $((++count)) - $1 # SKIP $2"; }
 
 # Minutes of work on any machine, of which a file holds the first cases soon.
 cat >long.yaml <<END

@@ -1,27 +1,16 @@
 #!/usr/bin/env bash
 # `stance run`, `status` and `check` from outside: ranks, kills, resumes, full disks, other readers.
-# Speaks TAP. Uses bin/stance, or the program that STANCE names; STANCE_SLOW: that is a slow one.
+# Speaks TAP.
 set -u
-cd "$(dirname "$0")/.."
-stance=${STANCE:-$PWD/bin/stance} python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
-scratch=$(mktemp -d)
-disk=$scratch/disk
-trap 'umount "$disk" 2>/dev/null; rm -rf "$scratch"' EXIT
-cd "$scratch" && mkdir "$disk" || exit 1
-count=0
-patience=60 span=5 # seconds that a command may take, and that the cases of a long job last
-[ -n "${STANCE_SLOW:-}" ] && patience=300 span=0.5
-
-. "$tests/outside.sh"
+. "$(dirname "$0")/scratch.sh"
+span=5 # seconds that the cases of a long job last
+[ -n "${STANCE_SLOW:-}" ] && span=0.5
 looks() { # name, kind ...
     local name=$1
     shift
     "$python" "$tests/open_results.py" "$@" >log 2>&1
     result $? "$name"
 }
-skip() { echo "ok $((++count)) - $1 # SKIP $2"; }
 
 # $1: sweep and other keys.
 scenario() {

@@ -1,19 +1,11 @@
 #!/usr/bin/env bash
 # `stance sensitivity` from outside: `stance run` makes the files of sampled studies, an answer of
 # which then becomes a function with known indices; what failed and pending cases do; bad use.
-# Speaks TAP. Uses bin/stance, or the program that STANCE names; STANCE_SLOW: that is a slow one.
+# Speaks TAP.
 set -u
-cd "$(dirname "$0")/.."
-export STANCE=${STANCE:-$PWD/bin/stance}
-stance=$STANCE python=${PYTHON:-/usr/bin/python3} tests=$PWD/tests
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
-scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-count=0 patience=60 blocks=512
-[ -n "${STANCE_SLOW:-}" ] && patience=300 blocks=256
-
-. "$tests/outside.sh"
+. "$(dirname "$0")/scratch.sh"
+blocks=512
+[ -n "${STANCE_SLOW:-}" ] && blocks=256
 
 known() { # name, task ...
     local name=$1
