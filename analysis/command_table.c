@@ -190,6 +190,17 @@ static void put_point(struct table *t, uint64_t index)
     }
 }
 
+/* What stands in the row of a pending case means nothing, and counts of an inferred one say 0 where
+ * there is no answer. */
+static bool says_something(const struct table *t, const struct results_column *column,
+                           uint64_t index)
+{
+    if (t->r->kind[index] == RESULTS_PENDING) {
+        return strcmp(column->name, "status") == 0;
+    }
+    return column->words || !t->inferred || !t->inferred[index];
+}
+
 static void put_case(struct table *t, uint64_t first, size_t row)
 {
     const uint8_t kind = t->r->kind[first + row];
@@ -201,11 +212,8 @@ static void put_case(struct table *t, uint64_t first, size_t row)
         const struct results_column *column = &t->column[k];
         for (size_t i = 0; i < column->width; i++) {
             const double value = t->block[k][row * column->width + i];
-            /* What stands in the row of a pending case means nothing. */
-            if (kind == RESULTS_PENDING && strcmp(column->name, "status") != 0) {
+            if (!says_something(t, column, first + row)) {
                 csv_text(&t->csv, "");
-            } else if (!column->words && t->inferred && t->inferred[first + row]) {
-                csv_text(&t->csv, ""); /* no answer, where counts say 0 */
             } else if (column->words) {
                 put_flag(&t->csv, column->words, value);
             } else {
