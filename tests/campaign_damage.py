@@ -146,11 +146,11 @@ def resume(scenario, good, file, ranks):
 
 def campaign(options, folder):
     """Yields each damage; returns the report."""
+    scenarios = [os.path.abspath(s) for s in options.scenarios]
     os.chdir(folder)
     rng = random.Random(f"damage {options.seed}")
     victims = []
-    for scenario, (good, _) in references([os.path.abspath(s) for s in options.scenarios],
-                                          folder).items():
+    for scenario, (good, _) in references(scenarios, folder).items():
         half = os.path.join(folder, "half-" + os.path.basename(good)[5:])
         victims += [(scenario, good, good), half_finished(scenario, good, half, rng)]
     expected = {victim[2]: summary_of(victim[2])[0] for victim in victims}
