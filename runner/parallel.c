@@ -5,9 +5,11 @@
  */
 #include "parallel.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -110,13 +112,44 @@ bool parallel_misses_launcher(bool *first)
     return tasks && atoi(tasks) > 1 && !was_launched();
 }
 
+/* A rank whose launcher dies while MPI starts waits in MPI_Init for ever (in PMIx, Open MPI 4):
+ * until MPI has started, and looks after that itself, an alarm sees each second who the parent is.
+ */
+static pid_t launcher;
+
+static void look_for_launcher(int number)
+{
+    (void)number;
+    if (getppid() != launcher) {
+        _exit(EXIT_FAILURE); /* nothing has been begun, and nobody waits for the code */
+    }
+}
+
+static void watch_launcher(bool begin)
+{
+    const struct itimerval interval = {{begin, 0}, {begin, 0}};
+    struct sigaction action = {.sa_handler = begin ? look_for_launcher : SIG_DFL,
+                               .sa_flags = SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    if (begin) {
+        launcher = getppid();
+        sigaction(SIGALRM, &action, NULL);
+        setitimer(ITIMER_REAL, &interval, NULL);
+    } else {
+        setitimer(ITIMER_REAL, &interval, NULL);
+        sigaction(SIGALRM, &action, NULL);
+    }
+}
+
 struct parallel parallel_start(void)
 {
     struct parallel parallel = parallel_alone();
     if (was_launched()) {
         skip_networks();
         choose_windows();
+        watch_launcher(true);
         MPI_Init(NULL, NULL);
+        watch_launcher(false);
         MPI_Comm_rank(MPI_COMM_WORLD, &parallel.rank);
         MPI_Comm_size(MPI_COMM_WORLD, &parallel.size);
     }
