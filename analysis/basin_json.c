@@ -1,19 +1,8 @@
 /* basin_json.c - a basin for programs; the keys are listed in `stance basin -h`. */
 #include "basin_print.h"
+#include "results_json.h"
 
-#include <jansson.h>
 #include <math.h>
-
-/* JSON knows no NAN and no infinity. */
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t *whole(uint64_t value)
-{
-    return json_integer((json_int_t)value);
-}
 
 static json_t *paths(const struct results *r, const int *list, int count)
 {
@@ -50,8 +39,7 @@ static json_t *place(const struct basin *b, const struct basin_row *row)
     for (int k = 0; k < b->by_axes; k++) {
         const struct results_axis *axis = &b->r->axis[b->by[k]];
         const size_t i = row->point[b->by[k]];
-        json_object_set_new(at, axis->name,
-                            axis->word ? json_string(axis->word[i]) : number(axis->value[i]));
+        json_object_set_new(at, axis->name, results_json_value(axis, i));
     }
     return at;
 }
@@ -63,12 +51,12 @@ static void put_uncertainty(json_t *entry, const struct basin *b, const struct b
     json_t *distances = json_array(), *shares = json_array();
     for (int k = 0; k < uncertainty->scales; k++) {
         json_array_append_new(distances, json_integer(1 << k));
-        json_array_append_new(
-            shares, number((double)uncertainty->uncertain[k] / (double)uncertainty->counted[k]));
+        json_array_append_new(shares, results_json_number((double)uncertainty->uncertain[k] /
+                                                          (double)uncertainty->counted[k]));
     }
-    json_object_set_new(entry, "alpha", number(exponent.alpha));
-    json_object_set_new(entry, "alpha_error", number(exponent.error));
-    json_object_set_new(entry, "dimension", number(basin_dimension(b, row)));
+    json_object_set_new(entry, "alpha", results_json_number(exponent.alpha));
+    json_object_set_new(entry, "alpha_error", results_json_number(exponent.error));
+    json_object_set_new(entry, "dimension", results_json_number(basin_dimension(b, row)));
     json_object_set_new(entry, "distances", distances);
     json_object_set_new(entry, "uncertain", shares);
 }
@@ -81,13 +69,14 @@ static void put_distance(json_t *entry, const struct basin *b, const struct basi
     json_t *at = any && isfinite(distance->nearest) ? json_object() : json_null();
     for (int d = 0; any && d < b->start_axes; d++) {
         const char *name = b->r->axis[b->start[d]].name;
-        json_object_set_new(
-            extent, name, json_pack("[o,o]", number(distance->low[d]), number(distance->high[d])));
+        json_object_set_new(extent, name,
+                            json_pack("[o,o]", results_json_number(distance->low[d]),
+                                      results_json_number(distance->high[d])));
         if (json_is_object(at)) {
-            json_object_set_new(at, name, number(distance->at[d]));
+            json_object_set_new(at, name, results_json_number(distance->at[d]));
         }
     }
-    json_object_set_new(entry, "nearest", number(any ? distance->nearest : NAN));
+    json_object_set_new(entry, "nearest", results_json_number(any ? distance->nearest : NAN));
     json_object_set_new(entry, "nearest_at", at);
     json_object_set_new(entry, "extent", extent);
 }
@@ -96,21 +85,22 @@ static json_t *row_entry(const struct basin *b, const struct basin_row *row)
 {
     json_t *entry = json_object();
     json_object_set_new(entry, "at", place(b, row));
-    json_object_set_new(entry, "cases", whole(row->cases));
-    json_object_set_new(entry, "inside", whole(row->inside));
-    json_object_set_new(entry, "failed", whole(row->failed));
-    json_object_set_new(entry, "pending", whole(row->pending));
-    json_object_set_new(entry, "share", number(row->volume / b->box));
-    json_object_set_new(entry, "volume", number(row->volume));
-    json_object_set_new(entry, "error", number(row->error));
-    json_object_set_new(entry, "low", number(row->low));
-    json_object_set_new(entry, "high", number(row->high));
-    json_object_set_new(entry, "cells", whole(row->cells));
-    json_object_set_new(entry, "crossed", whole(row->crossed));
-    json_object_set_new(entry, "entropy", number(basin_entropy(&row->entropy)));
-    json_object_set_new(entry, "boundary_entropy", number(basin_boundary_entropy(&row->entropy)));
-    json_object_set_new(entry, "boxes", whole(row->entropy.boxes));
-    json_object_set_new(entry, "mixed_boxes", whole(row->entropy.mixed));
+    json_object_set_new(entry, "cases", results_json_whole(row->cases));
+    json_object_set_new(entry, "inside", results_json_whole(row->inside));
+    json_object_set_new(entry, "failed", results_json_whole(row->failed));
+    json_object_set_new(entry, "pending", results_json_whole(row->pending));
+    json_object_set_new(entry, "share", results_json_number(row->volume / b->box));
+    json_object_set_new(entry, "volume", results_json_number(row->volume));
+    json_object_set_new(entry, "error", results_json_number(row->error));
+    json_object_set_new(entry, "low", results_json_number(row->low));
+    json_object_set_new(entry, "high", results_json_number(row->high));
+    json_object_set_new(entry, "cells", results_json_whole(row->cells));
+    json_object_set_new(entry, "crossed", results_json_whole(row->crossed));
+    json_object_set_new(entry, "entropy", results_json_number(basin_entropy(&row->entropy)));
+    json_object_set_new(entry, "boundary_entropy",
+                        results_json_number(basin_boundary_entropy(&row->entropy)));
+    json_object_set_new(entry, "boxes", results_json_whole(row->entropy.boxes));
+    json_object_set_new(entry, "mixed_boxes", results_json_whole(row->entropy.mixed));
     put_uncertainty(entry, b, row);
     put_distance(entry, b, row);
     return entry;
@@ -123,8 +113,8 @@ bool basin_print_json(const struct basin *b)
         json_array_append_new(rows, row_entry(b, &b->row[k]));
     }
     json_object_set_new(root, "outcome", json_string(results_kind_names[b->choice.of]));
-    json_object_set_new(root, "level", number(b->choice.level));
-    json_object_set_new(root, "box_side", whole(b->choice.side));
+    json_object_set_new(root, "level", results_json_number(b->choice.level));
+    json_object_set_new(root, "box_side", results_json_whole(b->choice.side));
     json_object_set_new(
         root, "design",
         json_string(b->starts == BASIN_GRID ? "grid" : sampling_words[b->sample.method]));
@@ -133,7 +123,7 @@ bool basin_print_json(const struct basin *b)
                                                 : factors(&b->sample));
     json_object_set_new(root, "parameters", paths(b->r, b->by, b->by_axes));
     json_object_set_new(root, "averaged", averaged(b));
-    json_object_set_new(root, "box", number(b->box));
+    json_object_set_new(root, "box", results_json_number(b->box));
     json_object_set_new(root, "unit", json_string(b->unit));
     json_object_set_new(root, "rows", rows);
     const bool good =

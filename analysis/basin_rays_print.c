@@ -1,5 +1,6 @@
 /* basin_rays_print.c - where rays end, for people, as CSV and as JSON. */
 #include "basin_rays.h"
+#include "results_json.h"
 
 #include "csv.h"
 
@@ -215,12 +216,6 @@ bool basin_rays_print_boundary(const struct basin_rays *rays)
 
 /* ---- JSON --------------------------------------------------------------------------------- */
 
-/* JSON knows no NAN and no infinity. */
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *row_entry(const struct basin_rays *rays, size_t row, const struct basin_reach *reach)
 {
     const struct basin_ray *first = ray_of(rays, row, reach->first);
@@ -231,21 +226,21 @@ static json_t *row_entry(const struct basin_rays *rays, size_t row, const struct
     for (int k = 0; k < rays->by_axes; k++) {
         const struct results_axis *axis = &rays->r->axis[rays->by[k]];
         const size_t i = basin_rays_point(rays, row, k);
-        json_object_set_new(at, axis->name,
-                            axis->word ? json_string(axis->word[i]) : number(axis->value[i]));
+        json_object_set_new(at, axis->name, results_json_value(axis, i));
     }
     for (size_t k = 0; any && k < rays->sample.factors; k++) {
         const struct basin_factor *factor = &rays->sample.factor[k];
-        json_object_set_new(place, factor->of->name,
-                            number(factor->of->value[reach->first] * basin_ray_middle(first)));
+        json_object_set_new(
+            place, factor->of->name,
+            results_json_number(factor->of->value[reach->first] * basin_ray_middle(first)));
     }
     json_object_set_new(entry, "at", at);
     json_object_set_new(entry, "crossing", json_integer((json_int_t)reach->count[RAY_CROSSES]));
     json_object_set_new(entry, "open", json_integer((json_int_t)reach->count[RAY_OPEN]));
     json_object_set_new(entry, "outside", json_integer((json_int_t)outside));
-    json_object_set_new(entry, "smallest", number(reach->smallest));
-    json_object_set_new(entry, "median", number(reach->median));
-    json_object_set_new(entry, "largest", number(reach->largest));
+    json_object_set_new(entry, "smallest", results_json_number(reach->smallest));
+    json_object_set_new(entry, "median", results_json_number(reach->median));
+    json_object_set_new(entry, "largest", results_json_number(reach->largest));
     json_object_set_new(entry, "first_ray",
                         any ? json_integer((json_int_t)reach->first) : json_null());
     json_object_set_new(entry, "first_bracket",

@@ -1,5 +1,6 @@
 /* command_accuracy.c - `stance bench accuracy`: runs the accuracy studies and charts them. */
 #include "accuracy.h"
+#include "results_json.h"
 #include "statistics.h"
 #include "studies.h"
 
@@ -75,20 +76,23 @@ static json_t *row_json(const struct accuracy *a, size_t k)
         "{s:s, s:o, s:o, s:b, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
         "s:o, "
         "s:o}",
-        "method", row->method->name, "step", studies_number(row->step), "tolerance",
-        studies_number(row->tolerance), "reference", k == a->truth, "cases", (json_int_t)row->cases,
-        "failed", (json_int_t)row->failed, "microseconds_per_second",
-        studies_number(row->cost.median), "microseconds_low", studies_number(row->cost.low),
-        "microseconds_high", studies_number(row->cost.high), "evaluations_per_second",
-        studies_number(row->evaluations), "events_per_second", studies_number(row->events),
-        "position_error", compared && !a->labels ? studies_number(row->position) : json_null(),
-        "velocity_error", compared && !a->labels ? studies_number(row->velocity) : json_null(),
-        "cells_unlike", compared && a->labels ? json_integer((json_int_t)row->differ) : json_null(),
+        "method", row->method->name, "step", results_json_number(row->step), "tolerance",
+        results_json_number(row->tolerance), "reference", k == a->truth, "cases",
+        (json_int_t)row->cases, "failed", (json_int_t)row->failed, "microseconds_per_second",
+        results_json_number(row->cost.median), "microseconds_low",
+        results_json_number(row->cost.low), "microseconds_high",
+        results_json_number(row->cost.high), "evaluations_per_second",
+        results_json_number(row->evaluations), "events_per_second",
+        results_json_number(row->events), "position_error",
+        compared && !a->labels ? results_json_number(row->position) : json_null(), "velocity_error",
+        compared && !a->labels ? results_json_number(row->velocity) : json_null(), "cells_unlike",
+        compared && a->labels ? json_integer((json_int_t)row->differ) : json_null(),
         "cells_unlike_inside",
         compared && a->labels ? json_integer((json_int_t)row->inside) : json_null(),
-        "signorini_residual", studies_number(row->signorini), "coulomb_residual",
-        studies_number(row->coulomb), "dissipation_residual", studies_number(row->dissipation),
-        "energy_gain", studies_number(row->energy_gain));
+        "signorini_residual", results_json_number(row->signorini), "coulomb_residual",
+        results_json_number(row->coulomb), "dissipation_residual",
+        results_json_number(row->dissipation), "energy_gain",
+        results_json_number(row->energy_gain));
 }
 
 static json_t *study_json(const struct accuracy *a, const struct results *r)
@@ -102,9 +106,10 @@ static json_t *study_json(const struct accuracy *a, const struct results *r)
         json_array_append_new(
             orders, json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:I}", "method", order->method->name,
                               "of", order->by_tolerance ? "tolerance" : "step", "position",
-                              studies_number(order->position), "velocity",
-                              studies_number(order->velocity), "from", studies_number(order->from),
-                              "to", studies_number(order->to), "rows", (json_int_t)order->rows));
+                              results_json_number(order->position), "velocity",
+                              results_json_number(order->velocity), "from",
+                              results_json_number(order->from), "to",
+                              results_json_number(order->to), "rows", (json_int_t)order->rows));
     }
     return json_pack("{s:s, s:s, s:s, s:o, s:o}", "name", r->name, "title", r->title, "file",
                      r->file, "rows", rows, "orders", orders);

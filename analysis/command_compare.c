@@ -2,6 +2,7 @@
 #include "compare.h"
 #include "compare_labels.h"
 #include "csv.h"
+#include "results_json.h"
 #include "results_rows.h"
 
 #include "../runner/command.h"
@@ -88,13 +89,9 @@ static json_t *json_point(const struct results *r, uint64_t index)
 {
     json_t *at = json_object();
     size_t point[SCENARIO_MAX_AXES];
-    char text[128];
     results_point(r, index, point);
     for (int a = 0; a < r->axes; a++) {
-        const struct results_axis *axis = &r->axis[a];
-        results_value_text(axis, point[a], false, text, sizeof text);
-        json_object_set_new(at, axis->name,
-                            axis->word ? json_string(text) : json_real(axis->value[point[a]]));
+        json_object_set_new(at, r->axis[a].name, results_json_value(&r->axis[a], point[a]));
     }
     return at;
 }

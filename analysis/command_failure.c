@@ -1,5 +1,6 @@
 /* command_failure.c - `stance bench failure`: runs the failure studies, judges and maps them. */
 #include "failure.h"
+#include "results_json.h"
 #include "studies.h"
 
 #include <inttypes.h>
@@ -89,8 +90,7 @@ static json_t *axis_json(const struct results_axis *axis)
 {
     json_t *values = json_array();
     for (size_t i = 0; i < axis->count; i++) {
-        json_array_append_new(values, axis->word ? json_string(axis->word[i])
-                                                 : studies_number(axis->value[i]));
+        json_array_append_new(values, results_json_value(axis, i));
     }
     return json_pack("{s:s, s:s, s:o}", "name", axis->name, "unit", axis->unit, "values", values);
 }
@@ -117,14 +117,14 @@ static json_t *row_json(const struct failure *f, size_t k)
         }
         json_array_append_new(map, line);
     }
-    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "method",
-                     row->method->name, "tolerance", studies_number(row->tolerance), "cases",
-                     shares, "failed", reasons, "energy_gain", studies_number(row->energy_gain),
-                     "energy_share", studies_number(row->energy_share), "max_penetration",
-                     studies_number(row->penetration), "signorini_residual",
-                     studies_number(row->signorini), "coulomb_residual",
-                     studies_number(row->coulomb), "dissipation_residual",
-                     studies_number(row->dissipation), "map", map);
+    return json_pack(
+        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "method", row->method->name,
+        "tolerance", results_json_number(row->tolerance), "cases", shares, "failed", reasons,
+        "energy_gain", results_json_number(row->energy_gain), "energy_share",
+        results_json_number(row->energy_share), "max_penetration",
+        results_json_number(row->penetration), "signorini_residual",
+        results_json_number(row->signorini), "coulomb_residual", results_json_number(row->coulomb),
+        "dissipation_residual", results_json_number(row->dissipation), "map", map);
 }
 
 static json_t *theory_json(const struct failure *f, const struct results *r)
@@ -134,7 +134,7 @@ static json_t *theory_json(const struct failure *f, const struct results *r)
     }
     json_t *values = json_array();
     for (size_t i = 0; i < f->count[f->line.axis]; i++) {
-        json_array_append_new(values, studies_number(f->line.value[i]));
+        json_array_append_new(values, results_json_number(f->line.value[i]));
     }
     return json_pack("{s:s, s:s, s:s, s:o}", "text", f->line.text, "along",
                      r->axis[f->line.axis].name, "of", r->axis[3 - f->line.axis].name, "values",

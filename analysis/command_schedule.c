@@ -16,6 +16,7 @@
  */
 #include "gnuplot.h"
 #include "results.h"
+#include "results_json.h"
 #include "schedule_picture.h"
 #include "studies.h"
 
@@ -235,22 +236,24 @@ static json_t *study_json(const struct schedule_study *study, const struct resul
     for (size_t i = 0; i < FIGURES; i++) {
         double value;
         memcpy(&value, (const char *)&study->machine + figures[i].offset, sizeof value);
-        json_object_set_new(machine, figures[i].name, studies_number(value));
+        json_object_set_new(machine, figures[i].name, results_json_number(value));
     }
     for (size_t k = 0; k < study->count; k++) {
         const struct simulation *s = &study->result[k];
         json_array_append_new(
             rows,
             json_pack("{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I}", "ranks", study->ranks[k],
-                      "seconds", studies_number(s->time), "efficiency",
-                      studies_number(simulation_efficiency(s, study->ranks[k])), "computing",
-                      studies_number(s->computing), "drawing", studies_number(s->drawing),
-                      "writing", studies_number(s->writing), "waiting", studies_number(s->waiting),
-                      "draws", (json_int_t)s->draws, "writes", (json_int_t)s->writes));
+                      "seconds", results_json_number(s->time), "efficiency",
+                      results_json_number(simulation_efficiency(s, study->ranks[k])), "computing",
+                      results_json_number(s->computing), "drawing", results_json_number(s->drawing),
+                      "writing", results_json_number(s->writing), "waiting",
+                      results_json_number(s->waiting), "draws", (json_int_t)s->draws, "writes",
+                      (json_int_t)s->writes));
     }
     return json_pack("{s:s, s:I, s:o, s:o, s:I, s:i, s:o, s:o}", "file", r->file, "cases",
-                     (json_int_t)study->cases, "seconds_per_case", studies_number(study->case_time),
-                     "seconds_per_step", studies_number(study->step_time), "bytes_per_case",
+                     (json_int_t)study->cases, "seconds_per_case",
+                     results_json_number(study->case_time), "seconds_per_step",
+                     results_json_number(study->step_time), "bytes_per_case",
                      (json_int_t)study->row_size, "variables", study->variables, "machine", machine,
                      "rows", rows);
 }

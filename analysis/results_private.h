@@ -1,5 +1,6 @@
 /* results_private.h - how results files are read, shared by results.c (what is in all of them),
- * results_sample.c (values of a sample) and results_trajectory.c; nothing else includes it.
+ * results_sample.c (values of a sample), results_rows.c and results_trajectory.c; nothing else
+ * includes it.
  */
 #ifndef STANCE_ANALYSIS_RESULTS_PRIVATE_H
 #define STANCE_ANALYSIS_RESULTS_PRIVATE_H

@@ -1,44 +1,11 @@
 /* results_rows.c - reads hyperslabs that are consecutive rows. */
 #include "results_rows.h"
 
-#include <hdf5.h>
+#include "results_private.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static bool failed(const struct results *r, const char *what, stance_message *message)
-{
-    H5Eclear2(H5E_DEFAULT);
-    snprintf(message->text, sizeof message->text, "%.100s: damaged: cannot read %.80s", r->file,
-             what);
-    return false;
-}
-
-/* The attribute flag_meanings of fixed length, as this program writes it; NULL: none. */
-static char *read_words(hid_t dataset)
-{
-    enum { MOST = 4096 };
-    if (H5Aexists(dataset, "flag_meanings") <= 0) {
-        return NULL;
-    }
-    hid_t attribute = H5Aopen(dataset, "flag_meanings", H5P_DEFAULT);
-    hid_t type = H5Aget_type(attribute);
-    char *text = NULL;
-    if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
-        H5Tget_size(type) <= MOST) {
-        text = calloc(H5Tget_size(type) + 1, 1);
-        if (text && H5Aread(attribute, type, text) < 0) {
-            free(text);
-            text = NULL;
-        }
-    }
-    H5Tclose(type);
-    H5Aclose(attribute);
-    if (text) {
-        results_clean(text);
-    }
-    return text;
-}
 
 bool results_column_open(const struct results *r, const char *name, struct results_column *column,
                          stance_message *message)
@@ -46,28 +13,26 @@ bool results_column_open(const struct results *r, const char *name, struct resul
     hsize_t length[H5S_MAX_RANK] = {0};
     *column = (struct results_column){.id = -1};
     snprintf(column->name, sizeof column->name, "%s", name);
-    if (H5Lexists((hid_t)r->id, name, H5P_DEFAULT) <= 0) {
-        return true;
+    int rank;
+    const hid_t dataset = results_dataset(r, name, &rank, length);
+    if (dataset < 0) {
+        return !results_exists((hid_t)r->id, name) || results_failed(r, name, message);
     }
-    hid_t dataset = H5Dopen2((hid_t)r->id, name, H5P_DEFAULT), space = H5Dget_space(dataset),
-          type = H5Dget_type(dataset);
-    const int rank = space < 0 ? -1 : H5Sget_simple_extent_dims(space, length, NULL);
-    const H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
-    bool good =
-        (rank == r->axes || rank == r->axes + 1) && (class == H5T_INTEGER || class == H5T_FLOAT);
+    bool good = (rank == r->axes || rank == r->axes + 1) && results_is_number(dataset);
     for (int a = 0; good && a < r->axes; a++) {
         good = length[a] == r->axis[a].count;
     }
     column->width = good && rank > r->axes ? (size_t)length[rank - 1] : 1;
     good = good && column->width <= SCENARIO_MAX_STATES;
-    H5Sclose(space);
-    H5Tclose(type);
     column->id = dataset;
     if (!good) {
         results_column_close(column);
-        return failed(r, name, message);
+        return results_failed(r, name, message);
     }
-    column->words = read_words(dataset);
+    column->words = results_attribute(dataset, "flag_meanings");
+    if (column->words) {
+        results_clean(column->words);
+    }
     return true;
 }
 
@@ -122,5 +87,5 @@ bool results_column_read(const struct results *r, const struct results_column *c
         H5Dread((hid_t)column->id, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
     H5Sclose(space);
     H5Sclose(memory);
-    return good || failed(r, column->name, message);
+    return good || results_failed(r, column->name, message);
 }

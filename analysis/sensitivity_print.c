@@ -1,4 +1,5 @@
 /* sensitivity_print.c - the sensitivity of a study as text, JSON and comma-separated values. */
+#include "results_json.h"
 #include "sensitivity_study.h"
 
 #include "csv.h"
@@ -255,8 +256,8 @@ void sensitivity_print_text(const struct sensitivity_study *study)
 
 static json_t *value_json(const struct sensitivity_value *v)
 {
-    return json_pack("{s:o, s:o, s:o}", "estimate", studies_number(v->estimate), "low",
-                     studies_number(v->low), "high", studies_number(v->high));
+    return json_pack("{s:o, s:o, s:o}", "estimate", results_json_number(v->estimate), "low",
+                     results_json_number(v->low), "high", results_json_number(v->high));
 }
 
 static json_t *at_json(const struct sensitivity_study *study, const struct sensitivity_table *table)
@@ -266,9 +267,7 @@ static json_t *at_json(const struct sensitivity_study *study, const struct sensi
         if (study->response.kept[a]) {
             const struct results_axis *axis = &study->r->axis[a];
             const size_t i = table->response->point[a];
-            json_object_set_new(at, axis->name,
-                                axis->word ? json_string(axis->word[i])
-                                           : json_real(axis->value[i]));
+            json_object_set_new(at, axis->name, results_json_value(axis, i));
         }
     }
     return at;
@@ -330,8 +329,8 @@ static json_t *table_json(const struct sensitivity_study *study,
         (json_int_t)response->pending, "blocks", (json_int_t)table->blocks, "used",
         (json_int_t)table->s.blocks, "incomplete", (json_int_t)table->waiting,
         is_morris(study) ? "lost_effects" : "lost", (json_int_t)table->lost, "mean",
-        studies_number(table->s.mean), "deviation", studies_number(table->s.deviation), "factors",
-        factors_json(study, table), "policies_differ", table->moved);
+        results_json_number(table->s.mean), "deviation", results_json_number(table->s.deviation),
+        "factors", factors_json(study, table), "policies_differ", table->moved);
     if (table->s.measure[SENSITIVITY_FIRST]) {
         json_object_set_new(object, "first_sum", value_json(&table->s.first_sum));
     }

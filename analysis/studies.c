@@ -85,11 +85,6 @@ struct request {
     bool json, reuse;
 };
 
-json_t *studies_number(double x)
-{
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
 /* Evaluates a results file, into the list `all` or as text and pictures. */
 static bool evaluate(const struct request *request, const char *file, const char *stem, json_t *all,
                      stance_message *message)

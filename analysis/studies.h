@@ -22,7 +22,4 @@ typedef bool (*study_function)(const struct results *r, const char *directory, c
 int studies_run(const struct command *command, const char *kind, study_function study, int argc,
                 char **argv);
 
-/* A number for JSON, null where it is not finite. */
-json_t *studies_number(double x);
-
 #endif

@@ -1,25 +1,9 @@
 /* summary_json.c - the summary for programs; the keys are listed in `stance summary -h`. */
+#include "results_json.h"
 #include "summary.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
-
-/* JSON knows no NAN and no infinity. */
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t *whole(uint64_t value)
-{
-    return json_integer((json_int_t)value);
-}
-
-static json_t *axis_value(const struct results_axis *axis, size_t i)
-{
-    return axis->word ? json_string(axis->word[i]) : number(axis->value[i]);
-}
 
 static json_t *text_or_null(const char *text)
 {
@@ -41,9 +25,9 @@ static json_t *axes(const struct results *r)
         put(entry, "path", json_string(axis->name));
         put(entry, "unit", text_or_null(axis->unit));
         put(entry, "long_name", text_or_null(axis->text));
-        put(entry, "count", whole(axis->count));
-        put(entry, "first", axis_value(axis, 0));
-        put(entry, "last", axis_value(axis, axis->count - 1));
+        put(entry, "count", results_json_whole(axis->count));
+        put(entry, "first", results_json_value(axis, 0));
+        put(entry, "last", results_json_value(axis, axis->count - 1));
         json_array_append_new(list, entry);
     }
     return list;
@@ -55,7 +39,7 @@ static json_t *fixed(const struct summary *summary)
     for (size_t i = 0; i < summary->fields; i++) {
         const struct summary_field *field = &summary->field[i];
         put(object, field->path,
-            isnan(field->number) ? json_string(field->text) : number(field->number));
+            isnan(field->number) ? json_string(field->text) : results_json_number(field->number));
     }
     return object;
 }
@@ -64,12 +48,12 @@ static json_t *cases(const struct summary *summary, const struct results *r)
 {
     const struct statistics_counts *counts = &summary->counts;
     json_t *object = json_object();
-    put(object, "total", whole(r->cases));
-    put(object, "done", whole(counts->done));
-    put(object, "failed", whole(counts->kind[RESULTS_FAILED]));
-    put(object, "pending", whole(counts->kind[RESULTS_PENDING]));
-    put(object, "inferred", whole(summary->inferred));
-    put(object, "damaged", whole(r->damage.cases));
+    put(object, "total", results_json_whole(r->cases));
+    put(object, "done", results_json_whole(counts->done));
+    put(object, "failed", results_json_whole(counts->kind[RESULTS_FAILED]));
+    put(object, "pending", results_json_whole(counts->kind[RESULTS_PENDING]));
+    put(object, "inferred", results_json_whole(summary->inferred));
+    put(object, "damaged", results_json_whole(r->damage.cases));
     return object;
 }
 
@@ -79,7 +63,7 @@ static json_t *scenarios(const struct ancestry *ancestry)
     for (size_t k = 0; k < ancestry->scenarios; k++) {
         json_t *entry = json_object();
         put(entry, "date", json_string(ancestry->date[k]));
-        put(entry, "done", whole(ancestry->done[k]));
+        put(entry, "done", results_json_whole(ancestry->done[k]));
         json_array_append_new(array, entry);
     }
     return array;
@@ -90,7 +74,7 @@ static json_t *failures(const struct summary *summary)
     json_t *object = json_object();
     for (int f = 0; f < SUMMARY_FAILURES; f++) {
         if (summary->failures[f] > 0) {
-            put(object, summary_failure_name(f), whole(summary->failures[f]));
+            put(object, summary_failure_name(f), results_json_whole(summary->failures[f]));
         }
     }
     return object;
@@ -100,9 +84,9 @@ static void put_share(json_t *object, uint64_t k, uint64_t n)
 {
     double low, high;
     statistics_wilson(k, n, &low, &high);
-    put(object, "share", n ? number((double)k / (double)n) : json_null());
-    put(object, "low", number(low));
-    put(object, "high", number(high));
+    put(object, "share", n ? results_json_number((double)k / (double)n) : json_null());
+    put(object, "low", results_json_number(low));
+    put(object, "high", results_json_number(high));
 }
 
 static json_t *outcomes(const struct statistics_counts *counts)
@@ -114,7 +98,7 @@ static json_t *outcomes(const struct statistics_counts *counts)
             continue;
         }
         json_t *entry = json_object();
-        put(entry, "count", whole(counts->kind[k]));
+        put(entry, "count", results_json_whole(counts->kind[k]));
         put_share(entry, counts->kind[k], counts->done);
         put(object, results_kind_names[k], entry);
     }
@@ -132,7 +116,7 @@ static json_t *extents(const struct summary *summary, const struct results *r)
         json_t *entry = json_object(), *at = json_object();
         for (int b = 0; b < r->axes; b++) {
             if (b != a) {
-                put(at, r->axis[b].name, axis_value(&r->axis[b], extent->point[b]));
+                put(at, r->axis[b].name, results_json_value(&r->axis[b], extent->point[b]));
             }
         }
         put(entry, "path", json_string(r->axis[a].name));
@@ -140,8 +124,8 @@ static json_t *extents(const struct summary *summary, const struct results *r)
         bool known = extent->any || !extent->low_unknown;
         put(entry, "outcome", json_string(results_kind_names[extent->kind]));
         put(entry, "stabilised", known ? json_boolean(extent->any) : json_null());
-        put(entry, "low", number(extent->low));
-        put(entry, "high", number(extent->high));
+        put(entry, "low", results_json_number(extent->low));
+        put(entry, "high", results_json_number(extent->high));
         put(entry, "low_at_end", json_boolean(extent->low_open));
         put(entry, "high_at_end", json_boolean(extent->high_open));
         put(entry, "low_unknown", json_boolean(extent->low_unknown));
@@ -165,8 +149,8 @@ static json_t *extents_at(const struct results *r, int axis, size_t i)
             bool known = extent.any || !extent.low_unknown;
             json_t *ends = known ? json_array() : json_null();
             if (extent.any) {
-                json_array_append_new(ends, number(extent.low));
-                json_array_append_new(ends, number(extent.high));
+                json_array_append_new(ends, results_json_number(extent.low));
+                json_array_append_new(ends, results_json_number(extent.high));
             }
             put(object, r->axis[a].name, ends);
         }
@@ -181,12 +165,12 @@ static json_t *parameter(const struct summary *summary, const struct results *r,
     for (size_t i = 0; i < axis->count; i++) {
         const struct statistics_counts *counts = &summary->by_value[a][i];
         json_t *entry = json_object();
-        put(entry, "value", axis_value(axis, i));
-        put(entry, "done", whole(counts->done));
-        put(entry, "failed", whole(counts->kind[RESULTS_FAILED]));
-        put(entry, "pending", whole(counts->kind[RESULTS_PENDING]));
-        put(entry, "stabilised", whole(counts->kind[RESULTS_STABILISED]));
-        put(entry, "rested", whole(counts->kind[RESULTS_RESTED]));
+        put(entry, "value", results_json_value(axis, i));
+        put(entry, "done", results_json_whole(counts->done));
+        put(entry, "failed", results_json_whole(counts->kind[RESULTS_FAILED]));
+        put(entry, "pending", results_json_whole(counts->kind[RESULTS_PENDING]));
+        put(entry, "stabilised", results_json_whole(counts->kind[RESULTS_STABILISED]));
+        put(entry, "rested", results_json_whole(counts->kind[RESULTS_RESTED]));
         put_share(entry, counts->kind[summary->judged], counts->done);
         if (summary->parameters == 1 && r->sample < 0) {
             put(entry, "extents", extents_at(r, a, i));
@@ -199,8 +183,8 @@ static json_t *parameter(const struct summary *summary, const struct results *r,
     put(object, "values", list);
     if (axis->count > 1) {
         json_t *steepest = json_object();
-        put(steepest, "from", axis_value(axis, summary->steepest[a]));
-        put(steepest, "to", axis_value(axis, summary->steepest[a] + 1));
+        put(steepest, "from", results_json_value(axis, summary->steepest[a]));
+        put(steepest, "to", results_json_value(axis, summary->steepest[a] + 1));
         put(object, "steepest", steepest);
     }
     return object;
@@ -228,7 +212,7 @@ static json_t *pairs(const struct summary *summary, const struct results *r)
         json_t *row = json_array();
         for (size_t j = 0; j < second->count; j++) {
             const struct statistics_counts *counts = &summary->pair_counts[i * second->count + j];
-            json_array_append_new(row, number(summary_share(summary, counts)));
+            json_array_append_new(row, results_json_number(summary_share(summary, counts)));
         }
         json_array_append_new(table, row);
     }
@@ -241,7 +225,7 @@ static json_t *sampled_value(const struct results_varied *v, double value)
 {
     return v->word        ? json_string(v->word[(int)value])
            : isinf(value) ? json_string("none")
-                          : number(value);
+                          : results_json_number(value);
 }
 
 static json_t *sampled(const struct summary *summary, const struct results *r, int k)
@@ -253,17 +237,17 @@ static json_t *sampled(const struct summary *summary, const struct results *r, i
         json_t *part = json_object();
         put(part, "from", sampled_value(v, bin->low));
         put(part, "to", sampled_value(v, bin->high));
-        put(part, "done", whole(bin->counts.done));
+        put(part, "done", results_json_whole(bin->counts.done));
         double low, high;
         sample_bin_interval(bin, summary->judged, &low, &high);
-        put(part, "share", number(summary_share(summary, &bin->counts)));
-        put(part, "low", number(low));
-        put(part, "high", number(high));
+        put(part, "share", results_json_number(summary_share(summary, &bin->counts)));
+        put(part, "low", results_json_number(low));
+        put(part, "high", results_json_number(high));
         json_array_append_new(list, part);
     }
     put(entry, "path", json_string(v->of.name));
     put(entry, "unit", text_or_null(v->of.unit));
-    put(entry, "factor", whole((uint64_t)v->factor));
+    put(entry, "factor", results_json_whole((uint64_t)v->factor));
     put(entry, "parts", list);
     return entry;
 }
@@ -276,15 +260,15 @@ static json_t *rays(const struct summary *summary, const struct results *r)
         put(at, r->vary[k].of.name, sampled_value(&r->vary[k], summary_nearest(rays, r, k)));
     }
     put(object, "path", json_string(r->axis[summary->ray_axis].name));
-    put(object, "points", whole(rays->numbers.n));
-    put(object, "smallest", number(rays->numbers.low));
-    put(object, "median", number(rays->numbers.median));
-    put(object, "largest", number(rays->numbers.high));
-    put(object, "nearest", rays->numbers.n > 0 ? whole(rays->nearest) : json_null());
+    put(object, "points", results_json_whole(rays->numbers.n));
+    put(object, "smallest", results_json_number(rays->numbers.low));
+    put(object, "median", results_json_number(rays->numbers.median));
+    put(object, "largest", results_json_number(rays->numbers.high));
+    put(object, "nearest", rays->numbers.n > 0 ? results_json_whole(rays->nearest) : json_null());
     put(object, "at", at);
-    put(object, "reach_end", whole(rays->open));
-    put(object, "none", whole(rays->none));
-    put(object, "unknown", whole(rays->unknown));
+    put(object, "reach_end", results_json_whole(rays->open));
+    put(object, "none", results_json_whole(rays->none));
+    put(object, "unknown", results_json_whole(rays->unknown));
     return object;
 }
 
@@ -295,7 +279,7 @@ static json_t *sample(const struct summary *summary, const struct results *r)
         json_array_append_new(list, sampled(summary, r, k));
     }
     put(object, "method", json_string(r->method));
-    put(object, "points", whole(r->axis[r->sample].count));
+    put(object, "points", results_json_whole(r->axis[r->sample].count));
     put(object, "share_of", json_string(results_kind_names[summary->judged]));
     put(object, "varied", list);
     put(object, "rays", summary->rays ? rays(summary, r) : json_null());
@@ -308,8 +292,8 @@ static json_t *changes(const struct results *r)
     for (size_t i = 0; r->axes == 1 && r->sample < 0 && i + 1 < r->cases; i++) {
         if (r->kind[i] != r->kind[i + 1]) {
             json_t *entry = json_object();
-            put(entry, "from", axis_value(&r->axis[0], i));
-            put(entry, "to", axis_value(&r->axis[0], i + 1));
+            put(entry, "from", results_json_value(&r->axis[0], i));
+            put(entry, "to", results_json_value(&r->axis[0], i + 1));
             put(entry, "before", json_string(results_kind_names[r->kind[i]]));
             put(entry, "after", json_string(results_kind_names[r->kind[i + 1]]));
             json_array_append_new(list, entry);
@@ -330,12 +314,12 @@ static json_t *numbers(const struct summary *summary)
         put(entry, "of",
             json_string(row->of == RESULTS_KIND_COUNT ? "done" : results_kind_names[row->of]));
         put(entry, "unit", text_or_null(row->unit));
-        put(entry, "count", whole(row->numbers.n));
-        put(entry, "smallest", number(row->numbers.low));
-        put(entry, "median", number(row->numbers.median));
-        put(entry, "q90", number(row->numbers.q90));
-        put(entry, "q99", number(row->numbers.q99));
-        put(entry, "largest", number(row->numbers.high));
+        put(entry, "count", results_json_whole(row->numbers.n));
+        put(entry, "smallest", results_json_number(row->numbers.low));
+        put(entry, "median", results_json_number(row->numbers.median));
+        put(entry, "q90", results_json_number(row->numbers.q90));
+        put(entry, "q99", results_json_number(row->numbers.q99));
+        put(entry, "largest", results_json_number(row->numbers.high));
         put(object, row->name, entry);
     }
     return object;
@@ -347,7 +331,7 @@ static void put_count(json_t *object, const char *steps_key, const char *cases_k
     if (count->stored) {
         put(object, steps_key, json_integer((json_int_t)count->sum));
         if (cases_key) {
-            put(object, cases_key, whole(count->cases));
+            put(object, cases_key, results_json_whole(count->cases));
         }
     }
 }
@@ -358,17 +342,19 @@ static json_t *cost(const struct summary *summary)
     put_count(object, "steps", NULL, &summary->steps);
     put_count(object, "iterations", NULL, &summary->iterations);
     if (summary->steps.stored && summary->iterations.stored) {
-        put(object, "iterations_per_step", number(summary->iterations.sum / summary->steps.sum));
+        put(object, "iterations_per_step",
+            results_json_number(summary->iterations.sum / summary->steps.sum));
     }
     put_count(object, "evaluations", NULL, &summary->evaluations);
     put_count(object, "events", "events_cases", &summary->events);
     put_count(object, "subdivided_steps", "subdivided_cases", &summary->subdivided);
     put_count(object, "degraded_samples", "degraded_cases", &summary->degraded);
     put_count(object, "ambiguous_steps", "ambiguous_cases", &summary->ambiguous);
-    put(object, "wall_time", summary->timed ? number(summary->longest) : json_null());
-    put(object, "total_time", summary->timed ? number(summary->total) : json_null());
+    put(object, "wall_time", summary->timed ? results_json_number(summary->longest) : json_null());
+    put(object, "total_time", summary->timed ? results_json_number(summary->total) : json_null());
     put(object, "cases_per_second",
-        summary->timed ? number(summary->timed_cases / summary->longest) : json_null());
+        summary->timed ? results_json_number(summary->timed_cases / summary->longest)
+                       : json_null());
     return object;
 }
 
@@ -380,7 +366,7 @@ static json_t *single_case(const struct results *r)
     json_t *object = json_object(), *final = json_object();
     bool done = r->kind[0] != RESULTS_PENDING && r->kind[0] != RESULTS_FAILED;
 
-    put(object, "index", whole(r->index));
+    put(object, "index", results_json_whole(r->index));
     put(object, "outcome", json_string(results_kind_names[r->kind[0]]));
     put(object, "failure",
         r->kind[0] == RESULTS_FAILED && r->failure
@@ -388,14 +374,14 @@ static json_t *single_case(const struct results *r)
             : json_null());
     for (size_t k = 0; k < sizeof times / sizeof times[0]; k++) {
         bool stored = done && results_numbers(r, times[k], &time, 1) == 1;
-        put(object, times[k], stored ? number(time) : json_null());
+        put(object, times[k], stored ? results_json_number(time) : json_null());
     }
     size_t n = results_words(r, "state", name, SCENARIO_MAX_STATES);
     if (!done || results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) != n) {
         n = 0;
     }
     for (size_t i = 0; i < n; i++) {
-        put(final, name[i], number(state[i]));
+        put(final, name[i], results_json_number(state[i]));
     }
     put(object, "final_state", final);
     return object;

@@ -94,23 +94,17 @@ same() { # name, file, file
 value() { # key, file
     "$stance" status "$2" --json 2>/dev/null | sed -n "s/.*\"$1\": *\([a-z0-9]*\).*/\1/p"
 }
-cat >sweep.yaml <<'END_OF_FILE'
-stance: 1
+{
+    balance 0.001 0.1
+    cat <<'END_OF_FILE'
 title: Balance on three hosts
-scene: biped
-ground: {friction: 0.8, contacts: [foot1]}
-initial:
-  equilibrium: {theta: -0.41, q2: 0.82}
-  support_foot: 1
-controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
-             sample_time: 0.001, torque_limit: 10, noise: 0.1}
-method: {name: implicit, step: 0.001}
 stop: {time: 5, settle: off}
 sweep:
   grid:
     - {path: initial.offset.theta, from: -0.05, to: 0.01, count: 100}
     - {path: initial.offset.vtheta, from: -0.2, to: 0.05, count: 300}
 END_OF_FILE
+} >sweep.yaml
 
 # ---- three hosts, one host: the same, and as fast ------------------------------------------------
 received() { ip netns exec "$name-2" cat /sys/class/net/eth0/statistics/rx_bytes; }

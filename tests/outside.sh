@@ -34,3 +34,16 @@ tool() { # name, task ...
     "$python" "$tests/results_tools.py" "$@" >log 2>&1
     result $? "$name"
 }
+
+# A robot on one foot under state feedback: how most scenarios of the tests begin.
+balance() { # sample time and longest step (s), half-width of the torques' noise (N m)
+    cat <<END
+stance: 1
+scene: biped
+ground: {friction: 0.8, contacts: [foot1]}
+initial: {equilibrium: {theta: -0.41, q2: 0.82}, support_foot: 1}
+controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
+             sample_time: $1, torque_limit: 10, noise: $2}
+method: {name: implicit, step: $1}
+END
+}

@@ -18,16 +18,3 @@ cd "$scratch" && mkdir "$disk" || exit 1
 # shellcheck source=tests/outside.sh
 . "$tests/outside.sh"
 skip() { echo "ok $((++count)) - $1 # SKIP $2"; }
-
-# A robot on one foot, sampled every 10 ms: what most scenarios of the tests begin with.
-balance() {
-    cat <<'END'
-stance: 1
-scene: biped
-ground: {friction: 0.8, contacts: [foot1]}
-initial: {equilibrium: {theta: -0.41, q2: 0.82}, support_foot: 1}
-controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
-             sample_time: 0.01, torque_limit: 10}
-method: {name: implicit, step: 0.01}
-END
-}

@@ -204,17 +204,9 @@ same() { # name, file, file
 export STANCE SCENARIO RESULTS STANCE_ISA
 STANCE=$stance STANCE_ISA=scalar
 scenario() { # points of each of two axes, s that a case lasts
+    balance 0.001 0
     cat <<END_OF_FILE
-stance: 1
 title: Balance under Slurm
-scene: biped
-ground: {friction: 0.8, contacts: [foot1]}
-initial:
-  equilibrium: {theta: -0.41, q2: 0.82}
-  support_foot: 1
-controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
-             sample_time: 0.001, torque_limit: 10}
-method: {name: implicit, step: 0.001}
 stop: {time: $2, settle: off}
 record: {every: 0.1, cases: [0, 7]}
 sweep:

@@ -5,7 +5,7 @@ set -u
 . "$(dirname "$0")/scratch.sh"
 
 {
-    balance
+    balance 0.01 0
     cat <<END
 stop: {time: 4}
 sweep:

@@ -9,7 +9,7 @@ points=150
 
 # Two maps beside each other: the axis of words is taken in full.
 {
-    balance
+    balance 0.01 0
     cat <<END
 stop: {time: 4}
 sweep:

@@ -16,20 +16,16 @@ if [ -n "${STANCE_TEST_LONG:-}" ]; then
 fi
 
 # Minutes of work on any machine, of which a file holds the first cases soon.
-cat >long.yaml <<END
-stance: 1
-scene: biped
-ground: {friction: 0.8, contacts: [foot1]}
-initial: {equilibrium: {theta: -0.41, q2: 0.82}, support_foot: 1}
-controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
-             sample_time: 0.001, torque_limit: 10, noise: 0.1}
-method: {name: implicit, step: 0.001}
+{
+    balance 0.001 0.1
+    cat <<END
 stop: {time: 8, settle: off}
 sweep:
   grid:
     - {path: initial.offset.theta, from: -0.12, to: 0.06, count: 600}
     - {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 600}
 END
+} >long.yaml
 # A second or less.
 sed 's/0\.001/0.01/g; s/count: 600/count: 60/; s/stop: .*/stop: {time: 3}/' long.yaml >short.yaml
 sed 's/, noise: 0.1//; s/count: 60/count: 150/' short.yaml >refined.yaml

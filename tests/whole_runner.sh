@@ -14,19 +14,8 @@ looks() { # name, kind ...
 
 # $1: sweep and other keys.
 scenario() {
-    cat <<END
-stance: 1
-title: "Balance, with \"quotes\" and Ümlaut"
-scene: biped
-ground: {friction: 0.8, contacts: [foot1]}
-initial:
-  equilibrium: {theta: -0.41, q2: 0.82}
-  support_foot: 1
-controller: {kind: state-feedback, design: place, poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6],
-             sample_time: 0.001, torque_limit: 10, noise: 0.1}
-method: {name: implicit, step: 0.001}
-$1
-END
+    balance 0.001 0.1
+    printf '%s\n' 'title: "Balance, with \"quotes\" and Ümlaut"' "$1"
 }
 grid() { # count, count
     echo "sweep:
