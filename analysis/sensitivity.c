@@ -1,9 +1,11 @@
 /* sensitivity.c - Sobol' indices, Morris's effects and first-order indices of given data. */
 #include "sensitivity.h"
 
+#include "../runner/sampling.h"
 #include "statistics.h"
 
 #include <Random123/philox.h>
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,9 +22,10 @@ static const double LEAST_RESAMPLED = 0.9;
 /* Rows to estimate from: blocks, one after the other, and what an estimate needs beside them. */
 struct block_rows {
     size_t factors, count, width;
-    const double *value; /* [count][width] */
-    bool second_order;   /* sobol */
-    const uint32_t *bin; /* given: [count][factors] */
+    const double *value;   /* [count][width] */
+    bool second_order;     /* sobol */
+    const uint32_t *group; /* sobol: [count]: blocks of a group hang together */
+    const uint32_t *bin;   /* given: [count][factors] */
     size_t bins;
     bool even;
     double *work;
@@ -306,6 +309,75 @@ static bool estimate_all(const struct block_rows *rows, estimator estimate, size
     return good;
 }
 
+/* ---- the jackknife ------------------------------------------------------------------------ */
+
+enum { GROUPS = SAMPLING_REPLICATES };
+
+/* The rows that are not in the group; how many. */
+static size_t leave_out(const struct block_rows *rows, uint32_t group, uint32_t *pick)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < rows->count; i++) {
+        if (rows->group[i] != group) {
+            pick[count++] = (uint32_t)i;
+        }
+    }
+    return count;
+}
+
+/* Student's interval about an estimate from those without one of the groups each (Tukey). */
+static struct sensitivity_value interval_without(double estimate, const double *without, size_t n,
+                                                 double level)
+{
+    struct sensitivity_value value = {isfinite(estimate) ? estimate : NAN, NAN, NAN};
+    double mean = 0, squares = 0;
+    for (size_t g = 0; g < n; g++) {
+        mean += without[g] / (double)n;
+    }
+    for (size_t g = 0; g < n; g++) {
+        squares += (without[g] - mean) * (without[g] - mean);
+    }
+    if (n > 1 && isfinite(squares)) {
+        const double half = gsl_cdf_tdist_Pinv((1 + level) / 2, (double)(n - 1)) *
+                            sqrt(squares * (double)(n - 1) / (double)n);
+        value.low = value.estimate - half;
+        value.high = value.estimate + half;
+    }
+    return value;
+}
+
+static bool estimate_grouped(const struct block_rows *rows, estimator estimate, size_t quantities,
+                             double level, struct sensitivity_value *value)
+{
+    double *now = malloc(quantities * sizeof *now);
+    double *table = malloc(quantities * GROUPS * sizeof *table);
+    uint32_t *pick = malloc((rows->count + 1) * sizeof *pick);
+    const bool good = now && table && pick;
+    size_t groups = 0;
+
+    for (uint32_t g = 0; good && g < GROUPS; g++) {
+        struct block_rows others = *rows;
+        others.count = leave_out(rows, g, pick);
+        if (others.count < rows->count) {
+            estimate(&others, pick, table + groups++ * quantities);
+        }
+    }
+    if (good) {
+        estimate(rows, NULL, now);
+    }
+    for (size_t q = 0; good && q < quantities; q++) {
+        double line[GROUPS];
+        for (size_t g = 0; g < groups; g++) {
+            line[g] = table[g * quantities + q];
+        }
+        value[q] = interval_without(now[q], line, groups, level);
+    }
+    free(now);
+    free(table);
+    free(pick);
+    return good;
+}
+
 /* ---- what all share ----------------------------------------------------------------------- */
 
 static const struct sensitivity_value nothing = {NAN, NAN, NAN};
@@ -355,18 +427,20 @@ static bool is_whole(const double *y, size_t n)
 }
 
 bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, size_t factors,
-                       bool second_order, const struct sensitivity_bootstrap *bootstrap)
+                       bool second_order, double level)
 {
     const size_t width = (second_order ? 2 * factors : factors) + 2;
     const size_t quantities = 2 * factors + 1 + (second_order ? factors * factors : 0);
     double *value = malloc((blocks + 1) * width * sizeof *value);
-    struct block_rows rows = {.factors = factors, .width = width, .value = value};
+    uint32_t *group = malloc((blocks + 1) * sizeof *group);
+    struct block_rows rows = {.factors = factors, .width = width, .value = value, .group = group};
 
     rows.second_order = second_order;
     rows.work = malloc(sums_size(width, factors, second_order) * sizeof *rows.work);
-    bool good = begin(s, factors, quantities) && value && rows.work;
+    bool good = begin(s, factors, quantities) && value && group && rows.work;
     for (size_t i = 0; good && i < blocks; i++) {
         if (is_whole(y + i * width, width)) {
+            group[rows.count] = (uint32_t)(i % GROUPS);
             memcpy(value + rows.count++ * width, y + i * width, width * sizeof *value);
         }
     }
@@ -379,10 +453,11 @@ bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, si
         for (size_t i = 0; i < rows.count * width; i++) {
             value[i] -= s->mean; /* sums of squares lose nothing to a large mean */
         }
-        good = rows.count < 2 || estimate_all(&rows, estimate_sobol, quantities, bootstrap, s->all);
+        good = rows.count < 2 || estimate_grouped(&rows, estimate_sobol, quantities, level, s->all);
         s->first_sum = s->all[2 * factors];
     }
     free(value);
+    free(group);
     free(rows.work);
     if (!good) {
         sensitivity_free(s);

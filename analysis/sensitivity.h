@@ -29,7 +29,14 @@
  * hardly adds anything: nothing is taken off then, but the interval reaches down as far as that
  * would.
  *
- * Intervals are percentiles of bootstrap estimates in which whole blocks are drawn with
+ * Intervals of Sobol' indices rest on what the independently scrambled sequences of the design say
+ * (runner/sampling.h): each is left out in turn (Tukey's jackknife of groups), and the scatter of
+ * the estimates from the others gives Student's interval about the estimate from all. Blocks of one
+ * sequence depend on each other, for good or ill, so a bootstrap that draws them as if they did not
+ * is too wide for one response and too narrow for another; sequences do not. The intervals hold for
+ * independent blocks, too.
+ *
+ * The others are percentiles of bootstrap estimates in which whole blocks are drawn with
  * replacement, moved by their mean's distance from the estimate: to draw a block twice biases
  * estimates of variances within bins, and of sigma. Blocks of a Sobol' sequence are more even than
  * independent ones, so that intervals are rather too wide than too narrow. The draws are a function
@@ -89,10 +96,10 @@ struct sensitivity {
 /* Each takes y with NAN where a response is missing. False: no memory; nothing is left then. To be
  * released with sensitivity_free. With fewer than two blocks left all is NAN. */
 
-/* y[blocks][factors + 2], second_order: [blocks][2 factors + 2]; a missing response takes its block
- * out. */
+/* y[blocks][factors + 2], second_order: [blocks][2 factors + 2], as runner/sampling.h deals them to
+ * sequences; a missing response takes its block out. `level` of the intervals. */
 bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, size_t factors,
-                       bool second_order, const struct sensitivity_bootstrap *bootstrap);
+                       bool second_order, double level);
 /* y[blocks][factors + 1], u[blocks][factors + 1][factors]: the points; a missing response takes the
  * effects out that need it. */
 bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u, size_t blocks,

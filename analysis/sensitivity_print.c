@@ -80,9 +80,13 @@ static void print_head(const struct sensitivity_study *study)
                                      : "left out; a point without another case takes its "
                                        "block or effects along");
     }
-    printf("intervals: %g %%, bootstrap over %s, %zu resamples\n",
-           100 * study->request.bootstrap.level, blocks_word(study),
-           study->request.bootstrap.resamples);
+    printf("intervals: %g %%, ", 100 * study->request.bootstrap.level);
+    if (is_sobol(study)) {
+        printf("Student's, from %d independently scrambled sequences\n", SAMPLING_REPLICATES);
+    } else {
+        printf("bootstrap over %s, %zu resamples\n", blocks_word(study),
+               study->request.bootstrap.resamples);
+    }
 }
 
 /* Indices are shares, with as many decimals as matter; effects have a unit. */
@@ -199,8 +203,7 @@ static void print_counts(const struct sensitivity_study *study,
     }
 }
 
-/* Fewer blocks than these of a Sobol' sequence are not always even, nor as good as independent:
- * measured, see tests/test_sensitivity.c. */
+/* With fewer than these a mean is not yet normal: measured, see tests/test_sensitivity.c. */
 static void print_caution(const struct sensitivity_study *study, size_t blocks)
 {
     const bool sobol = study->design->method == SAMPLING_SOBOL;
@@ -340,6 +343,12 @@ static json_t *table_json(const struct sensitivity_study *study,
     return object;
 }
 
+/* Intervals of Sobol' indices draw nothing. */
+static json_t *drawn_json(const struct sensitivity_study *study, uint64_t number)
+{
+    return is_sobol(study) ? json_null() : json_integer((json_int_t)number);
+}
+
 bool sensitivity_print_json(const struct sensitivity_study *study)
 {
     const struct sensitivity_request *request = &study->request;
@@ -354,16 +363,16 @@ bool sensitivity_print_json(const struct sensitivity_study *study)
         }
     }
     sensitivity_response_text(study, text, sizeof text);
-    json_t *root =
-        json_pack("{s:o, s:s, s:s, s:I, s:I, s:s, s:s?, s:s?, s:s, s:o, s:s, s:f, s:I, s:I, s:o}",
-                  "file", json_string(study->r->file) ? json_string(study->r->file) : json_null(),
-                  "title", study->r->title, "method", sampling_words[study->design->method],
-                  "count", (json_int_t)study->design->count, "block", (json_int_t)study->block,
-                  "response", text, "answer", request->answer, "of",
-                  request->of == RESULTS_KIND_COUNT ? NULL : results_kind_names[request->of],
-                  "unit", request->unit, "over", over, "failed_cases", policy_word(study), "level",
-                  request->bootstrap.level, "resamples", (json_int_t)request->bootstrap.resamples,
-                  "seed", (json_int_t)request->bootstrap.seed, "tables", tables);
+    json_t *root = json_pack(
+        "{s:o, s:s, s:s, s:I, s:I, s:s, s:s?, s:s?, s:s, s:o, s:s, s:f, s:o, s:o, s:o}", "file",
+        json_string(study->r->file) ? json_string(study->r->file) : json_null(), "title",
+        study->r->title, "method", sampling_words[study->design->method], "count",
+        (json_int_t)study->design->count, "block", (json_int_t)study->block, "response", text,
+        "answer", request->answer, "of",
+        request->of == RESULTS_KIND_COUNT ? NULL : results_kind_names[request->of], "unit",
+        request->unit, "over", over, "failed_cases", policy_word(study), "level",
+        request->bootstrap.level, "resamples", drawn_json(study, request->bootstrap.resamples),
+        "seed", drawn_json(study, request->bootstrap.seed), "tables", tables);
     bool good = root && json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
     json_decref(root);
     putchar('\n');

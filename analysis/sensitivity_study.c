@@ -210,7 +210,7 @@ static bool analyse(const struct sensitivity_study *study, const double *y, cons
     const size_t blocks = study->response.points / study->block, k = study->factors;
     switch (d->method) {
     case SAMPLING_SALTELLI:
-        return sensitivity_sobol(s, y, blocks, k, d->second_order, bootstrap);
+        return sensitivity_sobol(s, y, blocks, k, d->second_order, bootstrap->level);
     case SAMPLING_MORRIS:
         return sensitivity_morris(s, y, u, blocks, k, bootstrap);
     default:

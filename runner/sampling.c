@@ -3,21 +3,17 @@
 
 #include <Random123/philox.h>
 #include <gsl/gsl_cdf.h>
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *const sampling_words[SAMPLING_METHODS] = {"random",   "lhs",    "sobol",
                                                       "saltelli", "morris", "sphere"};
 
-enum {
-    SOBOL_BITS = 30, /* of GSL's integers */
-    UNIT_BITS = 53,  /* of a coordinate */
-};
+enum { UNIT_BITS = 53 }; /* of a coordinate */
 
 /* What random numbers of one method are for: different ones for each. */
-enum purpose { PURPOSE_POINT, PURPOSE_ORDER, PURPOSE_SHIFT };
+enum purpose { PURPOSE_POINT, PURPOSE_ORDER, PURPOSE_SHIFT, PURPOSE_MATRIX };
 
 /* ---- random numbers -------------------------------------------------------------------------- */
 
@@ -75,52 +71,61 @@ static size_t dimensions(const struct sampling *s)
     }
 }
 
-/* GSL has the sequence but neither its direction numbers nor point i. From point 2^j - 1 to 2^j
- * Gray's code changes bit j alone: their difference is direction number j. GSL leaves out point 0,
- * which is zero. */
+/* Sequences with scrambles of their own. */
+static uint64_t sequences(const struct sampling *s)
+{
+    return s->method == SAMPLING_SALTELLI ? SAMPLING_REPLICATES : 1;
+}
+
+/* The directions of a coordinate after its random matrix: bit i of the result, counted from the
+ * leading one, is bit i of the direction plus some of the bits before it, modulo 2. */
+static void scramble(const struct sampling *s, uint64_t sequence, size_t dimension,
+                     uint64_t direction[SOBOL_BITS])
+{
+    uint64_t scrambled[SOBOL_BITS] = {0};
+    for (int i = 0; i < UNIT_BITS; i++) {
+        const uint64_t before = i > 0 ? ~UINT64_C(0) << (64 - i) >> (64 - UNIT_BITS) : 0;
+        const uint64_t own = UINT64_C(1) << (UNIT_BITS - 1 - i);
+        const uint64_t row =
+            (random_bits(s, PURPOSE_MATRIX, sequence << 32 | dimension, (uint64_t)i) & before) |
+            own;
+        for (int bit = 0; bit < SOBOL_BITS; bit++) {
+            scrambled[bit] |= __builtin_parityll(direction[bit] & row) ? own : 0;
+        }
+    }
+    memcpy(direction, scrambled, sizeof scrambled);
+}
+
 static bool make_directions(struct sampling *s, size_t n)
 {
-    double x[SAMPLING_MAX_FACTORS];
-    uint32_t before[SAMPLING_MAX_FACTORS] = {0};
-    gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort */
-    gsl_qrng *sequence = gsl_qrng_alloc(gsl_qrng_sobol, (unsigned)n);
-    gsl_set_error_handler(handler);
-
-    s->direction = calloc(SAMPLING_MAX_BITS * n, sizeof *s->direction);
-    s->shift = calloc(n, sizeof *s->shift);
-    const bool good = sequence && s->direction && s->shift;
-    size_t bit = 0;
-    for (uint64_t point = 1; good && point < s->count; point++) {
-        gsl_qrng_get(sequence, x);
-        const bool power = point >> bit == 1;
+    uint64_t direction[SOBOL_BITS];
+    s->direction = calloc(sequences(s) * SAMPLING_MAX_BITS * n, sizeof *s->direction);
+    s->shift = calloc(sequences(s) * n, sizeof *s->shift);
+    const bool good = s->direction && s->shift;
+    for (uint64_t r = 0; good && r < sequences(s); r++) {
         for (size_t d = 0; d < n; d++) {
-            const uint32_t now = (uint32_t)ldexp(x[d], SOBOL_BITS);
-            if (power) {
-                s->direction[bit * n + d] = now ^ before[d];
+            sobol_directions(d, UNIT_BITS, direction);
+            scramble(s, r, d, direction);
+            for (size_t bit = 0; bit < SAMPLING_MAX_BITS; bit++) {
+                s->direction[(r * SAMPLING_MAX_BITS + bit) * n + d] = direction[bit];
             }
-            before[d] = now;
+            s->shift[r * n + d] = random_bits(s, PURPOSE_SHIFT, r, d) >> (64 - UNIT_BITS);
         }
-        bit += power;
-    }
-    for (size_t d = 0; good && d < n; d++) {
-        s->shift[d] = random_bits(s, PURPOSE_SHIFT, 0, d) >> (64 - UNIT_BITS);
-    }
-    if (sequence) {
-        gsl_qrng_free(sequence);
     }
     return good;
 }
 
-/* Shifted point as integers of 53 bits. */
+/* Scrambled point as integers of 53 bits. */
 static void sobol_point(const struct sampling *s, size_t n, uint64_t point, uint64_t *x)
 {
-    const uint64_t gray = point ^ point >> 1;
+    const uint64_t sequence = point % sequences(s), number = point / sequences(s);
+    const uint64_t gray = number ^ number >> 1;
+    const uint64_t *direction = s->direction + sequence * SAMPLING_MAX_BITS * n;
     for (size_t d = 0; d < n; d++) {
-        uint32_t bits = 0;
+        x[d] = s->shift[sequence * n + d];
         for (size_t bit = 0; gray >> bit; bit++) {
-            bits ^= gray >> bit & 1 ? s->direction[bit * n + d] : 0;
+            x[d] ^= gray >> bit & 1 ? direction[bit * n + d] : 0;
         }
-        x[d] = (uint64_t)bits << (UNIT_BITS - SOBOL_BITS) ^ s->shift[d];
     }
 }
 

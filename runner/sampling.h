@@ -7,21 +7,28 @@
  *   random    independent, uniform: Philox keyed by the seed.
  *   lhs       Latin hypercube: each of `count` equal strata of each factor holds one point, at a
  *             random place (McKay, Beckman, Conover, Technometrics 21, 1979).
- *   sobol     Sobol's sequence in Gray-code order (Antonov, Saleev 1979) with the direction numbers
- *             of Bratley and Fox, ACM TOMS 659, as GSL has them, shifted digitally: each coordinate
- *             XORed with a random number of its own. The all-zero point is kept: with it every 2^m
- *             points from a multiple of 2^m on form a net, which the shift preserves.
+ *   sobol     Sobol's sequence (sobol.h), scrambled: each coordinate's bits, the leading one first,
+ *             are multiplied by a random lower triangular matrix of its own with ones on the
+ *             diagonal and XORed with a random number (Matousek, J. Complexity 14, 1998). Every
+ *             point is then uniform, so that a mean over the points has no bias and its error can
+ *             be had from independent scrambles; of every 2^m points from a multiple of 2^m on the
+ *             net that they form stays one. The all-zero point is kept: without it there is none.
  *   saltelli  blocks for Sobol' indices (Saltelli et al., Comput. Phys. Commun. 181, 2010): A and B
  *             are the halves of a Sobol' point of twice the factors; in AB_j factor j comes from
- *             the other one. Order in a block: A, AB_1 ... AB_k, with second_order BA_1 ... BA_k,
- * B. morris    trajectories of Morris, Technometrics 33, 1991: from a random point of a lattice of
+ *             the other one. Order in a block: A, AB_1 ... AB_k, with second_order
+ *             BA_1 ... BA_k, B. Blocks are dealt to SAMPLING_REPLICATES sequences, each scrambled
+ *             independently of the others: block i is number i / SAMPLING_REPLICATES of sequence
+ *             i mod SAMPLING_REPLICATES. How far these disagree is what is known of the error.
+ *   morris    trajectories of Morris, Technometrics 33, 1991: from a random point of a lattice of
  *             `levels` levels each factor in turn, in random order and direction, changes by
  *             levels / (2 (levels - 1)).
- *   sphere    directions of a shifted Sobol' sequence, uniform on the sphere inscribed in the cube:
- *             an angle for 2 factors, otherwise normal deviates over their norm.
+ *   sphere    directions of a scrambled Sobol' sequence, uniform on the sphere inscribed in the
+ *             cube: an angle for 2 factors, otherwise normal deviates over their norm.
  */
 #ifndef STANCE_RUNNER_SAMPLING_H
 #define STANCE_RUNNER_SAMPLING_H
+
+#include "sobol.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,8 +45,9 @@ enum sampling_method {
 };
 
 enum {
-    SAMPLING_MAX_FACTORS = 40, /* dimensions of GSL's Sobol' sequence */
-    SAMPLING_MAX_BITS = 25,    /* of the number of blocks */
+    SAMPLING_MAX_FACTORS = SOBOL_DIMENSIONS,
+    SAMPLING_MAX_BITS = SOBOL_BITS, /* of the number of blocks */
+    SAMPLING_REPLICATES = 16,       /* scrambled sequences of saltelli */
 };
 
 /* `count`: points; saltelli: base points; morris: trajectories. 1 ... 2^SAMPLING_MAX_BITS.
@@ -52,8 +60,8 @@ struct sampling {
     bool second_order; /* saltelli */
     uint64_t seed;
     /* Made by sampling_begin. */
-    uint32_t *direction; /* Sobol' sequences: [SAMPLING_MAX_BITS][dimensions] */
-    uint64_t *shift;     /* ... [dimensions], of 53 bits */
+    uint64_t *direction; /* Sobol' sequences: [sequences][SAMPLING_MAX_BITS][dimensions] */
+    uint64_t *shift;     /* ... [sequences][dimensions], of 53 bits */
     uint32_t *stratum;   /* lhs: [factors][count] */
 };
 

@@ -165,45 +165,85 @@ static void test_orders(void **state)
 
 /* ---- Sobol' sequences ------------------------------------------------------------------------ */
 
-/* The digital shift cancels between two points; point 0 of the sequence itself is zero. */
-static uint64_t unshifted(const double *u, size_t factors, size_t point, size_t factor)
-{
-    const uint64_t shift = (uint64_t)ldexp(u[factor], 53);
-    return ((uint64_t)ldexp(u[point * factors + factor], 53) ^ shift) >> 23;
-}
-
-/* Against Bratley and Fox' recurrence m_k = 2 a_1 m_k-1 ^ ... ^ 2^d m_k-d ^ m_k-d for the primitive
- * polynomials x + 1, x^2 + x + 1, x^3 + x + 1 and the first numbers 1; 1 1; 1 3 7. */
-static void test_sobol_points(void **state)
+/* Against the recurrence m_k = 2 a_1 m_k-1 ^ ... ^ 2^d m_k-d ^ m_k-d of Bratley and Fox for the
+ * primitive polynomials x + 1, x^2 + x + 1, x^3 + x + 1 and the first numbers 1; 1 3; 1 3 1 of Joe
+ * and Kuo; all 40 coordinates by a checksum of what SciPy's scipy.stats.qmc.Sobol(40, bits=30) has
+ * (version 1.10, its array _sv[:, :25] row by row). */
+static void test_directions(void **state)
 {
     (void)state;
-    enum { BITS = 10, N = 1 << BITS, K = 4 };
-    uint32_t m[K][BITS] = {{0}, {1}, {1, 1}, {1, 3, 7}};
-    for (int k = 0; k < BITS; k++) {
+    enum { K = 4 };
+    uint64_t m[K][SOBOL_BITS] = {{0}, {1}, {1, 3}, {1, 3, 1}}, direction[SOBOL_BITS];
+    for (int k = 0; k < SOBOL_BITS; k++) {
         m[0][k] = 1;
         m[1][k] = k < 1 ? m[1][k] : 2 * m[1][k - 1] ^ m[1][k - 1];
         m[2][k] = k < 2 ? m[2][k] : 2 * m[2][k - 1] ^ 4 * m[2][k - 2] ^ m[2][k - 2];
         m[3][k] = k < 3 ? m[3][k] : 4 * m[3][k - 2] ^ 8 * m[3][k - 3] ^ m[3][k - 3];
     }
-    static const double first[8][2] = {{0, 0},         {0.5, 0.5},     {0.75, 0.25},
-                                       {0.25, 0.75},   {0.375, 0.375}, {0.875, 0.875},
-                                       {0.625, 0.125}, {0.125, 0.625}};
-    double *u = points_of(SAMPLING_SOBOL, N, K, 1);
-    for (size_t i = 0; i < N; i++) {
-        for (size_t d = 0; d < K; d++) {
-            uint64_t expected = 0;
-            for (int bit = 0; bit < BITS; bit++) {
-                if ((i ^ i >> 1) >> bit & 1) {
-                    expected ^= (uint64_t)m[d][bit] << (30 - 1 - bit);
-                }
+    for (size_t d = 0; d < K; d++) {
+        for (int width = SOBOL_BITS; width <= 64; width += 13) {
+            sobol_directions(d, width, direction);
+            for (int k = 0; k < SOBOL_BITS; k++) {
+                assert_int_equal(direction[k], m[d][k] << (width - 1 - k));
             }
-            assert_int_equal(unshifted(u, K, i, d), expected);
-            if (i < 8 && d < 2) {
-                assert_true(ldexp((double)expected, -30) == first[i][d]);
+        }
+    }
+    uint64_t sum = 0;
+    for (size_t d = 0; d < SOBOL_DIMENSIONS; d++) {
+        sobol_directions(d, 30, direction);
+        for (int k = 0; k < SOBOL_BITS; k++) {
+            sum = sum * 1000003 + direction[k];
+        }
+    }
+    assert_int_equal(sum, UINT64_C(13069965568171837952));
+    /* Numbers are odd and below 2^k: bit k is the last one of direction k. */
+    for (size_t d = 0; d < SOBOL_DIMENSIONS; d++) {
+        sobol_directions(d, 53, direction);
+        for (int k = 0; k < SOBOL_BITS; k++) {
+            assert_int_equal(direction[k] & ((UINT64_C(1) << (53 - k)) - 1), UINT64_C(1)
+                                                                                 << (52 - k));
+            assert_int_equal(direction[k] >> 53, 0);
+        }
+    }
+}
+
+/* A matrix scramble takes equal parts of a coordinate to equal parts: two points share their first
+ * m bits if and only if those of the sequence do, and nothing else of the sequence is left. */
+static void test_scramble(void **state)
+{
+    (void)state;
+    enum { BITS = 9, N = 1 << BITS, K = 40, SEEDS = 400 };
+    uint64_t direction[SOBOL_BITS];
+    double *u = points_of(SAMPLING_SOBOL, N, K, 1);
+    for (size_t d = 0; d < K; d++) {
+        sobol_directions(d, SOBOL_BITS, direction);
+        for (int m = 1; m <= BITS; m++) {
+            int image[N];
+            memset(image, -1, sizeof image);
+            for (size_t i = 0; i < N; i++) {
+                uint64_t plain = 0;
+                for (int bit = 0; bit < BITS; bit++) {
+                    plain ^= (i ^ i >> 1) >> bit & 1 ? direction[bit] : 0;
+                }
+                const int from = (int)(plain >> (SOBOL_BITS - m)), to = (int)ldexp(u[i * K + d], m);
+                assert_true(image[from] == -1 || image[from] == to);
+                image[from] = to;
+            }
+            for (int part = 0, seen[N] = {0}; part < 1 << m; part++) {
+                assert_int_equal(seen[image[part]]++, 0);
             }
         }
     }
     free(u);
+    /* Over seeds the distance of two points is random but for its leading bit: without the matrix
+     * it would be the same for all. */
+    int high = 0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        u = points_of(SAMPLING_SOBOL, 2, 1, seed);
+        high += (((uint64_t)ldexp(u[0], 53) ^ (uint64_t)ldexp(u[1], 53)) >> 51 & 1) != 0;
+        free(u);
+    }
+    assert_in_range(high, SEEDS / 2 - 50, SEEDS / 2 + 50); /* 5 deviations */
 }
 
 /* Two coordinates: of every 2^m points from a multiple of 2^m on each box of area 2^-m, of whatever
@@ -270,8 +310,7 @@ static void test_integration_order(void **state)
 static void test_saltelli(void **state)
 {
     (void)state;
-    enum { K = 3, N = 64 };
-    double *twice = points_of(SAMPLING_SOBOL, N, 2 * K, 4);
+    enum { K = 3, N = 64 * SAMPLING_REPLICATES };
     for (int second = 0; second < 2; second++) {
         struct sampling s = {.method = SAMPLING_SALTELLI,
                              .count = N,
@@ -283,13 +322,15 @@ static void test_saltelli(void **state)
         assert_int_equal(sampling_block(&s), block);
         assert_int_equal(sampling_points(&s), N * block);
         double *u = all_points(&s);
+        bool taken[SAMPLING_REPLICATES][2 * K][64] = {{{0}}};
         for (size_t i = 0; i < N; i++) {
             const double *A = u + i * block * K, *B = A + (block - 1) * K;
             for (size_t j = 0; j < K; j++) {
-                /* Both halves are the Sobol' sequence of twice the factors. */
-                assert_int_equal(unshifted(u, block * K, i, j), unshifted(twice, 2 * K, i, j));
-                assert_int_equal(unshifted(u + (block - 1) * K, block * K, i, j),
-                                 unshifted(twice + K, 2 * K, i, j));
+                /* Each of the sequences, dealt in turn, fills 64 equal parts once. */
+                bool *of_a = taken[i % SAMPLING_REPLICATES][j],
+                     *of_b = taken[i % SAMPLING_REPLICATES][K + j];
+                assert_false(of_a[(int)(64 * A[j])] || of_b[(int)(64 * B[j])]);
+                of_a[(int)(64 * A[j])] = of_b[(int)(64 * B[j])] = true;
                 assert_true(A[j] != B[j]);
                 for (size_t l = 0; l < K; l++) {
                     assert_true(A[(1 + j) * K + l] == (l == j ? B[l] : A[l]));
@@ -300,7 +341,6 @@ static void test_saltelli(void **state)
         free(u);
         sampling_end(&s);
     }
-    free(twice);
     assert_int_equal(sampling_most_factors(SAMPLING_SALTELLI), 20);
 }
 
@@ -410,7 +450,8 @@ int main(void)
         cmocka_unit_test(test_uncorrelated),
         cmocka_unit_test(test_strata),
         cmocka_unit_test(test_orders),
-        cmocka_unit_test(test_sobol_points),
+        cmocka_unit_test(test_directions),
+        cmocka_unit_test(test_scramble),
         cmocka_unit_test(test_net),
         cmocka_unit_test(test_integration_order),
         cmocka_unit_test(test_saltelli),

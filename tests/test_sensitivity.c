@@ -83,12 +83,71 @@ static void shifted_indices(double *first, double *total)
     memcpy(total, t, sizeof t);
 }
 
+/* Ishigami's function with a fourth factor that does nothing: what it changes is how the
+ * coordinates of a design are paired. */
+static void inert_indices(double *first, double *total)
+{
+    ishigami_indices(first, total);
+    first[3] = total[3] = 0;
+}
+
+/* Steps: one in each of two factors at once, 9 % inside; a slanted one; of one factor alone. A
+ * third factor does nothing. */
+static double corner(const double *u)
+{
+    return u[0] < 0.3 && u[1] < 0.3;
+}
+static void corner_indices(double *first, double *total)
+{
+    const double p = 0.3, alone = p * p * p * (1 - p) / (p * p * (1 - p * p));
+    first[0] = first[1] = alone;
+    total[0] = total[1] = 1 - alone;
+    first[2] = total[2] = 0;
+}
+static double slanted(const double *u)
+{
+    return u[0] + u[1] < 1;
+}
+static void slanted_indices(double *first, double *total)
+{
+    const double f[3] = {1 / 3.0, 1 / 3.0, 0}, t[3] = {2 / 3.0, 2 / 3.0, 0};
+    memcpy(first, f, sizeof f);
+    memcpy(total, t, sizeof t);
+}
+static double step(const double *u)
+{
+    return u[0] < 0.37;
+}
+static void step_indices(double *first, double *total)
+{
+    const double f[3] = {1, 0, 0};
+    memcpy(first, f, sizeof f);
+    memcpy(total, f, sizeof f);
+}
+
+/* Waves, alone and as a product: variances 1/2 and 1/4. */
+static double waves(const double *u)
+{
+    return cos(18 * pi * u[0]) + cos(10 * pi * u[1]) * cos(14 * pi * u[2]);
+}
+static void waves_indices(double *first, double *total)
+{
+    const double f[3] = {2 / 3.0, 0, 0}, t[3] = {2 / 3.0, 1 / 3.0, 1 / 3.0};
+    memcpy(first, f, sizeof f);
+    memcpy(total, t, sizeof t);
+}
+
 static const struct function functions[] = {
     {"Ishigami", 3, ishigami, ishigami_indices},
     {"Sobol' g", G, g_function, g_indices},
     {"shifted", 3, shifted, shifted_indices},
+    {"Ishigami and inert", 4, ishigami, inert_indices},
+    {"corner", 3, corner, corner_indices},
+    {"slanted", 3, slanted, slanted_indices},
+    {"step", 3, step, step_indices},
+    {"waves", 3, waves, waves_indices},
 };
-enum { FUNCTIONS = sizeof functions / sizeof functions[0] };
+enum { FUNCTIONS = sizeof functions / sizeof functions[0], SMOOTH = 3 };
 
 /* ---- designs ------------------------------------------------------------------------------ */
 
@@ -144,7 +203,7 @@ static void analyse(struct sensitivity *s, const struct data *d,
     const struct sampling *p = &d->sampling;
     const bool good =
         p->method == SAMPLING_SALTELLI
-            ? sensitivity_sobol(s, d->y, p->count, d->factors, p->second_order, bootstrap)
+            ? sensitivity_sobol(s, d->y, p->count, d->factors, p->second_order, bootstrap->level)
         : p->method == SAMPLING_MORRIS
             ? sensitivity_morris(s, d->y, d->u, p->count, d->factors, bootstrap)
             : sensitivity_given(s, d->y, d->u, d->points, d->factors, p->method == SAMPLING_SOBOL,
@@ -156,7 +215,8 @@ static void analyse(struct sensitivity *s, const struct data *d,
 
 static bool holds(const struct sensitivity_value *v, double truth)
 {
-    return v->low <= truth && truth <= v->high;
+    const double rounding = 1e-12;
+    return v->low <= truth + rounding && truth - rounding <= v->high;
 }
 
 /* The estimators of Saltelli et al. (2010), table 2 (b) and (f), less the mean: what ours are to be
@@ -228,53 +288,50 @@ static struct tally cover(enum sampling_method method, const struct function *f,
     return t;
 }
 
-/* Of independent blocks the intervals hold the truth as often as they say, and for a design's own
- * blocks, which are more even, more often. */
+/* Intervals of independent and of a design's own blocks hold the truth as often as they say, index
+ * by index, whatever the response is; indices of factors that do nothing are exact. */
 static void test_coverage(void **state)
 {
     const bool patient = getenv("STANCE_TEST_LONG") != NULL;
-    const int seeds = patient ? 1000 : 100;
+    const int seeds = patient ? 2000 : 300;
+    const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     (void)state;
     for (size_t f = 0; f < FUNCTIONS; f++) {
         const struct function *own = &functions[f];
-        const struct tally t = cover(SAMPLING_SALTELLI, own, 256, seeds, true);
-        assert_in_range((int)(1000 * t.mean), 915, 985);
-        assert_true(t.least > 0.85);
-        assert_true(t.error < t.rival);
-        const struct tally even = cover(SAMPLING_SALTELLI, own, 128, seeds, false);
-        assert_true(even.least > 0.9 && even.error < 1.05 * even.rival);
-        for (int m = 0; m < 3; m++) {
-            const enum sampling_method method = (enum sampling_method)m; /* random, lhs, sobol */
-            assert_true(cover(method, own, 512, seeds, false).mean > 0.93);
+        for (int independent = 0; independent < 2; independent++) {
+            const struct tally t = cover(SAMPLING_SALTELLI, own, 256, seeds, independent);
+            assert_true(t.least > 0.93 - slack);
+            assert_true(t.mean > 0.935);
+            for (size_t q = 0; q < t.quantities; q++)
+                assert_true(t.held[q] == seeds || t.held[q] / seeds < 0.97 + slack);
+            assert_true(t.error < t.rival);
         }
         for (uint64_t n = 32; patient && n <= 1024; n *= 2) {
             cover(SAMPLING_SALTELLI, own, n, seeds, true);
             cover(SAMPLING_SALTELLI, own, n, seeds, false);
-            for (int m = 0; m < 3; m++)
-                cover((enum sampling_method)m, own, n, seeds, false);
         }
     }
 }
 
 /* ---- single designs ----------------------------------------------------------------------- */
 
-static const struct sensitivity_bootstrap usual = {500, 0.95, 1};
+static const struct sensitivity_bootstrap usual = {500, 0.95, 1}, wide = {500, 0.999, 1};
 
 static void test_indices(void **state)
 {
     double first[MOST], total[MOST];
     (void)state;
-    for (size_t f = 0; f < FUNCTIONS; f++) {
+    for (size_t f = 0; f < SMOOTH; f++) {
         struct sensitivity s;
         struct data d = make(SAMPLING_SALTELLI, &functions[f], 4096, 3, false, false);
-        analyse(&s, &d, &usual);
+        analyse(&s, &d, &wide);
         functions[f].indices(first, total);
         assert_int_equal(s.blocks, 4096);
         for (size_t j = 0; j < d.factors; j++) {
             assert_true(holds(&s.measure[SENSITIVITY_FIRST][j], first[j]));
             assert_true(holds(&s.measure[SENSITIVITY_TOTAL][j], total[j]));
-            assert_float_equal(s.measure[SENSITIVITY_FIRST][j].estimate, first[j], 0.01);
-            assert_float_equal(s.measure[SENSITIVITY_TOTAL][j].estimate, total[j], 0.01);
+            assert_float_equal(s.measure[SENSITIVITY_FIRST][j].estimate, first[j], 0.02);
+            assert_float_equal(s.measure[SENSITIVITY_TOTAL][j].estimate, total[j], 0.02);
         }
         assert_null(s.second);
         assert_null(s.measure[SENSITIVITY_MU]);
@@ -289,11 +346,11 @@ static void test_pairs(void **state)
 {
     double first[MOST], total[MOST];
     (void)state;
-    for (size_t f = 0; f < FUNCTIONS; f++) {
+    for (size_t f = 0; f < SMOOTH; f++) {
         struct sensitivity s;
         struct data d = make(SAMPLING_SALTELLI, &functions[f], 2048, 5, true, false);
         const size_t k = d.factors;
-        analyse(&s, &d, &usual);
+        analyse(&s, &d, &wide);
         functions[f].indices(first, total);
         double variance = 1;
         for (size_t j = 0; j < G; j++)
@@ -303,7 +360,7 @@ static void test_pairs(void **state)
                 const double truth = f == 1             ? first[i] * first[j] * (variance - 1)
                                      : i == 0 && j == 2 ? total[2]
                                                         : 0;
-                assert_float_equal(s.second[i * k + j].estimate, truth, 0.01);
+                assert_float_equal(s.second[i * k + j].estimate, truth, 0.02);
                 assert_true(holds(&s.second[i * k + j], truth));
             }
         }
@@ -331,10 +388,6 @@ static void test_units(void **state)
     sensitivity_free(&s);
     analyse(&s, &d, &usual);
     assert_memory_equal(s.all, other.all, (2 * d.factors + 1) * sizeof *s.all);
-    const struct sensitivity_bootstrap seeded = {500, 0.95, 2};
-    sensitivity_free(&s);
-    analyse(&s, &d, &seeded);
-    assert_true(s.all[0].estimate == other.all[0].estimate && s.all[0].low != other.all[0].low);
     sensitivity_free(&s);
     sensitivity_free(&other);
     release(&d);
@@ -376,19 +429,21 @@ static void test_morris(void **state)
     release(&d);
 }
 
-/* A missing response is as if its block had never been. */
+/* A missing response is as if its block had never been: here one in each of the sequences, so that
+ * the others keep theirs. */
 static void test_missing(void **state)
 {
+    enum { BLOCK = 5, GONE = SAMPLING_REPLICATES };
     struct sensitivity s, other;
-    struct data d = make(SAMPLING_SALTELLI, &functions[0], 65, 4, false, false);
-    const size_t block = 5;
+    struct data d = make(SAMPLING_SALTELLI, &functions[0], 5 * GONE, 4, false, false);
     (void)state;
-    d.y[7 * block + 3] = NAN;
+    for (size_t i = 0; i < GONE; i++)
+        d.y[(GONE + i) * BLOCK + i % BLOCK] = NAN;
     analyse(&s, &d, &usual);
-    memmove(d.y + 7 * block, d.y + 8 * block, 57 * block * sizeof *d.y);
-    d.sampling.count = 64;
+    memmove(d.y + GONE * BLOCK, d.y + 2 * GONE * BLOCK, 3 * GONE * BLOCK * sizeof *d.y);
+    d.sampling.count = 4 * GONE;
     analyse(&other, &d, &usual);
-    assert_int_equal(s.blocks, 64);
+    assert_int_equal(s.blocks, 4 * GONE);
     assert_memory_equal(s.all, other.all, 7 * sizeof *s.all);
     sensitivity_free(&s);
     sensitivity_free(&other);
@@ -425,7 +480,7 @@ static void test_nothing(void **state)
     (void)state;
     for (size_t i = 0; i < 24; i++)
         y[i] = 0.5;
-    assert_true(sensitivity_sobol(&s, y, 6, 2, false, &usual));
+    assert_true(sensitivity_sobol(&s, y, 6, 2, false, 0.95));
     assert_true(isnan(s.all[0].estimate) && isnan(s.first_sum.estimate) && s.deviation == 0);
     sensitivity_free(&s);
     assert_true(sensitivity_given(&s, y, u, 24, 2, false, &usual));
@@ -436,7 +491,7 @@ static void test_nothing(void **state)
     sensitivity_free(&s);
     for (size_t i = 0; i < 24; i++)
         y[i] = NAN;
-    assert_true(sensitivity_sobol(&s, y, 6, 2, false, &usual));
+    assert_true(sensitivity_sobol(&s, y, 6, 2, false, 0.95));
     assert_true(s.blocks == 0 && isnan(s.mean) && isnan(s.all[3].low));
     sensitivity_free(&s);
     assert_true(sensitivity_given(&s, y, u, 24, 2, true, &usual));
