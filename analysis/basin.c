@@ -1,8 +1,10 @@
 /* basin.c - cuts a results file into maps over the starts and sums up what these say. */
 #include "basin.h"
 
+#include "intervals.h"
 #include "statistics.h"
 
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -270,7 +272,7 @@ static size_t blocks_of(const struct basin *b)
 }
 
 /* blocks[rows][blocks_of] */
-static void add_slice(struct basin *b, const struct lattice *lattice, const size_t *point,
+static bool add_slice(struct basin *b, const struct lattice *lattice, const size_t *point,
                       struct block *blocks)
 {
     struct basin_row *row = row_of(b, point);
@@ -279,7 +281,9 @@ static void add_slice(struct basin *b, const struct lattice *lattice, const size
         row->point[b->by[k]] = point[b->by[k]];
     }
     count_cases(lattice, b->choice.of, row);
-    basin_map_volume(&lattice->map, b->choice.of, &volume);
+    if (!basin_map_volume(&lattice->map, b->choice.of, &volume)) {
+        return false;
+    }
     b->box = volume.box;
     row->slices++;
     row->low += volume.low;
@@ -287,7 +291,7 @@ static void add_slice(struct basin *b, const struct lattice *lattice, const size
     if (isfinite(volume.estimate)) {
         row->known++;
         row->volume += volume.estimate;
-        row->error += volume.variance;
+        row->reach += basin_volume_reach(&volume, statistics_deviations(b->choice.level));
         if (b->averaged >= 0) {
             struct block *block = &blocks[(size_t)(row - b->row) * blocks_of(b) +
                                           point[b->averaged] / b->sample.block];
@@ -307,10 +311,11 @@ static void add_slice(struct basin *b, const struct lattice *lattice, const size
     if (row->has_distance) {
         basin_map_distance(&lattice->map, b->choice.of, lattice->origin, &row->distance);
     }
+    return true;
 }
 
-/* Variance of the mean of blocks; NAN: fewer than two of them are known. */
-static double scatter(const struct block *blocks, size_t count)
+/* Variance of the mean of blocks, of which *found are known; NAN: fewer than two. */
+static double scatter(const struct block *blocks, size_t count, double *found)
 {
     double mean = 0, squares = 0, n = 0;
     for (size_t k = 0; k < count; k++) {
@@ -320,27 +325,40 @@ static double scatter(const struct block *blocks, size_t count)
             squares += step * step * (n - 1) / n;
         }
     }
+    *found = fmax(n, 2);
     return n > 1 ? squares / (n - 1) / n : NAN;
 }
 
-/* From sums over slices to means; over a sample of parameters these scatter, too. */
+/* From sums over slices to means. The boundaries of slices next to each other lie alike, and so may
+ * their errors: the mean's is the mean of theirs. Over a sample of parameters slices scatter, too.
+ */
 static void finish_row(const struct basin *b, struct basin_row *row, const struct block *blocks)
 {
     const double n = (double)row->slices, known = row->known > 0 ? (double)row->known : NAN;
     row->low /= n;
     row->high /= n;
     row->volume /= known;
-    row->error /= known * known;
+    row->reach /= known;
     if (b->averaged >= 0) {
-        row->error += scatter(blocks + (size_t)(row - b->row) * blocks_of(b), blocks_of(b));
+        double found;
+        const double variance =
+            scatter(blocks + (size_t)(row - b->row) * blocks_of(b), blocks_of(b), &found);
+        const double student = gsl_cdf_tdist_Pinv(0.5 + 0.5 * b->choice.level, found - 1);
+        row->reach = hypot(row->reach, student * sqrt(variance));
     }
-    row->error = sqrt(row->error);
 }
 
-/* Counts cases alone: a sample is no map. */
-static void add_sampled(struct basin *b, const struct lattice *lattice, const size_t *point)
+/* What became of a sampled point in the slices of a row. */
+struct point {
+    uint32_t cases, inside, unknown;
+};
+
+/* Counts cases alone: a sample is no map. points[rows][points] */
+static void add_sampled(struct basin *b, const struct lattice *lattice, const size_t *point,
+                        struct point *points)
 {
     struct basin_row *row = row_of(b, point);
+    struct point *own = points + (size_t)(row - b->row) * b->sample.points;
     for (int k = 0; k < b->by_axes; k++) {
         row->point[b->by[k]] = point[b->by[k]];
     }
@@ -348,30 +366,31 @@ static void add_sampled(struct basin *b, const struct lattice *lattice, const si
         if (basin_sample_counts(&b->sample, i)) {
             const uint8_t kind = lattice->kind[i];
             row->cases++;
+            own[i].cases++;
             row->inside += kind == b->choice.of;
+            own[i].inside += kind == b->choice.of;
             row->failed += kind == RESULTS_FAILED;
             row->pending += kind == RESULTS_PENDING;
+            own[i].unknown += kind == RESULTS_FAILED || kind == RESULTS_PENDING;
         }
     }
     row->slices++;
 }
 
-/* A point that counts in several slices, averaged over, is one draw: the interval is that of as
- * many draws as a slice has, which errs on the wide side. */
-static void finish_sampled(const struct basin *b, struct basin_row *row)
+/* A point that counts in several slices, averaged over, is one draw. */
+static void finish_sampled(const struct basin *b, struct basin_row *row, const struct point *points)
 {
-    const uint64_t unknown = row->failed + row->pending, known = row->cases - unknown;
-    const double share = known > 0 ? (double)row->inside / (double)known : NAN;
-    const double n = (double)row->slices;
-    const uint64_t draws = row->cases / row->slices, least = (uint64_t)((double)row->inside / n),
-                   most = (uint64_t)ceil((double)(row->inside + unknown) / n);
-    double ignored;
-    statistics_wilson_at(b->choice.level, least, draws, &row->low, &ignored);
-    statistics_wilson_at(b->choice.level, most, draws, &ignored, &row->high);
-    row->volume = b->box * share;
-    row->low *= b->box;
-    row->high *= b->box;
-    row->error = b->box * sqrt(share * (1 - share) / ((double)known / n));
+    const struct point *own = points + (size_t)(row - b->row) * b->sample.points;
+    const uint64_t known = row->cases - row->failed - row->pending;
+    struct interval_draws least = {0}, most = {0};
+    for (size_t i = 0; i < b->sample.points; i++) {
+        interval_add(&least, own[i].inside, own[i].cases);
+        interval_add(&most, own[i].inside + own[i].unknown, own[i].cases);
+    }
+    row->volume = known > 0 ? b->box * (double)row->inside / (double)known : NAN;
+    row->low = b->box * interval_of(&least, b->choice.level).low;
+    row->high = b->box * interval_of(&most, b->choice.level).high;
+    row->reach = (row->high - row->low) / 2;
 }
 
 static bool make_rows(struct basin *b, stance_message *message)
@@ -385,28 +404,33 @@ static bool make_rows(struct basin *b, stance_message *message)
     }
     b->row = calloc(b->rows, sizeof *b->row);
     struct block *blocks = calloc(b->rows * blocks_of(b) + 1, sizeof *blocks);
-    if (!b->row || !blocks || !make_lattice(&lattice, b)) {
+    const bool sampled = b->starts == BASIN_SAMPLE;
+    struct point *points = calloc(sampled ? b->rows * b->sample.points : 1, sizeof *points);
+    if (!b->row || !blocks || !points || !make_lattice(&lattice, b)) {
         free(blocks);
+        free(points);
         return no_memory(b->r, message);
     }
+    bool good = true;
     do {
         take_slice(&lattice, b, point);
         if (b->starts == BASIN_GRID) {
-            add_slice(b, &lattice, point, blocks);
+            good = add_slice(b, &lattice, point, blocks);
         } else {
-            add_sampled(b, &lattice, point);
+            add_sampled(b, &lattice, point, points);
         }
-    } while (next_slice(b, point));
+    } while (good && next_slice(b, point));
     for (size_t k = 0; k < b->rows; k++) {
         if (b->starts == BASIN_GRID) {
             finish_row(b, &b->row[k], blocks);
         } else {
-            finish_sampled(b, &b->row[k]);
+            finish_sampled(b, &b->row[k], points);
         }
     }
     free_lattice(&lattice);
     free(blocks);
-    return true;
+    free(points);
+    return good || no_memory(b->r, message);
 }
 
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,

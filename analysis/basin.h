@@ -13,17 +13,17 @@
 
 enum basin_starts {
     BASIN_GRID,   /* start axes of numbers: volumes as basin_map.h has them */
-    BASIN_SAMPLE, /* sampled starts: binomial */
+    BASIN_SAMPLE, /* sampled starts: shares */
 };
 
-/* A row of the table. Of a sample, volumes come from the share and Wilson's interval: `low` with
- * every unknown case outside, `high` with all of them inside. */
+/* A row of the table. Of a sample, volumes come from the share and its interval (intervals.h):
+ * `low` with every unknown case outside, `high` with all of them inside, `reach` half of that. */
 struct basin_row {
     size_t point[SCENARIO_MAX_AXES]; /* of the axes that rows are made by; 0 elsewhere */
     uint64_t slices, cases, inside, failed, pending;
     uint64_t known;           /* grid: slices of which some case is known */
     double volume, low, high; /* mean of a slice (volume: of those known); NAN: nothing is known */
-    double error;             /* likely error of `volume`, one standard deviation: over a sample of
+    double reach;             /* likely error of `volume` at the level asked for: over a sample of
                                * parameters with the scatter of its blocks; NAN: one block alone */
     uint64_t cells, crossed;  /* grid */
     struct basin_entropy entropy;
@@ -37,7 +37,7 @@ struct basin_choice {
     const char *const *by; /* paths that rows are made by; by_count 0: all parameters */
     size_t by_count;
     size_t side;  /* of the boxes of basin entropy */
-    double level; /* of Wilson's interval */
+    double level; /* of likely errors and intervals */
 };
 
 struct basin {

@@ -91,7 +91,7 @@ static json_t *row_entry(const struct basin *b, const struct basin_row *row)
     json_object_set_new(entry, "pending", results_json_whole(row->pending));
     json_object_set_new(entry, "share", results_json_number(row->volume / b->box));
     json_object_set_new(entry, "volume", results_json_number(row->volume));
-    json_object_set_new(entry, "error", results_json_number(row->error));
+    json_object_set_new(entry, "reach", results_json_number(row->reach));
     json_object_set_new(entry, "low", results_json_number(row->low));
     json_object_set_new(entry, "high", results_json_number(row->high));
     json_object_set_new(entry, "cells", results_json_whole(row->cells));

@@ -1,4 +1,4 @@
-/* basin_map.c - volume, entropy, uncertainty exponent and boundary of a map of outcomes. */
+/* basin_map.c - entropy, uncertainty exponent and boundary of a map of outcomes. */
 #include "basin_map.h"
 
 #include <gsl/gsl_fit.h>
@@ -38,50 +38,6 @@ static uint64_t index_of(const struct basin_map *map, const uint64_t *stride, co
         index += point[a] * stride[a];
     }
     return index;
-}
-
-/* ---- volume ------------------------------------------------------------------------------- */
-
-void basin_map_volume(const struct basin_map *map, enum results_kind of,
-                      struct basin_volume *volume)
-{
-    const int corners = 1 << map->axes;
-    uint64_t stride[SCENARIO_MAX_AXES];
-    size_t cells[SCENARIO_MAX_AXES], point[SCENARIO_MAX_AXES] = {0};
-    double inside = 0, known = 0;
-
-    *volume = (struct basin_volume){.box = 1};
-    find_strides(map, stride);
-    for (int a = 0; a < map->axes; a++) {
-        cells[a] = map->count[a] - 1;
-        volume->box *= map->place[a][cells[a]] - map->place[a][0];
-    }
-    do {
-        const uint64_t first = index_of(map, stride, point);
-        double cell = 1;
-        int in = 0, unknown = 0;
-        for (int a = 0; a < map->axes; a++) {
-            cell *= map->place[a][point[a] + 1] - map->place[a][point[a]];
-        }
-        for (int c = 0; c < corners; c++) {
-            uint64_t index = first;
-            for (int a = 0; a < map->axes; a++) {
-                index += (c >> a & 1) * stride[a];
-            }
-            in += map->kind[index] == of;
-            unknown += !is_known(map->kind[index]);
-        }
-        inside += cell * in / corners;
-        known += cell * (corners - unknown) / corners;
-        volume->cells++;
-        volume->low += in == corners ? cell : 0;
-        volume->high += in + unknown > 0 ? cell : 0;
-        if (in < corners && in + unknown > 0) {
-            volume->crossed++;
-            volume->variance += cell * cell / 12;
-        }
-    } while (next_point(map->axes, cells, point));
-    volume->estimate = known > 0 ? volume->box * inside / known : NAN;
 }
 
 /* ---- entropy ------------------------------------------------------------------------------ */

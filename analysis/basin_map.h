@@ -8,12 +8,29 @@
  * corner. If the boundary is resolved, i.e. no cell whose corners agree is crossed by it, then a
  * cell is inside, outside or crossed, and the basin's volume lies between that of the cells inside
  * and that of the cells not outside: a bound, not an interval of confidence. The estimate gives a
- * crossed cell the share of its corners that are inside, which is the trapezoidal rule. Its likely
- * error takes that share in each crossed cell to be off by an independent, evenly distributed
- * part of the cell, variance 1/12: exact for the two ends of an interval, and more than the
- * variance of counts of lattice points for curved boundaries (0.0724 boundary length times spacing
- * cubed in the plane: Kendall 1948, Matheron; 0.057 per crossed cell), but too little for a flat
- * boundary parallel to an axis, where the errors are all the same: the bound holds there, too.
+ * crossed cell the share of its corners that are inside, which is the trapezoidal rule.
+ *
+ * Its likely error is the larger of two, neither beyond the bound:
+ *
+ * Patches. A line of the lattice that crosses the boundary steeply meets it somewhere between two
+ * places, evenly distributed, so the volume of its cell is off by an evenly distributed part of the
+ * cell, variance 1/12. Cells next to each other along an axis along which their corners do not
+ * differ have the same piece of boundary in them: they are a patch, and their errors add up. A row
+ * of n cells of a patch has n^2 / 12, unless the boundary leaves it upwards at one end and
+ * downwards at the other: then it has swept over the cells' whole height, and what is left are the
+ * cells at the ends (in space, where the ends of neighbouring rows may all be alike, one cell's
+ * error a row, rows adding up). Patches are independent. Exact for the two ends of an interval.
+ *
+ * Rhythm. A boundary of slope p / q in cells meets the lattice at the same q heights over and over,
+ * and the errors do not cancel: h L / q evenly distributed over its length L. Of the s^d
+ * sublattices of every s-th place along each of d axes that error scatters with the variance (s^2 -
+ * 1) / 12 times (h L / q)^2: their scatter / (s^2 - 1) is the variance. For boundaries without a
+ * rhythm, whose variance grows as h^(d + 1), that is (s^(d + 1) - 1) / (s^2 - 1) times too much.
+ * The larger of s = 2 and 3.
+ *
+ * So the error is conservative: intervals of 95 % hold in 95 to 100 % of cases for boundaries along
+ * an axis, at slopes of any kind, curved and in space (tests/test_basin.c measures it). What they
+ * may miss are two parallel boundaries in a common rhythm whose sublattices' errors cancel (91 %).
  *
  * Entropy: A. Daza, A. Wagemakers, B. Georgeot, D. Guery-Odelin, M. A. F. Sanjuan, Basin entropy: a
  * new tool to analyze uncertainty in dynamical systems, Sci. Rep. 6, 31416 (2016).
@@ -39,11 +56,14 @@ struct basin_volume {
     double box;
     double estimate;         /* NAN: no case is done */
     double low, high;        /* bound: unknown cases all outside, all inside */
-    double variance;         /* of the estimate, as above */
+    double variance;         /* of the estimate, as above; may exceed the bound */
     uint64_t cells, crossed; /* crossed: by the boundary, or with an unknown corner */
 };
-void basin_map_volume(const struct basin_map *map, enum results_kind of,
+/* False: no memory. */
+bool basin_map_volume(const struct basin_map *map, enum results_kind of,
                       struct basin_volume *volume);
+/* So many standard deviations of the estimate, not beyond the bound. */
+double basin_volume_reach(const struct basin_volume *volume, double deviations);
 
 /* Sums over boxes of side^axes cases that tile the map from its first corner; what is left over at
  * the other end is left out, as are boxes of which nothing is known. */

@@ -16,18 +16,19 @@ double basin_dimension(const struct basin *basin, const struct basin_row *row)
 
 /* ---- text --------------------------------------------------------------------------------- */
 
-/* Why Wilson's interval may be taken for the points of a design. */
+/* What the points of a design make of the interval. */
 static const char *interval_reason(enum sampling_method method)
 {
     switch (method) {
     case SAMPLING_LHS:
-        return "Wilson's; wider than it need be, as Latin hypercubes scatter less than chance";
+        return "of independent points; conservative, as Latin hypercubes scatter less";
     case SAMPLING_SOBOL:
-        return "Wilson's; mostly far wider than it need be: Sobol' points scatter less than chance";
+        return "of independent points; conservative, mostly by far: Sobol' points scatter less";
     case SAMPLING_SALTELLI:
-        return "Wilson's, of the first and the last point of each block: the others repeat them";
+        return "of the first and the last point of each block, as if independent; the others "
+               "repeat them";
     default:
-        return "Wilson's";
+        return "of independent points";
     }
 }
 
@@ -136,7 +137,7 @@ static void print_volume(const struct basin *b, const struct basin_row *row)
     print_labels(b, row);
     print_number(9, "%.3f %%", 100 * row->volume / b->box);
     print_number(11, "%.5g", row->volume);
-    print_number(9, "%.2g", statistics_deviations(b->choice.level) * row->error);
+    print_number(9, "%.2g", row->reach);
     snprintf(text, sizeof text, "%.5g ... %.5g", row->low, row->high);
     printf("   %-25s %10llu of %-10llu", text, (unsigned long long)row->inside,
            (unsigned long long)row->cases);
@@ -263,7 +264,7 @@ static void put_csv_row(struct csv *csv, const struct basin *b, const struct bas
         (double)row->pending,
         row->volume / b->box,
         row->volume,
-        row->error,
+        row->reach,
         row->low,
         row->high,
         basin_entropy(&row->entropy),
@@ -287,7 +288,7 @@ static void put_csv_row(struct csv *csv, const struct basin *b, const struct bas
 bool basin_print_csv(const struct basin *b)
 {
     static const char *const names[] = {
-        "cases",       "inside",    "failed",  "pending",          "share", "volume",      "error",
+        "cases",       "inside",    "failed",  "pending",          "share", "volume",      "reach",
         "low",         "high",      "entropy", "boundary_entropy", "boxes", "mixed_boxes", "alpha",
         "alpha_error", "dimension", "nearest",
     };

@@ -97,31 +97,34 @@ static void print_fields(const struct summary *summary)
 
 /* ---- text: outcomes ----------------------------------------------------------------------- */
 
-static void print_share(const char *name, uint64_t k, uint64_t n)
+static void print_share(const char *name, uint64_t k, uint64_t n, const struct interval *interval)
 {
-    double low, high;
-    statistics_wilson(k, n, &low, &high);
-    printf("  %-11s%12llu  %7.3f %%   (%.3f ... %.3f %%)\n", name, (unsigned long long)k,
-           percent(k, n), 100 * low, 100 * high);
+    printf("  %-11s%12llu  %7.3f %%", name, (unsigned long long)k, percent(k, n));
+    if (!isnan(interval->low)) {
+        printf("   (%.3f ... %.3f %%)", 100 * interval->low, 100 * interval->high);
+    }
+    putchar('\n');
 }
 
 static void print_outcomes(const struct summary *summary, const struct results *r)
 {
     const struct statistics_counts *counts = &summary->counts;
-    printf("\nOutcomes of the %llu case%s done, with 95 %% intervals (Wilson)\n",
-           (unsigned long long)counts->done, counts->done == 1 ? "" : "s");
+    printf("\nOutcomes of the %llu case%s done%s\n", (unsigned long long)counts->done,
+           counts->done == 1 ? "" : "s", r->sample < 0 ? "" : ", with 95 % intervals");
     for (int k = 0; k < RESULTS_KIND_COUNT && summary_has_outcomes(summary); k++) {
         if (k != RESULTS_PENDING && k != RESULTS_FAILED &&
             (counts->kind[k] > 0 || k != RESULTS_DONE)) {
-            print_share(results_kind_names[k], counts->kind[k], counts->done);
+            print_share(results_kind_names[k], counts->kind[k], counts->done, &summary->of_kind[k]);
         }
     }
     if (!summary_has_outcomes(summary)) {
         puts("  not stored in this file");
     } else if (r->sample >= 0 && r->cases > r->axis[r->sample].count) {
-        puts("  (cases at one point of the sample are not independent: where several are counted, "
-             "here\n"
-             "  or against other axes, these intervals are too narrow)");
+        puts("  (intervals, here and below: of the sample alone, whose points count however many "
+             "cases\n"
+             "  each has)");
+    } else if (r->sample < 0 && counts->done > 1) {
+        printf("  (of the grid; one case is %.2g %%)\n", 100 / (double)counts->done);
     }
     if (summary->inferred > 0) {
         printf("  of these %14llu  %7.3f %%   not simulated: inferred from neighbours that agree\n",
@@ -228,8 +231,8 @@ static void print_parameter_head(const struct summary *summary, const struct res
            summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised", along->name,
            along->unit[0] ? " (" : "", along->unit, along->unit[0] ? ")" : "",
            along->text[0] ? ": " : "", along->text);
-    printf("  %14s %10s %10s   %-*s", "value", "done", "share", shown ? INTERVAL : 0,
-           "95 % interval");
+    printf("  %14s %10s %10s   %-*s", "value", "done", "share",
+           shown && r->sample >= 0 ? INTERVAL : 0, r->sample < 0 ? "" : "95 % interval");
     for (int k = 0; k < shown; k++) {
         printf("  %-*s", k + 1 < shown ? EXTENT : 0, r->axis[offsets[k]].name);
     }
@@ -241,16 +244,19 @@ static void print_parameter_row(const struct summary *summary, const struct resu
 {
     const struct statistics_counts *counts = &summary->by_value[axis][i];
     char text[128];
-    double low, high;
-    statistics_wilson(counts->kind[summary->judged], counts->done, &low, &high);
+    const struct interval *interval = &summary->interval[axis][i];
+    const int width = shown && r->sample >= 0 ? INTERVAL : 0;
     results_value_text(&r->axis[axis], i, false, text, sizeof text);
     printf("  %14s %10llu", text, (unsigned long long)counts->done);
     if (counts->done == 0) {
-        printf(" %10s   %-*s", "-", shown ? INTERVAL : 0, "none done");
+        printf(" %10s   %-*s", "-", width, "none done");
     } else {
-        snprintf(text, sizeof text, "%.3f ... %.3f %%", 100 * low, 100 * high);
-        printf(" %8.3f %%   %-*s", 100 * summary_share(summary, counts), shown ? INTERVAL : 0,
-               text);
+        text[0] = '\0';
+        if (!isnan(interval->low)) {
+            snprintf(text, sizeof text, "%.3f ... %.3f %%", 100 * interval->low,
+                     100 * interval->high);
+        }
+        printf(" %8.3f %%   %-*s", 100 * summary_share(summary, counts), width, text);
     }
     for (int k = 0; k < shown; k++) {
         extent_text(r, offsets[k], axis, i, text, sizeof text);
@@ -641,17 +647,22 @@ const struct command command_summary = {
     "summary FILE [--json | --csv]",
     "what came out: outcomes, extent of the stabilised set, extremes, cost",
     run,
-    "Works on files that are not finished, too. Shares are of the cases that are done, with\n"
-    "Wilson's 95 % intervals, as if cases were independent draws. An extent is the unbroken "
-    "stretch of stabilised cases through the\n"
-    "equilibrium along one axis of offsets, on the line where the other offsets are nearest to\n"
+    "Works on files that are not finished, too. Shares are of the cases that are done. Those of a\n"
+    "grid have no intervals: its cases are no draws, and how much of the space between them has "
+    "an\n"
+    "outcome `stance basin` says. With sweep.sample shares have 95 % intervals of the sample: "
+    "what\n"
+    "scatters are its points (of saltelli and morris blocks), not the cases that each has on grid\n"
+    "axes. An extent is the unbroken stretch of stabilised cases through the equilibrium along one "
+    "axis of offsets, on the line where the other offsets are nearest to\n"
     "zero; it ends midway between the last stabilised case and the next one.\n"
     "\n"
     "  --csv    the counts of all cases, then a row for every value of every parameter: "
     "parameter,\n"
     "           value, done, failed, pending, stabilised, rested, fell, undecided, and the share\n"
     "           of stabilised cases (without a controller that has a target: rested ones) with\n"
-    "           its interval low ... high; `stance table` has the cases themselves\n"
+    "           its interval low ... high (of a grid empty); `stance table` has the cases "
+    "themselves\n"
     "  --json   the same as JSON; what does not apply is left out or null. Keys\n"
     "    file, title, version, revision, date, ranks\n"
     "    scenarios    [{date, done}] of a file that went on with another scenario, the first one\n"

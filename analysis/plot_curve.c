@@ -1,6 +1,7 @@
 /* plot_curve.c - curves against one axis: what every case of a line did, or how the shares of
  * stabilised and rested cases and the extent of the stabilised set depend on a parameter. */
 #include "basin.h"
+#include "intervals.h"
 #include "plot.h"
 #include "statistics.h"
 
@@ -260,7 +261,7 @@ struct share {
     size_t stride;
     const char *colour;
     char label[96];
-    /* Starts on a grid: shares of their box with both ends, [values][3]; else NULL. */
+    /* Shares with both ends, [values][3]; NULL: shares of a grid's cases, which have none. */
     double *parts;
 };
 enum { SHARES = 6 };
@@ -272,8 +273,7 @@ static void share_at(const struct share *share, size_t i, double part[3])
     if (share->parts) {
         memcpy(part, share->parts + 3 * i, 3 * sizeof *part);
     } else if (c->done > 0) {
-        part[0] = (double)c->kind[share->kind] / (double)c->done;
-        statistics_wilson(c->kind[share->kind], c->done, &part[1], &part[2]);
+        part[0] = part[1] = part[2] = (double)c->kind[share->kind] / (double)c->done;
     }
 }
 
@@ -299,16 +299,34 @@ static double put_share_data(struct page *page, const struct sample *samples,
     return any ? highest : 0; /* of no case at all: not the tiny end of its interval */
 }
 
+/* Shares of a sample that has no basins, with their intervals. */
+static bool measure_sample(const struct results *r, int axis, struct share *share)
+{
+    const size_t values = r->axis[axis].count;
+    struct interval *interval = malloc(values * sizeof *interval);
+    share->parts = malloc(3 * values * sizeof *share->parts);
+    const bool good =
+        interval && share->parts &&
+        intervals_find(r, (enum results_kind)share->kind, axis, NULL, values, interval);
+    for (size_t i = 0; good && i < values; i++) {
+        const struct statistics_counts *c = &share->counts[i * share->stride];
+        share->parts[3 * i] = c->done > 0 ? (double)c->kind[share->kind] / (double)c->done : NAN;
+        share->parts[3 * i + 1] = interval[i].low;
+        share->parts[3 * i + 2] = interval[i].high;
+    }
+    free(interval);
+    return good;
+}
+
 /* Ends of a basin's share: certain bounds, or over a sample of parameters the likely error. */
 static void find_ends(const struct basin *basin, const struct basin_row *row, double part[3])
 {
-    const double error = statistics_deviations(basin->choice.level) * row->error;
     part[0] = row->volume / basin->box;
     part[1] = row->low / basin->box;
     part[2] = row->high / basin->box;
     if (basin->averaged >= 0) {
-        part[1] = fmax(0, (row->volume - error) / basin->box);
-        part[2] = fmin(1, (row->volume + error) / basin->box);
+        part[1] = fmax(0, (row->volume - row->reach) / basin->box);
+        part[2] = fmin(1, (row->volume + row->reach) / basin->box);
     }
 }
 
@@ -320,9 +338,9 @@ static size_t row_at(const struct results *r, int axis, int second, size_t i, si
                            : k * r->axis[axis].count + i;
 }
 
-/* The volumes of basins whose starts are on a grid: no sample of independent cases, for which
- * Wilson's interval would be. Share k is of its own kind or, with a second axis, of its point k.
- * Where the file is none of these the shares are left as they are. */
+/* The volumes of basins, where there are starts, and intervals of samples. Share k is of its own
+ * kind or, with a second axis, of its point k. Of a grid of other things the shares are left as
+ * they are. */
 static bool measure_volumes(const struct results *r, int axis, int second, struct share *shares,
                             int count, bool *sampled, stance_message *message)
 {
@@ -340,17 +358,21 @@ static bool measure_volumes(const struct results *r, int axis, int second, struc
             return false;
         }
         if (!basin_make(&basin, r, &choice, &sample, &usage, message)) {
-            return usage;
-        }
-        if (basin.starts == BASIN_GRID) {
-            const size_t values = r->axis[axis].count;
-            shares[k].parts = malloc(3 * values * sizeof *shares[k].parts);
-            for (size_t i = 0; shares[k].parts && i < values; i++) {
-                find_ends(&basin, &basin.row[row_at(r, axis, second, i, (size_t)k)],
-                          shares[k].parts + 3 * i);
+            if (!usage || r->sample < 0 || second >= 0) {
+                return usage;
             }
+            if (!measure_sample(r, axis, &shares[k])) {
+                return no_memory(message);
+            }
+            continue;
         }
-        const bool good = basin.starts != BASIN_GRID || shares[k].parts;
+        const size_t values = r->axis[axis].count;
+        shares[k].parts = malloc(3 * values * sizeof *shares[k].parts);
+        for (size_t i = 0; shares[k].parts && i < values; i++) {
+            find_ends(&basin, &basin.row[row_at(r, axis, second, i, (size_t)k)],
+                      shares[k].parts + 3 * i);
+        }
+        const bool good = shares[k].parts != NULL;
         *sampled = basin.averaged >= 0;
         basin_free(&basin);
         if (!good) {

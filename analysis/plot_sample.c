@@ -275,13 +275,13 @@ static bool put_panel(struct page *page, int k, double most, stance_message *mes
     FILE *data = gnuplot_data(&page->g, name);
     for (size_t b = 0; b < bins.count; b++) {
         const struct statistics_counts *c = &bins.bin[b].counts;
-        double low, high;
+        const struct interval *interval = &bins.bin[b].of_kind[page->judged];
         if (c->done == 0 || !isfinite(bins.bin[b].centre)) {
             continue;
         }
-        sample_bin_interval(&bins.bin[b], page->judged, &low, &high);
         fprintf(data, "%.17g %.17g %.17g %.17g\n", bins.bin[b].centre,
-                100 * (double)c->kind[page->judged] / (double)c->done, 100 * low, 100 * high);
+                100 * (double)c->kind[page->judged] / (double)c->done, 100 * interval->low,
+                100 * interval->high);
     }
     fputs("nan nan nan nan\n", data); /* a panel without bins is empty, not an error */
     gnuplot_close_data(&page->g, data);
@@ -312,10 +312,8 @@ static bool find_most(struct page *page, int panels, double *most, stance_messag
             return false;
         }
         for (size_t b = 0; b < bins.count; b++) {
-            double low, high;
             const struct statistics_counts *c = &bins.bin[b].counts;
-            sample_bin_interval(&bins.bin[b], page->judged, &low, &high);
-            *most = c->done > 0 ? fmax(*most, 104 * high) : *most;
+            *most = c->done > 0 ? fmax(*most, 104 * bins.bin[b].of_kind[page->judged].high) : *most;
         }
     }
     *most = fmin(*most, 100);

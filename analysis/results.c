@@ -96,7 +96,7 @@ void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t
     free(text);
 }
 
-static int read_int(hid_t object, const char *name, int fallback)
+int results_whole_attribute(hid_t object, const char *name, int fallback)
 {
     if (H5Aexists(object, name) <= 0) {
         return fallback;
@@ -109,7 +109,7 @@ static int read_int(hid_t object, const char *name, int fallback)
     }
     H5Sclose(space);
     H5Aclose(attribute);
-    return value;
+    return value > 0 ? value : fallback;
 }
 
 /* ---- datasets ----------------------------------------------------------------------------- */
@@ -545,7 +545,7 @@ static bool open_file(struct results *r, stance_message *message)
 static bool read_provenance(struct results *r, stance_message *message)
 {
     hid_t id = (hid_t)r->id;
-    int version = read_int(id, "format_version", -1);
+    int version = results_whole_attribute(id, "format_version", -1);
     r->scenario = results_attribute(id, "scenario");
     if (version < 0 || H5Aexists(id, "axes") <= 0 || !r->scenario) {
         snprintf(message->text, sizeof message->text, "%.100s: not a results file of stance",
@@ -563,7 +563,7 @@ static bool read_provenance(struct results *r, stance_message *message)
     results_copy_attribute(id, "git_revision", r->revision, sizeof r->revision);
     results_copy_attribute(id, "date", r->date, sizeof r->date);
     results_copy_attribute(id, "hosts", r->hosts, sizeof r->hosts);
-    r->ranks = read_int(id, "ranks", 0);
+    r->ranks = results_whole_attribute(id, "ranks", 0);
     return true;
 }
 

@@ -26,6 +26,9 @@ void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t
 /* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
 char *results_attribute(hid_t object, const char *name);
 
+/* A positive whole number, or where there is none the fallback. */
+int results_whole_attribute(hid_t object, const char *name, int fallback);
+
 /* What the axis `sample` varies, once the axes have been read; nothing where there is none. */
 bool results_read_sample(struct results *r, stance_message *message);
 void results_free_sample(struct results *r);

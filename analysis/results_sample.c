@@ -82,12 +82,14 @@ bool results_read_sample(struct results *r, stance_message *message)
     int rank, factor = 0;
     const int last = r->axes - 1;
 
+    r->block = 1;
     if (last < 0 || strcmp(r->axis[last].name, "sample") != 0) {
         return true;
     }
     hid_t dataset = results_dataset(r, "sample", &rank, length);
     char *paths = dataset < 0 ? NULL : results_attribute(dataset, "paths"), *rest = paths;
     results_copy_attribute(dataset, "method", r->method, sizeof r->method);
+    r->block = (size_t)results_whole_attribute(dataset, "block", 1);
     H5Dclose(dataset);
     r->vary = calloc(MOST, sizeof *r->vary);
     if (!r->vary) {

@@ -33,6 +33,22 @@ static void add(struct statistics_counts *to, const struct statistics_counts *co
     to->done += counts->done;
 }
 
+static bool find_intervals(struct sample_bins *bins, const struct results *r, const uint32_t *part)
+{
+    struct interval interval[SAMPLE_BINS];
+    bool good = true;
+    for (int kind = 0; good && kind < RESULTS_KIND_COUNT; kind++) {
+        if (kind == RESULTS_PENDING || kind == RESULTS_FAILED) {
+            continue;
+        }
+        good = intervals_find(r, (enum results_kind)kind, -1, part, bins->count, interval);
+        for (size_t b = 0; good && b < bins->count; b++) {
+            bins->bin[b].of_kind[kind] = interval[b];
+        }
+    }
+    return good;
+}
+
 bool sample_bins_make(struct sample_bins *bins, const struct results *r, int k, size_t most,
                       stance_message *message)
 {
@@ -40,12 +56,14 @@ bool sample_bins_make(struct sample_bins *bins, const struct results *r, int k, 
     const size_t n = v->of.count;
     struct place *place = malloc(n * sizeof *place);
     struct statistics_counts *counts = malloc(n * sizeof *counts);
+    uint32_t *part = malloc(n * sizeof *part); /* the bin of each point */
 
     *bins = (struct sample_bins){0};
     most = most < 2 ? 2 : most;
-    if (!place || !counts) {
+    if (!place || !counts || !part) {
         free(place);
         free(counts);
+        free(part);
         snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
         return false;
     }
@@ -70,19 +88,16 @@ bool sample_bins_make(struct sample_bins *bins, const struct results *r, int k, 
         bin->centre = place[begin + (end - begin) / 2].value;
         for (size_t i = begin; i < end; i++) {
             add(&bin->counts, &counts[place[i].point]);
-            bin->points += counts[place[i].point].done > 0;
+            part[place[i].point] = (uint32_t)(bins->count - 1);
         }
         begin = end;
     }
+    const bool good = find_intervals(bins, r, part);
     free(place);
     free(counts);
-    return true;
-}
-
-void sample_bin_interval(const struct sample_bin *bin, enum results_kind kind, double *low,
-                         double *high)
-{
-    const uint64_t done = bin->counts.done;
-    const double share = done ? (double)bin->counts.kind[kind] / (double)done : 0;
-    statistics_wilson((uint64_t)llround(share * (double)bin->points), bin->points, low, high);
+    free(part);
+    if (!good) {
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+    }
+    return good;
 }

@@ -6,14 +6,14 @@
 #ifndef STANCE_ANALYSIS_SAMPLE_BINS_H
 #define STANCE_ANALYSIS_SAMPLE_BINS_H
 
-#include "statistics.h"
+#include "intervals.h"
 
 enum { SAMPLE_BINS = 32 }; /* most */
 
 struct sample_bin {
     double low, high, centre; /* least, largest and median value; one value: all equal */
     struct statistics_counts counts;
-    uint64_t points; /* of the sample that have cases done */
+    struct interval of_kind[RESULTS_KIND_COUNT]; /* of the share of each outcome, at 95 % */
 };
 
 struct sample_bins {
@@ -26,10 +26,5 @@ struct sample_bins {
  * values or fewer, and of words, each is a bin. */
 bool sample_bins_make(struct sample_bins *bins, const struct results *r, int k, size_t most,
                       stance_message *message);
-
-/* Interval of the share of a kind at 95 %. The cases of one point, where a grid stands beside the
- * sample, are no independent ones: a point counts once, which errs on the wide side. */
-void sample_bin_interval(const struct sample_bin *bin, enum results_kind kind, double *low,
-                         double *high);
 
 #endif

@@ -18,19 +18,22 @@ void statistics_wilson(uint64_t k, uint64_t n, double *low, double *high)
 
 void statistics_wilson_at(double level, uint64_t k, uint64_t n, double *low, double *high)
 {
-    const double z = statistics_deviations(level);
     if (n == 0) {
         *low = 0;
         *high = 1;
         return;
     }
-    double total = (double)n, p = (double)k / total;
-    double scale = 1 / (1 + z * z / total);
-    double centre = scale * (p + z * z / (2 * total));
-    double half = scale * z * sqrt(p * (1 - p) / total + z * z / (4 * total * total));
+    statistics_wilson_of(statistics_deviations(level), (double)k / (double)n, (double)n, low, high);
+}
+
+void statistics_wilson_of(double z, double p, double n, double *low, double *high)
+{
+    const double scale = 1 / (1 + z * z / n);
+    const double centre = scale * (p + z * z / (2 * n));
+    const double half = scale * z * sqrt(p * (1 - p) / n + z * z / (4 * n * n));
     /* Rounding must not leave the ends a hair beyond 0 and 1, where they lie exactly. */
-    *low = k == 0 ? 0 : fmax(0, centre - half);
-    *high = k == n ? 1 : fmin(1, centre + half);
+    *low = p <= 0 ? 0 : fmax(0, centre - half);
+    *high = p >= 1 ? 1 : fmin(1, centre + half);
 }
 
 /* ---- counts ------------------------------------------------------------------------------- */

@@ -206,7 +206,10 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
             continue;
         }
         struct statistics_counts *counts = malloc(axis->count * sizeof *counts);
-        if (!counts) {
+        summary->interval[a] = malloc(axis->count * sizeof *summary->interval[a]);
+        if (!counts || !summary->interval[a] ||
+            !intervals_find(r, summary->judged, a, NULL, axis->count, summary->interval[a])) {
+            free(counts);
             snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
             return false;
         }
@@ -225,6 +228,22 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
     return true;
 }
 
+static bool collect_intervals(struct summary *summary, const struct results *r,
+                              stance_message *message)
+{
+    bool good = true;
+    for (int kind = 0; good && kind < RESULTS_KIND_COUNT; kind++) {
+        summary->of_kind[kind] = (struct interval){NAN, NAN};
+        if (kind != RESULTS_PENDING && kind != RESULTS_FAILED && r->sample >= 0) {
+            good = intervals_find(r, (enum results_kind)kind, -1, NULL, 1, &summary->of_kind[kind]);
+        }
+    }
+    if (!good) {
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+    }
+    return good;
+}
+
 /* ---- all of it ---------------------------------------------------------------------------- */
 
 enum results_kind summary_judged(const struct scenario *s)
@@ -240,7 +259,7 @@ bool summary_make(struct summary *summary, const struct results *r, stance_messa
     *summary = (struct summary){.judged = readable ? summary_judged(&s) : RESULTS_STABILISED};
     statistics_count(r, -1, 0, &summary->counts);
     collect_failures(summary, r);
-    bool good = collect_numbers(summary, r, message) &&
+    bool good = collect_intervals(summary, r, message) && collect_numbers(summary, r, message) &&
                 collect_count(&summary->steps, r, "steps", message) &&
                 collect_count(&summary->iterations, r, "iterations", message) &&
                 collect_count(&summary->evaluations, r, "evaluations", message) &&
@@ -271,6 +290,7 @@ void summary_free(struct summary *summary)
 {
     for (int a = 0; a < SCENARIO_MAX_AXES; a++) {
         free(summary->by_value[a]);
+        free(summary->interval[a]);
     }
     free(summary->pair_counts);
     free(summary->bins);

@@ -69,6 +69,7 @@ enum { SUMMARY_FIELDS = 64, SUMMARY_FAILURES = 16 };
 
 struct summary {
     struct statistics_counts counts;
+    struct interval of_kind[RESULTS_KIND_COUNT]; /* of their shares */
     /* What the cases are judged by: STABILISED, or where no controller has a target RESTED. */
     enum results_kind judged;
     uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
@@ -84,6 +85,7 @@ struct summary {
     /* Axes that are not offsets: the counts of every value, and where the share of cases of the
      * kind judged by changes most: from `steepest` to the next value. */
     struct statistics_counts *by_value[SCENARIO_MAX_AXES];
+    struct interval *interval[SCENARIO_MAX_AXES]; /* of the share judged by, for every value */
     size_t steepest[SCENARIO_MAX_AXES];
     int parameters; /* how many such axes; the points of a sample are none */
     /* By the values of each path that a sample varies, [varied]. */

@@ -6,13 +6,9 @@
 #include <math.h>
 
 static void put_counts(struct csv *csv, const struct summary *summary,
-                       const struct statistics_counts *counts)
+                       const struct statistics_counts *counts, const struct interval *interval)
 {
     const bool known = counts->done > 0 && summary_has_outcomes(summary);
-    double low = NAN, high = NAN;
-    if (known) {
-        statistics_wilson(counts->kind[summary->judged], counts->done, &low, &high);
-    }
     csv_number(csv, (double)counts->done);
     csv_number(csv, (double)counts->kind[RESULTS_FAILED]);
     csv_number(csv, (double)counts->kind[RESULTS_PENDING]);
@@ -20,8 +16,8 @@ static void put_counts(struct csv *csv, const struct summary *summary,
         csv_number(csv, (double)counts->kind[k]);
     }
     csv_number(csv, known ? summary_share(summary, counts) : NAN);
-    csv_number(csv, low);
-    csv_number(csv, high);
+    csv_number(csv, known ? interval->low : NAN);
+    csv_number(csv, known ? interval->high : NAN);
     csv_end_row(csv);
 }
 
@@ -34,7 +30,7 @@ void summary_print_csv(const struct summary *summary, const struct results *r)
     csv_row(&csv, head, sizeof head / sizeof head[0]);
     csv_text(&csv, "");
     csv_text(&csv, "");
-    put_counts(&csv, summary, &summary->counts);
+    put_counts(&csv, summary, &summary->counts, &summary->of_kind[summary->judged]);
     for (int a = 0; a < r->axes; a++) {
         const struct results_axis *axis = &r->axis[a];
         for (size_t i = 0; summary->by_value[a] && i < axis->count; i++) {
@@ -44,7 +40,7 @@ void summary_print_csv(const struct summary *summary, const struct results *r)
             } else {
                 csv_number(&csv, axis->value[i]);
             }
-            put_counts(&csv, summary, &summary->by_value[a][i]);
+            put_counts(&csv, summary, &summary->by_value[a][i], &summary->interval[a][i]);
         }
     }
 }

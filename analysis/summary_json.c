@@ -80,17 +80,16 @@ static json_t *failures(const struct summary *summary)
     return object;
 }
 
-static void put_share(json_t *object, uint64_t k, uint64_t n)
+static void put_share(json_t *object, uint64_t k, uint64_t n, const struct interval *interval)
 {
-    double low, high;
-    statistics_wilson(k, n, &low, &high);
     put(object, "share", n ? results_json_number((double)k / (double)n) : json_null());
-    put(object, "low", results_json_number(low));
-    put(object, "high", results_json_number(high));
+    put(object, "low", results_json_number(interval->low));
+    put(object, "high", results_json_number(interval->high));
 }
 
-static json_t *outcomes(const struct statistics_counts *counts)
+static json_t *outcomes(const struct summary *summary)
 {
+    const struct statistics_counts *counts = &summary->counts;
     json_t *object = json_object();
     for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
         if (k == RESULTS_PENDING || k == RESULTS_FAILED ||
@@ -99,7 +98,7 @@ static json_t *outcomes(const struct statistics_counts *counts)
         }
         json_t *entry = json_object();
         put(entry, "count", results_json_whole(counts->kind[k]));
-        put_share(entry, counts->kind[k], counts->done);
+        put_share(entry, counts->kind[k], counts->done, &summary->of_kind[k]);
         put(object, results_kind_names[k], entry);
     }
     return object;
@@ -171,7 +170,7 @@ static json_t *parameter(const struct summary *summary, const struct results *r,
         put(entry, "pending", results_json_whole(counts->kind[RESULTS_PENDING]));
         put(entry, "stabilised", results_json_whole(counts->kind[RESULTS_STABILISED]));
         put(entry, "rested", results_json_whole(counts->kind[RESULTS_RESTED]));
-        put_share(entry, counts->kind[summary->judged], counts->done);
+        put_share(entry, counts->kind[summary->judged], counts->done, &summary->interval[a][i]);
         if (summary->parameters == 1 && r->sample < 0) {
             put(entry, "extents", extents_at(r, a, i));
         }
@@ -238,11 +237,10 @@ static json_t *sampled(const struct summary *summary, const struct results *r, i
         put(part, "from", sampled_value(v, bin->low));
         put(part, "to", sampled_value(v, bin->high));
         put(part, "done", results_json_whole(bin->counts.done));
-        double low, high;
-        sample_bin_interval(bin, summary->judged, &low, &high);
+        const struct interval *interval = &bin->of_kind[summary->judged];
         put(part, "share", results_json_number(summary_share(summary, &bin->counts)));
-        put(part, "low", results_json_number(low));
-        put(part, "high", results_json_number(high));
+        put(part, "low", results_json_number(interval->low));
+        put(part, "high", results_json_number(interval->high));
         json_array_append_new(list, part);
     }
     put(entry, "path", json_string(v->of.name));
@@ -404,7 +402,7 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
     put(root, "cases", cases(summary, r));
     put(root, "failures", failures(summary));
     bool known = summary_has_outcomes(summary);
-    put(root, "outcomes", known ? outcomes(&summary->counts) : json_null());
+    put(root, "outcomes", known ? outcomes(summary) : json_null());
     if (r->single) {
         put(root, "case", single_case(r));
     } else {

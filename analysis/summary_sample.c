@@ -45,7 +45,6 @@ static void print_bins(const struct summary *summary, const struct results *r, i
     const struct results_varied *v = &r->vary[k];
     const struct sample_bins *bins = &summary->bins[k];
     char text[160];
-    double low, high;
 
     for (size_t b = 0; b < bins->count; b++) {
         const struct statistics_counts *counts = &bins->bin[b].counts;
@@ -57,9 +56,9 @@ static void print_bins(const struct summary *summary, const struct results *r, i
             puts("         -   none done");
             continue;
         }
-        sample_bin_interval(&bins->bin[b], summary->judged, &low, &high);
+        const struct interval *interval = &bins->bin[b].of_kind[summary->judged];
         printf("  %7.3f %%   %.3f ... %.3f %%\n", 100 * (double)judged / (double)counts->done,
-               100 * low, 100 * high);
+               100 * interval->low, 100 * interval->high);
     }
 }
 
@@ -113,6 +112,6 @@ void summary_print_sample(const struct summary *summary, const struct results *r
         print_bins(summary, r, k);
     }
     if (r->axes > 1) {
-        puts("  (intervals: the cases of a point, which are not independent, count as one)");
+        puts("  (intervals: cases of a point are not independent; what scatters are points)");
     }
 }

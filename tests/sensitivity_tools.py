@@ -8,7 +8,7 @@
                                         offset that the other grid axes take to a mean of zero
     sensitivity_tools.py mark FILE STATUS INDEX...   these cases become failed (2) or pending (0)
     sensitivity_tools.py check FUNCTION JSON    intervals of `stance sensitivity --json` hold the
-                                        true indices, all those at 99.9 %, else three in four:
+                                        true indices, all those at 99.9 %, else three in five:
                                         those of one sample miss together
     sensitivity_tools.py table JSON CSV         both say the same
 
@@ -174,7 +174,7 @@ def check(function, name):
                       f"{'' if inside else '  OUTSIDE'}")
     assert len(found["tables"][0]["factors"]) == FUNCTIONS[function][1]
     print(f"{held} of {total} intervals hold the truth")
-    assert held >= (total if found["level"] > 0.99 else 0.75 * total)
+    assert held >= (total if found["level"] > 0.99 else 0.6 * total)
 
 
 def table(name, rows):

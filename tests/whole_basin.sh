@@ -287,8 +287,8 @@ blocks = volume.reshape(8, 4).mean(1)
 row, = found["rows"]
 assert found["averaged"] == ["ground.friction", "controller.torque_limit"], found["averaged"]
 assert abs(row["volume"] - volume.mean()) < 1e-12
-scatter = blocks.std(ddof=1) / 8 ** 0.5
-assert scatter <= row["error"] < 1.05 * scatter, (row["error"], scatter)
+scatter = 2.364624 * blocks.std(ddof=1) / 8 ** 0.5 # Student's deviations for 7
+assert scatter <= row["reach"] < 1.2 * scatter, (row["reach"], scatter)
 END
 result $? "... and their error is the scatter of whole blocks"
 expect "... as text" 0 "$stance" basin over.h5
