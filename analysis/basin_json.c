@@ -56,6 +56,13 @@ static void put_uncertainty(json_t *entry, const struct basin *b, const struct b
     }
     json_object_set_new(entry, "alpha", results_json_number(exponent.alpha));
     json_object_set_new(entry, "alpha_error", results_json_number(exponent.error));
+    json_object_set_new(entry, "alpha_distances", json_integer(exponent.scales));
+    json_object_set_new(entry, "alpha_missing",
+                        exponent.refusal == BASIN_FITTED
+                            ? json_null()
+                            : json_string(basin_refusal_words[exponent.refusal]));
+    json_object_set_new(entry, "fractal",
+                        json_boolean(basin_is_fractal(&row->entropy, uncertainty)));
     json_object_set_new(entry, "dimension", results_json_number(basin_dimension(b, row)));
     json_object_set_new(entry, "distances", distances);
     json_object_set_new(entry, "uncertain", shares);

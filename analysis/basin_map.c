@@ -1,7 +1,6 @@
-/* basin_map.c - entropy, uncertainty exponent and boundary of a map of outcomes. */
+/* basin_map.c - entropy, uncertainty and boundary of a map of outcomes. */
 #include "basin_map.h"
 
-#include <gsl/gsl_fit.h>
 #include <math.h>
 #include <string.h>
 
@@ -40,6 +39,15 @@ static uint64_t index_of(const struct basin_map *map, const uint64_t *stride, co
     return index;
 }
 
+/* The tile of a point: the map is cut into BASIN_TILES along its first axes. */
+static int tile_of(int axes, const size_t *point, const size_t *count)
+{
+    enum { SIDE = 4 };
+    _Static_assert(SIDE * SIDE == BASIN_TILES, "a square of tiles");
+    return axes == 1 ? (int)(point[0] * BASIN_TILES / count[0])
+                     : (int)(point[0] * SIDE / count[0] * SIDE + point[1] * SIDE / count[1]);
+}
+
 /* ---- entropy ------------------------------------------------------------------------------ */
 
 void basin_map_entropy(const struct basin_map *map, size_t side, struct basin_entropy *entropy)
@@ -74,9 +82,12 @@ void basin_map_entropy(const struct basin_map *map, size_t side, struct basin_en
                 colours++;
             }
         }
+        const int tile = tile_of(map->axes, box, boxes);
         entropy->boxes += total > 0;
         entropy->mixed += colours > 1;
         entropy->sum += colours > 1 ? sum : 0;
+        entropy->tile_mixed[tile] += colours > 1;
+        entropy->tile_sum[tile] += colours > 1 ? sum : 0;
     } while (next_point(map->axes, boxes, box));
 }
 
@@ -139,33 +150,14 @@ void basin_map_uncertainty(const struct basin_map *map, struct basin_uncertainty
         if (!is_known(map->kind[index])) {
             continue;
         }
+        const int tile = tile_of(map->axes, point, inner);
         for (int k = 0; k < uncertainty->scales; k++) {
+            const bool uncertain = is_uncertain(map, stride, index, (size_t)1 << k);
             uncertainty->counted[k]++;
-            uncertainty->uncertain[k] += is_uncertain(map, stride, index, (size_t)1 << k);
+            uncertainty->uncertain[k] += uncertain;
+            uncertainty->tile[k][tile] += uncertain;
         }
     } while (next_point(map->axes, inner, point));
-}
-
-struct basin_exponent basin_exponent(const struct basin_uncertainty *uncertainty)
-{
-    double x[BASIN_SCALES], y[BASIN_SCALES], weight[BASIN_SCALES];
-    double start, slope, cov00, cov01, variance, misfit;
-    size_t n = 0;
-
-    for (int k = 0; k < uncertainty->scales; k++) {
-        const double all = (double)uncertainty->counted[k],
-                     some = (double)uncertainty->uncertain[k];
-        if (some > 0 && some < all) {
-            x[n] = k * log(2);
-            y[n] = log(some / all);
-            weight[n++] = all * some / (all - some); /* log f has the variance (1 - f) / (n f) */
-        }
-    }
-    if (n < BASIN_LEAST_SCALES) {
-        return (struct basin_exponent){NAN, NAN};
-    }
-    gsl_fit_wlinear(x, 1, weight, 1, y, 1, n, &start, &slope, &cov00, &cov01, &variance, &misfit);
-    return (struct basin_exponent){slope, sqrt(variance * fmax(1, misfit / (double)(n - 2)))};
 }
 
 /* ---- the boundary ------------------------------------------------------------------------- */

@@ -155,7 +155,7 @@ static void print_shape(const struct basin *b, const struct basin_row *row)
     print_labels(b, row);
     print_number(9, "%.4f", basin_entropy(&row->entropy));
     print_number(9, "%.4f", s_bb);
-    putchar(s_bb > log(2) ? '*' : ' ');
+    putchar(basin_is_fractal(&row->entropy, &row->uncertainty) ? '*' : ' ');
     printf(" %8llu of %-8llu", (unsigned long long)row->entropy.mixed,
            (unsigned long long)row->entropy.boxes);
     print_number(8, "%.3f", exponent.alpha);
@@ -229,12 +229,22 @@ bool basin_print_text(const struct basin *b)
     printf(" %9s %9s  %8s of %-8s %8s %8s %10s %9s\n", "S_b", "S_bb", "mixed", "boxes", "alpha",
            "+- 1 sd", "dimension", "nearest");
     bool starred = false;
+    size_t refused[BASIN_REFUSALS] = {0};
     for (size_t k = 0; k < rows; k++) {
         print_shape(b, shown(b, k, rows));
-        starred = starred || basin_boundary_entropy(&shown(b, k, rows)->entropy) > log(2);
+        const struct basin_row *row = shown(b, k, rows);
+        starred = starred || basin_is_fractal(&row->entropy, &row->uncertainty);
+        refused[basin_exponent(&row->uncertainty).refusal]++;
     }
     if (starred) {
-        puts("  (* above log 2: fractal, unless three outcomes meet there)");
+        puts("  (* above log 2 by more than its interval, alpha below 1 by more than its own: "
+             "fractal)");
+    }
+    for (int k = BASIN_FITTED + 1; k < BASIN_REFUSALS; k++) {
+        if (refused[k] > 0) {
+            printf("  (no alpha%s: %s)\n", rows > 1 ? " in some rows" : "",
+                   basin_refusal_text((enum basin_refusal)k));
+        }
     }
     print_left_out(b, rows);
     if (b->rows == 1 && b->row[0].has_distance) {
@@ -273,6 +283,7 @@ static void put_csv_row(struct csv *csv, const struct basin *b, const struct bas
         (double)row->entropy.mixed,
         exponent.alpha,
         exponent.error,
+        exponent.scales,
         basin_dimension(b, row),
         row->has_distance ? row->distance.nearest : NAN,
     };
@@ -288,9 +299,24 @@ static void put_csv_row(struct csv *csv, const struct basin *b, const struct bas
 bool basin_print_csv(const struct basin *b)
 {
     static const char *const names[] = {
-        "cases",       "inside",    "failed",  "pending",          "share", "volume",      "reach",
-        "low",         "high",      "entropy", "boundary_entropy", "boxes", "mixed_boxes", "alpha",
-        "alpha_error", "dimension", "nearest",
+        "cases",
+        "inside",
+        "failed",
+        "pending",
+        "share",
+        "volume",
+        "reach",
+        "low",
+        "high",
+        "entropy",
+        "boundary_entropy",
+        "boxes",
+        "mixed_boxes",
+        "alpha",
+        "alpha_error",
+        "alpha_distances",
+        "dimension",
+        "nearest",
     };
     struct csv csv = {.file = stdout};
     for (int k = 0; k < b->by_axes; k++) {

@@ -79,7 +79,7 @@ static const struct {
  * 2^k; of coordinate 0 all m_k are 1. */
 void sobol_directions(size_t dimension, int width, uint64_t direction[SOBOL_BITS])
 {
-    uint64_t m[SOBOL_BITS];
+    uint64_t m[SOBOL_BITS] = {0};
     for (int k = 0; k < SOBOL_BITS; k++) {
         const int degree = dimension > 0 ? coordinate[dimension - 1].degree : 0;
         if (k < degree || dimension == 0) {

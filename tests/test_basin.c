@@ -382,7 +382,7 @@ static void entropy_of_coins_is_log_2(void **state)
     assert_near(expected, log(2) - 0.02, 0.001);
     basin_map_entropy(&d.map, 5, &e);
     assert_near(basin_boundary_entropy(&e), expected, 0.001);
-    assert_near(exponent_of(&d.map).alpha, 0, 0.01);
+    assert_int_equal(exponent_of(&d.map).refusal, BASIN_WIDE);
     erase(&d);
     /* Larger boxes see the coins' own entropy. */
     d = draw(2, 500, true, coin);
@@ -418,7 +418,7 @@ static void smooth_boundaries_have_exponent_1(void **state)
         int axes;
         size_t n;
         painter colour;
-    } sets[] = {{1, 400, interval}, {2, 256, line}, {2, 256, disc}, {3, 64, sphere}};
+    } sets[] = {{1, 400, interval}, {2, 256, line}, {2, 256, disc}, {3, 96, sphere}};
     (void)state;
     for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
         struct drawn d = draw(sets[k].axes, sets[k].n, true, sets[k].colour);
@@ -456,9 +456,11 @@ static void cantor_stripes_have_their_exponent(void **state)
 
 static void too_small_or_empty_maps_have_none(void **state)
 {
-    struct drawn small = draw(2, 47, true, line), whole = draw(2, 60, true, everything);
+    struct drawn small = draw(2, 95, true, line), whole = draw(2, 96, true, everything);
     (void)state;
-    assert_int_equal(basin_map_scales(&small.map), 2);
+    assert_int_equal(basin_map_scales(&small.map), 3);
+    assert_int_equal(exponent_of(&small.map).refusal, BASIN_SMALL);
+    assert_int_equal(exponent_of(&whole.map).refusal, BASIN_NONE);
     assert_true(isnan(exponent_of(&small.map).alpha));
     assert_true(isnan(exponent_of(&whole.map).alpha));
     erase(&small);
