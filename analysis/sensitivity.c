@@ -2,7 +2,6 @@
 #include "sensitivity.h"
 
 #include "../runner/sampling.h"
-#include "statistics.h"
 
 #include <Random123/philox.h>
 #include <gsl/gsl_cdf.h>
@@ -24,10 +23,7 @@ struct block_rows {
     size_t factors, count, width;
     const double *value;   /* [count][width] */
     bool second_order;     /* sobol */
-    const uint32_t *group; /* sobol: [count]: blocks of a group hang together */
-    const uint32_t *bin;   /* given: [count][factors] */
-    size_t bins;
-    bool even;
+    const uint32_t *group; /* [count]: rows of a group may hang together */
     double *work;
 };
 
@@ -179,37 +175,61 @@ static void find_effects(const double *y, const double *u, size_t k, double *eff
 
 /* ---- given data --------------------------------------------------------------------------- */
 
-/* first[k], sum of first, what chance adds to each first[k] at the most; rows are single
- * responses. */
-static void estimate_given(const struct block_rows *rows, const uint32_t *pick, double *quantity)
-{
-    const size_t k = rows->factors;
-    double *sum = rows->work, *number = rows->work + rows->bins, n = (double)rows->count;
-    double all = 0, mean = 0;
+enum { IN_BIN = 4, PART = 4 /* subsamples are a quarter */ };
 
-    for (size_t i = 0; i < rows->count; i++) {
-        const double step = *row_at(rows, pick, i) - mean;
-        mean += step / (double)(i + 1);
-        all += step * (*row_at(rows, pick, i) - mean);
+/* Points with the order of each factor's values. */
+struct points {
+    size_t count, factors;
+    const double *y;       /* [count], of mean zero */
+    const double *u;       /* [count][factors] */
+    const uint32_t *order; /* [factors][count] */
+    bool even;
+};
+
+/* What bins along factor j say of the points chosen (NULL: all), n of them with the sum of squares
+ * `all`: the share between bins, and what chance adds to it if points are independent. */
+static void bin_factor(const struct points *p, const bool *chosen, size_t n, size_t j, double mean,
+                       double all, double *share, double *chance)
+{
+    const uint32_t *order = p->order + j * p->count;
+    const size_t most = p->even ? (size_t)sqrt((double)n) : n / IN_BIN;
+    const double least = (double)n / (double)(most < 2 ? 2 : most);
+    double sum = 0, number = 0, between = 0, bins = 0, seen = 0, last = NAN;
+    for (size_t i = 0; i < p->count; i++) {
+        const uint32_t point = order[i];
+        if (chosen && !chosen[point]) {
+            continue;
+        }
+        const double u = p->u[point * p->factors + j];
+        if (number > 0 && u != last && seen >= least * (bins + 1)) {
+            between += sum * sum / number;
+            bins++;
+            sum = number = 0;
+        }
+        sum += p->y[point] - mean;
+        number++;
+        seen++;
+        last = u;
     }
-    quantity[k] = 0;
-    for (size_t j = 0; j < k; j++) {
-        double between = 0, bins = 0;
-        memset(sum, 0, 2 * rows->bins * sizeof *sum);
-        for (size_t i = 0; i < rows->count; i++) {
-            const size_t bin = rows->bin[(pick ? pick[i] : i) * k + j];
-            sum[bin] += *row_at(rows, pick, i) - mean;
-            number[bin]++;
+    between += number > 0 ? sum * sum / number : 0;
+    bins += number > 0;
+    *share = all > 0 && seen > bins ? between / all : NAN;
+    *chance = (1 - *share) * (bins - 1) / (seen - bins);
+}
+
+/* share[k], then chance[k]. */
+static void bin_all(const struct points *p, const bool *chosen, double *quantity)
+{
+    double mean = 0, all = 0, n = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        if (!chosen || chosen[i]) {
+            const double step = p->y[i] - mean;
+            mean += step / ++n;
+            all += step * (p->y[i] - mean);
         }
-        for (size_t bin = 0; bin < rows->bins; bin++) {
-            bins += number[bin] > 0;
-            between += number[bin] > 0 ? sum[bin] * sum[bin] / number[bin] : 0;
-        }
-        const double share = all > 0 && n > bins ? between / all : NAN;
-        const double chance = (1 - share) * (bins - 1) / (n - bins);
-        quantity[j] = rows->even ? share : share - chance;
-        quantity[k] += quantity[j];
-        quantity[k + 1 + j] = chance;
+    }
+    for (size_t j = 0; j < p->factors; j++) {
+        bin_factor(p, chosen, (size_t)n, j, mean, all, &quantity[j], &quantity[p->factors + j]);
     }
 }
 
@@ -225,87 +245,99 @@ static int by_place(const void *a, const void *b)
                         : (x->point > y->point) - (x->point < y->point);
 }
 
-/* Puts points into bins of at least `least` points along factor j: bin[count][factors]. */
-static void make_bins(struct place *places, size_t count, size_t j, size_t factors, double least,
-                      uint32_t *bin)
+/* Chooses `size` of `count` points at random (Fisher, Yates); deck[count] is the order so far. */
+static void choose(const struct sensitivity_bootstrap *bootstrap, size_t resample, size_t size,
+                   size_t count, uint32_t *deck, bool *chosen)
 {
-    uint32_t current = 0;
-    size_t begun = 0;
-    qsort(places, count, sizeof *places, by_place);
-    for (size_t i = 0; i < count; i++) {
-        if (i > 0 && places[i].u != places[i - 1].u && (double)i >= least * (double)(current + 1) &&
-            i > begun) {
-            current++;
-            begun = i;
-        }
-        bin[places[i].point * factors + j] = current;
-    }
-}
-
-/* ---- the bootstrap ------------------------------------------------------------------------ */
-
-static void draw(const struct sensitivity_bootstrap *bootstrap, size_t resample, size_t count,
-                 uint32_t *pick)
-{
-    const philox4x64_key_t key = {{bootstrap->seed, 0x626f6f747374}};
-    for (size_t i = 0; i < count; i += 4) {
+    const philox4x64_key_t key = {{bootstrap->seed, 0x73756273616d}};
+    memset(chosen, 0, count * sizeof *chosen);
+    for (size_t i = 0; i < size; i++) {
         const philox4x64_ctr_t counter = {{resample, i, 0, 0}};
-        const philox4x64_ctr_t random = philox4x64(counter, key);
-        for (size_t c = 0; c < 4 && i + c < count; c++) {
-            pick[i + c] = (uint32_t)(((unsigned __int128)random.v[c] * count) >> 64);
-        }
+        const uint64_t random = philox4x64(counter, key).v[0];
+        const size_t j = i + (size_t)(((unsigned __int128)random * (count - i)) >> 64);
+        const uint32_t point = deck[j];
+        deck[j] = deck[i];
+        deck[i] = point;
+        chosen[point] = true;
     }
 }
 
-/* Interval of an estimate from its resamples, which are sorted and lose what is no number: one that
- * drew a few blocks many times may have no index. */
-static struct sensitivity_value interval_of(double estimate, double *resampled, size_t n,
-                                            double level)
+/* Mean and standard deviation of what is a number; false: too few are. */
+static bool spread_of(const double *value, size_t n, double *mean, double *deviation)
 {
-    struct sensitivity_value value = {estimate, NAN, NAN};
-    struct statistics_numbers numbers;
-    for (size_t b = 0; b < n; b++) {
-        resampled[b] = isfinite(resampled[b]) ? resampled[b] : NAN;
+    double squares = 0, found = 0;
+    *mean = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (isfinite(value[i])) {
+            const double step = value[i] - *mean;
+            *mean += step / ++found;
+            squares += step * (value[i] - *mean);
+        }
     }
-    statistics_summarise(resampled, n, &numbers);
-    if (!isfinite(estimate) || (double)numbers.n < LEAST_RESAMPLED * (double)n) {
-        value.estimate = isfinite(estimate) ? estimate : NAN;
-        return value;
+    *deviation = sqrt(squares / (found - 1));
+    return found > 1 && found >= LEAST_RESAMPLED * (double)n;
+}
+
+/* Index q < factors, or the sum of them, from the whole and from subsamples[n]. */
+static struct sensitivity_value value_of(const struct points *p, const double *share,
+                                         const double *chance, size_t first, size_t last,
+                                         double *line, const double *table, size_t n, double level)
+{
+    struct sensitivity_value value = {0, NAN, NAN};
+    const size_t size = p->count / PART, k = p->factors;
+    double taken = 0, mean, deviation;
+    memset(line, 0, n * sizeof *line);
+    for (size_t j = first; j < last; j++) {
+        value.estimate += share[j];
+        taken += chance[j];
+        for (size_t s = 0; s < n; s++) {
+            line[s] += table[s * 2 * k + j] - table[s * 2 * k + k + j];
+        }
     }
-    const double moved = estimate - numbers.sum / (double)numbers.n;
-    value.low = moved + statistics_quantile(resampled, numbers.n, (1 - level) / 2);
-    value.high = moved + statistics_quantile(resampled, numbers.n, (1 + level) / 2);
+    const double corrected = value.estimate - taken;
+    value.estimate = isfinite(corrected) ? p->even ? value.estimate : corrected : NAN;
+    if (isfinite(corrected) && size >= 2 * IN_BIN && spread_of(line, n, &mean, &deviation)) {
+        const double rest = (double)(p->count - size), times = (double)p->count / (double)size;
+        const double half =
+            gsl_cdf_ugaussian_Pinv((1 + level) / 2) * deviation * sqrt((double)size / rest);
+        value.low = corrected - half;
+        value.high = value.estimate + half;
+        if (p->even) { /* whose chance may be twice as large, and bins of parts twice as wide */
+            value.low -= taken;
+            value.high += fmax(0, (corrected - mean) / (sqrt(times) - 1));
+        }
+    }
     return value;
 }
 
-static bool estimate_all(const struct block_rows *rows, estimator estimate, size_t quantities,
-                         const struct sensitivity_bootstrap *bootstrap,
-                         struct sensitivity_value *value)
+/* first[k], sum of first. */
+static bool estimate_given(const struct points *p, const struct sensitivity_bootstrap *bootstrap,
+                           struct sensitivity_value *value)
 {
-    const size_t resamples = bootstrap->resamples;
-    double *now = malloc(quantities * sizeof *now);
-    double *table = malloc(quantities * resamples * sizeof *table);
-    uint32_t *pick = malloc((rows->count + 1) * sizeof *pick);
-    double *line = malloc(resamples * sizeof *line);
-    const bool good = now && table && pick && line;
-
-    for (size_t b = 0; good && b < resamples; b++) {
-        draw(bootstrap, b, rows->count, pick);
-        estimate(rows, pick, table + b * quantities);
+    const size_t k = p->factors, n = bootstrap->resamples;
+    double *table = malloc((n + 1) * 2 * k * sizeof *table), *line = malloc(n * sizeof *line);
+    uint32_t *deck = malloc((p->count + 1) * sizeof *deck);
+    bool *chosen = malloc(p->count + 1);
+    const bool good = table && line && deck && chosen;
+    for (size_t i = 0; good && i < p->count; i++) {
+        deck[i] = (uint32_t)i;
+    }
+    for (size_t s = 0; good && s < n; s++) {
+        choose(bootstrap, s, p->count / PART, p->count, deck, chosen);
+        bin_all(p, chosen, table + s * 2 * k);
     }
     if (good) {
-        estimate(rows, NULL, now);
-    }
-    for (size_t q = 0; good && q < quantities; q++) {
-        for (size_t b = 0; b < resamples; b++) {
-            line[b] = table[b * quantities + q];
+        double *whole = table + n * 2 * k;
+        bin_all(p, NULL, whole);
+        for (size_t q = 0; q <= k; q++) {
+            value[q] = value_of(p, whole, whole + k, q < k ? q : 0, q < k ? q + 1 : k, line, table,
+                                n, bootstrap->level);
         }
-        value[q] = interval_of(now[q], line, resamples, bootstrap->level);
     }
-    free(now);
     free(table);
-    free(pick);
     free(line);
+    free(deck);
+    free(chosen);
     return good;
 }
 
@@ -466,13 +498,15 @@ bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, si
 }
 
 bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u, size_t blocks,
-                        size_t factors, const struct sensitivity_bootstrap *bootstrap)
+                        size_t factors, double level)
 {
     double *effect = malloc((blocks + 1) * factors * sizeof *effect);
-    struct block_rows rows = {.factors = factors, .width = factors, .value = effect};
+    uint32_t *group = malloc((blocks + 1) * sizeof *group);
+    struct block_rows rows = {
+        .factors = factors, .width = factors, .value = effect, .group = group};
 
     rows.work = malloc(factors * sizeof *rows.work);
-    bool good = begin(s, factors, 3 * factors) && effect && rows.work;
+    bool good = begin(s, factors, 3 * factors) && effect && group && rows.work;
     for (size_t i = 0; good && i < blocks; i++) {
         double *own = effect + rows.count * factors;
         bool any = false;
@@ -480,6 +514,7 @@ bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u,
         for (size_t j = 0; j < factors; j++) {
             any = any || !isnan(own[j]);
         }
+        group[rows.count] = (uint32_t)(i % GROUPS);
         rows.count += any;
     }
     if (good) {
@@ -489,12 +524,13 @@ bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u,
         }
         describe(s, y, blocks * (factors + 1));
         good =
-            rows.count < 2 || estimate_all(&rows, estimate_morris, 3 * factors, bootstrap, s->all);
+            rows.count < 2 || estimate_grouped(&rows, estimate_morris, 3 * factors, level, s->all);
         for (size_t q = factors; q < 3 * factors; q++) { /* not below what can be */
             s->all[q].low = s->all[q].low < 0 ? 0 : s->all[q].low;
         }
     }
     free(effect);
+    free(group);
     free(rows.work);
     if (!good) {
         sensitivity_free(s);
@@ -505,46 +541,42 @@ bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u,
 bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, size_t points,
                        size_t factors, bool even, const struct sensitivity_bootstrap *bootstrap)
 {
-    const size_t quantities = 2 * factors + 1;
     double *value = malloc((points + 1) * sizeof *value);
-    uint32_t *bin = malloc((points + 1) * factors * sizeof *bin);
+    double *place = malloc((points + 1) * factors * sizeof *place);
+    uint32_t *order = malloc((points + 1) * factors * sizeof *order);
     struct place *places = malloc((points + 1) * sizeof *places);
-    size_t *kept = malloc((points + 1) * sizeof *kept);
-    struct block_rows rows = {
-        .factors = factors, .width = 1, .value = value, .bin = bin, .even = even};
-    bool good = begin(s, factors, quantities) && value && bin && places && kept;
+    struct points p = {.factors = factors, .y = value, .u = place, .order = order, .even = even};
+    bool good = begin(s, factors, factors + 1) && value && place && order && places;
 
     for (size_t i = 0; good && i < points; i++) {
         if (!isnan(y[i])) {
-            kept[rows.count] = i;
-            value[rows.count++] = y[i];
+            memcpy(place + p.count * factors, u + i * factors, factors * sizeof *place);
+            value[p.count++] = y[i];
         }
     }
-    rows.bins = (size_t)fmax(2, floor(sqrt((double)rows.count)));
-    rows.work = malloc(2 * rows.bins * sizeof *rows.work);
-    good = good && rows.work;
     for (size_t j = 0; good && j < factors; j++) {
-        for (size_t i = 0; i < rows.count; i++) {
-            places[i] = (struct place){u[kept[i] * factors + j], (uint32_t)i};
+        for (size_t i = 0; i < p.count; i++) {
+            places[i] = (struct place){place[i * factors + j], (uint32_t)i};
         }
-        make_bins(places, rows.count, j, factors, (double)rows.count / (double)rows.bins, bin);
+        qsort(places, p.count, sizeof *places, by_place);
+        for (size_t i = 0; i < p.count; i++) {
+            order[j * p.count + i] = places[i].point;
+        }
     }
     if (good) {
-        s->blocks = rows.count;
+        s->blocks = p.count;
         s->measure[SENSITIVITY_FIRST] = s->all;
-        describe(s, value, rows.count);
-        good = rows.count < 2 || estimate_all(&rows, estimate_given, quantities, bootstrap, s->all);
-        for (size_t f = 0; even && f < factors; f++) {
-            s->all[f].low -= s->all[factors + 1 + f].estimate;
-            s->all[factors].low -= s->all[factors + 1 + f].estimate;
+        describe(s, value, p.count);
+        for (size_t i = 0; i < p.count; i++) {
+            value[i] -= s->mean;
         }
+        good = p.count < 2 || estimate_given(&p, bootstrap, s->all);
         s->first_sum = s->all[factors];
     }
     free(value);
-    free(bin);
+    free(place);
+    free(order);
     free(places);
-    free(kept);
-    free(rows.work);
     if (!good) {
         sensitivity_free(s);
     }

@@ -22,25 +22,27 @@
  * Environ. Model. Softw. 22, 2007), sigma their standard deviation.
  *
  * Any other points: first-order indices from given data (Plischke, Borgonovo, Smith, Eur. J. Oper.
- * Res. 226, 2013). Points are put into sqrt(n) bins of equally many along a factor, points with
- * equal values always into the same; the index is the share of the variance between the bins, less
- * what chance alone would give: 1 - (within / (n - bins)) / (all / (n - 1)) of sums of squares
- * (Kelley's epsilon squared). Points of a Sobol' sequence fill the bins so evenly that chance
- * hardly adds anything: nothing is taken off then, but the interval reaches down as far as that
- * would.
+ * Res. 226, 2013). Points are put into bins of four along a factor, points with equal values always
+ * into the same; the index is the share of the variance between the bins, less what chance alone
+ * would give: 1 - (within / (n - bins)) / (all / (n - 1)) of sums of squares (Kelley's epsilon
+ * squared). Bins must be small: what the response changes within one counts as noise, at a step or
+ * over a wave, and the index would be too low by more than its interval. Points of a Sobol'
+ * sequence fill small bins in a pattern, so that chance adds anything from nothing to twice as
+ * much. There bins are of sqrt(n) points, nothing is taken off, and the interval reaches down by
+ * twice of what chance would add: conservative, but blind to waves of less than three bins. Points
+ * of random and lhs say more of steps and waves.
  *
- * Intervals of Sobol' indices rest on what the independently scrambled sequences of the design say
- * (runner/sampling.h): each is left out in turn (Tukey's jackknife of groups), and the scatter of
- * the estimates from the others gives Student's interval about the estimate from all. Blocks of one
- * sequence depend on each other, for good or ill, so a bootstrap that draws them as if they did not
- * is too wide for one response and too narrow for another; sequences do not. The intervals hold for
- * independent blocks, too.
- *
- * The others are percentiles of bootstrap estimates in which whole blocks are drawn with
- * replacement, moved by their mean's distance from the estimate: to draw a block twice biases
- * estimates of variances within bins, and of sigma. Blocks of a Sobol' sequence are more even than
- * independent ones, so that intervals are rather too wide than too narrow. The draws are a function
- * of the seed.
+ * Intervals. Of Sobol' indices they rest on what the independently scrambled sequences of the
+ * design say (runner/sampling.h): each is left out in turn (Tukey's jackknife of groups), and the
+ * scatter of the estimates from the others gives Student's interval about the estimate from all.
+ * Blocks of one sequence depend on each other, for good or ill, so a bootstrap that draws them as
+ * if they did not is too wide for one response and too narrow for another; sequences do not.
+ * Trajectories, which are independent, are dealt to as many groups. Of given data quarters of the
+ * points are drawn without replacement and put into bins of their own (Politis, Romano, Ann. Stat.
+ * 22, 1994), so that where the ends of bins lie is drawn, too; with n of N points the variance is
+ * theirs times n / (N - n). Of Sobol' points the upper end takes in what bins of four times as many
+ * points would add. The draws are a function of the seed. How often all these hold:
+ * tests/test_sensitivity.c.
  */
 #ifndef STANCE_ANALYSIS_SENSITIVITY_H
 #define STANCE_ANALYSIS_SENSITIVITY_H
@@ -72,7 +74,7 @@ enum sensitivity_measure {
 extern const char *const sensitivity_words[SENSITIVITY_MEASURE_COUNT];
 
 struct sensitivity_bootstrap {
-    size_t resamples; /* at least 2 */
+    size_t resamples; /* of given data, at least 2 */
     double level;     /* of the intervals, in (0, 1) */
     uint64_t seed;
 };
@@ -103,7 +105,7 @@ bool sensitivity_sobol(struct sensitivity *s, const double *y, size_t blocks, si
 /* y[blocks][factors + 1], u[blocks][factors + 1][factors]: the points; a missing response takes the
  * effects out that need it. */
 bool sensitivity_morris(struct sensitivity *s, const double *y, const double *u, size_t blocks,
-                        size_t factors, const struct sensitivity_bootstrap *bootstrap);
+                        size_t factors, double level);
 /* y[points], u[points][factors]: any numbers in the order of the factor's values, equal ones for
  * equal values; even: the points are a Sobol' sequence. */
 bool sensitivity_given(struct sensitivity *s, const double *y, const double *u, size_t points,

@@ -83,9 +83,11 @@ static void print_head(const struct sensitivity_study *study)
     printf("intervals: %g %%, ", 100 * study->request.bootstrap.level);
     if (is_sobol(study)) {
         printf("Student's, from %d independently scrambled sequences\n", SAMPLING_REPLICATES);
+    } else if (is_morris(study)) {
+        printf("Student's, from groups of trajectories\n");
     } else {
-        printf("bootstrap over %s, %zu resamples\n", blocks_word(study),
-               study->request.bootstrap.resamples);
+        printf("from %zu quarters of the points%s\n", study->request.bootstrap.resamples,
+               study->design->method == SAMPLING_SOBOL ? ", conservative" : "");
     }
 }
 
@@ -206,8 +208,7 @@ static void print_counts(const struct sensitivity_study *study,
 /* With fewer than these a mean is not yet normal: measured, see tests/test_sensitivity.c. */
 static void print_caution(const struct sensitivity_study *study, size_t blocks)
 {
-    const bool sobol = study->design->method == SAMPLING_SOBOL;
-    const size_t least = is_sobol(study) ? 128 : sobol ? 512 : is_morris(study) ? 10 : 64;
+    const size_t least = is_sobol(study) ? 128 : is_morris(study) ? 10 : 512;
     if (blocks > 1 && blocks < least) {
         printf("  intervals from fewer than %zu %s may be too narrow\n", least, blocks_word(study));
     }
@@ -343,10 +344,10 @@ static json_t *table_json(const struct sensitivity_study *study,
     return object;
 }
 
-/* Intervals of Sobol' indices draw nothing. */
+/* Intervals of saltelli and morris draw nothing. */
 static json_t *drawn_json(const struct sensitivity_study *study, uint64_t number)
 {
-    return is_sobol(study) ? json_null() : json_integer((json_int_t)number);
+    return is_sobol(study) || is_morris(study) ? json_null() : json_integer((json_int_t)number);
 }
 
 bool sensitivity_print_json(const struct sensitivity_study *study)

@@ -212,7 +212,7 @@ static bool analyse(const struct sensitivity_study *study, const double *y, cons
     case SAMPLING_SALTELLI:
         return sensitivity_sobol(s, y, blocks, k, d->second_order, bootstrap->level);
     case SAMPLING_MORRIS:
-        return sensitivity_morris(s, y, u, blocks, k, bootstrap);
+        return sensitivity_morris(s, y, u, blocks, k, bootstrap->level);
     default:
         return sensitivity_given(s, y, u, blocks, k, d->method == SAMPLING_SOBOL, bootstrap);
     }

@@ -454,9 +454,15 @@ typedef struct stance_captured_set {
 /* Largest level c of x' P x, x = (posture - target, rates), for which simulations that begin on its
  * boundary, evenly in the metric of P, with the support foot standing at rest and no contact inside
  * the ground, all end as `stabilised`, in full. The shape with the largest volume is taken. 0
- * failures of n say that less than 1 - (0.05 / batches)^(1 / n) of the boundary fails, with 95 %
- * confidence. *set with `exists` false: no set was found.
- * BAD_ARGUMENT: base does not settle at a target on a foot, or its law is not the state's alone. */
+ * failures of n say that less than stance_capture_share of the boundary fails, with 95 %
+ * confidence. *set with `exists` false: no set was found. BAD_ARGUMENT: base does not settle at a
+ * target on a foot, or its law is not the state's alone. */
 stance_error stance_capture_estimate(const stance_capture_search *search, stance_captured_set *set);
+
+/* What no failure in `boundary` simulations of the last of `batches` sets, tried one after the
+ * other until one passed, says with 95 % confidence: less than this share of its boundary fails. 1
+ * - alpha^(1 / boundary), alpha = 0.05 * 6 / (pi batches)^2: summed over all sets that might be
+ * tried 0.05, so that it holds whenever the search ends. */
+double stance_capture_share(int64_t batches, int64_t boundary);
 
 #endif

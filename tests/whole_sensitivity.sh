@@ -61,17 +61,17 @@ cp log first
 expect "the same again" 0 "$stance" "${ask[@]}"
 cmp -s log first
 result $? "... to the letter"
-expect "effects" 0 "$stance" sensitivity morris.h5 --answer end_time
-cp log first
-expect "other resamples" 0 "$stance" sensitivity morris.h5 --answer end_time --seed 7
-! cmp -s log first
-result $? "... other intervals"
 expect "--by none" 0 "$stance" "${ask[@]}" --by none
 says "... a single table" '^  factor'
 expect "--by a start" 0 "$stance" "${ask[@]}" --by initial.state.z
 [ "$(grep -c '^initial.state.z = ' log)" = 3 ]
 result $? "... a table for each of its values"
 study lhs ishigami lhs 1000
+expect "bins" 0 "$stance" sensitivity lhs.h5 --answer end_time
+cp log first
+expect "other resamples" 0 "$stance" sensitivity lhs.h5 --answer end_time --seed 7
+! cmp -s log first
+result $? "... other intervals"
 "$stance" sensitivity lhs.h5 --answer end_time --json >lhs.json 2>log &&
     "$python" - lhs.json >log 2>&1 <<'END'
 import json, sys
