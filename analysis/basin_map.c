@@ -44,6 +44,9 @@ static int tile_of(int axes, const size_t *point, const size_t *count)
 {
     enum { SIDE = 4 };
     _Static_assert(SIDE * SIDE == BASIN_TILES, "a square of tiles");
+    if (axes < 1) {
+        return 0;
+    }
     return axes == 1 ? (int)(point[0] * BASIN_TILES / count[0])
                      : (int)(point[0] * SIDE / count[0] * SIDE + point[1] * SIDE / count[1]);
 }
@@ -53,7 +56,7 @@ static int tile_of(int axes, const size_t *point, const size_t *count)
 void basin_map_entropy(const struct basin_map *map, size_t side, struct basin_entropy *entropy)
 {
     uint64_t stride[SCENARIO_MAX_AXES];
-    size_t boxes[SCENARIO_MAX_AXES], box[SCENARIO_MAX_AXES] = {0}, sides[SCENARIO_MAX_AXES];
+    size_t boxes[SCENARIO_MAX_AXES] = {0}, box[SCENARIO_MAX_AXES] = {0}, sides[SCENARIO_MAX_AXES];
 
     find_strides(map, stride);
     for (int a = 0; a < map->axes; a++) {
@@ -135,7 +138,8 @@ static bool is_uncertain(const struct basin_map *map, const uint64_t *stride, ui
 void basin_map_uncertainty(const struct basin_map *map, struct basin_uncertainty *uncertainty)
 {
     uint64_t stride[SCENARIO_MAX_AXES];
-    size_t inner[SCENARIO_MAX_AXES], point[SCENARIO_MAX_AXES] = {0}, margin[SCENARIO_MAX_AXES];
+    size_t inner[SCENARIO_MAX_AXES] = {0}, point[SCENARIO_MAX_AXES] = {0},
+           margin[SCENARIO_MAX_AXES];
     if (uncertainty->scales == 0) {
         return;
     }

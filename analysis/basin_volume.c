@@ -101,7 +101,7 @@ static bool enqueue(struct cells *cells, uint64_t cell)
 enum { EDGE = 1 << 30 };
 static bool goes_on(const struct cells *cells, uint64_t cell, int axis, bool up, int *step)
 {
-    size_t point[SCENARIO_MAX_AXES];
+    size_t point[SCENARIO_MAX_AXES] = {0};
     find_point(cells, cell, point);
     *step = EDGE;
     if (up ? point[axis] + 1 == cells->along[axis] : point[axis] == 0) {
@@ -139,7 +139,7 @@ static bool add_patch(struct cells *cells, uint64_t start, uint32_t varies, doub
 {
     const int axes = cells->map->axes;
     double weight[SCENARIO_MAX_AXES] = {0}, volume = 0, together = 1;
-    size_t point[SCENARIO_MAX_AXES];
+    size_t point[SCENARIO_MAX_AXES] = {0};
     int step;
 
     cells->queued = 0;
@@ -218,7 +218,7 @@ static double find_scatter(const struct cells *cells, size_t stride, size_t numb
 static bool find_rhythm(const struct cells *cells, double *variance)
 {
     enum { LONGEST = 3, MOST = 4096 };
-    double *volume = malloc(MOST * sizeof *volume);
+    double *volume = calloc(MOST, sizeof *volume);
     *variance = 0;
     for (size_t stride = 2; volume && stride <= LONGEST; stride++) {
         const double number = pow((double)stride, cells->map->axes);
@@ -254,7 +254,7 @@ bool basin_map_volume(const struct basin_map *map, enum results_kind of,
 {
     const int corners = 1 << map->axes;
     struct cells cells;
-    size_t point[SCENARIO_MAX_AXES];
+    size_t point[SCENARIO_MAX_AXES] = {0};
     double inside = 0, known = 0;
 
     *volume = (struct basin_volume){.box = 1};
