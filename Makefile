@@ -138,7 +138,7 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
 $(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(isa_list) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
 	    $(shared_objects) $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
 
 # Each instruction set's fused multiply-adds, for test_fma.
@@ -154,6 +154,20 @@ $(BUILD)/tests/fuzz_scenario.o: tests/fuzz_scenario.c Makefile
 $(BUILD)/tests/test_fuzz: $(BUILD)/tests/fuzz_scenario.o
 $(BUILD)/tests/test_fuzz: test_objects = $(BUILD)/tests/fuzz_scenario.o
 $(BUILD)/tests/test_fma: test_objects = $(fused_objects)
+
+# Kernels of one lane that think their neighbours need everything: see core/lanes.h.
+doubting         = $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(s)-$(m)))
+doubting_objects = $(doubting:%=$(BUILD)/tests/doubting-%.o)
+define doubting_rule
+$(BUILD)/tests/doubting-$(1)-$(2).o: engine/methods/$(2).c Makefile
+	@mkdir -p $$(@D)
+	$$(call QUIET,cc,$$@)$$(CC) -O1 $$(ALLFLAGS) $(isa_flags_scalar) -DSTANCE_DOUBT -DSTANCE_SCENE=$(1) -DSTANCE_ISA=doubting \
+	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
+endef
+$(foreach s,$(SCENES),$(foreach m,$(METHODS),$(eval $(call doubting_rule,$(s),$(m)))))
+$(BUILD)/tests/test_lanes: $(doubting_objects)
+$(BUILD)/tests/test_lanes: test_objects = $(doubting_objects)
+$(BUILD)/tests/test_lanes: EXTRA = -DSTANCE_DOUBTING_LIST='$(foreach k,$(doubting),KERNEL($(subst -,$(comma),$(k))))'
 
 # Hashes of what the kernels compute, by a program of the engine alone that other machines run too.
 $(BUILD)/tests/golden: tests/golden.c $(BUILD)/libstance.a

@@ -149,7 +149,8 @@ typedef enum stance_evidence {
     X(PAINLEVE, painleve, "no contact force, or several, fit the accelerations (Painleve)")        \
     X(EVENTS, events, "too many events in one step: they accumulate (Zeno), or chatter")           \
     X(TOLERANCE, tolerance, "the error estimate stayed above the tolerance at the smallest step")  \
-    X(INITIAL, initial, "the initial state or the controller does not exist for this case")
+    X(INITIAL, initial, "the initial state or the controller does not exist for this case")        \
+    X(WORK, work, "it takes more work than is allowed: too stiff, or events without end")
 
 typedef enum stance_failure {
 #define STANCE_FAILURE_ENUM(NAME, name, text) STANCE_FAILURE_##NAME,
@@ -188,7 +189,10 @@ typedef struct stance_case {
     double robot[STANCE_MAX_ROBOT];
     double friction;    /* Coulomb coefficient, >= 0 */
     double restitution; /* Newton's, 0 ... 1 */
-    uint32_t contacts;  /* bit c: contact c may touch the ground */
+    /* Where several motions obey the contact laws: false, the one that leaves the least kinetic
+     * energy; true, the most. */
+    bool most_energy;
+    uint32_t contacts; /* bit c: contact c may touch the ground */
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
 
     /* torque = clip(feedforward - gain * (posture - target, rates) + noise, +-torque_limit).

@@ -1,6 +1,8 @@
 /* sampling.c - experimental designs, see sampling.h. */
 #include "sampling.h"
 
+#include "../engine/stance.h"
+
 #include <Random123/philox.h>
 #include <gsl/gsl_cdf.h>
 #include <math.h>
@@ -177,8 +179,10 @@ static void sphere_unit(const struct sampling *s, uint64_t point, double *u)
     sobol_point(s, dimensions(s), point, x);
     if (k == 2) {
         const double angle = 2 * M_PI * unit_number(x[0]);
-        u[0] = 0.5 + 0.5 * cos(angle);
-        u[1] = 0.5 + 0.5 * sin(angle);
+        double sine, cosine;
+        stance_sincos(angle, &sine, &cosine);
+        u[0] = 0.5 + 0.5 * cosine;
+        u[1] = 0.5 + 0.5 * sine;
         return;
     }
     for (size_t j = 0; j < k; j++) {

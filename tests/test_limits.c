@@ -283,13 +283,13 @@ static void sampled_controllers(void **state)
 enum { LONG_RUN = 40 };
 #define MOST_CREATED 10.04
 
-/* Share of the cases of a group that may fail, and that may break a contact law by more than 1e-6:
- * measured, with room; see the figures that the test prints. */
+/* Share of the cases of a group that may fail, and whose stored states may break a contact law by
+ * more than 1e-6: measured, with room; see the figures that the test prints. */
 static const struct {
     const char *name;
     double failed, broken, created;
-} groups[] = {{"servo", 0.03, 0.004, MOST_CREATED},
-              {"servo with a torque limit", 0.01, 0.004, MOST_CREATED},
+} groups[] = {{"servo", 0.03, 0.008, MOST_CREATED},
+              {"servo with a torque limit", 0.01, 0.015, MOST_CREATED},
               {"matrix of gains", 0.22, 0.02, INFINITY}}; /* these do work without bounds */
 enum { SERVO, LIMITED, MATRIX, GROUPS };
 
@@ -412,7 +412,7 @@ static void tally_add(struct tally *t, const stance_case *c, const stance_result
 {
     t->cases++;
     if (r->status == STANCE_FAILED) {
-        assert_in_range(r->failure, STANCE_FAILURE_NONE + 1, STANCE_FAILURE_INITIAL);
+        assert_in_range(r->failure, STANCE_FAILURE_NONE + 1, STANCE_FAILURE_WORK);
         t->failed++;
         t->reason[r->failure]++;
         return;

@@ -5,10 +5,10 @@
 
 #define PENETRATION 1e-9
 #define CONE 1e-9
-#define GOLDEN_IMPLICIT 0x1dee29814fa700e2u
-#define GOLDEN_MIDPOINT 0x874d157cca76a298u
-#define GOLDEN_CAPTURING 0xfdc8eeb0f0aa2176u
-#define GOLDEN_LAGRANGE 0x9b4490dd82fb4877u
+#define GOLDEN_IMPLICIT 0xfc13af1f07936550u
+#define GOLDEN_MIDPOINT 0x845329092237f545u
+#define GOLDEN_CAPTURING 0xc5d8ad120aac111fu
+#define GOLDEN_LAGRANGE 0x0303d16c7a5a0a1du
 
 struct extremes {
     double penetration, cone, impact_energy, energy_of_projection;

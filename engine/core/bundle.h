@@ -7,6 +7,9 @@
 #include "capture.h"
 #include "smooth.h"
 
+/* A case that takes more evaluations than this is given up: so many at once, so many a step. */
+#define BUNDLE_WORK 1e7
+#define BUNDLE_WORK_STEP 1e3
 #define BUNDLE_ERROR_FLOOR 1e-9 /* of settle.angle and settle.rate: smaller errors do not grow */
 
 /* A condition that must hold for a while without its measure growing. */
@@ -20,6 +23,8 @@ struct bundle {
     mask live;                        /* lanes that are not idle */
     int filled;                       /* how many */
     int recorded, capturing, unusual; /* of these: see case_is_unusual */
+    double target_key[sizeof(struct setting) / sizeof(lanes) + 8]; /* see rest_target */
+    bool target_known, target_holds;
     /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
     _Alignas(sizeof(lanes)) const stance_case *which[LANES]; /* NULL: idle */
     stance_result *result[LANES];
@@ -29,6 +34,7 @@ struct bundle {
     lanes pending[ACTUATORS]; /* computed at the last sample, in force from the next one on ... */
     lanes delayed;            /* ... where this is 1 */
     lanes h, n, steps;        /* step length, steps done, steps wanted */
+    lanes most_work;          /* evaluations, see BUNDLE_WORK */
     lanes sample_every, next_sample;
     lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
     int64_t row[LANES];
@@ -49,6 +55,12 @@ struct bundle {
     lanes failure;
     struct advance advance;
 };
+
+/* Is there any case of a kind that is counted? A hint, as mask_any. */
+static inline bool bundle_some(int count)
+{
+    return count > 0 || lanes_doubt();
+}
 
 /* Steps per sample; 0: the law acts inside the step. */
 static int64_t case_samples(const stance_case *c)
@@ -127,6 +139,7 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
     scene_load_body(&set->body, lane, c->robot);
     lane_set(&set->friction, lane, c->friction);
     lane_set(&set->restitution, lane, c->restitution);
+    lane_set(&set->prefer, lane, c->most_energy ? -1 : 1);
     for (int i = 0; i < SCENE_CONTACTS; i++)
         lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
     bundle_load_law(&set->law, lane, c);
@@ -144,7 +157,10 @@ static void bundle_clear_answers(struct bundle *b, int lane)
         lane_set(zero[i], lane, 0);
     lane_set(&b->least_normal, lane, INFINITY);
     for (int i = 0; i < SCENE_CONTACTS; i++)
-        lane_set(&b->impulse[i][0], lane, 0), lane_set(&b->impulse[i][1], lane, 0);
+        for (int a = 0; a < 2; a++) {
+            lane_set(&b->impulse[i][a], lane, 0);
+            lane_set(&b->now.impulse[i][a], lane, 0);
+        }
     lane_set(&b->settled.begin, lane, -1);
     lane_set(&b->settled.measure, lane, 0);
     lane_set(&b->resting.begin, lane, -1);
@@ -189,6 +205,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     advance_load(&b->advance, lane, c);
     lane_set(&b->h, lane, c->step);
     lane_set(&b->steps, lane, (double)c->steps);
+    lane_set(&b->most_work, lane, BUNDLE_WORK + BUNDLE_WORK_STEP * (double)c->steps);
     lane_set(&b->sample_every, lane, (double)case_samples(c));
     if (case_samples(c) == 0)
         lane_set(&b->next_sample, lane, INFINITY);

@@ -137,10 +137,10 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
                 for (int b = 0; b < 2; b++)
                     problem.D[c][k][a][b] = e->D[c][k][a][b] + (reach[c][0][a] * answer[k][b][0] +
                                                                 reach[c][1][a] * answer[k][b][1]);
+    const struct contact_rule rule = {set->friction, set->prefer, contact->slide, NULL, true, NULL};
     for (int round = 0; round < 2; round++) {
-        solve_contacts(set->friction, (const lanes(*)[2][2][2])problem.D,
-                       (const lanes(*)[2])problem.free, contact->slide, true, touching, part,
-                       problem.r, &ambiguous, &unsolved);
+        solve_contacts(&rule, (const lanes(*)[2][2][2])problem.D, (const lanes(*)[2])problem.free,
+                       touching, part, problem.r, &ambiguous, &unsolved);
         several |= where & ambiguous;
         if (round > 0 || !mask_any(unsolved))
             break;
@@ -235,5 +235,43 @@ static inline void decoupling_apply(const struct setting *set, mask where, conta
 }
 
 #endif
+
+/* What a law that is not linear commands in the lanes of `due`, in place of the linear law's
+ * command; e->trig: at s. contact: what the contacts do, NULL: as it follows from the state.
+ * Returns the lanes where servos act, and *e says how. */
+static inline mask law_command(const struct setting *set, mask due, lanes t, const lanes *s,
+                               const lanes *w, const lanes *integral,
+                               const struct contact_state *contact, struct dynamics *e,
+                               lanes *command)
+{
+    const struct law *const law = &set->law;
+    const mask switches = mask_less(lanes_of(0), law->switches);
+    const mask decouples = mask_less(lanes_of(0), law->decouples);
+    lanes posture[POSTURES], rate[POSTURES], far[ACTUATORS], none[ACTUATORS];
+    scene_posture(s, posture);
+    scene_posture(w, rate);
+    const mask inside = switches & law_near(law, posture, rate);
+    linear_torque(&law->far, posture, rate, far);
+    const mask servos = due & decouples & LANES_NOT(inside);
+    const mask other = due & switches & LANES_NOT(inside | decouples);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        command[i] = choose(other, far[i], command[i]);
+        e->integral_rate[i] = none[i] = lanes_of(0);
+    }
+    e->degraded = e->several = lanes_of(0);
+    if (!mask_any(servos))
+        return servos;
+    struct contact_state now;
+    const contact_set all = (1u << SCENE_CONTACTS) - 1;
+    dynamics_evaluate(set, t, s, w, none, all, true, e);
+    if (!contact) {
+        decoupling_contacts(set, e, &now);
+        contact = &now;
+    }
+    decouple(set, servos, t, s, w, integral, all, contact, e);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        command[i] = choose(servos, e->command[i], command[i]);
+    return servos;
+}
 
 #endif

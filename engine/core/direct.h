@@ -1,4 +1,4 @@
-/* direct.h - contact problems that have one solution only, solved without trying every mode.
+/* direct.h - contact problems solved without trying every mode, where that is certain to be right.
  *
  * One contact. With D_N+- = D_NN +- mu D_NT > 0, D_NN > 0 and det D > 0 the problem of contact.h
  * has exactly one solution: uf_N >= 0: open. Slip with r_N > 0 would need uf_N < 0, and sticking 0
@@ -7,10 +7,14 @@
  * reached inside, else it slips at that end of the interval beyond which the sticking impulse lies.
  *
  * Two contacts. In each of contact 0's four modes what is left is a problem of contact 1 alone,
- * with an operator that is not symmetric; where that one is certainly unique, too, four candidates
- * remain for the law of contact 0 to judge. Where just one of them is admitted, it is the solution.
+ * with an operator that is not symmetric; each of its four modes gives a candidate, or none, for
+ * the law of contact 0 to judge. Where just one of all is admitted, it is the solution.
  *
- * Lanes where that is not so are left to contact.h.
+ * Contacts that stood still in the step before, all of them, go on standing as long as the impulses
+ * that takes lie in the cones, whatever else would satisfy the laws: what stands has no decision to
+ * take. (It is also the solution with the least kinetic energy.)
+ *
+ * Lanes where none of this holds are left to contact.h.
  */
 #ifndef STANCE_CORE_DIRECT_H
 #define STANCE_CORE_DIRECT_H
@@ -25,24 +29,52 @@ typedef unsigned contact_set;
     1e-9 /* of the largest it can be: a pivot this small is left to contact.h                      \
           */
 
-/* Sliding: NULL or as in contact_problem, of this contact. Returns the lanes where r is certainly
- * the one solution. */
-HOT mask direct_one(const lanes D[2][2], const lanes uf[2], lanes friction, const lanes *sliding,
-                    lanes r[2])
+/* What a contact problem is asked beside its operator: see contact_problem; of one contact where
+ * one is meant. */
+struct contact_rule {
+    lanes friction, prefer;
+    const lanes *sliding, *shift;
+    bool indefinite;
+    const lanes (*before)[2]; /* impulses of all contacts in the step before; NULL: not known */
+};
+
+/* Lanes where an impulse is inside the cone. */
+HOT mask direct_inside(lanes friction, const lanes r[2])
+{
+    return mask_less_equal(lanes_abs(r[1]), friction * r[0]);
+}
+
+/* Lanes where a contact with the impulse r neither slides nor is about to leave. */
+HOT mask direct_stands(lanes friction, const lanes r[2])
+{
+    return mask_less(lanes_of(0), r[0]) &
+           mask_less(lanes_abs(r[1]), (CONTACT_STICKS * friction) * r[0]);
+}
+
+HOT void direct_stick_one(const lanes D[2][2], const lanes uf[2], lanes determinant, lanes r[2])
+{
+    const lanes reciprocal = 1 / determinant;
+    r[0] = lanes_fms(D[0][1], uf[1], D[1][1] * uf[0]) * reciprocal;
+    r[1] = lanes_fms(D[1][0], uf[0], D[0][0] * uf[1]) * reciprocal;
+}
+
+/* Sliding: NULL or as in contact_problem, of this contact; own: see contact_impulse. Returns the
+ * lanes where r is certainly the one solution. */
+HOT mask direct_one(const lanes own[2][2], const lanes D[2][2], const lanes uf[2], lanes friction,
+                    const lanes *sliding, lanes r[2])
 {
     const lanes none = lanes_of(0), across = friction * lanes_abs(D[0][1]);
     const lanes product = D[0][0] * D[1][1];
     const lanes determinant = lanes_fnma(D[0][1], D[1][0], product);
     const mask sure = mask_less(across, (1 - DIRECT_REGULAR) * D[0][0]) &
-                      mask_less(DIRECT_REGULAR * lanes_abs(product), determinant);
-    const lanes reciprocal = 1 / determinant;
-    const lanes normal = lanes_fms(D[0][1], uf[1], D[1][1] * uf[0]) * reciprocal;
-    const lanes tangential = lanes_fms(D[1][0], uf[0], D[0][0] * uf[1]) * reciprocal;
+                      mask_less(DIRECT_REGULAR * lanes_abs(own[0][0] * own[1][1]), determinant);
+    lanes stick[2];
+    direct_stick_one(D, uf, determinant, stick);
     const mask open = mask_less_equal(none, uf[0]);
-    mask slips = LANES_NOT(mask_less_equal(lanes_abs(tangential), friction * normal));
-    r[0] = choose(open, none, normal);
-    r[1] = choose(open, none, tangential);
-    lanes edge = choose(mask_less(tangential, none), -friction, friction);
+    mask slips = LANES_NOT(direct_inside(friction, stick));
+    r[0] = choose(open, none, stick[0]);
+    r[1] = choose(open, none, stick[1]);
+    lanes edge = choose(mask_less(stick[1], none), -friction, friction);
     if (sliding) {
         const mask goes_on = mask_less(none, lanes_abs(*sliding));
         slips |= goes_on;
@@ -55,6 +87,30 @@ HOT mask direct_one(const lanes D[2][2], const lanes uf[2], lanes friction, cons
         r[1] = choose(slips, edge * pressed, r[1]);
     }
     return sure;
+}
+
+/* Impulse of one contact in a mode, of which another has left D and uf; determinant: that of D.
+ * Returns the lanes where its laws are obeyed. Sliding: as for direct_one. */
+HOT mask direct_mode(enum contact_mode mode, const lanes D[2][2], const lanes uf[2], lanes friction,
+                     const lanes *sliding, lanes determinant, lanes r[2])
+{
+    const lanes none = lanes_of(0);
+    const mask goes_on = sliding ? mask_less(none, lanes_abs(*sliding)) : MASK_NONE;
+    r[0] = r[1] = none;
+    if (mode == CONTACT_OPEN)
+        return mask_less_equal(none, uf[0]);
+    if (mode == CONTACT_STICK) {
+        direct_stick_one(D, uf, determinant, r);
+        return LANES_NOT(goes_on) & mask_less(none, r[0]) & direct_inside(friction, r);
+    }
+    const double way = mode == CONTACT_FORWARD ? 1 : -1;
+    const lanes edge = -(way * friction);
+    r[0] = -uf[0] / lanes_fma(edge, D[0][1], D[0][0]);
+    r[1] = edge * r[0];
+    lanes slip = lanes_fma(D[1][0], r[0], lanes_fma(D[1][1], r[1], uf[1]));
+    if (sliding)
+        slip = choose(goes_on, *sliding, slip);
+    return mask_less(none, r[0]) & mask_less(none, way * slip);
 }
 
 /* Contact 0 in a mode other than open: its impulse is alone + push r1, with r1 that of contact 1.
@@ -119,76 +175,162 @@ HOT lanes direct_violation(enum contact_mode mode, const lanes D[2][2][2][2], co
     return lanes_max(mode == CONTACT_FORWARD ? -u : u, pulls);
 }
 
-/* The same for two contacts; `tolerance` as in contact_problem, `sliding` of both. */
-HOT mask direct_two(const lanes D[2][2][2][2], const lanes uf[2][2], lanes friction,
-                    const lanes *sliding, lanes tolerance, lanes r[2][2])
+/* Both contacts stick: returns the lanes where the operator is regular and both are inside. */
+HOT mask direct_stick_two(const lanes D[2][2][2][2], const lanes uf[2][2], lanes friction,
+                          lanes determinant, mask regular, lanes r[2][2])
 {
+    struct direct_part part;
+    lanes D1[2][2], uf1[2];
+    direct_part(CONTACT_STICK, D, uf[0], friction, determinant, &part);
+    direct_eliminate(D, uf, &part, D1, uf1);
+    const lanes left = lanes_fnma(D1[0][1], D1[1][0], D1[0][0] * D1[1][1]);
+    const lanes own = lanes_abs(D[1][1][0][0] * D[1][1][1][1]);
+    direct_stick_one((const lanes(*)[2])D1, uf1, left, r[1]);
+    for (int a = 0; a < 2; a++)
+        r[0][a] =
+            lanes_fma(part.push[a][0], r[1][0], lanes_fma(part.push[a][1], r[1][1], part.alone[a]));
+    return regular & mask_less(DIRECT_REGULAR * own, left) & direct_inside(friction, r[0]) &
+           direct_inside(friction, r[1]);
+}
+
+/* The same as direct_one for two contacts, in the lanes of `wanted`; `tolerance` as in
+ * contact_problem. */
+HOT mask direct_two(const lanes D[2][2][2][2], const lanes uf[2][2],
+                    const struct contact_rule *rule, lanes tolerance, mask wanted, lanes r[2][2])
+{
+    const lanes friction = rule->friction;
     const lanes product = D[0][0][0][0] * D[0][0][1][1];
     const lanes determinant = lanes_fnma(D[0][0][0][1], D[0][0][1][0], product);
-    mask sure =
-        mask_less(DIRECT_REGULAR * lanes_abs(product), determinant) &
-        mask_less(friction * lanes_abs(D[0][0][0][1]), (1 - DIRECT_REGULAR) * D[0][0][0][0]);
-    mask found = MASK_NONE;
+    const mask regular = mask_less(DIRECT_REGULAR * lanes_abs(product), determinant);
+    mask stays = MASK_NONE;
     for (int c = 0; c < 2; c++)
         r[c][0] = r[c][1] = lanes_of(0);
+    if (rule->before) {
+        const mask stood = wanted & direct_stands(friction, rule->before[0]) &
+                           direct_stands(friction, rule->before[1]);
+        if (mask_any(stood))
+            stays = stood & direct_stick_two(D, uf, friction, determinant, regular, r);
+        const mask left = stood & LANES_NOT(stays);
+        if (mask_any(left)) { /* legs that are parallel, or nearly so */
+            const contact_problem problem = {D,         uf, NULL, NULL, friction, rule->prefer,
+                                             tolerance, 2,  false};
+            lanes all[2][2];
+            const mask again = left & contact_stick_both(&problem, all);
+            for (int c = 0; c < 2; c++)
+                for (int a = 0; a < 2; a++)
+                    r[c][a] = choose(again, all[c][a], r[c][a]);
+            stays |= again;
+        }
+        if (!mask_any(wanted & LANES_NOT(stays)))
+            return stays;
+    }
+    mask found = MASK_NONE;
+    const lanes own1 = lanes_abs(D[1][1][0][0] * D[1][1][1][1]);
+    mask sure = regular;
     for (enum contact_mode mode = CONTACT_OPEN; mode < CONTACT_MODES; mode++) {
-        struct direct_part part;
-        lanes D1[2][2], uf1[2], candidate[2][2];
+        struct direct_part part = {0};
+        lanes D1[2][2], uf1[2];
+        memcpy(D1, D[1][1], sizeof D1);
+        memcpy(uf1, uf[1], sizeof uf1);
         if (mode != CONTACT_OPEN) {
             direct_part(mode, D, uf[0], friction, determinant, &part);
             direct_eliminate(D, uf, &part, D1, uf1);
         }
-        sure &= direct_one(mode == CONTACT_OPEN ? D[1][1] : (const lanes(*)[2])D1,
-                           mode == CONTACT_OPEN ? uf[1] : uf1, friction,
-                           sliding ? &sliding[1] : NULL, candidate[1]);
-        for (int a = 0; a < 2; a++)
-            candidate[0][a] =
-                mode == CONTACT_OPEN
-                    ? lanes_of(0)
-                    : lanes_fma(part.push[a][0], candidate[1][0],
-                                lanes_fma(part.push[a][1], candidate[1][1], part.alone[a]));
-        const lanes violation =
-            direct_violation(mode, D, uf, friction, sliding, (const lanes(*)[2])candidate);
-        const mask valid = mask_less_equal(violation, tolerance);
-        sure &= LANES_NOT(valid & found);
-        found |= valid;
-        if (!mask_any(valid))
-            continue;
-        for (int c = 0; c < 2; c++)
+        const lanes left = lanes_fnma(D1[0][1], D1[1][0], D1[0][0] * D1[1][1]);
+        sure &= mask_less(DIRECT_REGULAR * own1, lanes_abs(left));
+        for (enum contact_mode other = CONTACT_OPEN; other < CONTACT_MODES; other++) {
+            lanes candidate[2][2];
+            const mask fits =
+                wanted & direct_mode(other, (const lanes(*)[2])D1, uf1, friction,
+                                     rule->sliding ? &rule->sliding[1] : NULL, left, candidate[1]);
+            if (!mask_any(fits))
+                continue;
             for (int a = 0; a < 2; a++)
-                r[c][a] = choose(valid, candidate[c][a], r[c][a]);
+                candidate[0][a] =
+                    mode == CONTACT_OPEN
+                        ? lanes_of(0)
+                        : lanes_fma(part.push[a][0], candidate[1][0],
+                                    lanes_fma(part.push[a][1], candidate[1][1], part.alone[a]));
+            const lanes violation = direct_violation(mode, D, uf, friction, rule->sliding,
+                                                     (const lanes(*)[2])candidate);
+            const mask valid = fits & mask_less_equal(violation, tolerance);
+            sure &= LANES_NOT(valid & found);
+            found |= valid;
+            const mask take = valid & LANES_NOT(stays);
+            for (int c = 0; c < 2; c++)
+                for (int a = 0; a < 2; a++)
+                    r[c][a] = choose(take, candidate[c][a], r[c][a]);
+        }
     }
-    return sure & found;
+    return stays | (sure & found);
+}
+
+/* Tries every mode in the lanes of `unsure`, of the contacts of D and uf. */
+COLD void solve_by_trial(const contact_problem *p, mask unsure, lanes r[2][2], mask *ambiguous,
+                         mask *unsolved)
+{
+    contact_choice best;
+    contact_solve(p, &best);
+    for (int c = 0; c < p->contacts; c++)
+        for (int a = 0; a < 2; a++)
+            r[c][a] = choose(unsure, best.r[c][a], r[c][a]);
+    *ambiguous |= unsure & best.ambiguous;
+    *unsolved |= unsure & LANES_NOT(mask_less_equal(best.violation, 1e3 * p->tolerance));
+}
+
+/* One contact that stood: goes on standing in the lanes that are returned. */
+COLD mask direct_stays(const lanes D[2][2], const lanes uf[2], lanes friction,
+                       const lanes before[2], mask unsure, lanes r[2])
+{
+    lanes stick[2];
+    const lanes product = D[0][0] * D[1][1];
+    const lanes determinant = lanes_fnma(D[0][1], D[1][0], product);
+    direct_stick_one(D, uf, determinant, stick);
+    const mask stays = unsure & direct_stands(friction, before) &
+                       mask_less(DIRECT_REGULAR * lanes_abs(product), determinant) &
+                       direct_inside(friction, stick);
+    for (int a = 0; a < 2; a++)
+        r[a] = choose(stays, stick[a], r[a]);
+    return stays;
 }
 
 /* Impulses of one active contact: directly where that is certain. */
-HOT void solve_one(lanes friction, const lanes D[2][2], const lanes uf[2], const lanes *sliding,
-                   bool indefinite, mask active, lanes r[2], mask *ambiguous, mask *unsolved)
+HOT void solve_one(const struct contact_rule *rule, const lanes D[2][2], const lanes uf[2],
+                   mask active, lanes r[2], mask *ambiguous, mask *unsolved)
 {
     mask unsure = active;
-    if (!indefinite)
-        unsure &= LANES_NOT(direct_one(D, uf, friction, sliding, r));
+    if (!rule->indefinite)
+        unsure &= LANES_NOT(direct_one(D, D, uf, rule->friction, rule->sliding, r));
     if (!mask_any(unsure))
         return;
-    contact_choice best;
-    lanes problem[2][2][2][2], free[2][2]; /* their first blocks alone */
+    lanes problem[2][2][2][2], free[2][2], all[2][2]; /* their first blocks alone */
+    lanes sliding = lanes_of(0), shift = lanes_of(0), before[2];
     memcpy(problem[0][0], D, sizeof problem[0][0]);
     memcpy(free[0], uf, sizeof free[0]);
+    memcpy(all[0], r, sizeof all[0]);
+    if (rule->before) {
+        memcpy(before, rule->before[0], sizeof before);
+        unsure &= LANES_NOT(direct_stays((const lanes(*)[2])problem[0][0], free[0], rule->friction,
+                                         before, unsure, all[0]));
+    }
+    if (rule->sliding)
+        sliding = *rule->sliding;
+    if (rule->shift)
+        shift = *rule->shift;
     const lanes tolerance =
         CONTACT_TOLERANCE * lanes_max(lanes_max(lanes_abs(uf[0]), lanes_abs(uf[1])), lanes_of(1));
-    contact_solve(&(contact_problem){(const lanes(*)[2][2][2])problem, (const lanes(*)[2])free,
-                                     sliding, friction, tolerance, 1, indefinite},
-                  &best);
-    for (int a = 0; a < 2; a++)
-        r[a] = choose(unsure, best.r[0][a], r[a]);
-    *ambiguous |= unsure & best.ambiguous;
-    *unsolved |= unsure & LANES_NOT(mask_less_equal(best.violation, 1e3 * tolerance));
+    if (mask_any(unsure))
+        solve_by_trial(&(contact_problem){(const lanes(*)[2][2][2])problem, (const lanes(*)[2])free,
+                                          rule->sliding ? &sliding : NULL,
+                                          rule->shift ? &shift : NULL, rule->friction, rule->prefer,
+                                          tolerance, 1, rule->indefinite},
+                       unsure, all, ambiguous, unsolved);
+    memcpy(r, all[0], sizeof all[0]);
 }
 
 /* The same for two. */
-HOT void solve_two(lanes friction, const lanes D[2][2][2][2], const lanes uf[2][2],
-                   const lanes *sliding, bool indefinite, mask active, lanes r[2][2],
-                   mask *ambiguous, mask *unsolved)
+HOT void solve_two(const struct contact_rule *rule, const lanes D[2][2][2][2], const lanes uf[2][2],
+                   mask active, lanes r[2][2], mask *ambiguous, mask *unsolved)
 {
     lanes scale = lanes_of(1);
     for (int c = 0; c < 2; c++)
@@ -196,24 +338,20 @@ HOT void solve_two(lanes friction, const lanes D[2][2][2][2], const lanes uf[2][
             scale = lanes_max(lanes_abs(uf[c][a]), scale);
     const lanes tolerance = CONTACT_TOLERANCE * scale;
     mask unsure = active;
-    if (!indefinite)
-        unsure &= LANES_NOT(direct_two(D, uf, friction, sliding, tolerance, r));
+    if (!rule->indefinite)
+        unsure &= LANES_NOT(direct_two(D, uf, rule, tolerance, active, r));
     if (!mask_any(unsure))
         return;
-    contact_choice best;
-    contact_solve(&(contact_problem){D, uf, sliding, friction, tolerance, 2, indefinite}, &best);
-    for (int c = 0; c < 2; c++)
-        for (int a = 0; a < 2; a++)
-            r[c][a] = choose(unsure, best.r[c][a], r[c][a]);
-    *ambiguous |= unsure & best.ambiguous;
-    *unsolved |= unsure & LANES_NOT(mask_less_equal(best.violation, 1e3 * tolerance));
+    solve_by_trial(&(contact_problem){D, uf, rule->sliding, rule->shift, rule->friction,
+                                      rule->prefer, tolerance, 2, rule->indefinite},
+                   unsure, r, ambiguous, unsolved);
 }
 
-/* Impulses of the active contacts for the linearised step; zero elsewhere. `sliding`: see
- * contact_problem. D and uf of the contacts in `touching`. */
-HOT void solve_contacts(lanes friction, const lanes D[2][2][2][2], const lanes uf[2][2],
-                        const lanes *sliding, bool indefinite, contact_set touching,
-                        const mask *active, lanes r[2][2], mask *ambiguous, mask *unsolved)
+/* Impulses of the active contacts for the linearised step; zero elsewhere. `rule` is about all
+ * contacts, D and uf are of those in `touching`. */
+HOT void solve_contacts(const struct contact_rule *rule, const lanes D[2][2][2][2],
+                        const lanes uf[2][2], contact_set touching, const mask *active,
+                        lanes r[2][2], mask *ambiguous, mask *unsolved)
 {
     const lanes none = lanes_of(0);
     *ambiguous = *unsolved = MASK_NONE;
@@ -222,8 +360,11 @@ HOT void solve_contacts(lanes friction, const lanes D[2][2][2][2], const lanes u
     if (SCENE_CONTACTS == 1 || (touching & (touching - 1)) == 0) { /* one at most */
         const int c = touching == 1 ? 0 : SECOND;
         lanes alone[2] = {none, none};
-        solve_one(friction, D[c][c], uf[c], sliding ? &sliding[c] : NULL, indefinite, active[c],
-                  alone, ambiguous, unsolved);
+        struct contact_rule own = *rule;
+        own.sliding = rule->sliding ? &rule->sliding[c] : NULL;
+        own.shift = rule->shift ? &rule->shift[c] : NULL;
+        own.before = rule->before ? &rule->before[c] : NULL;
+        solve_one(&own, D[c][c], uf[c], active[c], alone, ambiguous, unsolved);
         for (int a = 0; a < 2; a++)
             r[c][a] = choose(active[c], alone[a], none);
         return;
@@ -231,16 +372,28 @@ HOT void solve_contacts(lanes friction, const lanes D[2][2][2][2], const lanes u
     const mask both = active[0] & active[SECOND];
     const mask one = (active[0] | active[SECOND]) & LANES_NOT(both);
     if (mask_any(one)) {
-        lanes D1[2][2], uf1[2], sliding1 = none, alone[2] = {none, none};
-        if (sliding)
-            sliding1 = choose(active[0], sliding[0], sliding[SECOND]);
+        lanes D1[2][2], uf1[2], sliding1 = none, shift1 = none, before1[1][2];
+        lanes alone[2] = {none, none};
+        struct contact_rule own = *rule;
+        if (rule->sliding) {
+            sliding1 = choose(active[0], rule->sliding[0], rule->sliding[SECOND]);
+            own.sliding = &sliding1;
+        }
+        if (rule->shift) {
+            shift1 = choose(active[0], rule->shift[0], rule->shift[SECOND]);
+            own.shift = &shift1;
+        }
+        if (rule->before) {
+            for (int a = 0; a < 2; a++)
+                before1[0][a] = choose(active[0], rule->before[0][a], rule->before[SECOND][a]);
+            own.before = (const lanes(*)[2])before1;
+        }
         for (int a = 0; a < 2; a++) {
             uf1[a] = choose(active[0], uf[0][a], uf[SECOND][a]);
             for (int b = 0; b < 2; b++)
                 D1[a][b] = choose(active[0], D[0][0][a][b], D[SECOND][SECOND][a][b]);
         }
-        solve_one(friction, (const lanes(*)[2])D1, uf1, sliding ? &sliding1 : NULL, indefinite, one,
-                  alone, ambiguous, unsolved);
+        solve_one(&own, (const lanes(*)[2])D1, uf1, one, alone, ambiguous, unsolved);
         for (int a = 0; a < 2; a++)
             for (int c = 0; c < SCENE_CONTACTS; c++)
                 r[c][a] = choose(one & active[c], alone[a], r[c][a]);
@@ -249,7 +402,7 @@ HOT void solve_contacts(lanes friction, const lanes D[2][2][2][2], const lanes u
         lanes pair[2][2];
         for (int c = 0; c < 2; c++)
             pair[c][0] = pair[c][1] = none;
-        solve_two(friction, D, uf, sliding, indefinite, both, pair, ambiguous, unsolved);
+        solve_two(rule, D, uf, both, pair, ambiguous, unsolved);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(both, pair[c][a], r[c][a]);

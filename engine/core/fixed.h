@@ -106,14 +106,21 @@ enum {
     TOUCHING_ALL = (1 << SCENE_CONTACTS) - 1
 };
 
-/* One ordinary step in all lanes; false: it is not ordinary in all, and nothing has happened. */
+/* One ordinary step in all lanes, of which all have the contacts in `touching` closed; false: it is
+ * not ordinary in all, or not all have, and nothing has happened. */
 #define ADVANCE_ORDINARY
 HOT bool advance_ordinary(struct advance *a, const struct setting *set, const lanes *torque,
                           lanes h, mask live, contact_set touching, struct motion *now,
                           struct step_report *report)
 {
     struct iterate it;
-    const mask good = quick_try(&a->quick, set, now, torque, h, live, touching, &it, report);
+    mask apart = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            apart |= live & LANES_NOT(quick_active(set, now, c));
+    if (mask_any(apart))
+        return false;
+    const mask good = quick_try(&a->quick, set, now, torque, h, live, touching, true, &it, report);
     if (mask_any(live & LANES_NOT(good)))
         return false;
     quick_keep(&a->quick, &it, h, true, good, now);
@@ -128,7 +135,7 @@ COLD mask advance(struct advance *a, const struct setting *set, const lanes *tor
     if (!coupled) {
         struct iterate it;
         ok = quick_try(&a->quick, set, now, torque, h, live, step_touching(set, now->gap, live),
-                       &it, report);
+                       false, &it, report);
         quick_keep(&a->quick, &it, h, false, ok, now);
     }
     const mask other = live & LANES_NOT(ok);

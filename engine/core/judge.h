@@ -2,7 +2,7 @@
 #ifndef STANCE_CORE_JUDGE_H
 #define STANCE_CORE_JUDGE_H
 
-#include "bundle.h"
+#include "rest.h"
 
 /* Largest values so far, and sums. */
 HOT void account_largest(bool all, mask ok, lanes value, lanes *largest)
@@ -36,7 +36,7 @@ HOT void account_contacts(struct bundle *b, bool all, mask ok, contact_set touch
         account_largest(false, ok & mask_less(none, b->set.may_touch[c]), -b->now.gap[c],
                         &b->penetration);
         account_sum(all, ok, report->slip[c], &b->slip);
-        for (int a = 0; a < 2 && b->recorded > 0; a++)
+        for (int a = 0; a < 2 && bundle_some(b->recorded); a++)
             account_sum(all, ok, report->impulse[c][a], &b->impulse[c][a]);
     }
 }
@@ -134,6 +134,8 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     const mask at_end = live & last & LANES_NOT(on_way);
     v.stabilised |= at_end & at_target;
     v.rested |= at_end & still;
+    if (mask_any(v.rested | v.stabilised))
+        rest_confirm(b, &v.rested, &v.stabilised);
     v.captured = MASK_NONE;
     return v;
 }
@@ -141,7 +143,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
 /* Lanes whose state has come into the captured set: see capture.h. */
 static mask bundle_captured(const struct bundle *b, mask live, const mask *loaded)
 {
-    if (b->capturing == 0)
+    if (!bundle_some(b->capturing))
         return MASK_NONE;
     const mask instant =
         mask_less_equal(b->sample_every, lanes_of(0)) | mask_less_equal(b->next_sample, b->n);

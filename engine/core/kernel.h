@@ -16,9 +16,10 @@
 #define STANCE_JOIN2_(a, b) stance_##a##_##b
 #define STANCE_JOIN2(a, b) STANCE_JOIN2_(a, b)
 
+extern const stance_scene STANCE_JOIN2(scene, STANCE_SCENE);
+
 #define STANCE_KERNEL(name)                                                                        \
     extern const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name, STANCE_ISA);               \
-    extern const stance_scene STANCE_JOIN2(scene, STANCE_SCENE);                                   \
     extern const stance_method STANCE_JOIN2(method, name);                                         \
     const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name,                                   \
                                      STANCE_ISA) = {&STANCE_JOIN2(scene, STANCE_SCENE),            \

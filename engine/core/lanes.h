@@ -5,6 +5,12 @@
  * contracts nothing: products are fused with sums where the source says so. A lane computes the
  * same bits whatever the width. Control flow is by masks: `choose(m, a, b)`.
  *
+ * What lanes share a bundle must not change a bit. Lanes know of each other through mask_any alone
+ * (and through the counters of struct bundle, see bundle_some): it is a hint that some lane needs
+ * what follows, which must then do nothing to the lanes that do not. Whoever asks it may be told
+ * yes without need: compiled with STANCE_DOUBT it says so at random, and tests/test_lanes.c holds
+ * that to the same bits.
+ *
  * lanes_fma(a, b, c) is a * b + c rounded once, lanes_fms(a, b, c) a * b - c, and
  * lanes_fnma(a, b, c) c - a * b: an instruction each; emulated in fma.h for SSE2, which has none;
  * by the C library, as exactly, in one lane compiled for processors without.
@@ -59,9 +65,22 @@ static inline lanes choose(mask m, lanes a, lanes b)
 {
     return m ? a : b;
 }
+#ifdef STANCE_DOUBT
+static inline bool lanes_doubt(void)
+{
+    static uint64_t state = 88172645463325252u;
+    state ^= state << 13, state ^= state >> 7, state ^= state << 17; /* Marsaglia 2003 */
+    return state % 3 == 0;
+}
+#else
+static inline bool lanes_doubt(void)
+{
+    return false;
+}
+#endif
 static inline bool mask_any(mask m)
 {
-    return m;
+    return m || lanes_doubt();
 }
 static inline lanes lanes_abs(lanes a)
 {
@@ -264,6 +283,13 @@ static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
 
 #else
 #error "no lanes of this width for these compiler flags"
+#endif
+
+#if STANCE_LANES > 1
+static inline bool lanes_doubt(void)
+{
+    return false;
+}
 #endif
 
 #define MASK_NONE LANES_NOT(LANES_ALL)

@@ -35,17 +35,27 @@ static void bundle_record(struct bundle *b, int lane)
              row < t->rows ? nearbyint((double)row * t->interval / c->step) : INFINITY);
 }
 
+/* There is one NAN only: which one arithmetic gives is the processor's choice. */
+static double record_plain(double x)
+{
+    return x == x ? x : NAN;
+}
+static double record_number(const lanes *v, int lane)
+{
+    return record_plain(lane_get(v, lane));
+}
+
 /* Hands a lane's result in and leaves the lane idle. */
 COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance_outcome outcome,
                         stance_failure failure, bool inferred)
 {
     stance_result *const r = b->result[lane];
     const stance_case *const c = b->which[lane];
-    const double n = lane_get(&b->n, lane), h = c->step;
+    const double n = record_number(&b->n, lane), h = c->step;
     double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
-    const double least = lane_get(&b->least_normal, lane);
-    const double begin = outcome == STANCE_RESTED ? lane_get(&b->resting.begin, lane)
-                                                  : lane_get(&b->settled.begin, lane);
+    const double least = record_number(&b->least_normal, lane);
+    const double begin = outcome == STANCE_RESTED ? record_number(&b->resting.begin, lane)
+                                                  : record_number(&b->settled.begin, lane);
     const bool calm = outcome == STANCE_RESTED || outcome == STANCE_STABILISED;
     *r = (stance_result){
         .status = status,
@@ -56,27 +66,31 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         .settle_time = calm && !inferred ? (begin >= 0 ? begin : n) * h : NAN,
         .fall_time = outcome == STANCE_FELL ? n * h : NAN,
         .steps = (int64_t)n,
-        .iterations = (int64_t)lane_get(&b->iterations, lane),
-        .ambiguous_steps = (int64_t)lane_get(&b->ambiguous, lane),
-        .subdivided_steps = (int64_t)lane_get(&b->subdivided, lane),
+        .iterations = (int64_t)record_number(&b->iterations, lane),
+        .ambiguous_steps = (int64_t)record_number(&b->ambiguous, lane),
+        .subdivided_steps = (int64_t)record_number(&b->subdivided, lane),
         .least_normal_force = isfinite(least) ? least : NAN,
-        .degraded_samples = (int64_t)lane_get(&b->degraded, lane),
-        .max_penetration = lane_get(&b->penetration, lane),
-        .slip_distance = lane_get(&b->slip, lane),
-        .peak_torque = lane_get(&b->peak_torque, lane),
-        .friction_used = lane_get(&b->friction_used, lane),
-        .impact_energy = lane_get(&b->impact_energy, lane),
-        .projection_energy = lane_get(&b->projection_energy, lane),
-        .energy_gain = lane_get(&b->energy_gain, lane),
-        .signorini_residual = lane_get(&b->signorini, lane),
-        .coulomb_residual = lane_get(&b->coulomb, lane),
-        .dissipation_residual = lane_get(&b->dissipation, lane),
-        .events = (int64_t)lane_get(&b->events, lane),
-        .evaluations = (int64_t)lane_get(&b->evaluations, lane),
+        .degraded_samples = (int64_t)record_number(&b->degraded, lane),
+        .max_penetration = record_number(&b->penetration, lane),
+        .slip_distance = record_number(&b->slip, lane),
+        .peak_torque = record_number(&b->peak_torque, lane),
+        .friction_used = record_number(&b->friction_used, lane),
+        .impact_energy = record_number(&b->impact_energy, lane),
+        .projection_energy = record_number(&b->projection_energy, lane),
+        .energy_gain = record_number(&b->energy_gain, lane),
+        .signorini_residual = record_number(&b->signorini, lane),
+        .coulomb_residual = record_number(&b->coulomb, lane),
+        .dissipation_residual = record_number(&b->dissipation, lane),
+        .events = (int64_t)record_number(&b->events, lane),
+        .evaluations = (int64_t)record_number(&b->evaluations, lane),
     };
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
     scene_leave(c->robot, s, w, r->position, r->velocity);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        r->position[i] = record_plain(r->position[i]);
+        r->velocity[i] = record_plain(r->velocity[i]);
+    }
     b->which[lane] = NULL;
     b->live &= LANES_NOT(mask_of_lane(lane));
     b->filled--;
@@ -135,7 +149,7 @@ HOT void bundle_end(struct bundle *b, mask live, mask failed, const struct verdi
 HOT void bundle_record_due(struct bundle *b, mask live)
 {
     const mask due = live & mask_less_equal(b->next_record, b->n);
-    if (b->recorded == 0 || !mask_any(due))
+    if (!bundle_some(b->recorded) || !mask_any(due))
         return;
     for (int lane = 0; lane < LANES; lane++)
         if (b->which[lane] && mask_get(due, lane))

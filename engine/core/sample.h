@@ -26,33 +26,11 @@ static void bundle_noise(const stance_case *c, double instant, double noise[ACTU
  * that it sums count for the interval that begins. */
 static void bundle_decouple(struct bundle *b, mask due, lanes *command)
 {
-    const struct law *const law = &b->set.law;
-    const mask switches = mask_less(lanes_of(0), law->switches);
-    const mask decouples = mask_less(lanes_of(0), law->decouples);
-    lanes posture[POSTURES], rate[POSTURES], far[ACTUATORS], none[ACTUATORS];
-    scene_posture(b->now.s, posture);
-    scene_posture(b->now.w, rate);
-    const mask inside = switches & law_near(law, posture, rate);
-    linear_torque(&law->far, posture, rate, far);
-    const mask servos = due & decouples & LANES_NOT(inside);
-    const mask other = due & switches & LANES_NOT(inside | decouples);
-    for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        command[i] = choose(other, far[i], command[i]);
-        none[i] = lanes_of(0);
-    }
-    if (!mask_any(servos))
-        return;
     struct dynamics e;
-    struct contact_state contact;
-    const contact_set touching = step_touching(&b->set, b->now.gap, LANES_ALL);
     e.trig = b->now.trig;
-    dynamics_evaluate(&b->set, b->now.t, b->now.s, b->now.w, none, touching, true, &e);
-    decoupling_contacts(&b->set, &e, &contact);
-    decouple(&b->set, servos, b->now.t, b->now.s, b->now.w, b->now.integral, touching, &contact,
-             &e);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        command[i] = choose(servos, e.command[i], command[i]);
-    law_integrate(law, servos, b->sample_every * b->h, e.integral_rate, b->now.integral);
+    const mask servos =
+        law_command(&b->set, due, b->now.t, b->now.s, b->now.w, b->now.integral, NULL, &e, command);
+    law_integrate(&b->set.law, servos, b->sample_every * b->h, e.integral_rate, b->now.integral);
     b->degraded += choose(servos, e.degraded, lanes_of(0));
     b->ambiguous += choose(servos, e.several, lanes_of(0));
 }
@@ -65,10 +43,10 @@ HOT void bundle_sample(struct bundle *b, mask live)
         return;
     lanes torque[ACTUATORS];
     law_torque(&b->set.law, b->now.s, b->now.w, torque);
-    if (SCENE_ACTUATORS > 0 && b->unusual > 0 &&
+    if (SCENE_ACTUATORS > 0 && bundle_some(b->unusual) &&
         mask_any(due & mask_less(lanes_of(0), b->set.law.decouples + b->set.law.switches)))
         bundle_decouple(b, due, torque);
-    for (int lane = 0; lane < LANES && b->unusual > 0; lane++) {
+    for (int lane = 0; lane < LANES && bundle_some(b->unusual); lane++) {
         const stance_case *const c = b->which[lane];
         if (!c || c->noise == 0 || !mask_get(due, lane))
             continue;

@@ -16,6 +16,11 @@
  * problem of contact.h, on accelerations. For sliding contacts it may have no solution or several
  * (Painleve).
  *
+ * With enough friction a foot at rest may have three answers: it stays and is pressed into the
+ * ground, it leaves, it slides. Contacts that stood go on standing as long as they can (direct.h);
+ * where a mode begins anew the choice is contact.h's, the same as that of an implicit step, however
+ * short, and it is reported.
+ *
  * A mode ends (smooth_violated) when an open contact's gap, a normal force, the room inside the
  * friction cone or a slip changes its sign.
  */
@@ -28,6 +33,7 @@
 #define SMOOTH_START                                                                               \
     1e-12                /* of the accelerations: a slip that accelerates by less does not begin */
 #define SMOOTH_GAP 1e-12 /* m: penetration that does not count */
+#define SMOOTH_TURN 1e-4 /* rad: sines are turned by less, by series */
 
 /* What drives the robot in a step: torques that are held or, `coupled`, a law that acts all the
  * time, and in which mode; NULL: as it follows from the state. */
@@ -65,12 +71,13 @@ static inline void smooth_evaluate(const struct setting *set, lanes t, const lan
     decoupling_apply(set, decouples, touching, e);
 }
 
-/* Force of one contact in its state that brings free[] to rest; friction 0: slides freely. */
-static inline void smooth_one(mask closed, lanes slide, const lanes D[2][2], const lanes free[2],
-                              lanes friction, lanes r[2])
+/* Force of one contact in its state that brings free[] to rest; friction 0: slides freely. `own`:
+ * see contact_impulse. */
+static inline void smooth_one(mask closed, lanes slide, const lanes own[2][2], const lanes D[2][2],
+                              const lanes free[2], lanes friction, lanes r[2])
 {
     lanes stick[2];
-    contact_impulse(CONTACT_STICK, false, D, free, friction, stick);
+    contact_impulse(CONTACT_STICK, own, D, free, friction, stick);
     const mask slides = mask_less(lanes_of(0), lanes_abs(slide));
     const lanes edge = -(friction * slide);
     const lanes normal = -free[0] / (D[0][0] + edge * D[0][1]);
@@ -91,7 +98,7 @@ static inline void smooth_forces(const struct contact_state *m, const lanes D[2]
             D1[a][b] = choose(first, D[0][0][a][b], D[SECOND][SECOND][a][b]);
     }
     smooth_one(first | m->closed[SECOND], choose(first, m->slide[0], m->slide[SECOND]),
-               (const lanes(*)[2])D1, free1, friction, r1);
+               (const lanes(*)[2])D1, (const lanes(*)[2])D1, free1, friction, r1);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int a = 0; a < 2; a++)
             r[c][a] = choose(m->closed[c], r1[a], lanes_of(0));
@@ -99,11 +106,11 @@ static inline void smooth_forces(const struct contact_state *m, const lanes D[2]
         return;
     /* Contact 0 is eliminated: r[0] = alone + push r[1]. */
     lanes alone[2], push[2][2], r2[2];
-    smooth_one(both, m->slide[0], D[0][0], free[0], friction, alone);
+    smooth_one(both, m->slide[0], D[0][0], D[0][0], free[0], friction, alone);
     for (int b = 0; b < 2; b++) {
         const lanes coupling[2] = {D[0][1][0][b], D[0][1][1][b]};
         lanes column[2];
-        smooth_one(both, m->slide[0], D[0][0], coupling, friction, column);
+        smooth_one(both, m->slide[0], D[0][0], D[0][0], coupling, friction, column);
         push[0][b] = column[0], push[1][b] = column[1];
     }
     for (int a = 0; a < 2; a++) {
@@ -111,7 +118,7 @@ static inline void smooth_forces(const struct contact_state *m, const lanes D[2]
         for (int b = 0; b < 2; b++)
             D1[a][b] = D[1][1][a][b] + D[1][0][a][0] * push[0][b] + D[1][0][a][1] * push[1][b];
     }
-    smooth_one(both, m->slide[SECOND], (const lanes(*)[2])D1, free1, friction, r2);
+    smooth_one(both, m->slide[SECOND], D[1][1], (const lanes(*)[2])D1, free1, friction, r2);
     for (int a = 0; a < 2; a++) {
         r[0][a] = choose(both, alone[a] + push[a][0] * r2[0] + push[a][1] * r2[1], r[0][a]);
         r[SECOND][a] = choose(both, r2[a], r[SECOND][a]);
@@ -140,8 +147,18 @@ static inline void smooth_solve(const struct setting *set, const struct contact_
 struct smooth_trouble {
     mask impact;  /* a closed contact approaches */
     mask none;    /* no forces fit the laws (Painleve) */
-    mask several; /* more than one set of forces does */
+    mask several; /* more than one set of forces does, at a contact that slides */
+    mask chosen;  /* more than one does, none slides: which is said in contact.h */
 };
+
+/* Contacts that stand, as smooth_mode wants to know of the step before: 1 or 0. */
+static inline void smooth_stands(const struct contact_state *m, lanes *stands)
+{
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask sticks = m->closed[c] & mask_less_equal(lanes_abs(m->slide[c]), lanes_of(0));
+        stands[c] = choose(sticks, lanes_of(1), lanes_of(0));
+    }
+}
 
 /* Lanes where a contact that should begin to slip would be pulled the other way: sticking is
  * impossible and sliding too. */
@@ -161,15 +178,16 @@ static inline mask smooth_jammed(const struct setting *set, const struct dynamic
     return jammed;
 }
 
-/* The mode that follows from the state that *e was evaluated at. */
+/* The mode that follows from the state that *e was evaluated at; stood[]: contacts that stood until
+ * then, 1 or 0. */
 static inline void smooth_mode(const struct setting *set, const struct dynamics *e,
-                               contact_set touching, struct contact_state *m,
+                               contact_set touching, const lanes *stood, struct contact_state *m,
                                struct smooth_trouble *trouble)
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
     mask part[SCENE_CONTACTS], any = MASK_NONE, slides = MASK_NONE;
     lanes sliding[SCENE_CONTACTS];
-    *trouble = (struct smooth_trouble){MASK_NONE, MASK_NONE, MASK_NONE};
+    *trouble = (struct smooth_trouble){MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE};
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask closed =
             mask_less(none, set->may_touch[c]) & mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED));
@@ -186,10 +204,18 @@ static inline void smooth_mode(const struct setting *set, const struct dynamics 
         return;
     lanes r[2][2];
     mask starting[SCENE_CONTACTS], ambiguous, unsolved, begins = MASK_NONE;
-    solve_contacts(set->friction, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free,
-                   sliding, false, touching, part, r, &ambiguous, &unsolved);
+    lanes before[SCENE_CONTACTS][2]; /* any impulse inside the cone, or none */
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask rests = mask_less_equal(lanes_abs(sliding[c]), none);
+        before[c][0] = choose(rests, stood[c], none), before[c][1] = none;
+    }
+    const struct contact_rule rule = {set->friction, set->prefer, sliding,
+                                      NULL,          false,       (const lanes(*)[2])before};
+    solve_contacts(&rule, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, touching, part,
+                   r, &ambiguous, &unsolved);
     trouble->none = any & unsolved;
     trouble->several = any & ambiguous & slides;
+    trouble->chosen = any & ambiguous & LANES_NOT(slides);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         lanes along = e->free[c][1];
         for (int k = 0; k < SCENE_CONTACTS; k++)
@@ -242,9 +268,12 @@ static inline void smooth_project_position(const struct setting *set, const mask
     const lanes none = lanes_of(0);
     lanes error[SCENE_CONTACTS], multiplier[SCENE_CONTACTS];
     lanes lift[SCENE_CONTACTS][SCENE_COORDINATES];
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    const lanes *along[SCENE_CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
         for (int i = 0; i < SCENE_COORDINATES; i++)
             lift[c][i] = choose(held[c], e->response[c][0][i], none);
+        along[c] = lift[c];
+    }
     for (int round = 0; round < 4; round++) {
         mask todo = MASK_NONE;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -254,8 +283,8 @@ static inline void smooth_project_position(const struct setting *set, const mask
         if (!mask_any(todo))
             return;
         lanes d[SCENE_COORDINATES];
-        project_multipliers(set, &e->trig, (1u << SCENE_CONTACTS) - 1,
-                            (const lanes(*)[SCENE_COORDINATES])lift, held, error, multiplier);
+        project_multipliers(set, &e->trig, (1u << SCENE_CONTACTS) - 1, along, held, error,
+                            multiplier);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             lanes sum = lift[0][i] * multiplier[0];
             if (SCENE_CONTACTS > 1)
@@ -264,6 +293,15 @@ static inline void smooth_project_position(const struct setting *set, const mask
             s[i] = choose(todo, s[i] + d[i], s[i]);
         }
         trig_turn(&e->trig, todo, d);
+        lanes farthest = none;
+        for (int a = 0; a < SCENE_ANGLES; a++)
+            farthest = lanes_max(lanes_abs(d[FIRST_ANGLE + a]), farthest);
+        const mask far = todo & mask_less(lanes_of(SMOOTH_TURN), farthest);
+        if (mask_any(far)) {
+            scene_trig exact = e->trig;
+            scene_trigonometry(s, &exact);
+            choose_all(far, &exact, &e->trig, sizeof exact);
+        }
         for (int c = 0; c < SCENE_CONTACTS; c++)
             e->gap[c] = choose(todo, scene_gap(&set->body, s, &e->trig, c), e->gap[c]);
     }
@@ -313,13 +351,16 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
                   mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
     smooth_project_position(set, part, now->s, &e);
     mask impact = MASK_NONE; /* else only rounding is left to remove */
+    lanes rebound[SCENE_CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         scene_contact_velocity(&set->body, &e.trig, c, now->w, e.u[c]);
         impact |= part[c] & mask_less(e.u[c][0], lanes_of(-SMOOTH_REST));
-        uf[c][0] = e.u[c][0] + set->restitution * lanes_min(e.u[c][0], none);
+        rebound[c] = set->restitution * lanes_min(e.u[c][0], none);
+        uf[c][0] = e.u[c][0] + rebound[c];
         uf[c][1] = e.u[c][1];
     }
-    solve_contacts(set->friction, (const lanes(*)[2][2][2])e.D, (const lanes(*)[2])uf, NULL, false,
+    const struct contact_rule rule = {set->friction, set->prefer, NULL, rebound, false, NULL};
+    solve_contacts(&rule, (const lanes(*)[2][2][2])e.D, (const lanes(*)[2])uf,
                    (1u << SCENE_CONTACTS) - 1, part, r, &ambiguous, &unsolved);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -336,7 +377,7 @@ static inline mask smooth_impact(const struct setting *set, mask where, struct m
             energy += choose(part[c], 0.5 * (r[c][a] * (e.u[c][a] + after[a])), none);
             report->impulse[c][a] += choose(part[c], r[c][a], none);
         }
-        after[0] += set->restitution * lanes_min(e.u[c][0], none);
+        after[0] += rebound[c];
         struct step_report laws = *report;
         report_residuals(&laws, part[c], set->friction, r[c], after);
         choose_all(impact, &laws, report, sizeof laws);

@@ -22,11 +22,17 @@
 #include "record.h"
 #include "sample.h"
 
-/* Bundles of one kind that take turns, and for how many steps. */
+/* Bundles of one kind that take turns, for how many steps at most, and for how many of them a step
+ * counts that is not ordinary: the caller is to be asked soon again. */
 #ifdef ADVANCE_MOVES
 enum { STREAM_BUNDLES = 4, STREAM_STEPS = 250 };
+#ifdef ADVANCE_ORDINARY
+enum { STREAM_SLOW = 8 };
 #else
-enum { STREAM_BUNDLES = 1, STREAM_STEPS = 1000 };
+enum { STREAM_SLOW = 1 };
+#endif
+#else
+enum { STREAM_BUNDLES = 1, STREAM_STEPS = 1000, STREAM_SLOW = 200 };
 #endif
 
 #include "regroup.h"
@@ -112,6 +118,9 @@ COLD void stream_any(struct bundle *b, bool coupled)
     const mask ok =
         advance(&b->advance, &b->set, b->torque, b->h, b->live, coupled, &b->now, &report, &failed);
     b->failure = choose(failed, report.failure, b->failure);
+    const mask tired = ok & mask_less(b->most_work, b->evaluations + report.evaluations);
+    b->failure = choose(tired, lanes_of(STANCE_FAILURE_WORK), b->failure);
+    failed |= tired;
     if (!mask_any(ok | failed))
         return;
     if (coupled)
@@ -120,15 +129,16 @@ COLD void stream_any(struct bundle *b, bool coupled)
     stream_follow(b, false, ok, failed, false, (1u << SCENE_CONTACTS) - 1, &report);
 }
 
-/* One step of all lanes, with everything that follows from it. */
-HOT void stream_step(struct bundle *b, bool coupled)
+/* One step of all lanes, with everything that follows from it. Returns for how many it counts. */
+HOT int stream_step(struct bundle *b, bool coupled)
 {
     bundle_sample(b, b->live);
 #ifdef ADVANCE_ORDINARY
     if (!coupled && stream_try_ordinary(b))
-        return;
+        return 1;
 #endif
     stream_any(b, coupled);
+    return STREAM_SLOW;
 }
 
 /* A stream's bundles: one for the cases whose law acts inside the step, some for the others. */
@@ -162,7 +172,7 @@ static mask stream_fill(struct stream *stream, struct bundle *b, bool coupled)
 /* Steps a bundle for a while and refills lanes as they end. */
 HOT void stream_advance(struct stream *stream, struct bundle *b, bool coupled)
 {
-    for (int k = 0; k < STREAM_STEPS; k++) {
+    for (int k = 0; k < STREAM_STEPS;) {
         while (b->filled < LANES) { /* a case may end at its start */
             const mask fresh = stream_fill(stream, b, coupled);
             if (!mask_any(fresh))
@@ -171,7 +181,7 @@ HOT void stream_advance(struct stream *stream, struct bundle *b, bool coupled)
         }
         if (b->filled == 0)
             return;
-        stream_step(b, coupled);
+        k += stream_step(b, coupled);
     }
 }
 

@@ -10,15 +10,17 @@
  * turn of a slip, an impact of both feet. An accumulation of bounces ends when they are too small
  * to count. Where there is no smooth motion to begin with - a closed contact approaches, several
  * sets of forces fit the laws or none (Painleve), both feet stand redundantly on the edge of
- * their cones - the implicit law takes the interval as long as it can.
+ * their cones - the implicit law takes the interval as long as it can, but not so long that a
+ * contact that approaches has left again without having been struck.
  *
  * Error of a smooth step: the embedded estimate, per coordinate and rate. Error of a crossing: one
  * step and two half ones must agree to the tolerance. That alone would not do: with the event in
  * the first half both make the same error in proportion to the time before it, in the second half
  * the one in proportion to the time after it, and a slip that turns looks like one that sticks to
- * both. The bound on the length does not depend on such chance. Where the two disagree about which
- * contacts carry at the end, the event is at the end itself and only its time is uncertain: then
- * the difference of the rates counts for the length of the interval only.
+ * both. The bound on the length does not depend on such chance. Jumps that follow each other at one
+ * instant (an impact after which sliding feet have no accelerations, Painleve's paradox: then comes
+ * another, without a collision) never let the two agree: where there is no smooth motion to begin
+ * with, and in the interval nothing moves, the two half steps are taken as they are.
  *
  * Tolerances are absolute (m, rad, m/s, rad/s) where no rate is larger than 1, else they are of the
  * largest rate.
@@ -54,9 +56,10 @@ static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 // clang-format on
 
 #define CAPTURE_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
-#define CAPTURE_LOWEST 1e-11   /* m: an impact after a fall from less than this does not rebound */
-#define CAPTURE_ATTEMPTS 20000 /* in one step, then the case fails */
-#define CAPTURE_GROWTH 64      /* an error this much smaller than the tolerance: twice as long */
+#define CAPTURE_LOWEST 1e-11    /* m: an impact after a fall from less than this does not rebound */
+#define CAPTURE_ATTEMPTS 20000  /* in one step, then the case fails */
+#define CAPTURE_INSTANT 0x1p-10 /* of the tolerance: what moves less does not move */
+#define CAPTURE_GROWTH 64       /* an error this much smaller than the tolerance: twice as long */
 
 /* Cases may change lanes. */
 #define ADVANCE_MOVES
@@ -66,8 +69,9 @@ struct advance {
     lanes tolerance;
     lanes done; /* s, of the step */
     lanes part; /* s, next smooth step or, in a hunt, the interval that holds the event; 0: all */
-    lanes hunting;  /* 1: an event is known to lie within `part` ... */
-    lanes attempts; /* in this step */
+    lanes hunting;               /* 1: an event is known to lie within `part` ... */
+    lanes attempts;              /* in this step */
+    lanes stood[SCENE_CONTACTS]; /* see smooth_mode */
     struct step_report sum;
 };
 
@@ -78,6 +82,8 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->part, lane, INFINITY);
     lane_set(&a->hunting, lane, 0);
     lane_set(&a->attempts, lane, 0);
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
 }
 static void advance_free(struct advance *a)
@@ -102,15 +108,32 @@ static inline mask capture_rebounds(const struct setting *set, const struct moti
     return fast;
 }
 
+/* Lanes where every closed contact that approaches got an impulse. */
+static inline mask capture_strikes(const struct setting *set, const struct motion *now,
+                                   const struct step_report *report)
+{
+    mask lost = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        lost |= mask_less(lanes_of(0), set->may_touch[c]) &
+                mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED)) &
+                mask_less(now->approach[c], lanes_of(-SMOOTH_REST)) &
+                mask_less_equal(report->impulse[c][0], lanes_of(0));
+    return LANES_NOT(lost);
+}
+
 /* The interval of length h by the implicit law, in one step and in two. *next and *report are
- * those of the two; returns the lanes where both agree to the tolerance. */
+ * those of the two; returns the lanes where both agree to the tolerance, or `instant` holds. */
 static inline mask capture_implicit(const struct setting *set, const struct motion *now,
-                                    const lanes *torque, lanes h, mask run, bool coupled,
-                                    lanes tolerance, lanes acceleration, struct motion *next,
-                                    struct step_report *report)
+                                    const lanes *stood, const lanes *torque, lanes h, mask run,
+                                    bool coupled, lanes tolerance, lanes acceleration, mask instant,
+                                    struct motion *next, struct step_report *report)
 {
     struct motion here = *now;
     motion_energy(set, &here);
+    for (int c = 0; c < SCENE_CONTACTS; c++) { /* any impulse of a contact that stands, or none */
+        here.impulse[c][0] = stood[c];
+        here.impulse[c][1] = lanes_of(0);
+    }
     struct motion coarse = here, middle = here;
     struct step_report whole, half;
     struct setting law = *set;
@@ -122,6 +145,8 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
         take_step(&law, &here, torque, h, run, coupled, STEP_MAX_ITERATIONS, &coarse, &whole);
     good &=
         take_step(&law, &here, torque, 0.5 * h, good, coupled, STEP_MAX_ITERATIONS, &middle, &half);
+    const mask brief = mask_less_equal(acceleration * h, tolerance);
+    good &= brief | (capture_strikes(set, now, &whole) & capture_strikes(set, now, &half));
     report_add(report, &half);
     *next = middle;
     good &=
@@ -133,14 +158,7 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
         position = lanes_max(lanes_abs(next->s[i] - coarse.s[i]), position);
         rate = lanes_max(lanes_abs(next->w[i] - coarse.w[i]), rate);
     }
-    mask apart = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        const mask one = mask_less(lanes_of(0), whole.impulse[c][0]);
-        const mask two = mask_less(lanes_of(0), report->impulse[c][0]);
-        apart |= (one & LANES_NOT(two)) | (two & LANES_NOT(one));
-    }
-    rate = choose(apart, h * rate, rate);
-    return good & mask_less_equal(lanes_max(rate, position), tolerance);
+    return good & (instant | mask_less_equal(lanes_max(rate, position), tolerance));
 }
 
 /* Adds an attempt to the step's report: all of it where it was taken, its cost where it was not. */
@@ -176,7 +194,8 @@ static inline lanes capture_largest(const struct dynamics *e)
  * lanes where *step is defined and inside the mode; its error estimate is still to be judged. */
 static inline mask capture_smooth(const struct setting *set, const struct motion *now,
                                   const lanes *torque, lanes length, mask try, bool coupled,
-                                  struct explicit_step *step, mask *stuck, lanes *acceleration)
+                                  lanes *stood, struct explicit_step *step, mask *stuck,
+                                  lanes *acceleration)
 {
     struct dynamics begin;
     struct contact_state mode;
@@ -184,12 +203,14 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
     const contact_set touching = step_touching(set, now->gap, LANES_ALL);
     const struct drive drive = {torque, coupled, NULL};
     smooth_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
-    smooth_mode(set, &begin, touching, &mode, &trouble);
+    smooth_mode(set, &begin, touching, stood, &mode, &trouble);
+    smooth_stands(&mode, stood);
     *acceleration = capture_largest(&begin);
     if (touching)
         smooth_solve(set, &mode, &begin);
     *acceleration = lanes_max(capture_largest(&begin), *acceleration);
     explicit_take(set, now, torque, length, try, coupled, &mode, &begin, step);
+    step->report.ambiguous = choose(trouble.chosen, lanes_of(1), step->report.ambiguous);
     *stuck = try & (trouble.impact | trouble.none | trouble.several |
                     smooth_violated(set, &mode, &begin));
     return try & LANES_NOT(*stuck | step->violated | step->bad);
@@ -213,26 +234,30 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const lanes none = lanes_of(0), one = lanes_of(1);
     const lanes tolerance = a->tolerance * capture_size(now);
     const lanes left = h - a->done;
-    /* Halves add up to the step but for rounding: what is left of it then is no interval. */
     const mask hunt = live & mask_less(none, a->hunting);
     const lanes part = choose(hunt, a->part, lanes_min(dip_longest(set, now->w), a->part));
-    const lanes interval = choose(mask_less(part, (1 - 1e-9) * left), part, left);
+    /* Halves add up to the step but for rounding: what is left of it then is no interval. */
+    const lanes interval = choose(mask_less(part, left - CAPTURE_SMALLEST * h), part, left);
     const lanes length = choose(hunt, 0.5 * interval, interval);
     struct explicit_step step;
     mask stuck, crossed = MASK_NONE, arrived = MASK_NONE;
     a->attempts += choose(live, one, none);
-    lanes acceleration;
-    const mask inside =
-        capture_smooth(set, now, torque, length, live, coupled, &step, &stuck, &acceleration);
+    lanes acceleration, stood[SCENE_CONTACTS];
+    memcpy(stood, a->stood, sizeof stood);
+    const mask inside = capture_smooth(set, now, torque, length, live, coupled, stood, &step,
+                                       &stuck, &acceleration);
     const mask event = live & LANES_NOT(inside);
     const mask cross = hunt & (stuck | mask_less_equal(acceleration * interval, tolerance));
     if (mask_any(cross)) {
         struct motion next;
         struct step_report over;
+        const lanes fastest = lanes_max(acceleration, capture_size(now));
+        const mask instant =
+            stuck & mask_less_equal(fastest * interval, CAPTURE_INSTANT * tolerance);
         if (coupled) /* a decoupling law is held over the crossing */
             torque = step.torque;
-        crossed = capture_implicit(set, now, torque, interval, cross, coupled, tolerance,
-                                   acceleration, &next, &over);
+        crossed = capture_implicit(set, now, a->stood, torque, interval, cross, coupled, tolerance,
+                                   acceleration, instant, &next, &over);
         over.events = choose(crossed, one, none);
         law_integrate(&set->law, crossed, interval, step.integral_rate, next.integral);
         choose_all(crossed, &next, now, sizeof next);
@@ -245,6 +270,8 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const mask good = inside & smooth & seen & mask_less_equal(step.error, tolerance);
     choose_all(good, &step.end, now, sizeof step.end);
     capture_add(a, good, live, &step.report);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        a->stood[c] = choose(crossed, none, choose(good, stood[c], a->stood[c]));
     a->done = choose(crossed, a->done + interval, choose(good, a->done + length, a->done));
 
     /* Next: all of the rest after an event; longer where the error was small; what is left of the
@@ -259,11 +286,13 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const mask hunts = smooth & (event | (good & hunt));
     a->part = choose(live, next, a->part);
     a->hunting = choose(live, choose(hunts, one, none), a->hunting);
-    *failed = smooth & LANES_NOT(good) &
-              (mask_less(next, CAPTURE_SMALLEST * h) |
-               mask_less(lanes_of(CAPTURE_ATTEMPTS), a->attempts));
+    const mask tired =
+        live & LANES_NOT(arrived) & mask_less(lanes_of(CAPTURE_ATTEMPTS), a->attempts);
+    *failed = tired | (smooth & LANES_NOT(good) & mask_less(next, CAPTURE_SMALLEST * h));
     *report = a->sum;
-    report->failure = choose(capture_in_range(now, h), lanes_of(STANCE_FAILURE_TOLERANCE), none);
+    report->failure =
+        choose(tired, lanes_of(STANCE_FAILURE_WORK), lanes_of(STANCE_FAILURE_TOLERANCE));
+    report->failure = choose(capture_in_range(now, h), report->failure, none);
     struct step_report fresh;
     report_clear(&fresh);
     choose_all(arrived, &fresh, &a->sum, sizeof fresh);

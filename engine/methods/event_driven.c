@@ -51,7 +51,8 @@
 /* What is remembered between steps, and what the functions that ARKODE calls see. */
 struct advance {
     double tolerance;
-    double next; /* s, internal step to try */
+    double next;                  /* s, internal step to try */
+    double stood[SCENE_CONTACTS]; /* see smooth_mode */
     struct event_problem problem;
     double attempts, most; /* internal steps in this step; then it fails */
     struct step_report *report;
@@ -193,6 +194,8 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     advance_free(a);
     a->tolerance = c->tolerance;
     a->next = EVENT_LONGEST;
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        a->stood[i] = 0;
 }
 
 /* Makes ARKODE start at *from with the internal step `length`, not beyond `target`. */
@@ -215,7 +218,7 @@ static enum event_result event_step(struct advance *a, double target, struct eve
         return EVENT_FAILED;
     const int flag = ERKStepEvolve(a->arkode, target, a->y, &tau, ARK_ONE_STEP);
     if (flag < 0)
-        return EVENT_FAILED; // F
+        return EVENT_FAILED;
     to->tau = *root = tau;
     if (flag == ARK_ROOT_RETURN && (ERKStepGetCurrentTime(a->arkode, &to->tau) != 0 ||
                                     ERKStepGetDky(a->arkode, to->tau, 0, a->y) != 0))
@@ -373,7 +376,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         const struct drive drive = {a->problem.torque, a->problem.coupled, NULL};
         smooth_evaluate(a->problem.set, a->problem.begin + p->tau, s, w, p->y + EVENT_INTEGRAL,
                         &drive, touching, &p->e);
-        smooth_mode(a->problem.set, &p->e, touching, &m->contact, &trouble);
+        smooth_mode(a->problem.set, &p->e, touching, a->stood, &m->contact, &trouble);
         a->problem.evaluations++;
         for (int c = 0; c < SCENE_CONTACTS; c++)
             below |= a->problem.set->may_touch[c] > 0 && p->e.gap[c] < -STEP_CLOSED;
@@ -383,10 +386,13 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
             memcpy(p->y, now->s, sizeof now->s);
             memcpy(p->y + SCENE_COORDINATES, now->w, sizeof now->w);
             *impact = true;
+            memset(a->stood, 0, sizeof a->stood);
             continue;
         }
         if (trouble.none || trouble.several)
             return STANCE_FAILURE_PAINLEVE;
+        report->ambiguous = fmax(trouble.chosen, report->ambiguous);
+        smooth_stands(&m->contact, a->stood);
         double command[ACTUATORS];
         law_torque(law, s, w, command);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
@@ -466,9 +472,12 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
             break;
         result = event_march(a, &here, h);
         event_finish(a, &here, now);
-        report->events += result == EVENT_FOUND && event_of_contact(&a->problem, &here);
+        if (result == EVENT_FOUND && event_of_contact(&a->problem, &here)) {
+            report->events++;
+            memset(a->stood, 0, sizeof a->stood);
+        }
         if (result == EVENT_FAILED)
-            failure = STANCE_FAILURE_TOLERANCE;
+            failure = a->attempts > a->most ? STANCE_FAILURE_WORK : STANCE_FAILURE_TOLERANCE;
         else if (events >= EVENT_LIMIT)
             failure = STANCE_FAILURE_EVENTS;
     }

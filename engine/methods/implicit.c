@@ -2,7 +2,9 @@
  *
  * Forces, inertia and contact directions at the end of the step (the paper's equations 6-15), the
  * fully converged Newton iteration and the exact contact solution of core/step.h. First order,
- * dissipative in flight, unconditionally stable under stiff servo gains.
+ * unconditionally stable under stiff servo gains. In flight it conserves neither energy nor
+ * momentum: inertia is that of the end while the change of velocity is that of the whole step,
+ * which errs in proportion to the step, to either side.
  */
 #define METHOD_THETA 1.0
 

@@ -29,17 +29,20 @@ static const double tableau_b[METHOD_STAGES] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 /
 #include "../core/explicit.h"
 // clang-format on
 
-#define LAGRANGE_BRACKET 1e-12 /* s: a switch is known this well */
-#define LAGRANGE_EVENTS 200    /* in one step, then the case fails */
+#define LAGRANGE_BRACKET 1e-12    /* s: a switch is known this well */
+#define LAGRANGE_SMALLEST 0x1p-40 /* of a step: what is left of it by rounding */
+#define LAGRANGE_EVENTS 200       /* in one step, then the case fails */
+#define LAGRANGE_DEEPEST 1e-8     /* m: a foot that is further below the ground has gone astray */
 
 /* Cases may change lanes. */
 #define ADVANCE_MOVES
 
 /* Where each lane is inside its step. */
 struct advance {
-    lanes done;   /* s, of the step */
-    lanes part;   /* s, interval that holds a switch; INFINITY: none is known */
-    lanes events; /* in this step */
+    lanes done;                  /* s, of the step */
+    lanes part;                  /* s, interval that holds a switch; INFINITY: none is known */
+    lanes events;                /* in this step */
+    lanes stood[SCENE_CONTACTS]; /* see smooth_mode */
     struct step_report sum;
 };
 
@@ -49,6 +52,8 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->done, lane, 0);
     lane_set(&a->part, lane, INFINITY);
     lane_set(&a->events, lane, 0);
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
 }
 static void advance_free(struct advance *a)
@@ -64,7 +69,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const lanes none = lanes_of(0), one = lanes_of(1);
     const lanes left = h - a->done;
     /* Halves add up to the step but for rounding: what is left of it then is no interval. */
-    const lanes interval = choose(mask_less(a->part, (1 - 1e-9) * left), a->part, left);
+    const lanes interval = choose(mask_less(a->part, left - LAGRANGE_SMALLEST * h), a->part, left);
     const mask hunt = live & mask_less(a->part, lanes_of(INFINITY));
     const mask found = hunt & mask_less_equal(interval, lanes_of(LAGRANGE_BRACKET));
     const lanes length = choose(hunt & LANES_NOT(found), 0.5 * interval, interval);
@@ -75,7 +80,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const contact_set touching = step_touching(set, now->gap, LANES_ALL);
     const struct drive drive = {torque, coupled, NULL};
     smooth_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
-    smooth_mode(set, &begin, touching, &mode, &trouble);
+    smooth_mode(set, &begin, touching, a->stood, &mode, &trouble);
     if (touching)
         smooth_solve(set, &mode, &begin);
     explicit_take(set, now, torque, length, live, coupled, &mode, &begin, &step);
@@ -88,6 +93,11 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     step.report.signorini = choose(found, none, step.report.signorini);
     step.report.coulomb = choose(found, none, step.report.coulomb);
     step.report.dissipation = choose(found, none, step.report.dissipation);
+    lanes stands[SCENE_CONTACTS];
+    smooth_stands(&mode, stands);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        a->stood[c] = choose(switched, none, choose(take, stands[c], a->stood[c]));
+    step.report.ambiguous = choose(trouble.chosen, one, step.report.ambiguous);
     struct step_report sum = a->sum;
     report_add(&sum, &step.report);
     choose_all(take, &sum, &a->sum, sizeof sum);
@@ -100,16 +110,22 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
         a->events += choose(switched, one, none);
     }
 
+    /* A step may be so long that no projection brings a foot back onto the ground. */
+    mask deep = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        deep |= (take | switched) & mask_less(none, set->may_touch[c]) &
+                mask_less(now->gap[c], lanes_of(-LAGRANGE_DEEPEST));
+
     const mask hunts = able & LANES_NOT(found) & (step.violated | hunt);
     a->done = choose(take, a->done + length, a->done);
     a->part = choose(live, choose(hunts, length, lanes_of(INFINITY)), a->part);
-    const mask arrived = take & mask_less_equal(left, length);
+    const mask arrived = take & mask_less_equal(left, length) & LANES_NOT(deep);
     const mask zeno = mask_less(lanes_of(LAGRANGE_EVENTS), a->events);
-    *failed = live & (painleve | unsolved | step.bad | zeno) & LANES_NOT(arrived);
+    *failed = live & (painleve | unsolved | deep | step.bad | zeno) & LANES_NOT(arrived);
 
     *report = a->sum;
     report->failure = choose(painleve, lanes_of(STANCE_FAILURE_PAINLEVE), none);
-    report->failure = choose(unsolved, lanes_of(STANCE_FAILURE_CONTACT), report->failure);
+    report->failure = choose(unsolved | deep, lanes_of(STANCE_FAILURE_CONTACT), report->failure);
     report->failure = choose(zeno, lanes_of(STANCE_FAILURE_EVENTS), report->failure);
     report->failure = choose(step.bad, step.failure, report->failure);
     struct step_report fresh;

@@ -83,6 +83,39 @@ static const char *const contact_names[FEET] = {"foot1", "foot2"};
 static const char *const actuator_names[TORQUES] = {"hip1", "hip2"};
 static const int posture_coordinates[POSTURES] = {THETA, Q1, Q2};
 
+/* ---- angles: the same bits whatever the C library -------------------------------------------- */
+
+static double sine_of(double angle)
+{
+    double sine, cosine;
+    stance_sincos(angle, &sine, &cosine);
+    return sine;
+}
+static double cosine_of(double angle)
+{
+    double sine, cosine;
+    stance_sincos(angle, &sine, &cosine);
+    return cosine;
+}
+
+/* The angle in -pi ... pi whose sine and cosine are in the ratio y : x, not both 0. Halved until a
+ * short series of the arctangent begins Newton's iteration on y cos - x sin = 0. */
+static double angle_of(double y, double x)
+{
+    const double length = sqrt(x * x + y * y);
+    double t = fabs(y) / (length + fabs(x)), sine, cosine; /* of half the angle to the x axis */
+    t = t / (1 + sqrt(1 + t * t));
+    t = t / (1 + sqrt(1 + t * t)); /* an eighth: at most 0.2 */
+    double angle = 8 * t * (1 - t * t * (1. / 3 - t * t * (1. / 5 - t * t / 7)));
+    angle = x < 0 ? M_PI - angle : angle;
+    angle = y < 0 ? -angle : angle;
+    for (int k = 0; k < 2; k++) {
+        stance_sincos(angle, &sine, &cosine);
+        angle += (y * cosine - x * sine) / (x * cosine + y * sine);
+    }
+    return angle;
+}
+
 /* ---- kinematics ------------------------------------------------------------------------------ */
 
 typedef struct point {
@@ -249,7 +282,7 @@ static stance_error solve_leg(const double *weight, const stance_equilibrium_cho
 {
     const int known = 3 - unknown;
     const double sine =
-        -(weight[0] * sin(posture[0]) + weight[known] * sin(posture[0] + posture[known])) /
+        -(weight[0] * sine_of(posture[0]) + weight[known] * sine_of(posture[0] + posture[known])) /
         weight[unknown];
     /* A sine of 1 that rounding has made larger is one still. */
     if (!(fabs(sine) <= 1 + 1e-14)) {
@@ -257,7 +290,7 @@ static stance_error solve_leg(const double *weight, const stance_equilibrium_cho
                       "no equilibrium: the %s leg would need sin(theta + q%d) = %.6g",
                       unknown == 1 + choice->support ? "support" : "free", unknown, sine);
     }
-    const double upper = asin(fmax(-1, fmin(1, sine)));
+    const double upper = angle_of(fmax(-1, fmin(1, sine)), sqrt(fmax(0, (1 - sine) * (1 + sine))));
     posture[unknown] = (choice->lower ? M_PI - upper : upper) - posture[0];
     return STANCE_OK;
 }
@@ -267,8 +300,9 @@ static stance_error solve_trunk(const double *weight, const stance_equilibrium_c
                                 double posture[POSTURES], stance_message *message)
 {
     const int s = 1 + choice->support;
-    const double a = weight[0] + weight[1] * cos(posture[1]) + weight[2] * cos(posture[2]);
-    const double b = weight[1] * sin(posture[1]) + weight[2] * sin(posture[2]);
+    const double a =
+        weight[0] + weight[1] * cosine_of(posture[1]) + weight[2] * cosine_of(posture[2]);
+    const double b = weight[1] * sine_of(posture[1]) + weight[2] * sine_of(posture[2]);
     const double size = fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]);
 
     if (fmax(fabs(a), fabs(b)) <= 1e-14 * size) {
@@ -276,8 +310,8 @@ static stance_error solve_trunk(const double *weight, const stance_equilibrium_c
                       "no single equilibrium: with these q1 and q2 the centre of mass is at the "
                       "foot and every theta balances");
     }
-    posture[0] = atan2(-b, a);
-    if ((cos(posture[0] + posture[s]) < 0) != choice->lower) {
+    posture[0] = angle_of(-b, a);
+    if ((cosine_of(posture[0] + posture[s]) < 0) != choice->lower) {
         posture[0] += posture[0] > 0 ? -M_PI : M_PI;
     }
     return STANCE_OK;
@@ -321,7 +355,8 @@ static stance_error equilibrium(const double *robot, const stance_equilibrium_ch
     memcpy(&result->position[THETA], posture, sizeof posture);
     stand(robot, choice->support, result->position, velocity);
     for (int i = 0; i < TORQUES; i++) {
-        result->torque[i] = 0 - STANCE_GRAVITY * weight[1 + i] * sin(posture[0] + posture[1 + i]);
+        result->torque[i] =
+            0 - STANCE_GRAVITY * weight[1 + i] * sine_of(posture[0] + posture[1 + i]);
     }
     return STANCE_OK;
 }
@@ -346,11 +381,11 @@ static pinned pin(const double *robot, const stance_equilibrium *equilibrium)
         .trunk = mt * lt * lt,
         .support = carried * l * l,
         .free = m * l * l,
-        .trunk_support = mt * lt * l * cos(q[s]),
-        .free_support = -m * l * l * cos(q[f] - q[s]),
-        .stiffness = {-STANCE_GRAVITY * mt * lt * cos(q[THETA]),
-                      -STANCE_GRAVITY * carried * l * cos(phi_s),
-                      STANCE_GRAVITY * m * l * cos(phi_f)},
+        .trunk_support = mt * lt * l * cosine_of(q[s]),
+        .free_support = -m * l * l * cosine_of(q[f] - q[s]),
+        .stiffness = {-STANCE_GRAVITY * mt * lt * cosine_of(q[THETA]),
+                      -STANCE_GRAVITY * carried * l * cosine_of(phi_s),
+                      STANCE_GRAVITY * m * l * cosine_of(phi_f)},
     };
 }
 
@@ -416,12 +451,12 @@ static void momentum(const double *robot, const stance_equilibrium *equilibrium,
     const int s = equilibrium->support, legs[POSTURES - 1] = {Q1 + s, Q2 - s};
 
     balance(robot, s, weight);
-    jacobian[0][0] = -weight[0] * sin(q[THETA]);
-    jacobian[1][0] = -weight[0] * cos(q[THETA]);
+    jacobian[0][0] = -weight[0] * sine_of(q[THETA]);
+    jacobian[1][0] = -weight[0] * cosine_of(q[THETA]);
     for (int i = 1; i < POSTURES; i++) {
         const int leg = legs[i - 1];
-        jacobian[0][i] = -weight[1 + leg - Q1] * sin(q[THETA] + q[leg]);
-        jacobian[1][i] = -weight[1 + leg - Q1] * cos(q[THETA] + q[leg]);
+        jacobian[0][i] = -weight[1 + leg - Q1] * sine_of(q[THETA] + q[leg]);
+        jacobian[1][i] = -weight[1 + leg - Q1] * cosine_of(q[THETA] + q[leg]);
     }
 }
 

@@ -1,0 +1,166 @@
+/* test_rest - `rested` and `stabilised` are said where an equilibrium holds, and nowhere else: what
+ * they say is held to the same case simulated on without settling, for ten times as long. */
+#include "support.h"
+
+enum { SIDE = 48 };
+
+static stance_result run_one(const char *method, const stance_case *c)
+{
+    stance_result r;
+    kernel_of(method, NULL)->run(c, &r, 1);
+    if (r.status != STANCE_DONE)
+        print_message("# %s: failure %d after %.3f s\n", method, r.failure, r.end_time);
+    assert_int_equal(r.status, STANCE_DONE);
+    return r;
+}
+
+/* Outcomes of a map of starts around the equilibrium; those that come to rest must not fall later.
+ */
+static void map(const char *method, stance_case base, double tilt, double rate, int outcome[5])
+{
+    static stance_case c[SIDE * SIDE];
+    static stance_result r[SIDE * SIDE], later[SIDE * SIDE];
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        c[i] = base;
+        c[i].position[2] += tilt * (2.0 * (i % SIDE) / (SIDE - 1) - 1);
+        c[i].velocity[2] += rate * (2.0 * (i / SIDE) / (SIDE - 1) - 1);
+        stance_scene_find("biped")->stand(c[i].robot, 0, c[i].position, c[i].velocity);
+    }
+    kernel_of(method, NULL)->run(c, r, SIDE * SIDE);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        outcome[r[i].outcome]++;
+        c[i].settle = false;
+        c[i].steps *= 10;
+    }
+    kernel_of(method, NULL)->run(c, later, SIDE * SIDE);
+    int wrong = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        if (r[i].outcome == STANCE_RESTED || r[i].outcome == STANCE_STABILISED)
+            wrong += later[i].outcome == STANCE_FELL;
+    print_message("# %s: %d stabilised, %d rested, %d fell, %d undecided; of the first two %d fall "
+                  "later\n",
+                  method, outcome[STANCE_STABILISED], outcome[STANCE_RESTED], outcome[STANCE_FELL],
+                  outcome[STANCE_UNDECIDED], wrong);
+    assert_int_equal(wrong, 0);
+}
+
+/* The controller of one foot on both: what it leaves standing on both feet topples, slowly. */
+static void slow_is_not_at_rest(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"implicit", "midpoint", "capturing"};
+    for (int m = 0; m < 3; m++) {
+        stance_case c = balance_case(0, 0);
+        int outcome[5] = {0};
+        c.contacts = 3;
+        c.tolerance = 1e-6;
+        map(methods[m], c, 0.09, 0.6, outcome);
+        assert_int_equal(outcome[STANCE_RESTED], 0);
+        assert_true(outcome[STANCE_STABILISED] > 0 && outcome[STANCE_FELL] > 0);
+    }
+}
+
+static double critical_time(const stance_case *c, int delay)
+{
+    const stance_scene *const scene = stance_scene_find("biped");
+    stance_equilibrium equilibrium = {0};
+    double A[36], B[12], T;
+    memcpy(&equilibrium.position[2], c->target, sizeof c->target);
+    assert_int_equal(scene->linearise(c->robot, &equilibrium, A, B), STANCE_OK);
+    assert_int_equal(stance_critical_sample_time(6, 2, A, B, &c->gain[0][0], delay, 1, &T),
+                     STANCE_OK);
+    return T;
+}
+
+/* A loop that samples so seldom that it is unstable stabilises nothing, however near it starts. */
+static void unstable_loops_stabilise_nothing(void **state)
+{
+    (void)state;
+    for (int late = 0; late < 2; late++)
+        for (int k = 0; k < 2; k++) {
+            stance_case c = balance_case(1e-7, 0);
+            const double critical = critical_time(&c, late);
+            c.sample_every = (int64_t)lround((k ? 1.2 : 0.8) * critical / c.step);
+            c.delay = late;
+            const stance_result r = run_one("implicit", &c);
+            print_message("# T = %.0f ms, delay %d: outcome %d\n", (double)c.sample_every, late,
+                          r.outcome);
+            assert_true((r.outcome == STANCE_STABILISED) == (k == 0));
+        }
+}
+
+/* Stiff servos hold a robot that straddles on both feet; without any its trunk topples. */
+static stance_case straddle(double kp, double tilt)
+{
+    stance_case c = plain_case();
+    double gap[2];
+    c.position[2] = tilt, c.position[3] = -0.3 - tilt, c.position[4] = 0.3 - tilt;
+    stance_scene_find("biped")->gaps(c.robot, c.position, gap);
+    c.position[1] -= gap[0];
+    stance_scene_find("biped")->stand(c.robot, 0, c.position, c.velocity);
+    hold_legs(&c, kp, kp / 10);
+    c.settle = true;
+    c.sample_every = 1;
+    c.steps = 20000;
+    return c;
+}
+static void stiff_legs_rest(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"implicit", "midpoint", "capturing", "lagrange",
+                                          "event-driven"};
+    for (int m = 0; m < 5; m++) {
+        stance_case stiff = straddle(100, 0);
+        stiff.tolerance = 1e-8;
+        const stance_result held = run_one(methods[m], &stiff);
+        assert_int_equal(held.outcome, STANCE_RESTED);
+        assert_true(held.end_time < 1);
+        if (m > 2) /* these chatter */
+            continue;
+        stance_case weak = straddle(0, 1e-3);
+        weak.tolerance = 1e-6;
+        const stance_result falls = run_one(methods[m], &weak);
+        print_message("# %s: stiff %d after %.3f s, weak %d after %.3f s\n", methods[m],
+                      held.outcome, held.end_time, falls.outcome, falls.end_time);
+        assert_int_equal(falls.outcome, STANCE_FELL);
+    }
+}
+
+/* A block that is pulled to and fro rests where the pull never reaches what friction holds. */
+static void pulled_blocks_rest_if_held(void **state)
+{
+    (void)state;
+    const stance_scene *const scene = stance_scene_find("block");
+    for (int k = 0; k < 2; k++) {
+        stance_case c = plain_case();
+        memset(c.robot, 0, sizeof c.robot);
+        for (int i = 0; i < scene->robot_count; i++) {
+            c.robot[i] = scene->robot[i].fallback;
+            if (strcmp(scene->robot[i].name, "pull") == 0)
+                c.robot[i] = (k ? 1.2 : 0.9) * 0.5 * 9.81 * c.robot[0];
+            if (strcmp(scene->robot[i].name, "pull_frequency") == 0)
+                c.robot[i] = 0.05; /* 20 s: it is still for long */
+            if (strcmp(scene->robot[i].name, "slope") == 0)
+                c.robot[i] = 0;
+        }
+        c.friction = 0.5;
+        c.contacts = 1;
+        c.settle = true;
+        c.fall_height = -1e9;
+        c.steps = 2000;
+        stance_result r;
+        stance_kernel_find(scene, stance_method_find("capturing"), NULL)->run(&c, &r, 1);
+        assert_int_equal(r.outcome, k ? STANCE_UNDECIDED : STANCE_RESTED);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slow_is_not_at_rest),
+        cmocka_unit_test(unstable_loops_stabilise_nothing),
+        cmocka_unit_test(stiff_legs_rest),
+        cmocka_unit_test(pulled_blocks_rest_if_held),
+    };
+    return cmocka_run_group_tests_name("rest", tests, NULL, NULL);
+}
