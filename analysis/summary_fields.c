@@ -198,6 +198,9 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
     }
     add_number(c, "ground.friction", v->friction, "");
     add_number(c, "ground.restitution", v->restitution, "");
+    if (v->prefer) {
+        add_text(c, "ground.prefer", "most-energy");
+    }
     for (int i = 0; i < scene->contacts; i++) {
         size_t used = strlen(text);
         if (v->contacts >> i & 1) {

@@ -165,6 +165,7 @@ void resolve_keep_design_inputs(struct scenario_values *values, bool sampled)
 {
 #define LEAVE_OUT(field) memset(&values->field, 0, sizeof values->field)
     LEAVE_OUT(friction), LEAVE_OUT(restitution), LEAVE_OUT(contacts);
+    LEAVE_OUT(prefer);
     LEAVE_OUT(offset), LEAVE_OUT(offset_scale), LEAVE_OUT(state);
     LEAVE_OUT(kp), LEAVE_OUT(kd), LEAVE_OUT(target);
     LEAVE_OUT(controlled), LEAVE_OUT(proportional), LEAVE_OUT(integral), LEAVE_OUT(derivative);
@@ -467,6 +468,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
     *out = (stance_case){
         .friction = values->friction,
         .restitution = values->restitution,
+        .most_energy = values->prefer != 0,
         .contacts = (uint32_t)values->contacts,
         .torque_limit = values->torque_limit,
         .noise = values->noise,

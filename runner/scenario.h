@@ -38,6 +38,7 @@ struct scenario_equilibrium {
 struct scenario_values {
     double robot[STANCE_MAX_ROBOT];
     double friction, restitution;
+    int prefer;   /* of several motions: 0 least energy, 1 most */
     int contacts; /* bit mask */
 
     struct scenario_equilibrium equilibrium; /* initial.equilibrium */

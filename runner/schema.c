@@ -17,6 +17,7 @@ static const char *const far_words[] = {"none", "hold", "decoupling"};
 static const char *const design_words[] = {"place", "place-schur", "lqr", "gains"};
 static const char *const design_time_words[] = {"continuous", "sampled"};
 static const char *const branch_words[] = {"upper", "lower"};
+static const char *const prefer_words[] = {"least-energy", "most-energy"};
 static const char *const spacing_words[] = {"linear", "log"};
 static const char *const truth_words[] = {"false", "true"};
 static const char *const record_words[] = {"none", "all"};
@@ -89,6 +90,12 @@ static const struct row rows[] = {
          .unit = "1", .fallback = 0, .low = 0, .high = 1,
          .text = "Newton's coefficient of restitution",
          .more = "Together with friction it can create energy in impacts; 0 never does."}},
+    {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(prefer), .fallback = 0,
+         WORDS(prefer_words),
+         .text = "which motion, where several obey the contact laws",
+         .more = "The one that leaves the least kinetic energy, or the most; contacts that stand go "
+                 "on standing while they can. Such steps are counted as ambiguous_steps. Swept over "
+                 "both, each case is followed down both branches."}},
     {FAMILY_CONTACTS, {.path = "ground.contacts", .type = FIELD_WORDS, .by_scene = true,
                        VALUE(contacts), .fallback_text = "all of the scene's",
                        .text = "points that may touch the ground"}},
