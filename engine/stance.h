@@ -218,7 +218,9 @@ typedef struct stance_case {
      * 0; read where the method controls it. */
     double tolerance;
 
-    bool settle;         /* judge `stabilised` and `rested` on the way and stop there */
+    /* Judge `stabilised` and `rested` on the way and stop there. Both ask for an equilibrium that
+     * holds, too, no further than settle_angle away: see core/rest.h. */
+    bool settle;
     bool has_target;     /* without one nothing is ever `stabilised` */
     int support;         /* contact that a stabilised robot stands on, or -1 */
     double settle_angle; /* rad */

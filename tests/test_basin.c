@@ -102,24 +102,6 @@ static enum results_kind cantor(const double *at)
     return in(stage % 2);
 }
 
-/* Koch's snowflake, from its triangle inwards: is the point on the island's side of the curve over
- * the edge from (0, 0) to (1, 0)? The bumps point to negative y. */
-static bool below_koch(double x, double y, int depth)
-{
-    const double high = sqrt(3) / 6; /* of the first bump */
-    if (y >= 0)
-        return true;
-    if (depth == 0 || y < -high)
-        return false;
-    if (x < 1 / 3.0)
-        return x >= 0 && below_koch(3 * x, 3 * y, depth - 1);
-    if (x > 2 / 3.0)
-        return x <= 1 && below_koch(3 * (1 - x), 3 * y, depth - 1);
-    /* The sides of the bump, mirrored onto one: turned by 60 degrees and stretched threefold. */
-    const double u = 3 * ((x < 0.5 ? x : 1 - x) - 1 / 3.0), v = 3 * y;
-    return below_koch(0.5 * u - 0.5 * sqrt(3) * v, 0.5 * sqrt(3) * u + 0.5 * v, depth - 1);
-}
-
 static enum results_kind koch(const double *at)
 {
     return in(below_koch(at[0], at[1] - 0.6, 12));

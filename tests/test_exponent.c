@@ -94,21 +94,6 @@ static int takagi(double x, double y, double c, const double *p)
     return y < 0.2 + 0.5 * sum * (1 - c);
 }
 
-/* Koch's curve over an edge, from its triangle inwards. */
-static bool below_koch(double x, double y, int depth)
-{
-    const double high = sqrt(3) / 6; /* of the first bump */
-    if (y >= 0)
-        return true;
-    if (depth == 0 || y < -high)
-        return false;
-    if (x < 1 / 3.0)
-        return x >= 0 && below_koch(3 * x, 3 * y, depth - 1);
-    if (x > 2 / 3.0)
-        return x <= 1 && below_koch(3 * (1 - x), 3 * y, depth - 1);
-    const double u = 3 * ((x < 0.5 ? x : 1 - x) - 1 / 3.0), v = 3 * y;
-    return below_koch(0.5 * u - 0.5 * sqrt(3) * v, 0.5 * sqrt(3) * u + 0.5 * v, depth - 1);
-}
 static int koch(double x, double y, double c, const double *p)
 {
     (void)c;

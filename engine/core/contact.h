@@ -19,8 +19,8 @@
  * Where the operator is indefinite it is the solution with the most contacts that carry, ties as
  * before.
  *
- * Where legs are parallel the operator is singular with both feet sticking (rank 3 of 4, guard
- * 1e-13): velocities stay unique, and of the impulses those in the middle of what the cones admit
+ * Where legs are parallel the operator is singular with both feet sticking (rank 3 of 4):
+ * velocities stay unique, and of the impulses those in the middle of what the cones admit
  * are taken. D need not be symmetric (an exact Newton linearisation is not) nor positive (where a
  * law answers contact forces at once it is not).
  */
