@@ -7,7 +7,7 @@ PREFIX  ?= /usr/local
 CC       = gcc
 MPI     ?= 1
 CFLAGS  ?= -O2 -g
-KERNEL_CFLAGS ?= -O3 -g
+KERNEL_CFLAGS ?= -O3 -g1
 PYTHON  ?= /usr/bin/python3
 
 WARNINGS = -Wall -Wextra -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror

@@ -11,17 +11,21 @@ export ASAN_OPTIONS=abort_on_error=1 UBSAN_OPTIONS=abort_on_error=1:print_stackt
 mpi_options=$ASAN_OPTIONS:detect_leaks=0
 scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
 
-run() { # name, command ...
-    local name=$1 log="$scratch/log" status ok bad
+# name, command ...: leaves what it said, its exit status and its seconds in the scratch directory.
+run() {
+    local log="$scratch/$1" begin=$SECONDS
     shift
-    [[ -z $pattern || $name == *$pattern* ]] || return 0
-    local begin=$SECONDS
     "$@" >"$log" 2>"$log.err" </dev/null
-    status=$?
+    echo $? $((SECONDS - begin)) >"$log.end"
+}
+
+report() { # name
+    local name=$1 log="$scratch/$1" status=1 seconds=0 ok bad
+    [ -e "$log.end" ] && read -r status seconds <"$log.end"
     ok=$(grep -c '^ok' "$log") bad=$(grep -c '^not ok' "$log")
     # A program that dies, or that tests nothing, has failed whatever it printed.
     if ((status != 0 && bad == 0)) || ((ok + bad == 0)); then bad=$((bad + 1)); fi
-    printf '%-28s %4d passed %4d failed  %3d s\n' "$name" "$ok" "$bad" $((SECONDS - begin))
+    printf '%-28s %4d passed %4d failed  %3d s\n' "$name" "$ok" "$bad" "$seconds"
     sed -n 's/^## /    /p' "$log"
     if ((bad > 0)); then
         grep -v '^ok' "$log" | tail -n 60
@@ -31,12 +35,26 @@ run() { # name, command ...
     passed=$((passed + ok)) failed=$((failed + bad))
 }
 
-for source in tests/test_*.c; do
-    name=$(basename "$source" .c)
-    run "$name" "$build/tests/$name"
+# Names of what matches the pattern among these files.
+names() {
+    local file name
+    for file in "$@"; do
+        name=$(basename "${file%.*}")
+        [[ -e $file && $name == *$pattern* ]] && echo "$name"
+    done
+}
+
+# Test programs use one core each, whole-program tests all of them.
+programs=$(names tests/test_*.c)
+for name in $programs; do
+    while (($(jobs -rp | wc -l) >= $(nproc))); do wait -n; done
+    run "$name" "$build/tests/$name" &
 done
-for script in tests/whole_*.sh; do
-    [ -e "$script" ] && run "$(basename "$script" .sh)" env ASAN_OPTIONS="$mpi_options" bash "$script"
+wait
+for name in $programs; do report "$name"; done
+for name in $(names tests/whole_*.sh); do
+    run "$name" env ASAN_OPTIONS="$mpi_options" bash "tests/$name.sh"
+    report "$name"
 done
 echo
 echo "$passed passed, $failed failed"

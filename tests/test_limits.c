@@ -491,9 +491,46 @@ static void implicit_steps(void **state)
     }
 }
 
+/* Feet of grams on legs of millimetres under a damper that its limit of 8 N m cuts off: motions of
+ * microseconds and less, on and on. */
+static stance_case endless_case(double damping)
+{
+    static const double robot[] = {0.003, 62.5, 0.0044, 0.0023, 2};
+    stance_case c = plain_case();
+    memcpy(c.robot, robot, sizeof robot);
+    c.position[1] = 62.51, c.position[2] = 0.02, c.position[3] = 0.011, c.position[4] = -0.106;
+    c.velocity[3] = 0.028, c.velocity[4] = 0.295;
+    hold_legs(&c, 65, damping);
+    c.target[1] += 0.017, c.target[2] += 0.0055;
+    c.torque_limit = 8;
+    c.friction = 0, c.fall_height = 0;
+    c.tolerance = 1e-4;
+    c.steps = 300;
+    return c;
+}
+
+/* However hard a case is, it ends, and says why: by the attempts of one step, or by the sum of its
+ * evaluations, 1e7 and 1e3 a step. Without these bounds this test would not end. */
+static void work_is_bounded(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"event-driven", "lagrange", "implicit", "midpoint"};
+    stance_case c = endless_case(4.7e6);
+    stance_result r;
+    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    assert_true(r.status == STANCE_FAILED && r.failure == STANCE_FAILURE_WORK && r.steps == 0);
+    for (int m = 0; m < 4; m++) /* they pass it, or say one of their reasons */
+        kernel_of(methods[m], NULL)->run(&c, &r, 1);
+    c = endless_case(1.12);
+    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    assert_true(r.status == STANCE_FAILED && r.failure == STANCE_FAILURE_WORK);
+    assert_true(r.steps > 100 && (double)r.evaluations > 9e6 && (double)r.evaluations < 1.1e7);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(work_is_bounded),
         cmocka_unit_test(explicit_steps),
         cmocka_unit_test(sampled_controllers),
         cmocka_unit_test(implicit_steps),

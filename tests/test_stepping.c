@@ -7,8 +7,8 @@
 #define CONE 1e-9
 #define GOLDEN_IMPLICIT 0xfc13af1f07936550u
 #define GOLDEN_MIDPOINT 0x845329092237f545u
-#define GOLDEN_CAPTURING 0xc5d8ad120aac111fu
-#define GOLDEN_LAGRANGE 0x0303d16c7a5a0a1du
+#define GOLDEN_CAPTURING 0xbf9296fcd4f2c73bu
+#define GOLDEN_LAGRANGE 0x89ee7c2ec4d72e27u
 
 struct extremes {
     double penetration, cone, impact_energy, energy_of_projection;

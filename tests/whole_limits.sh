@@ -146,6 +146,19 @@ huge='sweep.grid=[{path: ground.restitution, from: 0, to: 0.9, count: 1e9}, {pat
 biped=$root/scenarios/basin_one_foot.yaml
 refused "more designs than can be" 2 'more than the 4194304 controller designs that are kept in memory' "$stance" check "$biped" \
     --set 'sweep.grid=[{path: robot.trunk_mass, from: 1, to: 2, count: 1e9}]'
+# One step of it would take minutes (test_limits has it too): `check` tries it, says so, and returns.
+endless="$scratch/endless.yaml"
+cat >"$endless" <<'END'
+stance: 1
+scene: biped
+robot: {leg_length: 0.003, trunk_length: 62.5, foot_mass: 0.0044, trunk_mass: 0.0023, hip_mass: 2}
+ground: {friction: 0}
+initial: {state: {z: 62.51, theta: 0.02, q1: 0.011, q2: -0.106, vq1: 0.028, vq2: 0.295}}
+controller: {kind: hold, kp: 65, kd: 4.7e6, torque_limit: 8, target: {q1: 0.028, q2: -0.1005}}
+method: {name: capturing, step: 0.001, tolerance: 1e-4}
+stop: {time: 1, settle: off, fall_height: 0}
+END
+accepted "a step without end is checked in no time" "$stance" check "$endless"
 refused "more cases than fit a number" 2 'make more than 2^53 cases' "$stance" check "$good" --set "$huge, {path: ground.friction, from: 0, to: 1, count: 2}]"
 refused "more instants than fit a file" 2 'record.every: .* instants' "$stance" check "$good" --set 'record={every: 1e-300, cases: all}'
 refused "a file that no disk holds" 3 'results/ball_bounce.h5' "$stance" run "$good" --set "$huge]"

@@ -255,7 +255,8 @@ static inline mask smooth_violated(const struct setting *set, const struct conta
             open & mask_less(none, set->may_touch[c]) & mask_less(e->gap[c], lanes_of(-SMOOTH_GAP));
         out |= closed & mask_less(e->force[c][0], none);
         out |= closed & sticks & mask_less(bound, lanes_abs(e->force[c][1]));
-        out |= closed & mask_less(none, set->friction) & mask_less(e->u[c][1] * m->slide[c], none);
+        out |= closed & mask_less(none, set->friction) &
+               mask_less(e->u[c][1] * m->slide[c], lanes_of(-SMOOTH_REST));
     }
     return out;
 }
