@@ -83,7 +83,8 @@ static bool parallel(const stance_case *c)
 
 struct hunted {
     long done, failed, given_up, set_aside, beyond;
-    double worst; /* error over what is allowed */
+    long ambiguous, unlike; /* with several answers somewhere; these, beyond */
+    double worst;           /* error over what is allowed */
 };
 
 /* Counts one case; true: its error is beyond what is allowed. */
@@ -95,10 +96,7 @@ static bool judge(const stance_case *c, const stance_result *exact, const stance
     h->given_up += exact->status != STANCE_DONE;
     if (r->status != STANCE_DONE || exact->status != STANCE_DONE)
         return false;
-    if (r->ambiguous_steps > 0 || exact->ambiguous_steps > 0) {
-        h->set_aside++;
-        return false;
-    }
+    const bool ambiguous = r->ambiguous_steps > 0 || exact->ambiguous_steps > 0;
     double rate = 1;
     for (int i = 0; i < 5; i++)
         rate = fmax(rate, fmax(fabs(c->velocity[i]), fabs(exact->velocity[i])));
@@ -112,8 +110,11 @@ static bool judge(const stance_case *c, const stance_result *exact, const stance
             return false;
         ratio /= sensitive;
     }
-    h->worst = fmax(h->worst, ratio);
-    h->beyond += ratio > 1;
+    h->ambiguous += ambiguous;
+    if (!ambiguous)
+        h->worst = fmax(h->worst, ratio);
+    h->beyond += ratio > 1 && !ambiguous;
+    h->unlike += ratio > 1 && ambiguous;
     return ratio > 1;
 }
 
@@ -142,9 +143,10 @@ static struct hunted hunt(long count, double from, double to, double tolerance, 
                               end_difference(&reference[i], &r[i]));
     }
     print_message("## capturing at %g, %g s, friction %g ... %g: %ld of %ld beyond, the worst at "
-                  "%.2g of what is allowed; %ld failed, %ld of the reference, %ld set aside\n",
+                  "%.2g of what is allowed; %ld failed, %ld of the reference, %ld set aside; of "
+                  "%ld with several answers %ld beyond\n",
                   tolerance, step, from, to, h.beyond, h.done, h.worst, h.failed, h.given_up,
-                  h.set_aside);
+                  h.set_aside, h.ambiguous, h.unlike);
     return h;
 }
 
