@@ -89,7 +89,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills test-slurm test-hosts fuzz fuzz-programs bench bench-run profile lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(BUILD)/libstance.a
@@ -214,6 +214,14 @@ test-long: packages-test
 	$(MAKE) $(PROGRAM) $(test_programs) golden fuzz-programs
 	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
+# Numbers that depend on the neighbours: HUNT_CASES of each kind for every method of the biped, a core
+# each, for an hour or so; a share is in `test`.
+HUNT_CASES ?= 1e7
+hunt: packages-test
+	$(MAKE) $(BUILD)/tests/test_lanes
+	@for m in $(METHODS); do for kind in ordinary extreme; do echo "$$m $$kind"; done; done | \
+	    xargs -P $(CORES) -L 1 sh -c '$(BUILD)/tests/test_lanes biped $$0 $$1 $(HUNT_CASES) $(SEED)'
+
 # Runs that are killed and resumed, files that are damaged: tests/campaign_*.py. Ten minutes or so.
 KILLS ?= 200
 FLIPS ?= 200
@@ -310,6 +318,7 @@ help:
 	@echo 'make demo       install what is missing, build, map a stability domain, draw it'
 	@echo 'make test       install what is missing, build, run every test'
 	@echo 'make test-long  the same with the long tests'
+	@echo 'make hunt       look for numbers that depend on the neighbours (HUNT_CASES= SEED=)'
 	@echo 'make test-kills kill runs at random, damage files at random (KILLS= FLIPS= TRUNCATIONS= SEED=)'
 	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'
 	@echo 'make test-slurm install Slurm, run the batch scripts of scenarios/cluster under one of its own'

@@ -48,6 +48,8 @@ static inline void hunt_biped(uint64_t *seed, bool extreme, stance_case *c)
         const double spread_legs = uniform(seed, 0, 1) < 0.2 ? 0 : uniform(seed, -1, 1);
         c->position[3] = -c->position[2] + spread_legs;
         c->position[4] = -c->position[2] - spread_legs;
+        if (uniform(seed, 0, 1) < 0.7) /* or nearly so: the other foot comes to the ground soon */
+            c->position[4] += (uniform(seed, 0, 1) < 0.5 ? -1 : 1) * spread(seed, 1e-15, 1e-5);
     }
     if (kind > 0.3)
         for (int i = 0; i < 5; i++)

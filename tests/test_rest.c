@@ -154,12 +154,85 @@ static void pulled_blocks_rest_if_held(void **state)
     }
 }
 
+/* Robots of random proportions on one or both feet, their legs held by soft servos: slow for long,
+ * sliding, creeping, toppling. */
+static stance_case soft_case(uint64_t *seed)
+{
+    const stance_scene *const scene = stance_scene_find("biped");
+    stance_case c = plain_case();
+    for (int i = 0; i < 5; i++)
+        c.robot[i] *= exp(uniform(seed, -0.7, 0.7));
+    const double spread = uniform(seed, 0.05, 0.6), tilt = uniform(seed, -0.3, 0.3);
+    c.position[2] = tilt;
+    c.position[3] = uniform(seed, -0.1, 0.1) - tilt - spread;
+    c.position[4] = uniform(seed, -0.1, 0.1) - tilt + spread;
+    for (int i = 2; i < 5; i++)
+        c.velocity[i] = uniform(seed, -0.2, 0.2);
+    if (uniform(seed, 0, 1) < 0.2)
+        c.contacts = 1;
+    double gap[2];
+    scene->gaps(c.robot, c.position, gap);
+    c.position[1] += 1e-13 - (c.contacts == 1 ? gap[0] : fmin(gap[0], gap[1]));
+    const double kp = 3 * exp(uniform(seed, 0, 3));
+    hold_legs(&c, kp, kp * 0.02 * exp(uniform(seed, 0, 4)));
+    c.friction = 0.01 * exp(uniform(seed, 0, 5));
+    c.torque_limit = uniform(seed, 0, 1) < 0.5 ? 1.5 * exp(uniform(seed, 0, 2.3)) : INFINITY;
+    c.sample_every = (int64_t)uniform(seed, 0, 2) * (1 + (int64_t)uniform(seed, 0, 20));
+    c.delay = c.sample_every > 0 && uniform(seed, 0, 1) < 0.2;
+    c.step = 2e-3;
+    c.steps = 5000;
+    c.tolerance = 1e-6;
+    c.settle = true;
+    return c;
+}
+
+/* What rests does not move afterwards, and nearly all of what has stopped was said to rest. */
+static void soft_legs_rest_where_they_stay(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"implicit", "midpoint"};
+    const int count = getenv("STANCE_TEST_LONG") ? 20000 : 1000;
+    for (int m = 0; m < 2; m++) {
+        uint64_t seed = 11;
+        int rested = 0, left = 0, fallen = 0, still = 0, missed = 0;
+        for (int i = 0; i < count; i++) {
+            stance_case c = soft_case(&seed);
+            const stance_kernel *const kernel = kernel_of(methods[m], NULL);
+            stance_result r, end, later;
+            kernel->run(&c, &r, 1);
+            c.settle = false;
+            kernel->run(&c, &end, 1);
+            c.steps *= 3;
+            kernel->run(&c, &later, 1);
+            if (r.status != STANCE_DONE || later.status != STANCE_DONE)
+                continue;
+            double moved = 0, rate = 0, since = 0;
+            for (int k = 2; k < 5; k++) {
+                moved = fmax(moved, fabs(later.position[k] - r.position[k]));
+                since = fmax(since, fabs(later.position[k] - end.position[k]));
+                rate = fmax(rate, fabs(end.velocity[k]));
+            }
+            const bool stopped = later.outcome != STANCE_FELL && rate < 1e-7 && since < 1e-6;
+            const bool says = r.outcome == STANCE_RESTED;
+            rested += says;
+            fallen += says && later.outcome == STANCE_FELL;
+            left += says && moved > 0.1;
+            still += stopped;
+            missed += stopped && !says;
+        }
+        print_message("## %s: %d of %d rested, of which %d fell and %d moved later; of %d that had "
+                      "stopped %d were not said to rest\n",
+                      methods[m], rested, count, fallen, left, still, missed);
+        assert_true(rested > count / 5 && fallen == 0 && left == 0);
+        assert_true(missed * 50 < still);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(slow_is_not_at_rest),
-        cmocka_unit_test(unstable_loops_stabilise_nothing),
-        cmocka_unit_test(stiff_legs_rest),
+        cmocka_unit_test(soft_legs_rest_where_they_stay),   cmocka_unit_test(slow_is_not_at_rest),
+        cmocka_unit_test(unstable_loops_stabilise_nothing), cmocka_unit_test(stiff_legs_rest),
         cmocka_unit_test(pulled_blocks_rest_if_held),
     };
     return cmocka_run_group_tests_name("rest", tests, NULL, NULL);

@@ -439,9 +439,10 @@ HOT mask project_near(const struct setting *set, const struct motion *from, lane
     grip_factor(set, &it->end, touching, it->response, &g);
     good &= project_position(set, from, h, touching, false, run, it, energy);
     project_along(set, NULL, touching, &g, it->response, it, u, energy);
+    /* Of contacts that are active: others may be in `touching` for a neighbour's sake. */
     for (int c = 0; c < SCENE_CONTACTS; c++)
         if (touching >> c & 1)
-            good &= LANES_NOT(project_falls(set, run, &g, c, it, u[c]) |
+            good &= LANES_NOT(project_falls(set, run & it->active[c], &g, c, it, u[c]) |
                               project_turns(&g, c, it, u[c]));
     return good;
 }

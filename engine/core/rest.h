@@ -20,9 +20,16 @@
  *
  * with the u of the sample before where there is a delay; one that acts all the time the
  * exponential of the closed loop. It holds when a disturbance has not grown by more than
- * REST_GROWTH after REST_HOLDS times settle.hold, by squaring the map again and again: what swings
- * without damping, as a free leg does, holds, too; what grows, however slowly, does not. Forces
- * that change with time are looked at eight times a period. Noise is left out.
+ * REST_GROWTH after REST_HOLDS times settle.hold, REST_WHOLE at least, by squaring the map again
+ * and again: what swings without damping, as a free leg does, holds, too; what grows, however
+ * slowly, does not. Forces that change with time are looked at eight times a period. Noise is left
+ * out.
+ *
+ * `rested` says that the motion has come there. Contacts that carry stand, to REST_CREEP, and the
+ * map takes the present deviation (x, x', I) to nothing, or round and round, without leaving
+ * settle.angle and settle.rate on the way, the forces inside the cones, no other contact closing:
+ * looked at eight times an octave of time. What slid to rest has its force on the edge of the cone,
+ * up to rounding: cones are wider by REST_EDGE.
  *
  * Small matrices in plain arithmetic, one lane at a time: rare, and the same bits everywhere.
  */
@@ -36,7 +43,13 @@
 #define REST_NEAR 1e-5  /* m, rad: half the width of the differences */
 #define REST_RANK 1e-9  /* of the largest: what is smaller is nothing */
 #define REST_HOLDS 4096 /* times settle.hold: how long it has to hold */
+#define REST_WHOLE 2048 /* s, at least */
 #define REST_GROWTH 1e9 /* of a disturbance in that time, SI units */
+#define REST_EDGE 1e-6  /* of a cone: what it is wider here */
+#define REST_CREEP 1e-6 /* m/s: a contact this slow stands */
+#define REST_MARGIN 2   /* for what is not linear */
+#define REST_FINE 32    /* of settle.hold: how closely the way to the equilibrium is looked at */
+#define REST_GONE 1e-3  /* of settle.angle and settle.rate: a deviation that is none */
 #define REST_ENDLESS 1e100
 
 enum {
@@ -104,19 +117,20 @@ COLD void rest_accelerations(const struct rest *r, const lanes *s, const lanes *
 }
 
 /* What the contacts do at s; false: some slide, or no forces hold them. */
-COLD bool rest_mode(struct rest *r, const lanes *torque)
+COLD bool rest_mode(const struct rest *r, const lanes *s, const lanes *torque,
+                    struct contact_state *mode)
 {
     struct dynamics e;
     struct smooth_trouble trouble;
     lanes stood[SCENE_CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++)
         stood[c] = lanes_of(1);
-    rest_evaluate(r, r->s, torque, &e);
-    smooth_mode(r->set, &e, (1u << SCENE_CONTACTS) - 1, stood, &r->mode, &trouble);
+    rest_evaluate(r, s, torque, &e);
+    smooth_mode(r->set, &e, (1u << SCENE_CONTACTS) - 1, stood, mode, &trouble);
     bool stands = !mask_get(trouble.none | trouble.impact, r->lane);
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (mask_get(r->mode.closed[c], r->lane) && lane_get(&r->set->friction, r->lane) > 0)
-            stands &= lane_get(&r->mode.slide[c], r->lane) == 0;
+        if (mask_get(mode->closed[c], r->lane) && lane_get(&r->set->friction, r->lane) > 0)
+            stands &= lane_get(&mode->slide[c], r->lane) == 0;
     return stands;
 }
 
@@ -429,16 +443,117 @@ COLD bool rest_bounded(int n, rest_matrix M, double time, double whole)
     return rest_largest(n, M) <= bound;
 }
 
-/* Is there an equilibrium near s that holds, for the case in a lane? */
-COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lanes *integral)
+/* Do contacts that carry stand? */
+COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w)
+{
+    scene_trig trig;
+    bool stands = true;
+    scene_trigonometry(s, &trig);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes u[2];
+        if (!mask_get(r->mode.closed[c], r->lane))
+            continue;
+        scene_contact_velocity(&r->set->body, &trig, c, w, u);
+        stands &= fabs(lane_get(&u[0], r->lane)) <= REST_CREEP;
+        if (lane_get(&r->set->friction, r->lane) > 0)
+            stands &= fabs(lane_get(&u[1], r->lane)) <= REST_CREEP;
+    }
+    return stands;
+}
+
+/* Is all well at the deviation x (ways' places, rates, integrals) from the equilibrium? *gone: it
+ * is as good as none. */
+COLD bool rest_allows(const struct rest *r, const double *x, double angle, double rate, bool *gone)
+{
+    const int d = r->ways;
+    double farthest = 0, fastest = 0;
+    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES], integral[ACTUATORS];
+    lanes torque[ACTUATORS], rates[ACTUATORS];
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        double place = 0, speed = 0;
+        for (int k = 0; k < d; k++)
+            place += r->Z[k][i] * x[k], speed += r->Z[k][i] * x[d + k];
+        s[i] = r->s[i] + place, w[i] = lanes_of(speed);
+        farthest = fmax(farthest, fabs(place)), fastest = fmax(fastest, fabs(speed));
+    }
+    *gone = farthest <= REST_GONE * angle && fastest <= REST_GONE * rate;
+    if (!(farthest <= angle && fastest <= rate))
+        return false;
+    for (int i = 0; i < ACTUATORS; i++)
+        integral[i] = r->integral[i] + (i < REST_INPUTS ? x[2 * d + i] : 0);
+    struct dynamics e;
+    struct contact_state mode;
+    rest_law(r, s, w, integral, torque, rates);
+    rest_evaluate(r, s, torque, &e);
+    smooth_project_position(r->set, r->mode.closed, s, &e);
+    if (!rest_mode(r, s, torque, &mode))
+        return false;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        if (mask_get(r->mode.closed[c] & LANES_NOT(mode.closed[c]), r->lane))
+            return false;
+        if (!mask_get(r->mode.closed[c], r->lane) && lane_get(&r->set->may_touch[c], r->lane) > 0 &&
+            !(lane_get(&e.gap[c], r->lane) >= -STEP_CLOSED))
+            return false;
+    }
+    return true;
+}
+
+/* Does the motion from (s, w) come to the equilibrium, or stay about it? M takes `time`, spoiled.
+ */
+COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, const lanes *integral,
+                       int n, rest_matrix M, double time, double hold, double whole, double angle,
+                       double rate)
+{
+    const int d = r->ways;
+    double x[REST_STATES] = {0};
+    bool gone;
+    for (int k = 0; k < d; k++)
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            x[k] += r->Z[k][i] * (lane_get(&s[i], r->lane) - lane_get(&r->s[i], r->lane));
+            x[d + k] += r->Z[k][i] * lane_get(&w[i], r->lane);
+        }
+    for (int i = 0; i < REST_INPUTS; i++)
+        x[2 * d + i] = lane_get(&integral[i], r->lane) - lane_get(&r->integral[i], r->lane);
+    for (int i = 2 * d + REST_INPUTS; i < n; i++) /* torques of the sample before */
+        for (int j = 0; j < 2 * d + REST_INPUTS; j++) {
+            const int kind = j < d ? 0 : j < 2 * d ? 1 : 2;
+            x[i] += r->C[kind][i - 2 * d - REST_INPUTS][j - kind * d] * x[j];
+        }
+    for (int i = 0; i < n; i++)
+        x[i] *= REST_MARGIN;
+    if (!rest_allows(r, x, angle, rate, &gone))
+        return false;
+    for (; time * REST_FINE < hold; time *= 2)
+        rest_times(n, M, M, M);
+    for (double t = 0; t < whole && !gone; time *= 2) {
+        for (int k = 0; k < 8 && !gone; k++, t += time) {
+            double next[REST_STATES] = {0};
+            for (int i = 0; i < n; i++)
+                for (int j = 0; j < n; j++)
+                    next[i] += M[i][j] * x[j];
+            memcpy(x, next, sizeof x);
+            if (!rest_allows(r, x, angle, rate, &gone))
+                return false;
+        }
+        rest_times(n, M, M, M);
+    }
+    return true;
+}
+
+/* Is there an equilibrium near s that holds, for the case in a lane; and, w not NULL, does the
+ * motion come there? */
+COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lanes *w,
+                     const lanes *integral)
 {
     struct rest r;
+    struct setting wider = b->set;
     double off = INFINITY;
     lanes still[SCENE_COORDINATES], torque[ACTUATORS], rate[ACTUATORS];
     const double h = lane_get(&b->h, lane), every = lane_get(&b->sample_every, lane);
     const double reach = 1 / lane_get(&b->angle_scale, lane);
     memset(&r, 0, sizeof r);
-    r.set = &b->set;
+    wider.friction = wider.friction * (1 + REST_EDGE);
+    r.set = &wider;
     r.lane = lane;
     r.t = b->steps * b->h;
     for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -454,7 +569,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
         r.mode.slide[c] = lanes_of(0);
     }
     rest_law(&r, r.s, still, r.integral, torque, rate);
-    if (!rest_mode(&r, torque))
+    if (!rest_mode(&r, r.s, torque, &r.mode) || (w && !rest_stands(&r, s, w)))
         return false;
     for (int round = 0; round < REST_ROUNDS && off > REST_STILL; round++) {
         rest_ways(&r);
@@ -472,17 +587,21 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     const lanes part = scene_longest_step(&b->set.body);
     const int parts = isfinite(lane_get(&part, lane)) ? 8 : 1;
     for (int k = 0; k < parts; k++) {
-        if (!rest_mode(&r, torque))
+        if (!rest_mode(&r, r.s, torque, &r.mode))
             return false;
         r.t = r.t + part;
     }
     if (r.ways == 0)
         return true;
-    rest_matrix M;
+    rest_matrix M, power;
     const double T = every > 0 ? every * h : h;
     const double hold = fmax(lane_get(&b->settle_steps, lane) * h, T);
+    const double whole = fmax(REST_HOLDS * hold, REST_WHOLE);
     const int n = rest_map(&r, every > 0, lane_get(&b->delayed, lane) > 0, T, M);
-    return rest_bounded(n, M, T, REST_HOLDS * hold);
+    memcpy(power, M, sizeof power);
+    return rest_bounded(n, power, T, whole) &&
+           (!w || rest_arrives(&r, s, w, integral, n, M, T, hold, whole, reach,
+                               1 / lane_get(&b->rate_scale, lane)));
 }
 
 /* ---- what becomes of a verdict ------------------------------------------------------------- */
@@ -526,7 +645,7 @@ COLD bool rest_target(struct bundle *b, int lane)
         integral[i] = lanes_of(0);
     memcpy(b->target_key, key, sizeof key);
     b->target_known = true;
-    return b->target_holds = rest_holds(b, lane, s, integral);
+    return b->target_holds = rest_holds(b, lane, s, NULL, integral);
 }
 
 /* Lanes of a verdict without those where nothing holds: their window opens anew. */
@@ -535,7 +654,7 @@ COLD void rest_confirm(struct bundle *b, mask *rested, mask *stabilised)
     for (int lane = 0; lane < LANES; lane++) {
         if (!b->which[lane])
             continue;
-        if (mask_get(*rested, lane) && !rest_holds(b, lane, b->now.s, b->now.integral)) {
+        if (mask_get(*rested, lane) && !rest_holds(b, lane, b->now.s, b->now.w, b->now.integral)) {
             *rested &= LANES_NOT(mask_of_lane(lane));
             lane_set(&b->resting.begin, lane, -1);
         }
