@@ -251,9 +251,9 @@ static void look_into_file(struct run *run)
     if (!run_same_scenario(run, run->file, run->origin.scenario)) {
         return;
     }
-    if (!store_same_points(run->file, &run->origin, run->scenario, &message) ||
-        (run->succeed &&
-         !succession_check_sweep(run->file, &run->origin, run->scenario, &message))) {
+    if ((run->succeed &&
+         !succession_check_sweep(run->file, &run->origin, run->scenario, &message)) ||
+        !store_same_points(run->file, &run->origin, run->scenario, &message)) {
         run_fail_io(run, &message);
         run->failure.code = EXIT_USAGE;
         return;
