@@ -670,6 +670,9 @@ bool merge_plan(struct merge *m, const char *const *files, size_t count, bool *u
         good = have_one_scenario(m, message) && classify(m, trees, message) &&
                make_scenario(m, trees, message);
     }
+    for (size_t p = 0; good && p < count; p++) {
+        good = store_same_points(m->part[p].file, &m->part[p].origin, &m->scenario, message);
+    }
     for (size_t p = 0; trees && p < count; p++) {
         tree_free(&trees[p]);
     }

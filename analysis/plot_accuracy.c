@@ -1,7 +1,6 @@
 /* plot_accuracy.c - error against cost, one line for each method; failures marked. */
 #include "accuracy.h"
 #include "gnuplot.h"
-#include "statistics.h"
 
 #include <math.h>
 #include <string.h>
@@ -56,7 +55,8 @@ static void put_range(FILE *script, char axis, const struct range *range)
             any ? 1.7 * range->high : 10);
 }
 
-/* Lines and points of one method; failed rows are open. Labels have bars for their intervals. */
+/* Lines and points of one method; failed rows apart. No cell unlike is fewer than one: so it is
+ * drawn, open, at the share of one. */
 static void put_method(struct gnuplot *g, const struct accuracy *a, const stance_method *method,
                        enum shown shown, struct range *y, char name[2][32])
 {
@@ -68,21 +68,13 @@ static void put_method(struct gnuplot *g, const struct accuracy *a, const stance
                 continue;
             }
             const double value = shown_value(row, shown);
-            double low = value, high = value;
-            if (shown == LABELS) {
-                statistics_wilson(row->differ, row->compared, &low, &high);
-                low = fmax(low, 1e-3 / (double)row->compared);
-                widen(y, high);
-            }
-            widen(y, value);
+            const bool none = shown == LABELS && isnan(value) && row->compared > 0;
+            const double drawn = none ? 1 / (double)row->compared : value;
+            widen(y, drawn);
             gnuplot_number(data, row->cost.median);
             putc(' ', data);
-            gnuplot_number(data, shown == LABELS && isnan(value) ? high : value);
-            putc(' ', data);
-            gnuplot_number(data, low);
-            putc(' ', data);
-            gnuplot_number(data, high);
-            fprintf(data, " %d\n", !isnan(value)); /* 0: none found, shown at the bound */
+            gnuplot_number(data, drawn);
+            fprintf(data, " %d\n", !none);
         }
         gnuplot_close_data(g, data);
     }
@@ -101,10 +93,10 @@ static bool occurs(const struct accuracy *a, const stance_method *method)
 static void put_panel(struct gnuplot *g, const struct accuracy *a, enum shown shown, double left,
                       double top)
 {
-    static const char *const texts[] = {
-        [POSITION] = "largest error of a coordinate (m, rad)",
-        [VELOCITY] = "mean over time of the velocity error (m/s, rad/s)",
-        [LABELS] = "share of cells unlike the reference, with 95 % interval"};
+    static const char *const texts[] = {[POSITION] = "largest error of a coordinate (m, rad)",
+                                        [VELOCITY] =
+                                            "mean over time of the velocity error (m/s, rad/s)",
+                                        [LABELS] = "share of cells unlike the reference"};
     struct range x = {INFINITY, 0}, y = {INFINITY, 0};
     char name[STYLES][2][32];
     size_t drawn = 0;
@@ -137,14 +129,11 @@ static void put_panel(struct gnuplot *g, const struct accuracy *a, enum shown sh
                 drawn++ ? ", " : "", data, colour);
         if (shown == LABELS) {
             fprintf(g->script,
-                    ", '%s' using 1:2:3:4 with yerrorbars lc rgb '%s' pt -1 lw 1 notitle", data,
-                    colour);
-            fprintf(g->script,
-                    ", '%s' using 1:($5 > 0 ? NaN : $2) with points lc rgb '%s' pt %d ps 1 notitle",
+                    ", '%s' using 1:($3 > 0 ? NaN : $2) with points lc rgb '%s' pt %d ps 1 notitle",
                     data, colour, markers[m] - 1);
         }
         fprintf(g->script,
-                ", '%s' using 1:($5 > 0 ? $2 : NaN) with points lc rgb '%s' pt %d ps 0.9 notitle",
+                ", '%s' using 1:($3 > 0 ? $2 : NaN) with points lc rgb '%s' pt %d ps 0.9 notitle",
                 data, colour, markers[m]);
         fprintf(g->script,
                 ", '%s' using 1:2 with points lc rgb '#b00000' pt 2 ps 1.6 lw 1.6 notitle",
@@ -209,7 +198,7 @@ bool accuracy_plot(const struct accuracy *a, const struct results *r, const char
              "Error against cost. Reference: %s, tolerance %g. %llu cases per point; a cross marks "
              "points where cases were given up%s. Errors of exactly zero are not drawn.",
              truth->method->name, truth->tolerance, (unsigned long long)truth->cases,
-             a->labels ? "; open symbols: none unlike, shown at the bound" : "");
+             a->labels ? "; open symbols: none unlike, drawn where one cell is" : "");
     if (a->labels) {
         *strstr(subtitle, " Errors of exactly") = '\0';
     }

@@ -60,9 +60,10 @@ struct results {
     uint64_t index;
     int axes;
     struct results_axis axis[SCENARIO_MAX_AXES];
-    int sample;      /* the axis of the points of sweep.sample, the last one; -1: there is none */
-    char method[16]; /* of the design */
-    size_t block;    /* points that hang together; 1 without a sample */
+    int sample;        /* the axis of the points of sweep.sample, the last one; -1: there is none */
+    char method[16];   /* of the design */
+    bool other_points; /* made by a generator that this version does not have */
+    size_t block;      /* points that hang together; 1 without a sample */
     int varied;
     struct results_varied *vary; /* [varied], in the order of the scenario */
     uint64_t cases;

@@ -1,8 +1,9 @@
 /* results_sample.c - what the axis `sample` of a results file stands for: the values of the points
- * of sweep.sample. */
+ * of sweep.sample; and the file's scenario, which has them. */
 #include "results_private.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,6 +91,13 @@ bool results_read_sample(struct results *r, stance_message *message)
     char *paths = dataset < 0 ? NULL : results_attribute(dataset, "paths"), *rest = paths;
     results_copy_attribute(dataset, "method", r->method, sizeof r->method);
     r->block = (size_t)results_whole_attribute(dataset, "block", 1);
+    char generator[64];
+    results_copy_attribute(dataset, "generator", generator, sizeof generator);
+    for (int m = 0; m < SAMPLING_METHODS; m++) {
+        r->other_points = r->other_points ||
+                          (strcmp(r->method, sampling_words[m]) == 0 &&
+                           strcmp(generator, sampling_generator((enum sampling_method)m)) != 0);
+    }
     H5Dclose(dataset);
     r->vary = calloc(MOST, sizeof *r->vary);
     if (!r->vary) {
@@ -107,6 +115,62 @@ bool results_read_sample(struct results *r, stance_message *message)
         factor += ends;
     }
     free(paths);
+    return good;
+}
+
+/* ---- the scenario ------------------------------------------------------------------------- */
+
+/* The value of a path in the only case of a file; false: it is not there, or none. */
+static bool read_single(const struct results *r, const struct scenario_axis *axis, int k,
+                        double *value)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank, words = 1;
+    hid_t dataset = results_dataset(r, axis->path[k], &rank, length);
+    const bool good =
+        dataset >= 0 && rank == 1 && length[0] == 1 && results_is_number(dataset) &&
+        H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
+    H5Dclose(dataset);
+    for (const char *c = axis->meaning[k].words; c && *c; c++) {
+        words += *c == ' ';
+    }
+    return good && !isnan(*value) && (!axis->meaning[k].words || (*value >= 0 && *value < words));
+}
+
+/* Gives a scenario of the file the file's points: another version's need not be this one's. */
+static void take_points(const struct results *r, struct scenario *s)
+{
+    struct scenario_axis *axis = s->axes > 0 ? &s->axis[s->axes - 1] : NULL;
+    if (!axis || !axis->sample) {
+        return;
+    }
+    for (int k = 0; k < axis->paths; k++) {
+        double value;
+        if (r->single && read_single(r, axis, k, &value)) {
+            axis->value[r->index % axis->count * (size_t)axis->paths + (size_t)k] = value;
+        }
+        const bool fits =
+            r->sample >= 0 && r->varied == axis->paths && r->axis[r->sample].count == axis->count;
+        for (size_t i = 0; fits && i < axis->count; i++) {
+            axis->value[i * (size_t)axis->paths + (size_t)k] = r->vary[k].of.value[i];
+        }
+    }
+}
+
+bool results_scenario(const struct results *r, struct scenario *s)
+{
+    char *said = NULL;
+    size_t length = 0;
+    FILE *errors = open_memstream(&said, &length);
+    if (!errors) {
+        return false;
+    }
+    bool good = scenario_read(s, r->file, r->scenario, NULL, 0, errors);
+    fclose(errors);
+    free(said);
+    if (good) {
+        take_points(r, s);
+    }
     return good;
 }
 

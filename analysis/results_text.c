@@ -118,20 +118,6 @@ void results_case_text(const struct results *r, uint64_t index, char *buffer, si
     }
 }
 
-bool results_scenario(const struct results *r, struct scenario *s)
-{
-    char *said = NULL;
-    size_t length = 0;
-    FILE *errors = open_memstream(&said, &length);
-    if (!errors) {
-        return false;
-    }
-    bool good = scenario_read(s, r->file, r->scenario, NULL, 0, errors);
-    fclose(errors);
-    free(said);
-    return good;
-}
-
 void results_warn(const struct results *r)
 {
     const bool one = r->damage.cases == 1;

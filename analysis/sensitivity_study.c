@@ -118,7 +118,7 @@ bool sensitivity_study_fits(const struct results *r)
     struct scenario *s = calloc(1, sizeof *s);
     bool fits = false;
     if (s && r->sample >= 0 && results_scenario(r, s)) {
-        fits = s->sample.given && s->sample.design.method != SAMPLING_SPHERE;
+        fits = s->sample.given && s->sample.design.method != SAMPLING_SPHERE && !r->other_points;
         scenario_free(s);
     }
     free(s);
@@ -148,6 +148,11 @@ static int read_design(struct sensitivity_study *study, stance_message *message)
         snprintf(message->text, sizeof message->text,
                  "%.150s: damaged: its samples are not those of its scenario", r->file);
         return EXIT_IO;
+    }
+    if (r->other_points) {
+        return refuse(message, r,
+                      "has points of another version, whose generator was another: its indices "
+                      "cannot be told; compute it anew");
     }
     if (study->design->method == SAMPLING_SPHERE) {
         return refuse(message, r,

@@ -11,21 +11,6 @@ double statistics_deviations(double level)
     return gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * level);
 }
 
-void statistics_wilson(uint64_t k, uint64_t n, double *low, double *high)
-{
-    statistics_wilson_at(0.95, k, n, low, high);
-}
-
-void statistics_wilson_at(double level, uint64_t k, uint64_t n, double *low, double *high)
-{
-    if (n == 0) {
-        *low = 0;
-        *high = 1;
-        return;
-    }
-    statistics_wilson_of(statistics_deviations(level), (double)k / (double)n, (double)n, low, high);
-}
-
 void statistics_wilson_of(double z, double p, double n, double *low, double *high)
 {
     const double scale = 1 / (1 + z * z / n);

@@ -7,13 +7,10 @@
 
 #include "results.h"
 
-/* Wilson's score interval for k of n, 0 <= k <= n, at a level such as 0.95; [0, 1] when n is 0.
+/* Wilson's score interval for a share p of n > 0 independent draws, at z standard deviations; p n
+ * need not be whole. Cases of a grid are no draws.
  * E. B. Wilson (1927), Probable inference, the law of succession, and statistical inference. */
-void statistics_wilson_at(double level, uint64_t k, uint64_t n, double *low, double *high);
-/* The same of a share p of n > 0 cases, which need not be whole, at z standard deviations. */
 void statistics_wilson_of(double z, double p, double n, double *low, double *high);
-/* The same at 95 %. */
-void statistics_wilson(uint64_t k, uint64_t n, double *low, double *high);
 /* How many standard deviations either way hold that share of a normal distribution. */
 double statistics_deviations(double level);
 

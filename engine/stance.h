@@ -462,7 +462,8 @@ typedef struct stance_captured_set {
  * the ground, all end as `stabilised`, in full. The shape with the largest volume is taken. 0
  * failures of n say that less than stance_capture_share of the boundary fails, with 95 %
  * confidence. *set with `exists` false: no set was found. BAD_ARGUMENT: base does not settle at a
- * target on a foot, or its law is not the state's alone. */
+ * target on a foot, or its law is not the state's alone. STOPPED: given up; `simulations` counts
+ * those that had ended. */
 stance_error stance_capture_estimate(const stance_capture_search *search, stance_captured_set *set);
 
 /* What no failure in `boundary` simulations of the last of `batches` sets, tried one after the

@@ -28,6 +28,7 @@ static int check(const struct scenario *s, bool json)
     if (!plan_make(&plan, s, false, 0, false, &error)) {
         return print_error(s, &error);
     }
+    plan.patience = PLAN_PATIENCE_DESIGNS;
     if (plan_compute_designs(&plan, &alone, &error) && plan_check_cases(&plan, &error)) {
         snprintf(file, sizeof file, "results/%s.h5", s->name);
         report_plan(&plan, 1, file, json, stdout);
@@ -78,25 +79,30 @@ const struct command command_check = {
     "check SCENARIO [--set PATH=VALUE]... [--json]",
     "validate a scenario; print cases, cost and file size; touch nothing",
     run_check,
-    "Reads the scenario, computes every controller design, tries the initial states of the "
-    "corners\n"
+    "Reads the scenario, computes the controller designs, tries the initial states of the corners\n"
     "of the sweep and of up to 4096 other cases, and runs a few cases for a moment to estimate "
     "the\n"
-    "cost. Each error is one line, FILE:LINE:COLUMN: message.\n"
+    "cost. It returns within seconds: of very many designs those of the corners and others, "
+    "evenly\n"
+    "spread, are computed for 1.5 s, and what is left unchecked is said (`run` computes all of\n"
+    "them). Each error is one line, FILE:LINE:COLUMN: message.\n"
     "\n"
     "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
     "  --json             the same as JSON, with the keys\n"
     "    scenario, title, scene    strings\n"
     "    cases                     number of cases\n"
     "    dimensions                list of {name, count}\n"
-    "    designs, designs_failed   distinct controller designs; those that do not exist\n"
+    "    designs, designs_computed, designs_failed   distinct controller designs; those that\n"
+    "                              were computed; those of these that do not exist\n"
     "    recorded_cases            cases whose trajectories would be recorded\n"
     "    file, file_bytes          where the results would go, and their size\n"
     "    ranks                     1\n"
-    "    seconds_on_one_rank       estimate; null when no case could be tried\n"
+    "    seconds_on_one_rank       estimate; null when no case could be tried, or for too\n"
+    "                              short a time to tell\n"
     "    seconds_is_upper_bound    whole cases took too long to try, or may be\n"
     "                              captured: it is a bound\n"
-    "    capture_seconds_on_one_rank   estimate for the captured sets of stop.capture; 0: none\n"
+    "    capture_seconds_on_one_rank   estimate for the captured sets of stop.capture; 0: none,\n"
+    "                              null: too slow to tell\n"
     "    refine                    null, or with sweep.refine {coarse_cases, probes (expected),\n"
     "                              most_cases}: seconds_on_one_rank is then for all of them\n",
 };

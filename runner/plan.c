@@ -279,6 +279,52 @@ static size_t designs_here(const struct plan *plan, const struct parallel *paral
     return share + (rank < extra);
 }
 
+/* Corner c of the grid: bit a says which end of axis a. */
+static uint64_t corner_case(const struct scenario *s, uint64_t c)
+{
+    uint64_t index = 0;
+    for (int a = 0; a < s->axes; a++) {
+        index = index * s->axis[a].count + ((c >> a & 1) ? s->axis[a].count - 1 : 0);
+    }
+    return index;
+}
+
+static uint64_t corners(const struct scenario *s)
+{
+    return (uint64_t)1 << smaller((size_t)s->axes, CORNER_AXES);
+}
+
+/* Case i of n spread evenly over all. */
+static uint64_t spread_case(const struct plan *plan, uint64_t i, uint64_t n)
+{
+    uint64_t last = plan->scenario->cases - 1;
+    return n < 2 ? 0 : last / (n - 1) * i + last % (n - 1) * i / (n - 1);
+}
+
+/* Case i of COST_CASES, in an order that is spread evenly wherever it is cut: 27 and 64 have no
+ * divisor. */
+static uint64_t cost_case(const struct plan *plan, uint64_t i)
+{
+    return spread_case(plan, i * 27 % COST_CASES, COST_CASES);
+}
+
+/* A step that meets each of n numbers once, modulo n, and spreads them evenly wherever it is cut:
+ * near the golden section, without a common divisor. */
+static size_t even_stride(size_t n)
+{
+    for (size_t stride = (size_t)(0.6180339887498949 * (double)n) | 1;; stride++) {
+        size_t a = stride, b = n;
+        while (b > 0) {
+            const size_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1) {
+            return stride;
+        }
+    }
+}
+
 static void ask_to_stop(void *context)
 {
     const struct plan *plan = context;
@@ -299,34 +345,51 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
     const struct scenario *s = plan->scenario;
     size_t first;
     const size_t count = designs_here(plan, parallel, &first);
-    uint64_t found[2] = {0}; /* designs that exist; ranks that were stopped */
+    const size_t stride = even_stride(count);
+    const uint64_t ends = corners(s);
+    uint64_t found[3] = {0}; /* designs that exist; that are pending; ranks that were stopped */
+    size_t computed = 0;
     const double start = plan_clock();
 
-    for (size_t d = first; d < first + count; d++) {
+    /* Time may run out: those come first that plan_cost needs, then those of the corners. */
+    for (uint64_t i = 0; i < COST_CASES + ends + count; i++) {
+        const size_t d = i < COST_CASES          ? plan_design(plan, cost_case(plan, i))
+                         : i < COST_CASES + ends ? plan_design(plan, corner_case(s, i - COST_CASES))
+                                                 : first + (i - COST_CASES - ends) * stride % count;
         struct scenario_values values;
         stance_message ignored;
+        if (d < first || d >= first + count || plan->design_status[d] != STANCE_PENDING) {
+            continue;
+        }
         if (plan->stop && plan->stop(plan->stop_context)) {
-            found[1] = 1;
+            found[2] = 1;
             break;
         }
-        if (plan->design_status[d] == STANCE_PENDING) {
-            scenario_case_values(s, design_case(plan, d), &values);
-            bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
-            plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
+        if (plan->patience > 0 && computed > 0 && plan_clock() - start > plan->patience) {
+            break;
         }
-        found[0] += plan->design_status[d] == STANCE_DONE;
+        scenario_case_values(s, design_case(plan, d), &values);
+        bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
+        plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
+        computed++;
     }
-    if (count > 0) {
-        plan->design_seconds = (plan_clock() - start) * (double)plan->designs / (double)count;
+    if (computed > 0) {
+        plan->design_seconds = (plan_clock() - start) * (double)plan->designs / (double)computed;
+    }
+    for (size_t d = first; d < first + count; d++) {
+        found[0] += plan->design_status[d] == STANCE_DONE;
+        found[1] += plan->design_status[d] == STANCE_PENDING;
     }
     meet(plan, parallel);
     parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
     parallel_gather_block(parallel, plan->design_status, 1, first, count);
-    parallel_sum(parallel, found, 2);
-    if (found[0] == 0 && found[1] == 0) {
+    parallel_sum(parallel, found, 3);
+    plan->pending = found[1];
+    const bool good = found[0] > 0 || found[1] > 0;
+    if (!good && found[2] == 0) {
         blame_design(plan, 0, error);
     }
-    return found[0] > 0 && found[1] == 0;
+    return good && found[2] == 0;
 }
 
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
@@ -417,23 +480,6 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
     return false;
 }
 
-/* Corner c of the grid: bit a says which end of axis a. */
-static uint64_t corner_case(const struct scenario *s, uint64_t c)
-{
-    uint64_t index = 0;
-    for (int a = 0; a < s->axes; a++) {
-        index = index * s->axis[a].count + ((c >> a & 1) ? s->axis[a].count - 1 : 0);
-    }
-    return index;
-}
-
-/* Case i of n spread evenly over all. */
-static uint64_t spread_case(const struct plan *plan, uint64_t i, uint64_t n)
-{
-    uint64_t last = plan->scenario->cases - 1;
-    return n < 2 ? 0 : last / (n - 1) * i + last % (n - 1) * i / (n - 1);
-}
-
 bool plan_check_cases(const struct plan *plan, struct plan_error *error)
 {
     const struct scenario *s = plan->scenario;
@@ -446,9 +492,15 @@ bool plan_check_cases(const struct plan *plan, struct plan_error *error)
             return false;
         }
     }
-    uint64_t corners = (uint64_t)1 << smaller((size_t)s->axes, CORNER_AXES);
-    for (uint64_t c = 0; n < s->cases && c < corners; c++) {
+    for (uint64_t c = 0; n < s->cases && c < corners(s); c++) {
         if (!check_case(plan, corner_case(s, c), error)) {
+            return false;
+        }
+    }
+    /* Of few designs that are known the cases above may miss most. */
+    for (size_t d = 0; plan->pending > 0 && d < plan->designs; d++) {
+        if (plan->design_status[d] == STANCE_DONE &&
+            !check_case(plan, design_case(plan, d), error)) {
             return false;
         }
     }
@@ -457,97 +509,138 @@ bool plan_check_cases(const struct plan *plan, struct plan_error *error)
 
 /* ---- cost --------------------------------------------------------------------------------- */
 
+/* Copies of a case, one for each lane: lanes share the work of a bundle. */
+struct copies {
+    const stance_case *input;
+    stance_result result[WIDEST];
+    int lanes, given;
+    double until;
+};
+
+static bool copies_next(void *context, const stance_case **c, stance_result **result)
+{
+    struct copies *copies = context;
+    if (copies->given == copies->lanes) {
+        return false;
+    }
+    *c = copies->input;
+    *result = &copies->result[copies->given++];
+    return true;
+}
+
+static void copies_done(void *context, const stance_case *c, stance_result *result)
+{
+    (void)context, (void)c, (void)result;
+}
+
+static bool is_late(void *context)
+{
+    const double *until = context;
+    return plan_clock() > *until;
+}
+
+static bool copies_leave(void *context)
+{
+    return is_late(&((struct copies *)context)->until);
+}
+
 struct trial {
     double seconds;       /* spent */
     uint64_t steps;       /* taken */
     uint64_t steps_asked; /* that the cases would take to their ends */
     uint64_t cases;
+    bool late; /* the last one was given up, at steps that are not known */
 };
 
-/* Runs n cases spread over the sweep, from number `from` of COST_CASES on, at most `steps` long. */
-static void try_cases(const struct plan *plan, uint64_t from, uint64_t n, int64_t steps,
-                      struct trial *trial)
+/* Runs number i of COST_CASES, at most `steps` long, until the clock says `until`. */
+static void try_case(const struct plan *plan, uint64_t i, int64_t steps, double until,
+                     struct trial *trial)
 {
-    for (uint64_t i = from; i < from + n; i++) {
-        stance_case input;
-        int method;
-        uint64_t row = plan->single ? 0 : spread_case(plan, i, COST_CASES) % plan->rows;
-        trial->cases++;
-        if (!plan_resolve(plan, row, &input, &method)) {
-            continue;
-        }
-        trial->steps_asked += (uint64_t)input.steps;
-        input.steps = input.steps < steps ? input.steps : steps;
-        const stance_kernel *kernel =
-            instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
-        /* Lanes share the work of a bundle: a full one is timed, of copies. */
-        stance_case bundle[WIDEST];
-        stance_result results[WIDEST] = {{0}};
-        int lanes = kernel->lanes < WIDEST ? kernel->lanes : WIDEST;
-        for (int lane = 0; lane < lanes; lane++) {
-            bundle[lane] = input;
-        }
-        double start = plan_clock();
-        kernel->run(bundle, results, (size_t)lanes);
-        trial->seconds += (plan_clock() - start) / lanes;
-        trial->steps += (uint64_t)results[0].steps;
+    stance_case input;
+    int method;
+    const uint64_t row = plan->single ? 0 : cost_case(plan, i);
+    if (plan->design_status[plan_design(plan, plan_case(plan, row))] == STANCE_PENDING) {
+        return;
     }
+    trial->cases++;
+    if (!plan_resolve(plan, row, &input, &method)) {
+        return;
+    }
+    trial->steps_asked += (uint64_t)input.steps;
+    input.steps = input.steps < steps ? input.steps : steps;
+    const stance_kernel *kernel =
+        instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
+    struct copies copies = {
+        .input = &input, .lanes = kernel->lanes < WIDEST ? kernel->lanes : WIDEST, .until = until};
+    const double start = plan_clock();
+    trial->late = !kernel->stream(&(stance_feed){&copies, copies_next, copies_done, copies_leave});
+    trial->seconds += (plan_clock() - start) / copies.lanes;
+    trial->steps += trial->late ? 0 : (uint64_t)copies.result[0].steps;
 }
 
 /* A search with few simulations tells what one takes on the way to a set. */
-double plan_capture_cost(const struct plan *plan)
+double plan_capture_cost(const struct plan *plan, double budget)
 {
     enum { TRIED = 256 };
     const struct scenario *s = plan->scenario;
+    const double start = plan_clock();
+    double until = start + budget;
 
     for (size_t d = 0; s->base.capture && d < plan->designs; d++) {
         struct scenario_values values;
         stance_capture_search search;
-        stance_captured_set set;
+        stance_captured_set set = {.simulations = 0};
         stance_message ignored;
+        if (plan->design_status[d] != STANCE_DONE) {
+            continue;
+        }
+        if (is_late(&until)) {
+            return NAN;
+        }
         scenario_case_values(s, design_case(plan, d), &values);
-        if (plan->design_status[d] != STANCE_DONE ||
-            !capture_prepare(s->scene, &values, &plan->design[d], s->seed, &search, &ignored)) {
+        if (!capture_prepare(s->scene, &values, &plan->design[d], s->seed, &search, &ignored)) {
             continue;
         }
         memcpy(search.P[0], search.P[search.shapes / 2], sizeof search.P[0]);
         search.shapes = 1;
         search.boundary = TRIED;
         search.interior = 0;
-        const double start = plan_clock();
-        if (stance_capture_estimate(&search, &set) == STANCE_OK && set.simulations > 0) {
-            return (plan_clock() - start) / (double)set.simulations * CAPTURE_USUAL *
+        search.leave = is_late;
+        search.context = &until;
+        const double begin = plan_clock();
+        const stance_error error = stance_capture_estimate(&search, &set);
+        if ((error == STANCE_OK || error == STANCE_STOPPED) && set.simulations > 0) {
+            return (plan_clock() - begin) / (double)set.simulations * CAPTURE_USUAL *
                    (double)plan->designs;
         }
     }
-    return 0;
+    return s->base.capture && plan->pending > 0 ? NAN : 0;
 }
 
 double plan_cost(const struct plan *plan, double budget, bool *bound)
 {
-    enum { FIRST = 8 };
+    enum { FIRST = 8, LATEST = 5 };
     struct trial beginnings = {0}, whole = {0};
-    double start = plan_clock();
+    const double start = plan_clock(), until = start + LATEST * budget;
 
     *bound = false;
-    /* Beginnings first, evenly spread, to learn what whole cases would take. */
-    for (uint64_t i = 0; i < FIRST; i++) {
-        try_cases(plan, i * (COST_CASES / FIRST), 1, COST_STEPS, &beginnings);
+    /* Beginnings first, to learn what whole cases would take. */
+    for (uint64_t i = 0; i < FIRST && !beginnings.late; i++) {
+        try_case(plan, i, COST_STEPS, until, &beginnings);
     }
     if (beginnings.steps == 0) {
-        return -1;
+        return beginnings.late ? NAN : -1;
     }
     double per_step = beginnings.seconds / (double)beginnings.steps;
-    double per_case = per_step * (double)beginnings.steps_asked / FIRST;
-    if (per_case * WIDEST * FIRST > budget) {
+    double per_case = per_step * (double)beginnings.steps_asked / (double)beginnings.cases;
+    if (beginnings.late || per_case * WIDEST * FIRST > budget) {
         *bound = true;
         return per_case * (double)plan->rows;
     }
-    /* Cases in an order that is spread evenly wherever it is cut: 27 and 64 have no divisor. */
-    for (uint64_t i = 0; i < COST_CASES && plan_clock() - start < budget; i++) {
-        try_cases(plan, i * 27 % COST_CASES, 1, INT64_MAX, &whole);
+    for (uint64_t i = 0; i < COST_CASES && plan_clock() - start < budget && !whole.late; i++) {
+        try_case(plan, i, INT64_MAX, until, &whole);
     }
-    if (whole.cases == 0) {
+    if (whole.cases == 0 || whole.late) {
         *bound = true;
         return per_case * (double)plan->rows;
     }

@@ -23,7 +23,11 @@ struct plan {
     size_t designs;                 /* distinct ones, row-major over the axes flagged `design` */
     struct resolved_design *design; /* [designs] */
     uint8_t *design_status;         /* [designs] enum stance_status */
-    double design_seconds;          /* what plan_compute_designs takes on one rank */
+    size_t pending;                 /* of these, for which there was no time */
+    double design_seconds;          /* what computing all of them takes on one rank */
+
+    /* s after which designs that are not yet computed stay pending; 0: all are computed. */
+    double patience;
 
     /* Asked about every millisecond while designs are computed; NULL: never. */
     bool (*stop)(void *context);
@@ -53,9 +57,16 @@ size_t plan_design(const struct plan *plan, uint64_t index);
 bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place);
 uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
 
+/* `check` and `run --dry-run` return within seconds: what they give to designs, to captured sets
+ * and to the cost, of which plan_cost may take five times as much. */
+#define PLAN_PATIENCE_DESIGNS 1.5
+#define PLAN_PATIENCE_CAPTURE 1.0
+#define PLAN_PATIENCE_COST 0.2
+
 /* Collective: computes every design whose status is pending, each rank a block, and gathers them on
- * rank 0. false on every rank when no design exists at all, or plan->stop said true somewhere; the
- * message is empty then. */
+ * rank 0. With patience at least one a rank, those of cases that plan_cost tries and of the corners
+ * first, then evenly spread. false on every rank when no design exists at all, or plan->stop said
+ * true somewhere; the message is empty then. */
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error);
 
@@ -64,12 +75,13 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
  * about every millisecond, said true somewhere; *message is empty then. */
 bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
                             bool (*stop)(void *context), void *context, stance_message *message);
-/* Seconds that this will take on one rank, from a try at one design; 0 where there is nothing to
- * estimate. Needs the designs. */
-double plan_capture_cost(const struct plan *plan);
+/* Seconds that this will take on one rank, from a try at one design for at most `budget` seconds; 0
+ * where there is nothing to estimate, NAN where that was too short to tell. Needs the designs. */
+double plan_capture_cost(const struct plan *plan, double budget);
 
 /* Tries the initial states of the first, the last, the corners and up to 4096 other cases spread
- * evenly. Cases whose design does not exist are left out. Needs the designs. */
+ * evenly; where designs are pending, the first case of each that is not, too. Cases whose design
+ * does not exist or is pending are left out. Needs the designs. */
 bool plan_check_cases(const struct plan *plan, struct plan_error *error);
 
 /* Method of a row, as index into stance_methods(). */
@@ -78,9 +90,10 @@ int plan_method(const struct plan *plan, uint64_t row);
  * because its design or its initial state does not. */
 bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method);
 
-/* Seconds on one rank, measured on cases spread over the sweep for about `budget` seconds. When
- * whole cases take too long to try, beginnings are measured and *bound is set: no more than that.
- * Negative: could not be measured. Needs the designs. */
+/* Seconds on one rank, measured on cases spread over the sweep for about `budget` seconds, and five
+ * times that at most. When whole cases take too long to try, beginnings are measured and *bound is
+ * set: no more than that. NAN: even these take too long; negative: none of the cases tried can be
+ * computed. Needs the designs. */
 double plan_cost(const struct plan *plan, double budget, bool *bound);
 
 /* Seconds of a clock that never jumps. */

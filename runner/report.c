@@ -9,8 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double cost_budget = 0.2; /* s spent on trying cases */
-
 void report_bytes(char *text, size_t size, double bytes)
 {
     static const char *const unit[] = {"B", "kB", "MB", "GB", "TB", "PB"};
@@ -35,9 +33,9 @@ void report_seconds(char *text, size_t size, double seconds)
 struct estimate {
     size_t designs_failed;
     uint64_t size;
-    double seconds; /* on one rank; negative: unknown */
+    double seconds; /* on one rank; negative: no case can be tried, NAN: these take too long */
     bool bound;
-    double capture;  /* s on one rank for the captured sets; 0: none is asked for */
+    double capture;  /* s on one rank for the captured sets; 0: none is asked for, NAN: unknown */
     uint64_t coarse; /* points of the coarse lattice; 0: the map is not refined */
     double probes;   /* expected number beyond these */
 };
@@ -46,12 +44,12 @@ static struct estimate estimate(const struct plan *plan, int ranks)
 {
     struct estimate e = {.size = store_size(plan, ranks)};
     for (size_t d = 0; d < plan->designs; d++) {
-        e.designs_failed += plan->design_status[d] != STANCE_DONE;
+        e.designs_failed += plan->design_status[d] == STANCE_FAILED;
     }
-    e.seconds = plan_cost(plan, cost_budget, &e.bound);
+    e.seconds = plan_cost(plan, PLAN_PATIENCE_COST, &e.bound);
     e.seconds += e.seconds >= 0 ? plan->design_seconds : 0;
-    e.capture = plan_capture_cost(plan);
-    e.bound = e.bound || e.capture > 0; /* captured cases cost less */
+    e.capture = plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
+    e.bound = e.bound || e.capture != 0; /* captured cases cost less */
     if (plan->scenario->refine.given && !plan->single) {
         const struct refine_map map = refine_map_of(plan->scenario);
         e.coarse = refine_coarse(&map);
@@ -168,13 +166,15 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
         json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
     }
     json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o, s:o}",
+        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:o, s:o, s:o}",
         "scenario", s->file, "title", s->title, "scene", s->scene->name, "cases",
         (json_int_t)plan->rows, "dimensions", dimensions, "designs", (json_int_t)plan->designs,
-        "designs_failed", (json_int_t)e->designs_failed, "recorded_cases",
-        (json_int_t)plan->record_cases, "file", file, "file_bytes", (json_int_t)e->size, "ranks",
-        ranks, "seconds_on_one_rank", e->seconds < 0 ? json_null() : json_real(e->seconds),
-        "seconds_is_upper_bound", e->bound, "capture_seconds_on_one_rank", e->capture, "refine",
+        "designs_computed", (json_int_t)(plan->designs - plan->pending), "designs_failed",
+        (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
+        file, "file_bytes", (json_int_t)e->size, "ranks", ranks, "seconds_on_one_rank",
+        e->seconds >= 0 ? json_real(e->seconds) : json_null(), "seconds_is_upper_bound", e->bound,
+        "capture_seconds_on_one_rank", isnan(e->capture) ? json_null() : json_real(e->capture),
+        "refine",
         e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
                               (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
                   : json_null(),
@@ -182,6 +182,28 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
     json_dumpf(root, out, JSON_INDENT(2));
     fputc('\n', out);
     json_decref(root);
+}
+
+static void report_designs(const struct plan *plan, const struct estimate *e, FILE *out)
+{
+    const size_t computed = plan->designs - plan->pending;
+    fprintf(out, "designs     %zu distinct", plan->designs);
+    if (plan->pending == 0) {
+        if (e->designs_failed > 0) {
+            fprintf(out, ", of which %zu do not exist: their cases will fail", e->designs_failed);
+        }
+        return;
+    }
+    fprintf(out, ", %zu of them computed: ", computed);
+    if (e->designs_failed == 0) {
+        fputs("all exist", out);
+    } else if (e->designs_failed == computed) {
+        fputs("none exists", out);
+    } else {
+        fprintf(out, "%zu do not exist and their cases will fail", e->designs_failed);
+    }
+    fprintf(out, "\nunchecked   the other %zu and the initial states of their cases",
+            plan->pending);
 }
 
 static void report_text(const struct plan *plan, const struct estimate *e, int ranks,
@@ -207,10 +229,7 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
         fprintf(out, "  %-32s %8zu  %s ... %s %s\n", s->axis[a].name, s->axis[a].count, first, last,
                 s->axis[a].words ? "" : s->axis[a].unit);
     }
-    fprintf(out, "designs     %zu distinct", plan->designs);
-    if (e->designs_failed > 0) {
-        fprintf(out, ", of which %zu do not exist: their cases will fail", e->designs_failed);
-    }
+    report_designs(plan, e, out);
     if (plan->record_cases > 0) {
         fprintf(out, "\nrecorded    %" PRIu64 " trajectories of %" PRId64 " instants",
                 plan->record_cases, plan->record_rows);
@@ -223,14 +242,19 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
     }
     report_bytes(text, sizeof text, (double)e->size);
     fprintf(out, "\nfile        %s, about %s\n", file, text);
-    if (e->seconds < 0) {
-        fprintf(out, "cost        unknown: none of the cases tried can be computed\n");
-        return;
-    }
-    if (e->capture > 0) {
+    if (isnan(e->capture)) {
+        fprintf(out, "capture     unknown: nothing was learned of its sets in the time that this "
+                     "command takes\n");
+    } else if (e->capture > 0) {
         report_seconds(text, sizeof text, e->capture / fmin(ranks, (double)plan->designs));
         fprintf(out, "capture     about %s first, for %zu set%s of states that recover\n", text,
                 plan->designs, plan->designs == 1 ? "" : "s");
+    }
+    if (!(e->seconds >= 0)) {
+        fprintf(out, "cost        unknown: %s\n",
+                isnan(e->seconds) ? "the cases tried take too long to tell"
+                                  : "none of the cases tried can be computed");
+        return;
     }
     if (e->coarse > 0) {
         const double share = ((double)e->coarse + e->probes) / (double)plan->rows;

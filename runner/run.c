@@ -251,7 +251,9 @@ static void look_into_file(struct run *run)
     if (!run_same_scenario(run, run->file, run->origin.scenario)) {
         return;
     }
-    if (run->succeed && !succession_check_sweep(run->file, &run->origin, run->scenario, &message)) {
+    if ((run->succeed &&
+         !succession_check_sweep(run->file, &run->origin, run->scenario, &message)) ||
+        !store_same_points(run->file, &run->origin, run->scenario, &message)) {
         run_fail_io(run, &message);
         run->failure.code = EXIT_USAGE;
         return;
@@ -417,6 +419,7 @@ static void stage_designs(struct run *run)
     if (!take_designs(run)) {
         return;
     }
+    run->plan.patience = run->options.dry_run ? PLAN_PATIENCE_DESIGNS : 0;
     good = plan_compute_designs(&run->plan, &run->parallel, &error);
     if (!good && !error.message.text[0]) {
         stop_early(run, "stopped while designs were computed: nothing is stored");
@@ -720,7 +723,7 @@ const struct command command_run = {
     "                     same scenario with fewer points holds, and computes the rest. That file\n"
     "                     need not be complete and stays as it is. Not for method lhs\n"
     "  --from FILE        ... that file; default results/<scenario name>.h5\n"
-    "  --dry-run          plan and estimate, write nothing\n"
+    "  --dry-run          plan and estimate as `check` does, within seconds; write nothing\n"
     "  --quiet            neither progress nor summary\n"
     "\n"
     "SIGINT, SIGTERM and SIGUSR1 to any rank stop the job at once: cases in hand are given up,\n"

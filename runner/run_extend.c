@@ -159,6 +159,11 @@ static bool look_into_old(struct run *run, struct extension *e)
     if (good) {
         run_warn_of_revision(e->file, origin.revision);
     }
+    if (good && !store_same_points(e->file, &origin, run->scenario, &message)) {
+        run_fail_io(run, &message);
+        run->failure.code = EXIT_USAGE;
+        good = false;
+    }
     if (good && !take_axes(run, e, &message)) {
         run_fail_io(run, &message);
         good = false;

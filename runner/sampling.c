@@ -196,6 +196,14 @@ static void sphere_unit(const struct sampling *s, uint64_t point, double *u)
 
 /* ---- the interface --------------------------------------------------------------------------- */
 
+/* Before it had a name, GSL's direction numbers and a shift. */
+const char *sampling_generator(enum sampling_method method)
+{
+    const bool sequence =
+        method == SAMPLING_SOBOL || method == SAMPLING_SALTELLI || method == SAMPLING_SPHERE;
+    return sequence ? "joe-kuo-scrambled" : "";
+}
+
 size_t sampling_most_factors(enum sampling_method method)
 {
     return method == SAMPLING_SALTELLI ? SAMPLING_MAX_FACTORS / 2 : SAMPLING_MAX_FACTORS;

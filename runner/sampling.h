@@ -70,6 +70,9 @@ extern const char *const sampling_words[SAMPLING_METHODS];
 
 /* 40; saltelli: 20. */
 size_t sampling_most_factors(enum sampling_method method);
+/* Name of what makes the points, where it has changed since there are results files: those without
+ * a name have other points, and so have those of any other name. "": it has not. */
+const char *sampling_generator(enum sampling_method method);
 /* Points in a block: 1; saltelli: factors + 2, with second_order 2 factors + 2; morris:
  * factors + 1. Needs no tables, as the next. */
 uint64_t sampling_block(const struct sampling *sampling);

@@ -4,6 +4,9 @@
  *   one dimension scale per grid axis, named by its path, with values, `units`, `long_name`;
  *     an axis of several paths adds a variable "<path>" over that dimension for every further
  *     path; an axis of words is a string variable. Without a sweep: one dimension `case`, length 1.
+ *   with sweep.sample as the last dimension `sample`, with what design its points are of and, where
+ *     that has changed since there are files, the `generator` that made them: points of another
+ *     generator are never mixed with new ones; "<path>" over it for every path that it varies.
  *   every answer of STORE_ANSWERS over those dimensions, row-major in their order;
  *     `status` (0 pending, 1 done, 2 failed), written after everything else of a case;
  *     `final_state` has a last dimension `state` (string names x ... vq2);
@@ -133,12 +136,17 @@ struct store_origin {
     char *scenario; /* resolved text */
     char revision[80], date[40];
     char *title, *hosts;
+    char *generator; /* of the points of its sample, sampling_generator; NULL: none is named */
     int ranks;
     size_t ancestors; /* scenarios before that one, the first one first */
     struct store_ancestor *ancestor;
 };
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);
 void store_origin_free(struct store_origin *origin);
+/* Whether the points of the file's sample are those that the scenario's are: not where another
+ * generator made them. */
+bool store_same_points(const char *file, const struct store_origin *origin,
+                       const struct scenario *scenario, stance_message *message);
 /* Values of a logarithmic axis or of a sample as the file has them, into axis->value; other axes
  * are left. */
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message);

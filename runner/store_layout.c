@@ -137,6 +137,7 @@ static bool make_sample(struct layout *layout, const struct scenario_axis *axis,
                         struct dimension *dimension)
 {
     const struct sampling *design = &layout->plan->scenario->sample.design;
+    const char *generator = sampling_generator(design->method);
     char *paths = sampled_paths(layout->plan->scenario, ',', ';');
     bool good =
         paths &&
@@ -144,6 +145,7 @@ static bool make_sample(struct layout *layout, const struct scenario_axis *axis,
                      own_number, NULL, dimension) &&
         put_meaning(dimension->id, axis->unit, axis->text) &&
         put_text(dimension->id, "method", sampling_words[design->method]) &&
+        (!generator[0] || put_text(dimension->id, "generator", generator)) &&
         put_number(dimension->id, "count", KIND_uint64_t, &design->count) &&
         put_int(dimension->id, "factors", (int)design->factors) &&
         put_int(dimension->id, "block", (int)sampling_block(design)) &&

@@ -71,6 +71,17 @@ bool store_check(const char *file, bool resume, stance_message *message)
     return good;
 }
 
+/* Of the sample's points; NULL: the file has no sample, or does not say. */
+static char *read_generator(hid_t file)
+{
+    hid_t sample =
+        H5Lexists(file, "sample", H5P_DEFAULT) > 0 ? H5Dopen2(file, "sample", H5P_DEFAULT) : -1;
+    char *text =
+        sample >= 0 && H5Aexists(sample, "generator") > 0 ? read_text(sample, "generator") : NULL;
+    H5Dclose(sample);
+    return text;
+}
+
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message)
 {
     *origin = (struct store_origin){0};
@@ -83,6 +94,7 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     origin->scenario = read_text(id, "scenario");
     origin->title = read_text(id, "title");
     origin->hosts = read_text(id, "hosts");
+    origin->generator = read_generator(id);
     snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
     snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
     if (ranks < 0 || H5Aread(ranks, H5T_NATIVE_INT, &origin->ranks) < 0) {
@@ -112,7 +124,23 @@ void store_origin_free(struct store_origin *origin)
     free(origin->scenario);
     free(origin->title);
     free(origin->hosts);
+    free(origin->generator);
     *origin = (struct store_origin){0};
+}
+
+bool store_same_points(const char *file, const struct store_origin *origin,
+                       const struct scenario *scenario, stance_message *message)
+{
+    const enum sampling_method method = scenario->sample.design.method;
+    const char *made_by = origin->generator ? origin->generator : "";
+    if (!scenario->sample.given || strcmp(made_by, sampling_generator(method)) == 0) {
+        return true;
+    }
+    snprintf(message->text, sizeof message->text,
+             "%.100s: the points of its sample are those of another version, whose generator for "
+             "method %s was another: begin a new file",
+             file, sampling_words[method]);
+    return false;
 }
 
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)

@@ -128,19 +128,18 @@ static void test_wilson(void **state)
     (void)state;
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
         double n = (double)counts[i][1], share = (double)counts[i][0] / n;
-        statistics_wilson(counts[i][0], counts[i][1], &end[0], &end[1]);
+        statistics_wilson_of(z, share, n, &end[0], &end[1]);
         assert_true(0 < end[0] && end[0] < share && share < end[1] && end[1] < 1);
         for (int k = 0; k < 2; k++)
             assert_near(pow(share - end[k], 2), z * z * end[k] * (1 - end[k]) / n, 1e-15);
     }
     /* None of n: up to z^2 / (n + z^2), exactly from 0. */
-    statistics_wilson(0, 10, &end[0], &end[1]);
+    statistics_wilson_of(z, 0, 10, &end[0], &end[1]);
     assert_true(end[0] == 0);
     assert_near(end[1], z * z / (10 + z * z), 1e-15);
-    statistics_wilson(10, 10, &end[0], &end[1]);
+    statistics_wilson_of(z, 1, 10, &end[0], &end[1]);
     assert_true(end[1] == 1);
-    statistics_wilson(0, 0, &end[0], &end[1]);
-    assert_true(end[0] == 0 && end[1] == 1);
+    assert_near(statistics_deviations(0.95), z, 1e-14);
 }
 
 static void test_quantiles(void **state)

@@ -148,7 +148,7 @@ static void shares_over_a_grid_are_no_coins(void **state)
     double low, high;
     for (int p = 0; p < POINTS; p++)
         inside += kind[36 * POINTS + p] == RESULTS_STABILISED;
-    statistics_wilson(inside, POINTS, &low, &high);
+    statistics_wilson_of(statistics_deviations(0.95), (double)inside / POINTS, POINTS, &low, &high);
     assert_true(inside > 0 && inside < POINTS);
     assert_true(fabs(rows[36].low - low) < 1e-12 && fabs(rows[36].high - high) < 1e-12);
     assert_true(rows[0].high == 1 && rows[0].low > 0.95);

@@ -244,6 +244,36 @@ static void test_checks(void **state)
     f->scenario.base.offset[1] = 0;
 }
 
+/* Without time one design is computed, the one that the cost is told from; the others stay pending
+ * and nobody is told that they do not exist. Later they are made up for. */
+static void test_impatient(void **state)
+{
+    struct fixture *f = *state;
+    struct plan plan;
+    struct plan_error error = {0};
+    bool bound;
+    assert_true(plan_make(&plan, &f->scenario, false, 0, false, &error));
+    plan.patience = 1e-12;
+    assert_true(plan_compute_designs(&plan, &f->alone, &error));
+    assert_int_equal(plan.pending, 3);
+    assert_int_equal(plan.design_status[0], STANCE_DONE);
+    assert_true(plan.design_seconds > 0);
+    assert_true(plan_check_cases(&plan, &error));
+    assert_true(plan_cost(&plan, 0.05, &bound) > 0);
+    f->scenario.base.offset[1] = -0.2; /* under the ground */
+    assert_false(plan_check_cases(&plan, &error));
+    f->scenario.base.offset[1] = 0;
+    for (int d = 1; d < 4; d++)
+        assert_int_equal(plan.design_status[d], STANCE_PENDING);
+    plan.patience = 0;
+    assert_true(plan_compute_designs(&plan, &f->alone, &error));
+    assert_int_equal(plan.pending, 0);
+    assert_memory_equal(plan.design_status, f->plan.design_status, 4);
+    for (int d = 0; d < 4; d += 2)
+        assert_memory_equal(&plan.design[d], &f->plan.design[d], sizeof *plan.design);
+    plan_free(&plan);
+}
+
 /* ---- the results file --------------------------------------------------------------------- */
 
 /* A result whose numbers say which row it is of. */
@@ -567,6 +597,7 @@ int main(void)
         cmocka_unit_test(test_nearest_word),   cmocka_unit_test(test_options),
         cmocka_unit_test(test_chunks),         cmocka_unit_test(test_designs),
         cmocka_unit_test(test_recorded),       cmocka_unit_test(test_checks),
+        cmocka_unit_test(test_recorded),       cmocka_unit_test(test_impatient),
         cmocka_unit_test(test_rows),           cmocka_unit_test(test_listed_rows),
         cmocka_unit_test(test_designs_stored), cmocka_unit_test(test_origin),
         cmocka_unit_test(test_lock),           cmocka_unit_test(test_plain_scene),

@@ -173,6 +173,50 @@ expect "extend what is cut off" 3 "$stance" run set.yaml --extend $more --from s
 expect "extend by nonsense" 2 "$stance" run set.yaml --extend -3 --from before.h5 -o no.h5
 expect "--from alone" 2 "$stance" run set.yaml --from before.h5 -o no.h5
 expect "extend one case" 2 "$stance" run set.yaml --extend $more --only 3 -o no.h5
+
+# Files from before the points of Sobol' sequences were scrambled do not name what made them; of other
+# methods the points are what they were, and there is no name.
+"$python" - >log 2>&1 <<'END'
+import h5py, shutil
+shutil.copy("before.h5", "former.h5")
+with h5py.File("former.h5", "r+") as f:
+    assert f["sample"].attrs["generator"] in (b"joe-kuo-scrambled", "joe-kuo-scrambled")
+    del f["sample"].attrs["generator"]
+    f["status"][2, 10:20] = 0
+shutil.copy("saltelli.h5", "former-saltelli.h5")
+with h5py.File("former-saltelli.h5", "r+") as f:
+    del f["sample"].attrs["generator"]
+for name in "random", "lhs", "morris":
+    assert "generator" not in h5py.File(name + ".h5")["sample"].attrs
+END
+result $? "files of the former points"
+other="former.h5: the points of its sample are those of another version"
+refused() { # name, command ...
+    expect "$1" 2 "${@:2}"
+    [ "$(grep -c stance log)" = 1 ] # mpirun has its own lines
+    result $? "... in one line"
+    says "... with the reason" "$other"
+}
+cp former.h5 kept.h5
+refused "resume one of them" "$stance" run set.yaml -o former.h5 --resume
+refused "... on two ranks" mpirun -n 2 "$stance" run set.yaml -o former.h5 --resume
+refused "... with another scenario" "$stance" run set.yaml -o former.h5 --resume --force-scenario --set stop.time=3
+refused "extend one of them" "$stance" run set.yaml --extend $more --from former.h5 -o no.h5
+refused "merge one of them" "$stance" merge no.h5 before.h5 former.h5
+refused "merge one of them, the first" "$stance" merge no.h5 former.h5 before.h5
+cmp former.h5 kept.h5
+result $? "... which stays as it was"
+expect "the indices of one of them" 2 "$stance" sensitivity former-saltelli.h5
+says "... with the reason" "former-saltelli.h5: has points of another version"
+for command in summary status table plot "compare kept.h5"; do
+    # shellcheck disable=SC2086
+    expect "${command% *} reads one of them" 0 "$stance" $command former.h5
+done
+expect "plot of their blocks" 0 "$stance" plot former-saltelli.h5
+for method in random morris; do
+    expect "$method: goes on as ever" 0 "$stance" run set.yaml --set sweep.sample.method=$method --resume \
+        --set record.cases=none --set sweep.sample.count=31 -o $method-31.h5 --quiet
+done
 [ ! -e no.h5 ]
 result $? "no file came of all that"
 

@@ -159,6 +159,46 @@ method: {name: capturing, step: 0.001, tolerance: 1e-4}
 stop: {time: 1, settle: off, fall_height: 0}
 END
 accepted "a step without end is checked in no time" "$stance" check "$endless"
+# Designs of a minute and of hours, a captured set of half a minute: what there was no time for is said.
+cat >designs.yaml <<'END'
+stance: 1
+scene: biped
+ground: {friction: 0.8, contacts: [foot1]}
+initial: {equilibrium: {theta: -0.41, q2: 0.82}, support_foot: 1}
+controller: {kind: state-feedback, design: place, design_time: sampled,
+             poles: [-3, -3.3, -3.6, -3.9, -4.2, -4.6], sample_time: 0.001, torque_limit: 10}
+method: {name: event-driven, step: 0.001, tolerance: 1.0e-13}
+stop: {time: 800}
+sweep:
+  grid:
+    - {path: controller.sample_time, from: 0.001, to: 0.1, count: 2000}
+    - {path: robot.trunk_mass, from: 1.7, to: 1.9, count: 1000}
+END
+says() { # pattern
+    count=$((count + 1))
+    if grep -q -- "$1" out; then
+        echo "ok $count - ... and says $1"
+    else
+        echo "not ok $count - ... and says $1"
+        sed 's/^/# /' out
+    fi
+}
+some='designs     2000000 distinct, [1-9][0-9]* of them computed: all exist$'
+accepted "two million designs are checked in no time" "$stance" check designs.yaml
+says "$some"
+says 'unchecked   the other [1-9][0-9]* and the initial states of their cases$'
+says 'cost        at most about [0-9.]* h'
+accepted "... as JSON" "$stance" check --json designs.yaml
+says '"designs_computed": [1-9][0-9]\{0,5\},'
+accepted "... planned" "$stance" run --dry-run designs.yaml
+says "$some"
+accepted "captured sets of exact simulations are checked in no time" "$stance" check designs.yaml \
+    --set stop.capture=estimated --set 'sweep.grid[0].count=2' --set 'sweep.grid[1].count=2'
+says 'designs     4 distinct$'
+says 'capture     \(about\|unknown\)'
+accepted "many designs without a captured set are checked in no time" "$stance" check designs.yaml \
+    --set stop.capture=estimated --set controller.torque_limit=1
+says 'capture     unknown'
 refused "more cases than fit a number" 2 'make more than 2^53 cases' "$stance" check "$good" --set "$huge, {path: ground.friction, from: 0, to: 1, count: 2}]"
 refused "more instants than fit a file" 2 'record.every: .* instants' "$stance" check "$good" --set 'record={every: 1e-300, cases: all}'
 refused "a file that no disk holds" 3 'results/ball_bounce.h5' "$stance" run "$good" --set "$huge]"

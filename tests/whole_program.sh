@@ -99,6 +99,15 @@ orders = {o['method']: o['position'] for o in json.load(open(sys.argv[1]))['stud
 assert 0.8 < orders['implicit'] < 1.2 and orders['midpoint'] > 0.9, orders
 assert orders['lagrange'] > 3.5 and 0.6 < orders['capturing'] < 1.3, orders" "$work/accuracy.json"
 
+# Cells of a grid are counted: no interval, and none that are unlike is fewer than one.
+sed 's/- \[\(implicit\|lagrange\|capturing\).*//; s/count: 64/count: 6/; s/^title.*/title: Few cells/' \
+    scenarios/accuracy/basin_one_foot.yaml >"$work/few_cells.yaml"
+check "bench accuracy: labels" sh -c "'$stance' bench accuracy '$work/few_cells.yaml' -o '$work/accuracy' \
+    >'$work/labels.txt'"
+check "... counts" grep -Eq '^  midpoint .* [0-9]+ of 36 \([0-9.]+ %\), 0 inside$' "$work/labels.txt"
+check "... no intervals" sh -c "! grep -Eq 'interval|\.\.\.' '$work/labels.txt'"
+check "... picture" png "$work/accuracy/few_cells.png"
+
 # ---- an answer as a picture; what summary tells of the controllers ----
 check "plot --answer" "$stance" plot "$work/friction_needed.h5" --answer friction_used --of stabilised -o "$work"
 check "plot --answer: map" png "$work/friction_needed-friction_used.png"

@@ -132,7 +132,8 @@ static bool hand_next(void *context, const stance_case **c, stance_result **resu
 
 static void hand_done(void *context, const stance_case *c, stance_result *result)
 {
-    (void)context, (void)c, (void)result;
+    (void)c, (void)result;
+    ((struct hand *)context)->search->simulations++;
 }
 
 static bool hand_leave(void *context)
@@ -158,7 +159,6 @@ static bool batch(struct search *s, double radius, int64_t count, bool inside)
         if (s->stopped) {
             return false;
         }
-        s->simulations += (int64_t)size;
         for (size_t i = 0; i < size; i++) {
             if (s->results[i].status != STANCE_DONE || s->results[i].outcome != STANCE_STABILISED) {
                 return false;
