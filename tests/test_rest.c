@@ -224,7 +224,7 @@ static void soft_legs_rest_where_they_stay(void **state)
                       "stopped %d were not said to rest\n",
                       methods[m], rested, count, fallen, left, still, missed);
         assert_true(rested > count / 5 && fallen == 0 && left == 0);
-        assert_true(missed * 50 < still);
+        assert_true(missed * 20 < still);
     }
 }
 
