@@ -141,7 +141,7 @@ static bool read_single(const struct results *r, const struct scenario_axis *axi
 static void take_points(const struct results *r, struct scenario *s)
 {
     struct scenario_axis *axis = s->axes > 0 ? &s->axis[s->axes - 1] : NULL;
-    if (!axis || !axis->sample) {
+    if (!axis || !axis->sample || axis->count == 0) {
         return;
     }
     for (int k = 0; k < axis->paths; k++) {
