@@ -443,9 +443,10 @@ COLD bool rest_bounded(int n, rest_matrix M, double time, double whole)
     return rest_largest(n, M) <= bound;
 }
 
-/* Do contacts that carry stand? */
-COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w)
+/* Do contacts that carry stand? A bounce that is over within a step of length h is none. */
+COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w, double h)
 {
+    const double bounce = fmax(STANCE_GRAVITY * h, REST_CREEP);
     scene_trig trig;
     bool stands = true;
     scene_trigonometry(s, &trig);
@@ -454,7 +455,7 @@ COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w)
         if (!mask_get(r->mode.closed[c], r->lane))
             continue;
         scene_contact_velocity(&r->set->body, &trig, c, w, u);
-        stands &= fabs(lane_get(&u[0], r->lane)) <= REST_CREEP;
+        stands &= fabs(lane_get(&u[0], r->lane)) <= bounce;
         if (lane_get(&r->set->friction, r->lane) > 0)
             stands &= fabs(lane_get(&u[1], r->lane)) <= REST_CREEP;
     }
@@ -562,14 +563,20 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
         r.integral[i] = integral[i];
     scene_trig trig;
     scene_trigonometry(r.s, &trig);
+    const lanes low = lanes_of(fmax(STANCE_GRAVITY * h * h, STEP_CLOSED));
+    const lanes near =
+        choose(mask_less(lanes_of(0), b->set.restitution), low, lanes_of(STEP_CLOSED));
     for (int c = 0; c < SCENE_CONTACTS; c++) { /* for laws that ask what the contacts do */
-        r.mode.closed[c] =
-            mask_less(lanes_of(0), b->set.may_touch[c]) &
-            mask_less_equal(scene_gap(&b->set.body, r.s, &trig, c), lanes_of(STEP_CLOSED));
+        r.mode.closed[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
+                           mask_less_equal(scene_gap(&b->set.body, r.s, &trig, c), near);
         r.mode.slide[c] = lanes_of(0);
     }
     rest_law(&r, r.s, still, r.integral, torque, rate);
-    if (!rest_mode(&r, r.s, torque, &r.mode) || (w && !rest_stands(&r, s, w)))
+    struct dynamics e;
+    rest_evaluate(&r, r.s, torque, &e); /* what bounces within a step lies on the ground */
+    smooth_project_position(r.set, r.mode.closed, r.s, &e);
+    rest_law(&r, r.s, still, r.integral, torque, rate);
+    if (!rest_mode(&r, r.s, torque, &r.mode) || (w && !rest_stands(&r, s, w, h)))
         return false;
     for (int round = 0; round < REST_ROUNDS && off > REST_STILL; round++) {
         rest_ways(&r);
