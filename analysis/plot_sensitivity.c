@@ -178,7 +178,7 @@ static void subtitle_of(const struct sensitivity_study *study, char *text, size_
     }
     sensitivity_response_text(study, response, sizeof response);
     const size_t used = (size_t)snprintf(
-        text, size, "What the %s depends on: %s with %g %% bootstrap intervals, %llu %s.", response,
+        text, size, "What the %s depends on: %s with %g %% intervals, %llu %s.", response,
         design->method == SAMPLING_MORRIS ? "Morris's elementary effects over the ranges"
                                           : "Sobol' indices",
         100 * study->request.bootstrap.level, (unsigned long long)design->count,

@@ -19,14 +19,20 @@ static inline double uniform(uint64_t *state, double low, double high)
     return low + (high - low) * (double)(z >> 11) * 0x1p-53;
 }
 
+/* The robot of a scene by default. */
+static inline void default_robot(const stance_scene *scene, stance_case *c)
+{
+    memset(c->robot, 0, sizeof c->robot);
+    for (int i = 0; i < scene->robot_count; i++)
+        c->robot[i] = scene->robot[i].fallback;
+}
+
 /* A case of the default robot without controller, 1 ms, one second, both feet, friction 0.8. */
 static inline stance_case plain_case(void)
 {
-    const stance_scene *scene = stance_scene_find("biped");
     stance_case c;
     memset(&c, 0, sizeof c);
-    for (int i = 0; i < scene->robot_count; i++)
-        c.robot[i] = scene->robot[i].fallback;
+    default_robot(stance_scene_find("biped"), &c);
     c.friction = 0.8;
     c.contacts = 3;
     c.torque_limit = INFINITY;
@@ -113,9 +119,7 @@ static inline void scene_case(const stance_scene *scene, uint64_t *seed, stance_
 {
     double gap[STANCE_MAX_CONTACTS], least = INFINITY;
     *c = plain_case();
-    memset(c->robot, 0, sizeof c->robot);
-    for (int i = 0; i < scene->robot_count; i++)
-        c->robot[i] = scene->robot[i].fallback;
+    default_robot(scene, c);
     c->contacts = (1u << scene->contacts) - 1;
     for (int i = 0; i < scene->coordinates; i++) {
         c->position[i] = uniform(seed, -1, 1);

@@ -133,9 +133,8 @@ static void pulled_blocks_rest_if_held(void **state)
     const stance_scene *const scene = stance_scene_find("block");
     for (int k = 0; k < 2; k++) {
         stance_case c = plain_case();
-        memset(c.robot, 0, sizeof c.robot);
+        default_robot(scene, &c);
         for (int i = 0; i < scene->robot_count; i++) {
-            c.robot[i] = scene->robot[i].fallback;
             if (strcmp(scene->robot[i].name, "pull") == 0)
                 c.robot[i] = (k ? 1.2 : 0.9) * 0.5 * 9.81 * c.robot[0];
             if (strcmp(scene->robot[i].name, "pull_frequency") == 0)
@@ -235,9 +234,7 @@ static void bounces_within_a_step_rest(void **state)
     const stance_scene *const scene = stance_scene_find("ball");
     for (int k = 0; k < 19; k++) {
         stance_case c = plain_case();
-        memset(c.robot, 0, sizeof c.robot);
-        for (int i = 0; i < scene->robot_count; i++)
-            c.robot[i] = scene->robot[i].fallback;
+        default_robot(scene, &c);
         double gap[STANCE_MAX_CONTACTS];
         scene->gaps(c.robot, c.position, gap);
         c.position[1] += 0.5 - gap[0];

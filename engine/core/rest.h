@@ -63,6 +63,7 @@ typedef double rest_matrix[REST_STATES][REST_STATES];
 struct rest {
     const struct setting *set;
     int lane;
+    double angle, rate, hold, T; /* what settle asks, and the time from sample to sample */
     lanes t;
     struct contact_state mode;
     lanes s[SCENE_COORDINATES], integral[ACTUATORS];
@@ -464,7 +465,7 @@ COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w, doub
 
 /* Is all well at the deviation x (ways' places, rates, integrals) from the equilibrium? *gone: it
  * is as good as none. */
-COLD bool rest_allows(const struct rest *r, const double *x, double angle, double rate, bool *gone)
+COLD bool rest_allows(const struct rest *r, const double *x, bool *gone)
 {
     const int d = r->ways;
     double farthest = 0, fastest = 0;
@@ -477,8 +478,8 @@ COLD bool rest_allows(const struct rest *r, const double *x, double angle, doubl
         s[i] = r->s[i] + place, w[i] = lanes_of(speed);
         farthest = fmax(farthest, fabs(place)), fastest = fmax(fastest, fabs(speed));
     }
-    *gone = farthest <= REST_GONE * angle && fastest <= REST_GONE * rate;
-    if (!(farthest <= angle && fastest <= rate))
+    *gone = farthest <= REST_GONE * r->angle && fastest <= REST_GONE * r->rate;
+    if (!(farthest <= r->angle && fastest <= r->rate))
         return false;
     for (int i = 0; i < ACTUATORS; i++)
         integral[i] = r->integral[i] + (i < REST_INPUTS ? x[2 * d + i] : 0);
@@ -499,14 +500,13 @@ COLD bool rest_allows(const struct rest *r, const double *x, double angle, doubl
     return true;
 }
 
-/* Does the motion from (s, w) come to the equilibrium, or stay about it? M takes `time`, spoiled.
- */
+/* Does the motion from (s, w) come to the equilibrium, or stay about it, for a time `whole`? M, of
+ * a sample, is spoiled. */
 COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, const lanes *integral,
-                       int n, rest_matrix M, double time, double hold, double whole, double angle,
-                       double rate)
+                       int n, rest_matrix M, double whole)
 {
     const int d = r->ways;
-    double x[REST_STATES] = {0};
+    double x[REST_STATES] = {0}, time = r->T;
     bool gone;
     for (int k = 0; k < d; k++)
         for (int i = 0; i < SCENE_COORDINATES; i++) {
@@ -522,9 +522,9 @@ COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, con
         }
     for (int i = 0; i < n; i++)
         x[i] *= REST_MARGIN;
-    if (!rest_allows(r, x, angle, rate, &gone))
+    if (!rest_allows(r, x, &gone))
         return false;
-    for (; time * REST_FINE < hold; time *= 2)
+    for (; time * REST_FINE < r->hold; time *= 2)
         rest_times(n, M, M, M);
     for (double t = 0; t < whole && !gone; time *= 2) {
         for (int k = 0; k < 8 && !gone; k++, t += time) {
@@ -533,7 +533,7 @@ COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, con
                 for (int j = 0; j < n; j++)
                     next[i] += M[i][j] * x[j];
             memcpy(x, next, sizeof x);
-            if (!rest_allows(r, x, angle, rate, &gone))
+            if (!rest_allows(r, x, &gone))
                 return false;
         }
         rest_times(n, M, M, M);
@@ -551,8 +551,10 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     double off = INFINITY;
     lanes still[SCENE_COORDINATES], torque[ACTUATORS], rate[ACTUATORS];
     const double h = lane_get(&b->h, lane), every = lane_get(&b->sample_every, lane);
-    const double reach = 1 / lane_get(&b->angle_scale, lane);
     memset(&r, 0, sizeof r);
+    r.angle = 1 / lane_get(&b->angle_scale, lane), r.rate = 1 / lane_get(&b->rate_scale, lane);
+    r.T = every > 0 ? every * h : h;
+    r.hold = fmax(lane_get(&b->settle_steps, lane) * h, r.T);
     wider.friction = wider.friction * (1 + REST_EDGE);
     r.set = &wider;
     r.lane = lane;
@@ -582,7 +584,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
         rest_ways(&r);
         rest_approach(&r, &off);
         for (int i = 0; i < SCENE_COORDINATES; i++)
-            if (!(fabs(lane_get(&r.s[i], lane) - lane_get(&s[i], lane)) <= reach))
+            if (!(fabs(lane_get(&r.s[i], lane) - lane_get(&s[i], lane)) <= r.angle))
                 return false;
     }
     if (!(off <= REST_STILL))
@@ -601,14 +603,11 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     if (r.ways == 0)
         return true;
     rest_matrix M, power;
-    const double T = every > 0 ? every * h : h;
-    const double hold = fmax(lane_get(&b->settle_steps, lane) * h, T);
-    const double whole = fmax(REST_HOLDS * hold, REST_WHOLE);
-    const int n = rest_map(&r, every > 0, lane_get(&b->delayed, lane) > 0, T, M);
+    const double whole = fmax(REST_HOLDS * r.hold, REST_WHOLE);
+    const int n = rest_map(&r, every > 0, lane_get(&b->delayed, lane) > 0, r.T, M);
     memcpy(power, M, sizeof power);
-    return rest_bounded(n, power, T, whole) &&
-           (!w || rest_arrives(&r, s, w, integral, n, M, T, hold, whole, reach,
-                               1 / lane_get(&b->rate_scale, lane)));
+    return rest_bounded(n, power, r.T, whole) &&
+           (!w || rest_arrives(&r, s, w, integral, n, M, whole));
 }
 
 /* ---- what becomes of a verdict ------------------------------------------------------------- */
