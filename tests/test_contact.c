@@ -258,7 +258,7 @@ static int problems(void)
 {
     return getenv("STANCE_TEST_LONG") ? 1000000 : 100000;
 }
-static void default_robot(void **state)
+static void problems_of_the_default_robot(void **state)
 {
     (void)state;
     least_energy("default robot, e = 0", true, false, problems());
@@ -282,7 +282,7 @@ static void random_robots_rebound(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(default_robot),
+        cmocka_unit_test(problems_of_the_default_robot),
         cmocka_unit_test(default_robot_rebounds),
         cmocka_unit_test(random_robots),
         cmocka_unit_test(random_robots_rebound),
