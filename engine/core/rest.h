@@ -19,15 +19,16 @@
  * 0] T)
  *
  * with the u of the sample before where there is a delay; one that acts all the time the
- * exponential of the closed loop. It holds when a disturbance has not grown by more than
- * REST_GROWTH after REST_HOLDS times settle.hold, REST_WHOLE at least, by squaring the map again
- * and again: what swings without damping, as a free leg does, holds, too; what grows, however
- * slowly, does not. Forces that change with time are looked at eight times a period. Noise is left
- * out.
+ * exponential of the closed loop. It holds where nothing has fallen and no reference of a servo
+ * still moves, when a disturbance has not grown by more than REST_GROWTH after REST_HOLDS times
+ * settle.hold, REST_WHOLE at least, by squaring the map again and again: what swings without
+ * damping, as a free leg does, holds, too; what grows, however slowly, does not. Forces that change
+ * with time are looked at eight times a period, at their crests among these. Noise is left out.
  *
  * `rested` says that the motion has come there. Contacts that carry stand, to REST_CREEP, and the
  * map takes the present deviation (x, x', I) to nothing, or round and round, without leaving
- * settle.angle and settle.rate on the way, the forces inside the cones, no other contact closing:
+ * settle.angle and settle.rate on the way, the forces inside the cones, no other contact closing,
+ * nothing falling, the law as linear as it was taken for (REST_BENT: no limit, no other law):
  * looked at eight times an octave of time. What slid to rest has its force on the edge of the cone,
  * up to rounding: cones are wider by REST_EDGE.
  *
@@ -50,6 +51,7 @@
 #define REST_MARGIN 2   /* for what is not linear */
 #define REST_FINE 32    /* of settle.hold: how closely the way to the equilibrium is looked at */
 #define REST_GONE 1e-3  /* of settle.angle and settle.rate: a deviation that is none */
+#define REST_BENT 0.05  /* of what a law adds to the torques: how far from linear that may be */
 #define REST_ENDLESS 1e100
 
 enum {
@@ -64,6 +66,7 @@ struct rest {
     const struct setting *set;
     int lane;
     double angle, rate, hold, T; /* what settle asks, and the time from sample to sample */
+    lanes fall_height;
     lanes t;
     struct contact_state mode;
     lanes s[SCENE_COORDINATES], integral[ACTUATORS];
@@ -72,7 +75,15 @@ struct rest {
     /* By the ways' places, their rates, the integrals; and accelerations by torques. */
     double K[SCENE_COORDINATES][SCENE_COORDINATES], B[SCENE_COORDINATES][ACTUATORS];
     double C[3][ACTUATORS][REST_STATES], E[3][ACTUATORS][REST_STATES];
+    double torque[ACTUATORS]; /* at the equilibrium */
 };
+
+static bool rest_fallen(const struct rest *r, const lanes *s)
+{
+    scene_trig trig;
+    scene_trigonometry(s, &trig);
+    return mask_get(scene_fallen(&r->set->body, s, &trig, r->fall_height), r->lane);
+}
 
 /* Torques that the law commands, limited, and the rates of its integrals. */
 COLD void rest_law(const struct rest *r, const lanes *s, const lanes *w, const lanes *integral,
@@ -463,6 +474,23 @@ COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w, doub
     return stands;
 }
 
+/* Are the torques of the law what they are to first order at the deviation x? */
+static bool rest_straight(const struct rest *r, const double *x, const lanes *torque)
+{
+    for (int i = 0; i < REST_INPUTS; i++) {
+        double change = 0, size = 0;
+        for (int j = 0; j < 2 * r->ways + REST_INPUTS; j++) {
+            const int kind = j < r->ways ? 0 : j < 2 * r->ways ? 1 : 2;
+            const double part = r->C[kind][i][j - kind * r->ways] * x[j];
+            change += part, size += fabs(part);
+        }
+        const double bent = lane_get(&torque[i], r->lane) - (r->torque[i] + change);
+        if (!(fabs(bent) <= REST_BENT * size + REST_STILL))
+            return false;
+    }
+    return true;
+}
+
 /* Is all well at the deviation x (ways' places, rates, integrals) from the equilibrium? *gone: it
  * is as good as none. */
 COLD bool rest_allows(const struct rest *r, const double *x, bool *gone)
@@ -486,9 +514,11 @@ COLD bool rest_allows(const struct rest *r, const double *x, bool *gone)
     struct dynamics e;
     struct contact_state mode;
     rest_law(r, s, w, integral, torque, rates);
+    if (!rest_straight(r, x, torque))
+        return false;
     rest_evaluate(r, s, torque, &e);
     smooth_project_position(r->set, r->mode.closed, s, &e);
-    if (!rest_mode(r, s, torque, &mode))
+    if (rest_fallen(r, s) || !rest_mode(r, s, torque, &mode))
         return false;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         if (mask_get(r->mode.closed[c] & LANES_NOT(mode.closed[c]), r->lane))
@@ -541,6 +571,18 @@ COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, con
     return true;
 }
 
+/* Does a reference of the servos still move? */
+static bool rest_moves(const struct bundle *b, int lane)
+{
+    const struct law *const law = &b->set.law;
+    const double t = lane_get(&b->n, lane) * lane_get(&b->h, lane);
+    bool moves = false;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        moves |=
+            lane_get(&law->servo[i].ramp, lane) != 0 && t < lane_get(&law->servo[i].duration, lane);
+    return moves && lane_get(&law->decouples, lane) > 0; /* else servos have no part */
+}
+
 /* Is there an equilibrium near s that holds, for the case in a lane; and, w not NULL, does the
  * motion come there? */
 COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lanes *w,
@@ -554,6 +596,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     memset(&r, 0, sizeof r);
     r.angle = 1 / lane_get(&b->angle_scale, lane), r.rate = 1 / lane_get(&b->rate_scale, lane);
     r.T = every > 0 ? every * h : h;
+    r.fall_height = b->fall_height;
     r.hold = fmax(lane_get(&b->settle_steps, lane) * h, r.T);
     wider.friction = wider.friction * (1 + REST_EDGE);
     r.set = &wider;
@@ -592,13 +635,18 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     rest_ways(&r);
     rest_law(&r, r.s, still, r.integral, torque, rate);
     rest_linearise(&r, torque);
-    /* Forces that hold it, at all times. */
+    for (int i = 0; i < REST_INPUTS; i++)
+        r.torque[i] = lane_get(&torque[i], lane);
+    if (rest_fallen(&r, r.s) || (w && rest_moves(b, lane)))
+        return false;
+    /* Forces that hold it, at all times: of those that change, from their phase 0 on. */
     const lanes part = scene_longest_step(&b->set.body);
     const int parts = isfinite(lane_get(&part, lane)) ? 8 : 1;
     for (int k = 0; k < parts; k++) {
+        if (parts > 1)
+            r.t = k * part;
         if (!rest_mode(&r, r.s, torque, &r.mode))
             return false;
-        r.t = r.t + part;
     }
     if (r.ways == 0)
         return true;
