@@ -527,9 +527,38 @@ static void work_is_bounded(void **state)
     assert_true(r.steps > 100 && (double)r.evaluations > 9e6 && (double)r.evaluations < 1.1e7);
 }
 
+/* Landings in steps of 10 ms: what is left of a velocity that the law forbids, of the stored state.
+ */
+static void little_is_left_after_landings(void **state)
+{
+    (void)state;
+    static const char *const methods[] = {"implicit", "midpoint"};
+    enum { CASES = 100000 };
+    for (int m = 0; m < 2; m++) {
+        uint64_t seed = 21;
+        int above = 0;
+        double largest = 0;
+        for (int i = 0; i < CASES; i++) {
+            stance_case c;
+            stance_result r;
+            random_case(&seed, i, 1e-2, &c);
+            c.restitution = 0;
+            kernel_of(methods[m], NULL)->run(&c, &r, 1);
+            if (r.status == STANCE_DONE) {
+                above += r.signorini_residual > 1e-3;
+                largest = fmax(largest, r.signorini_residual);
+            }
+        }
+        print_message("## %s, 10 ms: above 1 mm/s in %d of %d, at most %.2g m/s\n", methods[m],
+                      above, CASES, largest);
+        assert_true(above < CASES / 1000);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(little_is_left_after_landings),
         cmocka_unit_test(work_is_bounded),
         cmocka_unit_test(explicit_steps),
         cmocka_unit_test(sampled_controllers),
