@@ -47,7 +47,7 @@ ifneq ($(V),1)
 QUIET = @echo '  $(1) $(2)';
 endif
 
-ALLFLAGS = $(STRICT) $(WARNINGS) $(SANITIZE)
+ALLFLAGS = -I. $(STRICT) $(WARNINGS) $(SANITIZE)
 
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
 SCENES  = ball block rod biped
@@ -71,7 +71,7 @@ kernels        := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISA
 scalar_kernels := $(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
 kernel_objects := $(patsubst %,$(BUILD)/kernel/%.o,$(kernels) $(scalar_kernels))
 CONTROL        ?= engine/control
-engine_sources := $(wildcard engine/*.c $(CONTROL:%=%/*.c) engine/scenes/*.c)
+engine_sources := $(wildcard engine/*.c engine/core/lanes/*.c $(CONTROL:%=%/*.c) engine/scenes/*.c)
 engine_objects := $(engine_sources:%.c=$(BUILD)/%.o) $(kernel_objects)
 comma := ,
 isa_list     = -DSTANCE_ISA_LIST='$(foreach i,$(ISAS),ISA($(i)))'
@@ -80,7 +80,7 @@ kernel_lists = $(isa_list) -DSTANCE_METHOD_LIST='$(foreach m,$(METHODS) $(SCALAR
     -DSTANCE_SCALAR_KERNEL_LIST='$(foreach k,$(scalar_kernels),KERNEL($(subst -,$(comma),$(k))))'
 
 # ---- the program ---------------------------------------------------------------------------------
-program_sources := $(wildcard runner/*.c analysis/*.c)
+program_sources := $(wildcard runner/*.c runner/*/*.c analysis/*/*.c)
 program_objects := $(program_sources:%.c=$(BUILD)/%.o)
 shared_objects   = $(filter-out $(BUILD)/runner/main.o,$(program_objects))
 
@@ -103,7 +103,7 @@ define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
 	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES))-scalar,$(1)-$(3)),-DSTANCE_DESCRIBE_METHOD) \
-	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
+	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
 $(eval $(call kernel_rule,$(s),$(m),$(i),$(isa_flags_$(i)))))))
@@ -120,8 +120,8 @@ $(BUILD)/analysis/%.o: analysis/%.c Makefile
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
 # What the build was is recorded in one object, made anew when the revision changes.
-$(BUILD)/runner/build_info.o: EXTRA = $(BUILD_INFO)
-$(BUILD)/runner/build_info.o: $(BUILD)/revision
+$(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
+$(BUILD)/runner/store/build_info.o: $(BUILD)/revision
 # The table of kernels is made anew when the list of what it holds changes.
 $(BUILD)/engine/kernels.o: EXTRA = $(kernel_lists)
 $(BUILD)/engine/kernels.o: $(BUILD)/kernels
@@ -155,14 +155,14 @@ $(BUILD)/tests/test_fuzz: $(BUILD)/tests/fuzz_scenario.o
 $(BUILD)/tests/test_fuzz: test_objects = $(BUILD)/tests/fuzz_scenario.o
 $(BUILD)/tests/test_fma: test_objects = $(fused_objects)
 
-# Kernels of one lane that think their neighbours need everything: see core/lanes.h.
+# Kernels of one lane that think their neighbours need everything: see core/lanes/lanes.h.
 doubting         = $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(s)-$(m)))
 doubting_objects = $(doubting:%=$(BUILD)/tests/doubting-%.o)
 define doubting_rule
 $(BUILD)/tests/doubting-$(1)-$(2).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
 	$$(call QUIET,cc,$$@)$$(CC) -O1 $$(ALLFLAGS) $(isa_flags_scalar) -DSTANCE_DOUBT -DSTANCE_SCENE=$(1) -DSTANCE_ISA=doubting \
-	    -DSTANCE_SCENE_LANES='"../scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
+	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(eval $(call doubting_rule,$(s),$(m)))))
 $(BUILD)/tests/test_lanes: $(doubting_objects)
@@ -194,8 +194,10 @@ $(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(BUILD)/libstance.a
 	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(BENCH_FLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< \
 	    $(shared_objects) $(BUILD)/libstance.a $(LDFLAGS) $(LIBS)
 
-# What Open MPI wants in a container, as root, on few cores.
-MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+# What Open MPI wants in a container, as root, on few cores. PMIx keeps its data in the memory of each
+# process (hash): in shared memory (ds21) a mutex that a killed rank holds is never given back, and
+# mpirun waits for it for ever when it ends.
+MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 PMIX_MCA_gds=hash \
                   OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
 TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(abspath $(PROGRAM)) \
                    FUZZ_SECONDS=$(FUZZ_SECONDS) FUZZ_RUNS=$(FUZZ_RUNS)
@@ -253,13 +255,13 @@ fuzz_programs = $(if $(fuzz_library),$(FUZZ)/fuzz_scenario $(FUZZ)/fuzz_results)
 
 $(FUZZ)/%.o: %.c Makefile
 	@mkdir -p $(@D)
-	$(call QUIET,fuzz,$@)$(FUZZ_CC) $(STRICT) $(WARNINGS) $(FUZZ_CFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
-$(FUZZ)/runner/build_info.o: EXTRA = $(BUILD_INFO)
+	$(call QUIET,fuzz,$@)$(FUZZ_CC) -I. $(STRICT) $(WARNINGS) $(FUZZ_CFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
+$(FUZZ)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
 $(FUZZ)/fuzz_scenario: $(FUZZ)/tests/fuzz_scenario.o $(FUZZ)/tests/fuzz_mutate.o $(fuzz_objects) $(BUILD)/libstance.a
 	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined,fuzzer $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(FUZZ)/fuzz_results: $(FUZZ)/tests/fuzz_results.o $(FUZZ)/tests/damage.o $(fuzz_objects) $(BUILD)/libstance.a
 	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined -shared-libasan -Wl,-rpath,$(dir $(fuzz_library)) \
-	    $(foreach f,supervise supervise_limit gnuplot_end,-Wl,--wrap=$(f)) $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
+	    $(foreach f,sandbox sandbox_limit gnuplot_end,-Wl,--wrap=$(f)) $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
 
 # A longer campaign: FUZZ_SECONDS=3600, or FUZZ_RUNS=1000000; `test` runs a share, too.
 fuzz: packages-test

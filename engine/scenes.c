@@ -15,19 +15,16 @@ const stance_scene *const *stance_scenes(void)
 
 const stance_scene *stance_scene_find(const char *name)
 {
-    for (const stance_scene *const *scene = stance_scenes(); *scene; scene++) {
-        if (strcmp((*scene)->name, name) == 0) {
+    for (const stance_scene *const *scene = stance_scenes(); *scene; scene++)
+        if (strcmp((*scene)->name, name) == 0)
             return *scene;
-        }
-    }
     return NULL;
 }
 
 bool stance_pair(const stance_scene *scene, int index, int *first, int *second)
 {
-    if (scene->actuators != 2 || index < 0) {
+    if (scene->actuators != 2 || index < 0)
         return false;
-    }
     for (int i = 0; i < scene->coordinates; i++) {
         const int rest = scene->coordinates - 1 - i;
         if (index < rest) {

@@ -124,19 +124,34 @@ const stance_scene *stance_scene_find(const char *name);
 
 typedef enum stance_status { STANCE_PENDING, STANCE_DONE, STANCE_FAILED } stance_status;
 
+/* How a case ended, in the order of legends: one table gives the enumeration, the names, the
+ * numbers in files (0: none) and the texts. */
+#define STANCE_OUTCOMES(X)                                                                         \
+    X(STABILISED, stabilised, 1, "stands at its target, and the loop holds it there")              \
+    X(RESTED, rested, 3, "is at rest elsewhere, for good")                                         \
+    X(FELL, fell, 2, "fell")                                                                       \
+    X(UNDECIDED, undecided, 4, "none of these when time was up")
+
 typedef enum stance_outcome {
     STANCE_NONE,
-    STANCE_STABILISED,
-    STANCE_FELL,
-    STANCE_RESTED,
-    STANCE_UNDECIDED,
+#define STANCE_OUTCOME_ENUM(NAME, name, number, text) STANCE_##NAME = (number),
+    STANCE_OUTCOMES(STANCE_OUTCOME_ENUM)
+#undef STANCE_OUTCOME_ENUM
 } stance_outcome;
+#define STANCE_OUTCOME_ONE(NAME, name, number, text) +1
+enum { STANCE_OUTCOME_COUNT = 1 STANCE_OUTCOMES(STANCE_OUTCOME_ONE) };
 
 /* What an outcome rests on: simulated to its end, or inferred from where the state had come. */
+#define STANCE_EVIDENCES(X)                                                                        \
+    X(EVIDENCE_NONE, none)                                                                         \
+    X(SIMULATED, simulated)                                                                        \
+    X(INFERRED, inferred)
+
 typedef enum stance_evidence {
-    STANCE_EVIDENCE_NONE,
-    STANCE_SIMULATED,
-    STANCE_INFERRED,
+#define STANCE_EVIDENCE_ENUM(NAME, name) STANCE_##NAME,
+    STANCE_EVIDENCES(STANCE_EVIDENCE_ENUM)
+#undef STANCE_EVIDENCE_ENUM
+        STANCE_EVIDENCE_COUNT,
 } stance_evidence;
 
 /* Why a case has status FAILED: one table gives the enumeration, the name and the text. */
@@ -156,6 +171,7 @@ typedef enum stance_failure {
 #define STANCE_FAILURE_ENUM(NAME, name, text) STANCE_FAILURE_##NAME,
     STANCE_FAILURES(STANCE_FAILURE_ENUM)
 #undef STANCE_FAILURE_ENUM
+        STANCE_FAILURE_COUNT,
 } stance_failure;
 
 /* Trajectory buffers of one case, owned by the caller; rows beyond `rows` are left untouched.
@@ -219,7 +235,7 @@ typedef struct stance_case {
     double tolerance;
 
     /* Judge `stabilised` and `rested` on the way and stop there. Both ask for an equilibrium that
-     * holds, too, no further than settle_angle away: see core/rest.h. */
+     * holds, too, no further than settle_angle away: see core/loop/rest.h. */
     bool settle;
     bool has_target;     /* without one nothing is ever `stabilised` */
     int support;         /* contact that a stabilised robot stands on, or -1 */
@@ -242,36 +258,87 @@ typedef struct stance_case {
     stance_trajectory *trajectory;           /* NULL: not recorded */
 } stance_case;
 
+/* The answers of a case, in the order in which files hold them: name, type, how a case gets it,
+ * which steps tell it, unit, text. Floating-point answers are NAN where there is none.
+ *   END             known when the case ends
+ *   SUM, MAX, MIN   gathered over the parts of steps and over steps
+ *   STEPS           at most 1 in each step, summed over the steps
+ * Told by each step, by those with contacts (`touching`), by those in which something happens that
+ * happens rarely (`rare`), or gathered from what else is known (`own`, in core/loop/judge.h). To
+ * add one: a row here, and what sets it; steps that tell it find its place in struct step_report.
+ */
+#define STANCE_ANSWERS(X)                                                                          \
+    X(outcome, uint8_t, END, own, "1", "how the case ended")                                       \
+    X(evidence, uint8_t, END, own, "1", "what the outcome rests on")                               \
+    X(failure, uint8_t, END, own, "1", "why a case has status failed")                             \
+    X(end_time, double, END, own, "s", "time at which the simulation stopped")                     \
+    X(settle_time, double, END, own, "s", "time from which the case stayed settled")               \
+    X(fall_time, double, END, own, "s", "time at which the robot had fallen")                      \
+    X(steps, int64_t, END, own, "1", "time steps taken")                                           \
+    X(iterations, int64_t, SUM, each, "1", "Newton iterations over all steps")                     \
+    X(ambiguous_steps, int64_t, STEPS, rare, "1",                                                  \
+      "steps whose contact problem had several solutions")                                         \
+    X(subdivided_steps, int64_t, STEPS, rare, "1",                                                 \
+      "steps that converged only after being subdivided")                                          \
+    X(degraded_samples, int64_t, STEPS, rare, "1",                                                 \
+      "samples at which a decoupling law could not do what it promises")                           \
+    X(max_penetration, double, MAX, own, "m", "deepest penetration at the end of a step")          \
+    X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
+    X(peak_torque, double, MAX, own, "N m", "largest torque applied")                              \
+    X(friction_used, double, MAX, touching, "1", "largest ratio |rT|/rN of a contact")             \
+    X(least_normal_force, double, MIN, own, "N", "smallest normal force on the support foot")      \
+    X(impact_energy, double, MAX, rare, "J",                                                       \
+      "largest kinetic energy added by contact impulses in one step")                              \
+    X(projection_energy, double, SUM, touching, "J",                                               \
+      "sum of |energy| added by position projection")                                              \
+    X(events, int64_t, SUM, rare, "1", "changes of contact mode that the method handled")          \
+    X(evaluations, int64_t, SUM, each, "1",                                                        \
+      "evaluations of the accelerations or of the implicit equation")                              \
+    X(energy_gain, double, MAX, own, "J",                                                          \
+      "largest rise of the energy above its start and the work done")                              \
+    X(signorini_residual, double, MAX, touching, "m/s",                                            \
+      "largest normal velocity of a contact that carries, or into the ground")                     \
+    X(coulomb_residual, double, MAX, touching, "1",                                                \
+      "largest excess of |rT|/rN over the coefficient of friction")                                \
+    X(dissipation_residual, double, MAX, touching, "m/s",                                          \
+      "largest slip that full friction against it does not accompany")
+
 typedef struct stance_result {
-    int32_t status;   /* stance_status */
-    int32_t outcome;  /* stance_outcome */
-    int32_t evidence; /* stance_evidence: inferred, or none: then what is said was simulated */
-    int32_t failure;  /* stance_failure */
-    double end_time, settle_time, fall_time; /* s; NAN where not reached */
-    int64_t steps, iterations;               /* steps taken; Newton iterations summed over them */
-    int64_t ambiguous_steps;                 /* steps whose contact problem had several solutions */
-    int64_t subdivided_steps;                /* steps that converged only after being subdivided */
-    /* Samples (steps, of a law that acts continuously) at which a decoupling law was near a
-     * singularity, or no reactions fitted what it wants: see core/decoupling.h. */
-    int64_t degraded_samples;
-    /* Smallest normal force on the support contact (NAN where there is none), N; mean over a step,
-     * or where the method knows it, inside. */
-    double least_normal_force;
-    int64_t events;         /* changes of contact mode that the method handled */
-    int64_t evaluations;    /* of the accelerations or of the implicit equation */
-    double max_penetration; /* m, at the ends of steps */
-    double slip_distance;   /* m, summed over contacts */
-    double peak_torque;     /* N m */
-    double friction_used;   /* largest |rT|/rN */
-    double impact_energy;   /* J, largest kinetic energy that contact impulses added in one step */
-    double projection_energy; /* J, sum of |energy| added by position projection */
-    double energy_gain;       /* J, largest rise of the energy above its start and the work done */
-    /* How far the ends of steps are from the contact laws, largest over the case: normal velocity
-     * (m/s) of a contact that carries, or with which one that does not penetrates; |rT|/rN - mu
-     * beyond the cone; slip (m/s) that full friction against it does not accompany. */
-    double signorini_residual, coulomb_residual, dissipation_residual;
+    int32_t status; /* stance_status */
+#define STANCE_ANSWER_FIELD(name, type, how, told, unit, text) type name;
+    STANCE_ANSWERS(STANCE_ANSWER_FIELD)
+#undef STANCE_ANSWER_FIELD
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
 } stance_result;
+
+enum {
+#define STANCE_ANSWER_ENUM(name, type, how, told, unit, text) STANCE_ANSWER_##name,
+    STANCE_ANSWERS(STANCE_ANSWER_ENUM)
+#undef STANCE_ANSWER_ENUM
+        STANCE_ANSWER_COUNT,
+};
+
+/* A row of the table, for those who treat all answers alike. */
+typedef enum stance_type { STANCE_UINT8, STANCE_INT64, STANCE_DOUBLE } stance_type;
+typedef struct stance_answer {
+    const char *name, *unit, *text;
+    stance_type type;
+    size_t size, offset; /* bytes; in stance_result */
+    double none;         /* value of a case without one */
+    /* Of an answer that is a code: the words that its numbers stand for; else NULL, 0. */
+    const char *const *word;
+    int words;
+} stance_answer;
+extern const stance_answer stance_answers[STANCE_ANSWER_COUNT];
+
+/* The result of a case that has none: every answer its `none`, the state NAN, status pending. */
+void stance_result_clear(stance_result *result);
+
+/* Names and texts of outcomes and failures. */
+extern const char *const stance_outcome_name[STANCE_OUTCOME_COUNT];
+extern const char *const stance_evidence_name[STANCE_EVIDENCE_COUNT];
+extern const char *const stance_failure_name[STANCE_FAILURE_COUNT];
+extern const char *const stance_failure_text[STANCE_FAILURE_COUNT];
 
 /* ---- kernels: how it is stepped ------------------------------------------------------------- */
 
@@ -422,13 +489,14 @@ stance_error stance_sublevel(int n, const double *P, int count, const double *a,
  * leaves and that lies within |a_k' x| <= d_k, a[count][n], 1 to 16 bounds, d > 0, INFINITY where a
  * bound is none: the Lyapunov function is chosen for the volume. n <= 6. BAD_ARGUMENT when the loop
  * is not stable or a bound leaves nothing. */
-stance_error stance_widest_set(int n, const double *loop, bool sampled, int count, const double *a,
-                               const double *d, double *P, stance_message *message);
+stance_error stance_invariant_ellipsoid(int n, const double *loop, bool sampled, int count,
+                                        const double *a, const double *d, double *P,
+                                        stance_message *message);
 
 enum { STANCE_MAX_SHAPES = 16 };
 
-/* What stance_capture_estimate looks for. */
-typedef struct stance_capture_search {
+/* What stance_known_basin_estimate looks for. */
+typedef struct stance_known_basin_search {
     const stance_scene *scene;
     const stance_kernel *kernel;
     /* Robot, ground, law, noise, step, rules and length of the simulations, seed. */
@@ -439,10 +507,10 @@ typedef struct stance_capture_search {
     /* NULL, or asked about every millisecond: true, the search is given up (STOPPED). */
     bool (*leave)(void *context);
     void *context;
-} stance_capture_search;
+} stance_known_basin_search;
 
 /* The set x' form x <= 1 from whose boundary every simulation ended `stabilised`. */
-typedef struct stance_captured_set {
+typedef struct stance_known_basin {
     bool exists;
     double form[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
     int shape;           /* which P */
@@ -455,21 +523,22 @@ typedef struct stance_captured_set {
     int64_t simulations; /* in all, those of the search included */
     double volume[STANCE_MAX_SHAPES]; /* logarithm of the volume that each P reached in the search,
                                        * up to a constant; NAN where none */
-} stance_captured_set;
+} stance_known_basin;
 
 /* Largest level c of x' P x, x = (posture - target, rates), for which simulations that begin on its
  * boundary, evenly in the metric of P, with the support foot standing at rest and no contact inside
  * the ground, all end as `stabilised`, in full. The shape with the largest volume is taken. 0
- * failures of n say that less than stance_capture_share of the boundary fails, with 95 %
+ * failures of n say that less than stance_known_basin_share of the boundary fails, with 95 %
  * confidence. *set with `exists` false: no set was found. BAD_ARGUMENT: base does not settle at a
  * target on a foot, or its law is not the state's alone. STOPPED: given up; `simulations` counts
  * those that had ended. */
-stance_error stance_capture_estimate(const stance_capture_search *search, stance_captured_set *set);
+stance_error stance_known_basin_estimate(const stance_known_basin_search *search,
+                                         stance_known_basin *set);
 
 /* What no failure in `boundary` simulations of the last of `batches` sets, tried one after the
  * other until one passed, says with 95 % confidence: less than this share of its boundary fails. 1
  * - alpha^(1 / boundary), alpha = 0.05 * 6 / (pi batches)^2: summed over all sets that might be
  * tried 0.05, so that it holds whenever the search ends. */
-double stance_capture_share(int64_t batches, int64_t boundary);
+double stance_known_basin_share(int64_t batches, int64_t boundary);
 
 #endif

@@ -1,7 +1,8 @@
 /* main.c - the program: finds the command and runs it. */
-#include "build_info.h"
-#include "command.h"
-#include "instruction_set.h"
+#include "runner/base/command.h"
+#include "runner/base/words.h"
+#include "runner/plan/instruction_set.h"
+#include "runner/store/build_info.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -9,6 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+
+extern const struct command command_check, command_design, command_run, command_status,
+    command_summary, command_plot, command_compare, command_describe, command_bench, command_basin,
+    command_merge, command_table, command_sensitivity;
 
 static const struct command *const commands[] = {
     &command_check, &command_design,   &command_run,   &command_status,      &command_summary,
@@ -22,9 +27,8 @@ static void print_usage(FILE *out)
     fputs("stance maps where a legged robot keeps its balance.\n\n"
           "usage: stance COMMAND [ARGUMENTS]\n\n",
           out);
-    for (size_t i = 0; i < COMMANDS; i++) {
+    for (size_t i = 0; i < COMMANDS; i++)
         fprintf(out, "  %-12s %s\n", commands[i]->name, commands[i]->summary);
-    }
     fputs(
         "\nstance COMMAND -h explains a command; stance --version says what was built.\n"
         "Exit codes: 0 done, 1 some cases failed numerically (compare: files differ),\n"
@@ -49,16 +53,14 @@ static void print_version(void)
 static int unknown_command(const char *word)
 {
     const char *names[COMMANDS];
-    for (size_t i = 0; i < COMMANDS; i++) {
+    for (size_t i = 0; i < COMMANDS; i++)
         names[i] = commands[i]->name;
-    }
     const char *near = nearest_word(word, names, COMMANDS);
     fprintf(stderr, "stance: unknown command '%s'", word);
-    if (near) {
+    if (near)
         fprintf(stderr, "; did you mean '%s'?\n", near);
-    } else {
+    else
         fprintf(stderr, "; stance -h lists the commands\n");
-    }
     return EXIT_USAGE;
 }
 
@@ -67,11 +69,9 @@ static int unknown_command(const char *word)
  * that to print is an error. */
 static bool hold_standard_streams(void)
 {
-    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++) {
-        if (fcntl(stream, F_GETFD) < 0 && errno == EBADF && open("/dev/null", O_RDONLY) != stream) {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && errno == EBADF && open("/dev/null", O_RDONLY) != stream)
             return false;
-        }
-    }
     return true;
 }
 
@@ -89,9 +89,8 @@ int main(int argc, char **argv)
 {
     /* A write beyond the file size limit is to fail with an error, not to kill the process. */
     signal(SIGXFSZ, SIG_IGN);
-    if (!hold_standard_streams()) {
+    if (!hold_standard_streams())
         return EXIT_IO; /* nowhere to say why */
-    }
     if (argc < 2) {
         print_usage(stderr);
         return EXIT_USAGE;
@@ -105,10 +104,8 @@ int main(int argc, char **argv)
         print_version();
         return checked_output(EXIT_DONE);
     }
-    for (size_t i = 0; i < COMMANDS; i++) {
-        if (strcmp(argv[1], commands[i]->name) == 0) {
+    for (size_t i = 0; i < COMMANDS; i++)
+        if (strcmp(argv[1], commands[i]->name) == 0)
             return checked_output(commands[i]->run(argc - 1, argv + 1));
-        }
-    }
     return unknown_command(argv[1]);
 }

@@ -15,7 +15,7 @@
  *
  * Also reported: how far a foot is in the ground, and how fast a robot that stands creeps along it.
  */
-#include "../runner/bench.h"
+#include "analysis/bench/bench.h"
 
 #include <math.h>
 #include <mujoco/mujoco.h>

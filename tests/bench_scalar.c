@@ -3,11 +3,11 @@
  *
  * What an engineer would write who needs nothing but this: the biped on one foot, theta = 1, linear
  * law sampled each step, in plain C. The equations are those of engine/scenes/biped_lanes.h and
- * engine/core/step.h: hip and absolute angles, the angles eliminated from Newton's matrix, a 2 x 2
- * Schur complement, one contact in closed form (open, stick, slip). As in the kernels, Newton
- * starts from the velocity that the last two changes point to and from the last impulses. What it
- * may do and a general kernel may not: sines of later iterates come from turning those of the first
- * by a small angle, zeros in the contact's columns are known, there is one contact.
+ * engine/core/implicit/step.h: hip and absolute angles, the angles eliminated from Newton's matrix,
+ * a 2 x 2 Schur complement, one contact in closed form (open, stick, slip). As in the kernels,
+ * Newton starts from the velocity that the last two changes point to and from the last impulses.
+ * What it may do and a general kernel may not: sines of later iterates come from turning those of
+ * the first by a small angle, zeros in the contact's columns are known, there is one contact.
  *
  * What it leaves out, and the kernel does: other contacts, restitution, noise, delay, switching;
  * the answers but the final state (largest residuals, friction used, slip, torque, energies,
@@ -17,7 +17,7 @@
  * Final states are compared with those of the kernel; a difference above 1e-7 after the 1,000 steps
  * is an error.
  */
-#include "../runner/bench.h"
+#include "analysis/bench/bench.h"
 
 #include <math.h>
 #include <stdlib.h>

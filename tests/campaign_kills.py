@@ -14,6 +14,7 @@ import os
 import random
 import signal
 import subprocess
+import tempfile
 import time
 
 from campaign import Bad, PATIENCE, STANCE, arguments, finish, main, must_be_same, references, \
@@ -58,7 +59,7 @@ def wait_for_end(process, ranks):
         process.wait(PATIENCE)
     except subprocess.TimeoutExpired as late:
         os.killpg(process.pid, signal.SIGKILL)
-        raise Bad("hangs after a kill") from late
+        raise Bad(f"the launcher does not end within {PATIENCE} s of a kill") from late
     until = time.monotonic() + PATIENCE
     while any(os.path.exists(f"/proc/{rank}") for rank in ranks):
         if time.monotonic() > until:
@@ -71,14 +72,17 @@ def run_and_kill(scenario, file, times, rng):
     ranks = rng.choice([0, 1, 2, 2, 3, 4])
     mode = rng.choice(["rank", "rank", "all", "launcher"]) if ranks else "launcher"
     when = rng.uniform(0, 1.05 * times[ranks])
-    with subprocess.Popen(run_line(scenario, file, ranks, "--resume"), stdin=subprocess.DEVNULL,
-                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                          start_new_session=True) as process:
+    # Errors go to a file: the end of a pipe would come only with the end of all who hold it.
+    with tempfile.TemporaryFile() as said, \
+            subprocess.Popen(run_line(scenario, file, ranks, "--resume"),
+                             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said,
+                             start_new_session=True) as process:
         time.sleep(when)
         alive = children(process.pid)
         struck = kill(process, mode, rng)
-        errors = process.stderr.read().decode(errors="replace")
         wait_for_end(process, alive)
+        said.seek(0)
+        errors = said.read().decode(errors="replace")
     if not struck and process.returncode not in (0, 1):
         raise Bad(f"exit code {process.returncode}: {errors[-500:]}")
     if struck and ("damaged" in errors or "did not verify" in errors):

@@ -29,11 +29,9 @@ static bool is_signature(const uint8_t *data)
     static const char *const words[] = {"OHDR", "OCHK", "FRHP", "FHDB", "FHIB", "FSHD",
                                         "FSSE", "BTHD", "BTIN", "BTLF", "SMTB", "SMLI",
                                         "GCOL", "SNOD", "TREE", "HEAP"};
-    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
-        if (memcmp(data, words[i], 4) == 0) {
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        if (memcmp(data, words[i], 4) == 0)
             return true;
-        }
-    }
     return false;
 }
 
@@ -41,12 +39,10 @@ static struct damage_block find_block(const uint8_t *data, size_t size, size_t a
 {
     size_t left = size - at < LONGEST_BLOCK ? size - at : LONGEST_BLOCK;
     for (size_t n = 8; n + 4 <= left; n++) {
-        if (H5_checksum_metadata(data + at, n, 0) == load32(data + at + n)) {
+        if (H5_checksum_metadata(data + at, n, 0) == load32(data + at + n))
             return (struct damage_block){at, n + 4, true};
-        }
-        if (n > 16 && n + 8 <= left && is_signature(data + at + n)) {
+        if (n > 16 && n + 8 <= left && is_signature(data + at + n))
             break; /* ran into the next one */
-        }
     }
     return (struct damage_block){at, left < 256 ? left : 256, false};
 }
@@ -57,9 +53,8 @@ bool damage_load(struct damage_file *file, const char *path)
     const char *slash = strrchr(path, '/');
     *file = (struct damage_file){0};
     snprintf(file->name, sizeof file->name, "%s", slash ? slash + 1 : path);
-    if (!in || fseek(in, 0, SEEK_END) != 0) {
+    if (!in || fseek(in, 0, SEEK_END) != 0)
         return false;
-    }
     file->size = (size_t)ftell(in);
     rewind(in);
     file->data = malloc(file->size + 1);
@@ -72,11 +67,9 @@ bool damage_load(struct damage_file *file, const char *path)
                       load32(file->data + SUPERBLOCK - 4); /* version 2 or 3 */
         file->block[file->blocks++] = (struct damage_block){0, SUPERBLOCK, sealed};
     }
-    for (size_t at = SUPERBLOCK; good && at + 8 < file->size && file->blocks < MOST_BLOCKS; at++) {
-        if (is_signature(file->data + at)) {
+    for (size_t at = SUPERBLOCK; good && at + 8 < file->size && file->blocks < MOST_BLOCKS; at++)
+        if (is_signature(file->data + at))
             file->block[file->blocks++] = find_block(file->data, file->size, at);
-        }
-    }
     return good;
 }
 
@@ -225,9 +218,8 @@ bool damage_make(const struct damage_file *file, uint64_t number, uint8_t *data,
                        (number + 1) * 0x9e3779b97f4a7c15u, text};
     text[0] = '\0';
     memcpy(data, file->data, d.size);
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < 8; i++)
         below(&d, 1); /* numbers beside each other begin alike */
-    }
     const bool forge = below(&d, 2);
     for (size_t n = below(&d, 3) ? 1 : 1 + below(&d, 6); n > 0; n--) {
         switch (below(&d, 12)) {
@@ -260,9 +252,8 @@ bool damage_make(const struct damage_file *file, uint64_t number, uint8_t *data,
             forge ? extreme(&d) : flip(&d, true);
         }
     }
-    if (forge) {
+    if (forge)
         seal(&d);
-    }
     *size = d.size;
     return forge;
 }

@@ -1,7 +1,7 @@
 /* fuzz_mutate.c - changes to scenarios for libFuzzer: of lines with their indentation, of words in
  * them, of whole branches, and --set strings; the words come from the table of keys itself.
  */
-#include "../runner/schema.h"
+#include "runner/scenario/schema.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,16 +37,13 @@ static size_t schema_count;
 static void build_schemas(void)
 {
     const stance_scene *const *scenes = stance_scenes();
-    while (scenes[schema_count]) {
+    while (scenes[schema_count])
         schema_count++;
-    }
     schemas = calloc(schema_count, sizeof *schemas);
-    if (!schemas) {
+    if (!schemas)
         abort();
-    }
-    for (size_t i = 0; i < schema_count; i++) {
+    for (size_t i = 0; i < schema_count; i++)
         schema_build(&schemas[i], scenes[i]);
-    }
 }
 
 static const struct scenario_field *any_field(void)
@@ -131,9 +128,8 @@ static void concrete_path(const char *path, char *out, size_t size)
     size_t n = 0;
     for (const char *s = path; *s && n + 8 < size; s++) {
         out[n++] = *s;
-        if (*s == '[') {
+        if (*s == '[')
             n += (size_t)snprintf(out + n, size - n, "%zu", below(8) ? below(3) : below(1000));
-        }
     }
     out[n] = '\0';
 }
@@ -167,9 +163,8 @@ struct text {
 /* Puts `length` bytes where `cut` bytes stood; does nothing when they do not fit. */
 static void splice(struct text *t, size_t at, size_t cut, const char *with, size_t length)
 {
-    if (t->size - cut + length > t->room) {
+    if (t->size - cut + length > t->room)
         return;
-    }
     memmove(t->data + at + length, t->data + at + cut, t->size - at - cut);
     memcpy(t->data + at, with, length);
     t->size += length - cut;
@@ -185,18 +180,16 @@ static size_t line_end(const struct text *t, size_t at)
 static size_t any_line(const struct text *t)
 {
     size_t at = below(t->size + 1);
-    while (at > 0 && t->data[at - 1] != '\n') {
+    while (at > 0 && t->data[at - 1] != '\n')
         at--;
-    }
     return at;
 }
 
 static size_t indent_of(const struct text *t, size_t line)
 {
     size_t n = 0;
-    while (line + n < t->size && t->data[line + n] == ' ') {
+    while (line + n < t->size && t->data[line + n] == ' ')
         n++;
-    }
     return n;
 }
 
@@ -205,9 +198,8 @@ static size_t branch_end(const struct text *t, size_t line)
 {
     const size_t indent = indent_of(t, line);
     size_t end = line_end(t, line);
-    while (end < t->size && (t->data[end] == '\n' || indent_of(t, end) > indent)) {
+    while (end < t->size && (t->data[end] == '\n' || indent_of(t, end) > indent))
         end = line_end(t, end);
-    }
     return end;
 }
 
@@ -220,12 +212,10 @@ static bool is_edge(char c)
 static size_t any_word(const struct text *t, size_t *length)
 {
     size_t at = below(t->size), end;
-    while (at > 0 && !is_edge(t->data[at - 1])) {
+    while (at > 0 && !is_edge(t->data[at - 1]))
         at--;
-    }
-    for (end = at; end < t->size && !is_edge(t->data[end]);) {
+    for (end = at; end < t->size && !is_edge(t->data[end]);)
         end++;
-    }
     *length = end - at;
     return at;
 }
@@ -267,9 +257,8 @@ static void change_key(struct text *t)
     char *place = t->size ? memmem(t->data, t->size, wanted, strlen(wanted)) : NULL;
     if (place && below(4)) {
         size_t at = (size_t)(place - t->data) + strlen(wanted), end = at;
-        while (end < t->size && !strchr("\n,}", t->data[end])) {
+        while (end < t->size && !strchr("\n,}", t->data[end]))
             end++;
-        }
         snprintf(line, sizeof line, " %s", value);
         splice(t, at, end - at, line, strlen(line));
         return;
@@ -285,9 +274,8 @@ static void add_set(struct text *t)
     const struct scenario_field *field = any_field();
     concrete_path(field->path, path, sizeof path);
     field_value(field, value, sizeof value);
-    for (char *s = value; *s; s++) {
+    for (char *s = value; *s; s++)
         *s = *s == '\n' ? ' ' : *s;
-    }
     snprintf(line, sizeof line, "%s#set %s=%s\n",
              t->size && t->data[t->size - 1] != '\n' ? "\n" : "", path, value);
     splice(t, t->size, 0, line, strlen(line));
@@ -323,12 +311,10 @@ static void move_branch(struct text *t)
         return;
     }
     memcpy(copy, t->data + from, length);
-    if (below(3)) {
+    if (below(3))
         splice(t, from, length, "", 0);
-    }
-    if (below(3)) {
+    if (below(3))
         splice(t, any_line(t), 0, copy, length);
-    }
     free(copy);
 }
 
@@ -365,15 +351,12 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t room, unsigned
     struct text t = {(char *)data, size, room};
 
     begin_chance(seed);
-    if (!schemas) {
+    if (!schemas)
         build_schemas();
-    }
-    if (size == 0 || below(8) == 0) {
+    if (size == 0 || below(8) == 0)
         return LLVMFuzzerMutate(data, size, room);
-    }
-    for (size_t n = 1 + below(4); n > 0; n--) {
+    for (size_t n = 1 + below(4); n > 0; n--)
         edits[below(sizeof edits / sizeof edits[0])](&t);
-    }
     return t.size;
 }
 
@@ -385,9 +368,8 @@ size_t LLVMFuzzerCustomCrossOver(const uint8_t *one, size_t one_size, const uint
     char *copy = malloc(other_size + 1);
 
     begin_chance(seed);
-    if (!copy) {
+    if (!copy)
         abort();
-    }
     memcpy(out, one, t.size);
     memcpy(copy, other, other_size);
     const struct text source = {copy, other_size, other_size};

@@ -6,7 +6,7 @@
  * A worker process damages a good file in memory (damage.c), writes it to shared memory's file
  * system and runs summary, status, plot (but for gnuplot), compare and what a resume reads, all in
  * itself and under the sanitizers. The HDF5 library crashes on damaged files: the commands read
- * in a process of their own for that (runner/supervise.h) and here a new worker goes on. Allowed
+ * in a process of their own for that (runner/base/sandbox.h) and here a new worker goes on. Allowed
  * are therefore crashes and loops within the library while it is supervised. Findings are
  *   - anything a sanitizer says of code of ours, or an allocation of ours out of all proportion,
  *   - a crash or a loop where nothing supervises: in a resume that goes on after its check,
@@ -14,14 +14,14 @@
  *   - numbers that differ from those of the good file without an error, unless checksums were
  *     forged to make them so.
  */
-#include "../analysis/gnuplot.h"
-#include "../analysis/results.h"
-#include "../runner/checksum.h"
-#include "../runner/command.h"
-#include "../runner/plan.h"
-#include "../runner/store.h"
-#include "../runner/supervise.h"
+#include "analysis/draw/gnuplot.h"
 #include "damage.h"
+#include "runner/base/checksum.h"
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+#include "runner/plan/plan.h"
+#include "runner/store/results.h"
+#include "runner/store/store.h"
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -39,6 +39,9 @@
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+extern const struct command command_summary, command_status, command_plot, command_compare,
+    command_basin, command_sensitivity;
 
 enum {
     FILES_PER_WORKER = 500,
@@ -101,15 +104,15 @@ static unsigned findings;
 /* ---- the program's edges ------------------------------------------------------------------ */
 
 /* Commands work here instead of in a process of their own. */
-int __wrap_supervise(int (*work)(void *context), void *context, const char *files);
-int __wrap_supervise(int (*work)(void *context), void *context, const char *files)
+int __wrap_sandbox(int (*work)(void *context), void *context, const char *files);
+int __wrap_sandbox(int (*work)(void *context), void *context, const char *files)
 {
     (void)files;
     return work(context);
 }
 
-void __wrap_supervise_limit(bool begin);
-void __wrap_supervise_limit(bool begin)
+void __wrap_sandbox_limit(bool begin);
+void __wrap_sandbox_limit(bool begin)
 {
     (void)begin; /* the timer of the worker is stricter */
 }
@@ -148,15 +151,12 @@ static bool called_by_library(void)
     int n = backtrace(frame, 24);
     for (int i = 1; i < n; i++) {
         if (!dladdr(frame[i], &info) || !info.dli_fname || strstr(info.dli_fname, "clang_rt") ||
-            strstr(info.dli_fname, "/libc.so")) {
+            strstr(info.dli_fname, "/libc.so"))
             continue;
-        }
-        if (!strstr(info.dli_fname, "fuzz_results")) {
+        if (!strstr(info.dli_fname, "fuzz_results"))
             return true;
-        }
-        if (i > 2) { /* beyond this function and the hook: the caller of malloc */
+        if (i > 2) /* beyond this function and the hook: the caller of malloc */
             return false;
-        }
     }
     return false;
 }
@@ -164,9 +164,8 @@ static bool called_by_library(void)
 static void watch_allocation(const volatile void *memory, size_t size)
 {
     if (memory && size > MOST_ALLOCATED && shared) {
-        if (!called_by_library()) {
+        if (!called_by_library())
             finding("%zu bytes allocated", size);
-        }
         shared->large++;
     }
 }
@@ -191,16 +190,14 @@ static unsigned lines_said(char *first, size_t size)
         end = line + strcspn(line, "\n");
         end += *end == '\n';
         /* nor warnings, which may stand before what there is to say */
-        if (supervise_own_line(line) && strncmp(line, "==", 2) != 0 &&
+        if (sandbox_own_line(line) && strncmp(line, "==", 2) != 0 &&
             strncmp(line, "stance: warning:", 16) != 0) {
-            if (lines++ == 0) {
+            if (lines++ == 0)
                 snprintf(first, size, "%.*s", (int)(end - line), line);
-            }
         }
     }
-    if (ftruncate(log_file, 0) != 0) {
+    if (ftruncate(log_file, 0) != 0)
         abort();
-    }
     lseek(log_file, 0, SEEK_SET);
     return lines;
 }
@@ -212,12 +209,10 @@ static int run_command(enum stage stage, const struct command *command, int argc
     int code = command->run(argc, argv);
     unsigned lines = lines_said(first, sizeof first);
     bool fits = code == EXIT_IO ? lines == 1 : code == EXIT_USAGE ? lines == 1 : lines <= 1;
-    for (const unsigned char *s = (const unsigned char *)first; *s; s++) {
+    for (const unsigned char *s = (const unsigned char *)first; *s; s++)
         fits = fits && (*s >= 0x20 || (*s == '\n' && !s[1])) && *s != 0x7f;
-    }
-    if (!fits || code < 0 || code > EXIT_IO) {
+    if (!fits || code < 0 || code > EXIT_IO)
         finding("%s: exit code %d with %u lines: %s", stage_names[stage], code, lines, first);
-    }
     return code;
 }
 
@@ -229,25 +224,22 @@ static uint32_t add(uint32_t crc, const void *data, size_t size)
 static bool hash_rows(const struct results *r, struct numbers *numbers, stance_message *message)
 {
     static const char *const answers[] = {
-#define ANSWER(name, type, field, fill, unit, text) #name,
-        STORE_ANSWERS(ANSWER)
+#define ANSWER(name, ...) #name,
+        STANCE_ANSWERS(ANSWER)
 #undef ANSWER
     };
     numbers->cases = r->cases;
     numbers->row = calloc(r->cases, sizeof *numbers->row);
     numbers->kind = malloc(r->cases);
-    if (!numbers->row || !numbers->kind) {
+    if (!numbers->row || !numbers->kind)
         abort();
-    }
     memcpy(numbers->kind, r->kind, r->cases);
     for (size_t k = 0; k < sizeof answers / sizeof answers[0]; k++) {
         double *values;
-        if (!results_answer(r, answers[k], &values, message)) {
+        if (!results_answer(r, answers[k], &values, message))
             return false;
-        }
-        for (uint64_t i = 0; values && i < r->cases; i++) {
+        for (uint64_t i = 0; values && i < r->cases; i++)
             numbers->row[i] = add(numbers->row[i], &values[i], sizeof *values);
-        }
         free(values);
     }
     return true;
@@ -302,24 +294,18 @@ static void numbers_free(struct numbers *numbers)
 static const char *difference(const struct numbers *a, const struct numbers *b, uint64_t *pending)
 {
     *pending = 0;
-    if (a->axes != b->axes || a->cases != b->cases) {
+    if (a->axes != b->axes || a->cases != b->cases)
         return "axes";
-    }
-    for (uint64_t i = 0; i < a->cases; i++) {
-        if (a->kind[i] == RESULTS_PENDING) {
+    for (uint64_t i = 0; i < a->cases; i++)
+        if (a->kind[i] == RESULTS_PENDING)
             *pending += b->kind[i] != RESULTS_PENDING;
-        } else if (a->kind[i] != b->kind[i] || a->row[i] != b->row[i]) {
+        else if (a->kind[i] != b->kind[i] || a->row[i] != b->row[i])
             return "rows";
-        }
-    }
-    if (a->trajectories != b->trajectories) {
+    if (a->trajectories != b->trajectories)
         return "number of trajectories";
-    }
-    for (size_t k = 0; k < a->trajectories && *pending == 0; k++) {
-        if (a->trajectory[k] != b->trajectory[k]) {
+    for (size_t k = 0; k < a->trajectories && *pending == 0; k++)
+        if (a->trajectory[k] != b->trajectory[k])
             return "trajectories";
-        }
-    }
     return a->designs != b->designs ? "designs" : "";
 }
 
@@ -335,17 +321,15 @@ static bool hash_file(const char *file, struct numbers *numbers, stance_message 
                                           "design/captured"};
     struct results r;
     *numbers = (struct numbers){0};
-    if (!results_open(&r, file, message)) {
+    if (!results_open(&r, file, message))
         return false;
-    }
     for (int a = 0; a < r.axes; a++) {
         const struct results_axis *axis = &r.axis[a];
         numbers->axes = add(numbers->axes, axis->name, strlen(axis->name) + 1);
         numbers->axes = add(numbers->axes, axis->unit, strlen(axis->unit) + 1);
         numbers->axes = add(numbers->axes, axis->value, axis->count * sizeof *axis->value);
-        for (size_t i = 0; axis->word && i < axis->count; i++) {
+        for (size_t i = 0; axis->word && i < axis->count; i++)
             numbers->axes = add(numbers->axes, axis->word[i], strlen(axis->word[i]) + 1);
-        }
     }
     numbers->axes = add(numbers->axes, r.scenario, strlen(r.scenario));
     double *values = calloc(MOST_NUMBERS, sizeof *values);
@@ -393,9 +377,8 @@ static bool resume(size_t which, stance_message *message)
         free(s);
         return false;
     }
-    for (int a = 0; a < s->axes && fine; a++) {
+    for (int a = 0; a < s->axes && fine; a++)
         fine = store_read_axis(path, &s->axis[a], message);
-    }
     fine = fine && store_count(path, &counts, message);
     bool single = strstr(good[which].name, "case") != NULL;
     fine = fine && plan_make(&plan, s, single, only, single, &error);
@@ -410,11 +393,10 @@ static bool resume(size_t which, stance_message *message)
             fine = results && store_verify(store, &rows, results, whole, message);
             free(results);
         }
-        if (store && fine) {
+        if (store && fine)
             fine = store_close(store, message);
-        } else {
+        else
             store_abandon(store);
-        }
         plan_free(&plan);
     }
     scenario_free(s);
@@ -425,9 +407,8 @@ static bool resume(size_t which, stance_message *message)
 static void write_file(const uint8_t *data, size_t size)
 {
     int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    if (file < 0 || write(file, data, size) != (ssize_t)size) {
+    if (file < 0 || write(file, data, size) != (ssize_t)size)
         abort();
-    }
     close(file);
 }
 
@@ -446,9 +427,8 @@ static void try_file(size_t which)
     int code =
         run_command(STAGE_SUMMARY, &command_summary, turn & 1 ? 3 : 2, turn & 1 ? json : arguments);
     bool detected = code == EXIT_IO;
-    if (turn == 3) {
+    if (turn == 3)
         run_command(STAGE_STATUS, &command_status, 2, arguments);
-    }
     if (code != EXIT_IO && turn == 3) {
         run_command(STAGE_PLOT, &command_plot, 4, plot);
         run_command(STAGE_COMPARE, &command_compare, 3, arguments);
@@ -462,13 +442,11 @@ static void try_file(size_t which)
     const char *what = detected ? "" : difference(&numbers, &expected[which], &pending);
     enum verdict verdict = detected ? DETECTED : what[0] ? DIFFERENT : pending ? FLAGGED : HARMLESS;
     numbers_free(&numbers);
-    if (verdict == DIFFERENT && !shared->is_forged) {
+    if (verdict == DIFFERENT && !shared->is_forged)
         finding("silently different: %s", what);
-    }
     message.text[0] = '\0';
-    if (!resume(which, &message) && message.text[0] == '\0') {
+    if (!resume(which, &message) && message.text[0] == '\0')
         finding("a resume stops without a reason");
-    }
     lines_said(first, sizeof first);
     shared->verdicts[shared->is_forged][verdict]++;
 }
@@ -479,9 +457,8 @@ static void prepare_worker(void)
 {
     log_file = open(log_path, O_RDWR | O_CREAT | O_TRUNC | O_APPEND, 0600);
     int nowhere = open("/dev/null", O_WRONLY);
-    if (log_file < 0 || nowhere < 0) {
+    if (log_file < 0 || nowhere < 0)
         abort();
-    }
     dup2(nowhere, STDOUT_FILENO);
     dup2(log_file, STDERR_FILENO);
     store_prepare();
@@ -507,25 +484,22 @@ static void work(uint64_t end)
     }
     limit_time(0);
     free(data);
-    if (__lsan_do_recoverable_leak_check()) {
+    if (__lsan_do_recoverable_leak_check())
         finding("leaks among the files up to %llu", (unsigned long long)end);
-    }
     _exit(0);
 }
 
 /* What a worker that died has said: whether the HDF5 library is to blame. */
 static bool is_library(const char *said)
 {
-    if (strstr(said, "runtime error:") || strstr(said, "finding:")) {
+    if (strstr(said, "runtime error:") || strstr(said, "finding:"))
         return false;
-    }
     for (const char *frame = strstr(said, "    #"); frame; frame = strstr(frame + 1, "\n    #")) {
         size_t length = strcspn(frame + 1, "\n");
         char line[512];
         snprintf(line, sizeof line, "%.*s", (int)(length < 500 ? length : 500), frame + 1);
-        if (strstr(line, "clang_rt") || strstr(line, "libc.so")) {
+        if (strstr(line, "clang_rt") || strstr(line, "libc.so"))
             continue;
-        }
         return strstr(line, "libhdf5") != NULL;
     }
     return false;
@@ -551,9 +525,8 @@ static size_t read_all(const char *name, void *data, size_t room)
 {
     FILE *in = fopen(name, "rb");
     size_t n = in ? fread(data, 1, room, in) : 0;
-    if (in) {
+    if (in)
         fclose(in);
-    }
     return n;
 }
 
@@ -565,9 +538,8 @@ static bool is_finding(int status)
     const bool supervised = shared->stage != STAGE_RESUME;
     said[read_all(log_path, said, sizeof said - 1)] = '\0';
     const bool loop = WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF;
-    if (!supervised || (!loop && !is_library(said))) {
+    if (!supervised || (!loop && !is_library(said)))
         return true;
-    }
     shared->loops += loop;
     shared->crashes += !loop;
     shared->verdicts[shared->is_forged][DETECTED]++;
@@ -581,12 +553,10 @@ static int try_alone(void)
     const struct shared before = *shared;
     int status;
     pid_t child = fork();
-    if (child == 0) {
+    if (child == 0)
         work(shared->next + 1);
-    }
-    if (child < 0 || waitpid(child, &status, 0) < 0) {
+    if (child < 0 || waitpid(child, &status, 0) < 0)
         abort();
-    }
     const enum stage stage = shared->stage;
     *shared = before;
     shared->stage = stage;
@@ -597,9 +567,8 @@ static void judge(int status, bool alone)
 {
     static char said[1 << 16];
     static uint8_t data[ROOM];
-    if (!is_finding(status)) {
+    if (!is_finding(status))
         return;
-    }
     said[read_all(log_path, said, sizeof said - 1)] = '\0';
     if (!alone && !strstr(said, "finding: leaks")) {
         status = try_alone();
@@ -607,9 +576,8 @@ static void judge(int status, bool alone)
             shared->astray++;
             return;
         }
-        if (!is_finding(status)) {
+        if (!is_finding(status))
             return;
-        }
     }
     said[read_all(log_path, said, sizeof said - 1)] = '\0';
     size_t size = read_all(path, data, sizeof data);
@@ -635,12 +603,10 @@ static void campaign(double seconds, uint64_t runs, uint64_t from)
         end = end - from < runs ? end : from + runs;
         int status;
         pid_t child = fork();
-        if (child == 0) {
+        if (child == 0)
             work(end);
-        }
-        if (child < 0 || waitpid(child, &status, 0) < 0) {
+        if (child < 0 || waitpid(child, &status, 0) < 0)
             abort();
-        }
         if (status != 0) {
             judge(status, false);
             shared->next++;
@@ -697,12 +663,10 @@ static void replay(const char *file)
         try_file(0);
         _exit(0);
     }
-    if (child < 0 || waitpid(child, &status, 0) < 0) {
+    if (child < 0 || waitpid(child, &status, 0) < 0)
         abort();
-    }
-    if (status != 0) {
+    if (status != 0)
         judge(status, true);
-    }
     free(damaged.data);
     free(damaged.block);
 }
@@ -762,17 +726,14 @@ int main(int argc, char **argv)
     store_prepare();
     if (replays) {
         bool begun = add_good(argv[i++]);
-        for (; begun && i < argc; i++) {
+        for (; begun && i < argc; i++)
             replay(argv[i]);
-        }
         findings += !begun;
     } else {
-        for (; i < argc && goods < MOST_FILES; i++) {
+        for (; i < argc && goods < MOST_FILES; i++)
             findings += !add_good(argv[i]);
-        }
-        if (findings == 0) {
+        if (findings == 0)
             campaign(seconds, runs, from);
-        }
     }
     char command[128];
     snprintf(command, sizeof command, "rm -rf %s", directory);

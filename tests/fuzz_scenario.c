@@ -12,10 +12,10 @@
  */
 #include "fuzz_scenario.h"
 
-#include "../runner/plan.h"
-#include "../runner/schema.h"
-#include "../runner/store.h"
-#include "../runner/tree.h"
+#include "runner/plan/plan.h"
+#include "runner/scenario/schema.h"
+#include "runner/scenario/tree.h"
+#include "runner/store/store.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,13 +46,11 @@ static bool read_input(struct scenario *s, const char *text, size_t size, char *
                        size_t sets, FILE *errors)
 {
     char name[64];
-    if (strlen(text) == size) {
+    if (strlen(text) == size)
         return scenario_read(s, "input.yaml", text, (const char *const *)set, sets, errors);
-    }
     int file = memfd_create("input", MFD_CLOEXEC);
-    if (file < 0 || write(file, text, size) != (ssize_t)size) {
+    if (file < 0 || write(file, text, size) != (ssize_t)size)
         abort();
-    }
     snprintf(name, sizeof name, "/proc/self/fd/%d", file);
     bool good = scenario_read(s, name, NULL, (const char *const *)set, sets, errors);
     close(file);
@@ -97,9 +95,8 @@ static void check_plan(const struct scenario *s)
 
     if (good && plan.designs <= MOST_DESIGNS) {
         good = plan_compute_designs(&plan, &alone, &error);
-        if (good && s->cases <= MOST_CASES) {
+        if (good && s->cases <= MOST_CASES)
             good = plan_check_cases(&plan, &error);
-        }
     }
     if (good && plan.rows > 0) {
         plan_recorded(&plan, plan.rows - 1, &place);
@@ -110,9 +107,8 @@ static void check_plan(const struct scenario *s)
         abort();
     }
     plan_free(&plan);
-    if (plan_make(&plan, s, true, s->cases - 1, true, &error)) {
+    if (plan_make(&plan, s, true, s->cases - 1, true, &error))
         plan_free(&plan);
-    }
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -122,9 +118,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct scenario *s = malloc(sizeof *s);
 
     nowhere = nowhere ? nowhere : fopen("/dev/null", "w");
-    if (!text || !s || !nowhere) {
+    if (!text || !s || !nowhere)
         abort();
-    }
     memcpy(text, data, size);
     text[size] = '\0';
     size_t sets = find_sets(text, set);
@@ -134,9 +129,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check_plan(s);
         scenario_free(s);
     }
-    for (size_t i = 0; i < sets; i++) {
+    for (size_t i = 0; i < sets; i++)
         free(set[i]);
-    }
     free(s);
     free(text);
     return 0;

@@ -66,7 +66,7 @@ exec ip netns exec "$name-\$i" unshare --uts bash -c 'hostname "\$0"; eval "\$*"
 END_OF_FILE
 chmod +x launch
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_btl_vader_single_copy_mechanism=none
+export OMPI_MCA_btl_vader_single_copy_mechanism=none PMIX_MCA_gds=hash
 # The hosts share their processors: none may take one for itself.
 export OMPI_MCA_hwloc_base_binding_policy=none
 # As scenarios/cluster/ has them, but quicker to notice that a host has gone: after 8 s.

@@ -33,12 +33,11 @@ static inline void hunt_law(uint64_t *seed, bool extreme, double moment, double 
 static inline void hunt_biped(uint64_t *seed, bool extreme, stance_case *c)
 {
     const stance_scene *const scene = stance_scene_find("biped");
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 5; i++)
         if (extreme)
             c->robot[i] = spread(seed, 1e-3, 1e3);
         else
             c->robot[i] *= uniform(seed, 0, 1) < 0.5 ? 1 : spread(seed, 0.3, 3);
-    }
     const double length = fmax(c->robot[0], extreme ? 1e-3 * c->robot[1] : c->robot[1]);
     const double time = sqrt(length / STANCE_GRAVITY);
     const double kind = uniform(seed, 0, 1);

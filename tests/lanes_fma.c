@@ -1,7 +1,7 @@
 /* lanes_fma.c - see lanes_fma.h. */
 #include "lanes_fma.h"
 
-#include "../engine/core/lanes.h"
+#include "engine/core/lanes/lanes.h"
 
 #define FUSED_(isa) fused_##isa
 #define FUSED(isa) FUSED_(isa)

@@ -1,4 +1,4 @@
-/* lanes_fma.h - the fused operations of engine/core/lanes.h as each instruction set has them:
+/* lanes_fma.h - the fused operations of engine/core/lanes/lanes.h as each instruction set has them:
  * lanes_fma.c is compiled once for each of the Makefile's ISAS. */
 #ifndef STANCE_TESTS_LANES_FMA_H
 #define STANCE_TESTS_LANES_FMA_H

@@ -7,16 +7,14 @@
 
 static inline void assert_near(double value, double wanted, double tolerance, const char *what)
 {
-    if (!(fabs(value - wanted) <= tolerance)) {
+    if (!(fabs(value - wanted) <= tolerance))
         fail_msg("%s: %.15g instead of %.15g +- %.3g", what, value, wanted, tolerance);
-    }
 }
 
 static inline void assert_text(const char *text, const char *wanted)
 {
-    if (strcmp(text, wanted) != 0) {
+    if (strcmp(text, wanted) != 0)
         fail_msg("message '%s' instead of '%s'", text, wanted);
-    }
 }
 
 static inline double number_at(const json_t *list, size_t i)
@@ -43,12 +41,10 @@ static inline void assert_matrix(int count, const double *x, const double *wante
                                  const char *what)
 {
     double scale = 0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         scale = fmax(scale, fabs(wanted[i]));
-    }
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         assert_near(x[i], wanted[i], relative * scale, what);
-    }
 }
 
 static inline void closed_loop(int n, int m, const double *A, const double *B, const double *K,
@@ -57,9 +53,8 @@ static inline void closed_loop(int n, int m, const double *A, const double *B, c
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             loop[i * n + j] = A[i * n + j];
-            for (int k = 0; k < m; k++) {
+            for (int k = 0; k < m; k++)
                 loop[i * n + j] -= B[i * m + k] * K[k * n + j];
-            }
         }
     }
 }
@@ -82,9 +77,8 @@ static inline void assert_eigenvalues(int n, const double *matrix, const double 
             }
         }
         used[best] = true;
-        if (least > tolerance) {
+        if (least > tolerance)
             fail_msg("%s: no eigenvalue within %.3g of %.9g%+.9gi", what, tolerance, re[i], im[i]);
-        }
     }
 }
 
@@ -94,9 +88,8 @@ static inline stance_equilibrium equilibrium_of(const double *robot, int support
     const stance_equilibrium_choice choice = {support, {theta, q1, q2}, lower};
     stance_equilibrium e;
     stance_message message = {""};
-    if (stance_scene_find("biped")->equilibrium(robot, &choice, &e, &message) != STANCE_OK) {
+    if (stance_scene_find("biped")->equilibrium(robot, &choice, &e, &message) != STANCE_OK)
         fail_msg("%s", message.text);
-    }
     return e;
 }
 

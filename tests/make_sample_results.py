@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes small results files with h5py, in the layout that runner/store.h describes.
+"""Makes small results files with h5py, in the layout that runner/store/store.h describes.
 
 The answers are not simulated: they follow formulas, so that the analysis has something known to
 be compared with. Usage: make_sample_results.py DIRECTORY

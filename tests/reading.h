@@ -4,7 +4,7 @@
 
 #include "support.h"
 
-#include "../runner/scenario.h"
+#include "runner/scenario/scenario.h"
 
 enum { ERRORS_SIZE = 1 << 16 };
 static char errors[ERRORS_SIZE];
@@ -26,9 +26,8 @@ static inline bool read_as(struct scenario *s, const char *file, const char *tex
 static inline void read_good(struct scenario *s, const char *text, const char *const *sets,
                              size_t set_count)
 {
-    if (!read_as(s, "good.yaml", text, sets, set_count)) {
+    if (!read_as(s, "good.yaml", text, sets, set_count))
         fail_msg("refused: %s", errors);
-    }
     assert_string_equal(errors, "");
 }
 

@@ -7,7 +7,7 @@ tests=$PWD/tests shipped=$PWD/scenarios python=${PYTHON:-/usr/bin/python3}
 export STANCE=${STANCE:-$PWD/bin/stance}
 stance=$STANCE
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
+export PMIX_MCA_gds=hash OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
 count=0 patience=60 # seconds that a command may take
 [ -n "${STANCE_SLOW:-}" ] && patience=300
 

@@ -113,7 +113,7 @@ END_OF_FILE
 echo 'CgroupPlugin=autodetect' >"$cluster/cgroup.conf"
 export SLURM_CONF=$cluster/slurm.conf
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-export OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
+export PMIX_MCA_gds=hash OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
 # Both nodes are one machine: neither may take processors for itself.
 export OMPI_MCA_hwloc_base_binding_policy=none
 

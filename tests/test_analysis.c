@@ -2,15 +2,17 @@
  * that make_sample_results.py makes from formulas. */
 #include "support.h"
 
-#include "../analysis/compare.h"
-#include "../analysis/gnuplot.h"
-#include "../analysis/plot.h"
-#include "../analysis/summary.h"
-#include "../runner/command.h"
+#include "analysis/draw/gnuplot.h"
+#include "analysis/draw/plot.h"
+#include "analysis/summary/summary.h"
+#include "runner/base/command.h"
+#include "runner/store/compare.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+extern const struct command command_summary, command_compare, command_plot;
 
 /* ---- files and commands ------------------------------------------------------------------- */
 

@@ -1,7 +1,7 @@
 /* test_basin.c - basins against sets whose volume, entropy and dimension are known. */
 #include "support.h"
 
-#include "../analysis/basin_map.h"
+#include "analysis/basin/basin_map.h"
 
 #include <string.h>
 

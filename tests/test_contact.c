@@ -5,8 +5,8 @@
 #define STANCE_LANES 1
 #define STANCE_SCENE biped
 #define STANCE_ISA inside
-#define STANCE_SCENE_LANES "../scenes/biped_lanes.h"
-#include "../engine/methods/implicit.c"
+#define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
+#include "engine/methods/implicit.c"
 #include "support.h"
 
 struct problem {

@@ -26,16 +26,14 @@ static void compare_design(const json_t *record, const char *name, const double 
         re[i] = poles[2 * i];
         im[i] = poles[2 * i + 1];
     }
-    if (stance_place(6, 2, A, B, re, im, K, &sweeps, &condition, &message) != STANCE_OK) {
+    if (stance_place(6, 2, A, B, re, im, K, &sweeps, &condition, &message) != STANCE_OK)
         fail_msg("%s: %s", name, message.text);
-    }
     closed_loop(6, 2, A, B, K, loop);
     assert_eigenvalues(6, loop, re, im, 1e-7, name);
     const double reference = json_number_value(json_object_get(record, "condition"));
     assert_near(condition, reference, 1e-5 * reference, "condition number");
-    if (!json_is_true(json_object_get(record, "compare_gain"))) {
+    if (!json_is_true(json_object_get(record, "compare_gain")))
         return;
-    }
     assert_matrix(12, K, wanted, 1e-5, name);
     assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, 0, 5, &critical), STANCE_OK);
     const double T = json_number_value(json_object_get(record, "critical_sample_time"));
@@ -62,9 +60,8 @@ static void compare_case(const json_t *record)
     const stance_equilibrium e = equilibrium_of(robot, support, given[0], given[1], given[2],
                                                 json_is_true(json_object_get(record, "lower")));
     assert_int_equal(e.support, support);
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 5; i++)
         assert_near(e.position[i], position[i], 1e-12, name);
-    }
     assert_matrix(2, e.torque, torque, 1e-12, name);
 
     assert_int_equal(stance_scene_find("biped")->linearise(robot, &e, A, B), STANCE_OK);
@@ -116,9 +113,8 @@ static void published_figures(void **state)
     assert_int_equal(stance_scene_find("biped")->linearise(DEFAULT_ROBOT, &e, A, B), STANCE_OK);
     assert_eigenvalues(6, A, open_re, open_im, 1e-6, "open loop");
     assert_int_equal(stance_place(6, 2, A, B, PAPER_POLES, zero, K, NULL, NULL, NULL), STANCE_OK);
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; i++)
         assert_near(K[i], gain[i], 0.0051, "gain");
-    }
     assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, 0, 5, &T), STANCE_OK);
     assert_near(T, 0.1363, 5e-5, "critical sample time");
     const stance_equilibrium right = equilibrium_of(DEFAULT_ROBOT, 0, M_PI / 2, NAN, 0, false);
@@ -147,9 +143,8 @@ static void equilibria_balance(void **state)
         choice.posture[i / 4 % 3] = NAN;
         stance_equilibrium e;
         double points[STANCE_MAX_POINTS][2];
-        if (scene->equilibrium(robot, &choice, &e, NULL) != STANCE_OK) {
+        if (scene->equilibrium(robot, &choice, &e, NULL) != STANCE_OK)
             continue;
-        }
         found++;
         assert_int_equal(scene->figure(robot, e.position, points), 5);
         const double *feet[2] = {points[0], points[2]}, *trunk = points[4], *hip = points[1];
@@ -307,16 +302,13 @@ static void places_any_system(void **state)
     for (int round = 0; round < 300; round++) {
         const int n = 1 + round % 8, m = 1 + round / 8 % (n + 1);
         double A[64], B[72], K[72], loop[64], re[8], im[8] = {0}, condition;
-        for (int i = 0; i < n * n; i++) {
+        for (int i = 0; i < n * n; i++)
             A[i] = uniform(&seed, -2, 2);
-        }
-        for (int i = 0; i < n * m; i++) {
+        for (int i = 0; i < n * m; i++)
             B[i] = uniform(&seed, -2, 2);
-        }
         for (int i = 0; i < n; i++) { /* the last input repeats the first: rank below m */
-            if (m > 1 && round % 3 == 0) {
+            if (m > 1 && round % 3 == 0)
                 B[i * m + m - 1] = -3 * B[i * m];
-            }
             re[i] = -1 - 0.7 * i + uniform(&seed, -0.2, 0.2);
         }
         if (n >= 4 && round % 2) { /* pairs need not stand side by side */
@@ -330,9 +322,8 @@ static void places_any_system(void **state)
             im[2] = 1.5;
         }
         stance_message message = {""};
-        if (stance_place(n, m, A, B, re, im, K, NULL, &condition, &message) != STANCE_OK) {
+        if (stance_place(n, m, A, B, re, im, K, NULL, &condition, &message) != STANCE_OK)
             fail_msg("n = %d, m = %d: %s", n, m, message.text);
-        }
         closed_loop(n, m, A, B, K, loop);
         assert_true(condition >= 1 - 1e-12);
         assert_eigenvalues(n, loop, re, im, 1e-11 * condition * (1 + n), "random system");
@@ -526,12 +517,10 @@ static void kalman_rank(void **state)
     assert_int_equal(stance_scene_find("biped")->linearise(DEFAULT_ROBOT, &e, A, B), STANCE_OK);
     assert_int_equal(stance_kalman(6, 2, A, B, sv, &rank), STANCE_OK);
     assert_int_equal(rank, 6);
-    for (int i = 0; i < 36; i++) { /* milliseconds */
+    for (int i = 0; i < 36; i++) /* milliseconds */
         A[i] *= i / 6 >= 3 ? 1e-6 : 1;
-    }
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; i++)
         B[i] *= 1e-6;
-    }
     assert_int_equal(stance_kalman(6, 2, A, B, slow, &rank), STANCE_OK);
     assert_int_equal(rank, 6);
     assert_matrix(6, slow, sv, 1e-12, "singular values");
@@ -605,9 +594,8 @@ static void first_crossing(void **state)
             assert_int_equal(stance_discretise(2, 1, A, B, 1e-4 * k, Ad, Bd), STANCE_OK);
             closed_loop(2, 1, Ad, Bd, K, loop);
             assert_int_equal(stance_eigenvalues(2, loop, re, im), STANCE_OK);
-            if (hypot(re[0], im[0]) > 1 + 1e-12 || hypot(re[1], im[1]) > 1 + 1e-12) {
+            if (hypot(re[0], im[0]) > 1 + 1e-12 || hypot(re[1], im[1]) > 1 + 1e-12)
                 first = 1e-4 * k;
-            }
         }
         if (isinf(first)) {
             assert_true(isinf(T) || T > 4 - 1e-4);

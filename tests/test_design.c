@@ -64,9 +64,8 @@ static void sampled_closed_loop(const struct sample *s, const double *K, double 
 
 #define TRY(call, message)                                                                         \
     do {                                                                                           \
-        if ((call) != STANCE_OK) {                                                                 \
+        if ((call) != STANCE_OK)                                                                   \
             fail_msg("%s: %s", s->name, (message).text);                                           \
-        }                                                                                          \
     } while (0)
 
 /* ---- regulators ------------------------------------------------------------------------------ */
@@ -108,9 +107,8 @@ static void check_limit(const struct sample *s)
         TRY(stance_lqr_sampled(N, M, s->A, s->B, T[k], s->states, s->torques, sampled, &message),
             message);
         distance[k] = 0;
-        for (int i = 0; i < M * N; i++) {
+        for (int i = 0; i < M * N; i++)
             distance[k] = fmax(distance[k], fabs(sampled[i] - K[i]));
-        }
     }
     assert_near(distance[0] / distance[1], 2, 0.1, s->name);
 }
@@ -217,18 +215,16 @@ static void check_placement_limit(const struct sample *s)
     stance_message message = {""};
     eigenvalues_of(s, "poles", re, im);
     for (int real = 0; real < 2; real++) {
-        if (strstr(s->name, "right angle")) {
+        if (strstr(s->name, "right angle"))
             continue;
-        }
         TRY(stance_place(N, M, s->A, s->B, re, im, K, NULL, NULL, &message), message);
         for (int k = 0; k < 2; k++) {
             TRY(stance_place_sampled(STANCE_ROBUST, N, M, s->A, s->B, T[k], re, im, sampled, NULL,
                                      NULL, &message),
                 message);
             distance[k] = 0;
-            for (int i = 0; i < M * N; i++) {
+            for (int i = 0; i < M * N; i++)
                 distance[k] = fmax(distance[k], fabs(sampled[i] - K[i]));
-            }
         }
         assert_near(distance[0] / distance[1], 2, 0.1, s->name);
         for (int i = 0; i < N; i++) {
@@ -339,17 +335,15 @@ static void check_critical(const struct sample *s)
             const double wanted = number_at(json_object_get(s->record, keys[g]), (size_t)delay);
             assert_int_equal(stance_critical_sample_time(N, M, s->A, s->B, K, delay, 10, &T),
                              STANCE_OK);
-            if (isnan(wanted)) {
+            if (isnan(wanted))
                 assert_true(T == 0 || isinf(T));
-            } else {
+            else
                 assert_near(T, wanted, 1e-8 * wanted, s->name);
-            }
         }
     }
     assert_int_equal(stance_sampled_loop(N, M, s->A, s->B, K, s->T, 1, re, im), STANCE_OK);
-    for (int i = 0; i < N + M; i++) {
+    for (int i = 0; i < N + M; i++)
         radius = fmax(radius, hypot(re[i], im[i]));
-    }
     assert_near(radius, number_of(s, "delayed_radius"), 1e-9, s->name);
 }
 
@@ -382,9 +376,8 @@ static void check_lyapunov(const struct sample *s)
     double K[M * N], loop[N * N], P[N * N], wanted[N * N], tolerance[N], weight[N];
     stance_message message = {""};
     matrix_of(s->record, "tolerances", N, 1, tolerance);
-    for (int i = 0; i < N; i++) {
+    for (int i = 0; i < N; i++)
         weight[i] = 1 / (tolerance[i] * tolerance[i]);
-    }
     matrix_of(s->record, "gain", M, N, K);
     closed_loop(N, M, s->A, s->B, K, loop);
     TRY(stance_lyapunov(N, loop, false, weight, P, &message), message);
@@ -474,9 +467,8 @@ static void check_levels(const struct sample *s)
     stance_scene_find("biped")->contact_force(s->robot, &s->equilibrium, force, by, by_torque);
     for (int j = 0; j < N; j++) {
         double loop[2];
-        for (int c = 0; c < 2; c++) {
+        for (int c = 0; c < 2; c++)
             loop[c] = by[c * N + j] - by_torque[c * M] * K[j] - by_torque[c * M + 1] * K[N + j];
-        }
         for (int i = 0; i < M; i++) {
             a[2 * i * N + j] = -K[i * N + j];
             a[(2 * i + 1) * N + j] = K[i * N + j];
@@ -496,11 +488,10 @@ static void check_levels(const struct sample *s)
         const double wanted = number_at(levels, (size_t)k);
         assert_int_equal(
             stance_sublevel(N, P, 1, a + k * N, d + k, &level, &binding, alone, extent), STANCE_OK);
-        if (isnan(wanted)) {
+        if (isnan(wanted))
             assert_true(level > 1e6);
-        } else {
+        else
             assert_near(level, wanted, 1e-8 * wanted, s->name);
-        }
     }
 }
 
@@ -528,16 +519,14 @@ static void force_in_simulation(void **state)
         for (int i = 0; i < 3; i++) {
             const double off = uniform(&seed, -1e-3, 1e-3);
             c.position[2 + i] += off;
-            for (int j = 0; j < 2; j++) {
+            for (int j = 0; j < 2; j++)
                 force[j] += by_state[j * N + i] * off;
-            }
         }
         for (int i = 0; i < M; i++) {
             const double off = uniform(&seed, -0.05, 0.05);
             c.feedforward[i] = e.torque[i] + off;
-            for (int j = 0; j < 2; j++) {
+            for (int j = 0; j < 2; j++)
                 force[j] += by_torque[j * M + i] * off;
-            }
         }
         scene->stand(c.robot, 0, c.position, c.velocity);
         c.contacts = 1;

@@ -4,7 +4,7 @@
 
 #include "cases.h"
 
-#include "../analysis/basin_map.h"
+#include "analysis/basin/basin_map.h"
 
 #include <string.h>
 

@@ -32,9 +32,8 @@ static void run_files(const char *pattern)
     glob_t files;
     assert_int_equal(glob(pattern, 0, NULL, &files), 0);
     assert_true(files.gl_pathc > 0);
-    for (size_t i = 0; i < files.gl_pathc; i++) {
+    for (size_t i = 0; i < files.gl_pathc; i++)
         run_file(files.gl_pathv[i]);
-    }
     globfree(&files);
 }
 

@@ -3,8 +3,8 @@
 
 #include "cases.h"
 
-#include "../analysis/intervals.h"
-#include "../runner/sampling.h"
+#include "analysis/statistics/intervals.h"
+#include "runner/scenario/doe.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -53,24 +53,24 @@ enum { RESPONSES = sizeof responses / sizeof responses[0] };
 
 /* The interval from a design's blocks, at whose points so many of `cases` are inside as the
  * response says, rounded up or down at random where it is no whole number. */
-static struct interval measure(enum sampling_method method, const struct response *response,
+static struct interval measure(enum doe_method method, const struct response *response,
                                uint64_t count, double cases, uint64_t seed)
 {
-    struct sampling s = {
+    struct doe s = {
         .method = method, .count = count, .factors = FACTORS, .levels = 4, .seed = seed};
     struct interval_draws draws = {0};
     uint64_t random = seed + 1;
-    assert_true(sampling_begin(&s));
-    const size_t block = (size_t)sampling_block(&s);
+    assert_true(doe_begin(&s));
+    const size_t block = (size_t)doe_block(&s);
     for (uint64_t b = 0; b < count; b++) {
         double inside = 0, u[FACTORS];
         for (size_t i = 0; i < block; i++) {
-            sampling_unit(&s, b * block + i, u);
+            doe_unit(&s, b * block + i, u);
             inside += floor(cases * response->share(u) + uniform(&random, 0, 1));
         }
         interval_add(&draws, inside, cases * (double)block);
     }
-    sampling_end(&s);
+    doe_end(&s);
     return interval_of(&draws, 0.95);
 }
 
@@ -79,11 +79,10 @@ static struct interval measure(enum sampling_method method, const struct respons
 static void intervals_hold_as_often_as_they_say(void **state)
 {
     const bool patient = getenv("STANCE_TEST_LONG") != NULL;
-    static const enum sampling_method methods[] = {SAMPLING_RANDOM, SAMPLING_LHS, SAMPLING_SOBOL,
-                                                   SAMPLING_SALTELLI};
+    static const enum doe_method methods[] = {DOE_RANDOM, DOE_LHS, DOE_SOBOL, DOE_SALTELLI};
     (void)state;
     for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
-        const int seeds = patient ? 4000 : methods[m] == SAMPLING_RANDOM ? 1000 : 250;
+        const int seeds = patient ? 4000 : methods[m] == DOE_RANDOM ? 1000 : 250;
         const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
         for (size_t k = 0; k < RESPONSES; k++) {
             for (uint64_t count = 32; count <= 128; count *= 4) {
@@ -98,12 +97,11 @@ static void intervals_hold_as_often_as_they_say(void **state)
                     }
                     const double share = (double)held / seeds;
                     print_message("# %s, %d blocks of %s, %d case%s a point: %.1f %%, width %.4f\n",
-                                  responses[k].name, (int)count, sampling_words[methods[m]],
+                                  responses[k].name, (int)count, doe_words[methods[m]],
                                   single ? 1 : CASES, single ? "" : "s", 100 * share, width);
                     assert_true(share > 0.93 - slack);
-                    if (methods[m] == SAMPLING_RANDOM) {
+                    if (methods[m] == DOE_RANDOM)
                         assert_true(share < 0.97 + slack);
-                    }
                 }
             }
         }

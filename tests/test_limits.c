@@ -269,10 +269,10 @@ static void sampled_controllers(void **state)
 
 /* ---- implicit steps under everything ---- */
 
-/* core/step.h takes no step (with e = 0) that creates more energy than the share a = STEP_SHARE of
- * the kinetic energies at both ends and the work. For a servo without a limit this bounds a run of
- * n steps: with H the energy above the lowest that there is, the servo's kp dq^2 / 2 included, its
- * damper takes D >= 0 and |work| <= |change of kp dq^2 / 2| + D, so that
+/* core/implicit/step.h takes no step (with e = 0) that creates more energy than the share a =
+ * STEP_SHARE of the kinetic energies at both ends and the work. For a servo without a limit this
+ * bounds a run of n steps: with H the energy above the lowest that there is, the servo's kp dq^2 /
+ * 2 included, its damper takes D >= 0 and |work| <= |change of kp dq^2 / 2| + D, so that
  *
  *   H1 - H0 <= -D + a (H0 + H1 + D) <= a (H0 + H1),   H_n <= ((1 + a) / (1 - a))^n H_0.
  *
@@ -379,8 +379,8 @@ static bool is_finite(const stance_result *r)
     return isfinite(sum);
 }
 
-/* What a single step created is what core/step.h admits. Where there is a gain the work done is
- * what the energies tell. */
+/* What a single step created is what core/implicit/step.h admits. Where there is a gain the work
+ * done is what the energies tell. */
 static void check_single_step(const stance_case *c, const stance_result *r)
 {
     const stance_scene *scene = stance_scene_find("biped");

@@ -3,7 +3,7 @@
  */
 #include "support.h"
 
-#include "../runner/refine.h"
+#include "runner/plan/refine.h"
 
 enum { MOST = 40000, LABELS = REFINE_FAILED + 1 };
 

@@ -1,7 +1,7 @@
-/* From the numbers of a scenario to a case: start, law, sampling, and what is refused. */
+/* From the numbers of a scenario to a case: start, law, doe, and what is refused. */
 #include "support.h"
 
-#include "../runner/resolve.h"
+#include "runner/plan/resolve.h"
 
 static const double PAPER_POLES[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6};
 
@@ -29,12 +29,10 @@ static struct scenario_values balance_values(void)
         .settle_hold = 0.5,
         .fall_height = 0.2,
     };
-    for (int i = 0; i < scene->robot_count; i++) {
+    for (int i = 0; i < scene->robot_count; i++)
         v.robot[i] = scene->robot[i].fallback;
-    }
-    for (int i = 0; i < STANCE_MAX_ROBOT; i++) {
+    for (int i = 0; i < STANCE_MAX_ROBOT; i++)
         v.model[i] = NAN;
-    }
     memcpy(v.pole_re, PAPER_POLES, sizeof PAPER_POLES);
     return v;
 }
@@ -46,9 +44,8 @@ static stance_case resolved(const struct scenario_values *v)
     stance_message message;
     stance_case c;
     if (!resolve_design(scene, v, &design, &message) ||
-        !resolve_case(scene, v, &design, 42, 17, &c, &message)) {
+        !resolve_case(scene, v, &design, 42, 17, &c, &message))
         fail_msg("%s", message.text);
-    }
     return c;
 }
 
@@ -59,12 +56,10 @@ static void assert_refused(const struct scenario_values *v, const char *text)
     stance_message message;
     stance_case c;
     if (resolve_design(scene, v, &design, &message) &&
-        resolve_case(scene, v, &design, 42, 17, &c, &message)) {
+        resolve_case(scene, v, &design, 42, 17, &c, &message))
         fail_msg("accepted; expected '%s'", text);
-    }
-    if (strcmp(message.text, text) != 0) {
+    if (strcmp(message.text, text) != 0)
         fail_msg("message '%s' instead of '%s'", message.text, text);
-    }
 }
 
 static void balance(void **state)
@@ -168,9 +163,8 @@ static void no_law(void **state)
     const stance_case c = resolved(&v);
     for (int i = 0; i < 2; i++) {
         assert_true(c.feedforward[i] == 0);
-        for (int j = 0; j < 6; j++) {
+        for (int j = 0; j < 6; j++)
             assert_true(c.gain[i][j] == 0);
-        }
     }
     assert_true(!c.has_target && c.support == -1 && c.settle);
 }
@@ -229,9 +223,8 @@ static void own_equilibrium_and_gains(void **state)
     struct scenario_values v = balance_values();
     v.design_point = (struct scenario_equilibrium){true, {0, 0, NAN}, 0};
     v.design = DESIGN_GAINS;
-    for (int i = 0; i < 12; i++) {
+    for (int i = 0; i < 12; i++)
         v.gains[i] = i + 0.5;
-    }
     const stance_case c = resolved(&v);
     assert_true(c.target[0] == 0 && c.target[1] == 0 && c.target[2] == 0);
     assert_true(c.gain[0][0] == 0.5 && c.gain[0][5] == 5.5 && c.gain[1][0] == 6.5);
@@ -292,11 +285,10 @@ static void tolerance(void **state)
         v.tolerance = 1e-5;
         assert_true(resolved(&v).tolerance == 1e-5);
         v.tolerance = 0;
-        if (own > 0) {
+        if (own > 0)
             assert_refused(&v, "method.tolerance must be positive");
-        } else {
+        else
             resolved(&v);
-        }
     }
 }
 
@@ -313,9 +305,8 @@ static void scenes_without_equilibrium(void **state)
         stance_case c;
         v.law = LAW_NONE;
         v.tolerance = NAN;
-        for (int i = 0; i < scene->robot_count; i++) {
+        for (int i = 0; i < scene->robot_count; i++)
             v.robot[i] = scene->robot[i].fallback;
-        }
         assert_false(resolve_design(scene, &v, &design, &message));
         assert_non_null(strstr(message.text, "has no equilibria: give initial.state"));
         v.state_given = 1;
@@ -342,9 +333,8 @@ static void failed_design_is_clear(void **state)
     stance_message message;
     memset(&design, 0xff, sizeof design);
     memset(&clear, 0, sizeof clear);
-    for (int i = 0; i < STANCE_MAX_COORDINATES; i++) {
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
         clear.start[i] = clear.equilibrium[i] = NAN;
-    }
     v.pole_re[0] = -4.6;
     v.pole_re[1] = -4.6; /* three times */
     assert_false(resolve_design(stance_scene_find("biped"), &v, &design, &message));

@@ -1,8 +1,8 @@
 /* test_robust.c - signs of life and what others make of them, the difference of two scenarios. */
 #include "support.h"
 
-#include "../runner/pulse.h"
-#include "../runner/succession.h"
+#include "runner/run/heartbeat.h"
+#include "runner/store/changed_scenario.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static void expect_difference(const char *before, const char *after, const char 
     size_t size = 0;
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
-    succession_print_difference(to, before, after);
+    changed_scenario_print_difference(to, before, after);
     fclose(to);
     assert_string_equal(text, expected);
     free(text);
@@ -32,7 +32,7 @@ static void test_differences(void **state)
     expect_difference("", "a\n", "  + a\n");
     expect_difference("a\n", "", "  - a\n");
     expect_difference("a\nb", "a", "  - b\n");
-    assert_int_equal(succession_count_differences("a\nb\nc\n", "c\nb\n"), 3);
+    assert_int_equal(changed_scenario_count_differences("a\nb\nc\n", "c\nb\n"), 3);
 }
 
 /* Of many differences the first ones are shown, of long lines the beginning. */
@@ -49,14 +49,13 @@ static void test_long_differences(void **state)
         sprintf(before + at, "a%05d\n", k);
         at += sprintf(after + at, "b%05d\n", k);
     }
-    assert_int_equal(succession_count_differences(before, after), 2 * LINES);
+    assert_int_equal(changed_scenario_count_differences(before, after), 2 * LINES);
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
-    succession_print_difference(to, before, after);
+    changed_scenario_print_difference(to, before, after);
     fclose(to);
-    for (const char *c = text; *c; c++) {
+    for (const char *c = text; *c; c++)
         lines += *c == '\n';
-    }
     assert_int_equal(lines, 13);
     assert_non_null(strstr(text, "  ... and 9988 more\n"));
     free(text);
@@ -64,7 +63,7 @@ static void test_long_differences(void **state)
     wide[WIDTH] = '\0';
     to = open_memstream(&text, &size);
     assert_non_null(to);
-    succession_print_difference(to, wide, "");
+    changed_scenario_print_difference(to, wide, "");
     fclose(to);
     assert_true(strlen(text) < 140);
     free(text);
@@ -81,7 +80,7 @@ struct place {
 static int make_place(void **state)
 {
     struct place *place = calloc(1, sizeof *place);
-    snprintf(place->file, sizeof place->file, "/tmp/stance-pulse-%d.h5", getpid());
+    snprintf(place->file, sizeof place->file, "/tmp/stance-heartbeat-%d.h5", getpid());
     snprintf(place->lock, sizeof place->lock, "%s.lock", place->file);
     *state = place;
     return 0;
@@ -109,39 +108,39 @@ static void test_pulse(void **state)
     const struct place *place = *state;
     struct parallel alone = parallel_alone();
     struct lock lock;
-    struct pulse pulse;
-    struct pulse_note note;
+    struct heartbeat heartbeat;
+    struct heartbeat_note note;
     stance_message message = {""};
 
-    pulse_read(place->file, &note);
+    heartbeat_read(place->file, &note);
     assert_false(note.running || note.exists);
     assert_true(parallel_share(&alone));
     assert_true(lock_take(&lock, place->file, &message));
-    assert_true(pulse_begin(&pulse, &lock, &alone, "testing"));
+    assert_true(heartbeat_begin(&heartbeat, &lock, &alone, "testing"));
     put(place->file, "results");
-    pulse_guard(&pulse, place->file);
-    pulse_read(place->file, &note);
+    heartbeat_guard(&heartbeat, place->file);
+    heartbeat_read(place->file, &note);
     assert_true(note.running && note.here && note.exists);
     assert_string_equal(note.doing, "testing");
     assert_true(note.rate < 0);
     /* The rate is that of the last minute, whatever was before. */
-    const double begin = pulse.due;
+    const double begin = heartbeat.due;
     uint64_t computed = 0;
     for (int k = 0; k <= 100; k++) {
         computed += k < 50 ? 7000 : 10;
-        assert_true(pulse_beat(&pulse, begin + 2 * k, computed + 5, computed, 3, &message));
-        assert_true(pulse_beat(&pulse, begin + 2 * k + 1, 0, 0, 3, &message)); /* not yet */
+        assert_true(heartbeat_beat(&heartbeat, begin + 2 * k, computed + 5, computed, 3, &message));
+        assert_true(heartbeat_beat(&heartbeat, begin + 2 * k + 1, 0, 0, 3, &message)); /* not yet */
     }
-    pulse_read(place->file, &note);
+    heartbeat_read(place->file, &note);
     assert_true(fabs(note.rate - 5) < 1e-9);
     assert_true(note.computed == computed && note.kept == 5 && note.round == 3);
     assert_true(note.ranks == 1 && note.alive == 1);
     /* Another file of that name, and none. */
     put(place->lock, "");
     unlink(place->file);
-    assert_false(pulse_beat(&pulse, begin + 300, 0, 0, 0, &message));
+    assert_false(heartbeat_beat(&heartbeat, begin + 300, 0, 0, 0, &message));
     assert_non_null(strstr(message.text, "was removed, moved or replaced"));
-    pulse_end(&pulse);
+    heartbeat_end(&heartbeat);
     lock_release(&lock);
     parallel_unshare(&alone);
 }
@@ -159,15 +158,15 @@ static void test_strange_notes(void **state)
         "{\"host\":\"x\",\"doing\":\"y\",\"start\":\"0\"}",
     };
     const struct place *place = *state;
-    struct pulse_note note;
+    struct heartbeat_note note;
     for (size_t k = 0; k < sizeof notes / sizeof notes[0]; k++) {
         put(place->lock, notes[k]);
-        pulse_read(place->file, &note);
+        heartbeat_read(place->file, &note);
         assert_false(note.exists || note.running);
     }
     put(place->lock, "{\"host\":\"a\\u001b[2Jb\",\"doing\":\"y\",\"start\":0,\"time\":1,"
                      "\"ranks\":1,\"alive\":1,\"round\":0,\"kept\":0,\"computed\":1,\"rate\":-1}");
-    pulse_read(place->file, &note);
+    heartbeat_read(place->file, &note);
     assert_true(note.exists && !note.running && note.age > 1e6);
     assert_string_equal(note.host, "a?[2Jb");
 }

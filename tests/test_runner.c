@@ -1,13 +1,14 @@
 /* test_runner.c - options, checksums, plan, results file and lock, each alone and on one rank. */
+#include "runner/base/words.h"
 #include "support.h"
 
-#include "../runner/checksum.h"
-#include "../runner/command.h"
-#include "../runner/lock.h"
-#include "../runner/plan.h"
-#include "../runner/schedule.h"
-#include "../runner/store.h"
-#include "../runner/supervise.h"
+#include "runner/base/checksum.h"
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+#include "runner/plan/plan.h"
+#include "runner/plan/schedule.h"
+#include "runner/store/lock.h"
+#include "runner/store/store.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -525,7 +526,7 @@ static int work_of(void *signal_number)
 }
 
 /* What a child says comes out, unless it crashes: whoever handles the signal in the parent. */
-static void test_supervise(void **state)
+static void test_sandbox(void **state)
 {
     const struct fixture *f = *state;
     int numbers[] = {0, SIGSEGV, SIGABRT, SIGXCPU};
@@ -534,7 +535,7 @@ static void test_supervise(void **state)
     for (int k = 0; k < 4; k++) {
         int kept = dup(STDERR_FILENO), file = open(path, O_CREAT | O_TRUNC | O_RDWR, 0600);
         dup2(file, STDERR_FILENO);
-        int code = supervise(work_of, &numbers[k], "FILE");
+        int code = sandbox(work_of, &numbers[k], "FILE");
         fflush(stderr);
         dup2(kept, STDERR_FILENO);
         close(kept);
@@ -601,7 +602,7 @@ int main(void)
         cmocka_unit_test(test_rows),           cmocka_unit_test(test_listed_rows),
         cmocka_unit_test(test_designs_stored), cmocka_unit_test(test_origin),
         cmocka_unit_test(test_lock),           cmocka_unit_test(test_plain_scene),
-        cmocka_unit_test(test_check),          cmocka_unit_test(test_supervise),
+        cmocka_unit_test(test_check),          cmocka_unit_test(test_sandbox),
     };
     store_prepare();
     return cmocka_run_group_tests_name("runner", tests, make_fixture, free_fixture);

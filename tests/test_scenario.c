@@ -4,8 +4,8 @@
  */
 #include "reading.h"
 
-#include "../runner/schema.h"
-#include "../runner/store.h"
+#include "runner/scenario/schema.h"
+#include "runner/store/store.h"
 
 #include <dirent.h>
 
@@ -125,13 +125,11 @@ enum { GOOD_TEXTS = sizeof good_texts / sizeof good_texts[0] };
 
 static void check_numbers(const double *found, const double *wanted, size_t n)
 {
-    for (size_t i = 0; i < n; i++) {
-        if (isnan(wanted[i])) {
+    for (size_t i = 0; i < n; i++)
+        if (isnan(wanted[i]))
             assert_true(isnan(found[i]));
-        } else {
+        else
             assert_near(found[i], wanted[i], 0);
-        }
-    }
 }
 
 static void every_key_is_read(void **state)
@@ -178,8 +176,8 @@ static void every_key_is_read(void **state)
     assert_int_equal(s.record_cases, RECORD_LIST);
     assert_int_equal(s.record_count, 2);
     assert_true(s.record_list[0] == 3 && s.record_list[1] == 5);
-    assert_int_equal(s.answers, 1u << STORE_BIT_outcome | 1u << STORE_BIT_steps |
-                                    1u << STORE_BIT_FINAL_STATE | 1u << 31);
+    assert_int_equal(s.answers, 1u << STANCE_ANSWER_outcome | 1u << STANCE_ANSWER_steps |
+                                    1u << SCENARIO_FINAL_STATE | 1u << 31);
     assert_int_equal(s.initial_line, 6);
     assert_int_equal(s.initial_column, 1);
     assert_int_equal(s.controller_line, 10);
@@ -355,8 +353,8 @@ static void other_scenes_are_read(void **state)
     assert_false(s.axis[0].design || s.axis[1].design);
     scenario_case_values(&s, 9, &v);
     assert_true(v.tolerance == 1e-5 && v.robot[0] == 2);
-    assert_int_equal(s.answers, 1u << STORE_BIT_events | 1u << STORE_BIT_energy_gain |
-                                    1u << STORE_BIT_dissipation_residual);
+    assert_int_equal(s.answers, 1u << STANCE_ANSWER_events | 1u << STANCE_ANSWER_energy_gain |
+                                    1u << STANCE_ANSWER_dissipation_residual);
     scenario_free(&s);
     for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
         read_good(&s, plain[i].text, NULL, 0);
@@ -411,9 +409,8 @@ static void same_scenario(const struct scenario *a, const struct scenario *b)
         assert_true(x->design == y->design && x->words == y->words);
         for (int k = 0; k < x->paths; k++) {
             assert_string_equal(x->path[k], y->path[k]);
-            for (size_t p = 0; p < x->count && p < 100; p++) {
+            for (size_t p = 0; p < x->count && p < 100; p++)
                 assert_true(scenario_axis_value(x, p, k) == scenario_axis_value(y, p, k));
-            }
         }
     }
     assert_string_equal(a->text, b->text);
@@ -439,12 +436,10 @@ static void resolved_text_reads_back(void **state)
     for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
         char file[512];
         snprintf(file, sizeof file, "scenarios/%s", entry->d_name);
-        if (!strstr(entry->d_name, ".yaml")) {
+        if (!strstr(entry->d_name, ".yaml"))
             continue;
-        }
-        if (!read_as(&a, file, NULL, NULL, 0)) {
+        if (!read_as(&a, file, NULL, NULL, 0))
             fail_msg("%s", errors);
-        }
         read_good(&b, a.text, NULL, 0);
         same_scenario(&a, &b);
         scenario_free(&a);
@@ -558,9 +553,8 @@ static void bad_files_lead_to_one_line(void **state)
     for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
         char file[512], head[1024], wanted[2048];
         struct scenario s;
-        if (!strstr(entry->d_name, ".yaml")) {
+        if (!strstr(entry->d_name, ".yaml"))
             continue;
-        }
         snprintf(file, sizeof file, "tests/bad/%s", entry->d_name);
         FILE *in = fopen(file, "r");
         assert_non_null(in);
@@ -617,16 +611,14 @@ static void several_errors_are_sorted(void **state)
 
     strcpy(text, "stance: 1\nscene: biped\ninitial: {state: {z: 1}}\nstop: {time: 1}\nsweep:\n"
                  "  grid:\n  - path: stop.time\n    values: [");
-    for (int i = 0; i < 300; i++) {
+    for (int i = 0; i < 300; i++)
         strcat(text, "x, ");
-    }
     strcat(text, "y]\n");
     struct scenario s;
     int lines = 0;
     assert_false(read_as(&s, "bad.yaml", text, NULL, 0));
-    for (const char *at = errors; (at = strchr(at, '\n')) != NULL; at++) {
+    for (const char *at = errors; (at = strchr(at, '\n')) != NULL; at++)
         lines++;
-    }
     assert_int_equal(lines, 21);
     assert_non_null(strstr(errors, "\nbad.yaml: 281 more errors\n"));
 }
@@ -650,9 +642,8 @@ static void set_path(const struct scenario_field *field, char *path, size_t size
     size_t n = 0;
     for (const char *s = field->path; *s && n + 2 < size; s++) {
         path[n++] = *s;
-        if (*s == '[') {
+        if (*s == '[')
             path[n++] = '1';
-        }
     }
     path[n] = '\0';
 }
@@ -679,9 +670,8 @@ static void set_and_sweep(const struct scenario_field *field, uint64_t *random)
     snprintf(set, sizeof set, "%s=%s", path, number);
     snprintf(axis, sizeof axis, "sweep.grid=[{path: '%s', values: [%s]}]", path, number);
     size_t offset = field->offset;
-    if (strchr(path, '[')) {
+    if (strchr(path, '['))
         offset += (1 + field->columns) * sizeof(double);
-    }
     for (int k = 0; k < 2; k++) {
         const char *const sets[] = {k == 0 ? set : axis};
         read_good(&s, text_for(field->use), sets, 1);
@@ -738,9 +728,8 @@ static void damage(char *text, size_t size, uint64_t *random)
             memmove(text + at, text + at + run, length - at - run + 1);
             break;
         case 1:
-            if (length + run < size) {
+            if (length + run < size)
                 memmove(text + at + run, text + at, length - at + 1);
-            }
             break;
         default:
             text[at] = letters[(size_t)uniform(random, 0, sizeof letters - 1)];

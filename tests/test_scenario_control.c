@@ -2,7 +2,7 @@
  * own, which gains a design leads to, and what is said where there is none. */
 #include "reading.h"
 
-#include "../runner/design.h"
+#include "runner/plan/design.h"
 
 /* A scenario of the default robot with these keys of the controller. */
 static const char *designed(const char *keys)
@@ -85,9 +85,8 @@ static void captured_sets_are_designs(void **state)
         assert_false(read_as(&s, "bad.yaml",
                              designed(far ? keys : "design: lqr, sample_time: 0.002"),
                              (const char *[]){"stop.capture=estimated", refused[i][0]}, 2));
-        if (!strstr(errors, refused[i][1])) {
+        if (!strstr(errors, refused[i][1]))
             fail_msg("%s: %s", refused[i][0], errors);
-        }
     }
     /* The place in the file is told. */
     assert_false(read_as(&s, "bad.yaml",
@@ -122,9 +121,8 @@ static void leads_to(const struct scenario *s, uint64_t index, const double *K, 
     stance_case c;
     scenario_case_values(s, index, &v);
     if (!resolve_design(s->scene, &v, &design, &message) ||
-        !resolve_case(s->scene, &v, &design, 1, index, &c, &message)) {
+        !resolve_case(s->scene, &v, &design, 1, index, &c, &message))
         fail_msg("%s", message.text);
-    }
     assert_memory_equal(c.gain, K, sizeof c.gain);
     assert_int_equal(c.delay, delay);
 }
@@ -216,9 +214,8 @@ static const struct design_report *report(struct scenario *s, const char *keys)
     static struct design_report r;
     stance_message message;
     read_good(s, designed(keys), NULL, 0);
-    if (!design_compute(&r, s, &message)) {
+    if (!design_compute(&r, s, &message))
         fail_msg("%s", message.text);
-    }
     return &r;
 }
 
@@ -234,9 +231,8 @@ static double room_used(const struct design_report *r, const double *X)
     const double weight = force[0];
     for (int i = 0; i < M; i++) {
         double torque = r->equilibrium.torque[i], change = 0;
-        for (int j = 0; j < N; j++) {
+        for (int j = 0; j < N; j++)
             change -= r->K[i * N + j] * X[j];
-        }
         most = fmax(
             most, fmax(change / (v->torque_limit - torque), -change / (v->torque_limit + torque)));
         force[0] += by_torque[i] * change;
@@ -261,17 +257,13 @@ static void check_set(const struct design_report *r)
         /* Far around at first, then ever nearer to the worst point so far. */
         const double spread = exp(-k / 4000.0);
         double X[N], V = 0;
-        for (int i = 0; i < N; i++) {
+        for (int i = 0; i < N; i++)
             X[i] = direction[i] + r->set.extent[i] * spread * uniform(&random, -1, 1);
-        }
-        for (int i = 0; i < N; i++) {
-            for (int j = 0; j < N; j++) {
+        for (int i = 0; i < N; i++)
+            for (int j = 0; j < N; j++)
                 V += X[i] * r->set.P[i * N + j] * X[j];
-            }
-        }
-        for (int i = 0; i < N; i++) {
+        for (int i = 0; i < N; i++)
             X[i] *= sqrt(r->set.level / V);
-        }
         const double used = room_used(r, X);
         assert_true(used <= 1 + 1e-9);
         if (used > most) {
@@ -321,26 +313,21 @@ static void sampled_loop_grows_as_reported(void **state)
             size = 0;
             for (int i = 0; i < M; i++) {
                 late[i] = 0;
-                for (int j = 0; j < N; j++) {
+                for (int j = 0; j < N; j++)
                     late[i] -= r->K[i * N + j] * X[j];
-                }
             }
             for (int i = 0; i < N; i++) {
                 next[i] = 0;
-                for (int j = 0; j < N; j++) {
+                for (int j = 0; j < N; j++)
                     next[i] += Ad[i * N + j] * X[j];
-                }
-                for (int j = 0; j < M; j++) {
+                for (int j = 0; j < M; j++)
                     next[i] += Bd[i * M + j] * (delay ? u[j] : late[j]);
-                }
                 size = fmax(size, fabs(next[i]));
             }
-            for (int i = 0; i < N; i++) {
+            for (int i = 0; i < N; i++)
                 X[i] = next[i] / size;
-            }
-            for (int i = 0; i < M; i++) {
+            for (int i = 0; i < M; i++)
                 u[i] = late[i] / size;
-            }
             logarithm += k >= 2000 ? log(size) : 0;
         }
         assert_true(fabs(exp(logarithm / 2000) - r->radius) < 1e-3);

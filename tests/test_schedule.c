@@ -1,10 +1,11 @@
 /* test_schedule.c - the drawing of rows, the computing loop on lists of rows, and the simulator of
  * large jobs against schedules and sums made here. */
+#include "runner/base/units.h"
 #include "support.h"
 
-#include "../analysis/simulate.h"
-#include "../runner/schedule.h"
-#include "../runner/work.h"
+#include "analysis/bench/simulate.h"
+#include "runner/plan/schedule.h"
+#include "runner/run/work.h"
 
 #include <unistd.h>
 
@@ -83,7 +84,7 @@ static int make_fixture(void **state)
                             .store = f->store,
                             .parallel = &f->parallel,
                             .quiet = true,
-                            .start = plan_clock(),
+                            .start = clock_seconds(),
                             .time_limit = INFINITY};
     return 0;
 }
@@ -109,12 +110,11 @@ static void run_rows(struct fixture *f, const struct rows *only)
     assert_true(parallel_share(&f->parallel));
     assert_true(work_run(&f->work, only, label, &message));
     parallel_unshare(&f->parallel);
-    for (uint64_t i = 0; i < rows.count && f->work.time_limit > 0; i++) {
+    for (uint64_t i = 0; i < rows.count && f->work.time_limit > 0; i++)
         if (rows_at(&rows, i) / 3 % 2)
             assert_int_equal(label[i], WORK_FAILED);
         else
             assert_in_range(label[i], STANCE_STABILISED + 1, STANCE_UNDECIDED + 1);
-    }
     for (uint64_t i = f->work.time_limit > 0 ? rows.count : 0; i < 240; i++)
         assert_int_equal(label[i], 0);
 }

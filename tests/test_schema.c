@@ -1,10 +1,11 @@
 /* test_schema.c - the documentation of the scenario format and its JSON Schema agree with the
  * table, and misspelt words find their nearest.
  */
+#include "runner/base/words.h"
 #include "support.h"
 
-#include "../runner/command.h"
-#include "../runner/schema.h"
+#include "runner/base/command.h"
+#include "runner/scenario/schema.h"
 
 #define assert_near(found, wanted, tolerance) assert_true(fabs((found) - (wanted)) <= (tolerance))
 
@@ -107,9 +108,8 @@ static void tolerance_names_its_methods(void **state)
     (void)state;
     assert_true(describe("method.tolerance", false));
     assert_non_null(strstr(described, "default: the method's own"));
-    for (int i = 0; described[i]; i++) {
+    for (int i = 0; described[i]; i++)
         described[i] = described[i] == '\n' ? ' ' : described[i];
-    }
     for (int m = 0; stance_methods()[m]; m++) {
         char wanted[64];
         snprintf(wanted, sizeof wanted, "%.32s (default", stance_methods()[m]->name);
@@ -135,9 +135,8 @@ static json_t *json_at(json_t *root, const char *path)
 
 static void check_number_schema(const struct scenario_field *field, json_t *object)
 {
-    if (field->words) {
+    if (field->words)
         object = json_array_get(json_object_get(object, "anyOf"), 0);
-    }
     assert_string_equal(json_string_value(json_object_get(object, "type")),
                         field->type == FIELD_INTEGER ? "integer" : "number");
     json_t *low = json_object_get(object, field->low_open ? "exclusiveMinimum" : "minimum");
@@ -155,9 +154,8 @@ static void check_scene_schema(json_t *root, const stance_scene *scene)
                      schema_children(schema, "", names, SCHEMA_MAX_FIELDS));
     for (size_t i = 0; i < schema->count; i++) {
         const struct scenario_field *field = &schema->field[i];
-        if (strchr(field->path, '[')) {
+        if (strchr(field->path, '['))
             continue;
-        }
         json_t *object = json_at(root, field->path);
         assert_non_null(object);
         const char *text = json_string_value(json_object_get(object, "description"));
@@ -197,9 +195,8 @@ static void schema_agrees_with_the_table(void **state)
     json_t *root = json_loads(described, JSON_REJECT_DUPLICATES, &problem);
     json_t *scenes = json_object_get(root, "oneOf");
     assert_non_null(root);
-    for (size_t k = 0; stance_scenes()[k]; k++) {
+    for (size_t k = 0; stance_scenes()[k]; k++)
         check_scene_schema(scenes ? json_array_get(scenes, k) : root, stance_scenes()[k]);
-    }
     json_decref(root);
 }
 

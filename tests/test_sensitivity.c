@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../analysis/csv.h"
-#include "../analysis/sensitivity.h"
-#include "../runner/sampling.h"
+#include "analysis/sensitivity/sensitivity.h"
+#include "analysis/table/csv.h"
+#include "runner/scenario/doe.h"
 
 #include <Random123/philox.h>
 
@@ -152,31 +152,31 @@ enum { FUNCTIONS = sizeof functions / sizeof functions[0], SMOOTH = 3 };
 /* ---- designs ------------------------------------------------------------------------------ */
 
 struct data {
-    struct sampling sampling;
+    struct doe doe;
     size_t points, factors;
     double *u, *y;
 };
 
 /* A design's responses; `independent`: blocks of Saltelli's order from random points. */
-static struct data make(enum sampling_method method, const struct function *f, uint64_t count,
+static struct data make(enum doe_method method, const struct function *f, uint64_t count,
                         uint64_t seed, bool second_order, bool independent)
 {
-    struct data d = {.sampling = {.method = method,
-                                  .count = count,
-                                  .factors = f->factors,
-                                  .levels = 4,
-                                  .second_order = second_order,
-                                  .seed = seed}};
+    struct data d = {.doe = {.method = method,
+                             .count = count,
+                             .factors = f->factors,
+                             .levels = 4,
+                             .second_order = second_order,
+                             .seed = seed}};
     const size_t k = f->factors;
-    assert_true(sampling_begin(&d.sampling));
-    d.points = (size_t)sampling_points(&d.sampling);
+    assert_true(doe_begin(&d.doe));
+    d.points = (size_t)doe_points(&d.doe);
     d.factors = k;
     d.u = malloc(d.points * k * sizeof *d.u);
     d.y = malloc(d.points * sizeof *d.y);
-    const size_t block = (size_t)sampling_block(&d.sampling);
+    const size_t block = (size_t)doe_block(&d.doe);
     for (size_t i = 0; i < d.points; i++) {
         double *u = d.u + i * k;
-        sampling_unit(&d.sampling, i, u);
+        doe_unit(&d.doe, i, u);
         if (independent) {
             for (size_t j = 0; j < k; j++) {
                 const bool from_b = i % block == block - 1 || i % block == j + 1;
@@ -187,7 +187,7 @@ static struct data make(enum sampling_method method, const struct function *f, u
         }
         d.y[i] = f->value(u);
     }
-    sampling_end(&d.sampling);
+    doe_end(&d.doe);
     return d;
 }
 
@@ -200,13 +200,13 @@ static void release(struct data *d)
 static void analyse(struct sensitivity *s, const struct data *d,
                     const struct sensitivity_bootstrap *bootstrap)
 {
-    const struct sampling *p = &d->sampling;
+    const struct doe *p = &d->doe;
     const bool good =
-        p->method == SAMPLING_SALTELLI
+        p->method == DOE_SALTELLI
             ? sensitivity_sobol(s, d->y, p->count, d->factors, p->second_order, bootstrap->level)
-        : p->method == SAMPLING_MORRIS
+        : p->method == DOE_MORRIS
             ? sensitivity_morris(s, d->y, d->u, p->count, d->factors, bootstrap->level)
-            : sensitivity_given(s, d->y, d->u, d->points, d->factors, p->method == SAMPLING_SOBOL,
+            : sensitivity_given(s, d->y, d->u, d->points, d->factors, p->method == DOE_SOBOL,
                                 bootstrap);
     assert_true(good);
 }
@@ -225,7 +225,7 @@ static bool holds(const struct sensitivity_value *v, double truth)
  * at least as good as. */
 static void find_rivals(const struct data *d, double *index)
 {
-    const size_t k = d->factors, n = (size_t)d->sampling.count;
+    const size_t k = d->factors, n = (size_t)d->doe.count;
     double mean = 0, variance = 0;
     memset(index, 0, 2 * k * sizeof *index);
     for (size_t i = 0; i < n; i++)
@@ -250,10 +250,10 @@ struct tally {
     size_t quantities;
 };
 
-static struct tally cover(enum sampling_method method, const struct function *f, uint64_t count,
+static struct tally cover(enum doe_method method, const struct function *f, uint64_t count,
                           int seeds, bool independent)
 {
-    struct tally t = {.quantities = method == SAMPLING_SALTELLI ? 2 * f->factors : f->factors};
+    struct tally t = {.quantities = method == DOE_SALTELLI ? 2 * f->factors : f->factors};
     double truth[2 * MOST];
     const struct sensitivity_bootstrap bootstrap = {300, 0.95, 1};
     f->indices(truth, truth + f->factors);
@@ -262,7 +262,7 @@ static struct tally cover(enum sampling_method method, const struct function *f,
         struct data d = make(method, f, count, (uint64_t)seed, false, independent);
         double rivals[2 * MOST] = {0};
         analyse(&s, &d, &bootstrap);
-        if (method == SAMPLING_SALTELLI)
+        if (method == DOE_SALTELLI)
             find_rivals(&d, rivals);
         for (size_t q = 0; q < t.quantities; q++) {
             const double share = 1 / (double)t.quantities / seeds;
@@ -276,7 +276,7 @@ static struct tally cover(enum sampling_method method, const struct function *f,
     }
     t.least = 1;
     t.error = sqrt(t.error);
-    t.rival = method == SAMPLING_SALTELLI ? sqrt(t.rival) : NAN;
+    t.rival = method == DOE_SALTELLI ? sqrt(t.rival) : NAN;
     for (size_t q = 0; q < t.quantities; q++) {
         t.mean += t.held[q] / seeds / (double)t.quantities;
         t.least = fmin(t.least, t.held[q] / seeds);
@@ -284,9 +284,8 @@ static struct tally cover(enum sampling_method method, const struct function *f,
     printf("# %s, %s %llu%s: intervals hold the truth in %.1f %% (worst index %.1f %%), error %.4f "
            "(rivals' %.4f), "
            "width %.4f\n",
-           f->name, sampling_words[method], (unsigned long long)count,
-           independent ? " independent" : "", 100 * t.mean, 100 * t.least, t.error, t.rival,
-           t.width);
+           f->name, doe_words[method], (unsigned long long)count, independent ? " independent" : "",
+           100 * t.mean, 100 * t.least, t.error, t.rival, t.width);
     return t;
 }
 
@@ -301,7 +300,7 @@ static void test_coverage(void **state)
     for (size_t f = 0; f < FUNCTIONS; f++) {
         const struct function *own = &functions[f];
         for (int independent = 0; independent < 2; independent++) {
-            const struct tally t = cover(SAMPLING_SALTELLI, own, 256, seeds, independent);
+            const struct tally t = cover(DOE_SALTELLI, own, 256, seeds, independent);
             assert_true(t.least > 0.93 - slack);
             assert_true(t.mean > 0.935);
             for (size_t q = 0; q < t.quantities; q++)
@@ -310,8 +309,8 @@ static void test_coverage(void **state)
             assert_true(t.error < t.rival);
         }
         for (uint64_t n = 32; patient && n <= 1024; n *= 2) {
-            cover(SAMPLING_SALTELLI, own, n, seeds, true);
-            cover(SAMPLING_SALTELLI, own, n, seeds, false);
+            cover(DOE_SALTELLI, own, n, seeds, true);
+            cover(DOE_SALTELLI, own, n, seeds, false);
         }
     }
 }
@@ -326,7 +325,7 @@ static void test_coverage_of_bins(void **state)
     (void)state;
     for (size_t f = 0; f < FUNCTIONS; f++) {
         for (int m = 0; m < 3; m++) {
-            const enum sampling_method method = (enum sampling_method)m; /* random, lhs, sobol */
+            const enum doe_method method = (enum doe_method)m; /* random, lhs, sobol */
             const struct tally t = cover(method, &functions[f], 512, seeds, false);
             assert_true(t.least > 0.93 - slack);
             assert_true(t.mean > 0.93 && t.width < 0.45);
@@ -345,13 +344,13 @@ static void test_coverage_of_effects(void **state)
     const struct function *own = &functions[0];
     struct sensitivity truth;
     (void)state;
-    struct data all = make(SAMPLING_MORRIS, own, TRUTHS, 99, false, false);
+    struct data all = make(DOE_MORRIS, own, TRUTHS, 99, false, false);
     analyse(&truth, &all, &usual);
     for (uint64_t n = 10; n <= 40; n *= 2) {
         double held[3] = {0};
         for (int seed = 0; seed < seeds; seed++) {
             struct sensitivity s;
-            struct data d = make(SAMPLING_MORRIS, own, n, (uint64_t)seed, false, false);
+            struct data d = make(DOE_MORRIS, own, n, (uint64_t)seed, false, false);
             analyse(&s, &d, &usual);
             for (int m = 0; m < 3; m++)
                 for (size_t j = 0; j < own->factors; j++)
@@ -377,7 +376,7 @@ static void test_indices(void **state)
     (void)state;
     for (size_t f = 0; f < SMOOTH; f++) {
         struct sensitivity s;
-        struct data d = make(SAMPLING_SALTELLI, &functions[f], 4096, 3, false, false);
+        struct data d = make(DOE_SALTELLI, &functions[f], 4096, 3, false, false);
         analyse(&s, &d, &wide);
         functions[f].indices(first, total);
         assert_int_equal(s.blocks, 4096);
@@ -402,7 +401,7 @@ static void test_pairs(void **state)
     (void)state;
     for (size_t f = 0; f < SMOOTH; f++) {
         struct sensitivity s;
-        struct data d = make(SAMPLING_SALTELLI, &functions[f], 2048, 5, true, false);
+        struct data d = make(DOE_SALTELLI, &functions[f], 2048, 5, true, false);
         const size_t k = d.factors;
         analyse(&s, &d, &wide);
         functions[f].indices(first, total);
@@ -428,7 +427,7 @@ static void test_pairs(void **state)
 static void test_units(void **state)
 {
     struct sensitivity s, other;
-    struct data d = make(SAMPLING_SALTELLI, &functions[0], 128, 2, true, false);
+    struct data d = make(DOE_SALTELLI, &functions[0], 128, 2, true, false);
     (void)state;
     analyse(&s, &d, &usual);
     for (size_t i = 0; i < d.points; i++)
@@ -457,7 +456,7 @@ static void test_morris(void **state)
 {
     static const double slopes[4] = {2, -5, 0, 0.5};
     struct sensitivity s;
-    struct data d = make(SAMPLING_MORRIS, &straight, 10, 1, false, false);
+    struct data d = make(DOE_MORRIS, &straight, 10, 1, false, false);
     (void)state;
     analyse(&s, &d, &usual);
     for (size_t j = 0; j < 4; j++) {
@@ -487,15 +486,15 @@ static void test_morris(void **state)
  * the others keep theirs. */
 static void test_missing(void **state)
 {
-    enum { BLOCK = 5, GONE = SAMPLING_REPLICATES };
+    enum { BLOCK = 5, GONE = DOE_REPLICATES };
     struct sensitivity s, other;
-    struct data d = make(SAMPLING_SALTELLI, &functions[0], 5 * GONE, 4, false, false);
+    struct data d = make(DOE_SALTELLI, &functions[0], 5 * GONE, 4, false, false);
     (void)state;
     for (size_t i = 0; i < GONE; i++)
         d.y[(GONE + i) * BLOCK + i % BLOCK] = NAN;
     analyse(&s, &d, &usual);
     memmove(d.y + GONE * BLOCK, d.y + 2 * GONE * BLOCK, 3 * GONE * BLOCK * sizeof *d.y);
-    d.sampling.count = 4 * GONE;
+    d.doe.count = 4 * GONE;
     analyse(&other, &d, &usual);
     assert_int_equal(s.blocks, 4 * GONE);
     assert_memory_equal(s.all, other.all, 7 * sizeof *s.all);

@@ -29,13 +29,12 @@ stance_error stance_refuse(stance_message *message, stance_error error, const ch
 const char *stance_complex_text(double _Complex number, char text[64])
 {
     const double dust = 1e-12 * cabs(number), re = creal(number), im = cimag(number);
-    if (fabs(im) <= dust) {
+    if (fabs(im) <= dust)
         snprintf(text, 64, "%.6g", re);
-    } else if (fabs(re) <= dust) {
+    else if (fabs(re) <= dust)
         snprintf(text, 64, "%.6gi", im);
-    } else {
+    else
         snprintf(text, 64, "%.6g%+.6gi", re, im);
-    }
     return text;
 }
 
@@ -46,17 +45,15 @@ typedef struct eigenvalue {
 static int by_real_then_imaginary(const void *left, const void *right)
 {
     const eigenvalue *a = left, *b = right;
-    if (a->re != b->re) {
+    if (a->re != b->re)
         return a->re < b->re ? -1 : 1;
-    }
     return (a->im > b->im) - (a->im < b->im);
 }
 
 static void sort_eigenvalues(int n, double *re, double *im, eigenvalue *sorted)
 {
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         sorted[i] = (eigenvalue){re[i], im[i]};
-    }
     qsort(sorted, (size_t)n, sizeof *sorted, by_real_then_imaginary);
     for (int i = 0; i < n; i++) {
         re[i] = sorted[i].re;
@@ -67,9 +64,8 @@ static void sort_eigenvalues(int n, double *re, double *im, eigenvalue *sorted)
 stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
 {
     const size_t entries = (size_t)n * (size_t)n;
-    if (n < 1 || !matrix_finite(entries, A)) {
+    if (n < 1 || !matrix_finite(entries, A))
         return STANCE_BAD_ARGUMENT;
-    }
     double *copy = matrix_room(entries);
     eigenvalue *sorted = calloc((size_t)n, sizeof *sorted);
     stance_error error = STANCE_NO_MEMORY;
@@ -79,9 +75,8 @@ stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
             LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, copy, n, re, im, NULL, 1, NULL, 1);
         error = info == 0 ? STANCE_OK : STANCE_NUMERICAL;
     }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         sort_eigenvalues(n, re, im, sorted);
-    }
     free(sorted);
     free(copy);
     return error;
@@ -90,9 +85,8 @@ stance_error stance_eigenvalues(int n, const double *A, double *re, double *im)
 static double frobenius(int count, const double *x)
 {
     double norm = 0;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++)
         norm = hypot(norm, x[i]);
-    }
     return norm;
 }
 
@@ -102,11 +96,9 @@ static double frobenius(int count, const double *x)
 static void store_block(int n, int m, int k, const double *block, double *kalman)
 {
     const double norm = frobenius(n * m, block);
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < m; j++) {
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < m; j++)
             kalman[(i * n + k) * m + j] = norm > 0 ? block[i * m + j] / norm : 0;
-        }
-    }
 }
 
 /* next = A block; exactly zero where it is nothing but the rounding of a product that vanishes,
@@ -115,20 +107,17 @@ static void next_block(int n, int m, const double *A, const double *block, doubl
 {
     matrix_multiply(n, n, m, A, block, next);
     const double size = frobenius(n * n, A) * frobenius(n * m, block);
-    if (frobenius(n * m, next) <= BLOCK_ROUNDING * size) {
+    if (frobenius(n * m, next) <= BLOCK_ROUNDING * size)
         memset(next, 0, (size_t)(n * m) * sizeof *next);
-    }
 }
 
 stance_error stance_kalman(int n, int m, const double *A, const double *B, double *sv, int *rank)
 {
-    if (n < 1 || m < 1) {
+    if (n < 1 || m < 1)
         return STANCE_BAD_ARGUMENT;
-    }
     const size_t size = (size_t)n * (size_t)m;
-    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite(size, B)) {
+    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite(size, B))
         return STANCE_BAD_ARGUMENT;
-    }
     double *kalman = matrix_room(size * (size_t)n), *block = matrix_room(size),
            *next = matrix_room(size), *unused = matrix_room((size_t)n);
     stance_error error = STANCE_NO_MEMORY;
@@ -148,9 +137,8 @@ stance_error stance_kalman(int n, int m, const double *A, const double *B, doubl
     }
     if (error == STANCE_OK) {
         *rank = 0;
-        while (*rank < n && sv[*rank] > KALMAN_TOLERANCE * sv[0]) {
+        while (*rank < n && sv[*rank] > KALMAN_TOLERANCE * sv[0])
             ++*rank;
-        }
     }
     free(unused);
     free(next);
@@ -174,16 +162,14 @@ static stance_error input_range(int n, int m, const double *B, double *U, int *r
 {
     const int k = n < m ? n : m;
     double *copy = matrix_room((size_t)n * (size_t)m + 2 * (size_t)k);
-    if (!copy) {
+    if (!copy)
         return STANCE_NO_MEMORY;
-    }
     double *sv = copy + n * m;
     matrix_transpose(n, m, B, copy);
     const int info =
         LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'N', n, m, copy, n, sv, U, n, NULL, 1, sv + k);
-    for (*rank = 0; info == 0 && *rank < k && sv[*rank] > RANK_TOLERANCE * sv[0];) {
+    for (*rank = 0; info == 0 && *rank < k && sv[*rank] > RANK_TOLERANCE * sv[0];)
         ++*rank;
-    }
     free(copy);
     return info == 0 ? STANCE_OK : STANCE_NUMERICAL;
 }
@@ -195,12 +181,10 @@ static stance_error mode_reached(int n, int r, const double *A, const double *U,
                                  bool *reached)
 {
     for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
+        for (int j = 0; j < n; j++)
             matrix[j * n + i] = A[i * n + j] - (i == j ? mode : 0);
-        }
-        for (int j = 0; j < r; j++) {
+        for (int j = 0; j < r; j++)
             matrix[(n + j) * n + i] = norm * U[j * n + i];
-        }
     }
     const int info = LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n + r, matrix, n, sv, NULL, 1,
                                     NULL, 1, sv + n);
@@ -225,9 +209,8 @@ stance_error stance_hautus(int n, int m, const double *A, const double *B, enum 
     }
     double *im = re + n, *sv = im + n, *U = sv + 2 * n;
     stance_error error = stance_eigenvalues(n, A, re, im);
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = input_range(n, m, B, U, &rank);
-    }
     for (int i = 0; error == STANCE_OK && *reached && i < n; i++) {
         if (passes(filter, norm, re[i], im[i])) {
             *mode = CMPLX(re[i], im[i]);

@@ -4,10 +4,10 @@
  * transpose, which costs nothing where a function commutes with transposition (eigenvalues,
  * singular values, the exponential).
  */
-#ifndef STANCE_CONTROL_H
-#define STANCE_CONTROL_H
+#ifndef STANCE_CONTROL_CONTROL_H
+#define STANCE_CONTROL_CONTROL_H
 
-#include "../stance.h"
+#include "engine/stance.h"
 
 #include <complex.h>
 #include <math.h>
@@ -63,9 +63,8 @@ static inline void matrix_multiply(int n, int m, int p, const double *A, const d
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < p; j++) {
             double sum = 0;
-            for (int k = 0; k < m; k++) {
+            for (int k = 0; k < m; k++)
                 sum += A[i * m + k] * B[k * p + j];
-            }
             C[i * p + j] = sum;
         }
     }
@@ -74,11 +73,9 @@ static inline void matrix_multiply(int n, int m, int p, const double *A, const d
 /* B[m][n] = A[n][m] transposed: what Fortran reads as A. */
 static inline void matrix_transpose(int n, int m, const double *A, double *B)
 {
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < m; j++) {
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < m; j++)
             B[j * n + i] = A[i * m + j];
-        }
-    }
 }
 
 /* loop[n][n] = A - B K. */
@@ -86,9 +83,8 @@ static inline void matrix_close(int n, int m, const double *A, const double *B, 
                                 double *loop)
 {
     matrix_multiply(n, m, n, B, K, loop);
-    for (int i = 0; i < n * n; i++) {
+    for (int i = 0; i < n * n; i++)
         loop[i] = A[i] - loop[i];
-    }
 }
 
 /* Room for `count` numbers, zero; count may be 0. */
@@ -99,11 +95,9 @@ static inline double *matrix_room(size_t count)
 
 static inline bool matrix_finite(size_t count, const double *x)
 {
-    for (size_t i = 0; i < count; i++) {
-        if (!isfinite(x[i])) {
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(x[i]))
             return false;
-        }
-    }
     return true;
 }
 

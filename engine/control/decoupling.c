@@ -1,8 +1,9 @@
 /* decoupling.c - where two torques can drive a pair of coordinates, and where they cannot.
  *
  * With A the inertia matrix and B the columns of the actuated joints, G = S A^-1 B takes torques to
- * the accelerations of the pair: the inverse of the paper's A_rs, see core/decoupling.h. G depends
- * on the posture alone; where its determinant changes sign it is singular on the surface between.
+ * the accelerations of the pair: the inverse of the paper's A_rs, see core/mode/decoupling.h. G
+ * depends on the posture alone; where its determinant changes sign it is singular on the surface
+ * between.
  */
 #include "control.h"
 
@@ -17,9 +18,8 @@ static bool respond(const stance_scene *scene, const double *robot, const double
     double A[STANCE_MAX_COORDINATES * STANCE_MAX_COORDINATES];
     scene->inertia(robot, position, A);
     memset(X, 0, sizeof(double[STANCE_MAX_COORDINATES][2]));
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++)
         X[scene->posture[scene->postures - 2 + i]][i] = 1;
-    }
     return LAPACKE_dposv(LAPACK_ROW_MAJOR, 'L', n, 2, A, n, &X[0][0], 2) == 0;
 }
 
@@ -39,12 +39,10 @@ stance_error stance_pair_condition(const stance_scene *scene, const double *robo
 {
     double X[STANCE_MAX_COORDINATES][2], determinant;
     int first, second;
-    if (!scene->inertia || !stance_pair(scene, pair, &first, &second)) {
+    if (!scene->inertia || !stance_pair(scene, pair, &first, &second))
         return STANCE_BAD_ARGUMENT;
-    }
-    if (!respond(scene, robot, position, X)) {
+    if (!respond(scene, robot, position, X))
         return STANCE_NUMERICAL;
-    }
     *condition = condition_of(X[first], X[second], &determinant);
     return STANCE_OK;
 }
@@ -65,26 +63,21 @@ stance_error stance_pair_survey(const stance_scene *scene, const double *robot, 
 {
     double X[STANCE_MAX_COORDINATES][2], position[STANCE_MAX_COORDINATES] = {0};
     long postures = 1, above[STANCE_MAX_PAIRS] = {0}, positive[STANCE_MAX_PAIRS] = {0};
-    if (!scene->inertia || resolution < 1 || pairs > STANCE_MAX_PAIRS) {
+    if (!scene->inertia || resolution < 1 || pairs > STANCE_MAX_PAIRS)
         return STANCE_BAD_ARGUMENT;
-    }
-    for (int i = 0; i < scene->postures; i++) {
+    for (int i = 0; i < scene->postures; i++)
         postures *= resolution;
-    }
-    for (int p = 0; p < pairs; p++) {
+    for (int p = 0; p < pairs; p++)
         report[p].best = INFINITY;
-    }
     for (long k = 0; k < postures; k++) {
         place(scene, resolution, k, position);
-        if (!respond(scene, robot, position, X)) {
+        if (!respond(scene, robot, position, X))
             return STANCE_NUMERICAL;
-        }
         for (int p = 0; p < pairs; p++) {
             int first, second;
             double determinant;
-            if (!stance_pair(scene, p, &first, &second)) {
+            if (!stance_pair(scene, p, &first, &second))
                 return STANCE_BAD_ARGUMENT;
-            }
             const double condition = condition_of(X[first], X[second], &determinant);
             report[p].best = fmin(condition, report[p].best);
             above[p] += !(condition <= STANCE_ILL_CONDITIONED);

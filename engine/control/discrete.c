@@ -64,13 +64,11 @@ static void sampled_free(sampled *s)
 static stance_error sampled_make(sampled *s, int n, int m, const double *A, const double *B,
                                  const double *K, int delay)
 {
-    if (n < 1 || m < 1 || delay < 0 || delay > 1 || (delay && !K)) {
+    if (n < 1 || m < 1 || delay < 0 || delay > 1 || (delay && !K))
         return STANCE_BAD_ARGUMENT;
-    }
     const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
-    if (!matrix_finite(nn, A) || !matrix_finite(nm, B) || (K && !matrix_finite(nm, K))) {
+    if (!matrix_finite(nn, A) || !matrix_finite(nm, B) || (K && !matrix_finite(nm, K)))
         return STANCE_BAD_ARGUMENT;
-    }
     *s = (sampled){.n = n, .m = m, .side = delay ? n + m : n, .A = A, .B = B, .K = K};
     const size_t side = (size_t)s->side;
     double *room = matrix_room(4 * nn + side * side + nm + 2 * side);
@@ -97,9 +95,8 @@ static stance_error sampled_discretise(sampled *s, double T)
     int info = 0;
     mb05nd_(&n, &T, s->A, &n, s->Ad, &n, s->integral, &n, &tolerance, s->integers, s->work, &room,
             &info);
-    if (info != 0) {
+    if (info != 0)
         return STANCE_NUMERICAL;
-    }
     matrix_multiply(n, n, s->m, s->integral, s->B, s->Bd);
     const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)s->m;
     return matrix_finite(nn, s->Ad) && matrix_finite(nm, s->Bd) ? STANCE_OK : STANCE_NUMERICAL;
@@ -109,13 +106,11 @@ stance_error stance_discretise(int n, int m, const double *A, const double *B, d
                                double *Bd)
 {
     sampled s;
-    if (!isfinite(T) || T < 0) {
+    if (!isfinite(T) || T < 0)
         return STANCE_BAD_ARGUMENT;
-    }
     stance_error error = sampled_make(&s, n, m, A, B, NULL, 0);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return error;
-    }
     error = sampled_discretise(&s, T);
     if (error == STANCE_OK) {
         memcpy(Ad, s.Ad, (size_t)n * (size_t)n * sizeof *Ad);
@@ -130,9 +125,8 @@ static stance_error sampled_eigenvalues(sampled *s, double T)
 {
     const int n = s->n, m = s->m, side = s->side;
     const stance_error error = sampled_discretise(s, T);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return error;
-    }
     if (side == n) {
         matrix_close(n, m, s->Ad, s->Bd, s->K, s->loop);
     } else {
@@ -140,9 +134,8 @@ static stance_error sampled_eigenvalues(sampled *s, double T)
         for (int i = 0; i < n; i++) {
             memcpy(s->loop + i * side, s->Ad + i * n, (size_t)n * sizeof *s->Ad);
             memcpy(s->loop + i * side + n, s->Bd + i * m, (size_t)m * sizeof *s->Bd);
-            for (int j = 0; j < m; j++) {
+            for (int j = 0; j < m; j++)
                 s->loop[(n + j) * side + i] = -s->K[j * n + i];
-            }
         }
     }
     return stance_eigenvalues(side, s->loop, s->re, s->im);
@@ -152,13 +145,11 @@ stance_error stance_sampled_loop(int n, int m, const double *A, const double *B,
                                  double T, int delay, double *re, double *im)
 {
     sampled s;
-    if (!isfinite(T) || T < 0) {
+    if (!isfinite(T) || T < 0)
         return STANCE_BAD_ARGUMENT;
-    }
     stance_error error = sampled_make(&s, n, m, A, B, K, delay);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return error;
-    }
     error = sampled_eigenvalues(&s, T);
     if (error == STANCE_OK) {
         memcpy(re, s.re, (size_t)s.side * sizeof *re);
@@ -179,9 +170,8 @@ typedef struct sample {
 static stance_error sampled_look(sampled *s, double T, sample *look)
 {
     const stance_error error = sampled_eigenvalues(s, T);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return error;
-    }
     double radius = 0;
     double complex below = 1, above = 1, pairs = 1;
     for (int i = 0; i < s->side; i++) {
@@ -189,9 +179,8 @@ static stance_error sampled_look(sampled *s, double T, sample *look)
         radius = fmax(radius, cabs(z));
         below *= 1 - z;
         above *= 1 + z;
-        for (int j = 0; j < i; j++) {
+        for (int j = 0; j < i; j++)
             pairs *= 1 - z * CMPLX(s->re[j], s->im[j]);
-        }
     }
     *look = (sample){T, radius - 1, {creal(below), creal(above), creal(pairs)}};
     return STANCE_OK;
@@ -215,9 +204,8 @@ static stance_error sampled_minimum(sampled *s, int guard, double low, double hi
     const double part = 0.3819660112501051;
     sample a, b;
     stance_error error = sampled_look(s, low + part * (high - low), &a);
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = sampled_look(s, high - part * (high - low), &b);
-    }
     for (int i = 0; i < 60 && error == STANCE_OK; i++) {
         if (a.guard[guard] < b.guard[guard]) {
             high = b.T;
@@ -229,9 +217,8 @@ static stance_error sampled_minimum(sampled *s, int guard, double low, double hi
             error = sampled_look(s, high - part * (high - low), &b);
         }
     }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         *best = a.guard[guard] < b.guard[guard] ? a : b;
-    }
     return error;
 }
 
@@ -246,14 +233,12 @@ static stance_error sampled_bisect(sampled *s, double stable, double unstable, d
             return STANCE_OK;
         }
         const stance_error error = sampled_look(s, middle, &look);
-        if (error != STANCE_OK) {
+        if (error != STANCE_OK)
             return error;
-        }
-        if (look.excess < 0) {
+        if (look.excess < 0)
             stable = middle;
-        } else {
+        else
             unstable = middle;
-        }
     }
 }
 
@@ -262,9 +247,8 @@ static stance_error sampled_bisect(sampled *s, double stable, double unstable, d
 static stance_error sampled_between(sampled *s, const sample *look, double *T)
 {
     for (int g = 0; g < GUARDS; g++) {
-        if (look[1].guard[g] > look[0].guard[g] || look[1].guard[g] > look[2].guard[g]) {
+        if (look[1].guard[g] > look[0].guard[g] || look[1].guard[g] > look[2].guard[g])
             continue;
-        }
         sample lowest;
         double found;
         stance_error error = sampled_minimum(s, g, look[0].T, look[2].T, &lowest);
@@ -272,9 +256,8 @@ static stance_error sampled_between(sampled *s, const sample *look, double *T)
             error = sampled_bisect(s, look[0].T, lowest.T, &found);
             *T = error == STANCE_OK ? fmin(*T, found) : *T;
         }
-        if (error != STANCE_OK) {
+        if (error != STANCE_OK)
             return error;
-        }
     }
     return STANCE_OK;
 }
@@ -290,15 +273,12 @@ static stance_error sampled_scan(sampled *s, double interval, double longest, do
         look[0] = look[1];
         look[1] = look[2];
         stance_error error = sampled_look(s, fmin((double)i * interval, longest), &look[2]);
-        if (error == STANCE_OK && i > 2) {
+        if (error == STANCE_OK && i > 2)
             error = sampled_between(s, look, T);
-        }
-        if (error == STANCE_OK && !isfinite(*T) && look[2].excess >= 0) {
+        if (error == STANCE_OK && !isfinite(*T) && look[2].excess >= 0)
             error = sampled_bisect(s, look[1].T, look[2].T, T);
-        }
-        if (error != STANCE_OK || isfinite(*T)) {
+        if (error != STANCE_OK || isfinite(*T))
             return error;
-        }
     }
     return STANCE_OK;
 }
@@ -307,13 +287,11 @@ stance_error stance_critical_sample_time(int n, int m, const double *A, const do
                                          const double *K, int delay, double longest, double *T)
 {
     sampled s;
-    if (!isfinite(longest) || longest <= 0) {
+    if (!isfinite(longest) || longest <= 0)
         return STANCE_BAD_ARGUMENT;
-    }
     stance_error error = sampled_make(&s, n, m, A, B, K, delay);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return error;
-    }
     double fastest = 0, growth;
     error = spectrum(&s, A, &fastest, &growth);
     if (error == STANCE_OK) {
@@ -372,9 +350,8 @@ stance_error stance_place_sampled(stance_placement how, int n, int m, const doub
                              T);
     }
     stance_error error = sampled_make(&s, n, m, A, B, NULL, 0);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
-    }
     error = sampled_discretise(&s, T);
     if (error != STANCE_OK) {
         stance_refuse(message, error, "discretisation over %.6g s: %s", T,
@@ -384,12 +361,10 @@ stance_error stance_place_sampled(stance_placement how, int n, int m, const doub
     }
     if (error == STANCE_OK) {
         matrix_multiply(n, n, n, s.integral, A, s.loop);
-        for (int i = 0; i < n * n; i++) {
+        for (int i = 0; i < n * n; i++)
             s.loop[i] /= T;
-        }
-        for (int i = 0; i < n * m; i++) {
+        for (int i = 0; i < n * m; i++)
             s.Bd[i] /= T;
-        }
         for (int i = 0; i < n; i++) {
             const double complex pole = delta_pole(CMPLX(re[i], im[i]), T);
             s.re[i] = creal(pole);
@@ -401,12 +376,10 @@ stance_error stance_place_sampled(stance_placement how, int n, int m, const doub
                     : stance_place_following(n, m, &near, &wanted, K, sweeps, condition, message);
     }
     if (error == STANCE_OK && how == STANCE_SCHUR) {
-        if (sweeps) {
+        if (sweeps)
             *sweeps = 0;
-        }
-        if (condition) {
+        if (condition)
             *condition = NAN;
-        }
     }
     sampled_free(&s);
     return error;

@@ -51,17 +51,15 @@ stance_error stance_solve_lyapunov(int n, const double *F, bool discrete, const 
     double scale = 1, separation = 0, bound = 0;
     int integers = 0, info = 0;
 
-    if (!a) {
+    if (!a)
         return STANCE_NO_MEMORY;
-    }
     double *u = a + nn, *re = u + nn, *dwork = re + 2 * n;
     memcpy(a, F, nn * sizeof *a); /* Fortran sees the transpose, hence "T" */
     memmove(X, C, nn * sizeof *X);
     sb03md_(discrete ? "D" : "C", "X", "N", "T", &n, a, &n, u, &n, X, &n, &scale, &separation,
             &bound, re, re + n, &integers, dwork, &work, &info, 1, 1, 1, 1);
-    for (size_t i = 0; i < nn; i++) {
+    for (size_t i = 0; i < nn; i++)
         X[i] /= scale;
-    }
     free(a);
     return info == 0 && matrix_finite(nn, X) ? STANCE_OK : STANCE_NUMERICAL;
 }
@@ -85,13 +83,11 @@ stance_error stance_lyapunov(int n, const double *loop, bool sampled, const doub
         scratch ? check_stable(n, loop, sampled, scratch, message) : STANCE_NO_MEMORY;
     if (error == STANCE_OK) {
         memset(P, 0, nn * sizeof *P);
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; i++)
             P[i * n + i] = -weight[i];
-        }
         error = stance_solve_lyapunov(n, loop, sampled, P, P);
-        if (error == STANCE_OK && !is_positive(n, P, scratch)) {
+        if (error == STANCE_OK && !is_positive(n, P, scratch))
             error = STANCE_NUMERICAL;
-        }
         if (error == STANCE_NUMERICAL) {
             stance_refuse(message, error,
                           "there is no Lyapunov function to working accuracy: the loop is on the "
@@ -105,21 +101,18 @@ stance_error stance_lyapunov(int n, const double *loop, bool sampled, const doub
 stance_error stance_sublevel(int n, const double *P, int count, const double *a, const double *d,
                              double *level, int *binding, double *alone, double *extent)
 {
-    if (n < 1 || count < 0 || !matrix_finite((size_t)n * (size_t)n, P)) {
+    if (n < 1 || count < 0 || !matrix_finite((size_t)n * (size_t)n, P))
         return STANCE_BAD_ARGUMENT;
-    }
     const int columns = count + n;
     double *factor = matrix_room((size_t)n * (size_t)(n + columns));
-    if (!factor) {
+    if (!factor)
         return STANCE_NO_MEMORY;
-    }
     double *solved = factor + n * n;
     /* Columns P^-1 a_k, then P^-1 e_i; row-major [count][n] is column-major [n][count]. */
     memcpy(factor, P, (size_t)(n * n) * sizeof *P);
     memcpy(solved, a, (size_t)(n * count) * sizeof *a);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         solved[(count + i) * n + i] = 1;
-    }
     const int info = LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', n, columns, factor, n, solved, n);
     if (info != 0) {
         free(factor);
@@ -129,9 +122,8 @@ stance_error stance_sublevel(int n, const double *P, int count, const double *a,
     *binding = -1;
     for (int k = 0; k < count; k++) {
         double reach = 0;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; i++)
             reach += a[k * n + i] * solved[k * n + i];
-        }
         const double c = d[k] <= 0 ? 0 : reach > 0 ? d[k] * d[k] / reach : INFINITY;
         if (c < *level) {
             *level = c;

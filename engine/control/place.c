@@ -86,9 +86,8 @@ static stance_error problem_make(problem *p, int n, int m, const double *A, cons
     *p = (problem){.n = n, .m = m, .A = A, .B = B};
     p->memory = calloc(1, numbers * sizeof(number) + reals * sizeof(double) +
                               (size_t)n * sizeof(lapack_int));
-    if (!p->memory) {
+    if (!p->memory)
         return STANCE_NO_MEMORY;
-    }
     number *z = p->memory;
     p->pole = z, z += n;
     p->space = z, z += nn * (size_t)n;
@@ -118,9 +117,8 @@ static stance_error check_multiplicity(const problem *p, stance_message *message
 {
     for (int j = 0; j < p->n; j++) {
         int times = 0;
-        for (int k = 0; k < p->n; k++) {
+        for (int k = 0; k < p->n; k++)
             times += stance_same_pole(p->pole[j], p->pole[k]);
-        }
         if (times > p->r) {
             char text[64];
             return stance_refuse(message, STANCE_BAD_POLES,
@@ -139,27 +137,21 @@ static stance_error split_inputs(problem *p, stance_message *message)
 {
     const int n = p->n, m = p->m, k = n < m ? n : m;
     double *copy = p->real, *vt = copy + n * m, *sv = vt + k * m, *unused = sv + k;
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < m; j++) {
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < m; j++)
             copy[j * n + i] = p->B[i * m + j];
-        }
-    }
     if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'A', 'S', n, m, copy, n, sv, p->range, n, vt, k, unused) !=
-        0) {
+        0)
         return STANCE_NUMERICAL;
-    }
-    while (p->r < k && sv[p->r] > RANK_TOLERANCE * sv[0]) {
+    while (p->r < k && sv[p->r] > RANK_TOLERANCE * sv[0])
         p->r++;
-    }
     if (p->r == 0) {
         return stance_refuse(message, STANCE_UNCONTROLLABLE,
                              "the inputs have no effect: the matrix B is zero");
     }
-    for (int i = 0; i < m; i++) {
-        for (int j = 0; j < p->r; j++) {
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < p->r; j++)
             p->pseudo[i * p->r + j] = vt[i * k + j] / sv[j];
-        }
-    }
     return STANCE_OK;
 }
 
@@ -187,28 +179,23 @@ static stance_error find_spaces(problem *p)
 
     for (int j = 0; j < n; j++) {
         number *space = p->space + (size_t)j * (size_t)n * (size_t)p->r;
-        for (int i = 0; i < n * n; i++) {
+        for (int i = 0; i < n * n; i++)
             vt[i] = i % (n + 1) == 0;
-        }
         for (int i = 0; i < rows; i++) {
             const double *u = p->range + (p->r + i) * n;
             for (int k = 0; k < n; k++) {
                 double sum = 0;
-                for (int l = 0; l < n; l++) {
+                for (int l = 0; l < n; l++)
                     sum += u[l] * p->A[l * n + k];
-                }
                 N[k * rows + i] = sum - p->pole[j] * u[k];
             }
         }
         if (rows > 0 && LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'A', rows, n, N, rows, sv, NULL, 1,
-                                       vt, n, unused) != 0) {
+                                       vt, n, unused) != 0)
             return STANCE_NUMERICAL;
-        }
-        for (int k = 0; k < p->r; k++) {
-            for (int i = 0; i < n; i++) {
+        for (int k = 0; k < p->r; k++)
+            for (int i = 0; i < n; i++)
                 space[k * n + i] = conj(vt[i * n + rows + k]);
-            }
-        }
     }
     return STANCE_OK;
 }
@@ -220,9 +207,8 @@ static void store_columns(problem *p, int j)
     const number *x = p->vector + j * p->n;
     for (int i = 0; i < p->n; i++) {
         p->X[j * p->n + i] = creal(x[i]);
-        if (is_pair(p, j)) {
+        if (is_pair(p, j))
             p->X[(j + 1) * p->n + i] = cimag(x[i]);
-        }
     }
 }
 
@@ -233,14 +219,12 @@ static bool combine(const problem *p, int j, const number *w, number *x)
     double norm = 0;
     for (int i = 0; i < p->n; i++) {
         x[i] = 0;
-        for (int k = 0; k < p->r; k++) {
+        for (int k = 0; k < p->r; k++)
             x[i] += space[k * p->n + i] * w[k];
-        }
         norm = hypot(norm, cabs(x[i]));
     }
-    for (int i = 0; i < p->n; i++) {
+    for (int i = 0; i < p->n; i++)
         x[i] /= norm;
-    }
     return norm > 0 && isfinite(norm);
 }
 
@@ -250,21 +234,18 @@ static void project(const problem *p, int j, const double *y, number *w)
     const number *space = p->space + (size_t)j * (size_t)p->n * (size_t)p->r;
     for (int k = 0; k < p->r; k++) {
         w[k] = 0;
-        for (int i = 0; i < p->n; i++) {
+        for (int i = 0; i < p->n; i++)
             w[k] += conj(space[k * p->n + i]) * y[i];
-        }
     }
 }
 
 static bool normalise(int n, double *y)
 {
     double norm = 0;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         norm = hypot(norm, y[i]);
-    }
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         y[i] /= norm;
-    }
     return norm > 0 && isfinite(norm);
 }
 
@@ -272,34 +253,26 @@ static bool normalise(int n, double *y)
 static bool complement(problem *p, int j, int count, double *y)
 {
     const int n = p->n;
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < n; k++) {
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < n; k++)
             p->factor[i * n + k] = p->X[k * n + i]; /* X^T */
-        }
-    }
     memset(y, 0, (size_t)(count * n) * sizeof *y);
-    for (int c = 0; c < count; c++) {
+    for (int c = 0; c < count; c++)
         y[c * n + j + c] = 1;
-    }
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, count, p->factor, n, p->pivot, y, n) != 0 ||
-        !normalise(n, y)) {
+        !normalise(n, y))
         return false;
-    }
-    if (count == 1) {
+    if (count == 1)
         return true;
-    }
     double *z = y + n;
-    if (!normalise(n, z)) {
+    if (!normalise(n, z))
         return false;
-    }
     for (int again = 0; again < 2; again++) {
         double along = 0;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; i++)
             along += y[i] * z[i];
-        }
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; i++)
             z[i] -= along * y[i];
-        }
     }
     return normalise(n, z);
 }
@@ -310,14 +283,11 @@ static bool best_pair(problem *p, const number *a, const number *b, number *w)
     const int r = p->r;
     number *H = p->small + 3 * r;
     double *value = p->real;
-    for (int i = 0; i < r; i++) {
-        for (int k = 0; k < r; k++) {
+    for (int i = 0; i < r; i++)
+        for (int k = 0; k < r; k++)
             H[k * r + i] = (a[i] * conj(b[k]) - b[i] * conj(a[k])) / CMPLX(0, 2);
-        }
-    }
-    if (LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'U', r, H, r, value) != 0) {
+    if (LAPACKE_zheev(LAPACK_COL_MAJOR, 'V', 'U', r, H, r, value) != 0)
         return false;
-    }
     const int best = -value[0] > value[r - 1] * (1 + 1e-9) ? 0 : r - 1;
     memcpy(w, H + best * r, (size_t)r * sizeof *w);
     return true;
@@ -328,26 +298,22 @@ static bool improve(problem *p, int j, double *change)
 {
     const int n = p->n, count = is_pair(p, j) ? 2 : 1;
     number *x = p->vector + j * n, *fresh = p->image, *w = p->small, *a = w + p->r, *b = a + p->r;
-    if (!complement(p, j, count, p->rhs)) {
+    if (!complement(p, j, count, p->rhs))
         return false;
-    }
     if (count == 1) {
         project(p, j, p->rhs, w);
     } else {
         project(p, j, p->rhs, a);
         project(p, j, p->rhs + n, b);
-        if (!best_pair(p, a, b, w)) {
+        if (!best_pair(p, a, b, w))
             return false;
-        }
     }
-    if (!combine(p, j, w, fresh)) {
+    if (!combine(p, j, w, fresh))
         return false;
-    }
     /* A vector's phase means nothing: compare after turning the new one to the old. */
     number overlap = 0;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         overlap += conj(fresh[i]) * x[i];
-    }
     const number phase = cabs(overlap) > 0 ? overlap / cabs(overlap) : 1;
     double moved = 0;
     for (int i = 0; i < n; i++) {
@@ -367,21 +333,17 @@ static bool climb(problem *p, double tolerance, int most, double admitted, int *
     int progress = 0;
     for (*sweeps = 1;; ++*sweeps) {
         double change = 0;
-        for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1) {
-            if (!improve(p, j, &change)) {
+        for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1)
+            if (!improve(p, j, &change))
                 return false;
-            }
-        }
         if (change < least) {
             least = change;
             progress = *sweeps;
         }
-        if (change <= tolerance || (change <= ROUNDING && *sweeps >= progress + PATIENCE)) {
+        if (change <= tolerance || (change <= ROUNDING && *sweeps >= progress + PATIENCE))
             return true;
-        }
-        if (*sweeps >= most) {
+        if (*sweeps >= most)
             return change <= admitted;
-        }
     }
 }
 
@@ -390,13 +352,11 @@ static double log_height(problem *p)
 {
     const int n = p->n;
     memcpy(p->factor, p->X, (size_t)(n * n) * sizeof *p->X);
-    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, p->factor, n, p->pivot) != 0) {
+    if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, n, n, p->factor, n, p->pivot) != 0)
         return -INFINITY;
-    }
     double sum = 0;
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         sum += log(fabs(p->factor[i * (n + 1)]));
-    }
     return sum;
 }
 
@@ -415,13 +375,11 @@ static bool scatter(problem *p, int start)
                 p->rhs[i] = (double)(state >> 11) * 0x1p-52 - 1;
             }
             project(p, j, p->rhs, part);
-            for (int k = 0; k < p->r; k++) {
+            for (int k = 0; k < p->r; k++)
                 w[k] += c ? CMPLX(0, 1) * part[k] : part[k];
-            }
         }
-        if (!combine(p, j, w, p->vector + j * p->n)) {
+        if (!combine(p, j, w, p->vector + j * p->n))
             return false;
-        }
         store_columns(p, j);
     }
     return true;
@@ -436,9 +394,8 @@ static void cross_gram(const problem *p, int i, int j, number *M)
     for (int a = 0; a < r; a++) {
         for (int b = 0; b < r; b++) {
             number sum = 0;
-            for (int k = 0; k < n; k++) {
+            for (int k = 0; k < n; k++)
                 sum += conj(Si[a * n + k]) * Sj[b * n + k];
-            }
             M[b * r + a] = sum;
         }
     }
@@ -454,10 +411,8 @@ static bool mirror_direction(problem *p, number *direction)
     double clearest = 1 - 1e-9;
     for (int j = 1; j < p->n; j++) {
         cross_gram(p, 0, j, M);
-        if (LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'A', 'N', r, r, M, r, sv, u, r, NULL, 1, unused) !=
-            0) {
+        if (LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'A', 'N', r, r, M, r, sv, u, r, NULL, 1, unused) != 0)
             return false;
-        }
         if (sv[r - 1] < clearest * sv[0]) {
             clearest = sv[r - 1] / sv[0];
             memcpy(direction, u + (r - 1) * r, (size_t)r * sizeof *direction);
@@ -472,35 +427,30 @@ static bool reflect(problem *p)
 {
     const int n = p->n, r = p->r;
     number *direction = p->image;
-    if (r < 2 || !mirror_direction(p, direction)) {
+    if (r < 2 || !mirror_direction(p, direction))
         return false;
-    }
     number *w = p->small, *image = w + r, *M = image + r;
     for (int j = 0; j < n; j += is_pair(p, j) ? 2 : 1) {
         const number *space = p->space + (size_t)j * (size_t)n * (size_t)r;
         number *x = p->vector + j * n;
         for (int k = 0; k < r; k++) {
             w[k] = 0;
-            for (int i = 0; i < n; i++) {
+            for (int i = 0; i < n; i++)
                 w[k] += conj(space[k * n + i]) * x[i];
-            }
         }
         cross_gram(p, 0, j, M);
         number along = 0;
         for (int a = 0; a < r; a++) {
             image[a] = 0;
-            for (int b = 0; b < r; b++) {
+            for (int b = 0; b < r; b++)
                 image[a] += M[b * r + a] * w[b];
-            }
             along += conj(direction[a]) * image[a];
         }
-        for (int a = 0; a < r; a++) {
+        for (int a = 0; a < r; a++)
             image[a] -= 2 * along * direction[a];
-        }
         if (LAPACKE_zgesv(LAPACK_COL_MAJOR, r, 1, M, r, p->pivot, image, r) != 0 ||
-            !combine(p, j, image, x)) {
+            !combine(p, j, image, x))
             return false;
-        }
         store_columns(p, j);
     }
     return true;
@@ -524,22 +474,19 @@ static bool gains(problem *p, double *K, double *norm)
         }
     }
     /* X^T M^T = (X Lambda)^T: column i of the solution is row i of M. */
-    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, n, XT, n, p->pivot, M, n) != 0) {
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, n, XT, n, p->pivot, M, n) != 0)
         return false;
-    }
     for (int k = 0; k < r; k++) {
         for (int j = 0; j < n; j++) {
             U0M[k * n + j] = 0;
-            for (int i = 0; i < n; i++) {
+            for (int i = 0; i < n; i++)
                 U0M[k * n + j] += p->range[k * n + i] * (p->A[i * n + j] - M[i * n + j]);
-            }
         }
     }
     matrix_multiply(p->m, r, n, p->pseudo, U0M, K);
     *norm = 0;
-    for (int i = 0; i < p->m * n; i++) {
+    for (int i = 0; i < p->m * n; i++)
         *norm = hypot(*norm, K[i]);
-    }
     return isfinite(*norm);
 }
 
@@ -551,14 +498,12 @@ static double condition_number(problem *p)
     double *sv = p->real, *unused = sv + n;
     for (int j = 0; j < n; j++) {
         const double scale = cimag(p->pole[j]) != 0 ? sqrt(2) : 1;
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < n; i++)
             p->factor[j * n + i] = scale * p->X[j * n + i];
-        }
     }
     if (LAPACKE_dgesvd(LAPACK_COL_MAJOR, 'N', 'N', n, n, p->factor, n, sv, NULL, 1, NULL, 1,
-                       unused) != 0) {
+                       unused) != 0)
         return INFINITY;
-    }
     return sv[0] / sv[n - 1];
 }
 
@@ -580,9 +525,8 @@ static bool screen(problem *p, int *taken)
     double highest = -INFINITY;
     int sweeps;
     for (int start = 0; start < STARTS; start++) {
-        if (!scatter(p, start) || !climb(p, SCREEN_TOLERANCE, SCREEN_SWEEPS, 1, &sweeps)) {
+        if (!scatter(p, start) || !climb(p, SCREEN_TOLERANCE, SCREEN_SWEEPS, 1, &sweeps))
             continue;
-        }
         const double height = log_height(p);
         if (height > highest + (isfinite(highest) ? EQUAL_HEIGHT : 0)) {
             highest = height;
@@ -590,13 +534,11 @@ static bool screen(problem *p, int *taken)
             memcpy(best, p->vector, bytes);
         }
     }
-    if (!isfinite(highest)) {
+    if (!isfinite(highest))
         return false;
-    }
     memcpy(p->vector, best, bytes);
-    for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1) {
+    for (int j = 0; j < p->n; j += is_pair(p, j) ? 2 : 1)
         store_columns(p, j);
-    }
     return true;
 }
 
@@ -616,9 +558,8 @@ static stance_error finish(problem *p, double *K, candidate *c, stance_message *
     }
     c->height = log_height(p);
     c->condition = condition_number(p);
-    if (!(c->condition < WORST_CONDITION) || !gains(p, K, &c->norm)) {
+    if (!(c->condition < WORST_CONDITION) || !gains(p, K, &c->norm))
         return not_independent(message);
-    }
     return STANCE_OK;
 }
 
@@ -634,12 +575,10 @@ static bool solve_from(problem *p, const number *start, double *K, candidate *c)
         }
         project(p, j, re, w);
         project(p, j, im, part);
-        for (int k = 0; k < p->r; k++) {
+        for (int k = 0; k < p->r; k++)
             w[k] += CMPLX(0, 1) * part[k];
-        }
-        if (!combine(p, j, w, p->vector + j * p->n)) {
+        if (!combine(p, j, w, p->vector + j * p->n))
             return false;
-        }
         store_columns(p, j);
     }
     return finish(p, K, c, NULL) == STANCE_OK;
@@ -677,39 +616,30 @@ static stance_error prepare(problem *p, int n, int m, const double *A, const dou
                             const double *re, const double *im, stance_message *message)
 {
     stance_error error = problem_make(p, n, m, A, B);
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = stance_pair_poles(n, re, im, p->pole, message);
-    }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = split_inputs(p, message);
-    }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = check_multiplicity(p, message);
-    }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = check_controllable(p, message);
-    }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = find_spaces(p);
-    }
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         free(p->memory);
-    }
     return error;
 }
 
 static stance_error hand_over(stance_error error, const candidate *c, int *sweeps,
                               double *condition, stance_message *message)
 {
-    if (error == STANCE_OK && sweeps) {
+    if (error == STANCE_OK && sweeps)
         *sweeps = c->sweeps;
-    }
-    if (error == STANCE_OK && condition) {
+    if (error == STANCE_OK && condition)
         *condition = c->condition;
-    }
-    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL) {
+    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL)
         stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
-    }
     return error;
 }
 
@@ -721,9 +651,8 @@ stance_error stance_place(int n, int m, const double *A, const double *B, const 
         return stance_refuse(message, STANCE_BAD_ARGUMENT,
                              "pole placement needs at least one state and one input");
     }
-    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite((size_t)n * (size_t)m, B)) {
+    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite((size_t)n * (size_t)m, B))
         return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
-    }
     problem p;
     candidate c = {0};
     stance_error error = prepare(&p, n, m, A, B, re, im, message);
@@ -738,9 +667,8 @@ stance_error stance_place_following(int n, int m, const linear_model *near,
                                     const linear_model *wanted, double *K, int *sweeps,
                                     double *condition, stance_message *message)
 {
-    if (n < 1 || m < 1) {
+    if (n < 1 || m < 1)
         return STANCE_BAD_ARGUMENT;
-    }
     problem p, q;
     candidate c = {0}, ignored = {0};
     stance_error error = prepare(&p, n, m, wanted->A, wanted->B, wanted->re, wanted->im, message);

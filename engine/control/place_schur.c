@@ -34,9 +34,8 @@ static stance_error assign(int n, int m, const double *A, const double *B,
     const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
     const int work = 10 * (n > m ? n : m) + 16;
     double *a = matrix_room(2 * nn + 2 * nm + 2 * (size_t)n + (size_t)work);
-    if (!a) {
+    if (!a)
         return STANCE_NO_MEMORY;
-    }
     double *z = a + nn, *b = z + nn, *f = b + nm, *re = f + nm, *im = re + n, *dwork = im + n;
     const double none_stays = -1e300, tolerance = 0;
     int stay = 0, assigned = 0, unreached = 0, warnings = 0, info = 0;
@@ -49,11 +48,9 @@ static stance_error assign(int n, int m, const double *A, const double *B,
     }
     sb01bd_("C", &n, &m, &n, &none_stays, a, &n, b, &n, re, im, &stay, &assigned, &unreached, f, &m,
             z, &n, &tolerance, dwork, &work, &warnings, &info, 1);
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < m; j++) {
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < m; j++)
             K[j * n + i] = -f[i * m + j];
-        }
-    }
     stance_error error = info == 0 && matrix_finite(nm, K) ? STANCE_OK : STANCE_NUMERICAL;
     if (error == STANCE_OK && assigned < n) {
         error = stance_refuse(message, STANCE_BAD_POLES,
@@ -70,24 +67,19 @@ stance_error stance_place_schur(int n, int m, const double *A, const double *B, 
         return stance_refuse(message, STANCE_BAD_ARGUMENT,
                              "pole placement needs at least one state and one input");
     }
-    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite((size_t)n * (size_t)m, B)) {
+    if (!matrix_finite((size_t)n * (size_t)n, A) || !matrix_finite((size_t)n * (size_t)m, B))
         return stance_refuse(message, STANCE_BAD_ARGUMENT, "A and B must be finite");
-    }
     double complex *pole = calloc((size_t)n, sizeof *pole), mode = 0;
     bool reached = true;
     stance_error error = pole ? STANCE_OK : STANCE_NO_MEMORY;
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = stance_pair_poles(n, re, im, pole, message);
-    }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = stance_hautus(n, m, A, B, EVERY_MODE, &mode, &reached);
-    }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = reached ? assign(n, m, A, B, pole, K, message) : uncontrollable(message, mode);
-    }
-    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL) {
+    if (error == STANCE_NO_MEMORY || error == STANCE_NUMERICAL)
         stance_refuse(message, error, "pole placement: %s", stance_error_text(error));
-    }
     free(pole);
     return error;
 }

@@ -30,18 +30,15 @@ stance_error stance_pair_poles(int n, const double *re, const double *im, double
         }
     }
     for (int j = 0; j < n && error == STANCE_OK; j++) {
-        if (taken[j]) {
+        if (taken[j])
             continue;
-        }
         const double complex wanted = CMPLX(re[j], im[j]);
         pole[placed++] = wanted;
-        if (im[j] == 0) {
+        if (im[j] == 0)
             continue;
-        }
         int k = j + 1;
-        while (k < n && (taken[k] || !stance_same_pole(CMPLX(re[k], im[k]), conj(wanted)))) {
+        while (k < n && (taken[k] || !stance_same_pole(CMPLX(re[k], im[k]), conj(wanted))))
             k++;
-        }
         if (k == n) {
             error = unpaired(message, wanted);
             break;

@@ -112,23 +112,20 @@ static stance_error feedback(regulator *g, double *K)
     memcpy(left, g->R, (size_t)(m * m) * sizeof *left);
     if (g->discrete) {
         matrix_multiply(m, n, m, BT, XB, left);
-        for (int i = 0; i < m * m; i++) {
+        for (int i = 0; i < m * m; i++)
             left[i] += g->R[i];
-        }
         double *AT = BT + n * m;
         matrix_transpose(n, n, g->A, AT);
         matrix_multiply(n, n, m, AT, XB, right);
-        for (int i = 0; i < n * m; i++) {
+        for (int i = 0; i < n * m; i++)
             right[i] += g->S[i];
-        }
     } else {
         memcpy(right, XB, (size_t)(n * m) * sizeof *right);
     }
     /* Row-major [n][m] is the right-hand side, column-major [m][n], that Fortran wants; and so is
      * the answer K', row-major [n][m]. */
-    if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', m, n, left, m, right, m) != 0) {
+    if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', m, n, left, m, right, m) != 0)
         return STANCE_NUMERICAL;
-    }
     matrix_transpose(n, m, right, K);
     return matrix_finite((size_t)n * (size_t)m, K) ? STANCE_OK : STANCE_NUMERICAL;
 }
@@ -140,9 +137,8 @@ static stance_error is_stable(regulator *g, const double *K, bool *stable)
     matrix_close(n, g->m, g->A, g->B, K, loop);
     const stance_error error = stance_eigenvalues(n, loop, re, im);
     *stable = true;
-    for (int i = 0; error == STANCE_OK && i < n; i++) {
+    for (int i = 0; error == STANCE_OK && i < n; i++)
         *stable = *stable && (g->discrete ? hypot(re[i], im[i]) < 1 : re[i] < 0);
-    }
     return error;
 }
 
@@ -174,9 +170,8 @@ static stance_error check_stabilisable(const regulator *g, stance_message *messa
     char text[64];
     const stance_error error = stance_hautus(
         g->n, g->m, g->A, g->B, g->discrete ? EXPANDING_MODES : GROWING_MODES, &mode, &reached);
-    if (error != STANCE_OK || reached) {
+    if (error != STANCE_OK || reached)
         return error;
-    }
     return stance_refuse(message, STANCE_UNCONTROLLABLE,
                          "the %s is not stabilisable: no input reaches the mode with eigenvalue %s",
                          g->discrete ? "sampled system" : "system",
@@ -188,25 +183,20 @@ static stance_error regulate(regulator *g, double *K, stance_message *message)
 {
     bool stable = false;
     stance_error error = check_stabilisable(g, message);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return error;
-    }
     error = solve_riccati(g);
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = feedback(g, K);
-    }
-    if (error == STANCE_OK) {
+    if (error == STANCE_OK)
         error = is_stable(g, K, &stable);
-    }
     for (int i = 0; i < NEWTON_STEPS && error == STANCE_OK && stable; i++) {
         error = refine(g, K);
-        if (error == STANCE_OK) {
+        if (error == STANCE_OK)
             error = feedback(g, K);
-        }
     }
-    if (error == STANCE_NO_MEMORY || (error == STANCE_OK && stable)) {
+    if (error == STANCE_NO_MEMORY || (error == STANCE_OK && stable))
         return error;
-    }
     return stance_refuse(message, STANCE_NUMERICAL,
                          "the Riccati equation of the regulator has no stabilising solution to "
                          "working accuracy: the weights differ too much in size");
@@ -222,14 +212,12 @@ static stance_error check_seen(int n, const double *A, const double *states,
     bool seen = true;
     char text[64];
 
-    if (!transposed) {
+    if (!transposed)
         return STANCE_NO_MEMORY;
-    }
     double *root = transposed + nn;
     matrix_transpose(n, n, A, transposed);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         root[i * n + i] = sqrt(states[i]);
-    }
     const stance_error error = stance_hautus(n, n, transposed, root, GROWING_MODES, &mode, &seen);
     free(transposed);
     return error != STANCE_OK || seen
@@ -270,9 +258,8 @@ static stance_error check_weights(int n, int m, const double *A, const double *B
 
 static stance_error finish(stance_error error, stance_message *message)
 {
-    if (error == STANCE_NO_MEMORY) {
+    if (error == STANCE_NO_MEMORY)
         stance_refuse(message, error, "linear quadratic regulator: %s", stance_error_text(error));
-    }
     return error;
 }
 
@@ -281,21 +268,17 @@ stance_error stance_lqr(int n, int m, const double *A, const double *B, const do
 {
     regulator g;
     stance_error error = check_weights(n, m, A, B, states, torques, message);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return finish(error, message);
-    }
     error = regulator_make(&g, n, m, false);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return finish(error, message);
-    }
     memcpy(g.A, A, (size_t)(n * n) * sizeof *A);
     memcpy(g.B, B, (size_t)(n * m) * sizeof *B);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n; i++)
         g.Q[i * n + i] = states[i];
-    }
-    for (int j = 0; j < m; j++) {
+    for (int j = 0; j < m; j++)
         g.R[j * m + j] = torques[j];
-    }
     error = regulate(&g, K, message);
     regulator_free(&g);
     return finish(error, message);
@@ -308,9 +291,8 @@ static stance_error sample_cost(regulator *g, const double *A, const double *B, 
     const int n = g->n, m = g->m, side = n + m, twice = 2 * side;
     const size_t block = (size_t)side * (size_t)side;
     double *pencil = matrix_room(8 * block + 2 * block);
-    if (!pencil) {
+    if (!pencil)
         return STANCE_NO_MEMORY;
-    }
     double *E = pencil + 4 * block, *transposed = E + 4 * block, *W = transposed + block;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < side; j++) {
@@ -319,9 +301,8 @@ static stance_error sample_cost(regulator *g, const double *A, const double *B, 
             pencil[(side + i) * twice + side + j] = f;
         }
     }
-    for (int i = 0; i < side; i++) {
+    for (int i = 0; i < side; i++)
         pencil[i * twice + side + i] = i < n ? states[i] : torques[i - n];
-    }
     const stance_error error = stance_exponential(twice, pencil, T, E, NULL);
     double *G = pencil; /* not needed any more */
     for (int i = 0; i < side; i++) {
@@ -355,17 +336,15 @@ stance_error stance_lqr_sampled(int n, int m, const double *A, const double *B, 
 {
     regulator g;
     stance_error error = check_weights(n, m, A, B, states, torques, message);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return finish(error, message);
-    }
     if (!isfinite(T) || T <= 0) {
         return stance_refuse(message, STANCE_BAD_ARGUMENT,
                              "a sampled regulator needs a sample time above 0, not %.6g s", T);
     }
     error = regulator_make(&g, n, m, true);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return finish(error, message);
-    }
     error = sample_cost(&g, A, B, T, states, torques);
     if (error == STANCE_OK) {
         error = regulate(&g, K, message);

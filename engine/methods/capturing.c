@@ -2,16 +2,16 @@
  *
  * Between events the step is Dormand and Prince's explicit Runge-Kutta formula of order 5 with its
  * embedded formula of order 4 (J. Comp. Appl. Math. 6, 1980), on the switched Lagrange equations of
- * core/smooth.h: it may be as long as the controller's sample interval. When a stage or the end
- * leaves the mode, somewhere in the interval there is an event. It is not located: the interval is
- * halved, the half without the event is a smooth step again, and once what is left is so short that
- * the accelerations change no velocity by more than the tolerance in it, the implicit law
- * (core/step.h, theta = 1/2) crosses it, whatever the event is: landing, lift-off, begin, end or
- * turn of a slip, an impact of both feet. An accumulation of bounces ends when they are too small
- * to count. Where there is no smooth motion to begin with - a closed contact approaches, several
- * sets of forces fit the laws or none (Painleve), both feet stand redundantly on the edge of
- * their cones - the implicit law takes the interval as long as it can, but not so long that a
- * contact that approaches has left again without having been struck.
+ * core/mode/between_events.h: it may be as long as the controller's sample interval. When a stage
+ * or the end leaves the mode, somewhere in the interval there is an event. It is not located: the
+ * interval is halved, the half without the event is a smooth step again, and once what is left is
+ * so short that the accelerations change no velocity by more than the tolerance in it, the implicit
+ * law (core/implicit/step.h, theta = 1/2) crosses it, whatever the event is: landing, lift-off,
+ * begin, end or turn of a slip, an impact of both feet. An accumulation of bounces ends when they
+ * are too small to count. Where there is no smooth motion to begin with - a closed contact
+ * approaches, several sets of forces fit the laws or none (Painleve), both feet stand redundantly
+ * on the edge of their cones - the implicit law takes the interval as long as it can, but not so
+ * long that a contact that approaches has left again without having been struck.
  *
  * Error of a smooth step: the embedded estimate, per coordinate and rate. Error of a crossing: one
  * step and two half ones must agree to the tolerance. That alone would not do: with the event in
@@ -32,7 +32,7 @@
 #define METHOD_STAGES 6
 #define METHOD_EMBEDDED
 
-#include "../core/kernel.h"
+#include "engine/core/loop/kernel.h"
 /* In this order. */
 #include STANCE_SCENE_LANES
 
@@ -52,14 +52,15 @@ static const double tableau_e[METHOD_STAGES + 1] = {
 static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 
 // clang-format off
-#include "../core/explicit.h"
+#include "engine/core/mode/explicit.h"
 // clang-format on
 
-#define CAPTURE_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
-#define CAPTURE_LOWEST 1e-11    /* m: an impact after a fall from less than this does not rebound */
-#define CAPTURE_ATTEMPTS 20000  /* in one step, then the case fails */
-#define CAPTURE_INSTANT 0x1p-10 /* of the tolerance: what moves less does not move */
-#define CAPTURE_GROWTH 64       /* an error this much smaller than the tolerance: twice as long */
+#define KNOWN_BASIN_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
+#define KNOWN_BASIN_LOWEST                                                                         \
+    1e-11 /* m: an impact after a fall from less than this does not rebound */
+#define KNOWN_BASIN_ATTEMPTS 20000  /* in one step, then the case fails */
+#define KNOWN_BASIN_INSTANT 0x1p-10 /* of the tolerance: what moves less does not move */
+#define KNOWN_BASIN_GROWTH 64 /* an error this much smaller than the tolerance: twice as long */
 
 /* Cases may change lanes. */
 #define ADVANCE_MOVES
@@ -71,7 +72,7 @@ struct advance {
     lanes part; /* s, next smooth step or, in a hunt, the interval that holds the event; 0: all */
     lanes hunting;               /* 1: an event is known to lie within `part` ... */
     lanes attempts;              /* in this step */
-    lanes stood[SCENE_CONTACTS]; /* see smooth_mode */
+    lanes stood[SCENE_CONTACTS]; /* see between_mode */
     struct step_report sum;
 };
 
@@ -92,11 +93,11 @@ static void advance_free(struct advance *a)
 }
 
 /* Lanes where a contact that may meet the ground within h is fast enough to rebound: faster than
- * after a fall from CAPTURE_LOWEST. Gaps are known to SMOOTH_GAP only, which is less. */
+ * after a fall from KNOWN_BASIN_LOWEST. Gaps are known to BETWEEN_GAP only, which is less. */
 static inline mask capture_rebounds(const struct setting *set, const struct motion *now, lanes h,
                                     lanes acceleration)
 {
-    const lanes slow = 2 * lanes_max(acceleration, lanes_of(STANCE_GRAVITY)) * CAPTURE_LOWEST;
+    const lanes slow = 2 * lanes_max(acceleration, lanes_of(STANCE_GRAVITY)) * KNOWN_BASIN_LOWEST;
     mask fast = MASK_NONE;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask near =
@@ -116,7 +117,7 @@ static inline mask capture_strikes(const struct setting *set, const struct motio
     for (int c = 0; c < SCENE_CONTACTS; c++)
         lost |= mask_less(lanes_of(0), set->may_touch[c]) &
                 mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED)) &
-                mask_less(now->approach[c], lanes_of(-SMOOTH_REST)) &
+                mask_less(now->approach[c], lanes_of(-BETWEEN_REST)) &
                 mask_less_equal(report->impulse[c][0], lanes_of(0));
     return LANES_NOT(lost);
 }
@@ -199,20 +200,21 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
 {
     struct dynamics begin;
     struct contact_state mode;
-    struct smooth_trouble trouble;
+    struct between_trouble trouble;
     const contact_set touching = step_touching(set, now->gap, LANES_ALL);
     const struct drive drive = {torque, coupled, NULL};
-    smooth_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
-    smooth_mode(set, &begin, touching, stood, &mode, &trouble);
-    smooth_stands(&mode, stood);
+    between_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
+    between_mode(set, &begin, touching, stood, &mode, &trouble);
+    between_stands(&mode, stood);
     *acceleration = capture_largest(&begin);
     if (touching)
-        smooth_solve(set, &mode, &begin);
+        between_solve(set, &mode, &begin);
     *acceleration = lanes_max(capture_largest(&begin), *acceleration);
     explicit_take(set, now, torque, length, try, coupled, &mode, &begin, step);
-    step->report.ambiguous = choose(trouble.chosen, lanes_of(1), step->report.ambiguous);
+    step->report.ambiguous_steps =
+        choose(trouble.chosen, lanes_of(1), step->report.ambiguous_steps);
     *stuck = try & (trouble.impact | trouble.none | trouble.several |
-                    smooth_violated(set, &mode, &begin));
+                    between_violated(set, &mode, &begin));
     return try & LANES_NOT(*stuck | step->violated | step->bad);
 }
 
@@ -235,9 +237,9 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const lanes tolerance = a->tolerance * capture_size(now);
     const lanes left = h - a->done;
     const mask hunt = live & mask_less(none, a->hunting);
-    const lanes part = choose(hunt, a->part, lanes_min(dip_longest(set, now->w), a->part));
+    const lanes part = choose(hunt, a->part, lanes_min(missed_longest(set, now->w), a->part));
     /* Halves add up to the step but for rounding: what is left of it then is no interval. */
-    const lanes interval = choose(mask_less(part, left - CAPTURE_SMALLEST * h), part, left);
+    const lanes interval = choose(mask_less(part, left - KNOWN_BASIN_SMALLEST * h), part, left);
     const lanes length = choose(hunt, 0.5 * interval, interval);
     struct explicit_step step;
     mask stuck, crossed = MASK_NONE, arrived = MASK_NONE;
@@ -253,7 +255,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
         struct step_report over;
         const lanes fastest = lanes_max(acceleration, capture_size(now));
         const mask instant =
-            stuck & mask_less_equal(fastest * interval, CAPTURE_INSTANT * tolerance);
+            stuck & mask_less_equal(fastest * interval, KNOWN_BASIN_INSTANT * tolerance);
         if (coupled) /* a decoupling law is held over the crossing */
             torque = step.torque;
         crossed = capture_implicit(set, now, a->stood, torque, interval, cross, coupled, tolerance,
@@ -278,7 +280,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
      * interval with the event, or its first half; half as long where the error was too large or
      * something may have passed unseen. */
     const mask on = good & LANES_NOT(hunt);
-    const mask easy = mask_less_equal(CAPTURE_GROWTH * step.error, tolerance);
+    const mask easy = mask_less_equal(KNOWN_BASIN_GROWTH * step.error, tolerance);
     const lanes longer = lanes_max(choose(easy, 2 * length, length), a->part);
     lanes next = choose(on, longer, choose(good | event, length, 0.5 * length));
     next = choose(crossed, lanes_of(INFINITY), next);
@@ -287,8 +289,8 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     a->part = choose(live, next, a->part);
     a->hunting = choose(live, choose(hunts, one, none), a->hunting);
     const mask tired =
-        live & LANES_NOT(arrived) & mask_less(lanes_of(CAPTURE_ATTEMPTS), a->attempts);
-    *failed = tired | (smooth & LANES_NOT(good) & mask_less(next, CAPTURE_SMALLEST * h));
+        live & LANES_NOT(arrived) & mask_less(lanes_of(KNOWN_BASIN_ATTEMPTS), a->attempts);
+    *failed = tired | (smooth & LANES_NOT(good) & mask_less(next, KNOWN_BASIN_SMALLEST * h));
     *report = a->sum;
     report->failure =
         choose(tired, lanes_of(STANCE_FAILURE_WORK), lanes_of(STANCE_FAILURE_TOLERANCE));
@@ -302,7 +304,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 }
 
 // clang-format off
-#include "../core/stream.h"
+#include "engine/core/loop/stream.h"
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD

@@ -1,10 +1,10 @@
 /* event_driven.c - the reference: high order between events, every event located to rounding.
  *
- * Between events the switched Lagrange equations of core/smooth.h are integrated by SUNDIALS'
- * ARKODE (Hindmarsh et al., ACM TOMS 31, 2005; Reynolds et al., ACM TOMS 49, 2023) with Verner's
- * explicit Runge-Kutta pair of order 6(5) under error control. A mode lasts while its margins
- * (core/margins.h) are not negative. Time inside the step counts from the step's beginning, so that
- * it resolves more than the positions do.
+ * Between events the switched Lagrange equations of core/mode/between_events.h are integrated by
+ * SUNDIALS' ARKODE (Hindmarsh et al., ACM TOMS 31, 2005; Reynolds et al., ACM TOMS 49, 2023) with
+ * Verner's explicit Runge-Kutta pair of order 6(5) under error control. A mode lasts while its
+ * margins (core/mode/margins.h) are not negative. Time inside the step counts from the step's
+ * beginning, so that it resolves more than the positions do.
  *
  * ARKODE's root finder sees a margin that changes its sign from one end of an internal step to the
  * other. What dips and comes back is searched for between the ends, on a polynomial through
@@ -14,7 +14,7 @@
  * rounding. Nothing is ever accepted from an interpolant.
  *
  * At an event the state is put back onto the constraints, closed contacts that approach get the
- * impulses of contact.h at once, and the next mode follows from the state (smooth_mode).
+ * impulses of contact.h at once, and the next mode follows from the state (between_mode).
  *
  * Impulses, slip and work are integrated with the motion, under the same error control: a contact
  * that sticks while a force oscillates does not move, but its impulse does.
@@ -22,13 +22,13 @@
  * Where there is no unique motion, or rebounds accumulate (Zeno), the case fails; there is no
  * regularisation.
  */
-#define METHOD_THETA 0.5 /* read by core/step.h, whose implicit step is not taken here */
+#define METHOD_THETA 0.5 /* read by core/implicit/step.h, whose implicit step is not taken here */
 
-#include "../core/kernel.h"
+#include "engine/core/loop/kernel.h"
 /* In this order. */
 #include STANCE_SCENE_LANES
 // clang-format off
-#include "../core/margins.h"
+#include "engine/core/mode/margins.h"
 // clang-format on
 
 #include <arkode/arkode_erkstep.h>
@@ -52,7 +52,7 @@
 struct advance {
     double tolerance;
     double next;                  /* s, internal step to try */
-    double stood[SCENE_CONTACTS]; /* see smooth_mode */
+    double stood[SCENE_CONTACTS]; /* see between_mode */
     struct event_problem problem;
     double attempts, most; /* internal steps in this step; then it fails */
     struct step_report *report;
@@ -334,7 +334,7 @@ static enum event_result event_march(struct advance *a, struct event_point *here
         }
         *here = to;
         report_forces(a->report, a->problem.mode.contact.closed, (const double(*)[2])here->e.force);
-        a->report->degraded = fmax(here->e.degraded, a->report->degraded);
+        a->report->degraded_samples = fmax(here->e.degraded, a->report->degraded_samples);
         split &= !event_rise(&a->problem, here);
         if (here->tau >= target)
             target = end, fresh = true;
@@ -370,18 +370,18 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
     *impact = false;
     for (int round = 0; round < 4; round++) {
         const double *const s = p->y, *const w = p->y + SCENE_COORDINATES;
-        struct smooth_trouble trouble;
+        struct between_trouble trouble;
         bool below = false;
         const contact_set touching = step_touching(a->problem.set, now->gap, LANES_ALL);
         const struct drive drive = {a->problem.torque, a->problem.coupled, NULL};
-        smooth_evaluate(a->problem.set, a->problem.begin + p->tau, s, w, p->y + EVENT_INTEGRAL,
-                        &drive, touching, &p->e);
-        smooth_mode(a->problem.set, &p->e, touching, a->stood, &m->contact, &trouble);
+        between_evaluate(a->problem.set, a->problem.begin + p->tau, s, w, p->y + EVENT_INTEGRAL,
+                         &drive, touching, &p->e);
+        between_mode(a->problem.set, &p->e, touching, a->stood, &m->contact, &trouble);
         a->problem.evaluations++;
         for (int c = 0; c < SCENE_CONTACTS; c++)
             below |= a->problem.set->may_touch[c] > 0 && p->e.gap[c] < -STEP_CLOSED;
         if (trouble.impact || below) {
-            if (!smooth_impact(a->problem.set, true, now, report))
+            if (!between_impact(a->problem.set, true, now, report))
                 return STANCE_FAILURE_CONTACT;
             memcpy(p->y, now->s, sizeof now->s);
             memcpy(p->y + SCENE_COORDINATES, now->w, sizeof now->w);
@@ -391,8 +391,8 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         }
         if (trouble.none || trouble.several)
             return STANCE_FAILURE_PAINLEVE;
-        report->ambiguous = fmax(trouble.chosen, report->ambiguous);
-        smooth_stands(&m->contact, a->stood);
+        report->ambiguous_steps = fmax(trouble.chosen, report->ambiguous_steps);
+        between_stands(&m->contact, a->stood);
         double command[ACTUATORS];
         law_torque(law, s, w, command);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
@@ -401,8 +401,8 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         for (int c = 0; c < SCENE_CONTACTS; c++)
             m->touches |= m->contact.closed[c] ? 1u << c : 0;
         if (m->touches) /* a slip that has ended leaves what counts as zero */
-            smooth_project(a->problem.set, &m->contact, true, p->y, p->y + SCENE_COORDINATES,
-                           &p->e);
+            between_project(a->problem.set, &m->contact, true, p->y, p->y + SCENE_COORDINATES,
+                            &p->e);
         event_evaluate(&a->problem, p->tau, p->y, &p->e);
         event_set_depths(&a->problem, p);
         event_margins(&a->problem, p->y, &p->e, p->margin);
@@ -418,8 +418,8 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
 static void event_finish(struct advance *a, struct event_point *p, struct motion *now)
 {
     if (a->problem.mode.touches)
-        smooth_project(a->problem.set, &a->problem.mode.contact, true, p->y,
-                       p->y + SCENE_COORDINATES, &p->e);
+        between_project(a->problem.set, &a->problem.mode.contact, true, p->y,
+                        p->y + SCENE_COORDINATES, &p->e);
     event_enter(a, p, now);
 }
 
@@ -498,7 +498,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 }
 
 // clang-format off
-#include "../core/stream.h"
+#include "engine/core/loop/stream.h"
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD

@@ -1,23 +1,23 @@
 /* lagrange.c - the explicit method that the paper compares with: its sections 2.1 and 2.3,
  * figure 7.
  *
- * The switched Lagrange equations (core/smooth.h) are integrated by fixed steps of the classical
- * Runge-Kutta formula of order 4, in the contact mode that holds at the beginning of the step. When
- * the mode does not last to the end - a foot would be below the ground, a force pull, friction
- * leave its cone, a slip turn around - the step is halved, and halved again, until the time of the
- * switch is bracketed to LAGRANGE_BRACKET; then the state is initialised anew: feet are put onto
- * the ground, the impact law of contact.h gives the velocities, the next mode follows from the
- * state. The rest of the step is one step, unless another switch is found in it.
+ * The switched Lagrange equations (core/mode/between_events.h) are integrated by fixed steps of the
+ * classical Runge-Kutta formula of order 4, in the contact mode that holds at the beginning of the
+ * step. When the mode does not last to the end - a foot would be below the ground, a force pull,
+ * friction leave its cone, a slip turn around - the step is halved, and halved again, until the
+ * time of the switch is bracketed to LAGRANGE_BRACKET; then the state is initialised anew: feet are
+ * put onto the ground, the impact law of contact.h gives the velocities, the next mode follows from
+ * the state. The rest of the step is one step, unless another switch is found in it.
  *
  * Nothing else shortens a step: stiff servo gains need h |lambda| < 2.785, as for every explicit
  * formula of this kind. Switches that accumulate (Zeno) end the case with a message, as does a
  * state whose accelerations do not exist (Painleve). `events` and `evaluations` say what hunting
  * for switches cost.
  */
-#define METHOD_THETA 0.5 /* read by core/step.h, whose implicit step is not taken here */
+#define METHOD_THETA 0.5 /* read by core/implicit/step.h, whose implicit step is not taken here */
 #define METHOD_STAGES 4
 
-#include "../core/kernel.h"
+#include "engine/core/loop/kernel.h"
 /* In this order. */
 #include STANCE_SCENE_LANES
 
@@ -26,7 +26,7 @@ static const double tableau_a[METHOD_STAGES][METHOD_STAGES] = {{0}, {0.5}, {0, 0
 static const double tableau_b[METHOD_STAGES] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
 
 // clang-format off
-#include "../core/explicit.h"
+#include "engine/core/mode/explicit.h"
 // clang-format on
 
 #define LAGRANGE_BRACKET 1e-12    /* s: a switch is known this well */
@@ -42,7 +42,7 @@ struct advance {
     lanes done;                  /* s, of the step */
     lanes part;                  /* s, interval that holds a switch; INFINITY: none is known */
     lanes events;                /* in this step */
-    lanes stood[SCENE_CONTACTS]; /* see smooth_mode */
+    lanes stood[SCENE_CONTACTS]; /* see between_mode */
     struct step_report sum;
 };
 
@@ -75,14 +75,14 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const lanes length = choose(hunt & LANES_NOT(found), 0.5 * interval, interval);
     struct dynamics begin;
     struct contact_state mode;
-    struct smooth_trouble trouble;
+    struct between_trouble trouble;
     struct explicit_step step;
     const contact_set touching = step_touching(set, now->gap, LANES_ALL);
     const struct drive drive = {torque, coupled, NULL};
-    smooth_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
-    smooth_mode(set, &begin, touching, a->stood, &mode, &trouble);
+    between_evaluate(set, now->t, now->s, now->w, now->integral, &drive, touching, &begin);
+    between_mode(set, &begin, touching, a->stood, &mode, &trouble);
     if (touching)
-        smooth_solve(set, &mode, &begin);
+        between_solve(set, &mode, &begin);
     explicit_take(set, now, torque, length, live, coupled, &mode, &begin, &step);
 
     const mask painleve = live & (trouble.none | trouble.several) & LANES_NOT(trouble.impact);
@@ -90,14 +90,14 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const mask take = able & (LANES_NOT(step.violated) | found);
     const mask switched = (take & found) | (live & trouble.impact);
     /* At a bracket's end the forces are those of the mode that has just ended. */
-    step.report.signorini = choose(found, none, step.report.signorini);
-    step.report.coulomb = choose(found, none, step.report.coulomb);
-    step.report.dissipation = choose(found, none, step.report.dissipation);
+    step.report.signorini_residual = choose(found, none, step.report.signorini_residual);
+    step.report.coulomb_residual = choose(found, none, step.report.coulomb_residual);
+    step.report.dissipation_residual = choose(found, none, step.report.dissipation_residual);
     lanes stands[SCENE_CONTACTS];
-    smooth_stands(&mode, stands);
+    between_stands(&mode, stands);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         a->stood[c] = choose(switched, none, choose(take, stands[c], a->stood[c]));
-    step.report.ambiguous = choose(trouble.chosen, one, step.report.ambiguous);
+    step.report.ambiguous_steps = choose(trouble.chosen, one, step.report.ambiguous_steps);
     struct step_report sum = a->sum;
     report_add(&sum, &step.report);
     choose_all(take, &sum, &a->sum, sizeof sum);
@@ -105,7 +105,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     a->sum.evaluations += choose(live & LANES_NOT(take), step.report.evaluations, none);
     mask unsolved = MASK_NONE;
     if (mask_any(switched)) {
-        unsolved = switched & LANES_NOT(smooth_impact(set, switched, now, &a->sum));
+        unsolved = switched & LANES_NOT(between_impact(set, switched, now, &a->sum));
         a->sum.events += choose(switched, one, none);
         a->events += choose(switched, one, none);
     }
@@ -137,7 +137,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 }
 
 // clang-format off
-#include "../core/stream.h"
+#include "engine/core/loop/stream.h"
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD

@@ -6,12 +6,12 @@
  */
 #define METHOD_THETA 0.5
 
-#include "../core/kernel.h"
+#include "engine/core/loop/kernel.h"
 /* In this order. */
 #include STANCE_SCENE_LANES
 // clang-format off
-#include "../core/fixed.h"
-#include "../core/stream.h"
+#include "engine/core/implicit/fixed.h"
+#include "engine/core/loop/stream.h"
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD

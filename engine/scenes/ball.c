@@ -13,7 +13,7 @@
  * Friction acts at the centre of a ball that does not spin: at an impact it takes at most
  * mu (1 + e) |z'| of the horizontal speed, while sliding mu g of it per second.
  */
-#include "../stance.h"
+#include "engine/stance.h"
 
 enum { MASS, RADIUS, ROBOT_COUNT };
 enum { X, Z, COORDINATES };

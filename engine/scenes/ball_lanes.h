@@ -6,8 +6,8 @@
 #ifndef STANCE_SCENES_BALL_LANES_H
 #define STANCE_SCENES_BALL_LANES_H
 
-#include "../core/lanes.h"
-#include "../stance.h"
+#include "engine/core/lanes/lanes.h"
+#include "engine/stance.h"
 
 enum {
     SCENE_COORDINATES = 2,

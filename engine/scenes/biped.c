@@ -47,7 +47,7 @@
  * Its second derivative is that sum's Jacobian times a'' plus squares of rates: about rest, to
  * first order and exactly, the Jacobian at the equilibrium times the da'' above.
  */
-#include "../stance.h"
+#include "engine/stance.h"
 
 #include <float.h>
 #include <math.h>
@@ -139,9 +139,8 @@ static point foot(const double *robot, const double *q, int i)
 
 static void gaps(const double *robot, const double *position, double *gap)
 {
-    for (int i = 0; i < FEET; i++) {
+    for (int i = 0; i < FEET; i++)
         gap[i] = foot(robot, position, i).z;
-    }
 }
 
 static void contact_point(const double *robot, const double *position, const double *velocity,
@@ -170,9 +169,8 @@ static void stand(const double *robot, int support, double *position, double *ve
     position[Z] = 0 - at[1];
     /* Where the sum rounds downwards the foot would start inside the ground: the next heights. */
     const double least = DBL_EPSILON / 8 * (robot[LEG_LENGTH] + robot[TRUNK_LENGTH]);
-    while (foot(robot, position, support).z < 0) {
+    while (foot(robot, position, support).z < 0)
         position[Z] = fmax(nextafter(position[Z], INFINITY), position[Z] + least);
-    }
     velocity[X] = velocity[Z] = 0;
     contact_point(robot, position, velocity, support, at, speed);
     velocity[X] = 0 - speed[0];
@@ -311,9 +309,8 @@ static stance_error solve_trunk(const double *weight, const stance_equilibrium_c
                       "foot and every theta balances");
     }
     posture[0] = angle_of(-b, a);
-    if ((cosine_of(posture[0] + posture[s]) < 0) != choice->lower) {
+    if ((cosine_of(posture[0] + posture[s]) < 0) != choice->lower)
         posture[0] += posture[0] > 0 ? -M_PI : M_PI;
-    }
     return STANCE_OK;
 }
 
@@ -348,9 +345,8 @@ static stance_error equilibrium(const double *robot, const stance_equilibrium_ch
     balance(robot, choice->support, weight);
     const stance_error error = unknown == 0 ? solve_trunk(weight, choice, posture, message)
                                             : solve_leg(weight, choice, posture, unknown, message);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return error;
-    }
     *result = (stance_equilibrium){.support = choice->support};
     memcpy(&result->position[THETA], posture, sizeof posture);
     stand(robot, choice->support, result->position, velocity);
@@ -410,9 +406,8 @@ static stance_error linearise(const double *robot, const stance_equilibrium *equ
 {
     enum { STATES = 2 * POSTURES };
     const int support = equilibrium->support;
-    if (support < 0 || support >= FEET) {
+    if (support < 0 || support >= FEET)
         return STANCE_BAD_ARGUMENT;
-    }
     const pinned p = pin(robot, equilibrium);
     double column[POSTURES];
 
@@ -423,21 +418,18 @@ static stance_error linearise(const double *robot, const stance_equilibrium *equ
         const double turned[POSTURES] = {j == 0, j == 0 || j == 1 + support,
                                          j == 0 || j == 2 - support};
         double force[POSTURES];
-        for (int i = 0; i < POSTURES; i++) {
+        for (int i = 0; i < POSTURES; i++)
             force[i] = -p.stiffness[i] * turned[i];
-        }
         accelerate(&p, support, force, column);
-        for (int i = 0; i < POSTURES; i++) {
+        for (int i = 0; i < POSTURES; i++)
             A[(POSTURES + i) * STATES + j] = column[i];
-        }
         A[j * STATES + POSTURES + j] = 1;
     }
     for (int j = 0; j < TORQUES; j++) {
         const double force[POSTURES] = {-1, j == support, j != support};
         accelerate(&p, support, force, column);
-        for (int i = 0; i < POSTURES; i++) {
+        for (int i = 0; i < POSTURES; i++)
             B[(POSTURES + i) * TORQUES + j] = column[i];
-        }
     }
     return STANCE_OK;
 }
@@ -466,9 +458,8 @@ static stance_error contact_force(const double *robot, const stance_equilibrium 
     enum { STATES = 2 * POSTURES };
     double A[STATES * STATES], B[STATES * TORQUES], jacobian[2][POSTURES];
     const stance_error error = linearise(robot, equilibrium, A, B);
-    if (error != STANCE_OK) {
+    if (error != STANCE_OK)
         return error;
-    }
     const int s = 1 + equilibrium->support, f = 2 - equilibrium->support;
     momentum(robot, equilibrium, jacobian);
     force[0] = STANCE_GRAVITY * (2 * robot[FOOT_MASS] + robot[TRUNK_MASS] + robot[HIP_MASS]);
@@ -480,15 +471,13 @@ static stance_error contact_force(const double *robot, const stance_equilibrium 
         by[f] = jacobian[c][2];
         for (int j = 0; j < STATES; j++) {
             by_state[c * STATES + j] = 0;
-            for (int i = 0; i < POSTURES; i++) {
+            for (int i = 0; i < POSTURES; i++)
                 by_state[c * STATES + j] += by[i] * A[(POSTURES + i) * STATES + j];
-            }
         }
         for (int j = 0; j < TORQUES; j++) {
             by_torque[c * TORQUES + j] = 0;
-            for (int i = 0; i < POSTURES; i++) {
+            for (int i = 0; i < POSTURES; i++)
                 by_torque[c * TORQUES + j] += by[i] * B[(POSTURES + i) * TORQUES + j];
-            }
         }
     }
     return STANCE_OK;

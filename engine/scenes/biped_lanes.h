@@ -22,9 +22,9 @@
 #ifndef STANCE_SCENES_BIPED_LANES_H
 #define STANCE_SCENES_BIPED_LANES_H
 
-#include "../core/lanes.h"
-#include "../core/sincos.h"
-#include "../stance.h"
+#include "engine/core/lanes/lanes.h"
+#include "engine/core/lanes/sincos.h"
+#include "engine/stance.h"
 
 enum {
     SCENE_COORDINATES = 5,
@@ -33,7 +33,7 @@ enum {
     SCENE_POSTURE = 3,
     SCENE_ANGLES = 3,
 };
-/* The two torques can drive two coordinates: see core/decoupling.h. */
+/* The two torques can drive two coordinates: see core/mode/decoupling.h. */
 #define SCENE_SERVOS
 
 /* Constants of a robot. Arrays over (theta, phi1, phi2) where indexed by an angle. */

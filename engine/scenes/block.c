@@ -13,7 +13,7 @@
  *
  * Energy: kinetic and m g (z cos alpha - x sin alpha); the pull does work on it.
  */
-#include "../stance.h"
+#include "engine/stance.h"
 
 enum { MASS, SLOPE, PULL, PULL_FREQUENCY, ROBOT_COUNT };
 enum { X, Z, COORDINATES };

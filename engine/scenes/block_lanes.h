@@ -7,9 +7,9 @@
 #ifndef STANCE_SCENES_BLOCK_LANES_H
 #define STANCE_SCENES_BLOCK_LANES_H
 
-#include "../core/lanes.h"
-#include "../core/sincos.h"
-#include "../stance.h"
+#include "engine/core/lanes/lanes.h"
+#include "engine/core/lanes/sincos.h"
+#include "engine/stance.h"
 
 enum {
     SCENE_COORDINATES = 2,

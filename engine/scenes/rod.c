@@ -20,7 +20,7 @@
  * against the ground is arctan 2, with the sliding end ahead of the centre. There the rod jams, and
  * only an impact without collision frees it.
  */
-#include "../stance.h"
+#include "engine/stance.h"
 
 enum { LENGTH, MASS, INERTIA_RATIO, ROBOT_COUNT };
 enum { X, Z, THETA, COORDINATES };
@@ -77,9 +77,8 @@ static int figure(const double *robot, const double *position, double points[][2
 {
     static const double rest[COORDINATES];
     double speed[2];
-    for (int i = 0; i < ENDS; i++) {
+    for (int i = 0; i < ENDS; i++)
         contact_point(robot, position, rest, i, points[i], speed);
-    }
     return ENDS;
 }
 

@@ -44,7 +44,7 @@ run=("$stance" run "$scenario" --set "$path=${values[k]}" -o "results/sweep-$k.h
 
 # Several ranks for each task; one_job.sh says what the setting is for.
 if ((${SLURM_NTASKS:-1} > 1)); then
-    export OMPI_MCA_odls_base_sigkill_timeout=5
+    export OMPI_MCA_odls_base_sigkill_timeout=5 PMIX_MCA_gds=hash
     run=(mpirun "${run[@]}")
 fi
 exec "${run[@]}"

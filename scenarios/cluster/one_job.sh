@@ -42,6 +42,8 @@ fi
 # mpirun kills its ranks a second after a SIGTERM (scancel): give them five to write. After a run
 # that was stopped (code 4) it then sleeps for twice as long.
 export OMPI_MCA_odls_base_sigkill_timeout=5
+# A rank that is killed while it holds the mutex of PMIx' shared memory leaves mpirun waiting for ever.
+export PMIX_MCA_gds=hash
 # Notice within 90 s that a node has gone; without this it takes many minutes, or for ever.
 export OMPI_MCA_oob_tcp_keepalive_time=60 OMPI_MCA_oob_tcp_keepalive_intvl=10 \
     OMPI_MCA_oob_tcp_keepalive_probes=3

@@ -1,0 +1,478 @@
+/* basin.c - cuts a results file into maps over the starts and sums up what these say. */
+#include "basin.h"
+
+#include "analysis/statistics/intervals.h"
+#include "analysis/statistics/statistics.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool no_memory(const struct results *r, stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+    return false;
+}
+
+/* ---- which axis is what ------------------------------------------------------------------- */
+
+static bool is_start(const struct results_axis *axis)
+{
+    return !axis->word && strcmp(axis->name, "initial.offset.scale") != 0 &&
+           (axis->offset || strncmp(axis->name, "initial.state.", 14) == 0);
+}
+
+static int find_axis(const struct results *r, const char *name)
+{
+    for (int a = 0; a < r->axes; a++)
+        if (strcmp(r->axis[a].name, name) == 0)
+            return a;
+    return -1;
+}
+
+static bool contains(const int *list, int count, int axis)
+{
+    for (int k = 0; k < count; k++)
+        if (list[k] == axis)
+            return true;
+    return false;
+}
+
+/* The axes that --by names, in the file's order. */
+static bool choose_by(struct basin *b, stance_message *message)
+{
+    const struct results *r = b->r;
+    bool wanted[SCENARIO_MAX_AXES] = {false};
+    for (size_t k = 0; k < b->choice.by_count; k++) {
+        const int a = find_axis(r, b->choice.by[k]);
+        if (a < 0 || strcmp(r->axis[a].name, "sample") == 0) {
+            snprintf(message->text, sizeof message->text,
+                     "stance basin: --by takes an axis of the grid, and '%.60s' is none of %.90s",
+                     b->choice.by[k], r->file);
+            return false;
+        }
+        wanted[a] = true;
+    }
+    for (int a = 0; a < r->axes; a++)
+        if (wanted[a])
+            b->by[b->by_axes++] = a;
+    return true;
+}
+
+static void add_unit(struct basin *b, const char *unit)
+{
+    const size_t used = strlen(b->unit);
+    if (unit[0] && strcmp(unit, "1") != 0)
+        snprintf(b->unit + used, sizeof b->unit - used, "%s%s", used ? " * " : "", unit);
+}
+
+/* Starts that are sampled: the points must be evenly distributed over their box. */
+static bool choose_sample(struct basin *b, stance_message *message)
+{
+    const struct basin_sample *sample = &b->sample;
+    const char *wrong = b->start_axes > 0 ? "starts are on axes of the grid and sampled at once"
+                        : sample->method == DOE_MORRIS
+                            ? "Morris's trajectories do not cover the box of starts evenly"
+                        : sample->method == DOE_SPHERE
+                            ? "method sphere has no volume without a grid axis initial.offset.scale"
+                            : NULL;
+    if (wrong) {
+        snprintf(message->text, sizeof message->text, "%.100s: %s", b->r->file, wrong);
+        return false;
+    }
+    b->starts = BASIN_SAMPLE;
+    b->averaged = -1;
+    b->start[b->start_axes++] = sample->axis;
+    b->box = isfinite(sample->box) ? sample->box : 1;
+    for (size_t k = 0; k < sample->factors && isfinite(sample->box); k++)
+        add_unit(b, sample->factor[k].of->unit);
+    return true;
+}
+
+static bool choose_axes(struct basin *b, stance_message *message)
+{
+    const struct results *r = b->r;
+    if (!choose_by(b, message))
+        return false;
+    b->box = 1;
+    for (int a = 0; a < r->axes; a++) {
+        const struct results_axis *axis = &r->axis[a];
+        const bool by = contains(b->by, b->by_axes, a);
+        if (!by && is_start(axis) && axis->count > 1) {
+            b->start[b->start_axes++] = a;
+            add_unit(b, axis->unit);
+        } else if (!by && strcmp(axis->name, "sample") == 0) {
+            b->averaged = a;
+        } else if (!by && b->choice.by_count == 0 && !is_start(axis) && !r->single) {
+            b->by[b->by_axes++] = a;
+        }
+    }
+    if (b->sample.axis >= 0)
+        return choose_sample(b, message);
+    if (b->start_axes == 0) {
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: no starts are varied (initial.offset.*, initial.state.*), so there is no "
+                 "basin to measure",
+                 r->file);
+        return false;
+    }
+    return true;
+}
+
+/* ---- slices ------------------------------------------------------------------------------- */
+
+/* What all slices share. */
+struct lattice {
+    size_t *order[SCENARIO_MAX_AXES]; /* of the start axes: points by rising value */
+    double *place[SCENARIO_MAX_AXES];
+    uint64_t stride[SCENARIO_MAX_AXES]; /* of the file's axes */
+    size_t origin[SCENARIO_MAX_AXES];   /* the place nearest to zero */
+    struct basin_map map;
+    uint8_t *kind; /* [map.cases] */
+};
+
+static void free_lattice(struct lattice *lattice)
+{
+    for (int d = 0; d < SCENARIO_MAX_AXES; d++) {
+        free(lattice->order[d]);
+        free(lattice->place[d]);
+    }
+    free(lattice->kind);
+}
+
+static int by_value(const void *left, const void *right, void *values)
+{
+    const double *value = values, x = value[*(const size_t *)left],
+                 y = value[*(const size_t *)right];
+    return (x > y) - (x < y);
+}
+
+/* The places of a start axis, sorted. */
+static bool sort_axis(struct lattice *lattice, int d, const struct results_axis *axis)
+{
+    size_t *order = lattice->order[d] = malloc(axis->count * sizeof *order);
+    double *place = lattice->place[d] = malloc(axis->count * sizeof *place);
+    if (!order || !place)
+        return false;
+    for (size_t i = 0; i < axis->count; i++)
+        order[i] = i;
+    qsort_r(order, axis->count, sizeof *order, by_value, axis->value);
+    const size_t zero = statistics_nearest_zero(axis);
+    for (size_t i = 0; i < axis->count; i++) {
+        place[i] = axis->value[order[i]];
+        lattice->origin[d] = order[i] == zero ? i : lattice->origin[d];
+    }
+    lattice->map.count[d] = axis->count;
+    lattice->map.place[d] = place;
+    lattice->map.cases *= axis->count;
+    return true;
+}
+
+static bool make_lattice(struct lattice *lattice, const struct basin *b)
+{
+    const struct results *r = b->r;
+    uint64_t product = 1;
+    *lattice = (struct lattice){.map = {.axes = b->start_axes, .cases = 1}};
+    for (int a = r->axes - 1; a >= 0; a--) {
+        lattice->stride[a] = product;
+        product *= r->axis[a].count;
+    }
+    bool good = true;
+    for (int d = 0; good && d < b->start_axes; d++)
+        good = sort_axis(lattice, d, &r->axis[b->start[d]]);
+    lattice->kind = good ? malloc(lattice->map.cases) : NULL;
+    lattice->map.kind = lattice->kind;
+    if (!lattice->kind)
+        free_lattice(lattice);
+    return lattice->kind != NULL;
+}
+
+/* The kinds of the cases of one slice, into lattice->kind. */
+static void take_slice(struct lattice *lattice, const struct basin *b, const size_t *point)
+{
+    size_t at[SCENARIO_MAX_AXES] = {0};
+    uint64_t base = 0;
+    for (int a = 0; a < b->r->axes; a++)
+        base += contains(b->start, b->start_axes, a) ? 0 : point[a] * lattice->stride[a];
+    for (uint64_t i = 0; i < lattice->map.cases; i++) {
+        uint64_t index = base;
+        for (int d = 0; d < b->start_axes; d++)
+            index += lattice->order[d][at[d]] * lattice->stride[b->start[d]];
+        lattice->kind[i] = b->r->kind[index];
+        for (int d = b->start_axes - 1; d >= 0 && ++at[d] == lattice->map.count[d]; d--)
+            at[d] = 0;
+    }
+}
+
+/* The next point of the axes that are no starts; false after the last. */
+static bool next_slice(const struct basin *b, size_t *point)
+{
+    for (int a = b->r->axes - 1; a >= 0; a--) {
+        if (contains(b->start, b->start_axes, a))
+            continue;
+        if (++point[a] < b->r->axis[a].count)
+            return true;
+        point[a] = 0;
+    }
+    return false;
+}
+
+static struct basin_row *row_of(const struct basin *b, const size_t *point)
+{
+    size_t row = 0;
+    for (int k = 0; k < b->by_axes; k++)
+        row = row * b->r->axis[b->by[k]].count + point[b->by[k]];
+    return &b->row[row];
+}
+
+/* ---- rows --------------------------------------------------------------------------------- */
+
+static void count_cases(const struct lattice *lattice, enum results_kind of, struct basin_row *row)
+{
+    for (uint64_t i = 0; i < lattice->map.cases; i++) {
+        row->inside += lattice->kind[i] == of;
+        row->failed += lattice->kind[i] == RESULTS_FAILED;
+        row->pending += lattice->kind[i] == RESULTS_PENDING;
+    }
+    row->cases += lattice->map.cases;
+}
+
+/* What the slices of one block of a sample of parameters add up to. The points of a block share
+ * coordinates (saltelli, morris): independent of each other are blocks. */
+struct block {
+    double volume;
+    uint64_t slices;
+};
+
+static size_t blocks_of(const struct basin *b)
+{
+    return b->averaged >= 0 ? b->sample.points / b->sample.block : 0;
+}
+
+/* blocks[rows][blocks_of] */
+static bool add_slice(struct basin *b, const struct lattice *lattice, const size_t *point,
+                      struct block *blocks)
+{
+    struct basin_row *row = row_of(b, point);
+    struct basin_volume volume;
+    for (int k = 0; k < b->by_axes; k++)
+        row->point[b->by[k]] = point[b->by[k]];
+    count_cases(lattice, b->choice.of, row);
+    if (!basin_map_volume(&lattice->map, b->choice.of, &volume))
+        return false;
+    b->box = volume.box;
+    row->slices++;
+    row->low += volume.low;
+    row->high += volume.high;
+    if (isfinite(volume.estimate)) {
+        row->known++;
+        row->volume += volume.estimate;
+        row->reach += basin_volume_reach(&volume, statistics_deviations(b->choice.level));
+        if (b->averaged >= 0) {
+            struct block *block = &blocks[(size_t)(row - b->row) * blocks_of(b) +
+                                          point[b->averaged] / b->sample.block];
+            block->volume += volume.estimate;
+            block->slices++;
+        }
+    }
+    row->cells += volume.cells;
+    row->crossed += volume.crossed;
+    basin_map_entropy(&lattice->map, b->choice.side, &row->entropy);
+    row->uncertainty.scales = basin_map_scales(&lattice->map);
+    basin_map_uncertainty(&lattice->map, &row->uncertainty);
+    row->has_distance = row->slices == 1;
+    for (int d = 0; d < b->start_axes; d++)
+        row->has_distance = row->has_distance && b->r->axis[b->start[d]].offset;
+    if (row->has_distance)
+        basin_map_distance(&lattice->map, b->choice.of, lattice->origin, &row->distance);
+    return true;
+}
+
+/* Variance of the mean of blocks, of which *found are known; NAN: fewer than two. */
+static double scatter(const struct block *blocks, size_t count, double *found)
+{
+    double mean = 0, squares = 0, n = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (blocks[k].slices > 0) {
+            const double step = blocks[k].volume / (double)blocks[k].slices - mean;
+            mean += step / ++n; /* Welford's recurrence */
+            squares += step * step * (n - 1) / n;
+        }
+    }
+    *found = fmax(n, 2);
+    return n > 1 ? squares / (n - 1) / n : NAN;
+}
+
+/* From sums over slices to means. The boundaries of slices next to each other lie alike, and so may
+ * their errors: the mean's is the mean of theirs. Over a sample of parameters slices scatter, too.
+ */
+static void finish_row(const struct basin *b, struct basin_row *row, const struct block *blocks)
+{
+    const double n = (double)row->slices, known = row->known > 0 ? (double)row->known : NAN;
+    row->low /= n;
+    row->high /= n;
+    row->volume /= known;
+    row->reach /= known;
+    if (b->averaged >= 0) {
+        double found;
+        const double variance =
+            scatter(blocks + (size_t)(row - b->row) * blocks_of(b), blocks_of(b), &found);
+        const double student = gsl_cdf_tdist_Pinv(0.5 + 0.5 * b->choice.level, found - 1);
+        row->reach = hypot(row->reach, student * sqrt(variance));
+    }
+}
+
+/* What became of a sampled point in the slices of a row. */
+struct point {
+    uint32_t cases, inside, unknown;
+};
+
+/* Counts cases alone: a sample is no map. points[rows][points] */
+static void add_sampled(struct basin *b, const struct lattice *lattice, const size_t *point,
+                        struct point *points)
+{
+    struct basin_row *row = row_of(b, point);
+    struct point *own = points + (size_t)(row - b->row) * b->sample.points;
+    for (int k = 0; k < b->by_axes; k++)
+        row->point[b->by[k]] = point[b->by[k]];
+    for (size_t i = 0; i < lattice->map.cases; i++) {
+        if (basin_sample_counts(&b->sample, i)) {
+            const uint8_t kind = lattice->kind[i];
+            row->cases++;
+            own[i].cases++;
+            row->inside += kind == b->choice.of;
+            own[i].inside += kind == b->choice.of;
+            row->failed += kind == RESULTS_FAILED;
+            row->pending += kind == RESULTS_PENDING;
+            own[i].unknown += kind == RESULTS_FAILED || kind == RESULTS_PENDING;
+        }
+    }
+    row->slices++;
+}
+
+/* A point that counts in several slices, averaged over, is one draw. */
+static void finish_sampled(const struct basin *b, struct basin_row *row, const struct point *points)
+{
+    const struct point *own = points + (size_t)(row - b->row) * b->sample.points;
+    const uint64_t known = row->cases - row->failed - row->pending;
+    struct interval_draws least = {0}, most = {0};
+    for (size_t i = 0; i < b->sample.points; i++) {
+        interval_add(&least, own[i].inside, own[i].cases);
+        interval_add(&most, own[i].inside + own[i].unknown, own[i].cases);
+    }
+    row->volume = known > 0 ? b->box * (double)row->inside / (double)known : NAN;
+    row->low = b->box * interval_of(&least, b->choice.level).low;
+    row->high = b->box * interval_of(&most, b->choice.level).high;
+    row->reach = (row->high - row->low) / 2;
+}
+
+static bool make_rows(struct basin *b, stance_message *message)
+{
+    struct lattice lattice;
+    size_t point[SCENARIO_MAX_AXES] = {0};
+
+    b->rows = 1;
+    for (int k = 0; k < b->by_axes; k++)
+        b->rows *= b->r->axis[b->by[k]].count;
+    b->row = calloc(b->rows, sizeof *b->row);
+    struct block *blocks = calloc(b->rows * blocks_of(b) + 1, sizeof *blocks);
+    const bool sampled = b->starts == BASIN_SAMPLE;
+    struct point *points = calloc(sampled ? b->rows * b->sample.points : 1, sizeof *points);
+    if (!b->row || !blocks || !points || !make_lattice(&lattice, b)) {
+        free(blocks);
+        free(points);
+        return no_memory(b->r, message);
+    }
+    bool good = true;
+    do {
+        take_slice(&lattice, b, point);
+        if (b->starts == BASIN_GRID)
+            good = add_slice(b, &lattice, point, blocks);
+        else
+            add_sampled(b, &lattice, point, points);
+    } while (good && next_slice(b, point));
+    for (size_t k = 0; k < b->rows; k++)
+        if (b->starts == BASIN_GRID)
+            finish_row(b, &b->row[k], blocks);
+        else
+            finish_sampled(b, &b->row[k], points);
+    free_lattice(&lattice);
+    free(blocks);
+    free(points);
+    return good || no_memory(b->r, message);
+}
+
+bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
+                struct basin_sample *sample, bool *usage, stance_message *message)
+{
+    *basin = (struct basin){
+        .r = r, .choice = *choice, .starts = BASIN_GRID, .sample = *sample, .averaged = -1};
+    *sample = (struct basin_sample){.axis = -1};
+    *usage = true;
+    bool good = choose_axes(basin, message);
+    if (good) {
+        *usage = false;
+        good = make_rows(basin, message);
+    }
+    if (!good)
+        basin_free(basin);
+    return good;
+}
+
+size_t basin_averaged(const struct basin *basin, const char **paths, size_t most)
+{
+    const struct results *r = basin->r;
+    size_t count = 0;
+    for (int a = 0; a < r->axes; a++) {
+        if (contains(basin->start, basin->start_axes, a) || r->axis[a].count < 2 ||
+            contains(basin->by, basin->by_axes, a))
+            continue;
+        for (int k = 0; k < (a == basin->averaged ? r->varied : 1); k++)
+            if (count < most)
+                paths[count++] = a == basin->averaged ? r->vary[k].of.name : r->axis[a].name;
+    }
+    return count;
+}
+
+void basin_free(struct basin *basin)
+{
+    free(basin->row);
+    basin_sample_free(&basin->sample);
+    *basin = (struct basin){0};
+}
+
+/* ---- the boundary ------------------------------------------------------------------------- */
+
+struct visitor {
+    struct basin_slice slice;
+    bool (*visit)(void *context, const struct basin_slice *slice,
+                  const struct basin_crossing *crossing);
+    void *context;
+};
+
+static bool visit_crossing(void *context, const struct basin_crossing *crossing)
+{
+    const struct visitor *visitor = context;
+    return visitor->visit(visitor->context, &visitor->slice, crossing);
+}
+
+bool basin_boundary(const struct basin *basin,
+                    bool (*visit)(void *context, const struct basin_slice *slice,
+                                  const struct basin_crossing *crossing),
+                    void *context)
+{
+    struct visitor visitor = {.slice = {.basin = basin}, .visit = visit, .context = context};
+    struct lattice lattice;
+    if (basin->starts != BASIN_GRID || !make_lattice(&lattice, basin))
+        return basin->starts != BASIN_GRID;
+    visitor.slice.map = lattice.map;
+    bool good = true;
+    do {
+        take_slice(&lattice, basin, visitor.slice.point);
+        good = basin_map_boundary(&lattice.map, visit_crossing, &visitor);
+    } while (good && next_slice(basin, visitor.slice.point));
+    free_lattice(&lattice);
+    return good;
+}

@@ -1,0 +1,68 @@
+/* basin_rays.h - how far from the equilibrium an outcome reaches, along rays.
+ *
+ * A file of rays has the grid axis initial.offset.scale and a sample of method sphere over offsets:
+ * each point of the sample is a direction, and along it the offsets grow with the scale. A ray ends
+ * where, coming from the smallest scale, the outcome is lost for the first time: between the last
+ * case that has it and the first known one that has not. Islands beyond do not count.
+ */
+#ifndef STANCE_BASIN_BASIN_RAYS_H
+#define STANCE_BASIN_BASIN_RAYS_H
+
+#include "basin_sample.h"
+
+enum basin_ray_end {
+    RAY_CROSSES, /* between low and high */
+    RAY_OPEN,    /* reaches the largest scale; high is NAN */
+    RAY_OUTSIDE, /* has another outcome at the smallest known scale; low is NAN */
+    RAY_UNKNOWN, /* no case of it is known */
+};
+
+struct basin_ray {
+    enum basin_ray_end end;
+    double low, high;     /* scales */
+    enum results_kind to; /* RAY_CROSSES: what becomes of the first case beyond */
+};
+
+struct basin_rays {
+    const struct results *r;
+    enum results_kind of;
+    struct basin_sample sample; /* its factors are the coordinates of the directions */
+    int scale;                  /* axis */
+    int by[SCENARIO_MAX_AXES], by_axes;
+    size_t rows;           /* points of the other axes, row-major over by[] */
+    struct basin_ray *ray; /* [rows][sample.points] */
+};
+
+/* Whether a file, with this sample of starts, is one of rays. */
+bool basin_is_rays(const struct results *r, const struct basin_sample *sample);
+/* Takes over the sample, also on failure (no memory). */
+bool basin_rays_make(struct basin_rays *rays, const struct results *r, enum results_kind of,
+                     struct basin_sample *sample, stance_message *message);
+void basin_rays_free(struct basin_rays *rays);
+
+/* Where the rays of a row end; distances are the middles of the brackets. */
+struct basin_reach {
+    size_t count[RAY_UNKNOWN + 1];    /* by enum basin_ray_end */
+    size_t first;                     /* the ray that ends first; meaningless without any */
+    double smallest, median, largest; /* scales; an open ray is longer than all; NAN: no ray, or
+                                       * where an open ray would be the answer */
+};
+/* False: no memory. */
+bool basin_rays_reach(const struct basin_rays *rays, size_t row, struct basin_reach *reach);
+
+/* Middle and half width of a bracket. */
+static inline double basin_ray_middle(const struct basin_ray *ray)
+{
+    return 0.5 * (ray->low + ray->high);
+}
+/* Point of axis by[k] that a row has. */
+size_t basin_rays_point(const struct basin_rays *rays, size_t row, int k);
+
+/* The tables; each returns false when memory or the output fails. */
+bool basin_rays_print_text(const struct basin_rays *rays);
+bool basin_rays_print_json(const struct basin_rays *rays);
+bool basin_rays_print_csv(const struct basin_rays *rays);
+/* Every ray as a row of CSV. */
+bool basin_rays_print_boundary(const struct basin_rays *rays);
+
+#endif

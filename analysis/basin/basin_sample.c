@@ -1,0 +1,82 @@
+/* basin_sample.c - reads the points of a sample of starts. */
+#include "basin_sample.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_start(const char *path)
+{
+    return (strncmp(path, "initial.offset.", 15) == 0 ||
+            strncmp(path, "initial.state.", 14) == 0) &&
+           strcmp(path, "initial.offset.scale") != 0;
+}
+
+/* The range of a path, where a factor moves it alone and evenly. */
+static void find_range(const struct scenario *s, int path, struct basin_factor *factor)
+{
+    for (size_t j = 0; j < s->sample.design.factors; j++) {
+        const struct scenario_factor *f = &s->sample.factor[j];
+        if (f->first == path && f->paths == 1 && !f->listed && !f->log) {
+            factor->from = f->value[0];
+            factor->to = f->value[1];
+        }
+    }
+}
+
+static void take_factors(struct basin_sample *sample, const struct results *r,
+                         const struct scenario *s)
+{
+    sample->box = 1;
+    for (int k = 0; k < r->varied; k++) {
+        struct basin_factor *factor = &sample->factor[sample->factors];
+        if (!is_start(r->vary[k].of.name)) {
+            sample->others = true;
+            continue;
+        }
+        *factor = (struct basin_factor){&r->vary[k].of, NAN, NAN};
+        find_range(s, k, factor);
+        sample->box *= fabs(factor->to - factor->from);
+        sample->factors++;
+    }
+    sample->axis = sample->factors > 0 ? r->sample : -1;
+}
+
+bool basin_sample_make(struct basin_sample *sample, const struct results *r,
+                       stance_message *message)
+{
+    *sample = (struct basin_sample){.axis = -1, .box = NAN};
+    if (r->sample < 0)
+        return true;
+    struct scenario *s = calloc(1, sizeof *s);
+    sample->factor = calloc((size_t)r->varied + 1, sizeof *sample->factor);
+    sample->points = r->axis[r->sample].count;
+    const bool good = s && sample->factor && results_scenario(r, s);
+    if (good && s->sample.given) {
+        sample->method = s->sample.design.method;
+        sample->block = (size_t)doe_block(&s->sample.design);
+        take_factors(sample, r, s);
+    }
+    if (good) {
+        scenario_free(s);
+    } else {
+        basin_sample_free(sample);
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: its scenario cannot be read, or memory does not suffice", r->file);
+    }
+    free(s);
+    return good;
+}
+
+void basin_sample_free(struct basin_sample *sample)
+{
+    free(sample->factor);
+    *sample = (struct basin_sample){.axis = -1};
+}
+
+bool basin_sample_counts(const struct basin_sample *sample, size_t point)
+{
+    return sample->method != DOE_SALTELLI || point % sample->block == 0 ||
+           point % sample->block == sample->block - 1;
+}

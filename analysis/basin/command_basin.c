@@ -1,0 +1,287 @@
+/* command_basin.c - `stance basin FILE`: how large the basin is, how sure that is, and what its
+ * boundary looks like; as text, JSON or CSV. */
+#include "basin_print.h"
+#include "basin_rays.h"
+
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern const struct command command_basin; /* below */
+
+enum { MOST_BY = SCENARIO_MAX_AXES, DEFAULT_SIDE = 5, MOST_SIDE = 1000 };
+
+struct request {
+    const char *file, *of;
+    struct basin_choice choice;
+    bool json, csv, boundary;
+};
+
+static bool find_outcome(const char *word, enum results_kind *of)
+{
+    for (int k = 0; k < RESULTS_OUTCOMES; k++) {
+        if (strcmp(word, results_kind_names[k]) == 0) {
+            *of = (enum results_kind)k;
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Without --of: what the study is about. Where nothing was stabilised but something rested, that.
+ */
+static enum results_kind outcome_of(const struct results *r)
+{
+    struct statistics_counts counts;
+    statistics_count(r, -1, 0, &counts);
+    return counts.kind[RESULTS_STABILISED] == 0 && counts.kind[RESULTS_RESTED] > 0
+               ? RESULTS_RESTED
+               : RESULTS_STABILISED;
+}
+
+static int unprinted(void)
+{
+    fputs("stance basin: not enough memory, or the output could not be written\n", stderr);
+    return EXIT_IO;
+}
+
+static int show(const struct request *request, const struct basin *basin)
+{
+    const bool good = request->boundary ? basin_print_boundary(basin)
+                      : request->json   ? basin_print_json(basin)
+                      : request->csv    ? basin_print_csv(basin)
+                                        : basin_print_text(basin);
+    return good ? EXIT_DONE : unprinted();
+}
+
+static int fail(const stance_message *message, bool usage)
+{
+    fprintf(stderr, "%s\n", message->text);
+    return usage ? EXIT_USAGE : EXIT_IO;
+}
+
+static int show_rays(const struct request *request, const struct results *r,
+                     struct basin_sample *sample)
+{
+    struct basin_rays rays;
+    stance_message message = {""};
+    if (request->choice.by_count > 0) {
+        fputs("stance basin: --by has no meaning for rays: there is a row for every parameter\n",
+              stderr);
+        basin_sample_free(sample);
+        return EXIT_USAGE;
+    }
+    if (!basin_rays_make(&rays, r, request->choice.of, sample, &message))
+        return fail(&message, false);
+    const bool good = request->boundary ? basin_rays_print_boundary(&rays)
+                      : request->json   ? basin_rays_print_json(&rays)
+                      : request->csv    ? basin_rays_print_csv(&rays)
+                                        : basin_rays_print_text(&rays);
+    basin_rays_free(&rays);
+    return good ? EXIT_DONE : unprinted();
+}
+
+static int show_basin(const struct request *request, const struct results *r,
+                      struct basin_sample *sample)
+{
+    struct basin basin;
+    stance_message message = {""};
+    bool usage = false;
+    int code = EXIT_USAGE;
+
+    if (!basin_make(&basin, r, &request->choice, sample, &usage, &message))
+        return fail(&message, usage);
+    if (request->boundary && basin.starts != BASIN_GRID) {
+        fprintf(stderr,
+                "stance basin: --boundary needs starts on a grid; those of %s are a sample\n",
+                request->file);
+    } else {
+        code = show(request, &basin);
+    }
+    basin_free(&basin);
+    return code;
+}
+
+static int work(void *context)
+{
+    struct request *request = context;
+    struct results r;
+    struct basin_sample sample;
+    stance_message message = {""};
+    int code;
+
+    if (!results_open(&r, request->file, &message))
+        return fail(&message, false);
+    if (!request->of)
+        request->choice.of = outcome_of(&r);
+    if (memchr(r.kind, RESULTS_DONE, r.cases)) {
+        fprintf(stderr, "%s: holds no outcomes (record.answers left them out)\n", request->file);
+        results_close(&r);
+        return EXIT_USAGE;
+    }
+    if (!basin_sample_make(&sample, &r, &message))
+        code = fail(&message, false);
+    else
+        code = (basin_is_rays(&r, &sample) ? show_rays : show_basin)(request, &r, &sample);
+    results_close(&r);
+    return code;
+}
+
+/* A number after an option; false, with a message, when it is none between low and high. */
+static bool read_number(const char *option, const char *text, double low, double high,
+                        double *value)
+{
+    char *end;
+    errno = 0;
+    *value = strtod(text, &end);
+    if (end == text || *end || errno || !(*value >= low && *value <= high)) {
+        fprintf(stderr, "stance basin: %s takes a number from %g to %g, not '%.40s'\n", option, low,
+                high, text);
+        return false;
+    }
+    return true;
+}
+
+static bool read_choice(struct request *request, const char *level, const char *side)
+{
+    double number = DEFAULT_SIDE;
+    request->choice.level = 0.95;
+    if (request->of && !find_outcome(request->of, &request->choice.of)) {
+        fprintf(stderr,
+                "stance basin: --of takes an outcome, stabilised, rested, fell or undecided, not "
+                "'%.60s'\n",
+                request->of);
+        return false;
+    }
+    if ((level && !read_number("--level", level, 0.5, 0.999999, &request->choice.level)) ||
+        (side && !read_number("--box", side, 2, MOST_SIDE, &number)))
+        return false;
+    if (number != floor(number)) {
+        fprintf(stderr, "stance basin: --box takes a whole number of cases, not '%.40s'\n", side);
+        return false;
+    }
+    request->choice.side = (size_t)number;
+    return true;
+}
+
+static int run(int argc, char **argv)
+{
+    const char *by[MOST_BY], *file = NULL, *of = NULL, *level = NULL, *side = NULL;
+    size_t by_count = 0, given[3] = {0}, boundary = 0, json = 0, csv = 0, operands = 0;
+    bool help = false;
+    const struct option_spec specs[] = {
+        {"--by", true, by, MOST_BY, &by_count},    {"--of", true, &of, 1, &given[0]},
+        {"--level", true, &level, 1, &given[1]},   {"--box", true, &side, 1, &given[2]},
+        {"--boundary", false, NULL, 0, &boundary}, {"--json", false, NULL, 0, &json},
+        {"--csv", false, NULL, 0, &csv},
+    };
+
+    if (!command_options(&command_basin, argc, argv, specs, sizeof specs / sizeof specs[0], &file,
+                         1, &operands, &help))
+        return EXIT_USAGE;
+    if (help)
+        return EXIT_DONE;
+    if (operands == 0) {
+        fputs("stance basin: a results file is needed (stance basin -h explains)\n", stderr);
+        return EXIT_USAGE;
+    }
+    if ((json && csv) || (json && boundary)) {
+        fprintf(stderr, "stance basin: %s\n",
+                csv ? "--json or --csv, not both" : "--boundary prints CSV, not JSON");
+        return EXIT_USAGE;
+    }
+    struct request request = {
+        .file = file, .of = of, .json = json > 0, .csv = csv > 0, .boundary = boundary > 0};
+    request.choice.by = by;
+    request.choice.by_count = by_count;
+    if (!read_choice(&request, level, side))
+        return EXIT_USAGE;
+    return sandbox(work, &request, file);
+}
+
+const struct command command_basin = {
+    "basin",
+    "basin FILE [--by PATH]... [--of OUTCOME] [--level L] [--box N] [--boundary | --json | --csv]",
+    "how large a basin is, how sure that is, and what its boundary is like",
+    run,
+    "The starts are the axes initial.offset.* and initial.state.*, or a sample of these; every\n"
+    "other axis is a parameter. For each point of the parameters: how many of the starts end in\n"
+    "the outcome, and what share of the box of starts that is. Rows are averages over a sample of\n"
+    "parameters (stance sensitivity tells what it says of each), and with --by over all other\n"
+    "parameters. Cases inferred by sweep.refine or stop.capture count as simulated ones do.\n"
+    "\n"
+    "  volume    the box reaches from the first to the last place of each axis; cases on its edge\n"
+    "            count by the part of their cell that lies in it (so the share is not quite that\n"
+    "            of the summary, which counts all cases alike)\n"
+    "  +-        likely error at the level L (0.95), conservative: it held in 95 to 100 % of maps\n"
+    "            with boundaries along an axis, slanted or round. The error of a grid is no\n"
+    "            binomial one, as its points are no sample: in each cell that the boundary "
+    "crosses\n"
+    "            the volume is off by an evenly distributed part, the same in cells along which\n"
+    "            the boundary runs parallel to an axis or in step with the lattice\n"
+    "            (analysis/basin/basin_map.h); the mean over parameters of a grid has the mean "
+    "error.\n"
+    "            Over a sample of parameters with the scatter of its points, of saltelli and\n"
+    "            morris that of whole blocks, as if drawn independently\n"
+    "  bounds    certain if the boundary is resolved (no cell whose corners agree is crossed): "
+    "the\n"
+    "            volume of the cells inside, and of those not outside. Cases that failed or are\n"
+    "            pending count as outside in the one and as inside in the other\n"
+    "            Of sampled starts: an interval at the level L, Wilson's where each point is in "
+    "or\n"
+    "            out, with failed and pending cases outside for its lower end and inside for its\n"
+    "            upper one; a point counts once, however many cases it has. Where not all starts "
+    "vary evenly over a range, each\n"
+    "            by a factor of its own, there is no volume: box is 1, and shares stand instead\n"
+    "  S_b, S_bb basin entropy and boundary basin entropy (Daza et al. 2016): mean over boxes of\n"
+    "            --box N (5) cases along each start, and over those with several outcomes. S_bb\n"
+    "            above log 2 = 0.693 implies a fractal boundary where boxes are small beside the\n"
+    "            domains; stripes of three outcomes thinner than a box exceed it, too. So a star\n"
+    "            marks it only where its interval is above and alpha's below 1. Small boxes\n"
+    "            estimate it low (two outcomes at random in 25 cases: 0.673)\n"
+    "  alpha     uncertainty exponent (Grebogi et al. 1983): the share of cases that have another\n"
+    "            outcome within e cells along some start grows as e^alpha; 1 for a smooth\n"
+    "            boundary. The boundary's dimension is that of the starts - alpha. Of the "
+    "distances\n"
+    "            1, 2, 4 ... up to a twelfth of the shortest axis (96 cases along it give the "
+    "four\n"
+    "            that are needed) the longest are left out as long as shares over distances, both\n"
+    "            logarithmic, are not straight; where nothing is straight there is no alpha, but\n"
+    "            the reason. Its error has in it how much parts of the map and distances differ\n"
+    "  nearest   from the equilibrium to the nearest point out of the outcome, each offset in\n"
+    "            units of its axis's range\n"
+    "\n"
+    "A file of rays (a grid axis initial.offset.scale, and sweep.sample of method sphere over\n"
+    "offsets, mostly with sweep.refine) tells how far from the equilibrium the outcome reaches in\n"
+    "every direction: smallest, median and largest scale at which a ray loses it for the first\n"
+    "time, and for a single row the offsets at which the first one does. --boundary lists the "
+    "rays.\n"
+    "\n"
+    "  --by PATH      a row for each value of this parameter alone; may be repeated; an axis of\n"
+    "                 starts named here is a parameter\n"
+    "  --of OUTCOME   stabilised (default; or rested, where nothing else was), rested, fell or\n"
+    "                 undecided\n"
+    "  --boundary     instead, as CSV: a point of the boundary for each pair of neighbours with\n"
+    "                 different outcomes, midway between them along the axis `along`, with half\n"
+    "                 their distance as `half_width` and both outcomes\n"
+    "  --csv          a row of numbers for each row of the tables\n"
+    "  --json         the same as JSON, with the keys\n"
+    "    outcome, level, box_side, design (grid, or the sample's method), starts: [paths],\n"
+    "    parameters: [paths], averaged: [paths], box, unit\n"
+    "    rows           [{at: {path: value}, cases, inside, failed, pending, share, volume, reach\n"
+    "                   (the likely error at the level), low, high, cells, crossed, entropy,\n"
+    "                   boundary_entropy, boxes, mixed_boxes, fractal, alpha, alpha_error,\n"
+    "                   alpha_distances (number of those fitted), alpha_missing (why there is\n"
+    "                   none: small, none, wide, bent, few), dimension,\n"
+    "                   distances: [cells], uncertain: [share], nearest, nearest_at: {path: "
+    "value},\n"
+    "                   extent: {path: [low, high]}}]; null where there is none\n"
+    "    and of rays: outcome, starts, rays (number), rows [{at, crossing, open, outside,\n"
+    "                   smallest, median, largest, first_ray, first_bracket: [low, high],\n"
+    "                   first_at: {path: value}}]\n",
+};

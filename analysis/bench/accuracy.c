@@ -1,0 +1,324 @@
+/* accuracy.c - compares every method and step of a file with its most exact one. */
+#include "accuracy.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Below this the truth itself is in doubt: such errors are no part of a ladder. */
+static const double least_error = 1e-11;
+
+static bool fail(stance_message *message, const char *text)
+{
+    snprintf(message->text, sizeof message->text, "%s", text);
+    return false;
+}
+
+/* ---- rows --------------------------------------------------------------------------------- */
+
+static bool path_is(const struct scenario_axis *axis, int k, const char *path)
+{
+    return k < axis->paths && strcmp(axis->path[k], path) == 0;
+}
+
+/* Cases of each row: all but the first axis. */
+static size_t cases_per_row(const struct accuracy *a, const struct results *r)
+{
+    return a->rows > 0 ? (size_t)r->cases / a->rows : 0;
+}
+
+static bool make_rows(struct accuracy *a, const struct scenario *s, const struct results *r,
+                      stance_message *message)
+{
+    if (s->axes < 1 || s->sample.given || !path_is(&s->axis[0], 0, "method.name"))
+        return fail(message, "the first axis does not vary method.name");
+    a->rows = s->axis[0].count;
+    a->truth = a->rows;
+    a->row = calloc(a->rows, sizeof *a->row);
+    if (!a->row)
+        return fail(message, "not enough memory");
+    const size_t n = cases_per_row(a, r);
+    for (size_t k = 0; k < a->rows; k++) {
+        struct accuracy_row *row = &a->row[k];
+        struct scenario_values values;
+        scenario_case_values(s, k * n, &values);
+        row->method = stance_methods()[values.method];
+        row->step = values.step;
+        row->tolerance = row->method->tolerance > 0
+                             ? (isnan(values.tolerance) ? row->method->tolerance : values.tolerance)
+                             : NAN;
+        row->cases = n;
+        if (a->truth == a->rows && strcmp(row->method->name, "event-driven") == 0)
+            a->truth = k;
+    }
+    return a->truth < a->rows || fail(message, "no row of event-driven to compare with");
+}
+
+/* ---- answers ------------------------------------------------------------------------------ */
+
+/* Largest value of an answer among the cases of each row, or (sum) their sum. */
+static bool gather(struct accuracy *a, const struct results *r, const char *name, bool sum,
+                   double *out, stance_message *message)
+{
+    double *values;
+    const size_t n = cases_per_row(a, r);
+    if (!results_answer(r, name, &values, message))
+        return false;
+    for (size_t k = 0; k < a->rows; k++) {
+        out[k] = values ? 0 : NAN;
+        for (size_t i = 0; values && i < n; i++) {
+            const double x = values[k * n + i];
+            out[k] = isnan(x) ? out[k] : sum ? out[k] + x : fmax(out[k], x);
+        }
+    }
+    free(values);
+    return true;
+}
+
+static bool read_answers(struct accuracy *a, const struct results *r, stance_message *message)
+{
+    double *column = malloc(a->rows * sizeof *column), *time = malloc(a->rows * sizeof *time);
+    static const char *const names[] = {
+        "signorini_residual", "coulomb_residual", "dissipation_residual", "max_penetration",
+        "energy_gain",        "events",           "evaluations"};
+    const size_t rates = 5; /* the first that is wanted per simulated second */
+    bool good = column && time && gather(a, r, "end_time", true, time, message);
+    for (size_t w = 0; good && w < sizeof names / sizeof *names; w++) {
+        good = gather(a, r, names[w], w >= rates, column, message);
+        for (size_t k = 0; good && k < a->rows; k++) {
+            struct accuracy_row *const row = &a->row[k];
+            double *const field[] = {&row->signorini,   &row->coulomb,     &row->dissipation,
+                                     &row->penetration, &row->energy_gain, &row->events,
+                                     &row->evaluations};
+            *field[w] = w >= rates ? column[k] / time[k] : column[k];
+        }
+    }
+    free(column);
+    free(time);
+    const size_t n = cases_per_row(a, r);
+    for (size_t k = 0; k < a->rows; k++) {
+        for (size_t i = 0; i < n; i++) {
+            const uint64_t index = k * n + i;
+            if (r->kind[index] == RESULTS_FAILED) {
+                a->row[k].failure =
+                    a->row[k].failed++ == 0 && r->failure ? r->failure[index] : a->row[k].failure;
+            }
+        }
+    }
+    return good;
+}
+
+/* ---- trajectories ------------------------------------------------------------------------- */
+
+static void compare_trajectories(const struct results_trajectory *truth,
+                                 const struct results_trajectory *other, struct accuracy_row *row)
+{
+    const size_t m = truth->coordinates;
+    const size_t rows = truth->rows < other->rows ? truth->rows : other->rows;
+    double position = 0, velocity = 0;
+    for (size_t i = 0; i < rows; i++) {
+        double largest = 0;
+        for (size_t c = 0; c < m; c++) {
+            position =
+                fmax(position, fabs(truth->position[i * m + c] - other->position[i * m + c]));
+            largest = fmax(largest, fabs(truth->velocity[i * m + c] - other->velocity[i * m + c]));
+        }
+        velocity += largest / (double)rows;
+    }
+    row->position = fmax(row->position, position);
+    row->velocity = fmax(row->velocity, velocity);
+    row->compared++;
+}
+
+static bool compare_case(struct accuracy *a, const struct results *r, const uint64_t *list,
+                         size_t i, stance_message *message)
+{
+    const size_t n = cases_per_row(a, r);
+    struct results_trajectory truth, other;
+    const size_t at = a->truth * n + i;
+    if (r->kind[list[at]] == RESULTS_FAILED || r->kind[list[at]] == RESULTS_PENDING)
+        return true; /* no truth, no error */
+    if (!results_trajectory(r, at, list[at], &truth, message))
+        return false;
+    bool good = true;
+    for (size_t k = 0; good && k < a->rows; k++) {
+        const size_t place = k * n + i;
+        if (r->kind[list[place]] == RESULTS_FAILED || r->kind[list[place]] == RESULTS_PENDING)
+            continue;
+        good = results_trajectory(r, place, list[place], &other, message);
+        if (good) {
+            compare_trajectories(&truth, &other, &a->row[k]);
+            results_trajectory_free(&other);
+        }
+    }
+    results_trajectory_free(&truth);
+    return good;
+}
+
+/* ---- outcomes ----------------------------------------------------------------------------- */
+
+/* Do all neighbours of a cell of the truth have the cell's own outcome? Neighbours differ by one
+ * along at least one of the axes after the first. */
+static bool is_inside(const struct results *r, const uint8_t *truth, size_t cell)
+{
+    size_t point[SCENARIO_MAX_AXES] = {0}, rest = cell;
+    for (int axis = r->axes - 1; axis >= 1; axis--) {
+        point[axis] = rest % r->axis[axis].count;
+        rest /= r->axis[axis].count;
+    }
+    int64_t neighbours = 1;
+    for (int axis = 1; axis < r->axes; axis++)
+        neighbours *= 3;
+    for (int64_t k = 0; k < neighbours; k++) {
+        size_t index = 0;
+        bool exists = true;
+        int64_t code = k;
+        for (int axis = 1; axis < r->axes; axis++, code /= 3) {
+            const int64_t x = (int64_t)point[axis] + code % 3 - 1;
+            exists &= x >= 0 && x < (int64_t)r->axis[axis].count;
+            index = index * r->axis[axis].count + (size_t)(exists ? x : 0);
+        }
+        if (exists && truth[index] != truth[cell])
+            return false;
+    }
+    return true;
+}
+
+static void compare_labels(struct accuracy *a, const struct results *r)
+{
+    const size_t n = cases_per_row(a, r);
+    const uint8_t *truth = r->kind + a->truth * n;
+    for (size_t k = 0; k < a->rows; k++) {
+        struct accuracy_row *row = &a->row[k];
+        for (size_t i = 0; i < n; i++) {
+            const uint8_t kind = r->kind[k * n + i];
+            if (truth[i] == RESULTS_FAILED || kind == RESULTS_FAILED)
+                continue;
+            row->compared++;
+            if (kind != truth[i]) {
+                row->differ++;
+                row->inside += is_inside(r, truth, i);
+            }
+        }
+    }
+}
+
+/* ---- orders ------------------------------------------------------------------------------- */
+
+/* Slope of y over x, by least squares. */
+static double slope(const double *x, const double *y, size_t n)
+{
+    double sx = 0, sy = 0, sxx = 0, sxy = 0;
+    for (size_t i = 0; i < n; i++)
+        sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
+    return n < 2 ? NAN : ((double)n * sxy - sx * sy) / ((double)n * sxx - sx * sx);
+}
+
+static void fit_order(struct accuracy_order *order, const struct accuracy *a)
+{
+    double x[64], p[64], v[64];
+    size_t n = 0;
+    order->from = order->to = NAN;
+    for (size_t k = 0; k < a->rows && n < 64; k++) {
+        const struct accuracy_row *row = &a->row[k];
+        const bool usable = row->method == order->method && k != a->truth && row->failed == 0 &&
+                            row->position > least_error && row->velocity > least_error;
+        if (usable) {
+            const double at = order->by_tolerance ? row->tolerance : row->step;
+            order->from = n == 0 ? at : fmax(order->from, at);
+            order->to = n == 0 ? at : fmin(order->to, at);
+            x[n] = log(at);
+            p[n] = log(row->position);
+            v[n++] = log(row->velocity);
+        }
+    }
+    order->rows = n;
+    order->position = order->from > order->to ? slope(x, p, n) : NAN;
+    order->velocity = order->from > order->to ? slope(x, v, n) : NAN;
+}
+
+static void fit_orders(struct accuracy *a)
+{
+    for (size_t m = 0; stance_methods()[m] && a->orders < ACCURACY_METHODS; m++) {
+        const stance_method *method = stance_methods()[m];
+        double step[2] = {INFINITY, 0};
+        bool present = false;
+        for (size_t k = 0; k < a->rows; k++) {
+            if (a->row[k].method == method && k != a->truth) {
+                present = true;
+                step[0] = fmin(step[0], a->row[k].step);
+                step[1] = fmax(step[1], a->row[k].step);
+            }
+        }
+        if (present) {
+            struct accuracy_order *order = &a->order[a->orders++];
+            /* One step and many tolerances: the ladder is that of the tolerance. */
+            *order = (struct accuracy_order){.method = method, .by_tolerance = step[0] == step[1]};
+            fit_order(order, a);
+        }
+    }
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+static bool measure(struct accuracy *a, const struct scenario *s, const struct results *r,
+                    double budget, stance_message *message)
+{
+    struct parallel alone = parallel_alone();
+    struct plan plan;
+    struct plan_error error = {0};
+    const size_t n = cases_per_row(a, r);
+
+    if (!plan_make(&plan, s, false, 0, false, &error))
+        return fail(message, error.message.text);
+    bool good = plan_compute_designs(&plan, &alone, &error);
+    if (!good)
+        fail(message, error.message.text);
+    for (size_t k = 0; good && k < a->rows; k++)
+        good = measure_rows(&plan, k * n, n, budget, &a->row[k].cost, message);
+    plan_free(&plan);
+    return good;
+}
+
+static bool compare(struct accuracy *a, const struct results *r, stance_message *message)
+{
+    uint64_t *list;
+    size_t count;
+    if (!results_recorded(r, &list, &count, message))
+        return false;
+    bool good = true;
+    a->labels = count != r->cases;
+    if (a->labels)
+        compare_labels(a, r);
+    for (size_t i = 0; good && !a->labels && i < cases_per_row(a, r); i++)
+        good = compare_case(a, r, list, i, message);
+    free(list);
+    return good;
+}
+
+bool accuracy_make(struct accuracy *a, const struct results *r, double budget,
+                   stance_message *message)
+{
+    struct scenario *s = calloc(1, sizeof *s);
+    *a = (struct accuracy){.rows = 0};
+    if (!s || !results_scenario(r, s)) {
+        free(s);
+        return fail(message, "this version cannot read the file's scenario");
+    }
+    bool good = make_rows(a, s, r, message) && read_answers(a, r, message) &&
+                compare(a, r, message) && measure(a, s, r, budget, message);
+    scenario_free(s);
+    free(s);
+    if (good && !a->labels)
+        fit_orders(a);
+    if (!good)
+        accuracy_free(a);
+    return good;
+}
+
+void accuracy_free(struct accuracy *a)
+{
+    free(a->row);
+    *a = (struct accuracy){.rows = 0};
+}

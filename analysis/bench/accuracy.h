@@ -1,0 +1,60 @@
+/* accuracy.h - error against cost of methods and steps, from one results file.
+ *
+ * The file comes from a scenario whose first axis varies method.name together with method.step
+ * (and method.tolerance); its other axes vary the start. The row that is taken for the truth is
+ * the first one of `event-driven`. With trajectories recorded the errors are those of positions
+ * and velocities; without them, those of the outcomes.
+ */
+#ifndef STANCE_BENCH_ACCURACY_H
+#define STANCE_BENCH_ACCURACY_H
+
+#include "measure.h"
+
+#include "runner/store/results.h"
+
+/* One method, step and tolerance. */
+struct accuracy_row {
+    const stance_method *method;
+    double step, tolerance; /* s; as used, NAN where the method does not control its error */
+    uint64_t cases, failed; /* failed: of these cases, numerically */
+    int failure;            /* enum stance_failure of the first of them */
+    uint64_t compared;      /* cases compared with the truth */
+    double position;        /* m, rad: largest difference at any recorded instant */
+    double velocity;        /* m/s, rad/s: mean over time of the largest difference (L1) */
+    uint64_t differ;        /* outcomes unlike the truth's ... */
+    uint64_t inside;        /* ... in cells whose neighbours all have the truth's own outcome */
+    struct measure_cost cost;
+    double signorini, coulomb, dissipation, penetration, energy_gain; /* largest of the cases */
+    double events, evaluations;                                       /* per simulated second */
+};
+
+/* Order of convergence of a method: slope of log error over log step (or tolerance). */
+struct accuracy_order {
+    const stance_method *method;
+    bool by_tolerance;
+    size_t rows;               /* of the ladder that it was fitted on; below 2 there is no slope */
+    double from, to;           /* ends of the ladder: s, or tolerance */
+    double position, velocity; /* slopes; NAN: none */
+};
+
+enum { ACCURACY_METHODS = 16 };
+
+struct accuracy {
+    bool labels; /* outcomes are compared, not trajectories */
+    size_t rows, truth;
+    struct accuracy_row *row;
+    size_t orders;
+    struct accuracy_order order[ACCURACY_METHODS];
+};
+
+/* Reads the answers and measures what every row costs, for about `budget` seconds each. False when
+ * the file is not of this kind, or its truth failed altogether. */
+bool accuracy_make(struct accuracy *a, const struct results *r, double budget,
+                   stance_message *message);
+void accuracy_free(struct accuracy *a);
+
+/* DIRECTORY/STEM.svg and .png: error against cost, a line for each method. */
+bool accuracy_plot(const struct accuracy *a, const struct results *r, const char *directory,
+                   const char *stem, stance_message *message);
+
+#endif

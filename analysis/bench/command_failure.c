@@ -1,0 +1,212 @@
+/* command_failure.c - `stance bench failure`: runs the failure studies, judges and maps them. */
+#include "failure.h"
+#include "studies.h"
+
+#include "analysis/table/json.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+extern const struct command command_failure; /* below */
+
+/* ---- text --------------------------------------------------------------------------------- */
+
+static void name_of(const struct failure_row *row, char text[40])
+{
+    if (isnan(row->tolerance))
+        snprintf(text, 40, "%s", row->method->name);
+    else
+        snprintf(text, 40, "%s %.0e", row->method->name, row->tolerance);
+}
+
+static void print_shares(const struct failure *f)
+{
+    printf("  %-28s", "share of the cases, %");
+    for (size_t k = 0; k < f->rows; k++) {
+        char name[40];
+        name_of(&f->row[k], name);
+        printf(" %18s", name);
+    }
+    putchar('\n');
+    for (int v = 0; v < FAILURE_VERDICT_COUNT; v++) {
+        uint64_t sum = 0;
+        for (size_t k = 0; k < f->rows; k++)
+            sum += f->row[k].count[v];
+        if (sum == 0)
+            continue;
+        printf("  %-28s", failure_styles[v].text);
+        for (size_t k = 0; k < f->rows; k++)
+            printf(" %18.2f", 100 * (double)f->row[k].count[v] / (double)f->cells);
+        putchar('\n');
+    }
+}
+
+static void print_row(const struct failure *f, const struct failure_row *row)
+{
+    char name[40];
+    name_of(row, name);
+    printf("  %-18s energy created at most %.2g J, %.2g of that at the start; penetration %.0e m, "
+           "residuals %.0e, %.0e, %.0e\n",
+           name, row->energy_gain, row->energy_share, row->penetration, row->signorini,
+           row->coulomb, row->dissipation);
+    const char *separator = "failed: ";
+    for (int k = 0; k < STANCE_FAILURE_COUNT; k++) {
+        if (row->reason[k] > 0) {
+            printf(separator[0] == 'f' ? "  %18s %s" : "%s%s", "", separator);
+            printf("%s %" PRIu64, stance_failure_name[k], row->reason[k]);
+            separator = ", ";
+        }
+    }
+    if (separator[0] != 'f')
+        putchar('\n');
+    if (f->line.axis > 0) {
+        printf("  %18s before the line of theory %" PRIu64 " of %" PRIu64 " failed, %" PRIu64
+               " came to stand; beyond it %" PRIu64 " of %" PRIu64 " and %" PRIu64 "\n",
+               "", row->bad[0], row->side[0], row->stands[0], row->bad[1], row->side[1],
+               row->stands[1]);
+    }
+}
+
+static void print_text(const struct failure *f, const struct results *r)
+{
+    printf("\n%s\n  %s (%zu values) x %s (%zu values)\n", r->title, r->axis[1].name,
+           r->axis[1].count, r->axis[2].name, r->axis[2].count);
+    print_shares(f);
+    if (f->line.axis > 0)
+        printf("  line of theory: %s\n", f->line.text);
+    for (size_t k = 0; k < f->rows; k++)
+        print_row(f, &f->row[k]);
+}
+
+/* ---- JSON --------------------------------------------------------------------------------- */
+
+static json_t *axis_json(const struct results_axis *axis)
+{
+    json_t *values = json_array();
+    for (size_t i = 0; i < axis->count; i++)
+        json_array_append_new(values, results_json_value(axis, i));
+    return json_pack("{s:s, s:s, s:o}", "name", axis->name, "unit", axis->unit, "values", values);
+}
+
+static json_t *row_json(const struct failure *f, size_t k)
+{
+    const struct failure_row *row = &f->row[k];
+    json_t *shares = json_object(), *reasons = json_object(), *map = json_array();
+    for (int v = 0; v < FAILURE_VERDICT_COUNT; v++) {
+        json_object_set_new(shares, failure_styles[v].name,
+                            json_integer((json_int_t)row->count[v]));
+    }
+    for (int v = 0; v < STANCE_FAILURE_COUNT; v++) {
+        if (row->reason[v] > 0) {
+            json_object_set_new(reasons, stance_failure_name[v],
+                                json_integer((json_int_t)row->reason[v]));
+        }
+    }
+    for (size_t i = 0; i < f->count[1]; i++) {
+        json_t *line = json_array();
+        for (size_t j = 0; j < f->count[2]; j++) {
+            const size_t index = k * f->cells + i * f->count[2] + j;
+            json_array_append_new(line, json_string(failure_styles[f->verdict[index]].name));
+        }
+        json_array_append_new(map, line);
+    }
+    return json_pack(
+        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "method", row->method->name,
+        "tolerance", results_json_number(row->tolerance), "cases", shares, "failed", reasons,
+        "energy_gain", results_json_number(row->energy_gain), "energy_share",
+        results_json_number(row->energy_share), "max_penetration",
+        results_json_number(row->penetration), "signorini_residual",
+        results_json_number(row->signorini), "coulomb_residual", results_json_number(row->coulomb),
+        "dissipation_residual", results_json_number(row->dissipation), "map", map);
+}
+
+static json_t *theory_json(const struct failure *f, const struct results *r)
+{
+    if (f->line.axis == 0)
+        return json_null();
+    json_t *values = json_array();
+    for (size_t i = 0; i < f->count[f->line.axis]; i++)
+        json_array_append_new(values, results_json_number(f->line.value[i]));
+    return json_pack("{s:s, s:s, s:s, s:o}", "text", f->line.text, "along",
+                     r->axis[f->line.axis].name, "of", r->axis[3 - f->line.axis].name, "values",
+                     values);
+}
+
+static json_t *study_json(const struct failure *f, const struct results *r)
+{
+    json_t *rows = json_array(), *axes = json_array();
+    for (int a = 1; a < 3; a++)
+        json_array_append_new(axes, axis_json(&r->axis[a]));
+    for (size_t k = 0; k < f->rows; k++)
+        json_array_append_new(rows, row_json(f, k));
+    return json_pack("{s:s, s:s, s:s, s:o, s:o, s:o}", "name", r->name, "title", r->title, "file",
+                     r->file, "axes", axes, "theory", theory_json(f, r), "rows", rows);
+}
+
+/* ---- the command --------------------------------------------------------------------------- */
+
+static bool study(const struct results *r, const char *directory, const char *stem, json_t **object,
+                  stance_message *message)
+{
+    struct failure f;
+    if (!failure_make(&f, r, message))
+        return false;
+    bool good = true;
+    if (object) {
+        *object = study_json(&f, r);
+    } else {
+        print_text(&f, r);
+        fflush(stdout);
+        good = failure_plot(&f, r, directory, stem, message);
+    }
+    failure_free(&f);
+    return good;
+}
+
+static int run(int argc, char **argv)
+{
+    return studies_run(&command_failure, "failure", study, argc, argv);
+}
+
+const struct command command_failure = {
+    "bench failure",
+    "bench failure [SCENARIO]... [-o DIR] [--reuse] [--json]",
+    "where each method fails, as maps with the lines of theory",
+    run,
+    "Runs studies, by default those of scenarios/failure, like any other scenario. The first axis\n"
+    "of a study varies method.name (with method.tolerance), the other two are a map. Every cell "
+    "is\n"
+    "compared with event-driven, or with the most exact row of capturing where event-driven gave\n"
+    "up; with method.step on the map, both at the smallest step. It gets the first of\n"
+    "  gave_up        the case failed; `failed` counts the reasons\n"
+    "  ran_away       numbers not finite, angles beyond 1e4 rad, or more energy created than "
+    "there\n"
+    "                 was at the start (kinetic, and potential above z = 0; at least 1 mJ)\n"
+    "  broke_law      penetration beyond 1e-6 m, or a residual of a contact law beyond 1e-6\n"
+    "  wrong_outcome  not the reference's\n"
+    "  inaccurate     a coordinate is off by more than 0.01 m or rad at the end\n"
+    "  unjudged       there is no reference\n"
+    "  right_other, right_stands  as the reference; whether it came to stand or rest\n"
+    "A line in the maps is what theory says, where it is known: the limit of stability of "
+    "explicit\n"
+    "steps (servo of the biped's legs), T* of a sampled controller, Painleve's paradox (rod). A\n"
+    "second picture shows the energy that discretisation created.\n"
+    "\n"
+    "  -o DIR     where the results files and pictures go, default results/failure\n"
+    "  --reuse    take results files that are there as they are\n"
+    "  --json     the same as JSON, without pictures: a list `studies` of\n"
+    "    name, title, file   strings\n"
+    "    axes                the two of the map: name, unit, values\n"
+    "    theory              null, or text, along (an axis), of (the other), values: of the other\n"
+    "                        axis, for each point along; null where there is none\n"
+    "    rows                method, tolerance, cases (for each verdict), failed (for each "
+    "reason),\n"
+    "                        energy_gain (J), energy_share (of that at the start), "
+    "max_penetration,\n"
+    "                        signorini_residual, coulomb_residual, dissipation_residual: largest "
+    "of\n"
+    "                        the cases that did not fail; map: verdicts, a list for each point of\n"
+    "                        the first axis\n",
+};

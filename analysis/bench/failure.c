@@ -1,0 +1,295 @@
+/* failure.c - judges every cell of the maps of a failure study. */
+#include "failure.h"
+
+#include "runner/plan/plan.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct failure_style failure_styles[FAILURE_VERDICT_COUNT] = {
+#define FAILURE_VERDICT_STYLE(NAME, name, text, colour) {#name, text, colour},
+    FAILURE_VERDICTS(FAILURE_VERDICT_STYLE)
+#undef FAILURE_VERDICT_STYLE
+};
+
+/* Energies below this count as this much, J. */
+static const double least_energy = 1e-3;
+
+/* The answers that verdicts rest on, each [cases], and final states [cases][2 n]. */
+struct answers {
+    double *gain, *penetration, *signorini, *coulomb, *dissipation, *end_time, *final;
+    size_t coordinates;
+};
+
+static bool fail(stance_message *message, const char *text)
+{
+    snprintf(message->text, sizeof message->text, "%s", text);
+    return false;
+}
+
+/* ---- reading ------------------------------------------------------------------------------ */
+
+static void answers_free(struct answers *x)
+{
+    free(x->gain);
+    free(x->penetration);
+    free(x->signorini);
+    free(x->coulomb);
+    free(x->dissipation);
+    free(x->end_time);
+    free(x->final);
+}
+
+static bool answers_read(struct answers *x, const struct results *r, const stance_scene *scene,
+                         stance_message *message)
+{
+    const struct {
+        const char *name;
+        double **values;
+    } wanted[] = {{"energy_gain", &x->gain},
+                  {"max_penetration", &x->penetration},
+                  {"signorini_residual", &x->signorini},
+                  {"coulomb_residual", &x->coulomb},
+                  {"dissipation_residual", &x->dissipation},
+                  {"end_time", &x->end_time}};
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
+        if (!results_answer(r, wanted[i].name, wanted[i].values, message))
+            return false;
+        if (!*wanted[i].values) {
+            snprintf(message->text, sizeof message->text, "%s was not recorded", wanted[i].name);
+            return false;
+        }
+    }
+    x->coordinates = (size_t)scene->coordinates;
+    const size_t size = (size_t)r->cases * 2 * x->coordinates;
+    x->final = malloc(size * sizeof *x->final);
+    if (!x->final)
+        return fail(message, "not enough memory");
+    return results_numbers(r, "final_state", x->final, size) == size ||
+           fail(message, "final_state was not recorded");
+}
+
+static bool make_rows(struct failure *f, const struct scenario *s, const struct results *r,
+                      stance_message *message)
+{
+    if (s->axes != 3 || s->sample.given || r->single ||
+        strcmp(s->axis[0].path[0], "method.name") != 0)
+        return fail(message, "three axes are needed: method.name, then the two of the map");
+    for (int a = 0; a < 3; a++)
+        f->count[a] = s->axis[a].count;
+    f->rows = f->count[0];
+    f->cells = f->count[1] * f->count[2];
+    f->row = calloc(f->rows, sizeof *f->row);
+    f->verdict = calloc(r->cases, sizeof *f->verdict);
+    f->share = calloc(r->cases, sizeof *f->share);
+    f->truth = calloc(f->cells, sizeof *f->truth);
+    if (!f->row || !f->verdict || !f->share || !f->truth || f->rows > INT8_MAX)
+        return fail(message, "not enough memory");
+    for (size_t k = 0; k < f->rows; k++) {
+        struct scenario_values values;
+        scenario_case_values(s, k * f->cells, &values);
+        f->row[k].method = stance_methods()[values.method];
+        const double own = f->row[k].method->tolerance;
+        f->row[k].tolerance = own > 0 ? (isnan(values.tolerance) ? own : values.tolerance) : NAN;
+    }
+    return true;
+}
+
+/* Energy at the start of every case; it needs the plan because states follow from designs. */
+static bool start_energies(const struct scenario *s, uint64_t cases, double *energy,
+                           stance_message *message)
+{
+    struct parallel alone = parallel_alone();
+    struct plan plan;
+    struct plan_error error = {0};
+    if (!plan_make(&plan, s, false, 0, false, &error))
+        return fail(message, error.message.text);
+    const bool good = plan_compute_designs(&plan, &alone, &error);
+    for (uint64_t i = 0; good && i < cases; i++) {
+        stance_case c;
+        int method;
+        energy[i] = plan_resolve(&plan, i, &c, &method)
+                        ? fabs(s->scene->energy(c.robot, c.position, c.velocity))
+                        : NAN;
+        energy[i] = fmax(energy[i], least_energy);
+    }
+    plan_free(&plan);
+    return good || fail(message, error.message.text);
+}
+
+/* ---- the truth ---------------------------------------------------------------------------- */
+
+/* The cell that holds the truth about a cell: itself, or the one at the smallest step. */
+static size_t true_cell(const struct failure *f, const struct results *r, size_t cell)
+{
+    size_t point[2] = {cell / f->count[2], cell % f->count[2]};
+    for (int a = 0; a < 2; a++) {
+        const struct results_axis *axis = &r->axis[a + 1];
+        if (strcmp(axis->name, "method.step") == 0) {
+            point[a] = 0;
+            for (size_t i = 1; i < axis->count; i++)
+                point[a] = axis->value[i] < axis->value[point[a]] ? i : point[a];
+        }
+    }
+    return point[0] * f->count[2] + point[1];
+}
+
+static bool is_done(const struct results *r, uint64_t index)
+{
+    return r->kind[index] != RESULTS_FAILED && r->kind[index] != RESULTS_PENDING;
+}
+
+/* Row of the truth about a cell: event-driven's, else capturing's of the smallest tolerance. */
+static void find_truth(struct failure *f, const struct results *r)
+{
+    for (size_t cell = 0; cell < f->cells; cell++) {
+        const size_t at = true_cell(f, r, cell);
+        int found = -1;
+        for (size_t k = 0; k < f->rows; k++) {
+            const char *name = f->row[k].method->name;
+            const bool event = strcmp(name, "event-driven") == 0;
+            if ((!event && strcmp(name, "capturing") != 0) || !is_done(r, k * f->cells + at))
+                continue;
+            const bool first = found < 0;
+            const bool other = !first && strcmp(f->row[found].method->name, "event-driven") != 0;
+            if (first || (event && other) ||
+                (event != other && f->row[k].tolerance < f->row[found].tolerance))
+                found = (int)k;
+        }
+        f->truth[cell] = (int8_t)found;
+    }
+}
+
+/* ---- verdicts ----------------------------------------------------------------------------- */
+
+static bool stands(const struct results *r, uint64_t index)
+{
+    return r->kind[index] == RESULTS_STABILISED || r->kind[index] == RESULTS_RESTED;
+}
+
+/* Largest difference of a coordinate at the end; 0 where the runs did not end together: falls end
+ * a run early, and differ after it in no way that matters. */
+static double position_error(const struct answers *x, uint64_t mine, uint64_t true_one)
+{
+    double largest = 0;
+    if (fabs(x->end_time[mine] - x->end_time[true_one]) > 1e-9)
+        return 0;
+    for (size_t i = 0; i < x->coordinates; i++) {
+        const double difference =
+            x->final[2 * x->coordinates * mine + i] - x->final[2 * x->coordinates * true_one + i];
+        largest = fmax(fabs(difference), largest);
+    }
+    return largest;
+}
+
+static bool breaks_law(const struct answers *x, uint64_t i)
+{
+    return !(x->penetration[i] <= FAILURE_PENETRATION && x->signorini[i] <= FAILURE_RESIDUAL &&
+             x->coulomb[i] <= FAILURE_RESIDUAL && x->dissipation[i] <= FAILURE_RESIDUAL);
+}
+
+static enum failure_verdict judge(const struct failure *f, const struct results *r,
+                                  const struct answers *x, size_t row, size_t cell)
+{
+    const uint64_t i = row * f->cells + cell;
+    if (!is_done(r, i)) {
+        const int reason = r->failure ? r->failure[i] : STANCE_FAILURE_NONE;
+        return reason == STANCE_FAILURE_NOT_FINITE || reason == STANCE_FAILURE_ANGLE
+                   ? FAILURE_RAN_AWAY
+                   : FAILURE_GAVE_UP;
+    }
+    if (!(f->share[i] <= FAILURE_ENERGY))
+        return FAILURE_RAN_AWAY;
+    if (breaks_law(x, i))
+        return FAILURE_BROKE_LAW;
+    if (f->truth[cell] < 0)
+        return FAILURE_UNJUDGED;
+    const uint64_t truth = (uint64_t)f->truth[cell] * f->cells + true_cell(f, r, cell);
+    if (r->kind[i] != r->kind[truth])
+        return FAILURE_OUTCOME;
+    if (!(position_error(x, i, truth) <= FAILURE_POSITION))
+        return FAILURE_INACCURATE;
+    return stands(r, i) ? FAILURE_RIGHT_STANDS : FAILURE_RIGHT_OTHER;
+}
+
+/* 1 beyond the line of theory, 0 before it. */
+static int side_of_line(const struct failure *f, const struct results *r, size_t cell)
+{
+    const size_t point[3] = {0, cell / f->count[2], cell % f->count[2]};
+    const int along = f->line.axis, across = 3 - along;
+    return r->axis[across].value[point[across]] > f->line.value[point[along]];
+}
+
+static void judge_row(struct failure *f, const struct results *r, const struct answers *x, size_t k)
+{
+    struct failure_row *row = &f->row[k];
+    for (size_t cell = 0; cell < f->cells; cell++) {
+        const uint64_t i = k * f->cells + cell;
+        const enum failure_verdict verdict = judge(f, r, x, k, cell);
+        f->verdict[i] = (uint8_t)verdict;
+        row->count[verdict]++;
+        if (f->line.axis > 0) {
+            const int side = side_of_line(f, r, cell);
+            row->side[side]++;
+            row->bad[side] += verdict == FAILURE_GAVE_UP || verdict == FAILURE_RAN_AWAY;
+            row->stands[side] += stands(r, i);
+        }
+        if (!is_done(r, i)) {
+            const uint8_t reason = r->failure ? r->failure[i] : 0;
+            row->reason[reason < STANCE_FAILURE_COUNT ? reason : 0]++;
+            continue;
+        }
+        row->energy_gain = fmax(x->gain[i], row->energy_gain);
+        row->energy_share = fmax(f->share[i], row->energy_share);
+        row->penetration = fmax(x->penetration[i], row->penetration);
+        row->signorini = fmax(x->signorini[i], row->signorini);
+        row->coulomb = fmax(x->coulomb[i], row->coulomb);
+        row->dissipation = fmax(x->dissipation[i], row->dissipation);
+    }
+}
+
+static bool judge_all(struct failure *f, const struct scenario *s, const struct results *r,
+                      stance_message *message)
+{
+    struct answers x = {.coordinates = 0};
+    const bool good =
+        answers_read(&x, r, s->scene, message) && start_energies(s, r->cases, f->share, message);
+    if (good) {
+        for (uint64_t i = 0; i < r->cases; i++)
+            f->share[i] = is_done(r, i) ? x.gain[i] / f->share[i] : NAN;
+        find_truth(f, r);
+        for (size_t k = 0; k < f->rows; k++)
+            judge_row(f, r, &x, k);
+    }
+    answers_free(&x);
+    return good;
+}
+
+bool failure_make(struct failure *f, const struct results *r, stance_message *message)
+{
+    struct scenario *s = calloc(1, sizeof *s);
+    *f = (struct failure){.rows = 0};
+    if (!s || !results_scenario(r, s)) {
+        free(s);
+        return fail(message, "this version cannot read the file's scenario");
+    }
+    const bool good = make_rows(f, s, r, message) && failure_theory(&f->line, s, message) &&
+                      judge_all(f, s, r, message);
+    scenario_free(s);
+    free(s);
+    if (!good)
+        failure_free(f);
+    return good;
+}
+
+void failure_free(struct failure *f)
+{
+    free(f->row);
+    free(f->verdict);
+    free(f->share);
+    free(f->truth);
+    free(f->line.value);
+    *f = (struct failure){.rows = 0};
+}

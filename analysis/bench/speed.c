@@ -1,0 +1,163 @@
+/* speed.c - reads the table of the speed benchmarks. */
+#include "speed.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum column {
+    SUBJECT,
+    SCENE,
+    REGIME,
+    METHOD,
+    ISA,
+    LANES,
+    RANKS,
+    STEP,
+    CASES,
+    REPEATS,
+    QUANTITY,
+    UNIT,
+    MEDIAN,
+    LOWEST,
+    HIGHEST,
+    REVISION,
+    COMPILER,
+    FLAGS,
+    PROCESSOR,
+    MACHINE,
+    DATE,
+    COLUMNS
+};
+static const char *const names[COLUMNS] = {
+    "subject", "scene",    "regime",   "method",   "isa",       "lanes",   "ranks",
+    "step_s",  "cases",    "repeats",  "quantity", "unit",      "median",  "lowest",
+    "highest", "revision", "compiler", "flags",    "processor", "machine", "date"};
+
+enum { MOST_BYTES = 1 << 24 };
+
+/* Why the file cannot be read into memory; NULL: it can, and has *size bytes. */
+static const char *refuse(const char *path, size_t *size)
+{
+    struct stat information;
+    if (stat(path, &information) != 0)
+        return strerror(errno);
+    if (!S_ISREG(information.st_mode))
+        return S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file";
+    *size = (size_t)information.st_size;
+    return information.st_size > MOST_BYTES
+               ? "larger than 16 MiB, the most a table of benchmarks may take"
+               : NULL;
+}
+
+static char *read_text(const char *path, stance_message *message)
+{
+    size_t size = 0;
+    const char *wrong = refuse(path, &size);
+    FILE *file = wrong ? NULL : fopen(path, "rb");
+    char *text = file ? malloc(size + 1) : NULL;
+
+    if (text && fread(text, 1, size, file) == size) {
+        text[size] = '\0';
+    } else {
+        snprintf(message->text, sizeof message->text, "%.150s: %s", path,
+                 wrong   ? wrong
+                 : !file ? strerror(errno)
+                         : "cannot be read");
+        free(text);
+        text = NULL;
+    }
+    if (file)
+        fclose(file);
+    return text;
+}
+
+/* Cuts a line at its commas; false when there are not COLUMNS fields. */
+static bool cut(char *line, char *field[COLUMNS])
+{
+    field[0] = line;
+    for (int n = 1; n < COLUMNS; n++) {
+        char *comma = strchr(field[n - 1], ',');
+        if (!comma)
+            return false;
+        *comma = '\0';
+        field[n] = comma + 1;
+    }
+    return !strchr(field[COLUMNS - 1], ',');
+}
+
+bool speed_read(const char *path, struct speed_table *table, stance_message *message)
+{
+    char *field[COLUMNS], *rest = NULL;
+    size_t lines = 1, number = 1;
+
+    *table = (struct speed_table){0};
+    table->text = read_text(path, message);
+    if (!table->text)
+        return false;
+    for (const char *c = table->text; *c; c++)
+        lines += *c == '\n';
+    table->row = calloc(lines, sizeof *table->row);
+    char *line = strtok_r(table->text, "\n", &rest);
+    bool good = table->row && line && cut(line, field);
+    for (int i = 0; i < COLUMNS && good; i++)
+        good = strcmp(field[i], names[i]) == 0;
+    while (good && (line = strtok_r(NULL, "\n", &rest)) != NULL) {
+        number++;
+        good = cut(line, field);
+        if (good) {
+            table->row[table->rows++] =
+                (struct speed_row){.subject = field[SUBJECT],
+                                   .scene = field[SCENE],
+                                   .regime = field[REGIME],
+                                   .method = field[METHOD],
+                                   .isa = field[ISA],
+                                   .quantity = field[QUANTITY],
+                                   .unit = field[UNIT],
+                                   .revision = field[REVISION],
+                                   .compiler = field[COMPILER],
+                                   .processor = field[PROCESSOR],
+                                   .date = field[DATE],
+                                   .lanes = (int)strtol(field[LANES], NULL, 10),
+                                   .ranks = (int)strtol(field[RANKS], NULL, 10),
+                                   .cases = (int)strtol(field[CASES], NULL, 10),
+                                   .median = strtod(field[MEDIAN], NULL),
+                                   .lowest = strtod(field[LOWEST], NULL),
+                                   .highest = strtod(field[HIGHEST], NULL)};
+        }
+    }
+    if (!good || table->rows == 0) {
+        snprintf(message->text, sizeof message->text,
+                 "%.150s:%zu: not a line of a table of benchmarks", path, number);
+        speed_free(table);
+        return false;
+    }
+    return true;
+}
+
+void speed_free(struct speed_table *table)
+{
+    free(table->row);
+    free(table->text);
+    *table = (struct speed_table){0};
+}
+
+static bool same(const char *wanted, const char *word)
+{
+    return !wanted || strcmp(wanted, word) == 0;
+}
+
+const struct speed_row *speed_find(const struct speed_table *table, const char *subject,
+                                   const char *scene, const char *regime, const char *method,
+                                   const char *isa, const char *quantity)
+{
+    for (size_t k = table->rows; k-- > 0;) {
+        const struct speed_row *row = &table->row[k];
+        if (same(subject, row->subject) && same(scene, row->scene) && same(regime, row->regime) &&
+            same(method, row->method) && same(isa, row->isa) && same(quantity, row->quantity))
+            return row;
+    }
+    return NULL;
+}

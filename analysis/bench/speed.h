@@ -1,0 +1,35 @@
+/* speed.h - the table of the speed benchmarks (see analysis/bench/bench.h), read back and drawn. */
+#ifndef STANCE_BENCH_SPEED_H
+#define STANCE_BENCH_SPEED_H
+
+#include "engine/stance.h"
+
+/* A line; texts point into the table's. */
+struct speed_row {
+    const char *subject, *scene, *regime, *method, *isa, *quantity, *unit;
+    const char *revision, *compiler, *processor, *date;
+    int lanes, ranks, cases; /* 0: does not apply */
+    double median, lowest, highest;
+};
+
+struct speed_table {
+    size_t rows;
+    struct speed_row *row;
+    char *text;
+};
+
+/* Reads a CSV file with the columns of bench_csv_head. False, with a message: it cannot be read or
+ * is no such table. */
+bool speed_read(const char *path, struct speed_table *table, stance_message *message);
+void speed_free(struct speed_table *table);
+
+/* The row with these words (NULL: whatever), or NULL: the last one where there are several. */
+const struct speed_row *speed_find(const struct speed_table *table, const char *subject,
+                                   const char *scene, const char *regime, const char *method,
+                                   const char *isa, const char *quantity);
+
+/* Writes DIRECTORY/STEM.svg and .png. */
+bool speed_plot(const struct speed_table *table, const char *directory, const char *stem,
+                stance_message *message);
+
+#endif

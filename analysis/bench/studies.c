@@ -1,0 +1,181 @@
+/* studies.c - finds, runs and reports the scenarios of `stance bench accuracy` and `failure`. */
+#include "studies.h"
+
+#include "runner/plan/instruction_set.h"
+#include "runner/run/run.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MAX_STUDIES = 64 };
+
+/* ---- where they are ----------------------------------------------------------------------- */
+
+static bool ends_in_yaml(const char *name)
+{
+    const size_t n = strlen(name);
+    return n > 5 && strcmp(name + n - 5, ".yaml") == 0;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* Paths of the scenarios of a directory, sorted; freed by the caller. */
+static size_t list_studies(const char *directory, char *path[MAX_STUDIES])
+{
+    size_t count = 0;
+    DIR *open = opendir(directory);
+    struct dirent *entry;
+    while (open && (entry = readdir(open)) && count < MAX_STUDIES) {
+        if (ends_in_yaml(entry->d_name)) {
+            const size_t size = strlen(directory) + strlen(entry->d_name) + 2;
+            if ((path[count] = malloc(size)))
+                snprintf(path[count++], size, "%s/%s", directory, entry->d_name);
+        }
+    }
+    if (open)
+        closedir(open);
+    qsort(path, count, sizeof *path, by_name);
+    return count;
+}
+
+/* Where the studies that ship are: below the working directory, or beside the program. */
+static size_t find_studies(const char *kind, char *path[MAX_STUDIES])
+{
+    static const char *const bases[] = {"", "../", "../share/stance/"};
+    char program[900] = "", directory[1024];
+    const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
+    char *slash = n > 0 ? strrchr(program, '/') : NULL;
+    if (slash)
+        slash[1] = '\0';
+    for (size_t i = 0; i < sizeof bases / sizeof *bases; i++) {
+        snprintf(directory, sizeof directory, "%s%sscenarios/%s", i > 0 && slash ? program : "",
+                 bases[i], kind);
+        const size_t count = list_studies(directory, path);
+        if (count > 0)
+            return count;
+    }
+    return 0;
+}
+
+/* `stance run` of one study; its exit code. */
+static int run_study(const char *scenario, const char *file)
+{
+    char *argv[] = {"run", (char *)scenario, "--force", "--quiet", "-o", (char *)file, NULL};
+    return command_run.run(6, argv);
+}
+
+/* ---- one after the other ------------------------------------------------------------------ */
+
+struct request {
+    const struct command *command;
+    study_function study;
+    const char *directory;
+    bool json, reuse;
+};
+
+/* Evaluates a results file, into the list `all` or as text and pictures. */
+static bool evaluate(const struct request *request, const char *file, const char *stem, json_t *all,
+                     stance_message *message)
+{
+    struct results r;
+    json_t *object = NULL;
+    if (!results_open(&r, file, message))
+        return false;
+    const bool good =
+        request->study(&r, request->directory, stem, request->json ? &object : NULL, message);
+    if (good && object)
+        json_array_append_new(all, object);
+    fflush(stdout);
+    results_close(&r);
+    return good;
+}
+
+static int one_study(const struct request *request, const char *scenario, json_t *all)
+{
+    const char *slash = strrchr(scenario, '/'), *base = slash ? slash + 1 : scenario;
+    char file[1024], stem[256];
+    stance_message message = {""};
+
+    snprintf(stem, sizeof stem, "%.*s", (int)(strlen(base) - (ends_in_yaml(base) ? 5 : 0)), base);
+    snprintf(file, sizeof file, "%s/%s.h5", request->directory, stem);
+    if (!request->reuse || access(file, R_OK) != 0) {
+        const int code = run_study(scenario, file);
+        if (code != EXIT_DONE && code != EXIT_CASES_FAILED)
+            return code;
+    }
+    if (!evaluate(request, file, stem, all, &message)) {
+        fprintf(stderr, "stance %s: %.300s: %s\n", request->command->name, scenario, message.text);
+        return EXIT_IO;
+    }
+    return EXIT_DONE;
+}
+
+static int all_studies(const struct request *request, char *const *path, size_t count)
+{
+    json_t *all = json_array();
+    int code = EXIT_DONE;
+    for (size_t i = 0; i < count && code == EXIT_DONE; i++)
+        code = one_study(request, path[i], all);
+    if (request->json && code == EXIT_DONE) {
+        json_t *root = json_pack("{s:O}", "studies", all);
+        if (json_dumpf(root, stdout, JSON_INDENT(2)) != 0)
+            code = EXIT_IO;
+        putchar('\n');
+        json_decref(root);
+    }
+    json_decref(all);
+    return code;
+}
+
+static bool make_directory(const char *path)
+{
+    if (mkdir(path, 0777) == 0 || errno == EEXIST)
+        return true;
+    fprintf(stderr, "%s: %s\n", path, strerror(errno));
+    return false;
+}
+
+int studies_run(const struct command *command, const char *kind, study_function study, int argc,
+                char **argv)
+{
+    const char *directory = NULL, *given[MAX_STUDIES];
+    char *found[MAX_STUDIES], fallback[64];
+    size_t directories = 0, json = 0, reuse = 0, operands;
+    bool help;
+    const struct option_spec specs[] = {{"-o", true, &directory, 1, &directories},
+                                        {"--json", false, NULL, 0, &json},
+                                        {"--reuse", false, NULL, 0, &reuse}};
+    if (!command_options(command, argc, argv, specs, 3, given, MAX_STUDIES, &operands, &help))
+        return EXIT_USAGE;
+    if (help)
+        return EXIT_DONE;
+    if (!instruction_set_usable(command->name))
+        return EXIT_USAGE;
+    snprintf(fallback, sizeof fallback, "results/%s", kind);
+    const struct request request = {command, study, directories ? directory : fallback, json > 0,
+                                    reuse > 0};
+    if ((!directories && !make_directory("results")) || !make_directory(request.directory))
+        return EXIT_IO;
+    if (operands > 0)
+        return all_studies(&request, (char *const *)given, operands);
+    const size_t count = find_studies(kind, found);
+    if (count == 0) {
+        fprintf(stderr,
+                "stance %s: no scenarios/%s here nor beside the program; name the scenarios\n",
+                command->name, kind);
+        return EXIT_IO;
+    }
+    const int code = all_studies(&request, found, count);
+    for (size_t i = 0; i < count; i++)
+        free(found[i]);
+    return code;
+}

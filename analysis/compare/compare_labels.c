@@ -1,0 +1,149 @@
+/* compare_labels.c - counts, and distances by the two passes of A. Rosenfeld and J. Pfaltz (1968),
+ * Distance functions on digital pictures, exact for this metric.
+ */
+#include "compare_labels.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- neighbours --------------------------------------------------------------------------- */
+
+/* The axes along which cases are neighbours. */
+struct lattice {
+    const struct results *r;
+    bool along[SCENARIO_MAX_AXES];
+};
+
+static bool find_refined(const struct results *r, bool *along)
+{
+    struct scenario *s = calloc(1, sizeof *s);
+    bool any = false;
+    if (s && results_scenario(r, s)) {
+        for (int a = 0; a < s->axes && a < r->axes; a++) {
+            along[a] = along[a] || s->axis[a].refined;
+            any = any || along[a];
+        }
+        scenario_free(s);
+    }
+    free(s);
+    return any;
+}
+
+static struct lattice find_lattice(const struct results *first, const struct results *second)
+{
+    struct lattice lattice = {.r = first};
+    const bool one = find_refined(first, lattice.along), two = find_refined(second, lattice.along);
+    for (int a = 0; !one && !two && a < first->axes; a++)
+        lattice.along[a] = first->axis[a].word == NULL && a != first->sample;
+    return lattice;
+}
+
+/* Goes to the next neighbour of the case at `point`: step[] counts through -1, 0, 1 along each
+ * axis. False: that was the last. *index is the neighbour's, UINT64_MAX where it is beyond the
+ * grid. */
+static bool next_neighbour(const struct lattice *lattice, const size_t *point, int *step,
+                           uint64_t *index)
+{
+    int a = lattice->r->axes - 1;
+    for (; a >= 0 && (!lattice->along[a] || step[a] == 1); a--)
+        step[a] = lattice->along[a] ? -1 : 0;
+    if (a < 0)
+        return false;
+    step[a]++;
+    *index = 0;
+    for (a = 0; a < lattice->r->axes; a++) {
+        const size_t count = lattice->r->axis[a].count;
+        if ((step[a] < 0 && point[a] == 0) || (step[a] > 0 && point[a] + 1 == count)) {
+            *index = UINT64_MAX;
+            return true;
+        }
+        *index = *index * count + point[a] + (size_t)step[a];
+    }
+    return true;
+}
+
+/* Least distance of a case that its neighbours before (way < 0) or after it tell. */
+static uint32_t told(const struct lattice *lattice, const uint32_t *distance, uint64_t i, int way)
+{
+    size_t point[SCENARIO_MAX_AXES];
+    int step[SCENARIO_MAX_AXES];
+    uint32_t least = distance[i];
+    uint64_t index;
+
+    results_point(lattice->r, i, point);
+    int last = -1;
+    for (int a = 0; a < lattice->r->axes; a++) {
+        step[a] = lattice->along[a] ? -1 : 0;
+        last = lattice->along[a] ? a : last;
+    }
+    if (last >= 0)
+        step[last]--; /* before the first neighbour */
+    while (next_neighbour(lattice, point, step, &index)) {
+        if (index == UINT64_MAX || (way < 0 ? index >= i : index <= i))
+            continue;
+        const uint32_t by = lattice->r->kind[index] != lattice->r->kind[i] ? 1
+                            : distance[index] < UINT32_MAX                 ? distance[index] + 1
+                                                                           : UINT32_MAX;
+        least = by < least ? by : least;
+    }
+    return least;
+}
+
+/* distance[cases], UINT32_MAX where no other label can be reached. */
+static void find_distances(const struct lattice *lattice, uint32_t *distance)
+{
+    const uint64_t n = lattice->r->cases;
+    memset(distance, 0xff, n * sizeof *distance);
+    for (uint64_t i = 0; i < n; i++)
+        distance[i] = told(lattice, distance, i, -1);
+    for (uint64_t i = n; i-- > 0;)
+        distance[i] = told(lattice, distance, i, 1);
+}
+
+/* ---- comparing ---------------------------------------------------------------------------- */
+
+static bool same_axes(const struct results *first, const struct results *second)
+{
+    bool same = first->axes == second->axes && first->cases == second->cases &&
+                first->single == second->single;
+    for (int a = 0; same && a < first->axes; a++) {
+        same = first->axis[a].count == second->axis[a].count &&
+               strcmp(first->axis[a].name, second->axis[a].name) == 0;
+    }
+    return same;
+}
+
+bool compare_labels(struct label_comparison *comparison, const struct results *first,
+                    const struct results *second, stance_message *message)
+{
+    *comparison = (struct label_comparison){0};
+    if (!same_axes(first, second)) {
+        snprintf(message->text, sizeof message->text,
+                 "stance compare: %.90s and %.90s are not over the same axes", first->file,
+                 second->file);
+        return false;
+    }
+    uint32_t *distance = malloc(first->cases * sizeof *distance);
+    if (!distance) {
+        snprintf(message->text, sizeof message->text, "stance compare: not enough memory");
+        return false;
+    }
+    const struct lattice lattice = find_lattice(first, second);
+    find_distances(&lattice, distance);
+    for (uint64_t i = 0; i < first->cases; i++) {
+        if (first->kind[i] == RESULTS_PENDING || second->kind[i] == RESULTS_PENDING)
+            continue;
+        comparison->compared++;
+        if (first->kind[i] == second->kind[i]) {
+            comparison->equal++;
+            continue;
+        }
+        if (distance[i] < UINT32_MAX && distance[i] > comparison->farthest)
+            comparison->farthest = distance[i];
+        if (comparison->shown < LABELS_SHOWN)
+            comparison->place[comparison->shown++] = i;
+    }
+    free(distance);
+    return true;
+}

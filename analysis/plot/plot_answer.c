@@ -1,0 +1,74 @@
+/* plot_answer.c - the answers that `stance plot --answer` draws: their names, units and numbers. */
+#include "analysis/draw/plot.h"
+#include "analysis/statistics/statistics.h"
+#include "runner/store/store.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool plot_answer_find(const char *name, struct plot_answer *answer)
+{
+    for (int k = 0; k < STANCE_ANSWER_COUNT; k++) {
+        const stance_answer *const a = &stance_answers[k];
+        if (strcmp(a->name, name) == 0 && !a->word) { /* codes: a map of outcomes is drawn anyway */
+            *answer = (struct plot_answer){a->name, strcmp(a->unit, "1") == 0 ? "" : a->unit,
+                                           a->text, RESULTS_KIND_COUNT};
+            return true;
+        }
+    }
+    return false;
+}
+
+void plot_answer_list(char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = 0; k < STANCE_ANSWER_COUNT && used < size; k++) {
+        if (!stance_answers[k].word) {
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
+                                     stance_answers[k].name);
+        }
+    }
+}
+
+bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,
+                         double *low, double *high, stance_message *message)
+{
+    const struct results *r = plot->r;
+    const bool all = answer->of == RESULTS_KIND_COUNT;
+    uint64_t inferred;
+    bool *which; /* cases without numbers, whatever stands in the file */
+    if (!statistics_inferred(r, &inferred, &which, message))
+        return false;
+    if (!results_answer(r, answer->name, values, message)) {
+        free(which);
+        return false;
+    }
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (uint64_t i = 0; *values && i < r->cases; i++) {
+        const bool wanted = all || r->kind[i] == (uint8_t)answer->of;
+        if (wanted && !(which && which[i]) && isfinite((*values)[i])) {
+            *low = fmin(*low, (*values)[i]);
+            *high = fmax(*high, (*values)[i]);
+        } else {
+            (*values)[i] = NAN;
+        }
+    }
+    free(which);
+    if (*values && *low <= *high)
+        return true;
+    snprintf(message->text, sizeof message->text, "%.200s: no%s%s case has a number %s", r->file,
+             all ? "" : " ", all ? "" : results_kind_names[answer->of], answer->name);
+    free(*values);
+    *values = NULL;
+    return false;
+}
+
+void plot_answer_title(const struct plot_answer *answer, char *text, size_t size)
+{
+    bool all = answer->of == RESULTS_KIND_COUNT;
+    snprintf(text, size, "%s: %s%s%s%s", answer->name, answer->text, all ? "" : ", of the ",
+             all ? "" : results_kind_names[answer->of], all ? "" : " cases");
+}

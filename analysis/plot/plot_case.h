@@ -1,0 +1,31 @@
+/* plot_case.h - shared by plot_case.c (curves) and plot_strip.c (stick figures). */
+#ifndef STANCE_PLOT_PLOT_CASE_H
+#define STANCE_PLOT_PLOT_CASE_H
+
+#include "analysis/draw/plot.h"
+
+/* One case with its trajectory. */
+struct plot_case {
+    const struct plot *plot;
+    const struct results_trajectory *t;
+    double settle_time, fall_time; /* s, NAN where not reached */
+    bool readable;                 /* the next two are known, and fit the trajectory */
+    struct scenario scenario;
+    struct scenario_values values;              /* of this case */
+    double equilibrium[STANCE_MAX_COORDINATES]; /* of the controller; NAN: none, or not known */
+};
+
+/* Colour of each contact. */
+extern const char *const plot_contact_colours[STANCE_MAX_CONTACTS];
+
+/* Begins a page of that width with its title, `below` pixels high under it; *top is where they
+ * begin. Ends it as STEM-picture. */
+bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *what, int width,
+                     int below, double *top, stance_message *message);
+bool plot_case_end(const struct plot_case *c, struct gnuplot *g, const char *picture,
+                   stance_message *message);
+
+/* STEM-strip: stick figures at even intervals. */
+bool plot_strip(const struct plot_case *c, stance_message *message);
+
+#endif

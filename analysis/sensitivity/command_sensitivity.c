@@ -1,0 +1,246 @@
+/* command_sensitivity.c - `stance sensitivity FILE`: which factor of a sampled study decides. */
+#include "sensitivity_study.h"
+
+#include "analysis/draw/plot.h"
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+extern const struct command command_sensitivity; /* below */
+
+enum { MOST_BY = SCENARIO_MAX_AXES, LEAST_RESAMPLES = 100, MOST_RESAMPLES = 100000 };
+
+enum output { OUTPUT_TEXT, OUTPUT_JSON, OUTPUT_CSV };
+
+struct asked {
+    const char *file, *directory; /* directory NULL: no picture */
+    enum output output;
+    struct sensitivity_request request;
+};
+
+static bool bad_use(const char *text, const char *word)
+{
+    fprintf(stderr, "stance sensitivity: %s '%.60s' (stance sensitivity -h explains)\n", text,
+            word);
+    return false;
+}
+
+/* ---- options ------------------------------------------------------------------------------ */
+
+static bool read_answer(const char *name, struct sensitivity_request *request)
+{
+    struct plot_answer answer;
+    char list[600];
+    if (!plot_answer_find(name, &answer)) {
+        plot_answer_list(list, sizeof list);
+        fprintf(stderr, "stance sensitivity: --answer takes one of %s, not '%.60s'\n", list, name);
+        return false;
+    }
+    request->answer = answer.name;
+    request->unit = answer.unit;
+    return true;
+}
+
+static bool read_outcome(const char *of, struct sensitivity_request *request)
+{
+    for (int k = 0; k < RESULTS_OUTCOMES; k++) {
+        if (strcmp(of, results_kind_names[k]) == 0) {
+            request->of = (enum results_kind)k;
+            return true;
+        }
+    }
+    return bad_use("--of takes an outcome, stabilised, rested, fell or undecided, not", of);
+}
+
+static bool read_failed(const char *word, struct sensitivity_request *request)
+{
+    request->fallen = strcmp(word, "fallen") == 0;
+    return request->fallen || strcmp(word, "drop") == 0 ||
+           bad_use("--failed takes drop or fallen, not", word);
+}
+
+static bool read_resamples(const char *text, struct sensitivity_request *request)
+{
+    char *end;
+    errno = 0;
+    const long n = strtol(text, &end, 10);
+    request->bootstrap.resamples = (size_t)n;
+    return (end != text && !*end && errno == 0 && n >= LEAST_RESAMPLES && n <= MOST_RESAMPLES) ||
+           bad_use("--resamples takes a whole number from 100 to 100000, not", text);
+}
+
+static bool read_level(const char *text, struct sensitivity_request *request)
+{
+    char *end;
+    request->bootstrap.level = strtod(text, &end);
+    return (end != text && !*end && request->bootstrap.level >= 0.5 &&
+            request->bootstrap.level <= 0.999) ||
+           bad_use("--level takes a number from 0.5 to 0.999, not", text);
+}
+
+static bool read_seed(const char *text, struct sensitivity_request *request)
+{
+    char *end;
+    errno = 0;
+    const unsigned long long seed = strtoull(text, &end, 10);
+    request->bootstrap.seed = seed;
+    return (text[0] >= '0' && text[0] <= '9' && !*end && errno == 0 && seed <= INT64_MAX) ||
+           bad_use("--seed takes a whole number, not", text);
+}
+
+/* ---- the work ----------------------------------------------------------------------------- */
+
+static bool report(const struct asked *asked, const struct sensitivity_study *study,
+                   stance_message *message)
+{
+    char stem[400];
+    bool good = true;
+    switch (asked->output) {
+    case OUTPUT_JSON:
+        good = sensitivity_print_json(study);
+        break;
+    case OUTPUT_CSV:
+        sensitivity_print_csv(study);
+        break;
+    default:
+        sensitivity_print_text(study);
+    }
+    if (!good) {
+        snprintf(message->text, sizeof message->text,
+                 "stance sensitivity: the result could not be written");
+    } else if (asked->directory) {
+        const char *answer = study->request.answer;
+        snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", study->r->name, answer ? "-" : "",
+                 answer ? answer : "");
+        good = sensitivity_picture(study, asked->directory, stem, message);
+    }
+    return good;
+}
+
+static int work(void *context)
+{
+    const struct asked *asked = context;
+    struct results r;
+    struct sensitivity_study study;
+    stance_message message = {""};
+    int code = EXIT_IO;
+
+    if (results_open(&r, asked->file, &message)) {
+        code = sensitivity_study_make(&study, &r, &asked->request, &message);
+        if (code == EXIT_DONE) {
+            code = report(asked, &study, &message) ? EXIT_DONE : EXIT_IO;
+            sensitivity_study_free(&study);
+        }
+        results_close(&r);
+    }
+    if (code != EXIT_DONE)
+        fprintf(stderr, "%s\n", message.text);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    const char *answer = NULL, *of = NULL, *resamples = NULL, *level = NULL, *seed = NULL;
+    const char *failed = "drop", *by[MOST_BY];
+    size_t given[7] = {0}, json = 0, csv = 0, operands = 0;
+    bool help = false;
+    struct asked asked = {
+        .request = {
+            .unit = "", .of = RESULTS_KIND_COUNT, .by = by, .bootstrap = SENSITIVITY_BOOTSTRAP}};
+    const struct option_spec specs[] = {
+        {"--answer", true, &answer, 1, &given[0]},
+        {"--of", true, &of, 1, &given[1]},
+        {"--by", true, by, MOST_BY, &asked.request.by_count},
+        {"--resamples", true, &resamples, 1, &given[2]},
+        {"--level", true, &level, 1, &given[3]},
+        {"--seed", true, &seed, 1, &given[4]},
+        {"--failed", true, &failed, 1, &given[5]},
+        {"-o", true, &asked.directory, 1, &given[6]},
+        {"--json", false, NULL, 0, &json},
+        {"--csv", false, NULL, 0, &csv},
+    };
+    if (!command_options(&command_sensitivity, argc, argv, specs, sizeof specs / sizeof specs[0],
+                         &asked.file, 1, &operands, &help))
+        return EXIT_USAGE;
+    if (help)
+        return EXIT_DONE;
+    const char *wrong = operands == 0 ? "a results file is needed"
+                        : json && csv ? "--json or --csv, not both"
+                        : given[6] && (json || csv)
+                            ? "-o belongs to the text: --json and --csv print nothing else"
+                        : answer && strcmp(failed, "fallen") == 0
+                            ? "--failed fallen has no meaning with --answer: a failed case has none"
+                            : NULL;
+    if (wrong) {
+        fprintf(stderr, "stance sensitivity: %s (stance sensitivity -h explains)\n", wrong);
+        return EXIT_USAGE;
+    }
+    struct sensitivity_request *request = &asked.request;
+    if (!((!answer || read_answer(answer, request)) && (!of || read_outcome(of, request)) &&
+          read_failed(failed, request) && (!resamples || read_resamples(resamples, request)) &&
+          (!level || read_level(level, request)) && (!seed || read_seed(seed, request))))
+        return EXIT_USAGE;
+    if (asked.directory && !gnuplot_directory(asked.directory))
+        return EXIT_IO;
+    asked.output = json ? OUTPUT_JSON : csv ? OUTPUT_CSV : OUTPUT_TEXT;
+    return sandbox(work, &asked, asked.file);
+}
+
+const struct command command_sensitivity = {
+    "sensitivity",
+    "sensitivity FILE [--answer A] [--of OUTCOME] [--by PATH]... [--failed drop|fallen]\n"
+    "           [--resamples N] [--level L] [--seed N] [--json | --csv | -o DIR]",
+    "which factor of a sampled study decides its result",
+    run,
+    "For files of a scenario with sweep.sample. The response of a sample point is the share of\n"
+    "cases that were stabilised (rested, where no controller has a target) among those on the "
+    "grid\n"
+    "axes over initial.*; for each value of other grid axes there is a table of its own.\n"
+    "\n"
+    "  method saltelli        Sobol' indices: first (share of the response's variance that the\n"
+    "                         factor alone accounts for) and total (what would be left of it were\n"
+    "                         all others known), with second_order those of pairs\n"
+    "  method morris          mean mu, mean magnitude mu_star and standard deviation sigma of the\n"
+    "                         elementary effects: change of the response over the change of the\n"
+    "                         factor, whose range counts as 1\n"
+    "  random, lhs, sobol     first-order indices from bins along each factor\n"
+    "\n"
+    "Intervals of Sobol' indices are Student's, from the 16 independently scrambled sequences\n"
+    "that method saltelli consists of, those of effects from groups of trajectories. Of other\n"
+    "points quarters are drawn; for those of method sobol the interval is conservative.\n"
+    "analysis/sensitivity/sensitivity.h states all estimators and their sources.\n"
+    "\n"
+    "Failed cases are left out of the response of their point. A point all of whose cases failed\n"
+    "(with --answer: that has no case with the answer) is missing and takes its block (saltelli)\n"
+    "or the two effects that need it (morris) out with it. Where failed cases counted as fallen\n"
+    "would take an estimate out of its interval a warning says so. Blocks with a case that is\n"
+    "still pending wait; how many are complete is printed.\n"
+    "\n"
+    "  --answer A      the response is the mean of the answer A (friction_used, settle_time ...)\n"
+    "  --of OUTCOME    the share of, or the mean over, the cases with this outcome\n"
+    "  --by PATH       a table for each value of this grid axis, the mean over all others;\n"
+    "                  repeatable; none: a single table\n"
+    "  --failed P      drop: as said (default); fallen: failed cases count as fallen\n"
+    "  --resamples N   quarters that are drawn, default 1000; --seed N: other ones, default 0\n"
+    "                  (both without effect on saltelli and morris)\n"
+    "  --level L       of the intervals, default 0.95\n"
+    "  -o DIR          draws NAME-sensitivity.svg and .png into DIR, too, with --answer\n"
+    "                  NAME-A-sensitivity (stance plot FILE draws these as well)\n"
+    "  --csv           a row for each table and factor: values of the axes kept apart, factor "
+    "(its\n"
+    "                  first path), estimate, _low and _high of each measure, response,\n"
+    "                  failed_cases (the policy), blocks, mean, deviation (of the response)\n"
+    "  --json          keys\n"
+    "    file, title, method, count, block (points in one), response, answer, of, unit,\n"
+    "    over         grid axes that the response is a mean over\n"
+    "    failed_cases drop or fallen; level; resamples, seed: null for saltelli, morris\n"
+    "    tables       [{at: {path: value}, cases, failed, pending, blocks, used, incomplete, lost\n"
+    "                 (morris: lost_effects), mean, deviation, policies_differ,\n"
+    "                 factors: [{path, paths, first, total | mu, mu_star, sigma}], most important\n"
+    "                 first, first_sum, pairs: [{paths, estimate, low, high}]}];\n"
+    "                 a measure is {estimate, low, high}, null where it cannot be had\n",
+};

@@ -1,0 +1,236 @@
+/* statistics.c - counts, Wilson intervals, quantiles and extents. */
+#include "statistics.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+double statistics_deviations(double level)
+{
+    return gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * level);
+}
+
+void statistics_wilson_of(double z, double p, double n, double *low, double *high)
+{
+    const double scale = 1 / (1 + z * z / n);
+    const double centre = scale * (p + z * z / (2 * n));
+    const double half = scale * z * sqrt(p * (1 - p) / n + z * z / (4 * n * n));
+    /* Rounding must not leave the ends a hair beyond 0 and 1, where they lie exactly. */
+    *low = p <= 0 ? 0 : fmax(0, centre - half);
+    *high = p >= 1 ? 1 : fmin(1, centre + half);
+}
+
+/* ---- counts ------------------------------------------------------------------------------- */
+
+/* Number of cases per step along an axis. */
+static uint64_t stride_of(const struct results *r, int axis)
+{
+    uint64_t stride = 1;
+    for (int a = r->axes - 1; a > axis; a--)
+        stride *= r->axis[a].count;
+    return stride;
+}
+
+static void finish_counts(struct statistics_counts *counts)
+{
+    counts->done = 0;
+    for (int k = 0; k < RESULTS_KIND_COUNT; k++)
+        counts->done += k == RESULTS_PENDING || k == RESULTS_FAILED ? 0 : counts->kind[k];
+}
+
+void statistics_count(const struct results *r, int axis, size_t point,
+                      struct statistics_counts *counts)
+{
+    uint64_t stride = axis < 0 ? 1 : stride_of(r, axis);
+    size_t length = axis < 0 ? 1 : r->axis[axis].count;
+
+    memset(counts, 0, sizeof *counts);
+    for (uint64_t i = 0; i < r->cases; i++)
+        counts->kind[r->kind[i]] += axis < 0 || i / stride % length == point;
+    finish_counts(counts);
+}
+
+void statistics_count_axis(const struct results *r, int axis, struct statistics_counts *counts)
+{
+    uint64_t stride = stride_of(r, axis);
+    size_t length = r->axis[axis].count;
+
+    memset(counts, 0, length * sizeof *counts);
+    for (uint64_t i = 0; i < r->cases; i++)
+        counts[i / stride % length].kind[r->kind[i]]++;
+    for (size_t p = 0; p < length; p++)
+        finish_counts(&counts[p]);
+}
+
+void statistics_count_pair(const struct results *r, int a, int b, struct statistics_counts *counts)
+{
+    uint64_t stride_a = stride_of(r, a), stride_b = stride_of(r, b);
+    size_t rows = r->axis[a].count, columns = r->axis[b].count;
+
+    memset(counts, 0, rows * columns * sizeof *counts);
+    for (uint64_t i = 0; i < r->cases; i++)
+        counts[i / stride_a % rows * columns + i / stride_b % columns].kind[r->kind[i]]++;
+    for (size_t p = 0; p < rows * columns; p++)
+        finish_counts(&counts[p]);
+}
+
+/* ---- numbers ------------------------------------------------------------------------------ */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double statistics_quantile(const double *sorted, size_t n, double p)
+{
+    double place = p * (double)(n - 1);
+    size_t below = (size_t)place;
+    if (below + 1 >= n)
+        return sorted[n - 1];
+    double part = place - (double)below;
+    /* An infinite neighbour of weight zero must not make a NAN. */
+    return part == 0 ? sorted[below] : (1 - part) * sorted[below] + part * sorted[below + 1];
+}
+
+void statistics_summarise(double *values, size_t n, struct statistics_numbers *numbers)
+{
+    size_t kept = 0;
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) {
+        if (!isnan(values[i])) {
+            sum += values[i];
+            values[kept++] = values[i];
+        }
+    }
+    *numbers = (struct statistics_numbers){kept, NAN, NAN, NAN, NAN, NAN, sum};
+    if (kept == 0)
+        return;
+    qsort(values, kept, sizeof *values, compare_doubles);
+    numbers->low = values[0];
+    numbers->median = statistics_quantile(values, kept, 0.5);
+    numbers->q90 = statistics_quantile(values, kept, 0.9);
+    numbers->q99 = statistics_quantile(values, kept, 0.99);
+    numbers->high = values[kept - 1];
+}
+
+/* ---- extents ------------------------------------------------------------------------------ */
+
+size_t statistics_nearest_zero(const struct results_axis *axis)
+{
+    size_t nearest = 0;
+    double tolerance = 0;
+    for (size_t i = 0; i < axis->count; i++)
+        tolerance = fmax(tolerance, 1e-12 * fabs(axis->value[i]));
+    for (size_t i = 1; i < axis->count; i++) {
+        /* -0.1 + 51 * 0.2 / 101 and its mirror image are equally near, whatever their last bits */
+        if (fabs(axis->value[i]) < fabs(axis->value[nearest]) - tolerance)
+            nearest = i;
+    }
+    return nearest;
+}
+
+/* Rising or falling from end to end. */
+static bool is_monotone(const struct results_axis *axis)
+{
+    for (size_t i = 2; i < axis->count; i++)
+        if ((axis->value[i] > axis->value[i - 1]) != (axis->value[1] > axis->value[0]))
+            return false;
+    return true;
+}
+
+/* Walks from `at` in direction `step` while the cases are stabilised; the end that it comes to. */
+static double walk(const struct results *r, const struct results_axis *axis, uint64_t base,
+                   uint64_t stride, size_t at, bool upwards, bool *open, bool *unknown)
+{
+    size_t last = upwards ? axis->count - 1 : 0;
+    *open = *unknown = false;
+    while (at != last) {
+        size_t next = upwards ? at + 1 : at - 1;
+        uint8_t kind = r->kind[base + next * stride];
+        if (kind != RESULTS_STABILISED) {
+            *unknown = kind == RESULTS_PENDING || kind == RESULTS_FAILED;
+            return 0.5 * (axis->value[at] + axis->value[next]);
+        }
+        at = next;
+    }
+    *open = true;
+    return axis->value[at];
+}
+
+bool statistics_extent(const struct results *r, int axis, const size_t *point,
+                       struct statistics_extent *extent)
+{
+    const struct results_axis *along = &r->axis[axis];
+    uint64_t base = 0, stride = stride_of(r, axis);
+    bool first_open, first_unknown, second_open, second_unknown;
+
+    *extent = (struct statistics_extent){.low = NAN, .high = NAN};
+    if (!along->offset || along->word || along->count < 2 || !is_monotone(along))
+        return false;
+    for (int a = 0; a < r->axes; a++) {
+        extent->point[a] = r->axis[a].offset ? statistics_nearest_zero(&r->axis[a]) : point[a];
+        base += a == axis ? 0 : extent->point[a] * stride_of(r, a);
+    }
+    size_t start = extent->point[axis];
+    extent->kind = (enum results_kind)r->kind[base + start * stride];
+    extent->any = extent->kind == RESULTS_STABILISED;
+    if (!extent->any) {
+        extent->low_unknown = extent->high_unknown =
+            extent->kind == RESULTS_PENDING || extent->kind == RESULTS_FAILED;
+        return true;
+    }
+    double first = walk(r, along, base, stride, start, false, &first_open, &first_unknown);
+    double second = walk(r, along, base, stride, start, true, &second_open, &second_unknown);
+    bool rising = first <= second;
+    extent->low = rising ? first : second;
+    extent->high = rising ? second : first;
+    extent->low_open = rising ? first_open : second_open;
+    extent->high_open = rising ? second_open : first_open;
+    extent->low_unknown = rising ? first_unknown : second_unknown;
+    extent->high_unknown = rising ? second_unknown : first_unknown;
+    return true;
+}
+
+static bool is_refined(const struct results *r)
+{
+    struct scenario *s = calloc(1, sizeof *s);
+    bool refined = false;
+    if (s && !r->single && results_scenario(r, s)) {
+        refined = s->refine.given;
+        scenario_free(s);
+    }
+    free(s);
+    return refined;
+}
+
+/* With stop.capture a simulated case may be inferred, too; it has an end. */
+bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
+                         stance_message *message)
+{
+    double *evidence = NULL, *end = NULL;
+    bool *flag = NULL;
+    *count = 0;
+    if (which)
+        *which = NULL;
+    if (!is_refined(r))
+        return true;
+    bool good = results_answer(r, "evidence", &evidence, message) &&
+                results_answer(r, "end_time", &end, message);
+    if (good && which && !(flag = calloc(r->cases, sizeof *flag))) {
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        good = false;
+    }
+    for (uint64_t i = 0; good && evidence && i < r->cases; i++) {
+        bool inferred = evidence[i] == STANCE_INFERRED && !(end && isfinite(end[i]));
+        *count += inferred;
+        if (flag)
+            flag[i] = inferred;
+    }
+    free(evidence);
+    free(end);
+    if (which)
+        *which = flag;
+    return good;
+}

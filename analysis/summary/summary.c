@@ -1,0 +1,274 @@
+/* summary.c - collects what `stance summary` prints. */
+#include "summary.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+double summary_share(const struct summary *summary, const struct statistics_counts *counts)
+{
+    return counts->done ? (double)counts->kind[summary->judged] / (double)counts->done : NAN;
+}
+
+bool summary_has_outcomes(const struct summary *summary)
+{
+    return summary->counts.done == 0 || summary->counts.kind[RESULTS_DONE] < summary->counts.done;
+}
+
+const char *summary_failure_name(int failure)
+{
+    return failure >= 0 && failure < STANCE_FAILURE_COUNT ? stance_failure_name[failure]
+                                                          : "unknown";
+}
+
+const char *summary_failure_text(int failure)
+{
+    return failure > 0 && failure < STANCE_FAILURE_COUNT ? stance_failure_text[failure]
+                                                         : "the file does not say why";
+}
+
+/* ---- the answers -------------------------------------------------------------------------- */
+
+static bool collect_numbers(struct summary *summary, const struct results *r,
+                            stance_message *message)
+{
+    static const struct summary_numbers wanted[SUMMARY_NUMBER_COUNT] = {
+#define SUMMARY_NUMBER(name, kind, unit) [SUMMARY_##name] = {#name, unit, kind, false, {0}},
+        SUMMARY_NUMBERS(SUMMARY_NUMBER)
+#undef SUMMARY_NUMBER
+    };
+    for (int k = 0; k < SUMMARY_NUMBER_COUNT; k++) {
+        struct summary_numbers *numbers = &summary->numbers[k];
+        double *values;
+        *numbers = wanted[k];
+        numbers->of = numbers->of == RESULTS_STABILISED ? summary->judged : numbers->of;
+        if (!results_answer(r, numbers->name, &values, message))
+            return false;
+        if (!values)
+            continue;
+        for (uint64_t i = 0; numbers->of != RESULTS_KIND_COUNT && i < r->cases; i++)
+            values[i] = r->kind[i] == numbers->of ? values[i] : NAN;
+        numbers->stored = true;
+        statistics_summarise(values, (size_t)r->cases, &numbers->numbers);
+        free(values);
+    }
+    return true;
+}
+
+static bool collect_count(struct summary_count *count, const struct results *r, const char *name,
+                          stance_message *message)
+{
+    double *values;
+    if (!results_answer(r, name, &values, message))
+        return false;
+    for (uint64_t i = 0; values && i < r->cases; i++) {
+        if (values[i] > 0) { /* false for NAN, too */
+            count->sum += values[i];
+            count->cases++;
+        }
+    }
+    count->stored = values != NULL;
+    free(values);
+    return true;
+}
+
+static void collect_failures(struct summary *summary, const struct results *r)
+{
+    for (uint64_t i = 0; i < r->cases; i++) {
+        if (r->kind[i] == RESULTS_FAILED) {
+            int failure = r->failure ? r->failure[i] : 0;
+            summary->failures[failure < SUMMARY_FAILURES ? failure : 0]++;
+        }
+    }
+}
+
+static bool collect_pair(struct summary *summary, const struct results *r, stance_message *message)
+{
+    size_t pairs = r->axis[summary->pair[0]].count * r->axis[summary->pair[1]].count;
+    summary->pair_counts = malloc(pairs * sizeof *summary->pair_counts);
+    if (!summary->pair_counts) {
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        return false;
+    }
+    statistics_count_pair(r, summary->pair[0], summary->pair[1], summary->pair_counts);
+    return true;
+}
+
+enum { BINS = 4 };
+
+/* By the values of what a sample varies. */
+static bool collect_bins(struct summary *summary, const struct results *r, stance_message *message)
+{
+    bool good = true;
+    if (r->sample < 0)
+        return true;
+    summary->bins = calloc((size_t)r->varied, sizeof *summary->bins);
+    if (!summary->bins) {
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        return false;
+    }
+    for (int k = 0; good && k < r->varied; k++)
+        good = doe_bins_make(&summary->bins[k], r, k, BINS, message);
+    return good;
+}
+
+/* Along the rays that an axis of offsets makes of the points of a sample. */
+static bool collect_rays(struct summary *summary, const struct results *r, stance_message *message)
+{
+    int axis = -1;
+    for (int a = 0; a < r->axes; a++) {
+        if (a != r->sample && (axis >= 0 || !r->axis[a].offset))
+            return true;
+        axis = a != r->sample ? a : axis;
+    }
+    if (r->sample < 0 || axis < 0)
+        return true;
+    const size_t points = r->axis[r->sample].count;
+    double *end = malloc(points * sizeof *end), smallest = INFINITY;
+    summary->ray_axis = axis;
+    summary->rays = calloc(1, sizeof *summary->rays);
+    if (!end || !summary->rays) {
+        free(end);
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        return false;
+    }
+    for (size_t i = 0; i < points; i++) {
+        size_t point[SCENARIO_MAX_AXES] = {0};
+        struct statistics_extent extent;
+        point[r->sample] = i;
+        end[i] = NAN;
+        const bool found = statistics_extent(r, axis, point, &extent);
+        if (found && !extent.any && !extent.low_unknown) {
+            summary->rays->none++;
+        } else if (!found || !extent.any || extent.high_unknown) {
+            summary->rays->unknown++;
+        } else {
+            end[i] = extent.high;
+            summary->rays->open += extent.high_open;
+            summary->rays->nearest = extent.high < smallest ? i : summary->rays->nearest;
+            smallest = fmin(smallest, extent.high);
+        }
+    }
+    statistics_summarise(end, points, &summary->rays->numbers);
+    const bool scaled = strcmp(r->axis[axis].name, "initial.offset.scale") == 0;
+    summary->rays->scale = scaled ? smallest : 1;
+    free(end);
+    return true;
+}
+
+double summary_nearest(const struct summary_rays *rays, const struct results *r, int k)
+{
+    const struct results_varied *v = &r->vary[k];
+    const bool offset = strncmp(v->of.name, "initial.offset.", strlen("initial.offset.")) == 0;
+    return v->of.value[rays->nearest] * (offset ? rays->scale : 1);
+}
+
+static bool collect_axes(struct summary *summary, const struct results *r, stance_message *message)
+{
+    const size_t origin[SCENARIO_MAX_AXES] = {0};
+    for (int a = 0; !r->single && a < r->axes; a++) {
+        if (!r->axis[a].offset && a != r->sample) {
+            summary->pair[summary->parameters < 2 ? summary->parameters : 1] = a;
+            summary->parameters++;
+        }
+    }
+    if (summary->parameters == 2 && !collect_pair(summary, r, message))
+        return false;
+    for (int a = 0; !r->single && a < r->axes; a++) {
+        const struct results_axis *axis = &r->axis[a];
+        if (a == r->sample)
+            continue;
+        if (axis->offset) {
+            summary->has_extent[a] = summary->parameters == 0 && r->sample < 0 &&
+                                     statistics_extent(r, a, origin, &summary->extent[a]);
+            continue;
+        }
+        struct statistics_counts *counts = malloc(axis->count * sizeof *counts);
+        summary->interval[a] = malloc(axis->count * sizeof *summary->interval[a]);
+        if (!counts || !summary->interval[a] ||
+            !intervals_find(r, summary->judged, a, NULL, axis->count, summary->interval[a])) {
+            free(counts);
+            snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+            return false;
+        }
+        summary->by_value[a] = counts;
+        statistics_count_axis(r, a, counts);
+        double largest = 0;
+        for (size_t i = 0; i + 1 < axis->count; i++) {
+            double change =
+                fabs(summary_share(summary, &counts[i + 1]) - summary_share(summary, &counts[i]));
+            if (change > largest) {
+                largest = change;
+                summary->steepest[a] = i;
+            }
+        }
+    }
+    return true;
+}
+
+static bool collect_intervals(struct summary *summary, const struct results *r,
+                              stance_message *message)
+{
+    bool good = true;
+    for (int kind = 0; good && kind < RESULTS_KIND_COUNT; kind++) {
+        summary->of_kind[kind] = (struct interval){NAN, NAN};
+        if (kind != RESULTS_PENDING && kind != RESULTS_FAILED && r->sample >= 0)
+            good = intervals_find(r, (enum results_kind)kind, -1, NULL, 1, &summary->of_kind[kind]);
+    }
+    if (!good)
+        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+    return good;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+enum results_kind summary_judged(const struct scenario *s)
+{
+    return s->base.law == LAW_STATE_FEEDBACK ? RESULTS_STABILISED : RESULTS_RESTED;
+}
+
+bool summary_make(struct summary *summary, const struct results *r, stance_message *message)
+{
+    struct scenario s;
+    /* A scenario of another version cannot be read: the summary goes without. */
+    const bool readable = results_scenario(r, &s);
+    *summary = (struct summary){.judged = readable ? summary_judged(&s) : RESULTS_STABILISED};
+    statistics_count(r, -1, 0, &summary->counts);
+    collect_failures(summary, r);
+    bool good = collect_intervals(summary, r, message) && collect_numbers(summary, r, message) &&
+                collect_count(&summary->steps, r, "steps", message) &&
+                collect_count(&summary->iterations, r, "iterations", message) &&
+                collect_count(&summary->evaluations, r, "evaluations", message) &&
+                collect_count(&summary->events, r, "events", message) &&
+                collect_count(&summary->ambiguous, r, "ambiguous_steps", message) &&
+                collect_count(&summary->subdivided, r, "subdivided_steps", message) &&
+                collect_count(&summary->degraded, r, "degraded_samples", message) &&
+                collect_count(&summary->evidence, r, "evidence", message) &&
+                statistics_inferred(r, &summary->inferred, NULL, message) &&
+                collect_axes(summary, r, message) && collect_bins(summary, r, message) &&
+                collect_rays(summary, r, message) && ancestry_read(r, &summary->ancestry, message);
+    if (good) {
+        summary->timed = results_timing(r, &summary->longest, &summary->total,
+                                        &summary->timed_cases, &summary->ranks);
+        if (readable)
+            summary_collect_fields(summary, r, &s);
+    } else {
+        summary_free(summary);
+    }
+    if (readable)
+        scenario_free(&s);
+    return good;
+}
+
+void summary_free(struct summary *summary)
+{
+    for (int a = 0; a < SCENARIO_MAX_AXES; a++) {
+        free(summary->by_value[a]);
+        free(summary->interval[a]);
+    }
+    free(summary->pair_counts);
+    free(summary->bins);
+    free(summary->rays);
+    *summary = (struct summary){0};
+}

@@ -1,0 +1,232 @@
+/* summary_fields.c - the fields of the scenario that a sweep leaves alone, for `stance summary`. */
+#include "summary.h"
+
+#include "runner/scenario/schema.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_varied(const struct results *r, const struct scenario *s, const char *path)
+{
+    for (int a = 0; a < s->axes; a++) {
+        for (int k = 0; k < s->axis[a].paths; k++)
+            if (strcmp(s->axis[a].path[k], path) == 0)
+                return !r->single;
+    }
+    for (int a = 0; a < r->axes; a++)
+        if (strcmp(r->axis[a].name, path) == 0)
+            return true;
+    return false;
+}
+
+/* State of one collection of fields. */
+struct collection {
+    struct summary *summary;
+    const struct results *r;
+    const struct scenario *s;
+    const struct schema *schema;
+};
+
+static struct summary_field *add_field(struct collection *c, const char *path)
+{
+    if (c->summary->fields == SUMMARY_FIELDS || is_varied(c->r, c->s, path))
+        return NULL;
+    struct summary_field *field = &c->summary->field[c->summary->fields++];
+    snprintf(field->path, sizeof field->path, "%s", path);
+    field->unit[0] = '\0';
+    field->number = NAN;
+    return field;
+}
+
+static void add_number(struct collection *c, const char *path, double number, const char *unit)
+{
+    struct summary_field *field = isnan(number) ? NULL : add_field(c, path);
+    if (field) {
+        snprintf(field->text, sizeof field->text, "%.6g", number);
+        snprintf(field->unit, sizeof field->unit, "%s", strcmp(unit, "1") == 0 ? "" : unit);
+        field->number = number;
+    }
+}
+
+static void add_text(struct collection *c, const char *path, const char *text)
+{
+    struct summary_field *field = add_field(c, path);
+    if (field)
+        snprintf(field->text, sizeof field->text, "%s", text);
+}
+
+static void add_initial(struct collection *c, const struct scenario_values *v)
+{
+    const stance_scene *scene = c->s->scene;
+    double start[STANCE_MAX_COORDINATES];
+    char path[96];
+    /* The whole posture, when all cases share it; else what the scenario gives. */
+    bool whole = results_numbers(c->r, "design/start_position", start, STANCE_MAX_COORDINATES) ==
+                 (size_t)scene->coordinates;
+    for (int i = 0; v->equilibrium.given && i < scene->postures; i++) {
+        const stance_quantity *q = &scene->coordinate[scene->posture[i]];
+        snprintf(path, sizeof path, "initial.equilibrium.%s", q->name);
+        add_number(c, path, whole ? start[scene->posture[i]] : v->equilibrium.posture[i], q->unit);
+    }
+    if (v->support_foot > 0)
+        add_number(c, "initial.support_foot", v->support_foot, "");
+    for (int i = 0; i < 2 * scene->coordinates; i++) {
+        const stance_quantity *q = &scene->coordinate[i % scene->coordinates];
+        bool rate = i >= scene->coordinates, state = v->state_given;
+        char unit[32];
+        snprintf(path, sizeof path, "initial.%s.%s%s", state ? "state" : "offset", rate ? "v" : "",
+                 q->name);
+        snprintf(unit, sizeof unit, "%.20s%s", q->unit, rate ? "/s" : "");
+        double number = state ? v->state[i] : v->offset[i];
+        add_number(c, path, number == 0 ? NAN : number, unit);
+    }
+}
+
+/* How a field that stands for nothing, a zero or an absent limit, is told. */
+enum telling { ALWAYS, WHERE_GIVEN };
+
+/* A field of the scenario's table: a word, a whole number or a number. NAN is left out. */
+static void add_entry(struct collection *c, const char *path, const struct scenario_values *v,
+                      enum telling telling)
+{
+    const struct scenario_field *field = schema_find(c->schema, path);
+    if (!field || field->offset == NO_OFFSET)
+        return;
+    const char *base = (const char *)v + field->offset;
+    double number;
+    int word;
+    if (field->type == FIELD_NUMBER) {
+        memcpy(&number, base, sizeof number);
+    } else {
+        memcpy(&word, base, sizeof word);
+        number = word;
+    }
+    if (field->type == FIELD_WORD) {
+        add_text(c, path,
+                 word >= 0 && (size_t)word < field->word_count ? field->words[word] : "unknown");
+    } else if (telling == ALWAYS || (number != 0 && isfinite(number))) {
+        if (isinf(number))
+            add_text(c, path, "none");
+        else
+            add_number(c, path, number, field->unit);
+    }
+}
+
+/* The pair of coordinates and what their loops are told. Where the pair is varied the loops of all
+ * coordinates may act, and nothing is told. */
+static void add_decoupling(struct collection *c, const struct scenario_values *v)
+{
+    static const struct {
+        const char *name;
+        enum telling telling;
+    } parts[] = {{"proportional", ALWAYS},        {"derivative", ALWAYS}, {"integral", WHERE_GIVEN},
+                 {"integral_limit", WHERE_GIVEN}, {"setpoint", ALWAYS},   {"ramp", WHERE_GIVEN},
+                 {"ramp_time", WHERE_GIVEN}};
+    int pair[2];
+    char path[96];
+
+    add_entry(c, "controller.controlled", v, ALWAYS);
+    if (is_varied(c->r, c->s, "controller.controlled") ||
+        !stance_pair(c->s->scene, v->controlled, &pair[0], &pair[1]))
+        return;
+    for (size_t part = 0; part < sizeof parts / sizeof parts[0]; part++) {
+        for (int k = 0; k < 2; k++) {
+            snprintf(path, sizeof path, "controller.%s.%s", parts[part].name,
+                     c->s->scene->coordinate[pair[k]].name);
+            add_entry(c, path, v, parts[part].telling);
+        }
+    }
+}
+
+/* The linear law, and what acts far from its target. */
+static void add_feedback(struct collection *c, const struct scenario_values *v)
+{
+    add_entry(c, "controller.design", v, ALWAYS);
+    if (v->design != DESIGN_GAINS)
+        add_entry(c, "controller.design_time", v, ALWAYS);
+    if (v->far != FAR_NONE) {
+        add_entry(c, "controller.far", v, ALWAYS);
+        add_entry(c, "controller.near.angle", v, ALWAYS);
+        add_entry(c, "controller.near.rate", v, ALWAYS);
+    }
+}
+
+static void add_controller(struct collection *c, const struct scenario_values *v)
+{
+    bool feedback = v->law == LAW_STATE_FEEDBACK;
+    add_entry(c, "controller.kind", v, ALWAYS);
+    if (v->law == LAW_NONE)
+        return;
+    if (feedback)
+        add_feedback(c, v);
+    if (v->law == LAW_HOLD || (feedback && v->far == FAR_HOLD)) {
+        add_entry(c, "controller.kp", v, ALWAYS);
+        add_entry(c, "controller.kd", v, ALWAYS);
+    }
+    if (v->law == LAW_DECOUPLING || (feedback && v->far == FAR_DECOUPLING))
+        add_decoupling(c, v);
+    add_entry(c, "controller.sample_time", v, ALWAYS);
+    add_entry(c, "controller.delay", v, WHERE_GIVEN);
+    add_entry(c, "controller.torque_limit", v, ALWAYS);
+    add_entry(c, "controller.noise", v, ALWAYS);
+}
+
+static void add_fields(struct collection *c, const struct scenario_values *v)
+{
+    const stance_scene *scene = c->s->scene;
+    const stance_method *const *methods = stance_methods();
+    char text[160] = "", path[96];
+
+    for (int i = 0; i < scene->robot_count; i++) {
+        snprintf(path, sizeof path, "robot.%s", scene->robot[i].name);
+        add_number(c, path, v->robot[i], scene->robot[i].unit);
+    }
+    add_number(c, "ground.friction", v->friction, "");
+    add_number(c, "ground.restitution", v->restitution, "");
+    if (v->prefer)
+        add_text(c, "ground.prefer", "most-energy");
+    for (int i = 0; i < scene->contacts; i++) {
+        size_t used = strlen(text);
+        if (v->contacts >> i & 1) {
+            snprintf(text + used, sizeof text - used, "%s%s", used ? " " : "",
+                     scene->contact_name[i]);
+        }
+    }
+    add_text(c, "ground.contacts", text);
+    add_initial(c, v);
+    add_controller(c, v);
+    int count = 0;
+    while (methods[count])
+        count++;
+    add_text(c, "method.name",
+             v->method >= 0 && v->method < count ? methods[v->method]->name : "unknown");
+    add_number(c, "method.step", v->step, "s");
+    if (v->method >= 0 && v->method < count && methods[v->method]->tolerance > 0) {
+        add_number(c, "method.tolerance",
+                   isnan(v->tolerance) ? methods[v->method]->tolerance : v->tolerance, "m, rad");
+    }
+    add_number(c, "stop.time", v->stop_time, "s");
+    if (v->settle) {
+        add_number(c, "stop.settle.angle", scene->postures ? v->settle_angle : NAN, "rad");
+        add_number(c, "stop.settle.rate", v->settle_rate, "rad/s");
+        add_number(c, "stop.settle.hold", v->settle_hold, "s");
+    }
+    add_number(c, "stop.fall_height", scene->height ? v->fall_height : NAN, "");
+    if (v->capture)
+        add_text(c, "stop.capture", "estimated");
+}
+
+void summary_collect_fields(struct summary *summary, const struct results *r,
+                            const struct scenario *s)
+{
+    struct schema *schema = malloc(sizeof *schema);
+    struct scenario_values values = s->base;
+    if (r->single && s->axes > 0 && r->index < s->cases)
+        scenario_case_values(s, r->index, &values);
+    if (schema && schema_build(schema, s->scene)) {
+        struct collection collection = {summary, r, s, schema};
+        add_fields(&collection, &values);
+    }
+    free(schema);
+}

@@ -1,0 +1,324 @@
+/* command_table.c - `stance table FILE`: every case as a row of CSV, a block of rows at a time. */
+#include "csv.h"
+
+#include "analysis/statistics/statistics.h"
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+#include "runner/base/words.h"
+#include "runner/store/results_rows.h"
+#include "runner/store/store.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+extern const struct command command_table; /* below */
+
+enum { ROWS = 4096, MOST_COLUMNS = 40, MOST_PATHS = 256 };
+
+static const char *const answers[] = {
+    "status",
+#define ANSWER_NAME(name, ...) #name,
+    STANCE_ANSWERS(ANSWER_NAME)
+#undef ANSWER_NAME
+        "final_state",
+};
+enum { ANSWERS = sizeof answers / sizeof answers[0] };
+
+/* A further path of an axis of the grid. */
+struct parameter {
+    char name[96];
+    int axis; /* over whose points */
+    double *value;
+};
+
+struct table {
+    const struct results *r;
+    struct csv csv;
+    size_t columns, parameters;
+    struct results_column column[MOST_COLUMNS];
+    double *block[MOST_COLUMNS]; /* [ROWS][width] */
+    struct parameter parameter[MOST_PATHS];
+    const char *of; /* outcome, NULL: all cases */
+    bool *inferred; /* [cases] of a refined map: not simulated; NULL: none */
+};
+
+/* ---- what there is ------------------------------------------------------------------------ */
+
+/* The answers that are stored, or those that are asked for. */
+static bool open_columns(struct table *t, const char *const *names, size_t count,
+                         stance_message *message)
+{
+    for (size_t k = 0; k < count; k++) {
+        struct results_column *column = &t->column[t->columns];
+        if (!results_column_open(t->r, names[k], column, message))
+            return false;
+        if (column->id < 0)
+            continue;
+        t->block[t->columns++] = malloc(ROWS * column->width * sizeof(double));
+        if (!t->block[t->columns - 1]) {
+            snprintf(message->text, sizeof message->text, "stance table: not enough memory");
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Adds a path that varies together with the first one of an axis; of words, whose values are not
+ * read, none. */
+static bool add_parameter(struct table *t, const char *path, int axis)
+{
+    const size_t count = t->r->axis[axis].count;
+    struct parameter *parameter = &t->parameter[t->parameters];
+    double *value = malloc(count * sizeof *value);
+    if (value && results_numbers(t->r, path, value, count) == count) {
+        snprintf(parameter->name, sizeof parameter->name, "%s", path);
+        parameter->axis = axis;
+        parameter->value = value;
+        t->parameters++;
+        return true;
+    }
+    free(value);
+    return value != NULL;
+}
+
+/* The further paths of the grid's axes, from the file's scenario. */
+static bool find_parameters(struct table *t, stance_message *message)
+{
+    const struct results *r = t->r;
+    struct scenario *s = calloc(1, sizeof *s);
+    bool good = s != NULL;
+    if (good && !r->single && results_scenario(r, s)) {
+        for (int a = 0; a < s->axes && a < r->axes; a++) {
+            const struct scenario_axis *axis = &s->axis[a];
+            for (int k = 1; good && !axis->sample && k < axis->paths; k++)
+                good = t->parameters == MOST_PATHS || add_parameter(t, axis->path[k], a);
+        }
+        scenario_free(s);
+    }
+    free(s);
+    if (!good)
+        snprintf(message->text, sizeof message->text, "stance table: not enough memory");
+    return good;
+}
+
+static void close_table(struct table *t)
+{
+    for (size_t k = 0; k < t->columns; k++) {
+        results_column_close(&t->column[k]);
+        free(t->block[k]);
+    }
+    for (size_t k = 0; k < t->parameters; k++)
+        free(t->parameter[k].value);
+    free(t->inferred);
+}
+
+/* ---- rows --------------------------------------------------------------------------------- */
+
+static void put_head(struct table *t)
+{
+    char states[SCENARIO_MAX_STATES][32], name[48];
+    const size_t words = results_words(t->r, "state", states, SCENARIO_MAX_STATES);
+    csv_text(&t->csv, "case");
+    for (int a = 0; !t->r->single && a < t->r->axes; a++)
+        csv_text(&t->csv, t->r->axis[a].name);
+    for (size_t k = 0; k < t->parameters; k++)
+        csv_text(&t->csv, t->parameter[k].name);
+    for (int k = 0; k < t->r->varied; k++)
+        csv_text(&t->csv, t->r->vary[k].of.name);
+    for (size_t k = 0; k < t->columns; k++) {
+        const struct results_column *column = &t->column[k];
+        for (size_t i = 0; i < column->width; i++) {
+            if (column->width == 1) {
+                csv_text(&t->csv, column->name);
+            } else if (i < words) {
+                snprintf(name, sizeof name, "final_%s", states[i]);
+                csv_text(&t->csv, name);
+            } else {
+                snprintf(name, sizeof name, "final_%zu", i);
+                csv_text(&t->csv, name);
+            }
+        }
+    }
+    csv_end_row(&t->csv);
+}
+
+/* The word that a flag stands for, or its number. */
+static void put_flag(struct csv *csv, const char *words, double value)
+{
+    char word[64];
+    for (double k = 0; k < value && words; k++) {
+        words = strchr(words, ' ');
+        words = words ? words + 1 : NULL;
+    }
+    if (!words) {
+        csv_number(csv, value);
+        return;
+    }
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(words, " "), words);
+    csv_text(csv, word);
+}
+
+static void put_point(struct table *t, uint64_t index)
+{
+    const struct results *r = t->r;
+    size_t point[SCENARIO_MAX_AXES];
+    results_point(r, index, point);
+    csv_number(&t->csv, (double)(r->single ? r->index : index));
+    for (int a = 0; !r->single && a < r->axes; a++)
+        if (r->axis[a].word)
+            csv_text(&t->csv, r->axis[a].word[point[a]]);
+        else
+            csv_number(&t->csv, r->axis[a].value[point[a]]);
+    for (size_t k = 0; k < t->parameters; k++)
+        csv_number(&t->csv, t->parameter[k].value[point[t->parameter[k].axis]]);
+    for (int k = 0; k < r->varied; k++) {
+        const struct results_varied *v = &r->vary[k];
+        const double value = v->of.value[point[r->sample]];
+        if (v->word)
+            csv_text(&t->csv, v->word[(int)value]);
+        else
+            csv_number(&t->csv, value);
+    }
+}
+
+/* What stands in the row of a pending case means nothing, and counts of an inferred one say 0 where
+ * there is no answer. */
+static bool says_something(const struct table *t, const struct results_column *column,
+                           uint64_t index)
+{
+    if (t->r->kind[index] == RESULTS_PENDING)
+        return strcmp(column->name, "status") == 0;
+    return column->words || !t->inferred || !t->inferred[index];
+}
+
+static void put_case(struct table *t, uint64_t first, size_t row)
+{
+    const uint8_t kind = t->r->kind[first + row];
+    if (t->of && strcmp(t->of, results_kind_names[kind]) != 0)
+        return;
+    put_point(t, first + row);
+    for (size_t k = 0; k < t->columns; k++) {
+        const struct results_column *column = &t->column[k];
+        for (size_t i = 0; i < column->width; i++) {
+            const double value = t->block[k][row * column->width + i];
+            if (!says_something(t, column, first + row))
+                csv_text(&t->csv, "");
+            else if (column->words)
+                put_flag(&t->csv, column->words, value);
+            else
+                csv_number(&t->csv, value);
+        }
+    }
+    csv_end_row(&t->csv);
+}
+
+static bool put_rows(struct table *t, stance_message *message)
+{
+    for (uint64_t first = 0; first < t->r->cases;) {
+        const size_t rows = results_block(t->r, first, ROWS);
+        for (size_t k = 0; k < t->columns; k++)
+            if (!results_column_read(t->r, &t->column[k], first, rows, t->block[k], message))
+                return false;
+        for (size_t row = 0; row < rows; row++)
+            put_case(t, first, row);
+        if (ferror(stdout))
+            return true; /* said by the program's end */
+        first += rows;
+    }
+    return true;
+}
+
+/* ---- the command -------------------------------------------------------------------------- */
+
+struct request {
+    const char *file, *of;
+    const char **answer;
+    size_t answers;
+};
+
+static int work(void *context)
+{
+    const struct request *request = context;
+    struct results r;
+    stance_message message = {""};
+    struct table *t = calloc(1, sizeof *t);
+    if (!t) {
+        fputs("stance table: not enough memory\n", stderr);
+        return EXIT_IO;
+    }
+    if (!results_open(&r, request->file, &message)) {
+        fprintf(stderr, "%s\n", message.text);
+        free(t);
+        return EXIT_IO;
+    }
+    t->r = &r;
+    t->csv.file = stdout;
+    t->of = request->of;
+    uint64_t ignored;
+    bool good = find_parameters(t, &message) &&
+                statistics_inferred(&r, &ignored, &t->inferred, &message) &&
+                open_columns(t, request->answers ? request->answer : answers,
+                             request->answers ? request->answers : ANSWERS, &message);
+    if (good) {
+        put_head(t);
+        good = put_rows(t, &message);
+    }
+    if (!good)
+        fprintf(stderr, "%s\n", message.text);
+    close_table(t);
+    free(t);
+    results_close(&r);
+    return good ? EXIT_DONE : EXIT_IO;
+}
+
+static bool known(const char *word, const char *const *list, size_t count, const char *option)
+{
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(word, list[k]) == 0)
+            return true;
+    const char *near = nearest_word(word, list, count);
+    fprintf(stderr, "stance table: %s: there is no '%.60s'%s%s%s\n", option, word,
+            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return false;
+}
+
+static int run(int argc, char **argv)
+{
+    const char *file = NULL, *of = NULL, *answer[MOST_COLUMNS];
+    size_t given[2] = {0}, operands = 0;
+    bool help = false;
+    const struct option_spec specs[] = {{"--of", true, &of, 1, &given[0]},
+                                        {"--answer", true, answer, MOST_COLUMNS, &given[1]}};
+
+    if (!command_options(&command_table, argc, argv, specs, 2, &file, 1, &operands, &help))
+        return EXIT_USAGE;
+    if (help)
+        return EXIT_DONE;
+    if (operands == 0) {
+        fputs("stance table: a results file is needed (stance table -h explains)\n", stderr);
+        return EXIT_USAGE;
+    }
+    bool good = !of || known(of, results_kind_names, RESULTS_KIND_COUNT, "--of");
+    for (size_t k = 0; good && k < given[1]; k++)
+        good = known(answer[k], answers, ANSWERS, "--answer");
+    struct request request = {file, of, answer, given[1]};
+    return good ? sandbox(work, &request, file) : EXIT_USAGE;
+}
+
+const struct command command_table = {
+    "table",
+    "table FILE [--answer NAME]... [--of OUTCOME]",
+    "every case as a row of CSV",
+    run,
+    "Prints, as comma-separated values (RFC 4180) with a head, for each case: its number, the\n"
+    "values of the axes, of what varies with them (further paths of an axis, sampled\n"
+    "parameters), and its answers as the file has them: status, outcome, evidence and failure\n"
+    "as words, numbers as short as gives the same double again, nothing for NAN, nothing but the\n"
+    "status for cases that are pending, nothing but words for those that a refined map has\n"
+    "inferred. Units are those of `stance describe`: SI and radians.\n"
+    "Files of any length are read a few thousand cases at a time.\n"
+    "\n"
+    "  --answer NAME    these answers alone, in this order; may be repeated\n"
+    "  --of OUTCOME     only cases that were stabilised, rested, fell, are undecided, failed or\n"
+    "                   pending\n",
+};

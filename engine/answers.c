@@ -1,0 +1,46 @@
+/* answers.c - the tables of stance.h as data. */
+#include "stance.h"
+
+#include <math.h>
+#include <string.h>
+
+#define NAME(NAME, name, ...) #name,
+#define TEXT(NAME, name, text) text,
+#define OUTCOME(NAME, name, number, text) [number] = #name,
+const char *const stance_outcome_name[] = {"none", STANCE_OUTCOMES(OUTCOME)};
+const char *const stance_evidence_name[] = {STANCE_EVIDENCES(NAME)};
+const char *const stance_failure_name[] = {STANCE_FAILURES(NAME)};
+const char *const stance_failure_text[] = {STANCE_FAILURES(TEXT)};
+
+#define TYPE(type)                                                                                 \
+    _Generic((type)0, uint8_t : STANCE_UINT8, int64_t : STANCE_INT64, double : STANCE_DOUBLE)
+#define NO_ANSWER(type) _Generic((type)0, double : NAN, default : 0)
+
+const stance_answer stance_answers[] = {
+#define ANSWER(name_, type_, how, told, unit_, text_)                                              \
+    [STANCE_ANSWER_##name_] = {.name = #name_,                                                     \
+                               .unit = unit_,                                                      \
+                               .text = text_,                                                      \
+                               .type = TYPE(type_),                                                \
+                               .size = sizeof(type_),                                              \
+                               .offset = offsetof(stance_result, name_),                           \
+                               .none = NO_ANSWER(type_)},
+    STANCE_ANSWERS(ANSWER)
+#undef ANSWER
+#define CODE(name_)                                                                                \
+    [STANCE_ANSWER_##name_].word = stance_##name_##_name,                                          \
+    [STANCE_ANSWER_##name_].words = sizeof stance_##name_##_name / sizeof *stance_##name_##_name
+        CODE(outcome),
+    CODE(evidence),
+    CODE(failure),
+};
+
+void stance_result_clear(stance_result *result)
+{
+    memset(result, 0, sizeof *result);
+#define CLEAR(name, type, how, told, unit, text) result->name = NO_ANSWER(type);
+    STANCE_ANSWERS(CLEAR)
+#undef CLEAR
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
+        result->position[i] = result->velocity[i] = NAN;
+}

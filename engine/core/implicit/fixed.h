@@ -1,0 +1,161 @@
+/* fixed.h - advances by fixed implicit steps: the quick way where a step is ordinary, else with all
+ * that step.h can do; a step that does not converge is tried with each torque free or at its limit
+ * in turn, then taken in parts.
+ *
+ * One of the ways to get from one step's end to the next (`advance`, see stream.h).
+ */
+#ifndef STANCE_CORE_IMPLICIT_FIXED_H
+#define STANCE_CORE_IMPLICIT_FIXED_H
+
+#include "ordinary_step.h"
+
+/* Cases may change lanes. */
+#define ADVANCE_MOVES
+
+/* Motions know their energy. */
+#define ADVANCE_TELLS_ENERGY
+
+/* A law that is not linear acts once a step, on the state at its beginning. */
+#define ADVANCE_SAMPLES_LAWS
+
+#define FIXED_MAX_SUBDIVISION 6 /* a step is halved at most this often ... */
+#define FIXED_FREEZE_AFTER 6    /* ... and in the last attempt the geometry freezes here */
+
+struct advance {
+    struct ordinary quick;
+};
+
+static void advance_load(struct advance *a, int lane, const stance_case *c)
+{
+    (void)c;
+    ordinary_forget(&a->quick, mask_of_lane(lane));
+}
+static void advance_free(struct advance *a)
+{
+    (void)a;
+}
+
+/* One step. Where Newton's iteration does not end because a torque that acts inside the step comes
+ * and goes at its limit, each torque is taken for free or for being at either end of its range, one
+ * way after the other, until a solution agrees with what was assumed. */
+COLD mask fixed_step(const struct setting *set, const struct motion *from, const lanes *torque,
+                     lanes h, mask run, bool coupled, int freeze_after, struct motion *to,
+                     struct step_report *report)
+{
+    mask good = take_step(set, from, torque, h, run, coupled, freeze_after, to, report);
+    mask failed = run & LANES_NOT(good) & mask_less(set->law.limit, lanes_of(INFINITY));
+    if (SCENE_ACTUATORS == 0 || !coupled || !mask_any(failed))
+        return good;
+    int ways = 1;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        ways *= 3;
+    for (int way = 0; way < ways && mask_any(failed); way++) {
+        static const int ends[3] = {0, 1, -1};
+        int corner[ACTUATORS], rest = way;
+        struct motion next = *from;
+        struct step_report part;
+        for (int i = 0; i < ACTUATORS; i++, rest /= 3)
+            corner[i] = ends[rest % 3];
+        const mask found =
+            take_step_at(corner, set, from, torque, h, failed, coupled, freeze_after, &next, &part);
+        part.iterations += report->iterations;
+        choose_all(found, &next, to, sizeof next);
+        choose_all(found, &part, report, sizeof part);
+        report->iterations = choose(failed & LANES_NOT(found), part.iterations, report->iterations);
+        good |= found;
+        failed &= LANES_NOT(found);
+    }
+    return good;
+}
+
+/* Lanes that did not converge: the step again in 2, 4, ... equal parts. */
+COLD mask fixed_subdivide(const struct setting *set, const struct motion *from, const lanes *torque,
+                          lanes h, mask run, bool coupled, struct motion *to,
+                          struct step_report *total)
+{
+    mask failed = run;
+    for (int level = 1; level <= FIXED_MAX_SUBDIVISION && mask_any(failed); level++) {
+        const int parts = 1 << level;
+        const int freeze = level < FIXED_MAX_SUBDIVISION ? STEP_MAX_ITERATIONS : FIXED_FREEZE_AFTER;
+        struct motion here = *from;
+        struct step_report sum;
+        report_clear(&sum);
+        sum.iterations = total->iterations;
+        mask good = failed;
+        for (int k = 0; k < parts && mask_any(good); k++) {
+            struct step_report part;
+            struct motion next = here;
+            good &= fixed_step(set, &here, torque, h / parts, good, coupled, freeze, &next, &part);
+            here = next;
+            report_add(&sum, &part);
+        }
+        sum.subdivided_steps = lanes_of(1);
+        choose_all(good, &here, to, sizeof here);
+        choose_all(good, &sum, total, sizeof sum);
+        total->iterations = choose(failed, sum.iterations, total->iterations);
+        failed &= LANES_NOT(good);
+    }
+    return run & LANES_NOT(failed);
+}
+
+/* The bundle's contacts as the compiler should know them. */
+enum {
+    TOUCHING_NONE = 0,
+    TOUCHING_FIRST = 1,
+    TOUCHING_SECOND = SCENE_CONTACTS > 1 ? 2 : 1,
+    TOUCHING_ALL = (1 << SCENE_CONTACTS) - 1
+};
+
+/* One ordinary step in all lanes, of which all have the contacts in `touching` closed; false: it is
+ * not ordinary in all, or not all have, and nothing has happened. */
+#define ADVANCE_ORDINARY
+HOT bool advance_ordinary(struct advance *a, const struct setting *set, const lanes *torque,
+                          lanes h, mask live, contact_set touching, struct motion *now,
+                          struct step_report *report)
+{
+    struct iterate it;
+    mask apart = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            apart |= live & LANES_NOT(ordinary_active(set, now, c));
+    if (mask_any(apart))
+        return false;
+    const mask good =
+        ordinary_try(&a->quick, set, now, torque, h, live, touching, true, &it, report);
+    if (mask_any(live & LANES_NOT(good)))
+        return false;
+    ordinary_keep(&a->quick, &it, h, true, good, now);
+    return true;
+}
+
+COLD mask advance(struct advance *a, const struct setting *set, const lanes *torque, lanes h,
+                  mask live, bool coupled, struct motion *now, struct step_report *report,
+                  mask *failed)
+{
+    mask ok = MASK_NONE;
+    if (!coupled) {
+        struct iterate it;
+        ok = ordinary_try(&a->quick, set, now, torque, h, live, step_touching(set, now->gap, live),
+                          false, &it, report);
+        ordinary_keep(&a->quick, &it, h, false, ok, now);
+    }
+    const mask other = live & LANES_NOT(ok);
+    *failed = MASK_NONE;
+    if (mask_any(other)) {
+        struct step_report slow;
+        struct motion next = *now;
+        mask there =
+            fixed_step(set, now, torque, h, other, coupled, STEP_MAX_ITERATIONS, &next, &slow);
+        const mask stuck = other & LANES_NOT(there);
+        if (mask_any(stuck))
+            there |= fixed_subdivide(set, now, torque, h, stuck, coupled, &next, &slow);
+        choose_all(other, &slow, report, sizeof slow);
+        choose_all(there, &next, now, sizeof next);
+        *failed = other & LANES_NOT(there);
+        ok |= there;
+        ordinary_forget(&a->quick, other);
+    }
+    return ok;
+}
+
+#endif

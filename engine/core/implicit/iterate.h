@@ -1,0 +1,190 @@
+/* iterate.h - Newton's iteration for one implicit step: see step.h for the equation. */
+#ifndef STANCE_CORE_IMPLICIT_ITERATE_H
+#define STANCE_CORE_IMPLICIT_ITERATE_H
+
+#include "report.h"
+
+/* What is known of the contacts of a step: nothing, that none comes to the ground, or moreover that
+ * all that touch anywhere touch in every lane that matters. */
+enum step_kind { STEP_ANY, STEP_ORDINARY, STEP_FULL };
+
+/* The iterate of one step and what is frozen with it in each lane. */
+struct iterate {
+    lanes w[SCENE_COORDINATES];
+    lanes s1[SCENE_COORDINATES];
+    lanes r[SCENE_CONTACTS][2], u[SCENE_CONTACTS][2];
+    lanes gap[SCENE_CONTACTS];
+    lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES]; /* to a unit impulse at a contact */
+    lanes torque[ACTUATORS];
+    scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
+    mask active[SCENE_CONTACTS];
+    mask ambiguous, unsolved;
+    lanes size;  /* of the last correction */
+    lanes shift; /* how far impulses moved with it, as a velocity */
+    lanes approach[SCENE_CONTACTS], energy, kinetic; /* at the end, see struct motion */
+    const lanes (*before)[2];                        /* see contact_rule */
+    const int *corner;                               /* see law_inside */
+};
+
+/* What corrections are measured by: the largest velocity, at least 1. */
+HOT lanes iterate_speed(const struct iterate *it)
+{
+    lanes speed = lanes_of(1);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        speed = lanes_max(lanes_abs(it->w[i]), speed);
+    return speed;
+}
+
+/* The velocity that forces and positions see: (1 - theta) w0 + theta w. */
+static inline lanes step_velocity(lanes w0, lanes w)
+{
+    if (METHOD_THETA == 1)
+        return w;
+    return (1 - METHOD_THETA) * w0 + METHOD_THETA * w;
+}
+
+/* Position at the end and, unless the geometry is frozen, the trigonometry that goes with it. */
+static inline void iterate_place(const struct setting *set, const struct motion *from, lanes h,
+                                 bool frozen, struct iterate *it)
+{
+    lanes middle[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        const lanes v = step_velocity(from->w[i], it->w[i]);
+        it->s1[i] = from->s[i] + h * v;
+        middle[i] = from->s[i] + (METHOD_THETA * h) * v;
+    }
+    if (frozen)
+        return;
+    if (METHOD_THETA == 1) {
+        scene_trigonometry(it->s1, &it->end);
+    } else {
+        scene_trigonometry(middle, &it->middle);
+        scene_contact_trigonometry(it->s1, &it->end); /* the rest when the step is done */
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
+}
+
+/* Contact impulses of an iterate: adds what they do to the correction dw of the velocity. */
+HOT void iterate_contacts(const struct setting *set, const struct motion *from, bool all,
+                          mask running, bool coupled, contact_set touching, const scene_matrix *J,
+                          const scene_trig *direction, lanes lever, lanes *dw, struct iterate *it)
+{
+    lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES], rebound[SCENE_CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            rebound[c] = response[c][0][i] = response[c][1][i] = lanes_of(0);
+    lanes D[2][2][2][2], uf[2][2]; /* of SCENE_CONTACTS contacts; zero of those that are open */
+    for (int c = 0; c < 2; c++)
+        for (int a = 0; a < 2; a++) {
+            uf[c][a] = lanes_of(0);
+            for (int b = 0; b < 2; b++)
+                D[c][0][a][b] = D[c][1][a][b] = lanes_of(0);
+        }
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            scene_contact_response(&set->body, J, coupled, direction, c, response[c]);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes now[2], moved[2];
+        if (!(touching >> c & 1))
+            continue;
+        scene_contact_velocity(&set->body, &it->end, c, it->w, now);
+        scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, dw, moved);
+        rebound[c] = set->restitution * lanes_min(from->approach[c], lanes_of(0));
+        uf[c][0] = now[0] + moved[0] + rebound[c];
+        uf[c][1] = now[1] + moved[1];
+        for (int k = 0; k < SCENE_CONTACTS; k++)
+            for (int b = 0; b < 2 && touching >> k & 1; b++) {
+                scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, response[k][b],
+                                              moved);
+                D[c][k][0][b] = moved[0];
+                D[c][k][1][b] = moved[1];
+            }
+    }
+    lanes r[2][2];
+    mask ambiguous, unsolved;
+    const struct contact_rule rule = {set->friction, set->prefer, NULL, rebound, false, it->before};
+    solve_contacts(&rule, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, touching, it->active,
+                   r, &ambiguous, &unsolved);
+    if (!all) {
+        ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
+        unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
+    }
+    it->ambiguous = ambiguous;
+    it->unsolved = unsolved;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        if (!(touching >> c & 1))
+            continue;
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            /* Where nothing touches even the sign of a zero stays as it is. */
+            const lanes pushed =
+                lanes_fma(response[c][0][i], r[c][0], lanes_fma(response[c][1][i], r[c][1], dw[i]));
+            dw[i] = choose(it->active[c], pushed, dw[i]);
+            for (int a = 0; a < 2; a++)
+                it->response[c][a][i] =
+                    choose_unless(all, running, response[c][a][i], it->response[c][a][i]);
+        }
+        for (int a = 0; a < 2; a++) {
+            const lanes moves = choose(
+                it->active[c], lanes_abs(r[c][a] - it->r[c][a]) * D[c][c][a][a], lanes_of(0));
+            it->shift = it->shift + moves;
+            it->r[c][a] = choose_unless(all, running, r[c][a], it->r[c][a]);
+        }
+    }
+}
+
+/* One Newton iteration in the lanes that still run. With the
+ * geometry frozen the derivatives by it are left out too, so that the operator is constant. */
+HOT void iterate_newton(const struct setting *set, const struct motion *from, lanes h, bool all,
+                        mask running, bool impacts, mask impact, bool coupled, bool frozen,
+                        contact_set touching, struct iterate *it)
+{
+    const double moves = frozen ? 0 : METHOD_THETA;
+    const lanes lever = h * (METHOD_THETA * moves), end_lever = h * moves;
+    const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
+    lanes v[SCENE_COORDINATES], change[SCENE_COORDINATES], residual[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        v[i] = step_velocity(from->w[i], it->w[i]);
+        change[i] = it->w[i] - from->w[i];
+    }
+    scene_trig direction = *trig;
+    lanes direction_lever = METHOD_THETA == 1 ? end_lever : lever;
+    if (METHOD_THETA != 1 && impacts) {
+        scene_choose_trig(impact, &it->end, &it->middle, &direction);
+        direction_lever = choose(impact, end_lever, lever);
+    }
+
+    lanes torque[ACTUATORS], torque_rate[ACTUATORS][POSTURES];
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        torque[i] = it->torque[i];
+    if (coupled) {
+        lanes u[SCENE_COORDINATES];
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+        law_inside(&set->law, u, v, h * (METHOD_THETA * METHOD_THETA), METHOD_THETA, it->torque,
+                   it->corner, torque, torque_rate);
+    }
+
+    scene_matrix J;
+    lanes dw[SCENE_COORDINATES];
+    scene_residual(&set->body, h, from->t + METHOD_THETA * h, trig, v, change, torque, residual);
+    scene_factor(&set->body, h, moves, lever, direction_lever, trig, &direction, v, change,
+                 (const lanes(*)[2])it->r, coupled, (const lanes(*)[POSTURES])torque_rate, &J);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        residual[i] = -residual[i];
+    scene_solve(&J, coupled, residual, dw);
+
+    it->shift = lanes_of(0);
+    if (touching)
+        iterate_contacts(set, from, all, running, coupled, touching, &J, &direction, end_lever, dw,
+                         it);
+    it->size = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        it->w[i] = choose_unless(all, running, it->w[i] + dw[i], it->w[i]);
+        it->size += lanes_abs(dw[i]); /* a sum keeps NAN */
+    }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        it->torque[i] = choose_unless(all, running, torque[i], it->torque[i]);
+}
+
+#endif

@@ -1,0 +1,51 @@
+/* motion.h - where a system is, what does not change during its case, and what a step reports. */
+#ifndef STANCE_CORE_IMPLICIT_MOTION_H
+#define STANCE_CORE_IMPLICIT_MOTION_H
+
+#include "engine/core/contact/direct.h"
+#include "engine/core/law/law.h"
+
+#define STEP_CLOSED 1e-12 /* m: a contact this close counts as closed */
+
+/* What does not change during a case. */
+struct setting {
+    scene_body body;
+    lanes friction, restitution;
+    lanes may_touch[SCENE_CONTACTS]; /* 1 or 0 */
+    lanes prefer;                    /* of several contact solutions, see contact_problem */
+    struct law law;
+};
+
+/* Where a system is; consists of lanes (choose_all). */
+struct motion {
+    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    lanes gap[SCENE_CONTACTS];
+    lanes approach[SCENE_CONTACTS]; /* normal velocity */
+    /* Impulses of the step that led here, N s; zero where there was none and where a contact came
+     * to the ground in it. */
+    lanes impulse[SCENE_CONTACTS][2];
+    scene_trig trig;           /* at s */
+    lanes t;                   /* s */
+    lanes integral[ACTUATORS]; /* what the law has summed, see law.h */
+    lanes energy, kinetic;     /* J, of this state; where steps of step.h are taken */
+};
+
+/* Contacts that are closed in any of the lanes m: is there anything to solve? */
+static inline contact_set step_touching(const struct setting *set, const lanes *gap, mask m)
+{
+    contact_set touching = 0;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
+                     mask_less_equal(gap[c], lanes_of(STEP_CLOSED))))
+            touching |= 1u << c;
+    return touching;
+}
+
+/* Fills in the energies of a motion. */
+static inline void motion_energy(const struct setting *set, struct motion *m)
+{
+    m->kinetic = scene_kinetic(&set->body, &m->trig, m->w);
+    m->energy = m->kinetic + scene_potential(&set->body, m->s, &m->trig);
+}
+
+#endif

@@ -1,0 +1,267 @@
+/* ordinary_step.h - the ordinary step: what touches goes on touching, nothing arrives, nothing
+ * bounces.
+ *
+ * The equation is step.h's; ordinary steps, all but a few in a thousand, reach its solution with
+ * less work:
+ *
+ * - Newton begins at the velocity that the last two changes of velocity point to,
+ *   w0 + 2 dw_n-1 - dw_n-2, which is off by the third derivative of motion.
+ * - It ends as soon as the error left is certainly small. After a correction d that is at most
+ *   K h |d|^2 with the scene's bound K on the equation's curvature (scene_curvature), so one
+ *   iteration is enough where |d|^2 <= ORDINARY_ERROR / (K h), relative to the speed: about 1e-5.
+ * - Sines and cosines at the end are those of the beginning turned by h w, an angle of
+ *   ORDINARY_ANGLE at most, by series; every ORDINARY_TURNS steps they are computed anew, so that
+ *   rounding does not add up.
+ * - Contacts are those of the bundle: `touching` is known to the compiler.
+ * - Position errors are mended along the directions of the last iteration: they may be off by
+ *   1e-4 of what is mended, a billionth of the speed at 5 ms.
+ *
+ * A lane in which anything is not ordinary - an impact, a touchdown, a contact problem that is not
+ * certainly unique, a long way to converge, energy from nowhere - is left to step.h, whatever its
+ * neighbours do: which lanes share a bundle changes no bit.
+ */
+#ifndef STANCE_CORE_IMPLICIT_ORDINARY_STEP_H
+#define STANCE_CORE_IMPLICIT_ORDINARY_STEP_H
+
+#include "step.h"
+
+#define ORDINARY_ITERATIONS 4
+#define ORDINARY_ERROR 1e-11  /* of the velocity, left by Newton */
+#define ORDINARY_ANGLE 0.0625 /* rad: the series' rounding error is then below 1e-17 */
+#define ORDINARY_TURNS 32     /* steps between sines computed anew */
+#define ORDINARY_SMALL 1e-6   /* rad: a last correction that turns further is not ordinary */
+
+/* What is remembered of the steps before. */
+struct ordinary {
+    lanes change[SCENE_COORDINATES]; /* of the velocity in the last step ... */
+    lanes before[SCENE_COORDINATES]; /* ... and in the one before */
+    lanes known;                     /* 1: the step before was ordinary, too */
+    lanes turns;                     /* steps since the sines were computed anew */
+};
+
+/* Forgets the lanes in m. */
+static inline void ordinary_forget(struct ordinary *q, mask m)
+{
+    const lanes none = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        q->change[i] = choose(m, none, q->change[i]);
+        q->before[i] = choose(m, none, q->before[i]);
+    }
+    q->known = choose(m, none, q->known);
+    q->turns = choose(m, lanes_of(ORDINARY_TURNS), q->turns);
+}
+
+/* Sines and cosines after turning by d[], at most ORDINARY_ANGLE. */
+HOT void ordinary_turn(const scene_trig *from, const lanes *d, scene_trig *to)
+{
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        const lanes x = d[a], t = x * x, s = from->sine[a], c = from->cosine[a];
+        lanes sine = lanes_fma(t, lanes_of(-1. / 5040), lanes_of(1. / 120));
+        sine = lanes_fma(t, sine, lanes_of(-1. / 6));
+        sine = lanes_fma(x * t, sine, x);
+        lanes less = lanes_fma(t, lanes_of(1. / 40320), lanes_of(-1. / 720)); /* cosine - 1 */
+        less = lanes_fma(t, less, lanes_of(1. / 24));
+        less = t * lanes_fma(t, less, lanes_of(-0.5));
+        to->sine[a] = s + lanes_fma(c, sine, s * less);
+        to->cosine[a] = c + lanes_fnma(s, sine, c * less);
+    }
+}
+
+/* Takes sines and cosines over where m holds, or everywhere. */
+HOT void ordinary_take(bool all, mask m, const scene_trig *from, scene_trig *to)
+{
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        to->sine[a] = choose_unless(all, m, from->sine[a], to->sine[a]);
+        to->cosine[a] = choose_unless(all, m, from->cosine[a], to->cosine[a]);
+    }
+}
+
+/* Places the iterate in the lanes of m, or in all: its end position and the sines there (and
+ * halfway). */
+HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lanes h, bool all,
+                        mask m, struct iterate *it)
+{
+    lanes d[SLOTS(SCENE_ANGLES)], halfway[SCENE_COORDINATES], farthest = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        const lanes move = h * step_velocity(from->w[i], it->w[i]);
+        it->s1[i] = choose_unless(all, m, from->s[i] + move, it->s1[i]);
+        halfway[i] = from->s[i] + METHOD_THETA * move;
+        if (i >= FIRST_ANGLE) {
+            d[i - FIRST_ANGLE] = METHOD_THETA * move;
+            farthest = lanes_max(lanes_abs(move), farthest);
+        }
+    }
+    if (SCENE_ANGLES == 0) {
+        it->end = it->middle = from->trig;
+        return;
+    }
+    scene_trig end, middle;
+    ordinary_turn(&from->trig, d, &middle);
+    if (METHOD_THETA != 1)
+        ordinary_turn(&middle, d, &end);
+    const mask anew = LANES_NOT(mask_less_equal(farthest, lanes_of(ORDINARY_ANGLE))) |
+                      mask_less_equal(lanes_of(ORDINARY_TURNS), q->turns);
+    if (mask_any(m & anew)) {
+        scene_trig exact;
+        scene_trigonometry(halfway, &exact);
+        ordinary_take(false, anew, &exact, &middle);
+        if (METHOD_THETA != 1) {
+            scene_trigonometry(it->s1, &exact);
+            ordinary_take(false, anew, &exact, &end);
+        }
+    }
+    ordinary_take(all, m, METHOD_THETA == 1 ? &middle : &end, &it->end);
+    if (METHOD_THETA != 1)
+        ordinary_take(all, m, &middle, &it->middle);
+}
+
+/* Moves the end by the last correction, from `old` to it->w: the sines follow to third order.
+ * Returns the lanes where that is enough. */
+HOT mask ordinary_arrive(const struct motion *from, lanes h, const lanes *old, struct iterate *it)
+{
+    lanes d[SCENE_COORDINATES], farthest = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        d[i] = (h * METHOD_THETA) * (it->w[i] - old[i]);
+        it->s1[i] = lanes_fma(h, step_velocity(from->w[i], it->w[i]), from->s[i]);
+        if (i >= FIRST_ANGLE)
+            farthest = lanes_max(lanes_abs(d[i]), farthest);
+    }
+    trig_turn(&it->end, LANES_ALL, d);
+    return mask_less_equal(farthest, lanes_of(ORDINARY_SMALL));
+}
+
+/* One iteration in the lanes of m, or in all; `old` is where it started. Returns the lanes where
+ * the error left is certainly small. */
+HOT mask ordinary_iterate(const struct ordinary *q, const struct setting *set,
+                          const struct motion *from, lanes h, bool all, mask m,
+                          contact_set touching, lanes *old, struct iterate *it)
+{
+    ordinary_place(q, from, h, all, m, it);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        old[i] = choose_unless(all, m, it->w[i], old[i]);
+    iterate_newton(set, from, h, all, m, false, MASK_NONE, false, false, touching, it);
+    const lanes left = (h * scene_curvature(&set->body) * it->size) * (it->size + it->shift);
+    const mask small = mask_less_equal(left, lanes_of(ORDINARY_ERROR));
+    if (!mask_any(m & LANES_NOT(small)))
+        return small;
+    return small | mask_less_equal(left, ORDINARY_ERROR * iterate_speed(it));
+}
+
+/* Further iterations, where one was not enough; returns the lanes where they got there. */
+COLD mask ordinary_more(const struct ordinary *q, const struct setting *set,
+                        const struct motion *from, lanes h, mask running, contact_set touching,
+                        lanes *old, lanes *iterations, struct iterate *it)
+{
+    mask there = MASK_NONE;
+    for (int k = 1; k < ORDINARY_ITERATIONS && mask_any(running); k++) {
+        *iterations += choose(running, lanes_of(1), lanes_of(0));
+        const mask small = ordinary_iterate(q, set, from, h, false, running, touching, old, it);
+        there |= running & small;
+        running &= LANES_NOT(small);
+    }
+    return there;
+}
+
+/* Newton's iteration to its end, from the extrapolated velocity. Returns the lanes where it got
+ * there. */
+HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
+                         const struct motion *from, lanes h, mask run, contact_set touching,
+                         struct iterate *it, lanes *iterations)
+{
+    lanes old[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        it->w[i] = from->w[i] + lanes_fms(lanes_of(2), q->change[i], q->before[i]);
+    *iterations = lanes_of(1);
+    mask there = run & ordinary_iterate(q, set, from, h, true, LANES_ALL, touching, old, it);
+    const mask running = run & LANES_NOT(there);
+    if (mask_any(running)) { /* with copies: what is passed on by address stays in memory */
+        struct iterate copy = *it;
+        lanes start[SCENE_COORDINATES], count = *iterations;
+        memcpy(start, old, sizeof start);
+        there |= ordinary_more(q, set, from, h, running, touching, start, &count, &copy);
+        *it = copy;
+        *iterations = count;
+        memcpy(old, start, sizeof old);
+    }
+    return there & ordinary_arrive(from, h, old, it);
+}
+
+/* Lanes where a contact that did not touch is not above the ground. */
+HOT mask ordinary_arrivals(const struct setting *set, const struct iterate *it)
+{
+    mask there = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        there |= mask_less(lanes_of(0), set->may_touch[c]) & LANES_NOT(it->active[c]) &
+                 LANES_NOT(mask_less(lanes_of(0), it->gap[c]));
+    return there;
+}
+
+/* Lanes where a contact is closed. */
+HOT mask ordinary_active(const struct setting *set, const struct motion *from, int c)
+{
+    return mask_less(lanes_of(0), set->may_touch[c]) &
+           mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
+}
+
+/* The solution of an ordinary step's equation in the lanes of `run`, where contacts in `touching`
+ * are closed in some of them or, `full`, in all. Returns the lanes where it was found. */
+HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
+                        const struct motion *from, const lanes *torque, lanes h, mask run,
+                        contact_set touching, bool full, struct iterate *it, lanes *iterations)
+{
+    mask good = run;
+    it->corner = NULL;
+    it->ambiguous = it->unsolved = MASK_NONE;
+    it->before = from->impulse;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        it->torque[i] = torque[i];
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const bool here = touching >> c & 1;
+        it->active[c] = MASK_NONE;
+        it->r[c][0] = it->r[c][1] = lanes_of(0);
+        if (!here)
+            continue;
+        it->active[c] = full ? LANES_ALL : ordinary_active(set, from, c);
+        good &= LANES_NOT(it->active[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
+        for (int a = 0; a < 2; a++)
+            it->r[c][a] = choose(it->active[c], from->impulse[c][a], lanes_of(0));
+    }
+    good &= ordinary_newton(q, set, from, h, good, touching, it, iterations);
+    return good & LANES_NOT(it->unsolved | it->ambiguous);
+}
+
+/* Tries one ordinary step, arguments as above. Returns the lanes where it was one. */
+HOT mask ordinary_try(const struct ordinary *q, const struct setting *set,
+                      const struct motion *from, const lanes *torque, lanes h, mask run,
+                      contact_set touching, bool full, struct iterate *it,
+                      struct step_report *report)
+{
+    lanes iterations;
+    mask good = ordinary_reach(q, set, from, torque, h, run, touching, full, it, &iterations);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
+    good &= LANES_NOT(ordinary_arrivals(set, it));
+    good = step_finish(set, from, h, touching, full ? STEP_FULL : STEP_ORDINARY, MASK_NONE, good,
+                       false, it, report);
+    good &= LANES_NOT(ordinary_arrivals(set, it)); /* removing position errors may bring some */
+    report->iterations = report->evaluations = iterations;
+    return good;
+}
+
+/* Keeps what ordinary_try found, in the lanes of `good`, or in all: the motion moves on. */
+HOT void ordinary_keep(struct ordinary *q, const struct iterate *it, lanes h, bool all, mask good,
+                       struct motion *now)
+{
+    const mask second = mask_less(lanes_of(0), q->known);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        const lanes change = it->w[i] - now->w[i];
+        q->before[i] = choose(second, q->change[i], change);
+        q->change[i] = change;
+    }
+    q->known = lanes_of(1);
+    q->turns =
+        choose(mask_less_equal(lanes_of(ORDINARY_TURNS), q->turns), lanes_of(1), q->turns + 1);
+    step_commit(now->t + h, it, all, good, MASK_NONE, now);
+}
+
+#endif

@@ -1,0 +1,106 @@
+/* report.h - what a step tells of itself: its share of the answers, and what comes with it. */
+#ifndef STANCE_CORE_IMPLICIT_REPORT_H
+#define STANCE_CORE_IMPLICIT_REPORT_H
+
+#include "motion.h"
+
+/* By which steps an answer is told (STANCE_ANSWERS in stance.h), and code for those that are. */
+enum told { TOLD_own, TOLD_each, TOLD_touching, TOLD_rare };
+#define WHERE_TOLD_own(...)
+#define WHERE_TOLD_each(...) __VA_ARGS__
+#define WHERE_TOLD_touching(...) __VA_ARGS__
+#define WHERE_TOLD_rare(...) __VA_ARGS__
+
+/* What a step did; consists of lanes (choose_all). */
+struct step_report {
+#define TELL(name, type, how, told, unit, text) WHERE_TOLD_##told(lanes name;)
+    STANCE_ANSWERS(TELL)
+    lanes impulse[SCENE_CONTACTS][2]; /* N s */
+    lanes slip[SCENE_CONTACTS];       /* m, where loaded */
+    lanes torque[ACTUATORS];          /* N m, as applied at the end */
+    lanes work;                       /* J, of actuators and other outer forces */
+    lanes least[SCENE_CONTACTS];      /* smallest normal force, N */
+    lanes landed;                     /* 1: a contact came to the ground */
+    lanes failure;                    /* stance_failure, or 0: the state tells */
+};
+
+/* Residuals of the contact laws at a contact with force (or impulse) r and velocity u, the normal
+ * one relative to what restitution asks for. */
+HOT void report_residuals(struct step_report *report, mask part, lanes friction, const lanes r[2],
+                          const lanes u[2])
+{
+    const lanes none = lanes_of(0), bound = friction * r[0], along = lanes_abs(u[1]);
+    const mask loaded = part & mask_less(none, r[0]);
+    const lanes normal = choose(loaded, lanes_abs(u[0]), lanes_max(-u[0], none));
+    report->signorini_residual = lanes_max(choose(part, normal, none), report->signorini_residual);
+    const lanes beyond = lanes_abs(r[1]) / choose(loaded, r[0], lanes_of(1)) - friction;
+    report->coulomb_residual =
+        choose(loaded, lanes_max(beyond, report->coulomb_residual), report->coulomb_residual);
+    const mask opposed =
+        mask_less_equal((1 - 1e-9) * bound, lanes_abs(r[1])) & mask_less_equal(r[1] * u[1], none);
+    report->dissipation_residual =
+        choose(loaded & LANES_NOT(opposed), lanes_max(along, report->dissipation_residual),
+               report->dissipation_residual);
+}
+
+/* No answer told. */
+static inline void report_clear_answers(struct step_report *report)
+{
+    const lanes none = lanes_of(0);
+#define UNTOLD(name, type, how, told, unit, text) WHERE_TOLD_##told(report->name = none;)
+    STANCE_ANSWERS(UNTOLD)
+}
+
+/* A report of nothing, to add others to. */
+static inline void report_clear(struct step_report *report)
+{
+    memset(report, 0, sizeof *report);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        report->least[c] = lanes_of(INFINITY);
+}
+/* The same in one lane. */
+static inline void report_clear_lane(struct step_report *report, int lane)
+{
+    lanes *const all = (lanes *)report;
+    for (size_t i = 0; i < sizeof *report / sizeof(lanes); i++)
+        lane_set(&all[i], lane, 0);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        lane_set(&report->least[c], lane, INFINITY);
+}
+/* Forces of the contacts in `part`, N. */
+static inline void report_forces(struct step_report *report, const mask *part,
+                                 const lanes force[SCENE_CONTACTS][2])
+{
+    const lanes none = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask loaded = part[c] & mask_less(none, force[c][0]);
+        const lanes ratio = lanes_abs(force[c][1]) / choose(loaded, force[c][0], lanes_of(1));
+        report->friction_used =
+            choose(loaded, lanes_max(ratio, report->friction_used), report->friction_used);
+        report->least[c] = lanes_min(choose(loaded, force[c][0], none), report->least[c]);
+    }
+}
+
+/* Adds a part of a step to the whole. */
+static inline void report_add(struct step_report *sum, const struct step_report *part)
+{
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        sum->slip[c] += part->slip[c];
+        for (int a = 0; a < 2; a++)
+            sum->impulse[c][a] += part->impulse[c][a];
+    }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        sum->torque[i] = part->torque[i];
+    sum->landed = lanes_max(part->landed, sum->landed);
+    sum->work += part->work;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        sum->least[c] = lanes_min(part->least[c], sum->least[c]);
+#define ADD_SUM(name) sum->name += part->name;
+#define ADD_MAX(name) sum->name = lanes_max(part->name, sum->name);
+#define ADD_STEPS(name) ADD_MAX(name)
+#define ADD(name, type, how, told, unit, text) WHERE_TOLD_##told(ADD_##how(name))
+    STANCE_ANSWERS(ADD)
+    sum->failure = part->failure;
+}
+
+#endif

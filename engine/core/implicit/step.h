@@ -1,0 +1,309 @@
+/* step.h - one time step of every lane: implicit in the velocity, contact exact, any theta.
+ *
+ * With w the velocity sought, w0 and s0 the state before, theta = METHOD_THETA, the equation is
+ *
+ *   P(w, r) = A(u) (w - w0) - h F(u, v) - H^T r = 0,   v = (1 - theta) w0 + theta w,
+ *   u = s0 + h theta v,   end position s1 = s0 + h v,
+ *
+ * the paper's (8) for theta = 1. Contact impulses r obey Signorini's and Coulomb's laws with the
+ * velocity H(s1) w at the end (contact.h); they are fully implicit whatever theta is, or a ball
+ * would rebound at e = 0. The paper's steps (i)-(vi) run as one Newton iteration: each iterate
+ * linearises P and H w exactly (H^T r and H w too, so convergence is quadratic), takes the free
+ * velocity (11), builds the Delassus operator (14), solves the contact laws and updates (13).
+ *
+ * Which contacts take part: those closed before the step, and each whose gap at some iterate's s1
+ * is not positive. The paper tests the free motion's gap instead; testing the iterate lets a foot
+ * that already stands hold the robot up while the other foot is judged.
+ *
+ * Impulse directions are taken at u; in a step with an impact at s1 for theta < 1 too, so that an
+ * impact at e = 0 cannot add energy: with the same H in P and in the laws the impulses add
+ * r.U - r.G r / 2 <= 0, G = H A^-1 H^T.
+ *
+ * Velocity laws leave a position error of O(h |v|) at a touchdown and O(h^2) later. It is removed
+ * after the step by moving s1 along A^-1 H_N^T (with the step's matrix for A) until the gaps of
+ * loaded contacts are zero, or after a rebound what is left of the step at the rebound's speed, and
+ * none is negative. At the place that has moved H is another one: the velocity then moves along
+ * A^-1 H^T until loaded contacts have the normal velocity that the laws ask for, and those that
+ * stick no other, once more exactly. (A is the step's matrix in an ordinary step, where that is
+ * little; in a step with an impact it is the inertia at the end, so that no energy comes of it.)
+ * The energy that both change is reported, and the residuals are those of the state at the end.
+ */
+#ifndef STANCE_CORE_IMPLICIT_STEP_H
+#define STANCE_CORE_IMPLICIT_STEP_H
+
+#include "project.h"
+
+#define STEP_MAX_ITERATIONS 25
+#define STEP_TOLERANCE                                                                             \
+    1e-7 /* last Newton correction, m/s and rad/s; the error left is its square */
+#define STEP_FROZEN_RESIDUAL                                                                       \
+    1e-6 /* m/s: a step with frozen geometry that is further off is refused */
+#define STEP_MOST_GAIN                                                                             \
+    0.03 /* share of kinetic energies and work; a step that gains more is refused */
+#define STEP_MOST_REBOUND 4 /* the same for a step with a rebound, of all kinetic energy */
+
+/* Kinetic energy that the contact impulses added: r.U - x^T A x / 2, x = A^-1 H^T r. */
+static inline lanes impact_energy(const struct setting *set, const struct iterate *it)
+{
+    const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
+    scene_matrix A;
+    scene_inertia(&set->body, trig, &A);
+    lanes x[SCENE_COORDINATES], work = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        x[i] = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes response[2][SCENE_COORDINATES], u[2];
+        scene_contact_response(&set->body, &A, false, &it->end, c, response);
+        scene_contact_velocity(&set->body, &it->end, c, it->w, u);
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            x[i] += response[0][i] * it->r[c][0] + response[1][i] * it->r[c][1];
+        work += u[0] * it->r[c][0] + u[1] * it->r[c][1];
+    }
+    return work - scene_kinetic(&set->body, trig, x);
+}
+
+/* Lanes where an iterate with frozen geometry obeys the contact laws. */
+static inline mask step_obeys(const struct setting *set, const struct motion *from,
+                              const struct iterate *it)
+{
+    struct step_report laws;
+    report_clear(&laws);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes u[2];
+        scene_contact_velocity(&set->body, &it->end, c, it->w, u);
+        u[0] = lanes_fma(set->restitution, lanes_min(from->approach[c], lanes_of(0)), u[0]);
+        report_residuals(&laws, it->active[c], set->friction, it->r[c], (const lanes *)u);
+    }
+    return mask_less_equal(lanes_max(laws.signorini_residual, laws.dissipation_residual),
+                           lanes_of(STEP_FROZEN_RESIDUAL));
+}
+
+/* Lanes where the energy gained is what discretisation may gain. The equation of a long step has
+ * further roots, at which the robot has turned around several times and is much too fast: such a
+ * step is as good as not converged. */
+HOT mask step_balances(const struct motion *from, const struct iterate *it, lanes work)
+{
+    /* At rest there is rounding: a share of the potential energy, of whatever size. */
+    const lanes moving = from->kinetic + it->kinetic + lanes_abs(work);
+    const lanes rounding = lanes_abs(from->energy) + lanes_abs(it->energy);
+    const lanes admitted = lanes_fma(lanes_of(STEP_MOST_GAIN), moving,
+                                     lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12)));
+    return mask_less_equal(it->energy - from->energy - work, admitted);
+}
+/* The same for a step with a rebound: the place of the impact inside the step decides on its
+ * energy, and Newton's restitution may add some; what multiplies the motion is another root still.
+ */
+HOT mask step_rebounds(const struct motion *from, const struct iterate *it, lanes work)
+{
+    const lanes fallen = (it->energy - it->kinetic) - (from->energy - from->kinetic);
+    const lanes source = from->kinetic + lanes_abs(work) + lanes_abs(fallen);
+    const lanes rounding = lanes_abs(from->energy) + lanes_abs(it->energy);
+    return mask_less_equal(it->kinetic,
+                           lanes_fma(lanes_of(STEP_MOST_REBOUND), source,
+                                     lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12))));
+}
+
+/* What one contact says in a step that has arrived: velocity u, impulse r, where it is in `part`.
+ * What hardly carries has no direction, see CONTACT_TOLERANCE. */
+HOT void report_contact(const struct setting *set, const struct motion *from, lanes h, mask part,
+                        lanes load, int c, const lanes u[2], const lanes r[2],
+                        struct step_report *report)
+{
+    const lanes none = lanes_of(0);
+    const mask loaded = part & mask_less(none, r[0]);
+    const mask carries = mask_less(1e-6 * load, r[0]);
+    const lanes relative[2] = {
+        lanes_fma(set->restitution, lanes_min(from->approach[c], none), u[0]), u[1]};
+    const lanes carried[2] = {choose(carries, r[0], none), choose(carries, r[1], none)};
+    report_residuals(report, part, set->friction, carried, relative);
+    report->slip[c] = choose(loaded, h * lanes_abs(u[1]), none);
+    for (int a = 0; a < 2; a++)
+        report->impulse[c][a] = choose(loaded, r[a], none);
+    const lanes ratio = lanes_abs(r[1]) / choose(loaded, r[0], lanes_of(1));
+    report->friction_used =
+        choose(loaded, lanes_max(ratio, report->friction_used), report->friction_used);
+    report->least[c] = choose(loaded, r[0] / h, none);
+}
+
+/* Lanes where a contact carries that did not stand on the ground before. */
+HOT mask step_lands(const struct motion *from, contact_set touching, const struct iterate *it)
+{
+    mask lands = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            lands |= it->active[c] & mask_less(lanes_of(0), it->r[c][0]) &
+                     (mask_less(lanes_of(STEP_CLOSED), from->gap[c]) |
+                      mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
+    return lands;
+}
+
+/* What an iterate that has arrived leaves: position errors removed, the balance of energy, the
+ * report. `touching`: contacts that are active anywhere; `kind`: with STEP_ANY not all were closed
+ * before, and those in `impact` are; `frozen`: the geometry was. Returns the lanes of `converged`
+ * whose step is admitted. */
+HOT mask step_finish(const struct setting *set, const struct motion *from, lanes h,
+                     contact_set touching, enum step_kind kind, mask impact, mask converged,
+                     bool frozen, struct iterate *it, struct step_report *report)
+{
+    const lanes none = lanes_of(0);
+    const bool impacts = kind == STEP_ANY;
+    mask somewhere = MASK_NONE;
+    lanes moved[SCENE_COORDINATES], load = none;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        moved[i] = it->s1[i] - from->s[i];
+    report->work = scene_work(&set->body, h, from->t + METHOD_THETA * h, it->torque, moved);
+    report_clear_answers(report);
+    report->failure = none;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        report->torque[i] = it->torque[i];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            load += lanes_max(it->r[c][0], none);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            somewhere |= it->active[c] & converged;
+    if (impacts && mask_any(somewhere & impact))
+        report->impact_energy = choose(somewhere & impact, impact_energy(set, it), none);
+    if (frozen)
+        converged &= step_obeys(set, from, it);
+    lanes u[2][2];
+    mask lands = MASK_NONE;
+    if (impacts)
+        lands = step_lands(from, touching, it);
+    if (touching) {
+        const mask right = impacts ? project_far(set, from, h, touching, lands, somewhere, it, u,
+                                                 &report->projection_energy)
+                                   : project_near(set, from, h, touching, kind == STEP_FULL,
+                                                  somewhere, it, u, &report->projection_energy);
+        converged &= right | LANES_NOT(somewhere);
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        report->slip[c] = report->impulse[c][0] = report->impulse[c][1] = none;
+        report->least[c] = none;
+        const bool here = touching >> c & 1;
+        if (!here)
+            scene_contact_velocity(&set->body, &it->end, c, it->w, u[c]);
+        it->approach[c] = u[c][0];
+        if (here)
+            report_contact(set, from, h, it->active[c] & converged, load, c, (const lanes *)u[c],
+                           it->r[c], report);
+    }
+    it->kinetic = scene_kinetic(&set->body, &it->end, it->w);
+    it->energy = it->kinetic + scene_potential(&set->body, it->s1, &it->end);
+    const mask rebounds = somewhere & mask_less(none, set->restitution);
+    converged &= (rebounds & step_rebounds(from, it, report->work)) |
+                 (LANES_NOT(rebounds) & step_balances(from, it, report->work));
+    report->ambiguous_steps = choose(it->ambiguous & converged, lanes_of(1), none);
+    report->landed = choose(lands, lanes_of(1), none);
+    return converged;
+}
+
+/* Hands the iterate's end over, in the lanes of `done`, or in all. */
+HOT void step_commit(lanes t, const struct iterate *it, bool all, mask done, mask landed,
+                     struct motion *to)
+{
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        to->s[i] = choose_unless(all, done, it->s1[i], to->s[i]);
+        to->w[i] = choose_unless(all, done, it->w[i], to->w[i]);
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        to->gap[c] = choose_unless(all, done, it->gap[c], to->gap[c]);
+        to->approach[c] = choose_unless(all, done, it->approach[c], to->approach[c]);
+        for (int a = 0; a < 2; a++)
+            to->impulse[c][a] = choose_unless(all, done, choose(landed, lanes_of(0), it->r[c][a]),
+                                              to->impulse[c][a]);
+    }
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        to->trig.sine[a] = choose_unless(all, done, it->end.sine[a], to->trig.sine[a]);
+        to->trig.cosine[a] = choose_unless(all, done, it->end.cosine[a], to->trig.cosine[a]);
+    }
+    to->t = choose_unless(all, done, t, to->t);
+    to->energy = choose_unless(all, done, it->energy, to->energy);
+    to->kinetic = choose_unless(all, done, it->kinetic, to->kinetic);
+}
+
+/* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
+ * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
+ * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
+ * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
+ * between two modes for every h. `corner`: as in law_inside; converged is then only what agrees
+ * with it. Returns the lanes that converged. */
+COLD mask take_step_at(const int *corner, const struct setting *set, const struct motion *from,
+                       const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
+                       struct motion *to, struct step_report *report)
+{
+    struct iterate it;
+    it.corner = corner;
+    mask impact = MASK_NONE, running = run;
+    mask closed[SCENE_CONTACTS];
+    lanes before[SCENE_CONTACTS][2];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        it.w[i] = from->w[i];
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        it.torque[i] = torque[i];
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        closed[c] = mask_less(lanes_of(0), set->may_touch[c]) &
+                    mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
+        it.active[c] = closed[c];
+        impact |= closed[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH));
+        it.r[c][0] = it.r[c][1] = lanes_of(0);
+        for (int a = 0; a < 2; a++) {
+            before[c][a] = choose(impact, lanes_of(0), from->impulse[c][a]);
+            for (int i = 0; i < SCENE_COORDINATES; i++)
+                it.response[c][a][i] = lanes_of(0);
+        }
+    }
+    it.before = (const lanes(*)[2])before;
+    it.ambiguous = it.unsolved = MASK_NONE;
+    iterate_place(set, from, h, false, &it);
+    lanes iterations = lanes_of(0);
+    for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
+        /* All or none: position errors may have to be removed at a contact that is not active. */
+        const mask somewhere = (it.active[0] | it.active[SECOND]) & running;
+        const contact_set touching = mask_any(somewhere) ? (1u << SCENE_CONTACTS) - 1 : 0;
+        iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
+                       touching, &it);
+        iterations += choose(running, lanes_of(1), lanes_of(0));
+        iterate_place(set, from, h, k >= freeze_after, &it);
+        mask news = MASK_NONE;
+        for (int c = 0; c < SCENE_CONTACTS; c++) {
+            const mask hit = running & LANES_NOT(it.active[c]) &
+                             mask_less(lanes_of(0), set->may_touch[c]) &
+                             mask_less_equal(it.gap[c], lanes_of(0));
+            it.active[c] |= hit;
+            news |= hit;
+        }
+        impact |= news;
+        const mask done = mask_less_equal(it.size, STEP_TOLERANCE * iterate_speed(&it)) &
+                          LANES_NOT(news) & LANES_NOT(it.unsolved);
+        running &= LANES_NOT(done);
+    }
+    mask converged = run & LANES_NOT(running);
+    if (corner) {
+        lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES];
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            v[i] = step_velocity(from->w[i], it.w[i]);
+            u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+        }
+        converged &= law_agrees(&set->law, u, v, corner);
+    }
+    if (freeze_after < STEP_MAX_ITERATIONS)
+        iterate_place(set, from, h, false, &it);
+    if (METHOD_THETA != 1)
+        scene_trigonometry(it.s1, &it.end);
+    converged = step_finish(set, from, h, (1u << SCENE_CONTACTS) - 1, STEP_ANY, impact, converged,
+                            freeze_after < STEP_MAX_ITERATIONS, &it, report);
+    report->iterations = report->evaluations = iterations;
+    step_commit(from->t + h, &it, false, converged, mask_less(lanes_of(0), report->landed), to);
+    return converged;
+}
+
+/* The same without `corner`. */
+static inline mask take_step(const struct setting *set, const struct motion *from,
+                             const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
+                             struct motion *to, struct step_report *report)
+{
+    return take_step_at(NULL, set, from, torque, h, run, coupled, freeze_after, to, report);
+}
+
+#endif

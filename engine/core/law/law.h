@@ -1,0 +1,184 @@
+/* law.h - the control laws as the stepping core knows them: what is commanded in which state.
+ *
+ * The linear law (none, hold, state-feedback) is
+ *
+ *   torque = clip(feedforward - gain (posture - target, rate)).
+ *
+ * The decoupling law (the paper's section 3.3) drives as many coordinates as there are actuators to
+ * accelerations of its own choice, given by a PID on each:
+ *
+ *   e = kp (r - q) + kd (r' - q') + ki I,     I' = r - q,     r = setpoint + ramp min(t, duration).
+ *
+ * What torques that takes depends on the reactions of the ground; decoupling.h solves both
+ * together. I is kept within +-integral_limit and does not grow while a torque is at its limit
+ * (anti-windup).
+ *
+ * A switching law is linear inside an ellipsoid about its target and something else outside: a
+ * decoupling law, or a second linear one (`far`).
+ */
+#ifndef STANCE_CORE_LAW_LAW_H
+#define STANCE_CORE_LAW_LAW_H
+
+#include "engine/core/lanes/lanes.h"
+#include "engine/core/lanes/sizes.h"
+
+struct linear_law {
+    lanes feedforward[ACTUATORS];
+    lanes gain[ACTUATORS][2 * POSTURES];
+    lanes target[POSTURES];
+};
+
+/* One controlled coordinate; `pick` is 1 at it, 0 elsewhere. */
+struct servo {
+    lanes pick[SCENE_COORDINATES];
+    lanes setpoint, ramp, duration; /* unit of the coordinate; /s; s */
+    lanes kp, ki, kd;               /* 1/s^2, 1/s^3, 1/s */
+    lanes integral_limit;           /* of the coordinate, times s */
+};
+
+struct law {
+    struct linear_law linear, far;
+    struct servo servo[ACTUATORS];
+    lanes decouples; /* 1: torques are those of the servos, where the law does not switch */
+    lanes switches;  /* 1: `linear` inside the ellipsoid only */
+    lanes inverse_axis[2 * POSTURES]; /* of the ellipsoid, 1/rad and s/rad */
+    lanes limit;                      /* N m */
+};
+
+/* Does a law that acts all the time sum errors in any lane? */
+static inline bool law_sums(const struct law *law, bool coupled)
+{
+    mask any = MASK_NONE;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        any |= mask_less(lanes_of(0), lanes_abs(law->servo[i].ki));
+    return SCENE_ACTUATORS > 0 && coupled && mask_any(any & mask_less(lanes_of(0), law->decouples));
+}
+
+static inline void linear_torque(const struct linear_law *law, const lanes *posture,
+                                 const lanes *rate, lanes *torque)
+{
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        torque[i] = law->feedforward[i];
+        for (int j = 0; j < SCENE_POSTURE; j++)
+            torque[i] = lanes_fnma(law->gain[i][j], posture[j] - law->target[j],
+                                   lanes_fnma(law->gain[i][SCENE_POSTURE + j], rate[j], torque[i]));
+    }
+}
+
+/* Of the linear law. */
+static inline void law_torque(const struct law *law, const lanes *s, const lanes *w, lanes *torque)
+{
+    lanes posture[POSTURES], rate[POSTURES];
+    scene_posture(s, posture);
+    scene_posture(w, rate);
+    linear_torque(&law->linear, posture, rate, torque);
+}
+static inline void law_clip(const struct law *law, lanes *torque)
+{
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        torque[i] = lanes_max(lanes_min(torque[i], law->limit), -law->limit);
+}
+
+/* The linear law acting inside the step: torque and its derivative by the velocity at the end, of
+ * which the positions move by `lever` and the velocities by `rate_lever` per unit. A decoupling law
+ * holds the torque `held`. `corner`: NULL, or for each torque 0 where it is taken for free, -1 or 1
+ * where it is taken for being at its limit, whatever is commanded. */
+static inline void law_inside(const struct law *law, const lanes *s, const lanes *w, lanes lever,
+                              double rate_lever, const lanes *held, const int *corner,
+                              lanes *torque, lanes rate[ACTUATORS][POSTURES])
+{
+    lanes command[ACTUATORS];
+    const mask decouples = mask_less(lanes_of(0), law->decouples);
+    law_torque(law, s, w, command);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        torque[i] = command[i];
+    law_clip(law, torque);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        mask free = mask_less(lanes_abs(command[i]), law->limit);
+        if (corner) {
+            torque[i] = corner[i] == 0 ? command[i] : corner[i] > 0 ? law->limit : -law->limit;
+            free = corner[i] == 0 ? LANES_ALL : MASK_NONE;
+        }
+        torque[i] = choose(decouples, held[i], torque[i]);
+        for (int j = 0; j < SCENE_POSTURE; j++) {
+            const lanes slope = law->linear.gain[i][j] * lever +
+                                law->linear.gain[i][SCENE_POSTURE + j] * rate_lever;
+            rate[i][j] = choose(free, -slope, lanes_of(0));
+        }
+    }
+}
+
+/* Lanes where the torques at s, w are what `corner` took them for. */
+static inline mask law_agrees(const struct law *law, const lanes *s, const lanes *w,
+                              const int *corner)
+{
+    lanes command[ACTUATORS];
+    mask agrees = LANES_ALL;
+    law_torque(law, s, w, command);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        agrees &= corner[i] == 0 ? mask_less_equal(lanes_abs(command[i]), (1 + 1e-12) * law->limit)
+                                 : mask_less_equal((1 - 1e-12) * law->limit,
+                                                   corner[i] > 0 ? command[i] : -command[i]);
+    return agrees;
+}
+
+/* Lanes inside the ellipsoid. */
+static inline mask law_near(const struct law *law, const lanes *posture, const lanes *rate)
+{
+    lanes sum = lanes_of(0);
+    for (int j = 0; j < SCENE_POSTURE; j++) {
+        const lanes angle = law->inverse_axis[j] * (posture[j] - law->linear.target[j]);
+        const lanes turn = law->inverse_axis[SCENE_POSTURE + j] * rate[j];
+        sum += angle * angle + turn * turn;
+    }
+    return mask_less_equal(sum, lanes_of(1));
+}
+
+/* Errors r - q of the servos and the accelerations e that they ask for. q, v: the scene's own
+ * coordinates and their rates. */
+static inline void law_servo(const struct law *law, lanes t, const lanes *q, const lanes *v,
+                             const lanes *integral, lanes *error, lanes *wanted)
+{
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        const struct servo *const servo = &law->servo[i];
+        lanes position = lanes_of(0), rate = lanes_of(0);
+        for (int k = 0; k < SCENE_COORDINATES; k++) {
+            position += servo->pick[k] * q[k];
+            rate += servo->pick[k] * v[k];
+        }
+        const mask moves = mask_less(t, servo->duration);
+        const lanes reference = servo->setpoint + servo->ramp * lanes_min(t, servo->duration);
+        error[i] = reference - position;
+        wanted[i] = servo->kp * error[i] +
+                    servo->kd * (choose(moves, servo->ramp, lanes_of(0)) - rate) +
+                    servo->ki * integral[i];
+    }
+}
+
+/* Rates of the integrals: the errors; zero where nothing reads them, and where the integral would
+ * leave its range or grow while a torque is at its limit. */
+static inline void law_integral_rate(const struct law *law, const lanes *error,
+                                     const lanes *integral, const lanes *command, lanes *rate)
+{
+    mask clipped = MASK_NONE;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        clipped |= mask_less(law->limit, lanes_abs(command[i]));
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        const mask grows = mask_less_equal(lanes_of(0), error[i] * integral[i]);
+        const mask full = mask_less_equal(law->servo[i].integral_limit, lanes_abs(integral[i]));
+        const mask unread = mask_less_equal(lanes_abs(law->servo[i].ki), lanes_of(0));
+        rate[i] = choose(unread | (grows & (clipped | full)), lanes_of(0), error[i]);
+    }
+}
+/* Integrals after an interval h at these rates. */
+static inline void law_integrate(const struct law *law, mask where, lanes h, const lanes *rate,
+                                 lanes *integral)
+{
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        const lanes limit = law->servo[i].integral_limit;
+        const lanes next = lanes_max(lanes_min(integral[i] + h * rate[i], limit), -limit);
+        integral[i] = choose(where, next, integral[i]);
+    }
+}
+
+#endif

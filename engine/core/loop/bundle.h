@@ -1,0 +1,257 @@
+/* bundle.h - many cases side by side, one in each lane: what is kept of them, and how a case is put
+ * into a lane.
+ */
+#ifndef STANCE_CORE_LOOP_BUNDLE_H
+#define STANCE_CORE_LOOP_BUNDLE_H
+
+#include "engine/core/law/known_basin.h"
+#include "engine/core/mode/between_events.h"
+
+/* A case that takes more evaluations than this is given up: so many at once, so many a step. */
+#define BUNDLE_WORK 1e7
+#define BUNDLE_WORK_STEP 1e3
+#define BUNDLE_ERROR_FLOOR 1e-9 /* of settle.angle and settle.rate: smaller errors do not grow */
+
+/* A condition that must hold for a while without its measure growing. */
+struct window {
+    lanes begin;   /* step at which it began; negative: it does not hold */
+    lanes measure; /* then */
+};
+
+/* The answers that are gathered over steps, see STANCE_ANSWERS. */
+#define WHERE_GATHERED_END(...)
+#define WHERE_GATHERED_SUM(...) __VA_ARGS__
+#define WHERE_GATHERED_STEPS(...) __VA_ARGS__
+#define WHERE_GATHERED_MAX(...) __VA_ARGS__
+#define WHERE_GATHERED_MIN(...) __VA_ARGS__
+struct gathered {
+#define GATHERED(name, type, how, told, unit, text) WHERE_GATHERED_##how(lanes name;)
+    STANCE_ANSWERS(GATHERED)
+};
+/* What they begin with. */
+#define GATHERED_FROM_SUM 0
+#define GATHERED_FROM_STEPS 0
+#define GATHERED_FROM_MAX 0
+#define GATHERED_FROM_MIN INFINITY
+
+struct bundle {
+    const stance_feed *feed;
+    mask live;                        /* lanes that are not idle */
+    int filled;                       /* how many */
+    int recorded, capturing, unusual; /* of these: see case_is_unusual */
+    double target_key[sizeof(struct setting) / sizeof(lanes) + 8]; /* see rest_target */
+    bool target_known, target_holds;
+    /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
+    _Alignas(sizeof(lanes)) const stance_case *which[LANES]; /* NULL: idle */
+    stance_result *result[LANES];
+    struct setting set;
+    struct motion now;
+    lanes torque[ACTUATORS];  /* in force */
+    lanes pending[ACTUATORS]; /* computed at the last sample, in force from the next one on ... */
+    lanes delayed;            /* ... where this is 1 */
+    lanes h, n, steps;        /* step length, steps done, steps wanted */
+    lanes most_work;          /* evaluations, see BUNDLE_WORK */
+    lanes sample_every, next_sample;
+    lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
+    int64_t row[LANES];
+    lanes recorded_at;                /* step of the row before */
+    lanes impulse[SCENE_CONTACTS][2]; /* since then */
+
+    lanes judge_on_way, has_target, mine[SCENE_CONTACTS]; /* 1: the contact to stand on */
+    lanes angle_scale, rate_scale;                        /* 1 / settle.angle and 1 / settle.rate */
+    lanes settle_steps, fall_height;
+    struct window settled, resting;
+    struct known_basin capture;
+
+    struct gathered answer;
+    lanes energy_bound; /* J, initial energy and the work since */
+    lanes failure;
+    struct advance advance;
+};
+
+/* Is there any case of a kind that is counted? A hint, as mask_any. */
+static inline bool bundle_some(int count)
+{
+    return count > 0 || lanes_doubt();
+}
+
+/* Steps per sample; 0: the law acts inside the step. */
+static int64_t case_samples(const stance_case *c)
+{
+#ifdef ADVANCE_SAMPLES_LAWS
+    if (c->sample_every == 0 && c->decouples)
+        return 1;
+#endif
+    return c->sample_every;
+}
+
+/* A law that acts inside the step couples the angles: such cases run in bundles of their own, so
+ * that a case's arithmetic depends on nothing but the case. */
+static bool case_is_coupled(const stance_case *c)
+{
+    if (case_samples(c) > 0)
+        return false;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        for (int j = 0; j < 2 * SCENE_POSTURE; j++)
+            if (c->gain[i][j] != 0)
+                return true;
+    return SCENE_ACTUATORS > 0 && c->decouples;
+}
+
+static inline void set_all(lanes *v, int n, int lane, const double *x)
+{
+    for (int i = 0; i < n; i++)
+        lane_set(&v[i], lane, x[i]);
+}
+
+static void bundle_load_linear(struct linear_law *law, int lane, const stance_linear_law *c)
+{
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        lane_set(&law->feedforward[i], lane, c->feedforward[i]);
+        for (int j = 0; j < SCENE_POSTURE; j++) {
+            lane_set(&law->gain[i][j], lane, c->gain[i][j]);
+            lane_set(&law->gain[i][SCENE_POSTURE + j], lane, c->gain[i][SCENE_POSTURE + j]);
+        }
+    }
+    set_all(law->target, SCENE_POSTURE, lane, c->target);
+}
+
+static void bundle_load_law(struct law *law, int lane, const stance_case *c)
+{
+    stance_linear_law linear;
+    memcpy(linear.feedforward, c->feedforward, sizeof linear.feedforward);
+    memcpy(linear.gain, c->gain, sizeof linear.gain);
+    memcpy(linear.target, c->target, sizeof linear.target);
+    bundle_load_linear(&law->linear, lane, &linear);
+    bundle_load_linear(&law->far, lane, &c->far);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        struct servo *const servo = &law->servo[i];
+        const stance_servo *const from = &c->servo[i];
+        for (int k = 0; k < SCENE_COORDINATES; k++)
+            lane_set(&servo->pick[k], lane, k == from->coordinate);
+        lane_set(&servo->setpoint, lane, from->setpoint);
+        lane_set(&servo->ramp, lane, from->ramp);
+        lane_set(&servo->duration, lane, from->duration);
+        lane_set(&servo->kp, lane, from->kp);
+        lane_set(&servo->ki, lane, from->ki);
+        lane_set(&servo->kd, lane, from->kd);
+        lane_set(&servo->integral_limit, lane, from->integral_limit);
+    }
+    lane_set(&law->decouples, lane, c->decouples);
+    lane_set(&law->switches, lane, c->switches);
+    for (int j = 0; j < SCENE_POSTURE; j++) {
+        lane_set(&law->inverse_axis[j], lane, c->switches ? 1 / c->switch_axis[j] : 0);
+        lane_set(&law->inverse_axis[SCENE_POSTURE + j], lane,
+                 c->switches ? 1 / c->switch_axis[SCENE_POSTURE + j] : 0);
+    }
+    lane_set(&law->limit, lane, c->torque_limit);
+}
+
+static void bundle_load_setting(struct setting *set, int lane, const stance_case *c)
+{
+    scene_load_body(&set->body, lane, c->robot);
+    lane_set(&set->friction, lane, c->friction);
+    lane_set(&set->restitution, lane, c->restitution);
+    lane_set(&set->prefer, lane, c->most_energy ? -1 : 1);
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
+    bundle_load_law(&set->law, lane, c);
+}
+
+static void bundle_clear_answers(struct bundle *b, int lane)
+{
+    lanes *const zero[] = {&b->failure, &b->n, &b->recorded_at, &b->next_sample, &b->now.t};
+    for (size_t i = 0; i < sizeof zero / sizeof *zero; i++)
+        lane_set(zero[i], lane, 0);
+#define CLEAR(name, type, how, told, unit, text)                                                   \
+    WHERE_GATHERED_##how(lane_set(&b->answer.name, lane, GATHERED_FROM_##how);)
+    STANCE_ANSWERS(CLEAR)
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        for (int a = 0; a < 2; a++) {
+            lane_set(&b->impulse[i][a], lane, 0);
+            lane_set(&b->now.impulse[i][a], lane, 0);
+        }
+    lane_set(&b->settled.begin, lane, -1);
+    lane_set(&b->settled.measure, lane, 0);
+    lane_set(&b->resting.begin, lane, -1);
+    lane_set(&b->resting.measure, lane, 0);
+}
+
+/* Is there more to its torques than a linear law of the present state? */
+static bool case_is_unusual(const stance_case *c)
+{
+    return c->noise != 0 || c->delay > 0 || c->decouples || c->switches;
+}
+
+/* Counts a case among those that cost more, or (-1) no longer. */
+static void bundle_count(struct bundle *b, const stance_case *c, int by)
+{
+    b->recorded += c->trajectory && c->trajectory->rows > 0 ? by : 0;
+    b->capturing += known_basin_applies(c) ? by : 0;
+    b->unusual += case_is_unusual(c) ? by : 0;
+}
+
+/* Puts a case into a lane. The motion's derived parts follow in bundle_begin. */
+static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance_result *result)
+{
+    double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    b->which[lane] = c;
+    b->result[lane] = result;
+    b->live |= mask_of_lane(lane);
+    b->filled++;
+    bundle_count(b, c, 1);
+    bundle_load_setting(&b->set, lane, c);
+    scene_enter(c->robot, c->position, c->velocity, s, w);
+    set_all(b->now.s, SCENE_COORDINATES, lane, s);
+    set_all(b->now.w, SCENE_COORDINATES, lane, w);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        lane_set(&b->torque[i], lane, 0);
+        lane_set(&b->pending[i], lane,
+                 fmax(fmin(c->feedforward[i], c->torque_limit), -c->torque_limit));
+        lane_set(&b->now.integral[i], lane, 0);
+    }
+    lane_set(&b->delayed, lane, c->delay > 0);
+    bundle_clear_answers(b, lane);
+    advance_load(&b->advance, lane, c);
+    lane_set(&b->h, lane, c->step);
+    lane_set(&b->steps, lane, (double)c->steps);
+    lane_set(&b->most_work, lane, BUNDLE_WORK + BUNDLE_WORK_STEP * (double)c->steps);
+    lane_set(&b->sample_every, lane, (double)case_samples(c));
+    if (case_samples(c) == 0)
+        lane_set(&b->next_sample, lane, INFINITY);
+    lane_set(&b->next_record, lane, c->trajectory && c->trajectory->rows > 0 ? 0 : INFINITY);
+    b->row[lane] = 0;
+    lane_set(&b->judge_on_way, lane, c->settle);
+    lane_set(&b->has_target, lane, c->has_target);
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        lane_set(&b->mine[i], lane, c->support == i);
+    lane_set(&b->angle_scale, lane, 1 / c->settle_angle);
+    lane_set(&b->rate_scale, lane, 1 / c->settle_rate);
+    lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));
+    lane_set(&b->fall_height, lane, c->fall_height);
+    known_basin_load(&b->capture, lane, c);
+}
+
+/* Gaps, approach and trigonometry of freshly loaded lanes. A standing foot is exactly closed. */
+static void bundle_begin(struct bundle *b, mask fresh)
+{
+    scene_trig trig;
+    scene_trigonometry(b->now.s, &trig);
+    for (int a = 0; a < SCENE_ANGLES; a++) {
+        b->now.trig.sine[a] = choose(fresh, trig.sine[a], b->now.trig.sine[a]);
+        b->now.trig.cosine[a] = choose(fresh, trig.cosine[a], b->now.trig.cosine[a]);
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes u[2];
+        scene_contact_velocity(&b->set.body, &trig, c, b->now.w, u);
+        b->now.gap[c] = choose(fresh, scene_gap(&b->set.body, b->now.s, &trig, c), b->now.gap[c]);
+        b->now.approach[c] = choose(fresh, u[0], b->now.approach[c]);
+    }
+    struct motion begin = b->now;
+    motion_energy(&b->set, &begin);
+    b->now.kinetic = choose(fresh, begin.kinetic, b->now.kinetic);
+    b->now.energy = choose(fresh, begin.energy, b->now.energy);
+    b->energy_bound = choose(fresh, begin.energy, b->energy_bound);
+}
+
+#endif

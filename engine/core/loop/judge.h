@@ -1,0 +1,179 @@
+/* judge.h - what a bundle takes down after each step, and the outcome rules. */
+#ifndef STANCE_CORE_LOOP_JUDGE_H
+#define STANCE_CORE_LOOP_JUDGE_H
+
+#include "rest.h"
+
+/* Largest values so far, and sums. */
+HOT void account_largest(bool all, mask ok, lanes value, lanes *largest)
+{
+    *largest = choose_unless(all, ok, lanes_max(value, *largest), *largest);
+}
+HOT void account_sum(bool all, mask ok, lanes value, lanes *sum)
+{
+    *sum = choose_unless(all, ok, *sum + value, *sum);
+}
+
+#define ACCOUNT_SUM(value, sum) account_sum(all, ok, value, sum)
+#define ACCOUNT_STEPS(value, sum) account_sum(all, ok, value, sum)
+#define ACCOUNT_MAX(value, largest) account_largest(all, ok, value, largest)
+
+/* Those answers that such steps tell. */
+HOT void account_told(struct bundle *b, bool all, mask ok, enum told by,
+                      const struct step_report *report)
+{
+#define ACCOUNT(name, type, how, told, unit, text)                                                 \
+    WHERE_TOLD_##told(if (by == TOLD_##told) ACCOUNT_##how(report->name, &b->answer.name);)
+    STANCE_ANSWERS(ACCOUNT)
+}
+
+/* What a step with contacts in `touching` reports of them. */
+HOT void account_contacts(struct bundle *b, bool all, mask ok, contact_set touching,
+                          const struct step_report *report)
+{
+    const lanes none = lanes_of(0);
+    if (touching)
+        account_told(b, all, ok, TOLD_touching, report);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const bool here = touching >> c & 1;
+        const mask support = ok & mask_less(none, b->mine[c]);
+        b->answer.least_normal_force =
+            choose(support, lanes_min(here ? report->least[c] : none, b->answer.least_normal_force),
+                   b->answer.least_normal_force);
+        if (!here)
+            continue;
+        account_largest(false, ok & mask_less(none, b->set.may_touch[c]), -b->now.gap[c],
+                        &b->answer.max_penetration);
+        account_sum(all, ok, report->slip[c], &b->answer.slip_distance);
+        for (int a = 0; a < 2 && bundle_some(b->recorded); a++)
+            account_sum(all, ok, report->impulse[c][a], &b->impulse[c][a]);
+    }
+}
+
+/* Takes down a step of the lanes in `ok` (or, `all`, of every lane that runs), contacts in
+ * `touching`; `ordinary`: nothing happened in it that happens rarely. */
+HOT void bundle_account(struct bundle *b, bool all, mask ok, bool ordinary, contact_set touching,
+                        const struct step_report *report)
+{
+    account_sum(all, ok, lanes_of(1), &b->n);
+    b->now.t = choose_unless(all, ok, b->n * b->h, b->now.t);
+    account_told(b, all, ok, TOLD_each, report);
+    account_sum(all, ok, report->work, &b->energy_bound);
+#ifdef ADVANCE_TELLS_ENERGY
+    const lanes energy = b->now.energy;
+#else
+    const lanes energy = scene_energy(&b->set.body, b->now.s, b->now.w, &b->now.trig);
+#endif
+    account_largest(all, ok, energy - b->energy_bound, &b->answer.energy_gain);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        account_largest(all, ok, lanes_abs(report->torque[i]), &b->answer.peak_torque);
+    account_contacts(b, all, ok, touching, report);
+    if (ordinary)
+        return;
+    account_told(b, all, ok, TOLD_rare, report);
+}
+
+/* Advances a window in the lanes of `live`; returns those where it has lasted long enough. */
+HOT mask window_advance(struct window *w, mask live, mask holds, lanes measure, lanes n,
+                        lanes length)
+{
+    const mask open = mask_less_equal(lanes_of(0), w->begin);
+    if (!mask_any(live & (holds | open)))
+        return MASK_NONE;
+    const mask full = holds & open & mask_less_equal(length, n - w->begin);
+    const mask calm = mask_less_equal(measure, lanes_max(w->measure, lanes_of(BUNDLE_ERROR_FLOOR)));
+    const mask restart = live & holds & (LANES_NOT(open) | (full & LANES_NOT(calm)));
+    w->begin = choose(restart, n, choose(live & LANES_NOT(holds), lanes_of(-1), w->begin));
+    w->measure = choose(restart, measure, w->measure);
+    return live & full & calm;
+}
+
+struct verdict {
+    mask stabilised, rested, fell;
+    mask captured; /* will be stabilised */
+};
+
+/* The outcome rules at the present state; `loaded`: contacts that carry, of those in `touching`.
+ * `last`: time is up. */
+HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touching,
+                                const mask *loaded, mask last)
+{
+    const lanes none = lanes_of(0), one = lanes_of(1);
+    lanes posture[POSTURES], rate[POSTURES], angle = none, speed = none;
+    scene_posture(b->now.s, posture);
+    scene_posture(b->now.w, rate);
+    for (int i = 0; i < SCENE_POSTURE; i++) {
+        angle = lanes_max(lanes_abs(posture[i] - b->set.law.linear.target[i]), angle);
+        speed = lanes_max(lanes_abs(rate[i]), speed);
+    }
+    angle = angle * b->angle_scale;
+    speed = speed * b->rate_scale;
+    mask alone = mask_less(none, b->has_target);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask mine = mask_less(none, b->mine[c]);
+        if (!(touching >> c & 1)) {
+            alone &= LANES_NOT(mine);
+            continue;
+        }
+        lanes u[2];
+        scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, u);
+        const mask stands = loaded[c] & mask_less_equal(lanes_abs(u[1]) * b->rate_scale, one);
+        alone &= (mine & stands) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
+    }
+    const lanes error = lanes_max(angle, speed);
+    const mask at_target = alone & mask_less_equal(error, one);
+    /* On the way to the target is not `elsewhere`, however slow. No rate is less than `speed`. */
+    mask still = LANES_NOT(alone) & mask_less_equal(speed, one);
+    lanes all = none;
+    if (mask_any(still & live)) {
+        all = scene_largest_rate(&b->set.body, b->now.w, &b->now.trig) * b->rate_scale;
+        still &= mask_less_equal(all, one);
+    }
+    const mask on_way = mask_less(none, b->judge_on_way);
+    struct verdict v;
+    v.fell = live & scene_fallen(&b->set.body, b->now.s, &b->now.trig, b->fall_height);
+    v.stabilised =
+        on_way & window_advance(&b->settled, live, at_target, error, b->n, b->settle_steps);
+    v.rested = on_way & window_advance(&b->resting, live, still, all, b->n, b->settle_steps);
+    const mask at_end = live & last & LANES_NOT(on_way);
+    v.stabilised |= at_end & at_target;
+    v.rested |= at_end & still;
+    if (mask_any(v.rested | v.stabilised))
+        rest_confirm(b, &v.rested, &v.stabilised);
+    v.captured = MASK_NONE;
+    return v;
+}
+
+/* Lanes whose state has come into the captured set: see known_basin.h. */
+static mask bundle_captured(const struct bundle *b, mask live, const mask *loaded)
+{
+    if (!bundle_some(b->capturing))
+        return MASK_NONE;
+    const mask instant =
+        mask_less_equal(b->sample_every, lanes_of(0)) | mask_less_equal(b->next_sample, b->n);
+    mask in = live & mask_less(lanes_of(0), b->capture.on) & instant &
+              mask_less_equal(b->n, b->capture.last);
+    if (!mask_any(in))
+        return in;
+    const lanes rest = lanes_of(KNOWN_BASIN_REST);
+    lanes posture[POSTURES], rate[POSTURES];
+    scene_posture(b->now.s, posture);
+    scene_posture(b->now.w, rate);
+    for (int i = 0; i < SCENE_POSTURE; i++)
+        posture[i] = posture[i] - b->set.law.linear.target[i];
+    in &= known_basin_contains(&b->capture, posture, rate);
+    if (!mask_any(in))
+        return in;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask mine = mask_less(lanes_of(0), b->mine[c]);
+        lanes u[2];
+        scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, u);
+        const mask stands = loaded[c] & mask_less_equal(lanes_abs(b->now.gap[c]), rest) &
+                            mask_less_equal(lanes_abs(u[0]), rest) &
+                            mask_less_equal(lanes_abs(u[1]), rest);
+        in &= (mine & stands) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
+    }
+    return in;
+}
+
+#endif

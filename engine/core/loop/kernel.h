@@ -1,0 +1,33 @@
+/* kernel.h - names of a compiled kernel: a method for one scene and one instruction set.
+ *
+ * A method's file is compiled once per scene and instruction set with -DSTANCE_SCENE=biped
+ * -DSTANCE_SCENE_LANES=\"engine/scenes/biped_lanes.h\" -DSTANCE_ISA=avx2 -DSTANCE_LANES=4; it
+ * defines METHOD and METHOD_THETA, includes stream.h, and ends in STANCE_KERNEL, its one const
+ * struct.
+ */
+#ifndef STANCE_CORE_LOOP_KERNEL_H
+#define STANCE_CORE_LOOP_KERNEL_H
+
+#include "engine/stance.h"
+
+#define STANCE_QUOTE_(x) #x
+#define STANCE_QUOTE(x) STANCE_QUOTE_(x)
+#define STANCE_JOIN4_(a, b, c, d) stance_##a##_##b##_##c##_##d
+#define STANCE_JOIN4(a, b, c, d) STANCE_JOIN4_(a, b, c, d)
+#define STANCE_JOIN2_(a, b) stance_##a##_##b
+#define STANCE_JOIN2(a, b) STANCE_JOIN2_(a, b)
+
+extern const stance_scene STANCE_JOIN2(scene, STANCE_SCENE);
+
+#define STANCE_KERNEL(name)                                                                        \
+    extern const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name, STANCE_ISA);               \
+    extern const stance_method STANCE_JOIN2(method, name);                                         \
+    const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name,                                   \
+                                     STANCE_ISA) = {&STANCE_JOIN2(scene, STANCE_SCENE),            \
+                                                    &STANCE_JOIN2(method, name),                   \
+                                                    STANCE_QUOTE(STANCE_ISA),                      \
+                                                    STANCE_LANES,                                  \
+                                                    bundle_stream,                                 \
+                                                    bundle_run}
+
+#endif

@@ -1,0 +1,151 @@
+/* record.h - rows of trajectories, results, and the end of a lane's case. */
+#ifndef STANCE_CORE_LOOP_RECORD_H
+#define STANCE_CORE_LOOP_RECORD_H
+
+#include "judge.h"
+
+/* Writes the rows that are due at the present step into the trajectory of a lane. */
+static void bundle_record(struct bundle *b, int lane)
+{
+    const stance_case *const c = b->which[lane];
+    stance_trajectory *const t = c->trajectory;
+    const double n = lane_get(&b->n, lane);
+    double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
+    const double elapsed = (n - lane_get(&b->recorded_at, lane)) * c->step;
+    int64_t row = b->row[lane];
+    for (; row < t->rows && nearbyint((double)row * t->interval / c->step) <= n; row++) {
+        scene_leave(c->robot, s, w, t->position + row * SCENE_COORDINATES,
+                    t->velocity + row * SCENE_COORDINATES);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            t->torque[row * SCENE_ACTUATORS + i] = lane_get(&b->torque[i], lane);
+        for (int k = 0; k < SCENE_CONTACTS; k++) {
+            t->gap[row * SCENE_CONTACTS + k] = lane_get(&b->now.gap[k], lane);
+            for (int a = 0; a < 2; a++)
+                t->force[(row * SCENE_CONTACTS + k) * 2 + a] =
+                    elapsed > 0 ? lane_get(&b->impulse[k][a], lane) / elapsed : NAN;
+        }
+    }
+    for (int k = 0; k < SCENE_CONTACTS; k++)
+        lane_set(&b->impulse[k][0], lane, 0), lane_set(&b->impulse[k][1], lane, 0);
+    b->row[lane] = row;
+    lane_set(&b->recorded_at, lane, n);
+    lane_set(&b->next_record, lane,
+             row < t->rows ? nearbyint((double)row * t->interval / c->step) : INFINITY);
+}
+
+/* There is one NAN only: which one arithmetic gives is the processor's choice. */
+static double record_plain(double x)
+{
+    return x == x ? x : NAN;
+}
+static double record_number(const lanes *v, int lane)
+{
+    return record_plain(lane_get(v, lane));
+}
+
+/* Of an answer that is gathered; NAN where nothing was. */
+static double record_finite(const lanes *v, int lane)
+{
+    const double x = lane_get(v, lane);
+    return isfinite(x) ? x : NAN;
+}
+
+/* Hands a lane's result in and leaves the lane idle. */
+COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance_outcome outcome,
+                        stance_failure failure, bool inferred)
+{
+    stance_result *const r = b->result[lane];
+    const stance_case *const c = b->which[lane];
+    const double n = record_number(&b->n, lane), h = c->step;
+    double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    const double begin = outcome == STANCE_RESTED ? record_number(&b->resting.begin, lane)
+                                                  : record_number(&b->settled.begin, lane);
+    const bool calm = outcome == STANCE_RESTED || outcome == STANCE_STABILISED;
+    *r = (stance_result){
+        .status = status,
+        .outcome = outcome,
+        .evidence = inferred ? STANCE_INFERRED : STANCE_EVIDENCE_NONE,
+        .failure = failure,
+        .end_time = n * h,
+        .settle_time = calm && !inferred ? (begin >= 0 ? begin : n) * h : NAN,
+        .fall_time = outcome == STANCE_FELL ? n * h : NAN,
+        .steps = (int64_t)n,
+    };
+#define FINISH(name, type, how, told, unit, text)                                                  \
+    WHERE_GATHERED_##how(r->name = (type)record_finite(&b->answer.name, lane);)
+    STANCE_ANSWERS(FINISH)
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
+    scene_leave(c->robot, s, w, r->position, r->velocity);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        r->position[i] = record_plain(r->position[i]);
+        r->velocity[i] = record_plain(r->velocity[i]);
+    }
+    b->which[lane] = NULL;
+    b->live &= LANES_NOT(mask_of_lane(lane));
+    b->filled--;
+    bundle_count(b, c, -1);
+    b->feed->done(b->feed->context, c, r);
+}
+
+/* Why a lane could not go on. */
+static stance_failure bundle_failure(const struct bundle *b, int lane)
+{
+    const double reason = lane_get(&b->failure, lane);
+    if (reason > 0)
+        return (stance_failure)reason;
+    double sum = 0;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        sum += lane_get(&b->now.s[i], lane) + lane_get(&b->now.w[i], lane);
+    lanes ahead[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        ahead[i] = b->now.s[i] + 2 * b->h * b->now.w[i];
+    if (!isfinite(sum))
+        return STANCE_FAILURE_NOT_FINITE;
+    return mask_get(scene_angles_in_range(ahead), lane) ? STANCE_FAILURE_NEWTON
+                                                        : STANCE_FAILURE_ANGLE;
+}
+
+/* Ends the lanes in `over`. */
+COLD void bundle_end_lanes(struct bundle *b, mask over, mask failed, const struct verdict *v)
+{
+    for (int lane = 0; lane < LANES; lane++) {
+        if (!b->which[lane] || !mask_get(over, lane))
+            continue;
+        if (mask_get(failed, lane)) {
+            bundle_finish(b, lane, STANCE_FAILED, STANCE_NONE, bundle_failure(b, lane), false);
+            continue;
+        }
+        const bool simulated = mask_get(v->stabilised | v->rested | v->fell, lane);
+        const bool inferred = !simulated && mask_get(v->captured, lane);
+        const stance_outcome outcome = mask_get(v->fell, lane) ? STANCE_FELL
+                                       : inferred || mask_get(v->stabilised, lane)
+                                           ? STANCE_STABILISED
+                                       : mask_get(v->rested, lane) ? STANCE_RESTED
+                                                                   : STANCE_UNDECIDED;
+        bundle_finish(b, lane, STANCE_DONE, outcome, STANCE_FAILURE_NONE, inferred);
+    }
+}
+
+/* Ends the lanes that a verdict or the clock ends. */
+HOT void bundle_end(struct bundle *b, mask live, mask failed, const struct verdict *v, mask last)
+{
+    const mask over = failed | v->fell | v->stabilised | v->rested | v->captured | last;
+    if (mask_any(live & over))
+        bundle_end_lanes(b, live & over, failed, v);
+}
+
+/* Rows due now in any live lane. */
+HOT void bundle_record_due(struct bundle *b, mask live)
+{
+    const mask due = live & mask_less_equal(b->next_record, b->n);
+    if (!bundle_some(b->recorded) || !mask_any(due))
+        return;
+    for (int lane = 0; lane < LANES; lane++)
+        if (b->which[lane] && mask_get(due, lane))
+            bundle_record(b, lane);
+}
+
+#endif

@@ -1,0 +1,83 @@
+/* regroup.h - moves cases between bundles so that those side by side have the same contacts: a
+ * bundle in which one robot stands on two feet pays for two feet in every lane.
+ *
+ * A case's arithmetic is its lane's alone, so that it may move whenever no step is under way.
+ */
+#ifndef STANCE_CORE_LOOP_REGROUP_H
+#define STANCE_CORE_LOOP_REGROUP_H
+
+#include "bundle.h"
+
+/* What a lane's next step will cost: its closed contacts; idle lanes come last. */
+enum { REGROUP_KEYS = (1 << SCENE_CONTACTS) + 1 };
+
+static int regroup_key(const struct bundle *b, int lane)
+{
+    static const int rank[4] = {0, 1, 3, 2}; /* neighbours share contacts */
+    int touching = 0;
+    if (!b->which[lane])
+        return REGROUP_KEYS - 1;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (b->which[lane]->contacts >> c & 1 && lane_get(&b->now.gap[c], lane) <= STEP_CLOSED)
+            touching |= 1 << c;
+    return SCENE_CONTACTS > 1 ? rank[touching] : touching;
+}
+
+_Static_assert(sizeof(struct bundle) % sizeof(lanes) == 0 &&
+                   offsetof(struct bundle, which) % sizeof(lanes) == 0,
+               "a bundle's lanes are columns");
+
+/* Exchanges two lanes with everything that is kept of them. */
+static void regroup_swap(struct bundle *a, int i, struct bundle *b, int j)
+{
+    const size_t begin = offsetof(struct bundle, which), column = LANES * sizeof(double);
+    char *const p = (char *)a + begin + (size_t)i * sizeof(double);
+    char *const q = (char *)b + begin + (size_t)j * sizeof(double);
+    for (size_t k = 0; k + column <= sizeof *a - begin; k += column) {
+        double x, y;
+        memcpy(&x, p + k, sizeof x);
+        memcpy(&y, q + k, sizeof y);
+        memcpy(p + k, &y, sizeof y);
+        memcpy(q + k, &x, sizeof x);
+    }
+}
+
+/* What a bundle knows of its lanes together. */
+static void regroup_recount(struct bundle *b)
+{
+    b->live = MASK_NONE;
+    b->filled = b->recorded = b->capturing = b->unusual = 0;
+    for (int lane = 0; lane < LANES; lane++)
+        if (b->which[lane]) {
+            b->live |= mask_of_lane(lane);
+            b->filled++;
+            bundle_count(b, b->which[lane], 1);
+        }
+}
+
+/* Sorts the lanes of n bundles by their contacts; what is sorted stays where it is. */
+COLD void regroup(struct bundle *b, int n)
+{
+    int key[STREAM_BUNDLES * LANES], count[REGROUP_KEYS] = {0}, wanted = 0;
+    const int lanes_in_all = n * LANES;
+    bool moved = false;
+    for (int i = 0; i < lanes_in_all; i++)
+        count[key[i] = regroup_key(&b[i / LANES], i % LANES)]++;
+    for (int i = 0; i < lanes_in_all; i++) {
+        while (count[wanted] == 0)
+            wanted++;
+        count[wanted]--;
+        int j = i;
+        while (key[j] != wanted)
+            j++;
+        if (j == i)
+            continue;
+        regroup_swap(&b[i / LANES], i % LANES, &b[j / LANES], j % LANES);
+        key[j] = key[i], key[i] = wanted;
+        moved = true;
+    }
+    for (int k = 0; k < n && moved; k++)
+        regroup_recount(&b[k]);
+}
+
+#endif

@@ -1,0 +1,250 @@
+/* stream.h - the time loop: draws cases from a feed, one for each lane that is free, and steps the
+ * bundles until there are no more.
+ *
+ * Included by each method after the header that says how it gets from the end of one step to the
+ * end of the next; gives `bundle_stream` and `bundle_run`. That header defines
+ *
+ *   struct advance                        what it remembers of its lanes between steps,
+ *   void advance_load(a, lane, case)      at the start of a case,
+ *   mask advance(a, set, torque, h, live, coupled, now, report, failed)
+ *                                         moves *now towards the end of the step of length h;
+ *                                         returns the lanes that are there, with *report about the
+ *                                         whole step; the others go on at the next call, but for
+ *                                         *failed,
+ *   void advance_free(a)                  at the end of all,
+ *
+ * and may define ADVANCE_ORDINARY (see stream_ordinary), and ADVANCE_MOVES where struct advance
+ * consists of lanes, so that cases may change lanes between steps.
+ */
+#ifndef STANCE_CORE_LOOP_STREAM_H
+#define STANCE_CORE_LOOP_STREAM_H
+
+#include "record.h"
+#include "sample.h"
+
+/* Bundles of one kind that take turns, for how many steps at most, and for how many of them a step
+ * counts that is not ordinary: the caller is to be asked soon again. */
+#ifdef ADVANCE_MOVES
+enum { STREAM_BUNDLES = 4, STREAM_STEPS = 250 };
+#ifdef ADVANCE_ORDINARY
+enum { STREAM_SLOW = 8 };
+#else
+enum { STREAM_SLOW = 1 };
+#endif
+#else
+enum { STREAM_BUNDLES = 1, STREAM_STEPS = 1000, STREAM_SLOW = 200 };
+#endif
+
+#include "regroup.h"
+
+/* Judges and records the initial state of fresh lanes. */
+COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
+{
+    bundle_begin(b, fresh);
+    mask loaded[SCENE_CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        loaded[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
+                    mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
+    const struct verdict v = bundle_judge(b, fresh, (1u << SCENE_CONTACTS) - 1, loaded, MASK_NONE);
+    bundle_sample(b, fresh);
+    if (!coupled) { /* a law that acts all the time, without gains: its torque is constant */
+        lanes torque[ACTUATORS];
+        const mask constant = fresh & mask_less_equal(lanes_of(INFINITY), b->next_sample);
+        law_torque(&b->set.law, b->now.s, b->now.w, torque);
+        law_clip(&b->set.law, torque);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            b->torque[i] = choose(constant, torque[i], b->torque[i]);
+    } else {
+        struct dynamics e;
+        const struct drive drive = {b->torque, true, NULL};
+        between_evaluate(&b->set, b->now.t, b->now.s, b->now.w, b->now.integral, &drive,
+                         step_touching(&b->set, b->now.gap, LANES_ALL), &e);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            b->torque[i] = choose(fresh, e.torque[i], b->torque[i]);
+    }
+    bundle_record_due(b, fresh);
+    bundle_end(b, fresh, MASK_NONE, &v, mask_less_equal(b->steps, lanes_of(0)));
+}
+
+/* What follows from a step of the lanes in `ok`. */
+HOT void stream_follow(struct bundle *b, bool all, mask ok, mask failed, bool ordinary,
+                       contact_set touching, const struct step_report *report)
+{
+    bundle_account(b, all, ok, ordinary, touching, report);
+    mask loaded[SCENE_CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        loaded[c] = MASK_NONE;
+        if (touching >> c & 1)
+            loaded[c] = mask_less(lanes_of(0), report->impulse[c][0]);
+    }
+    const mask last = ok & mask_less_equal(b->steps, b->n);
+    struct verdict v = bundle_judge(b, ok, touching, loaded, last);
+    v.captured = bundle_captured(b, ok, loaded);
+    bundle_record_due(b, ok);
+    bundle_end(b, b->live, failed, &v, last);
+}
+
+#ifdef ADVANCE_ORDINARY
+/* One step of all lanes, if it is ordinary in all; false: nothing has happened. */
+HOT bool stream_ordinary(struct bundle *b, contact_set touching)
+{
+    struct step_report report;
+    if (!advance_ordinary(&b->advance, &b->set, b->torque, b->h, b->live, touching, &b->now,
+                          &report))
+        return false;
+    stream_follow(b, true, b->live, MASK_NONE, true, touching, &report);
+    return true;
+}
+
+/* Compiled for each set of contacts that matters. */
+HOT bool stream_try_ordinary(struct bundle *b)
+{
+    const contact_set touching = step_touching(&b->set, b->now.gap, b->live);
+    if (touching == TOUCHING_NONE)
+        return stream_ordinary(b, TOUCHING_NONE);
+    if (touching == TOUCHING_FIRST)
+        return stream_ordinary(b, TOUCHING_FIRST);
+    if (touching == TOUCHING_SECOND)
+        return stream_ordinary(b, TOUCHING_SECOND);
+    return stream_ordinary(b, TOUCHING_ALL);
+}
+#endif
+
+/* One step of all lanes, whatever happens in it. */
+COLD void stream_any(struct bundle *b, bool coupled)
+{
+    struct step_report report;
+    mask failed;
+    const mask ok =
+        advance(&b->advance, &b->set, b->torque, b->h, b->live, coupled, &b->now, &report, &failed);
+    b->failure = choose(failed, report.failure, b->failure);
+    const mask tired = ok & mask_less(b->most_work, b->answer.evaluations + report.evaluations);
+    b->failure = choose(tired, lanes_of(STANCE_FAILURE_WORK), b->failure);
+    failed |= tired;
+    if (!mask_any(ok | failed))
+        return;
+    if (coupled)
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            b->torque[i] = choose(ok, report.torque[i], b->torque[i]);
+    stream_follow(b, false, ok, failed, false, (1u << SCENE_CONTACTS) - 1, &report);
+}
+
+/* One step of all lanes, with everything that follows from it. Returns for how many it counts. */
+HOT int stream_step(struct bundle *b, bool coupled)
+{
+    bundle_sample(b, b->live);
+#ifdef ADVANCE_ORDINARY
+    if (!coupled && stream_try_ordinary(b))
+        return 1;
+#endif
+    stream_any(b, coupled);
+    return STREAM_SLOW;
+}
+
+/* A stream's bundles: one for the cases whose law acts inside the step, some for the others. */
+struct stream {
+    struct bundle bundle[STREAM_BUNDLES], coupled;
+    const stance_feed *feed;
+    const stance_case *ahead; /* drawn, but no lane of its bundle is free */
+    stance_result *result;
+    bool drained; /* the feed has no more */
+};
+
+/* Fills the free lanes of a bundle; those that were filled. */
+static mask stream_fill(struct stream *stream, struct bundle *b, bool coupled)
+{
+    const stance_feed *const feed = stream->feed;
+    mask fresh = MASK_NONE;
+    for (int lane = 0; lane < LANES; lane++) {
+        if (b->which[lane])
+            continue;
+        if (!stream->ahead && !stream->drained)
+            stream->drained = !feed->next(feed->context, &stream->ahead, &stream->result);
+        if (!stream->ahead || case_is_coupled(stream->ahead) != coupled)
+            break;
+        bundle_load(b, lane, stream->ahead, stream->result);
+        stream->ahead = NULL;
+        fresh |= mask_of_lane(lane);
+    }
+    return fresh;
+}
+
+/* Steps a bundle for a while and refills lanes as they end. */
+HOT void stream_advance(struct stream *stream, struct bundle *b, bool coupled)
+{
+    for (int k = 0; k < STREAM_STEPS;) {
+        while (b->filled < LANES) { /* a case may end at its start */
+            const mask fresh = stream_fill(stream, b, coupled);
+            if (!mask_any(fresh))
+                break;
+            bundle_start(b, fresh, coupled);
+        }
+        if (b->filled == 0)
+            return;
+        k += stream_step(b, coupled);
+    }
+}
+
+/* Until there are no more cases, or (false) it is told to leave. Apart from bundle_stream, so that
+ * the bundles are reached by a pointer and only what is spilled lies on the stack. */
+COLD bool stream_go(struct stream *stream)
+{
+    const stance_feed *const feed = stream->feed;
+    bool leave = false, running = true;
+    while (running && !leave) {
+        running = false;
+        for (int k = 0; k < STREAM_BUNDLES; k++) {
+            stream_advance(stream, &stream->bundle[k], false);
+            running |= stream->bundle[k].filled > 0;
+        }
+        if (SCENE_ACTUATORS > 0)
+            stream_advance(stream, &stream->coupled, true);
+        running |= stream->coupled.filled > 0 || stream->ahead || !stream->drained;
+        if (STREAM_BUNDLES > 1)
+            regroup(stream->bundle, STREAM_BUNDLES);
+        leave = feed->leave && feed->leave(feed->context);
+    }
+    return !leave;
+}
+
+static bool bundle_stream(const stance_feed *feed)
+{
+    struct stream stream;
+    memset(&stream, 0, sizeof stream);
+    stream.feed = stream.coupled.feed = feed;
+    for (int k = 0; k < STREAM_BUNDLES; k++)
+        stream.bundle[k].feed = feed;
+    const bool all = stream_go(&stream);
+    for (int k = 0; k < STREAM_BUNDLES; k++)
+        advance_free(&stream.bundle[k].advance);
+    advance_free(&stream.coupled.advance);
+    return all;
+}
+
+/* An array as a feed. */
+struct array {
+    const stance_case *cases;
+    stance_result *results;
+    size_t next, n;
+};
+static bool array_next(void *context, const stance_case **c, stance_result **result)
+{
+    struct array *const a = context;
+    if (a->next == a->n)
+        return false;
+    *c = &a->cases[a->next];
+    *result = &a->results[a->next++];
+    return true;
+}
+static void array_done(void *context, const stance_case *c, stance_result *result)
+{
+    (void)context, (void)c, (void)result;
+}
+static void bundle_run(const stance_case *cases, stance_result *results, size_t n)
+{
+    struct array array = {cases, results, 0, n};
+    const stance_feed feed = {&array, array_next, array_done, NULL};
+    bundle_stream(&feed);
+}
+
+#endif

@@ -1,0 +1,277 @@
+/* decoupling.h - torques that make chosen coordinates accelerate as wanted, whatever the ground
+ * does: the paper's dynamical decoupling, its equations (26) to (30), solved with the reactions.
+ *
+ * With a0 the accelerations without torques and reactions, Y = A^-1 B the responses to the torques,
+ * R = A^-1 H^T those to the reactions, and S the rows that take an acceleration to the controlled
+ * coordinates,
+ *
+ *   G torque = e - S (a0 + R lambda) - S' w,     G = S Y.
+ *
+ * G is the inverse of the paper's A_rs: with c the controlled coordinates and f the others, A_rs is
+ * the Schur complement of A_ff in A, so det A_rs = +-det A / det A_ff, and A being positive
+ * definite A_rs is never singular. What can happen is that A_ff is: then G is singular, and no
+ * torques give these accelerations.
+ *
+ * The torques answer the reactions at once, so the contacts see another operator,
+ *
+ *   gamma = (D + H Y K) lambda + (gamma_f + H Y torque_0),    K = -G^-1 S R,
+ *
+ * which is neither symmetric nor positive, and contact.h solves the laws with it: reactions and
+ * torques together. Taking the reactions of the moment before instead is an iteration that diverges
+ * wherever H Y K outweighs D. The limit of the torques is applied afterwards.
+ *
+ * The law degrades, and says so, in two cases. Where the condition number of G (SI units) is above
+ * DECOUPLING_CONDITION its inverse is damped (Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control
+ * 108, 1986): G^T (G G^T + d I)^-1, with d growing from zero at that bound, so that torques stay
+ * continuous and finite. And where no reactions fit the laws together with the torques - the
+ * accelerations that are wanted would take a ground that pulls - the reactions are those without
+ * torques.
+ */
+#ifndef STANCE_CORE_MODE_DECOUPLING_H
+#define STANCE_CORE_MODE_DECOUPLING_H
+
+#include "dynamics.h"
+
+#define DECOUPLING_CONDITION STANCE_ILL_CONDITIONED /* of G: then its inverse is damped */
+#define DECOUPLING_REST 1e-6 /* m/s: contact velocities below it are zero to the law */
+
+/* What each contact does in the state that *e belongs to. */
+static inline void decoupling_contacts(const struct setting *set, const struct dynamics *e,
+                                       struct contact_state *contact)
+{
+    const lanes none = lanes_of(0), rest = lanes_of(DECOUPLING_REST);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const lanes slip = e->u[c][1];
+        contact->closed[c] = mask_less(none, set->may_touch[c]) &
+                             mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED)) &
+                             mask_less_equal(lanes_abs(e->u[c][0]), rest);
+        contact->slide[c] = choose(mask_less(rest, lanes_abs(slip)),
+                                   choose(mask_less(slip, none), lanes_of(-1), lanes_of(1)), none);
+    }
+}
+
+#ifdef SCENE_SERVOS
+
+/* The controlled rates of what moves the coordinates of the core by x. */
+static inline void decoupling_rates(const struct setting *set, const scene_trig *trig,
+                                    const lanes *x, lanes *out)
+{
+    lanes rate[SCENE_COORDINATES];
+    scene_coordinate_rates(&set->body, trig, x, rate);
+    for (int j = 0; j < 2; j++) {
+        out[j] = lanes_of(0);
+        for (int k = 0; k < SCENE_COORDINATES; k++)
+            out[j] += set->law.servo[j].pick[k] * rate[k];
+    }
+}
+
+/* Inverse of G, damped in the lanes that are returned. */
+static inline mask decoupling_inverse(const lanes G[2][2], lanes inverse[2][2])
+{
+    const lanes m00 = G[0][0] * G[0][0] + G[0][1] * G[0][1];
+    const lanes m01 = G[0][0] * G[1][0] + G[0][1] * G[1][1];
+    const lanes m11 = G[1][0] * G[1][0] + G[1][1] * G[1][1];
+    const lanes determinant = G[0][0] * G[1][1] - G[0][1] * G[1][0], trace = m00 + m11;
+    /* Of the singular values s1 > s2: trace = s1^2 + s2^2, |determinant| = s1 s2. */
+    const mask damped = mask_less(DECOUPLING_CONDITION * lanes_abs(determinant), trace);
+    const lanes reciprocal = 1 / choose(damped, lanes_of(1), determinant);
+    inverse[0][0] = G[1][1] * reciprocal, inverse[0][1] = -G[0][1] * reciprocal;
+    inverse[1][0] = -G[1][0] * reciprocal, inverse[1][1] = G[0][0] * reciprocal;
+    if (mask_any(damped)) {
+        const lanes squared = determinant * determinant;
+        const lanes d = trace * (1 / (DECOUPLING_CONDITION * DECOUPLING_CONDITION)) -
+                        squared / choose(damped, trace, lanes_of(1));
+        const lanes a = m00 + d, b = m11 + d;
+        const lanes scale = 1 / (squared + d * (trace + d));
+        for (int i = 0; i < 2; i++) {
+            const lanes first = (G[0][i] * b - G[1][i] * m01) * scale;
+            const lanes second = (G[1][i] * a - G[0][i] * m01) * scale;
+            inverse[i][0] = choose(damped, first, inverse[i][0]);
+            inverse[i][1] = choose(damped, second, inverse[i][1]);
+        }
+    }
+    return damped;
+}
+
+/* Contact accelerations (normal, tangential) by a unit of each torque. */
+static inline void decoupling_reach(const struct setting *set, const struct dynamics *e,
+                                    contact_set touching, lanes reach[2][2][2])
+{
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int i = 0; i < 2; i++) {
+            reach[c][i][0] = reach[c][i][1] = lanes_of(0);
+            if (touching >> c & 1)
+                scene_contact_velocity(&set->body, &e->trig, c, e->push[i], reach[c][i]);
+        }
+}
+
+/* Adds to torque[] what the reactions change, e->several where more than one set of them fits;
+ * returns the lanes where none does. */
+static inline mask decoupling_react(const struct setting *set, mask where, contact_set touching,
+                                    const struct contact_state *contact, const lanes inverse[2][2],
+                                    struct dynamics *e, lanes *torque)
+{
+    struct {
+        lanes D[2][2][2][2], free[2][2], r[2][2];
+    } problem;
+    lanes reach[2][2][2], answer[2][2][2];
+    mask part[SCENE_CONTACTS], ambiguous, unsolved, none = MASK_NONE, several = MASK_NONE;
+    decoupling_reach(set, e, touching, reach);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        part[c] = where & contact->closed[c];
+        for (int a = 0; a < 2; a++) {
+            lanes rate[2];
+            problem.free[c][a] = answer[c][a][0] = answer[c][a][1] = lanes_of(0);
+            if (!(touching >> c & 1))
+                continue;
+            decoupling_rates(set, &e->trig, e->response[c][a], rate);
+            for (int i = 0; i < 2; i++)
+                answer[c][a][i] = -(inverse[i][0] * rate[0] + inverse[i][1] * rate[1]);
+            problem.free[c][a] =
+                e->free[c][a] + (reach[c][0][a] * torque[0] + reach[c][1][a] * torque[1]);
+        }
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int k = 0; k < SCENE_CONTACTS; k++)
+            for (int a = 0; a < 2; a++)
+                for (int b = 0; b < 2; b++)
+                    problem.D[c][k][a][b] = e->D[c][k][a][b] + (reach[c][0][a] * answer[k][b][0] +
+                                                                reach[c][1][a] * answer[k][b][1]);
+    const struct contact_rule rule = {set->friction, set->prefer, contact->slide, NULL, true, NULL};
+    for (int round = 0; round < 2; round++) {
+        solve_contacts(&rule, (const lanes(*)[2][2][2])problem.D, (const lanes(*)[2])problem.free,
+                       touching, part, problem.r, &ambiguous, &unsolved);
+        several |= where & ambiguous;
+        if (round > 0 || !mask_any(unsolved))
+            break;
+        none = unsolved & where; /* then the reactions without torques */
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++) {
+                problem.free[c][a] = choose(none, e->free[c][a], problem.free[c][a]);
+                for (int k = 0; k < SCENE_CONTACTS; k++)
+                    for (int b = 0; b < 2; b++)
+                        problem.D[c][k][a][b] =
+                            choose(none, e->D[c][k][a][b], problem.D[c][k][a][b]);
+            }
+    }
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int i = 0; i < 2; i++)
+            torque[i] = choose(
+                part[c],
+                torque[i] + (answer[c][0][i] * problem.r[c][0] + answer[c][1][i] * problem.r[c][1]),
+                torque[i]);
+    e->several = choose(several, lanes_of(1), lanes_of(0));
+    return none;
+}
+
+/* The law in the lanes of `where`: e->command, e->integral_rate and e->degraded. *e was evaluated
+ * with pushes and without torques in these lanes; `contact`: what each contact does. */
+static inline void decouple(const struct setting *set, mask where, lanes t, const lanes *s,
+                            const lanes *w, const lanes *integral, contact_set touching,
+                            const struct contact_state *contact, struct dynamics *e)
+{
+    lanes q[SCENE_COORDINATES], v[SCENE_COORDINATES], curvature[SCENE_COORDINATES];
+    lanes error[2], wanted[2], rate[2], G[2][2], inverse[2][2], torque[2];
+    scene_coordinates(&set->body, &e->trig, s, w, q, v);
+    law_servo(&set->law, t, q, v, integral, error, wanted);
+    scene_coordinate_curvature(&set->body, &e->trig, w, curvature);
+    decoupling_rates(set, &e->trig, e->acceleration, rate);
+    for (int j = 0; j < 2; j++) {
+        wanted[j] -= rate[j];
+        for (int k = 0; k < SCENE_COORDINATES; k++)
+            wanted[j] -= set->law.servo[j].pick[k] * curvature[k];
+    }
+    for (int i = 0; i < 2; i++) {
+        decoupling_rates(set, &e->trig, e->push[i], rate);
+        G[0][i] = rate[0], G[1][i] = rate[1];
+    }
+    mask degraded = decoupling_inverse((const lanes(*)[2])G, inverse);
+    for (int i = 0; i < 2; i++)
+        torque[i] = inverse[i][0] * wanted[0] + inverse[i][1] * wanted[1];
+    mask stands = MASK_NONE;
+    e->several = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        stands |= where & contact->closed[c];
+    if (touching && mask_any(stands))
+        degraded |=
+            decoupling_react(set, where, touching, contact, (const lanes(*)[2])inverse, e, torque);
+    for (int i = 0; i < 2; i++)
+        e->command[i] = torque[i];
+    law_integral_rate(&set->law, error, integral, torque, e->integral_rate);
+    e->degraded = choose(where & degraded, lanes_of(1), lanes_of(0));
+}
+
+/* Applies e->command, limited, in the lanes of `where`: torques, accelerations, contact terms. */
+static inline void decoupling_apply(const struct setting *set, mask where, contact_set touching,
+                                    struct dynamics *e)
+{
+    lanes torque[2] = {e->command[0], e->command[1]}, reach[2][2][2];
+    law_clip(&set->law, torque);
+    for (int i = 0; i < 2; i++) {
+        torque[i] = choose(where, torque[i], lanes_of(0));
+        e->torque[i] += torque[i];
+        for (int k = 0; k < SCENE_COORDINATES; k++)
+            e->acceleration[k] += e->push[i][k] * torque[i];
+    }
+    decoupling_reach(set, e, touching, reach);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2; a++)
+            e->free[c][a] += reach[c][0][a] * torque[0] + reach[c][1][a] * torque[1];
+}
+
+#else /* no servos */
+
+static inline void decouple(const struct setting *set, mask where, lanes t, const lanes *s,
+                            const lanes *w, const lanes *integral, contact_set touching,
+                            const struct contact_state *contact, struct dynamics *e)
+{
+    (void)set, (void)where, (void)t, (void)s, (void)w, (void)integral, (void)touching;
+    (void)contact, (void)e;
+}
+static inline void decoupling_apply(const struct setting *set, mask where, contact_set touching,
+                                    struct dynamics *e)
+{
+    (void)set, (void)where, (void)touching, (void)e;
+}
+
+#endif
+
+/* What a law that is not linear commands in the lanes of `due`, in place of the linear law's
+ * command; e->trig: at s. contact: what the contacts do, NULL: as it follows from the state.
+ * Returns the lanes where servos act, and *e says how. */
+static inline mask law_command(const struct setting *set, mask due, lanes t, const lanes *s,
+                               const lanes *w, const lanes *integral,
+                               const struct contact_state *contact, struct dynamics *e,
+                               lanes *command)
+{
+    const struct law *const law = &set->law;
+    const mask switches = mask_less(lanes_of(0), law->switches);
+    const mask decouples = mask_less(lanes_of(0), law->decouples);
+    lanes posture[POSTURES], rate[POSTURES], far[ACTUATORS], none[ACTUATORS];
+    scene_posture(s, posture);
+    scene_posture(w, rate);
+    const mask inside = switches & law_near(law, posture, rate);
+    linear_torque(&law->far, posture, rate, far);
+    const mask servos = due & decouples & LANES_NOT(inside);
+    const mask other = due & switches & LANES_NOT(inside | decouples);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        command[i] = choose(other, far[i], command[i]);
+        e->integral_rate[i] = none[i] = lanes_of(0);
+    }
+    e->degraded = e->several = lanes_of(0);
+    if (!mask_any(servos))
+        return servos;
+    struct contact_state now;
+    const contact_set all = (1u << SCENE_CONTACTS) - 1;
+    dynamics_evaluate(set, t, s, w, none, all, true, e);
+    if (!contact) {
+        decoupling_contacts(set, e, &now);
+        contact = &now;
+    }
+    decouple(set, servos, t, s, w, integral, all, contact, e);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        command[i] = choose(servos, e->command[i], command[i]);
+    return servos;
+}
+
+#endif

@@ -1,0 +1,101 @@
+/* dynamics.h - what holds in a state whatever the contact mode: accelerations without contact
+ * forces, and how the contacts respond to them.
+ *
+ *   A(s) w' = F(s, w, t) + B torque + H^T lambda,      gamma = H w' + H' w,
+ *
+ * With D = H A^-1 H^T and gamma_f the contact accelerations without contact forces the contact laws
+ * see D lambda + gamma_f = gamma.
+ */
+#ifndef STANCE_CORE_MODE_DYNAMICS_H
+#define STANCE_CORE_MODE_DYNAMICS_H
+
+#include "engine/core/implicit/step.h"
+
+/* What each contact does. */
+struct contact_state {
+    mask closed[SCENE_CONTACTS];
+    lanes slide[SCENE_CONTACTS]; /* sign of the slip; 0: sticks */
+};
+
+/* The equations at one state. */
+struct dynamics {
+    scene_trig trig;
+    lanes gap[SCENE_CONTACTS], u[SCENE_CONTACTS][2];
+    lanes torque[ACTUATORS];
+    lanes acceleration[SCENE_COORDINATES]; /* without contact forces, until between_solve */
+    lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES]; /* A^-1 H^T */
+    lanes D[2][2][2][2], free[2][2];                      /* of SCENE_CONTACTS contacts */
+    lanes force[2][2];                                    /* N */
+    lanes push[ACTUATORS][SCENE_COORDINATES]; /* A^-1 B, where a law acts that needs it */
+    lanes command[ACTUATORS];                 /* N m, of that law, before the limit ... */
+    lanes integral_rate[ACTUATORS];           /* ... and how fast it sums errors */
+    lanes degraded, several; /* 1: not quite what it promises, not unique: see decoupling.h */
+};
+
+/* Contact terms of the contacts that are not in `touching`: zero, so that sums may run over all. */
+static inline void dynamics_clear(contact_set touching, struct dynamics *e)
+{
+    for (int c = 0; c < 2; c++)
+        for (int a = 0; a < 2; a++) {
+            for (int k = 0; k < 2; k++)
+                for (int b = 0; b < 2; b++)
+                    if (!(touching >> c & touching >> k & 1))
+                        e->D[c][k][a][b] = lanes_of(0);
+            if (touching >> c & 1)
+                continue;
+            e->free[c][a] = lanes_of(0);
+            for (int i = 0; i < SCENE_COORDINATES && c < SCENE_CONTACTS; i++)
+                e->response[c][a][i] = lanes_of(0);
+        }
+}
+
+/* Evaluates what e->trig, s and w lead to. Contact terms of the contacts in `touching`; `pushes`:
+ * responses to the actuators too. */
+static inline void dynamics_evaluate(const struct setting *set, lanes t, const lanes *s,
+                                     const lanes *w, const lanes *torque, contact_set touching,
+                                     bool pushes, struct dynamics *e)
+{
+    lanes load[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        e->torque[i] = torque[i];
+    scene_matrix A;
+    scene_forces(&set->body, t, &e->trig, w, e->torque, load);
+    scene_inertia(&set->body, &e->trig, &A);
+    scene_solve(&A, false, load, e->acceleration);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        e->integral_rate[i] = lanes_of(0);
+    e->degraded = e->several = lanes_of(0);
+#ifdef SCENE_SERVOS
+    for (int i = 0; i < SCENE_ACTUATORS && pushes; i++)
+        scene_actuator_response(&set->body, &A, i, e->push[i]);
+#else
+    (void)pushes;
+#endif
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        e->gap[c] = scene_gap(&set->body, s, &e->trig, c);
+        scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
+        e->force[c][0] = e->force[c][1] = lanes_of(0);
+    }
+    dynamics_clear(touching, e);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (touching >> c & 1)
+            scene_contact_response(&set->body, &A, false, &e->trig, c, e->response[c]);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes curvature[2], forced[2];
+        if (!(touching >> c & 1))
+            continue;
+        scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
+        scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, forced);
+        for (int a = 0; a < 2; a++)
+            e->free[c][a] = forced[a] + curvature[a];
+        for (int k = 0; k < SCENE_CONTACTS; k++)
+            for (int b = 0; b < 2 && touching >> k & 1; b++) {
+                lanes u[2];
+                scene_contact_velocity(&set->body, &e->trig, c, e->response[k][b], u);
+                e->D[c][k][0][b] = u[0];
+                e->D[c][k][1][b] = u[1];
+            }
+    }
+}
+
+#endif

@@ -1,0 +1,179 @@
+/* explicit.h - one explicit Runge-Kutta step of the smooth motion in a contact mode.
+ *
+ * The method's file gives its tableau before it includes this: METHOD_STAGES (the number of
+ * stages), tableau_a[][], tableau_b[], tableau_c[] and, with METHOD_EMBEDDED, tableau_e[], the
+ * difference between its weights and those of the embedded formula (one entry more: the last is
+ * that of the derivative at the end) and tableau_dip[], for each stage which of the forces of
+ * missed_events.h it gives, or -1. Every stage solves the contact forces of the mode; at the end
+ * the state is put back onto the mode's constraints (between_project).
+ */
+#ifndef STANCE_CORE_MODE_EXPLICIT_H
+#define STANCE_CORE_MODE_EXPLICIT_H
+
+#include "missed_events.h"
+
+/* What a step came to; the state and the report are defined where neither `violated` nor `bad`. */
+struct explicit_step {
+    struct motion end;
+    struct step_report report;
+    lanes error;   /* estimate: largest over coordinates (m, rad) and rates (m/s, rad/s) */
+    mask violated; /* the mode ended inside the step */
+    mask dipped;   /* it may have ended and begun again between the stages */
+    mask bad;      /* not finite, or an angle out of range ... */
+    lanes failure; /* ... as a stance_failure */
+    /* At the beginning: torques in force, and how fast the law sums. */
+    lanes torque[ACTUATORS], integral_rate[ACTUATORS];
+};
+
+/* Adds k * x to sums of coordinates and rates. A weight of zero costs nothing: all are constants.
+ */
+static inline void explicit_add(lanes *s, lanes *w, lanes k, const lanes *ds, const lanes *dw)
+{
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        s[i] += k * ds[i];
+        w[i] += k * dw[i];
+    }
+}
+
+/* The same for what the law sums, where it does. */
+static inline void explicit_sum(bool sums, lanes *z, lanes k, const lanes *dz)
+{
+    for (int i = 0; i < SCENE_ACTUATORS && sums; i++)
+        z[i] += k * dz[i];
+}
+
+static inline void explicit_report(const struct setting *set, const struct contact_state *m,
+                                   const struct dynamics *e, struct step_report *report)
+{
+    lanes load = lanes_of(0);
+    report->signorini_residual = report->coulomb_residual = report->dissipation_residual =
+        lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        load += lanes_max(e->force[c][0], lanes_of(0));
+    for (int c = 0; c < SCENE_CONTACTS;
+         c++) /* what carries but a rounding error has no direction */
+        report_residuals(report, m->closed[c] & mask_less(1e-9 * load, e->force[c][0]),
+                         set->friction, e->force[c], e->u[c]);
+}
+
+/* One step of length h from `from` in the mode `m` with `begin` evaluated and solved there. */
+static inline void explicit_take(const struct setting *set, const struct motion *from,
+                                 const lanes *torque, lanes h, mask run, bool coupled,
+                                 const struct contact_state *m, const struct dynamics *begin,
+                                 struct explicit_step *out)
+{
+    lanes ks[METHOD_STAGES][SCENE_COORDINATES], kw[METHOD_STAGES][SCENE_COORDINATES];
+    lanes kz[METHOD_STAGES][ACTUATORS];
+    const bool sums = law_sums(&set->law, coupled);
+    const struct drive drive = {torque, coupled, m};
+    contact_set touches = 0;
+    struct dynamics e = *begin;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (mask_any(m->closed[c] & run))
+            touches |= 1u << c;
+    report_clear(&out->report);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        out->torque[i] = begin->torque[i];
+        out->integral_rate[i] = begin->integral_rate[i];
+    }
+    out->violated = out->dipped = MASK_NONE;
+    out->end = *from;
+#ifdef METHOD_EMBEDDED
+    struct missed_forces forces;
+#endif
+#pragma GCC unroll 16
+    for (int k = 0; k < METHOD_STAGES; k++) {
+        lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES], z[ACTUATORS];
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            s[i] = from->s[i], w[i] = from->w[i];
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            z[i] = from->integral[i];
+        if (k > 0) {
+#pragma GCC unroll 16
+            for (int j = 0; j < k; j++)
+                if (tableau_a[k][j] != 0) {
+                    explicit_add(s, w, h * tableau_a[k][j], ks[j], kw[j]);
+                    explicit_sum(sums, z, h * tableau_a[k][j], kz[j]);
+                }
+            between_evaluate(set, from->t + h * tableau_c[k], s, w, z, &drive, touches, &e);
+            if (touches)
+                between_solve(set, m, &e);
+            out->violated |= between_violated(set, m, &e);
+        }
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            ks[k][i] = w[i], kw[k][i] = e.acceleration[i];
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            kz[k][i] = e.integral_rate[i];
+#ifdef METHOD_EMBEDDED
+        if (tableau_dip[k] >= 0)
+            missed_note(&e, tableau_dip[k], &forces);
+#endif
+        report_forces(&out->report, m->closed, (const lanes(*)[2])e.force);
+        if (tableau_b[k] != 0) {
+            lanes moved[SCENE_COORDINATES];
+            const lanes part = h * tableau_b[k];
+            for (int i = 0; i < SCENE_COORDINATES; i++)
+                moved[i] = part * w[i];
+            out->report.work +=
+                scene_work(&set->body, part, from->t + h * tableau_c[k], e.torque, moved);
+            explicit_add(out->end.s, out->end.w, part, ks[k], kw[k]);
+            explicit_sum(sums, out->end.integral, part, kz[k]);
+            for (int c = 0; c < SCENE_CONTACTS; c++) {
+                out->report.slip[c] +=
+                    choose(m->closed[c], part * lanes_abs(e.u[c][1]), lanes_of(0));
+                for (int a = 0; a < 2; a++)
+                    out->report.impulse[c][a] += part * e.force[c][a];
+            }
+        }
+    }
+    struct motion *const end = &out->end;
+    out->bad = run & LANES_NOT(scene_angles_in_range(end->s));
+    between_evaluate(set, from->t + h, end->s, end->w, end->integral, &drive, touches, &e);
+    out->report.degraded_samples = e.degraded;
+    out->report.ambiguous_steps = e.several;
+    if (touches)
+        between_solve(set, m, &e);
+    out->violated |= between_violated(set, m, &e);
+    out->error = lanes_of(0);
+#ifdef METHOD_EMBEDDED
+    lanes es[SCENE_COORDINATES], ew[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        es[i] = ew[i] = lanes_of(0);
+#pragma GCC unroll 16
+    for (int k = 0; k < METHOD_STAGES; k++)
+        if (tableau_e[k] != 0)
+            explicit_add(es, ew, h * tableau_e[k], ks[k], kw[k]);
+    explicit_add(es, ew, h * tableau_e[METHOD_STAGES], end->w, e.acceleration);
+    for (int i = 0; i < SCENE_ACTUATORS && sums; i++) {
+        lanes ez = h * (tableau_e[METHOD_STAGES] * e.integral_rate[i]);
+        for (int k = 0; k < METHOD_STAGES; k++)
+            ez += h * (tableau_e[k] * kz[k][i]);
+        out->error = lanes_max(lanes_abs(ez), out->error);
+    }
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        out->error = lanes_max(lanes_max(lanes_abs(es[i]), lanes_abs(ew[i])), out->error);
+    missed_note(&e, 3, &forces);
+    out->dipped = missed_between(set, m, begin, &e, from->w, end->w, h, &forces);
+#endif
+    if (touches)
+        between_project(set, m, run, end->s, end->w, &e);
+    lanes sum = lanes_of(0);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        sum += end->s[i] + end->w[i];
+    out->failure = choose(mask_finite(sum), lanes_of(STANCE_FAILURE_ANGLE),
+                          lanes_of(STANCE_FAILURE_NOT_FINITE));
+    out->bad |= run & LANES_NOT(mask_finite(sum));
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        end->gap[c] = e.gap[c];
+        end->approach[c] = e.u[c][0];
+    }
+    end->trig = e.trig;
+    end->t = from->t + h;
+    report_forces(&out->report, m->closed, (const lanes(*)[2])e.force);
+    explicit_report(set, m, &e, &out->report);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        out->report.torque[i] = e.torque[i];
+    out->report.evaluations = lanes_of(METHOD_STAGES);
+}
+
+#endif

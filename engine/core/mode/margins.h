@@ -1,0 +1,509 @@
+/* margins.h - what the event-driven method knows of a mode: the equations in it, the margins that
+ * tell when it ends, and where between two states a margin may have dipped below zero.
+ *
+ * A mode lasts while its margins are not negative: the gap of an open contact; the normal force of
+ * a closed one; both edges of the cone where it sticks, the slip in its direction where it slides;
+ * the room to the torque limit, or beyond it, where the controller acts inside the step. Forces are
+ * scaled to accelerations; where a contact slides they must be unique. Margins that a mode starts
+ * from zero are shifted by their `depth`, a multiple of what counts as zero: no root is at the
+ * beginning of an interval, and the state behind an event is clearly inside the next mode.
+ */
+#ifndef STANCE_CORE_MODE_MARGINS_H
+#define STANCE_CORE_MODE_MARGINS_H
+
+#include "between_events.h"
+
+#include <float.h>
+
+#define EVENT_SHORTEST 1e-8 /* s: nothing dips unseen in a step that is shorter */
+#define EVENT_FORCE 1e-9    /* of the accelerations: a force may pull, or leave the cone, by this */
+#define EVENT_CLIP 1e-10    /* of the torque limit: a command beyond it by this is clipped */
+#define EVENT_SLIP 1e-12    /* m/s: a slip this small has ended */
+#define EVENT_JAM 1e-6      /* determinant of the forces at which a slide ends */
+#define EVENT_SINGULAR 1e-11 /* of the operator's largest element: a pivot that counts as zero */
+#define EVENT_LOWEST 1e-11   /* m: rebounds lower than this accumulate */
+
+/* The state that ARKODE integrates: s, w, then what is summed over the step. */
+enum {
+    EVENT_IMPULSE = 2 * SCENE_COORDINATES, /* normal, tangential of each contact, N s */
+    EVENT_SLIDE = EVENT_IMPULSE + 2 * SCENE_CONTACTS,
+    EVENT_WORK = EVENT_SLIDE + SCENE_CONTACTS,
+    EVENT_INTEGRAL, /* what a law sums */
+    EVENT_SIZE = EVENT_INTEGRAL + SCENE_ACTUATORS,
+    EVENT_MARGINS = 3 * SCENE_CONTACTS + 2 * SCENE_ACTUATORS,
+    EVENT_SAMPLES = 8, /* parts of an internal step that is searched for dips */
+};
+
+struct event_mode {
+    struct contact_state contact;
+    contact_set touches;                                /* the closed contacts */
+    double clipped[ACTUATORS];                          /* -1, 0, 1: the torque is at a limit */
+    double depth[EVENT_MARGINS], window[EVENT_MARGINS]; /* shift; what counts as zero then */
+    bool rises[EVENT_MARGINS];                          /* a gap or a slip that begins at zero */
+    double mobility[SCENE_CONTACTS];                    /* 1/kg, makes velocities of impulses */
+    double energy;                                      /* J, what work is measured in */
+};
+
+/* The step that is being made, and the mode it is in. */
+struct event_problem {
+    const struct setting *set;
+    const double *torque;
+    double begin; /* s, time at the beginning of the step */
+    bool coupled;
+    struct event_mode mode;
+    double evaluations;
+};
+
+/* A state inside the step with its margins; the equations are solved in the present mode. */
+struct event_point {
+    double tau; /* s, of the step */
+    double y[EVENT_SIZE];
+    struct dynamics e;
+    double margin[EVENT_MARGINS];
+};
+
+/* ---- equations and margins of a mode ----------------------------------------------------------*/
+
+static void event_swap(double *x, double *y)
+{
+    const double z = *x;
+    *x = *y, *y = z;
+}
+
+/* Forces of two contacts that stick: D r = -free by elimination with full pivoting, since where
+ * both feet stand on one point, or both ends of a rod stick, D has rank 3. Then returns true, and
+ * n, the forces that only strain the robot. */
+static bool event_stick(const double D[2][2][2][2], const double free[2][2], double *r, double *n)
+{
+    double m[4][5], largest = 0;
+    int unknown[4] = {0, 1, 2, 3}, rank = 0;
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 4; j++)
+            m[i][j] = D[i / 2][j / 2][i % 2][j % 2];
+        m[i][4] = -free[i / 2][i % 2];
+    }
+    for (; rank < 4; rank++) {
+        int row = rank, column = rank;
+        for (int i = rank; i < 4; i++)
+            for (int j = rank; j < 4; j++)
+                if (fabs(m[i][j]) > fabs(m[row][column]))
+                    row = i, column = j;
+        const double pivot = m[row][column];
+        largest = fmax(fabs(pivot), largest);
+        if (!(fabs(pivot) > EVENT_SINGULAR * largest))
+            break;
+        for (int j = 0; j < 5; j++)
+            event_swap(&m[rank][j], &m[row][j]);
+        for (int i = 0; i < 4; i++)
+            event_swap(&m[i][rank], &m[i][column]);
+        const int moved = unknown[rank];
+        unknown[rank] = unknown[column], unknown[column] = moved;
+        for (int i = rank + 1; i < 4; i++) {
+            const double factor = m[i][rank] / pivot;
+            for (int j = rank; j < 5; j++)
+                m[i][j] -= factor * m[rank][j];
+        }
+    }
+    for (int i = 3; i >= 0; i--) {
+        double x = 0, null = i == rank ? 1 : 0;
+        if (i < rank) {
+            x = m[i][4];
+            for (int j = i + 1; j < 4; j++)
+                x -= m[i][j] * r[unknown[j]], null -= m[i][j] * n[unknown[j]];
+            x /= m[i][i], null /= m[i][i];
+        }
+        r[unknown[i]] = x, n[unknown[i]] = null;
+    }
+    return rank == 3;
+}
+
+/* Both contacts stick and their forces are not unique, but the motion is: of all such forces those
+ * that keep farthest away from pulling and from the edges of the cones. */
+static void event_share(double friction, struct dynamics *e)
+{
+    double n[4], value[6], slope[6], best = -INFINITY, shift = 0;
+    if (!event_stick((const double(*)[2][2][2])e->D, (const double(*)[2])e->free, &e->force[0][0],
+                     n))
+        return;
+    for (int c = 0; c < 2; c++) {
+        const double normal = e->D[c][c][0][0], tangential = e->D[c][c][1][1];
+        value[3 * c] = normal * e->force[c][0];
+        slope[3 * c] = normal * n[2 * c];
+        for (int side = 1; side <= 2; side++) {
+            const double sign = side == 1 ? -1 : 1;
+            value[3 * c + side] = tangential * (friction * e->force[c][0] + sign * e->force[c][1]);
+            slope[3 * c + side] = tangential * (friction * n[2 * c] + sign * n[2 * c + 1]);
+        }
+    }
+    for (int j = 0; j < 6; j++)
+        for (int k = 0; k < 6; k++) {
+            if (slope[j] <= 0 || slope[k] >= 0)
+                continue;
+            const double x = (value[k] - value[j]) / (slope[j] - slope[k]);
+            double low = INFINITY;
+            for (int i = 0; i < 6; i++)
+                low = fmin(value[i] + slope[i] * x, low);
+            if (low > best)
+                best = low, shift = x;
+        }
+    for (int c = 0; c < 2; c++)
+        for (int i = 0; i < 2; i++)
+            e->force[c][i] += shift * n[2 * c + i];
+}
+
+/* Both contacts stick: forces, and accelerations with them. */
+static void event_hold(double friction, struct dynamics *e)
+{
+    event_share(friction, e);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int i = 0; i < SCENE_COORDINATES; i++)
+            e->acceleration[i] +=
+                e->response[c][0][i] * e->force[c][0] + e->response[c][1][i] * e->force[c][1];
+}
+
+static void event_evaluate(struct event_problem *problem, double tau, const double *y,
+                           struct dynamics *e)
+{
+    const double *const s = y, *const w = y + SCENE_COORDINATES;
+    const bool servos = problem->coupled && problem->set->law.decouples > 0;
+    double torque[ACTUATORS];
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        torque[i] = problem->torque[i];
+    if (problem->coupled && !servos) {
+        law_torque(&problem->set->law, s, w, torque);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            if (problem->mode.clipped[i] != 0)
+                torque[i] = problem->mode.clipped[i] * problem->set->law.limit;
+    }
+    const struct drive drive = {torque, servos, &problem->mode.contact};
+    between_evaluate(problem->set, problem->begin + tau, s, w, y + EVENT_INTEGRAL, &drive,
+                     problem->mode.touches, e);
+    const struct contact_state *const m = &problem->mode.contact;
+    if (SCENE_CONTACTS > 1 && m->closed[0] && m->closed[SECOND] && m->slide[0] == 0 &&
+        m->slide[SECOND] == 0)
+        event_hold(problem->set->friction, e);
+    else if (problem->mode.touches)
+        between_solve(problem->set, m, e);
+    problem->evaluations++;
+}
+
+/* Determinant of the equations for the contact forces, 1 without coupling of contacts and of
+ * directions. Where friction at a sliding contact brings it to zero the forces are unbounded or not
+ * unique (Painleve). */
+static double event_determinant(const struct event_problem *problem, const struct dynamics *e)
+{
+    const struct contact_state *const state = &problem->mode.contact;
+    double m[4][4], scale = 1;
+    int of[4], axis[4], n = 0;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        if (!state->closed[c])
+            continue;
+        const bool sticks = state->slide[c] == 0;
+        const double normal = e->D[c][c][0][0], cross = e->D[c][c][0][1];
+        scale *= sticks ? normal * e->D[c][c][1][1] - cross * cross : normal;
+        of[n] = c, axis[n++] = 0;
+        if (sticks)
+            of[n] = c, axis[n++] = 1;
+    }
+    for (int j = 0; j < n; j++) {
+        const double edge =
+            axis[j] == 0 ? -(problem->set->friction * state->slide[of[j]]) : 0; /* 0: sticks */
+        for (int i = 0; i < n; i++)
+            m[i][j] = e->D[of[i]][of[j]][axis[i]][axis[j]] + edge * e->D[of[i]][of[j]][axis[i]][1];
+    }
+    if (n == 1)
+        return m[0][0] / scale;
+    if (n == 2)
+        return (m[0][0] * m[1][1] - m[0][1] * m[1][0]) / scale;
+    double sum = 0;
+    for (int k = 0; k < 3; k++) {
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        sum += m[0][k] * (m[1][i] * m[2][j] - m[1][j] * m[2][i]);
+    }
+    return sum / scale;
+}
+
+/* Margins of the contact laws and of the torque limits; 1 where there is none. */
+static void event_margins(const struct event_problem *problem, const double *y,
+                          const struct dynamics *e, double *margin)
+{
+    const struct contact_state *const m = &problem->mode.contact;
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        margin[k] = 1;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        double *const own = &margin[3 * c];
+        if (!m->closed[c]) {
+            own[0] = problem->set->may_touch[c] > 0 ? e->gap[c] : 1;
+            continue;
+        }
+        const double bound = problem->set->friction * e->force[c][0], mobility = e->D[c][c][1][1];
+        own[0] = e->force[c][0] * e->D[c][c][0][0];
+        if (problem->set->friction > 0 && m->slide[c] != 0) {
+            own[1] = m->slide[c] * e->u[c][1];
+            own[2] = event_determinant(problem, e) - 2 * EVENT_JAM;
+        } else if (problem->set->friction > 0) {
+            own[1] = (bound - e->force[c][1]) * mobility;
+            own[2] = (bound + e->force[c][1]) * mobility;
+        }
+    }
+    if (problem->coupled && isfinite(problem->set->law.limit)) {
+        double command[ACTUATORS];
+        const double limit = problem->set->law.limit;
+        law_torque(&problem->set->law, y, y + SCENE_COORDINATES, command);
+        for (int i = 0; i < SCENE_ACTUATORS; i++) {
+            double *const own = &margin[3 * SCENE_CONTACTS + 2 * i];
+            const double clipped = problem->mode.clipped[i];
+            own[0] = clipped != 0 ? clipped * command[i] - limit : limit - command[i];
+            own[1] = clipped != 0 ? 1 : limit + command[i];
+        }
+    }
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        margin[k] += problem->mode.depth[k];
+}
+
+static void event_look(struct event_problem *problem, struct event_point *p)
+{
+    event_evaluate(problem, p->tau, p->y, &p->e);
+    event_margins(problem, p->y, &p->e, p->margin);
+}
+
+/* Depths and windows of the margins for the mode that begins at *p, with e solved there. */
+static void event_set_depths(struct event_problem *problem, const struct event_point *p)
+{
+    struct event_mode *const m = &problem->mode;
+    double raw[EVENT_MARGINS], size = 1, scale = 1;
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        size = fmax(fabs(p->y[i]), size);
+    for (int c = 0; c < SCENE_CONTACTS && m->touches; c++)
+        for (int i = 0; i < 2; i++)
+            scale = fmax(fabs(p->e.free[c][i]), scale);
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        m->depth[k] = 0;
+    event_margins(problem, p->y, &p->e, raw);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        double *const depth = &m->depth[3 * c], *const window = &m->window[3 * c];
+        bool *const rises = &m->rises[3 * c];
+        for (int i = 0; i < 3; i++) {
+            depth[i] = EVENT_FORCE * scale, window[i] = 0.25 * EVENT_FORCE * scale;
+            rises[i] = false;
+        }
+        if (!m->contact.closed[c]) {
+            rises[0] = raw[3 * c] <= 2 * STEP_CLOSED;
+            depth[0] = rises[0] ? STEP_CLOSED : 0;
+            window[0] = fmin(8 * DBL_EPSILON * size, 0.2 * STEP_CLOSED);
+        } else if (m->contact.slide[c] != 0) {
+            rises[1] = raw[3 * c + 1] <= 2 * BETWEEN_REST;
+            depth[1] = rises[1] ? BETWEEN_REST : 0;
+            window[1] = EVENT_SLIP;
+            depth[2] = EVENT_JAM; /* where this ends a mode, none begins */
+            window[2] = 0.25 * EVENT_JAM;
+        }
+        m->mobility[c] = m->contact.closed[c] ? p->e.D[c][c][0][0] : 1;
+    }
+    for (int k = 3 * SCENE_CONTACTS; k < EVENT_MARGINS; k++) {
+        m->depth[k] = isfinite(problem->set->law.limit) ? EVENT_CLIP * problem->set->law.limit : 0;
+        m->window[k] = 0.25 * m->depth[k];
+        m->rises[k] = false;
+    }
+    m->energy =
+        1 + fabs(scene_energy(&problem->set->body, p->y, p->y + SCENE_COORDINATES, &p->e.trig));
+}
+
+/* Is a margin zero at *p that is negative at *beyond? */
+static bool event_reached(const struct event_problem *problem, const struct event_point *p,
+                          const struct event_point *beyond)
+{
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        if (beyond->margin[k] < 0 && p->margin[k] <= problem->mode.window[k])
+            return true;
+    return false;
+}
+
+/* No margin is negative by more than its window. */
+static bool event_inside(const struct event_problem *problem, const struct event_point *p)
+{
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        if (p->margin[k] < -problem->mode.window[k])
+            return false;
+    return true;
+}
+
+/* A mode can begin at *p: what between_mode tolerates is much less than the depths. */
+static bool event_consistent(const struct event_problem *problem, const struct event_point *p)
+{
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        if (!problem->mode.rises[k] && p->margin[k] < 0.5 * problem->mode.depth[k])
+            return false;
+    return event_inside(problem, p);
+}
+
+/* Is a margin negative at *p that began at zero and has not been seen to leave it? */
+static bool event_shallow(const struct event_problem *problem, const struct event_point *p)
+{
+    for (int k = 0; k < 3 * SCENE_CONTACTS; k++)
+        if (p->margin[k] < 0 && problem->mode.rises[k])
+            return true;
+    return false;
+}
+
+/* Margins that began at zero and are well above it at *p: from now on zero is their end. */
+static bool event_rise(struct event_problem *problem, struct event_point *p)
+{
+    bool risen = false;
+    for (int k = 0; k < 3 * SCENE_CONTACTS; k++) {
+        if (!problem->mode.rises[k] || p->margin[k] < 100 * problem->mode.depth[k])
+            continue;
+        p->margin[k] -= problem->mode.depth[k];
+        problem->mode.depth[k] = 0;
+        problem->mode.rises[k] = false;
+        risen = true;
+    }
+    return risen;
+}
+
+/* A contact that leaves the ground and falls back from less than EVENT_LOWEST. */
+static bool event_accumulates(const struct event_problem *problem, const struct event_point *p)
+{
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        double fall[2], curvature[2];
+        if (problem->set->may_touch[c] <= 0 || problem->mode.contact.closed[c] ||
+            p->e.gap[c] > STEP_CLOSED || p->e.u[c][0] <= BETWEEN_REST)
+            continue;
+        scene_contact_velocity(&problem->set->body, &p->e.trig, c, p->e.acceleration, fall);
+        scene_contact_curvature(&problem->set->body, &p->e.trig, c, p->y + SCENE_COORDINATES,
+                                curvature);
+        if (p->e.u[c][0] * p->e.u[c][0] < -2 * EVENT_LOWEST * (fall[0] + curvature[0]))
+            return true;
+    }
+    return false;
+}
+
+/* Was it a contact, not a torque limit, that ended the mode at *p? */
+static bool event_of_contact(const struct event_problem *problem, const struct event_point *p)
+{
+    for (int k = 0; k < 3 * SCENE_CONTACTS; k++)
+        if (p->margin[k] <= problem->mode.window[k])
+            return true;
+    return false;
+}
+
+/* ---- between the ends of an internal step -----------------------------------------------------*/
+
+/* Rates of the margins that are gaps and slips; NAN for the others. */
+static void event_slopes(const struct event_problem *problem, const double *y,
+                         const struct dynamics *e, double *slope)
+{
+    const struct contact_state *const m = &problem->mode.contact;
+    for (int k = 0; k < EVENT_MARGINS; k++)
+        slope[k] = NAN;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        double forced[2], curvature[2];
+        if (!m->closed[c])
+            slope[3 * c] = problem->set->may_touch[c] > 0 ? e->u[c][0] : 0;
+        if (!m->closed[c] || m->slide[c] == 0 || problem->set->friction <= 0)
+            continue;
+        scene_contact_velocity(&problem->set->body, &e->trig, c, e->acceleration, forced);
+        scene_contact_curvature(&problem->set->body, &e->trig, c, y + SCENE_COORDINATES, curvature);
+        slope[3 * c + 1] = m->slide[c] * (forced[1] + curvature[1]);
+    }
+}
+
+/* Margins and their rates at the fraction x of the internal step: position through both ends'
+ * positions, velocities and accelerations, velocity through both ends' velocities and
+ * accelerations. */
+static void event_between(struct event_problem *problem, const struct event_point *from,
+                          const struct event_point *to, double x, double *margin, double *slope)
+{
+    const double h = to->tau - from->tau, x2 = x * x, x3 = x2 * x;
+    double y[EVENT_SIZE] = {0};
+    struct dynamics e;
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        const double v0 = from->y[SCENE_COORDINATES + i], v1 = to->y[SCENE_COORDINATES + i];
+        const double a0 = from->e.acceleration[i], a1 = to->e.acceleration[i];
+        const double d0 = to->y[i] - from->y[i] - h * (v0 + 0.5 * h * a0);
+        const double d1 = h * (v1 - v0 - h * a0), d2 = h * h * (a1 - a0);
+        const double c3 = 10 * d0 - 4 * d1 + 0.5 * d2, c4 = -15 * d0 + 7 * d1 - d2;
+        const double c5 = 6 * d0 - 3 * d1 + 0.5 * d2;
+        y[i] = from->y[i] + h * x * (v0 + 0.5 * h * x * a0) + x3 * (c3 + x * (c4 + x * c5));
+        y[SCENE_COORDINATES + i] =
+            v0 + (v1 - v0) * (3 * x2 - 2 * x3) + h * (a0 * (x - 2 * x2 + x3) + a1 * (x3 - x2));
+    }
+    event_evaluate(problem, from->tau + x * h, y, &e);
+    event_margins(problem, y, &e, margin);
+    event_slopes(problem, y, &e, slope);
+}
+
+/* Where one margin, known at equal distances, dips so low that it may be negative: a fraction of
+ * the internal step; INFINITY: nowhere. A sign change that lasts is left to the root finder.
+ * slope: differences per distance, NAN where not known. */
+static double event_dip_of(const double *g, double *slope)
+{
+    const int n = EVENT_SAMPLES;
+    double low = g[0], high = g[0];
+    for (int j = 0; j <= n; j++) {
+        low = fmin(g[j], low), high = fmax(g[j], high);
+        if (!isnan(slope[j]))
+            continue;
+        if (j == 0)
+            slope[j] = -1.5 * g[0] + 2 * g[1] - 0.5 * g[2];
+        else if (j == n)
+            slope[j] = 1.5 * g[n] - 2 * g[n - 1] + 0.5 * g[n - 2];
+        else
+            slope[j] = 0.5 * (g[j + 1] - g[j - 1]);
+    }
+    for (int j = 0; j < n; j++) {
+        if (g[j + 1] < 0)
+            return j + 1 < n && g[n] >= 0 ? (double)(j + 1) / n : INFINITY;
+        if (slope[j] >= 0 || slope[j + 1] <= 0)
+            continue;
+        const double x = slope[j] / (slope[j] - slope[j + 1]), x2 = x * x, x3 = x2 * x;
+        const double least = g[j] + (g[j + 1] - g[j]) * (3 * x2 - 2 * x3) +
+                             slope[j] * (x - 2 * x2 + x3) + slope[j + 1] * (x3 - x2);
+        /* Near a real end the value is sure, elsewhere it is interpolated. */
+        const bool sure = (j == 0 && x < 0.5) || (j == n - 1 && x > 0.5);
+        const double doubt =
+            0.5 * (fmin(g[j], g[j + 1]) - least) + (sure ? 0 : 1e-3 * (high - low));
+        if (least < doubt)
+            return (j + x) / n;
+    }
+    return INFINITY;
+}
+
+/* Time at which a margin may have dipped below zero between two ends; INFINITY: none has. */
+static double event_dip(struct event_problem *problem, const struct event_point *from,
+                        const struct event_point *to)
+{
+    const double h = to->tau - from->tau;
+    double g[EVENT_MARGINS][EVENT_SAMPLES + 1], rate[EVENT_MARGINS][EVENT_SAMPLES + 1];
+    double margin[EVENT_MARGINS], slope[EVENT_MARGINS], first = INFINITY;
+    bool near = false;
+    if (h < EVENT_SHORTEST)
+        return INFINITY;
+    event_between(problem, from, to, 0.5, margin, slope);
+    for (int k = 0; k < EVENT_MARGINS; k++) {
+        const double low = fmin(fmin(from->margin[k], to->margin[k]), margin[k]);
+        const double high = fmax(fmax(from->margin[k], to->margin[k]), margin[k]);
+        near |= low < high - low;
+    }
+    if (!near)
+        return INFINITY;
+    for (int j = 0; j <= EVENT_SAMPLES; j++) {
+        const struct event_point *const end = j == 0 ? from : to;
+        if (j == 0 || j == EVENT_SAMPLES)
+            event_slopes(problem, end->y, &end->e, slope);
+        else
+            event_between(problem, from, to, (double)j / EVENT_SAMPLES, margin, slope);
+        for (int k = 0; k < EVENT_MARGINS; k++) {
+            g[k][j] = j == 0 || j == EVENT_SAMPLES ? end->margin[k] : margin[k];
+            rate[k][j] = slope[k] * (h / EVENT_SAMPLES);
+        }
+    }
+    for (int k = 0; k < EVENT_MARGINS; k++) {
+        const double x = event_dip_of(g[k], rate[k]);
+        if (x > 1e-6 && x < 1 - 1e-6)
+            first = fmin(from->tau + x * h, first);
+    }
+    return first;
+}
+
+#endif

@@ -1,0 +1,125 @@
+/* missed_events.h - may a contact have come or gone between the two ends of an explicit step,
+ * unseen?
+ *
+ * A mode that holds at both ends and at every stage may still have been left between them: a
+ * grazing foot touches the ground and is gone, a slip stops and goes on, a force pulls for a
+ * moment. Each margin g of the mode is bounded from below over the whole step by the least
+ * Bernstein coefficient of a polynomial that interpolates it (G. Farin, Curves and Surfaces for
+ * CAGD, section 6: a Bezier curve lies in the convex hull of its control points):
+ *
+ *   gap       degree 5 through value, rate and acceleration at both ends,
+ *             g0, g0 + h g0'/5, g0 + 2h g0'/5 + h^2 g0''/20 and the same from the other end;
+ *   slip      degree 3 through value and rate at both ends, g0, g0 + h g0'/3, ...;
+ *   forces    degree 3 through the values at four stages, at the fractions 0, 3/10, 4/5, 1.
+ *
+ * The bound errs to the safe side, by about 0.03 h^2 |g''| for a parabola: a quarter of it on half
+ * the step. The interpolation itself errs by h^6 g^(6)/46080 for a gap, much less than that as long
+ * as no angle turns by more than DIP_TURN.
+ */
+#ifndef STANCE_CORE_MODE_MISSED_EVENTS_H
+#define STANCE_CORE_MODE_MISSED_EVENTS_H
+
+#include "between_events.h"
+
+#define DIP_TURN 0.5   /* rad: no step is so long that an angle turns further */
+#define DIP_FORCE 1e-9 /* of the largest force of its kind in the step: what counts as none */
+
+/* Forces of a step at the four fractions where the polynomials go through. */
+struct missed_forces {
+    lanes normal[4][SCENE_CONTACTS], tangential[4][SCENE_CONTACTS];
+};
+
+static inline void missed_note(const struct dynamics *e, int k, struct missed_forces *forces)
+{
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        forces->normal[k][c] = e->force[c][0];
+        forces->tangential[k][c] = e->force[c][1];
+    }
+}
+
+/* The longest step, s, that no margin is lost in: see DIP_TURN and scene_longest_step. */
+static inline lanes missed_longest(const struct setting *set, const lanes *w)
+{
+    lanes longest = scene_longest_step(&set->body);
+    for (int a = 0; a < SCENE_ANGLES; a++)
+        longest = lanes_min(lanes_of(DIP_TURN) / lanes_abs(w[FIRST_ANGLE + a]), longest);
+    return longest;
+}
+
+/* Acceleration of a contact in a state that was evaluated and solved. */
+static inline void missed_acceleration(const struct setting *set, const struct dynamics *e,
+                                       const lanes *w, int c, lanes *a)
+{
+    lanes curvature[2];
+    scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
+    scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, a);
+    a[0] += curvature[0], a[1] += curvature[1];
+}
+
+/* Least of what follows from value, rate and acceleration at one end of a quintic. */
+static inline lanes missed_quintic(lanes g, lanes rate, lanes acceleration, lanes h)
+{
+    const lanes first = g + h * (0.2 * rate);
+    return lanes_min(lanes_min(first, first + h * (0.2 * rate + h * (0.05 * acceleration))), g);
+}
+
+/* Least Bernstein coefficient of the cubic through f at 0, 0.3, 0.8, 1. */
+static inline lanes missed_cubic(const lanes *f)
+{
+    const lanes r1 = f[1] - 0.343 * f[0] - 0.027 * f[3];
+    const lanes r2 = f[2] - 0.008 * f[0] - 0.512 * f[3];
+    const lanes b1 = (0.384 * r1 - 0.189 * r2) / 0.1512;
+    const lanes b2 = (0.441 * r2 - 0.096 * r1) / 0.1512;
+    return lanes_min(lanes_min(f[0], f[3]), lanes_min(b1, b2));
+}
+
+/* Lanes where a force of contact c may have pulled, or have left the cone while it sticks. */
+static inline mask missed_of_forces(lanes friction, mask sticks, const struct missed_forces *forces,
+                                    int c)
+{
+    lanes normal[4], low[4], high[4], largest = lanes_of(0);
+    for (int k = 0; k < 4; k++) {
+        normal[k] = forces->normal[k][c];
+        low[k] = friction * normal[k] + forces->tangential[k][c];
+        high[k] = friction * normal[k] - forces->tangential[k][c];
+        largest = lanes_max(lanes_abs(normal[k]), largest);
+    }
+    const lanes none = -DIP_FORCE * largest;
+    const lanes room = lanes_min(missed_cubic(low), missed_cubic(high));
+    return mask_less(missed_cubic(normal), none) | (sticks & mask_less(room, friction * none));
+}
+
+/* Lanes where the mode may have been left between `begin` and `end`, both solved in it, with the
+ * velocities w0 and w1, a time h apart. */
+static inline mask missed_between(const struct setting *set, const struct contact_state *m,
+                                  const struct dynamics *begin, const struct dynamics *end,
+                                  const lanes *w0, const lanes *w1, lanes h,
+                                  const struct missed_forces *forces)
+{
+    const lanes none = lanes_of(0);
+    mask dips = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const mask closed = m->closed[c];
+        const mask open = LANES_NOT(closed) & mask_less(none, set->may_touch[c]);
+        const mask sticks = mask_less_equal(lanes_abs(m->slide[c]), none);
+        const mask near = open & (mask_less(begin->gap[c], h * lanes_abs(begin->u[c][0])) |
+                                  mask_less(end->gap[c], h * lanes_abs(end->u[c][0])));
+        const mask slides = closed & LANES_NOT(sticks) & mask_less(none, set->friction);
+        if (mask_any(closed))
+            dips |= closed & missed_of_forces(set->friction, sticks, forces, c);
+        if (!mask_any(near | slides))
+            continue;
+        lanes a0[2], a1[2];
+        missed_acceleration(set, begin, w0, c, a0);
+        missed_acceleration(set, end, w1, c, a1);
+        const lanes gap = lanes_min(missed_quintic(begin->gap[c], begin->u[c][0], a0[0], h),
+                                    missed_quintic(end->gap[c], -end->u[c][0], a1[0], h));
+        const lanes slip = lanes_min(m->slide[c] * (begin->u[c][1] + h * (a0[1] / 3)),
+                                     m->slide[c] * (end->u[c][1] - h * (a1[1] / 3)));
+        dips |= near & mask_less(gap, lanes_of(-2 * BETWEEN_GAP));
+        dips |= slides & mask_less(slip, lanes_of(-BETWEEN_REST));
+    }
+    return dips;
+}
+
+#endif

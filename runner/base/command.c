@@ -1,0 +1,119 @@
+/* command.c - options of the commands. */
+#include "command.h"
+#include "words.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { LONGEST_OPTION = 63 };
+
+static void print_help(const struct command *command)
+{
+    bool named = strncmp(command->synopsis, "stance ", 7) == 0;
+    printf("usage: %s%s\n\n%s.\n", named ? "" : "stance ", command->synopsis, command->summary);
+    if (command->help && command->help[0]) {
+        printf("\n%s", command->help);
+        if (command->help[strlen(command->help) - 1] != '\n')
+            putchar('\n');
+    }
+}
+
+static bool bad_use(const struct command *command, const char *text, const char *word)
+{
+    fprintf(stderr, "stance %s: %s '%s' (stance %s -h explains)\n", command->name, text, word,
+            command->name);
+    return false;
+}
+
+static bool unknown_option(const struct command *command, const char *word,
+                           const struct option_spec *specs, size_t spec_count)
+{
+    const char *names[32];
+    size_t n = 0;
+    for (size_t i = 0; i < spec_count && n < sizeof names / sizeof names[0]; i++)
+        names[n++] = specs[i].name;
+    char stem[LONGEST_OPTION + 1];
+    snprintf(stem, sizeof stem, "%.*s", LONGEST_OPTION, word);
+    stem[strcspn(stem, "=")] = '\0';
+    const char *near = nearest_word(stem, names, n);
+    if (!near)
+        return bad_use(command, "unknown option", stem);
+    fprintf(stderr, "stance %s: unknown option '%s'; did you mean '%s'?\n", command->name, stem,
+            near);
+    return false;
+}
+
+/* The spec that `word` names, as "--name" or "--name=VALUE" (*value is set then). */
+static const struct option_spec *find_option(const char *word, const struct option_spec *specs,
+                                             size_t spec_count, const char **value)
+{
+    for (size_t i = 0; i < spec_count; i++) {
+        size_t length = strlen(specs[i].name);
+        if (strncmp(word, specs[i].name, length) != 0)
+            continue;
+        if (word[length] == '\0')
+            return &specs[i];
+        if (word[length] == '=' && length > 2) {
+            *value = word + length + 1;
+            return &specs[i];
+        }
+    }
+    return NULL;
+}
+
+/* Takes one option, whose value may be the next argument; *i moves on to the last one used. */
+static bool take_option(const struct command *command, int argc, char **argv, int *i,
+                        const struct option_spec *specs, size_t spec_count)
+{
+    const char *value = NULL;
+    const struct option_spec *spec = find_option(argv[*i], specs, spec_count, &value);
+
+    if (!spec)
+        return unknown_option(command, argv[*i], specs, spec_count);
+    if (spec->takes_value) {
+        if (!value) {
+            if (*i + 1 >= argc)
+                return bad_use(command, "a value must follow", spec->name);
+            value = argv[++*i];
+        }
+        if (*spec->count >= spec->max) {
+            return bad_use(command,
+                           spec->max == 1 ? "given twice:" : "given too often:", spec->name);
+        }
+        spec->values[*spec->count] = value;
+    } else if (value) {
+        return bad_use(command, "takes no value:", spec->name);
+    }
+    ++*spec->count;
+    return true;
+}
+
+bool command_options(const struct command *command, int argc, char **argv,
+                     const struct option_spec *specs, size_t spec_count, const char **operand,
+                     size_t max_operands, size_t *operands, bool *help)
+{
+    bool only_operands = false;
+
+    *operands = 0;
+    *help = false;
+    for (size_t i = 0; i < spec_count; i++)
+        *specs[i].count = 0;
+    for (int i = 1; i < argc; i++) {
+        if (!only_operands && strcmp(argv[i], "--") == 0) {
+            only_operands = true;
+        } else if (!only_operands &&
+                   (strcmp(argv[i], "-h") == 0 || strcmp(argv[i], "--help") == 0)) {
+            print_help(command);
+            *help = true;
+            return true;
+        } else if (!only_operands && argv[i][0] == '-' && argv[i][1] != '\0') {
+            if (!take_option(command, argc, argv, &i, specs, spec_count))
+                return false;
+        } else if (*operands >= max_operands) {
+            return bad_use(command, "unexpected argument", argv[i]);
+        } else {
+            operand[(*operands)++] = argv[i];
+        }
+    }
+    return true;
+}

@@ -1,0 +1,102 @@
+/* problem.c - errors of a scenario, collected while it is read and printed in order of position. */
+#include "problem.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool same_place(struct mark a, struct mark b)
+{
+    return a.set == b.set && a.line == b.line && a.column == b.column;
+}
+
+void problem_add(struct problems *problems, struct mark mark, const char *format, ...)
+{
+    if (problems_full(problems)) {
+        problems->lost++;
+        return;
+    }
+    struct problem *problem = &problems->list[problems->count];
+    va_list arguments;
+
+    va_start(arguments, format);
+    vsnprintf(problem->text, sizeof problem->text, format, arguments);
+    va_end(arguments);
+    problem->mark = mark;
+    problem->order = problems->count;
+    for (size_t i = 0; i < problems->count; i++)
+        if (same_place(problems->list[i].mark, mark) &&
+            strcmp(problems->list[i].text, problem->text) == 0)
+            return;
+    problems->count++;
+}
+
+static int by_position(const void *left, const void *right)
+{
+    const struct problem *a = left, *b = right;
+    if (a->mark.set != b->mark.set)
+        return a->mark.set < b->mark.set ? -1 : 1;
+    if (a->mark.line != b->mark.line)
+        return a->mark.line < b->mark.line ? -1 : 1;
+    if (a->mark.column != b->mark.column)
+        return a->mark.column < b->mark.column ? -1 : 1;
+    return a->order < b->order ? -1 : a->order > b->order;
+}
+
+/* Cut to `limit` bytes, never inside a character; control characters become '?'. */
+static void clean(char *to, size_t limit, const char *from)
+{
+    size_t n = 0;
+    while (n < limit && from[n]) {
+        unsigned char c = (unsigned char)from[n];
+        to[n] = (c < 0x20 || c == 0x7f) ? '?' : (char)c;
+        n++;
+    }
+    if (from[n]) {
+        while (n > 0 && ((unsigned char)from[n] & 0xc0) == 0x80)
+            n--;
+        memcpy(to + n, "...", 3);
+        n += 3;
+    }
+    to[n] = '\0';
+}
+
+void problems_print(struct problems *problems, const char *file, const char *const *sets, FILE *out)
+{
+    size_t shown_count = problems->count < PROBLEMS_SHOWN ? problems->count : PROBLEMS_SHOWN;
+
+    qsort(problems->list, problems->count, sizeof problems->list[0], by_position);
+    for (size_t i = 0; i < shown_count; i++) {
+        const struct problem *problem = &problems->list[i];
+        if (problem->mark.set > 0) {
+            char set[260];
+            clean(set, 250, sets[problem->mark.set - 1]);
+            fprintf(out, "--set %s: %s\n", set, problem->text);
+        } else if (problem->mark.line > 0) {
+            fprintf(out, "%s:%d:%d: %s\n", file, problem->mark.line, problem->mark.column,
+                    problem->text);
+        } else {
+            fprintf(out, "%s: %s\n", file, problem->text);
+        }
+    }
+    size_t rest = problems->count - shown_count + problems->lost;
+    if (rest > 0)
+        fprintf(out, "%s: %zu more error%s\n", file, rest, rest == 1 ? "" : "s");
+}
+
+const char *shown(char buffer[SHOWN_SIZE], const char *text)
+{
+    clean(buffer, 44, text);
+    return buffer;
+}
+
+const char *word_list(char *buffer, size_t size, const char *const *words, size_t count)
+{
+    size_t used = 0;
+    buffer[0] = '\0';
+    for (size_t i = 0; i < count && used < size; i++) {
+        int n = snprintf(buffer + used, size - used, "%s%s", i ? ", " : "", words[i]);
+        used += n > 0 ? (size_t)n : 0;
+    }
+    return buffer;
+}

@@ -1,0 +1,55 @@
+/* problem.h - errors of a scenario, collected while it is read and printed in order of position. */
+#ifndef STANCE_BASE_PROBLEM_H
+#define STANCE_BASE_PROBLEM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+/* Where something stands. `set` 0: in the file, at line and column (from 1, in characters);
+ * k > 0: in the k-th --set, where the position means nothing. */
+struct mark {
+    int set, line, column;
+};
+
+enum {
+    PROBLEMS_SHOWN = 20, /* lines that are printed; the rest is counted */
+    PROBLEMS_KEPT = 200,
+    PROBLEM_TEXT = 700,
+    SHOWN_SIZE = 64,
+};
+
+struct problem {
+    struct mark mark;
+    size_t order;
+    char text[PROBLEM_TEXT];
+};
+
+struct problems {
+    size_t count, lost; /* kept; not kept because there were too many */
+    struct problem list[PROBLEMS_KEPT];
+};
+
+/* Adds one line; what is said twice of the same place is kept once. */
+void problem_add(struct problems *problems, struct mark mark, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* No more is kept: hints, which take time to find, need not be looked for. */
+static inline bool problems_full(const struct problems *problems)
+{
+    return problems->count >= PROBLEMS_KEPT;
+}
+
+/* Sorts and prints: those of the file by position, then those of each --set (`sets`, PATH=VALUE).
+ */
+void problems_print(struct problems *problems, const char *file, const char *const *sets,
+                    FILE *out);
+
+/* Text from a file made fit for a one-line message: cut to some 40 characters, control characters
+ * shown as '?'. Returns `buffer`. */
+const char *shown(char buffer[SHOWN_SIZE], const char *text);
+
+/* "a, b, c" of `count` words; cut at `size`. Returns `buffer`. */
+const char *word_list(char *buffer, size_t size, const char *const *words, size_t count);
+
+#endif

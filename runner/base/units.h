@@ -1,0 +1,14 @@
+/* units.h - sizes and times: as text for people, and of the clock. */
+#ifndef STANCE_BASE_UNITS_H
+#define STANCE_BASE_UNITS_H
+
+#include <stddef.h>
+
+/* "1.2 GB" and "3 min". */
+void text_of_bytes(char *text, size_t size, double bytes);
+void text_of_seconds(char *text, size_t size, double seconds);
+
+/* Seconds of a clock that never jumps. */
+double clock_seconds(void);
+
+#endif

@@ -1,0 +1,55 @@
+/* words.c - edit distances to known words. */
+#include "words.h"
+
+#include <string.h>
+
+enum { LONGEST_WORD = 63 };
+
+static size_t minimum(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* Damerau-Levenshtein distance in its restricted form (a pair is swapped at most once). Words
+ * longer than LONGEST_WORD are compared by their beginning: no known word is that long. */
+static size_t edit_distance(const char *a, const char *b)
+{
+    size_t rows[3][LONGEST_WORD + 1];
+    size_t m = minimum(strlen(a), LONGEST_WORD), n = minimum(strlen(b), LONGEST_WORD);
+    size_t *before = rows[0], *previous = rows[1], *current = rows[2];
+
+    for (size_t j = 0; j <= n; j++)
+        previous[j] = j;
+    for (size_t i = 1; i <= m; i++) {
+        current[0] = i;
+        for (size_t j = 1; j <= n; j++) {
+            size_t differs = a[i - 1] != b[j - 1];
+            current[j] =
+                minimum(minimum(previous[j], current[j - 1]) + 1, previous[j - 1] + differs);
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                current[j] = minimum(current[j], before[j - 2] + 1);
+        }
+        size_t *oldest = before;
+        before = previous;
+        previous = current;
+        current = oldest;
+    }
+    return previous[n];
+}
+
+const char *nearest_word(const char *word, const char *const *known, size_t count)
+{
+    const char *nearest = NULL;
+    size_t length = minimum(strlen(word), LONGEST_WORD);
+    size_t admitted = length / 3 > 2 ? length / 3 : 2, best = admitted + 1;
+
+    for (size_t i = 0; i < count; i++) {
+        size_t distance = edit_distance(word, known[i]);
+        /* As many edits as letters would be another word altogether. */
+        if (distance < best && distance < length) {
+            best = distance;
+            nearest = known[i];
+        }
+    }
+    return nearest;
+}

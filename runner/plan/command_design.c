@@ -1,0 +1,180 @@
+/* command_design.c - `stance design`: what control theory says about a scenario before any case of
+ * it runs.
+ */
+#include "design.h"
+#include "instruction_set.h"
+
+#include "runner/base/command.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+extern const struct command command_design; /* below */
+
+enum { MAX_SETS = 64 };
+
+/* Takes the reference. */
+static int print_json(json_t *report)
+{
+    if (!report || json_dumpf(report, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0) {
+        fputs("stance design: the report could not be written\n", stderr);
+        json_decref(report);
+        return EXIT_IO;
+    }
+    putchar('\n');
+    json_decref(report);
+    return EXIT_DONE;
+}
+
+/* ---- the command ----------------------------------------------------------------------------- */
+
+/* One line at the part of the scenario that is to blame: the initial equilibrium where that alone
+ * already fails, else the controller. */
+static int complain(const struct scenario *s, const char *text)
+{
+    struct scenario_values values = s->base;
+    double model[STANCE_MAX_ROBOT];
+    stance_equilibrium ignored;
+    stance_message message;
+
+    values.law = LAW_NONE;
+    const bool controller = s->base.law == LAW_STATE_FEEDBACK &&
+                            ((s->base.design_point.given && values.state_given) ||
+                             resolve_equilibrium(s->scene, &values, model, &ignored, &message));
+    int line = controller ? s->controller_line : s->initial_line;
+    int column = controller ? s->controller_column : s->initial_column;
+    scenario_place(s, text, &line, &column);
+    fprintf(stderr, "%s:%d:%d: %s\n", s->file, line, column, text);
+    return EXIT_USAGE;
+}
+
+/* A decoupling law has no linear design: what there is to know is where it is singular. */
+static int design_decoupling(const struct scenario *s, bool json)
+{
+    struct design_pairs pairs;
+    stance_message message = {""};
+
+    if (!design_pairs_compute(&pairs, s, &message))
+        return complain(s, message.text);
+    if (json) {
+        const int code = print_json(design_pairs_json(&pairs));
+        return code == EXIT_DONE && pairs.singular ? complain(s, pairs.complaint.text) : code;
+    }
+    printf("%s\n\n", s->title);
+    design_pairs_print(&pairs);
+    fflush(stdout);
+    return pairs.singular ? complain(s, pairs.complaint.text) : EXIT_DONE;
+}
+
+static int design(const struct scenario *s, bool json)
+{
+    struct design_report report;
+    stance_message message = {""};
+
+    if (s->scene->actuators == 0) {
+        fprintf(stderr, "%s: the scene %s has no controller to design: nothing in it is actuated\n",
+                s->file, s->scene->name);
+        return EXIT_USAGE;
+    }
+    if (s->base.law == LAW_DECOUPLING)
+        return design_decoupling(s, json);
+    if (!design_compute(&report, s, &message))
+        return complain(s, message.text);
+    if (json)
+        return print_json(design_json(&report));
+    design_print(&report);
+    return EXIT_DONE;
+}
+
+static int run(int argc, char **argv)
+{
+    const char *sets[MAX_SETS], *file = NULL;
+    size_t set_count = 0, json = 0, operands = 0;
+    bool help = false;
+    const struct option_spec specs[] = {
+        {"--set", true, sets, MAX_SETS, &set_count},
+        {"--json", false, NULL, 0, &json},
+    };
+
+    if (!command_options(&command_design, argc, argv, specs, sizeof specs / sizeof specs[0], &file,
+                         1, &operands, &help))
+        return EXIT_USAGE;
+    if (help)
+        return EXIT_DONE;
+    if (operands == 0) {
+        fputs("stance design: a scenario is needed (stance design -h explains)\n", stderr);
+        return EXIT_USAGE;
+    }
+    if (!instruction_set_usable("design"))
+        return EXIT_USAGE;
+    struct scenario *s = malloc(sizeof *s);
+    if (!s) {
+        fprintf(stderr, "stance design: %s\n", strerror(ENOMEM));
+        return EXIT_IO;
+    }
+    int code = EXIT_USAGE;
+    if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
+        code = design(s, json > 0);
+        scenario_free(s);
+    } else if (access(file, R_OK) != 0) {
+        code = EXIT_IO;
+    }
+    free(s);
+    return code;
+}
+
+const struct command command_design = {
+    "design",
+    "design SCENARIO [--set PATH=VALUE]... [--json]",
+    "equilibrium, linearisation, Kalman rank, gains, poles, critical sample time, safe set",
+    run,
+    "Prints what linear control theory says about the scenario's base values; a sweep is not\n"
+    "looked at. `--set` replaces a value, as everywhere.\n"
+    "\n"
+    "  --json   the same as JSON, with the keys\n"
+    "    scenario, title, scene   strings\n"
+    "    robot                    the body that the design believes in: {parameter: value}\n"
+    "    equilibrium              support, position {coordinate: value},\n"
+    "                             torque {actuator: N m}, normal_force (N)\n"
+    "    states, inputs           names, in the order of the matrices' rows and columns\n"
+    "    A, B                     rows of the linearisation X' = A X + B u\n"
+    "    open_loop_eigenvalues    [[real, imaginary], ...] (1/s)\n"
+    "    kalman                   rank, states, singular_values (descending)\n"
+    "    controller               kind: none, hold or state-feedback; unless none\n"
+    "      gain                   rows of K (actuators by states)\n"
+    "      closed_loop_eigenvalues    of the continuous loop\n"
+    "      sampled_loop           sample_time, delay, eigenvalues (z), spectral_radius;\n"
+    "                             null where the controller acts continuously\n"
+    "      stable                 as the controller acts: sampled_loop, or continuously\n"
+    "      critical_sample_time   s, without a delay; 0 when the continuous loop is not\n"
+    "                             stable; null when above 10 s\n"
+    "      critical_sample_time_delayed   s, torques acting one sample late\n"
+    "      design, design_time    as in the scenario, for state-feedback\n"
+    "      poles, weights         what was asked for, as [[real, imaginary], ...] and\n"
+    "                             {states, torques}\n"
+    "      condition, sweeps      for place: conditioning of the eigenvectors, sweeps\n"
+    "      lyapunov               null without one (a loop that is late, or not stable):\n"
+    "                             P of V = X' P X, which falls by sum (X/tolerance)^2 a\n"
+    "                             second (sampled: a sample), tolerances those of\n"
+    "                             stop.settle; level: the largest c for which, to first\n"
+    "                             order, V <= c keeps within torque limits, friction\n"
+    "                             cone and contact; binding: which of them stops it;\n"
+    "                             alone, extent {state: reach, rad and rad/s}: with the\n"
+    "                             other states 0, and free\n"
+    "      captured               with stop.capture estimated; null where no set is found:\n"
+    "                             M of the set X' M X <= 1, shape, level (of the shape),\n"
+    "                             boundary_simulations and interior_simulations, all\n"
+    "                             stabilised, batches (sets tried), failing_share_below (of\n"
+    "                             the boundary, 95 % confidence), slowest (s),\n"
+    "                             captured_level (share of the level in which cases stop),\n"
+    "                             alone, extent as above\n"
+    "\n"
+    "With controller.kind decoupling it prints instead for each pair of coordinates where the law\n"
+    "is singular; as JSON: scenario, title, scene and\n"
+    "    pairs                    [{pair, controlled (is it the scenario's?),\n"
+    "                             condition_at_start (null: singular), best_condition,\n"
+    "                             damped_share (of all postures), singular}, ...]\n",
+};

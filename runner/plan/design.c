@@ -1,0 +1,242 @@
+/* design.c - what control theory says about a scenario's base values: equilibrium, linearisation,
+ * controllability, gains, the loop as the controller acts, the set in which the linear picture
+ * meets no bound.
+ */
+#include "design.h"
+#include "known_basin.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool refuse(stance_message *message, const char *what, stance_error error)
+{
+    snprintf(message->text, sizeof message->text, "%s: %s", what, stance_error_text(error));
+    return false;
+}
+
+/* ---- the model ------------------------------------------------------------------------------- */
+
+/* Weight of the robot: twice the kinetic energy of a unit of vertical speed, times gravity. */
+static double weight_of(const stance_scene *scene, const double *robot, const double *position)
+{
+    double velocity[STANCE_MAX_COORDINATES] = {0};
+    const double rest = scene->energy(robot, position, velocity);
+    for (int i = 0; i < scene->coordinates; i++)
+        if (strcmp(scene->coordinate[i].name, "z") == 0)
+            velocity[i] = 1;
+    return 2 * (scene->energy(robot, position, velocity) - rest) * STANCE_GRAVITY;
+}
+
+static bool open_loop(struct design_report *r, stance_message *message)
+{
+    const stance_scene *scene = r->scenario->scene;
+    const struct scenario_values *values = &r->scenario->base;
+
+    if (!resolve_equilibrium(scene, values, r->model, &r->equilibrium, message))
+        return false;
+    if (!scene->linearise) {
+        snprintf(message->text, sizeof message->text, "the scene %s has no linearisation",
+                 scene->name);
+        return false;
+    }
+    r->weight = weight_of(scene, r->model, r->equilibrium.position);
+    stance_error error = scene->linearise(r->model, &r->equilibrium, r->A, r->B);
+    if (error != STANCE_OK)
+        return refuse(message, "linearisation", error);
+    error = stance_eigenvalues(r->states, r->A, r->open_re, r->open_im);
+    if (error == STANCE_OK)
+        error = stance_kalman(r->states, r->inputs, r->A, r->B, r->singular, &r->rank);
+    return error == STANCE_OK || refuse(message, "eigenvalues and Kalman rank", error);
+}
+
+/* ---- the loop -------------------------------------------------------------------------------- */
+
+/* K, for `hold` too: the servo written as a gain matrix. */
+static bool gains(struct design_report *r, stance_message *message)
+{
+    const struct scenario_values *values = &r->scenario->base;
+
+    r->how = (struct resolved_gains){0, NAN};
+    if (values->law != LAW_HOLD)
+        return resolve_gains(r->scenario->scene, values, r->A, r->B, r->K, &r->how, message);
+    const int postures = r->states / 2;
+    memset(r->K, 0, sizeof r->K);
+    for (int i = 0; i < r->inputs; i++) {
+        const int joint = i * r->states + postures - r->inputs + i;
+        r->K[joint] = values->kp;
+        r->K[joint + postures] = values->kd;
+    }
+    return true;
+}
+
+/* loop[n][n] = A - B K. */
+static void close_loop(int n, int m, const double *A, const double *B, const double *K,
+                       double *loop)
+{
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            loop[i * n + j] = A[i * n + j];
+            for (int k = 0; k < m; k++)
+                loop[i * n + j] -= B[i * m + k] * K[k * n + j];
+        }
+    }
+}
+
+/* The loop as the controller acts. */
+static stance_error sampled_loop(struct design_report *r)
+{
+    const int n = r->states, m = r->inputs;
+    const double T = r->scenario->base.sample_time;
+    stance_error error = STANCE_OK;
+
+    r->stable = r->critical[0] > 0;
+    r->sampled = 0;
+    if (T > 0) {
+        r->sampled = r->delay ? n + m : n;
+        r->radius = 0;
+        error =
+            stance_sampled_loop(n, m, r->A, r->B, r->K, T, r->delay, r->sampled_re, r->sampled_im);
+        for (int i = 0; error == STANCE_OK && i < r->sampled; i++)
+            r->radius = fmax(r->radius, hypot(r->sampled_re[i], r->sampled_im[i]));
+        r->stable = r->radius < 1;
+    }
+    return error;
+}
+
+/* ---- the sublevel set ------------------------------------------------------------------------ */
+
+static const char *why_no_set(const struct design_report *r)
+{
+    if (r->scenario->base.law != LAW_STATE_FEEDBACK || !r->scenario->scene->contact_force)
+        return "only for state feedback on one foot";
+    if (r->delay)
+        return "not for a loop with a delay";
+    return r->stable ? NULL : "the loop is not stable";
+}
+
+static bool sublevel(struct design_report *r, stance_message *message)
+{
+    const int n = r->states, m = r->inputs;
+    const struct scenario_values *values = &r->scenario->base;
+    double loop[DESIGN_STATES * DESIGN_STATES], weight[DESIGN_STATES];
+    double Ad[DESIGN_STATES * DESIGN_STATES], Bd[DESIGN_STATES * DESIGN_INPUTS];
+    double a[DESIGN_BOUNDS * DESIGN_STATES], d[DESIGN_BOUNDS];
+    struct design_set *set = &r->set;
+
+    set->absent = why_no_set(r);
+    set->exists = !set->absent;
+    if (!set->exists)
+        return true;
+    for (int i = 0; i < n; i++) {
+        const double tolerance = i < n / 2 ? values->settle_angle : values->settle_rate;
+        weight[i] = 1 / (tolerance * tolerance);
+    }
+    stance_error error = STANCE_OK;
+    if (r->sampled) {
+        error = stance_discretise(n, m, r->A, r->B, values->sample_time, Ad, Bd);
+        close_loop(n, m, Ad, Bd, r->K, loop);
+    } else {
+        close_loop(n, m, r->A, r->B, r->K, loop);
+    }
+    if (error == STANCE_OK &&
+        stance_lyapunov(n, loop, r->sampled > 0, weight, set->P, message) != STANCE_OK) {
+        set->exists = false; /* on the border of stability */
+        set->absent = "the loop is on the border of stability";
+        return true;
+    }
+    if (error == STANCE_OK) {
+        error =
+            known_basin_bounds(r->scenario->scene, values, r->model, &r->equilibrium, r->K, a, d);
+    }
+    if (error == STANCE_OK) {
+        error = stance_sublevel(n, set->P, 2 * m + 3, a, d, &set->level, &set->binding, set->alone,
+                                set->extent);
+    }
+    return error == STANCE_OK || refuse(message, "Lyapunov function", error);
+}
+
+static bool confirmed(struct design_report *r, stance_message *message)
+{
+    const struct scenario *s = r->scenario;
+    struct design_capture *capture = &r->capture;
+    struct resolved_design design;
+
+    capture->asked = s->base.capture != 0;
+    if (!capture->asked)
+        return true;
+    if (!resolve_design(s->scene, &s->base, &design, message) ||
+        !known_basin_estimate(s->scene, &s->base, &design, s->seed, NULL, NULL, &capture->set,
+                              &capture->absent))
+        return false;
+    for (int i = 0; capture->set.exists && i < r->states; i++) {
+        double axis[DESIGN_STATES] = {0}, level = 0, one = 1, ignored[2][DESIGN_STATES];
+        int binding = -1;
+        axis[i] = 1;
+        /* x_i <= 1 holds up to 1 / extent^2. */
+        const stance_error error = stance_sublevel(r->states, capture->set.form, 1, axis, &one,
+                                                   &level, &binding, ignored[0], ignored[1]);
+        if (error != STANCE_OK)
+            return refuse(message, "captured set", error);
+        capture->alone[i] = 1 / sqrt(capture->set.form[i * r->states + i]);
+        capture->extent[i] = 1 / sqrt(level);
+    }
+    return true;
+}
+
+static bool closed_loop(struct design_report *r, stance_message *message)
+{
+    const int n = r->states, m = r->inputs;
+    double loop[DESIGN_STATES * DESIGN_STATES];
+
+    r->closed = r->scenario->base.law != LAW_NONE;
+    r->delay = r->scenario->base.delay;
+    if (!r->closed)
+        return true;
+    if (!gains(r, message))
+        return false;
+    close_loop(n, m, r->A, r->B, r->K, loop);
+    stance_error error = stance_eigenvalues(n, loop, r->closed_re, r->closed_im);
+    for (int delay = 0; delay < 2 && error == STANCE_OK; delay++) {
+        error = stance_critical_sample_time(n, m, r->A, r->B, r->K, delay, DESIGN_LONGEST,
+                                            &r->critical[delay]);
+    }
+    if (error == STANCE_OK)
+        error = sampled_loop(r);
+    if (error != STANCE_OK)
+        return refuse(message, "closed loop", error);
+    return sublevel(r, message) && confirmed(r, message);
+}
+
+bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message)
+{
+    *r = (struct design_report){
+        .scenario = s, .states = 2 * s->scene->postures, .inputs = s->scene->actuators};
+    return open_loop(r, message) && closed_loop(r, message);
+}
+
+/* ---- names ----------------------------------------------------------------------------------- */
+
+const char *design_state_name(const stance_scene *scene, int i, char name[32])
+{
+    const int p = scene->postures;
+    const char *coordinate = scene->coordinate[scene->posture[i % p]].name;
+    snprintf(name, 32, "%s%s", i < p ? "" : "v", coordinate);
+    return name;
+}
+
+const char *design_bound_name(const struct design_report *r, int bound, char name[64])
+{
+    const int torques = 2 * r->inputs;
+    if (bound < 0) {
+        snprintf(name, 64, "none");
+    } else if (bound < torques) {
+        snprintf(name, 64, "torque limit of %.20s, %s",
+                 r->scenario->scene->actuator_name[bound / 2], bound % 2 ? "negative" : "positive");
+    } else if (bound < torques + 2) {
+        snprintf(name, 64, "friction cone, force %s", bound == torques ? "forward" : "backward");
+    } else {
+        snprintf(name, 64, "lift-off");
+    }
+    return name;
+}

@@ -1,0 +1,94 @@
+/* design.h - what control theory says about a scenario's base values: computed, then printed for
+ * people or as JSON. */
+#ifndef STANCE_PLAN_DESIGN_H
+#define STANCE_PLAN_DESIGN_H
+
+#include "resolve.h"
+
+#include <jansson.h>
+
+enum {
+    DESIGN_STATES = 2 * STANCE_MAX_POSTURE,
+    DESIGN_INPUTS = STANCE_MAX_ACTUATORS,
+    DESIGN_BOUNDS = 2 * DESIGN_INPUTS + 3, /* each torque up and down, the cone twice, lift-off */
+};
+
+#define DESIGN_LONGEST 10.0 /* s: up to where the critical sample time is searched */
+
+/* The Lyapunov function of the loop and the largest sublevel set in which, to first order, no bound
+ * is met: V = X' P X falls by sum (X_i / tolerance_i)^2 a second (a sample), the tolerances those
+ * of stop.settle: the loop pays for a departure as the outcome rules see it. */
+struct design_set {
+    bool exists;
+    const char *absent; /* why not */
+    double P[DESIGN_STATES * DESIGN_STATES], level;
+    int binding; /* which bound; -1: none */
+    /* How far a state reaches in the set when all others are 0, and when they are free. */
+    double alone[DESIGN_STATES], extent[DESIGN_STATES];
+};
+
+/* The set that simulation confirms, where stop.capture asks for it. */
+struct design_capture {
+    bool asked;
+    stance_known_basin set;
+    stance_message absent; /* why there is none */
+    double alone[DESIGN_STATES], extent[DESIGN_STATES];
+};
+
+/* Matrices are row-major with `states` and `inputs` as their sizes. */
+struct design_report {
+    const struct scenario *scenario;
+    int states, inputs;
+    double model[STANCE_MAX_ROBOT];
+    stance_equilibrium equilibrium;
+    double weight; /* N: the normal force */
+    double A[DESIGN_STATES * DESIGN_STATES], B[DESIGN_STATES * DESIGN_INPUTS];
+    double open_re[DESIGN_STATES], open_im[DESIGN_STATES];
+    double singular[DESIGN_STATES];
+    int rank;
+    bool closed; /* there is a law: the rest is valid */
+    double K[DESIGN_INPUTS * DESIGN_STATES];
+    double closed_re[DESIGN_STATES], closed_im[DESIGN_STATES];
+    struct resolved_gains how;
+    int delay, sampled; /* delay of the scenario; number of sampled eigenvalues, 0: continuous */
+    double sampled_re[DESIGN_STATES + DESIGN_INPUTS], sampled_im[DESIGN_STATES + DESIGN_INPUTS];
+    double radius;      /* largest of their moduli */
+    bool stable;        /* as the controller acts: sampled and late, or continuously */
+    double critical[2]; /* s, without and with a sample's delay; 0: the continuous loop is unstable,
+                         * INFINITY: none found */
+    struct design_set set;
+    struct design_capture capture;
+};
+
+/* What is known of the pairs of coordinates that a decoupling law may control, in stance_pair's
+ * order. */
+struct design_pairs {
+    const struct scenario *scenario;
+    int count;
+    double at_start[STANCE_MAX_PAIRS]; /* condition number; INFINITY: singular */
+    stance_pair_report report[STANCE_MAX_PAIRS];
+    bool singular; /* the scenario's pair is, at the start: `complaint` says so */
+    stance_message complaint;
+};
+
+/* false: `message` says what does not exist. */
+bool design_pairs_compute(struct design_pairs *d, const struct scenario *s,
+                          stance_message *message);
+void design_pairs_print(const struct design_pairs *d);
+json_t *design_pairs_json(const struct design_pairs *d);
+
+/* false: `message` says what does not exist. */
+bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message);
+
+/* Name of state i: a coordinate, or its rate with a "v" before it. */
+const char *design_state_name(const stance_scene *scene, int i, char name[32]);
+
+/* What a bound of the set is. */
+const char *design_bound_name(const struct design_report *r, int bound, char name[64]);
+
+void design_print(const struct design_report *r);
+
+/* A new reference; NULL without memory. */
+json_t *design_json(const struct design_report *r);
+
+#endif

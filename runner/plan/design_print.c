@@ -1,0 +1,256 @@
+/* design_print.c - the report of `stance design` for people. */
+#include "design.h"
+#include "known_basin.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Rounding leaves signed dust where an exact zero belongs. */
+static double dusted(double x, double scale)
+{
+    return fabs(x) <= 1e-12 * scale ? 0 : x;
+}
+
+static double largest(int count, const double *x)
+{
+    double most = 0;
+    for (int i = 0; i < count; i++)
+        most = fmax(most, fabs(x[i]));
+    return most;
+}
+
+static void print_matrix(const struct design_report *r, const char *name, int rows, int columns,
+                         const double *x, bool rows_are_inputs, bool columns_are_inputs)
+{
+    const stance_scene *scene = r->scenario->scene;
+    const double scale = largest(rows * columns, x);
+    char text[32];
+
+    printf("  %-8s", name);
+    for (int j = 0; j < columns; j++) {
+        printf(" %12s",
+               columns_are_inputs ? scene->actuator_name[j] : design_state_name(scene, j, text));
+    }
+    putchar('\n');
+    for (int i = 0; i < rows; i++) {
+        printf("  %-8s",
+               rows_are_inputs ? scene->actuator_name[i] : design_state_name(scene, i, text));
+        for (int j = 0; j < columns; j++)
+            printf(" %12.6g", dusted(x[i * columns + j], scale));
+        putchar('\n');
+    }
+}
+
+static void print_complex(const char *label, int n, const double *re, const double *im)
+{
+    const double scale = fmax(largest(n, re), largest(n, im));
+    printf("  %-16s", label);
+    for (int i = 0; i < n; i++) {
+        const double real = dusted(re[i], scale), imaginary = dusted(im[i], scale);
+        if (imaginary == 0)
+            printf(" %.6g", real);
+        else if (real == 0)
+            printf(" %.6gi", imaginary);
+        else
+            printf(" %.6g%+.6gi", real, imaginary);
+        if (i + 1 < n)
+            putchar(',');
+    }
+    putchar('\n');
+}
+
+static void print_equilibrium(const struct design_report *r)
+{
+    const stance_scene *scene = r->scenario->scene;
+    const stance_equilibrium *e = &r->equilibrium;
+
+    printf("\nEquilibrium, standing on %s\n", scene->contact_name[e->support]);
+    for (int i = 0; i < scene->coordinates; i++) {
+        const stance_quantity *c = &scene->coordinate[i];
+        printf("  %-8s %12.6f %-4s %s\n", c->name, e->position[i] + 0.0, c->unit, c->text);
+    }
+    for (int i = 0; i < scene->actuators; i++) {
+        printf("  %-8s %12.6f N m  torque that holds it\n", scene->actuator_name[i],
+               dusted(e->torque[i], r->weight));
+    }
+    printf("  %-8s %12.6f N    normal force on %s, the robot's weight\n", "force", r->weight,
+           scene->contact_name[e->support]);
+}
+
+static void print_open_loop(const struct design_report *r)
+{
+    const int n = r->states;
+    printf("\nLinearised about it with %s pinned: X' = A X + B u, X the departure from the\n"
+           "equilibrium (rad, rad/s), u that of the torques (N m)\n",
+           r->scenario->scene->contact_name[r->equilibrium.support]);
+    print_matrix(r, "A", n, n, r->A, false, false);
+    putchar('\n');
+    print_matrix(r, "B", n, r->inputs, r->B, false, true);
+    putchar('\n');
+    print_complex("eigenvalues", n, r->open_re, r->open_im);
+    printf("  %-16s", "Kalman matrix");
+    printf(" rank %d of %d: %s\n", r->rank, n,
+           r->rank == n ? "controllable, any poles can be placed"
+                        : "not controllable, some motion escapes the torques");
+    printf("  %-16s", "singular values");
+    for (int i = 0; i < n; i++)
+        printf(" %.4g%s", r->singular[i], i + 1 < n ? "," : "\n");
+}
+
+static void print_critical(const struct design_report *r, int delay)
+{
+    const double T = r->critical[delay];
+    const char *what = delay ? "..., a sample late" : "T*";
+    if (isinf(T))
+        printf("  %-18s above %g s\n", what, DESIGN_LONGEST);
+    else
+        printf("  %-18s %.6g s\n", what, T);
+}
+
+/* The loop as it is sampled, and how slowly it may be. */
+static void print_sampled(const struct design_report *r)
+{
+    const double interval = r->scenario->base.sample_time;
+    if (r->sampled) {
+        printf("\nSampled every %g s, torques held in between%s\n", interval,
+               r->delay ? ", acting one sample late" : "");
+        print_complex("eigenvalues z", r->sampled, r->sampled_re, r->sampled_im);
+        printf("  %-16s %.6g: %s\n", "spectral radius", r->radius,
+               r->stable ? "stable" : "NOT stable");
+    } else {
+        puts("\nThe controller acts continuously (controller.sample_time 0).");
+    }
+    if (r->critical[0] == 0) {
+        puts("  critical sample time: none, the loop is unstable in continuous time");
+        return;
+    }
+    puts("  critical sample time of these gains: held longer, the torques no longer balance");
+    print_critical(r, 0);
+    print_critical(r, 1);
+}
+
+static void print_set(const struct design_report *r)
+{
+    const struct design_set *set = &r->set;
+    const struct scenario_values *values = &r->scenario->base;
+    char name[64], state[32];
+
+    puts("\nLargest set V = X' P X <= c in which the linear picture meets no bound");
+    if (!set->exists) {
+        printf("  none: %s\n", set->absent);
+        return;
+    }
+    printf("  V falls by sum (X/tolerance)^2 %s, tolerances %g rad and %g rad/s\n",
+           r->sampled ? "a sample" : "a second", values->settle_angle, values->settle_rate);
+    print_matrix(r, "P", r->states, r->states, set->P, false, false);
+    printf("\n  %-18s %.6g\n", "c", set->level);
+    printf("  %-18s %s\n", "what binds", design_bound_name(r, set->binding, name));
+    printf("  %-18s %14s %14s\n", "reach", "others 0", "others free");
+    for (int i = 0; i < r->states; i++) {
+        printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r->scenario->scene, i, state),
+               set->alone[i], set->extent[i], i < r->states / 2 ? "rad" : "rad/s");
+    }
+}
+
+static void print_capture(const struct design_report *r)
+{
+    const stance_known_basin *set = &r->capture.set;
+    char shape[96], state[32];
+
+    puts("\nLargest set X' M X <= 1 from whose boundary simulations recover (stop.capture)");
+    if (!set->exists) {
+        printf("  none: %s\n", r->capture.absent.text);
+        return;
+    }
+    print_matrix(r, "M", r->states, r->states, set->form, false, false);
+    printf("\n  %-18s %s,\n  %-18s at %.6g of its level\n", "shape",
+           known_basin_shape_text(set->shape, shape), "", set->level);
+    printf("  %-18s %lld from the boundary and %lld from inside, all stabilised\n", "confirmed by",
+           (long long)set->boundary, (long long)set->interior);
+    printf("  %-18s less than %.3g of the boundary fails, with 95 %% confidence\n", "that says",
+           set->share);
+    printf("  %-18s %lld; simulations in all: %lld\n", "sets tried in full",
+           (long long)set->batches, (long long)set->simulations);
+    printf("  %-18s %.4g s; cases are captured in %g of the level\n", "slowest", set->time,
+           KNOWN_BASIN_SAFETY);
+    printf("  %-18s %14s %14s\n", "reach", "others 0", "others free");
+    for (int i = 0; i < r->states; i++) {
+        printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r->scenario->scene, i, state),
+               r->capture.alone[i], r->capture.extent[i], i < r->states / 2 ? "rad" : "rad/s");
+    }
+}
+
+static const char *design_text(const struct scenario_values *values)
+{
+    static const char *const text[] = {
+        [DESIGN_PLACE] = "robust pole placement",
+        [DESIGN_PLACE_SCHUR] = "pole placement by the Schur method",
+        [DESIGN_LQR] = "linear quadratic regulator",
+        [DESIGN_GAINS] = "given gains",
+    };
+    return text[values->design];
+}
+
+static void print_weights(const struct design_report *r)
+{
+    const struct scenario_values *values = &r->scenario->base;
+    printf("  %-16s", "weights");
+    for (int i = 0; i < r->states; i++)
+        printf(" %.6g%s", values->state_weights[i], i + 1 < r->states ? "," : "; torques");
+    for (int i = 0; i < r->inputs; i++)
+        printf(" %.6g%s", values->torque_weights[i], i + 1 < r->inputs ? "," : "\n");
+}
+
+static void print_closed_loop(const struct design_report *r)
+{
+    const struct scenario_values *values = &r->scenario->base;
+    if (!r->closed) {
+        puts("\nController: none");
+        return;
+    }
+    const bool hold = values->law == LAW_HOLD;
+    const bool places =
+        !hold && (values->design == DESIGN_PLACE || values->design == DESIGN_PLACE_SCHUR);
+    if (hold) {
+        puts(
+            "\nController: hold, as a gain matrix: torques = -K X, X counted from the held angles");
+    } else {
+        printf("\nController: state feedback, %s%s;\ntorques = those of the equilibrium - K X\n",
+               design_text(values),
+               values->design != DESIGN_GAINS && values->design_time == DESIGN_SAMPLED
+                   ? " for the sampled model"
+                   : "");
+    }
+    print_matrix(r, "K", r->inputs, r->states, r->K, true, false);
+    putchar('\n');
+    if (places)
+        print_complex("wanted poles", r->states, values->pole_re, values->pole_im);
+    else if (!hold && values->design == DESIGN_LQR)
+        print_weights(r);
+    print_complex("closed loop", r->states, r->closed_re, r->closed_im);
+    if (r->how.sweeps > 0) {
+        printf("  %-16s %.6g, condition number of the eigenvectors, after %d sweeps\n",
+               "conditioning", r->how.condition, r->how.sweeps);
+    }
+    print_sampled(r);
+    if (!hold)
+        print_set(r);
+    if (r->capture.asked)
+        print_capture(r);
+}
+
+void design_print(const struct design_report *r)
+{
+    const struct scenario *s = r->scenario;
+    const stance_scene *scene = s->scene;
+
+    printf("%s (%s)\n", s->title[0] ? s->title : s->name, s->file);
+    if (s->axes > 0)
+        puts("This is the scenario without its sweep: the base values, not those along the axes.");
+    printf("\nRobot that the design believes in\n");
+    for (int i = 0; i < scene->robot_count; i++)
+        printf("  %-14s %10.6g %s\n", scene->robot[i].name, r->model[i], scene->robot[i].unit);
+    print_equilibrium(r);
+    print_open_loop(r);
+    print_closed_loop(r);
+}

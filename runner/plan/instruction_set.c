@@ -1,0 +1,55 @@
+/* instruction_set.c - the fastest instruction set, or the one that STANCE_ISA names. */
+#include "instruction_set.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *instruction_set_asked(void)
+{
+    const char *name = getenv("STANCE_ISA");
+    return name && name[0] ? name : NULL;
+}
+
+const char *instruction_set(void)
+{
+    const char *name = instruction_set_asked();
+    return name ? name : stance_isa(0);
+}
+
+void instruction_set_names(char text[INSTRUCTION_SETS_SIZE])
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int rank = 0; stance_isa(rank) && used < INSTRUCTION_SETS_SIZE; rank++) {
+        used += (size_t)snprintf(text + used, INSTRUCTION_SETS_SIZE - used, "%s%s",
+                                 rank ? ", " : "", stance_isa(rank));
+    }
+}
+
+bool instruction_set_check(stance_message *message)
+{
+    char names[INSTRUCTION_SETS_SIZE];
+    for (int rank = 0; stance_isa(rank); rank++)
+        if (strcmp(instruction_set(), stance_isa(rank)) == 0)
+            return true;
+    instruction_set_names(names);
+    snprintf(message->text, sizeof message->text,
+             "STANCE_ISA is '%.40s'; instruction sets of this machine: %s", instruction_set_asked(),
+             names);
+    return false;
+}
+
+bool instruction_set_usable(const char *command)
+{
+    stance_message message;
+    if (instruction_set_check(&message))
+        return true;
+    fprintf(stderr, "stance %s: %s\n", command, message.text);
+    return false;
+}
+
+const stance_kernel *instruction_set_kernel(const stance_scene *scene, const stance_method *method)
+{
+    return stance_kernel_find(scene, method, instruction_set());
+}

@@ -1,0 +1,599 @@
+/* plan.c - designs, checks and estimates. */
+#include "plan.h"
+#include "instruction_set.h"
+#include "known_basin.h"
+
+#include "runner/base/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum {
+    MOST_DESIGNS = 1 << 22, /* 2.2 GB */
+    CHECKED_CASES = 4096,
+    CORNER_AXES = 11, /* 2048 corners */
+    TRACE_ROWS = 1000000,
+    WIDEST = 8, /* bundle of lanes */
+    COST_CASES = 64,
+    COST_STEPS = 500, /* length of the beginnings tried first */
+};
+static const double trace_interval = 0.01;
+static const double most_instants = 1e8;    /* in one trajectory */
+static const double most_recorded = 0x1p48; /* in all of them: the file's size is a 64-bit number */
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* ---- making ------------------------------------------------------------------------------- */
+
+/* Largest value of a double field over the sweep. */
+static double largest_value(const struct scenario *s, size_t offset)
+{
+    double largest;
+    memcpy(&largest, (const char *)&s->base + offset, sizeof largest);
+    for (int a = 0; a < s->axes; a++) {
+        for (int k = 0; k < s->axis[a].paths; k++) {
+            if (s->axis[a].offset[k] != offset)
+                continue;
+            const struct scenario_axis *axis = &s->axis[a];
+            largest = fmax(axis->from, axis->to); /* a range, of any number of points */
+            for (size_t i = 0; axis->value && i < axis->count; i++) {
+                const double value = scenario_axis_value(axis, i, k);
+                largest = i == 0 ? value : fmax(largest, value);
+            }
+        }
+    }
+    return largest;
+}
+
+/* false: more instants than can be. */
+static bool plan_trajectories(struct plan *plan, bool trace, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    double stop = largest_value(s, offsetof(struct scenario_values, stop_time));
+    struct scenario_values values;
+
+    if (plan->single) {
+        scenario_case_values(s, plan->single_case, &values);
+        stop = values.stop_time;
+        if (!trace)
+            return true;
+        plan->record_interval = s->record_every;
+        if (plan->record_interval <= 0)
+            plan->record_interval = fmax(trace_interval, fmax(values.step, stop / TRACE_ROWS));
+        plan->record_cases = 1;
+    } else {
+        if (s->record_cases == RECORD_NONE || s->record_every <= 0)
+            return true;
+        plan->record_interval = s->record_every;
+        plan->record_cases = s->record_cases == RECORD_ALL ? s->cases : s->record_count;
+    }
+    /* A run counts whole steps and may end a hair before its last instant. */
+    const double rows = floor(stop / plan->record_interval + 1e-6) + 1;
+    const double cases = (double)plan->record_cases;
+    if (rows > most_instants || rows * cases > most_recorded) {
+        snprintf(
+            error->message.text, sizeof error->message.text,
+            "record.every: %.6g s makes %.6g instants in %.6g trajector%s; at most %.3g in one "
+            "and %.3g in all are recorded",
+            plan->record_interval, rows, cases, plan->record_cases == 1 ? "y" : "ies",
+            most_instants, most_recorded);
+        scenario_place(s, error->message.text, &error->line, &error->column);
+        return false;
+    }
+    plan->record_rows = (int64_t)rows;
+    return true;
+}
+
+static bool method_runs(const struct scenario *s, int method, struct plan_error *error)
+{
+    const stance_method *m = stance_methods()[method];
+    if (instruction_set_kernel(s->scene, m))
+        return true;
+    snprintf(error->message.text, sizeof error->message.text,
+             "method '%s' cannot run scene '%s' in this build", m->name, s->scene->name);
+    return false;
+}
+
+static bool methods_run(struct plan *plan, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    for (int a = 0; a < s->axes; a++) {
+        const struct scenario_axis *axis = &s->axis[a];
+        for (int k = 0; k < axis->paths; k++) {
+            if (axis->offset[k] != offsetof(struct scenario_values, method))
+                continue;
+            plan->methods_swept = true;
+            for (size_t i = 0; i < axis->count; i++) {
+                if (!method_runs(s, (int)scenario_axis_value(axis, i, k), error)) {
+                    error->line = axis->line;
+                    error->column = axis->column;
+                    return false;
+                }
+            }
+        }
+    }
+    return plan->methods_swept || method_runs(s, s->base.method, error);
+}
+
+bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
+               uint64_t single_case, bool trace, struct plan_error *error)
+{
+    *plan = (struct plan){
+        .scenario = scenario, .single = single, .single_case = single_case, .designs = 1};
+    *error = (struct plan_error){0};
+    plan->rows = single ? 1 : scenario->cases;
+    if (!methods_run(plan, error))
+        return false;
+    for (int a = 0; !single && a < scenario->axes; a++) {
+        const struct scenario_axis *axis = &scenario->axis[a];
+        if (axis->design && axis->count > MOST_DESIGNS / plan->designs) {
+            snprintf(error->message.text, sizeof error->message.text,
+                     "along its axes the scenario has more than the %d controller designs that are "
+                     "kept in memory",
+                     MOST_DESIGNS);
+            error->line = axis->line;
+            error->column = axis->column;
+            return false;
+        }
+        plan->designs *= axis->design ? axis->count : 1;
+    }
+    if (!plan_trajectories(plan, trace, error))
+        return false;
+    plan->design = calloc(plan->designs, sizeof *plan->design);
+    plan->design_status = calloc(plan->designs, sizeof *plan->design_status);
+    if (!plan->design || !plan->design_status) {
+        snprintf(error->message.text, sizeof error->message.text,
+                 "not enough memory for %zu controller designs", plan->designs);
+        plan_free(plan);
+        return false;
+    }
+    return true;
+}
+
+void plan_free(struct plan *plan)
+{
+    free(plan->design);
+    free(plan->design_status);
+    *plan = (struct plan){0};
+}
+
+/* ---- where things are --------------------------------------------------------------------- */
+
+uint64_t plan_case(const struct plan *plan, uint64_t row)
+{
+    return plan->single ? plan->single_case : row;
+}
+
+size_t plan_design(const struct plan *plan, uint64_t index)
+{
+    const struct scenario *s = plan->scenario;
+    size_t design = 0, stride = 1;
+
+    for (int a = s->axes - 1; !plan->single && a >= 0; a--) {
+        size_t point = (size_t)(index % s->axis[a].count);
+        index /= s->axis[a].count;
+        if (s->axis[a].design) {
+            design += point * stride;
+            stride *= s->axis[a].count;
+        }
+    }
+    return design;
+}
+
+/* The first case that uses a design. */
+static uint64_t design_case(const struct plan *plan, size_t design)
+{
+    const struct scenario *s = plan->scenario;
+    uint64_t index = 0, stride = 1;
+
+    if (plan->single)
+        return plan->single_case;
+    for (int a = s->axes - 1; a >= 0; a--) {
+        if (s->axis[a].design) {
+            index += stride * (design % s->axis[a].count);
+            design /= s->axis[a].count;
+        }
+        stride *= s->axis[a].count;
+    }
+    return index;
+}
+
+bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place)
+{
+    const struct scenario *s = plan->scenario;
+    if (plan->record_rows == 0)
+        return false;
+    if (plan->single || s->record_cases == RECORD_ALL) {
+        *place = row;
+        return true;
+    }
+    size_t low = 0, high = s->record_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (s->record_list[middle] < row)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *place = low;
+    return low < s->record_count && s->record_list[low] == row;
+}
+
+uint64_t plan_recorded_case(const struct plan *plan, uint64_t place)
+{
+    if (plan->single)
+        return plan->single_case;
+    const struct scenario *s = plan->scenario;
+    return s->record_cases == RECORD_ALL ? place : s->record_list[place];
+}
+
+/* ---- designs ------------------------------------------------------------------------------ */
+
+/* Whose fault it is that a design does not exist: the initial equilibrium's, or the law's. */
+static void blame_design(const struct plan *plan, size_t design, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    struct scenario_values values;
+    struct resolved_design result;
+    stance_message ignored;
+
+    scenario_case_values(s, design_case(plan, design), &values);
+    resolve_design(s->scene, &values, &result, &error->message);
+    values.law = LAW_NONE;
+    bool law = resolve_design(s->scene, &values, &result, &ignored);
+    error->line = law ? s->controller_line : s->initial_line;
+    error->column = law ? s->controller_column : s->initial_column;
+    scenario_place(s, error->message.text, &error->line, &error->column);
+}
+
+/* This rank's block of the designs. */
+static size_t designs_here(const struct plan *plan, const struct parallel *parallel, size_t *first)
+{
+    const size_t ranks = (size_t)parallel->size, rank = (size_t)parallel->rank;
+    const size_t share = plan->designs / ranks, extra = plan->designs % ranks;
+    *first = rank * share + smaller(rank, extra);
+    return share + (rank < extra);
+}
+
+/* Corner c of the grid: bit a says which end of axis a. */
+static uint64_t corner_case(const struct scenario *s, uint64_t c)
+{
+    uint64_t index = 0;
+    for (int a = 0; a < s->axes; a++)
+        index = index * s->axis[a].count + ((c >> a & 1) ? s->axis[a].count - 1 : 0);
+    return index;
+}
+
+static uint64_t corners(const struct scenario *s)
+{
+    return (uint64_t)1 << smaller((size_t)s->axes, CORNER_AXES);
+}
+
+/* Case i of n spread evenly over all. */
+static uint64_t spread_case(const struct plan *plan, uint64_t i, uint64_t n)
+{
+    uint64_t last = plan->scenario->cases - 1;
+    return n < 2 ? 0 : last / (n - 1) * i + last % (n - 1) * i / (n - 1);
+}
+
+/* Case i of COST_CASES, in an order that is spread evenly wherever it is cut: 27 and 64 have no
+ * divisor. */
+static uint64_t cost_case(const struct plan *plan, uint64_t i)
+{
+    return spread_case(plan, i * 27 % COST_CASES, COST_CASES);
+}
+
+/* A step that meets each of n numbers once, modulo n, and spreads them evenly wherever it is cut:
+ * near the golden section, without a common divisor. */
+static size_t even_stride(size_t n)
+{
+    for (size_t stride = (size_t)(0.6180339887498949 * (double)n) | 1;; stride++) {
+        size_t a = stride, b = n;
+        while (b > 0) {
+            const size_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1)
+            return stride;
+    }
+}
+
+static void ask_to_stop(void *context)
+{
+    const struct plan *plan = context;
+    plan->stop(plan->stop_context); /* which tells the other ranks */
+}
+
+/* A rank that waits for others goes on asking: the signal may be its own. */
+static void meet(struct plan *plan, const struct parallel *parallel)
+{
+    if (plan->stop)
+        parallel_meet(parallel, ask_to_stop, plan);
+}
+
+bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
+                          struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    size_t first;
+    const size_t count = designs_here(plan, parallel, &first);
+    const size_t stride = even_stride(count);
+    const uint64_t ends = corners(s);
+    uint64_t found[3] = {0}; /* designs that exist; that are pending; ranks that were stopped */
+    size_t computed = 0;
+    const double start = clock_seconds();
+
+    /* Time may run out: those come first that plan_cost needs, then those of the corners. */
+    for (uint64_t i = 0; i < COST_CASES + ends + count; i++) {
+        const size_t d = i < COST_CASES          ? plan_design(plan, cost_case(plan, i))
+                         : i < COST_CASES + ends ? plan_design(plan, corner_case(s, i - COST_CASES))
+                                                 : first + (i - COST_CASES - ends) * stride % count;
+        struct scenario_values values;
+        stance_message ignored;
+        if (d < first || d >= first + count || plan->design_status[d] != STANCE_PENDING)
+            continue;
+        if (plan->stop && plan->stop(plan->stop_context)) {
+            found[2] = 1;
+            break;
+        }
+        if (plan->patience > 0 && computed > 0 && clock_seconds() - start > plan->patience)
+            break;
+        scenario_case_values(s, design_case(plan, d), &values);
+        bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
+        plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
+        computed++;
+    }
+    if (computed > 0)
+        plan->design_seconds = (clock_seconds() - start) * (double)plan->designs / (double)computed;
+    for (size_t d = first; d < first + count; d++) {
+        found[0] += plan->design_status[d] == STANCE_DONE;
+        found[1] += plan->design_status[d] == STANCE_PENDING;
+    }
+    meet(plan, parallel);
+    parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
+    parallel_gather_block(parallel, plan->design_status, 1, first, count);
+    parallel_sum(parallel, found, 3);
+    plan->pending = found[1];
+    const bool good = found[0] > 0 || found[1] > 0;
+    if (!good && found[2] == 0)
+        blame_design(plan, 0, error);
+    return good && found[2] == 0;
+}
+
+bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
+                            bool (*stop)(void *context), void *context, stance_message *message)
+{
+    const struct scenario *s = plan->scenario;
+    size_t first;
+    const size_t count = designs_here(plan, parallel, &first);
+    bool good = true;
+
+    if (!s->base.capture)
+        return true;
+    for (size_t d = first; good && d < first + count; d++) {
+        struct scenario_values values;
+        stance_message why = {""}; /* there need not be a set */
+        if (plan->design_status[d] != STANCE_DONE || plan->design[d].capture_time != 0)
+            continue; /* none, or known from another file */
+        scenario_case_values(s, design_case(plan, d), &values);
+        good = known_basin_estimate(s->scene, &values, &plan->design[d], s->seed, stop, context,
+                                    NULL, &why);
+        if (!good)
+            *message = why;
+    }
+    meet(plan, parallel);
+    parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
+    return parallel_agree(parallel, good, message->text, sizeof message->text);
+}
+
+int plan_method(const struct plan *plan, uint64_t row)
+{
+    struct scenario_values values;
+    if (!plan->methods_swept)
+        return plan->scenario->base.method;
+    scenario_case_values(plan->scenario, plan_case(plan, row), &values);
+    return values.method;
+}
+
+bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method)
+{
+    const struct scenario *s = plan->scenario;
+    struct scenario_values values;
+    stance_message ignored;
+    uint64_t index = plan_case(plan, row);
+    size_t design = plan_design(plan, index);
+
+    scenario_case_values(s, index, &values);
+    *method = values.method;
+    if (plan->design_status[design] != STANCE_DONE ||
+        !resolve_case(s->scene, &values, &plan->design[design], s->seed, index, out, &ignored))
+        return false;
+    scenario_case_keys(s, index, &out->grid_index, &out->sample_index);
+    return true;
+}
+
+/* ---- checking ----------------------------------------------------------------------------- */
+
+static bool check_case(const struct plan *plan, uint64_t index, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    struct scenario_values values;
+    stance_case resolved;
+    stance_message message = {""};
+    size_t design = plan_design(plan, index);
+
+    if (plan->design_status[design] != STANCE_DONE)
+        return true;
+    scenario_case_values(s, index, &values);
+    if (resolve_case(s->scene, &values, &plan->design[design], s->seed, index, &resolved,
+                     &message) &&
+        (s->cases > 1 || resolve_pair(s->scene, &values, &resolved, &message)))
+        return true;
+    error->line = s->initial_line;
+    error->column = s->initial_column;
+    scenario_place(s, message.text, &error->line, &error->column);
+    if (s->cases == 1) {
+        error->message = message;
+    } else {
+        snprintf(error->message.text, sizeof error->message.text, "case %llu: %.200s",
+                 (unsigned long long)index, message.text);
+    }
+    return false;
+}
+
+bool plan_check_cases(const struct plan *plan, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    if (plan->single)
+        return check_case(plan, plan->single_case, error);
+    uint64_t n = s->cases < CHECKED_CASES ? s->cases : CHECKED_CASES;
+    for (uint64_t i = 0; i < n; i++)
+        if (!check_case(plan, spread_case(plan, i, n), error))
+            return false;
+    for (uint64_t c = 0; n < s->cases && c < corners(s); c++)
+        if (!check_case(plan, corner_case(s, c), error))
+            return false;
+    /* Of few designs that are known the cases above may miss most. */
+    for (size_t d = 0; plan->pending > 0 && d < plan->designs; d++)
+        if (plan->design_status[d] == STANCE_DONE && !check_case(plan, design_case(plan, d), error))
+            return false;
+    return true;
+}
+
+/* ---- cost --------------------------------------------------------------------------------- */
+
+/* Copies of a case, one for each lane: lanes share the work of a bundle. */
+struct copies {
+    const stance_case *input;
+    stance_result result[WIDEST];
+    int lanes, given;
+    double until;
+};
+
+static bool copies_next(void *context, const stance_case **c, stance_result **result)
+{
+    struct copies *copies = context;
+    if (copies->given == copies->lanes)
+        return false;
+    *c = copies->input;
+    *result = &copies->result[copies->given++];
+    return true;
+}
+
+static void copies_done(void *context, const stance_case *c, stance_result *result)
+{
+    (void)context, (void)c, (void)result;
+}
+
+static bool is_late(void *context)
+{
+    const double *until = context;
+    return clock_seconds() > *until;
+}
+
+static bool copies_leave(void *context)
+{
+    return is_late(&((struct copies *)context)->until);
+}
+
+struct trial {
+    double seconds;       /* spent */
+    uint64_t steps;       /* taken */
+    uint64_t steps_asked; /* that the cases would take to their ends */
+    uint64_t cases;
+    bool late; /* the last one was given up, at steps that are not known */
+};
+
+/* Runs number i of COST_CASES, at most `steps` long, until the clock says `until`. */
+static void try_case(const struct plan *plan, uint64_t i, int64_t steps, double until,
+                     struct trial *trial)
+{
+    stance_case input;
+    int method;
+    const uint64_t row = plan->single ? 0 : cost_case(plan, i);
+    if (plan->design_status[plan_design(plan, plan_case(plan, row))] == STANCE_PENDING)
+        return;
+    trial->cases++;
+    if (!plan_resolve(plan, row, &input, &method))
+        return;
+    trial->steps_asked += (uint64_t)input.steps;
+    input.steps = input.steps < steps ? input.steps : steps;
+    const stance_kernel *kernel =
+        instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
+    struct copies copies = {
+        .input = &input, .lanes = kernel->lanes < WIDEST ? kernel->lanes : WIDEST, .until = until};
+    const double start = clock_seconds();
+    trial->late = !kernel->stream(&(stance_feed){&copies, copies_next, copies_done, copies_leave});
+    trial->seconds += (clock_seconds() - start) / copies.lanes;
+    trial->steps += trial->late ? 0 : (uint64_t)copies.result[0].steps;
+}
+
+/* A search with few simulations tells what one takes on the way to a set. */
+double plan_capture_cost(const struct plan *plan, double budget)
+{
+    enum { TRIED = 256 };
+    const struct scenario *s = plan->scenario;
+    const double start = clock_seconds();
+    double until = start + budget;
+
+    for (size_t d = 0; s->base.capture && d < plan->designs; d++) {
+        struct scenario_values values;
+        stance_known_basin_search search;
+        stance_known_basin set = {.simulations = 0};
+        stance_message ignored;
+        if (plan->design_status[d] != STANCE_DONE)
+            continue;
+        if (is_late(&until))
+            return NAN;
+        scenario_case_values(s, design_case(plan, d), &values);
+        if (!known_basin_prepare(s->scene, &values, &plan->design[d], s->seed, &search, &ignored))
+            continue;
+        memcpy(search.P[0], search.P[search.shapes / 2], sizeof search.P[0]);
+        search.shapes = 1;
+        search.boundary = TRIED;
+        search.interior = 0;
+        search.leave = is_late;
+        search.context = &until;
+        const double begin = clock_seconds();
+        const stance_error error = stance_known_basin_estimate(&search, &set);
+        if ((error == STANCE_OK || error == STANCE_STOPPED) && set.simulations > 0) {
+            return (clock_seconds() - begin) / (double)set.simulations * KNOWN_BASIN_USUAL *
+                   (double)plan->designs;
+        }
+    }
+    return s->base.capture && plan->pending > 0 ? NAN : 0;
+}
+
+double plan_cost(const struct plan *plan, double budget, bool *bound)
+{
+    enum { FIRST = 8, LATEST = 5 };
+    struct trial beginnings = {0}, whole = {0};
+    const double start = clock_seconds(), until = start + LATEST * budget;
+
+    *bound = false;
+    /* Beginnings first, to learn what whole cases would take. */
+    for (uint64_t i = 0; i < FIRST && !beginnings.late; i++)
+        try_case(plan, i, COST_STEPS, until, &beginnings);
+    if (beginnings.steps == 0)
+        return beginnings.late ? NAN : -1;
+    double per_step = beginnings.seconds / (double)beginnings.steps;
+    double per_case = per_step * (double)beginnings.steps_asked / (double)beginnings.cases;
+    if (beginnings.late || per_case * WIDEST * FIRST > budget) {
+        *bound = true;
+        return per_case * (double)plan->rows;
+    }
+    for (uint64_t i = 0; i < COST_CASES && clock_seconds() - start < budget && !whole.late; i++)
+        try_case(plan, i, INT64_MAX, until, &whole);
+    if (whole.cases == 0 || whole.late) {
+        *bound = true;
+        return per_case * (double)plan->rows;
+    }
+    return whole.seconds / (double)whole.cases * (double)plan->rows;
+}

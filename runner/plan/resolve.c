@@ -1,0 +1,470 @@
+/* resolve.c - from the numbers of one case to what the engine runs.
+ *
+ * Which equilibrium is the target of a state-feedback law: controller.equilibrium, or where that
+ * is not given initial.equilibrium, solved for the robot that the design believes in
+ * (controller.model) and the foot that the robot stands on (initial.support_foot, foot 1 if there
+ * is none). Its posture is the target, its torques are the feedforward, and the gains come from the
+ * linearisation there. The start is the equilibrium of the true robot: where model and robot
+ * differ, so do the solved-for angle and the torques of the two.
+ *
+ * Which angles `hold` holds: controller.target, or where that is not given the joint angles that
+ * the run starts from, offsets included.
+ */
+#include "resolve.h"
+#include "known_basin.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define DEEPEST_START 1e-9 /* m: penetration of an initial state that counts as rounding */
+#define MOST_STEPS 1e15
+#define MOST_CONDITION 1e12 /* of a pair of coordinates: above it is singular */
+
+static bool refuse(stance_message *message, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static bool refuse(stance_message *message, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(message->text, sizeof message->text, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+/* ---- design ---------------------------------------------------------------------------------- */
+
+static int support_of(const struct scenario_values *values)
+{
+    return values->support_foot > 0 ? values->support_foot - 1 : 0;
+}
+
+static bool solve_equilibrium(const stance_scene *scene, const double *robot,
+                              const struct scenario_equilibrium *wanted, int support,
+                              stance_equilibrium *result, stance_message *message)
+{
+    stance_equilibrium_choice choice = {.support = support, .lower = wanted->lower != 0};
+    if (!scene->equilibrium || !scene->stand)
+        return refuse(message, "the scene %s has no equilibria: give initial.state", scene->name);
+    memcpy(choice.posture, wanted->posture, sizeof choice.posture);
+    return scene->equilibrium(robot, &choice, result, message) == STANCE_OK;
+}
+
+bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
+                         double *model, stance_equilibrium *equilibrium, stance_message *message)
+{
+    const bool law = values->law == LAW_STATE_FEEDBACK;
+    const bool own = law && values->design_point.given;
+
+    message->text[0] = '\0';
+    for (int i = 0; i < STANCE_MAX_ROBOT; i++)
+        model[i] = law && !isnan(values->model[i]) ? values->model[i] : values->robot[i];
+    if (!own && !values->equilibrium.given) {
+        return refuse(message, law ? "the controller needs an equilibrium to work at: give "
+                                     "controller.equilibrium or initial.equilibrium"
+                                   : "the scenario has no equilibrium: give initial.equilibrium");
+    }
+    return solve_equilibrium(scene, model, own ? &values->design_point : &values->equilibrium,
+                             support_of(values), equilibrium, message);
+}
+
+bool resolve_gains(const stance_scene *scene, const struct scenario_values *values, const double *A,
+                   const double *B, double *K, struct resolved_gains *how, stance_message *message)
+{
+    const int n = 2 * scene->postures, m = scene->actuators;
+    const double *re = values->pole_re, *im = values->pole_im, T = values->sample_time;
+    const bool sampled = values->design_time == DESIGN_SAMPLED;
+    const stance_placement method =
+        values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST;
+    struct resolved_gains own = {0, NAN};
+
+    how = how ? how : &own;
+    *how = (struct resolved_gains){0, NAN};
+    message->text[0] = '\0';
+    stance_error error = STANCE_OK;
+    if (values->design == DESIGN_GAINS) {
+        memcpy(K, values->gains, (size_t)(n * m) * sizeof *K);
+    } else if (values->design == DESIGN_LQR) {
+        error = sampled ? stance_lqr_sampled(n, m, A, B, T, values->state_weights,
+                                             values->torque_weights, K, message)
+                        : stance_lqr(n, m, A, B, values->state_weights, values->torque_weights, K,
+                                     message);
+    } else if (sampled) {
+        error = stance_place_sampled(method, n, m, A, B, T, re, im, K, &how->sweeps,
+                                     &how->condition, message);
+    } else if (method == STANCE_SCHUR) {
+        error = stance_place_schur(n, m, A, B, re, im, K, message);
+    } else {
+        error = stance_place(n, m, A, B, re, im, K, &how->sweeps, &how->condition, message);
+    }
+    for (int i = 0; error == STANCE_OK && i < m * n; i++)
+        if (!isfinite(K[i]))
+            return refuse(message, "%d finite gains are needed", m * n);
+    if (error != STANCE_OK) { /* say which key asked for it */
+        stance_message told = *message;
+        const char *point =
+            values->design_point.given ? "controller.equilibrium" : "initial.equilibrium";
+        snprintf(message->text, sizeof message->text, "%s: %.200s",
+                 error == STANCE_UNCONTROLLABLE   ? point
+                 : sampled                        ? "controller.design_time"
+                 : values->design == DESIGN_LQR   ? "controller.weights"
+                 : values->design == DESIGN_GAINS ? "controller.gains"
+                                                  : "controller.poles",
+                 told.text);
+    }
+    return error == STANCE_OK;
+}
+
+static bool design_state_feedback(const stance_scene *scene, const struct scenario_values *values,
+                                  struct resolved_design *design, stance_message *message)
+{
+    const int n = 2 * scene->postures, m = scene->actuators;
+    double model[STANCE_MAX_ROBOT], K[SCENARIO_MAX_GAINS] = {0};
+    double A[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
+    double B[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
+    stance_equilibrium equilibrium;
+
+    if (!resolve_equilibrium(scene, values, model, &equilibrium, message))
+        return false;
+    if (!scene->linearise)
+        return refuse(message, "the scene %s has no linearisation", scene->name);
+    const stance_error error = scene->linearise(model, &equilibrium, A, B);
+    if (error != STANCE_OK)
+        return refuse(message, "linearisation: %s", stance_error_text(error));
+    if (!resolve_gains(scene, values, A, B, K, NULL, message))
+        return false;
+    for (int i = 0; i < m * n; i++)
+        design->gain[i / n][i % n] = K[i];
+    memcpy(design->equilibrium, equilibrium.position,
+           (size_t)scene->coordinates * sizeof *design->equilibrium);
+    memcpy(design->torque, equilibrium.torque, (size_t)m * sizeof *design->torque);
+    return true;
+}
+
+static void clear_design(struct resolved_design *design)
+{
+    *design = (struct resolved_design){0};
+    for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
+        design->start[i] = design->equilibrium[i] = NAN;
+}
+
+void resolve_keep_design_inputs(struct scenario_values *values, bool sampled)
+{
+#define LEAVE_OUT(field) memset(&values->field, 0, sizeof values->field)
+    LEAVE_OUT(friction), LEAVE_OUT(restitution), LEAVE_OUT(contacts);
+    LEAVE_OUT(prefer);
+    LEAVE_OUT(offset), LEAVE_OUT(offset_scale), LEAVE_OUT(state);
+    LEAVE_OUT(kp), LEAVE_OUT(kd), LEAVE_OUT(target);
+    LEAVE_OUT(controlled), LEAVE_OUT(proportional), LEAVE_OUT(integral), LEAVE_OUT(derivative);
+    LEAVE_OUT(integral_limit), LEAVE_OUT(setpoint), LEAVE_OUT(ramp), LEAVE_OUT(ramp_time);
+    LEAVE_OUT(far), LEAVE_OUT(near_angle), LEAVE_OUT(near_rate);
+    LEAVE_OUT(delay), LEAVE_OUT(torque_limit), LEAVE_OUT(noise);
+    LEAVE_OUT(method), LEAVE_OUT(step), LEAVE_OUT(tolerance);
+    LEAVE_OUT(stop_time), LEAVE_OUT(settle), LEAVE_OUT(settle_angle), LEAVE_OUT(settle_rate);
+    LEAVE_OUT(settle_hold), LEAVE_OUT(fall_height);
+#undef LEAVE_OUT
+    values->sample_time = sampled ? values->sample_time : 0;
+}
+
+bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
+                    struct resolved_design *design, stance_message *message)
+{
+    message->text[0] = '\0';
+    clear_design(design);
+    if (!values->state_given) {
+        stance_equilibrium start;
+        if (!values->equilibrium.given) {
+            return refuse(message,
+                          "an initial state is needed: initial.equilibrium or initial.state");
+        }
+        if (!solve_equilibrium(scene, values->robot, &values->equilibrium, support_of(values),
+                               &start, message))
+            return false;
+        memcpy(design->start, start.position, (size_t)scene->coordinates * sizeof *design->start);
+    }
+    if (values->law == LAW_STATE_FEEDBACK &&
+        !design_state_feedback(scene, values, design, message)) {
+        clear_design(design);
+        return false;
+    }
+    return true;
+}
+
+/* ---- initial state --------------------------------------------------------------------------- */
+
+static bool is_posture(const stance_scene *scene, int coordinate)
+{
+    for (int k = 0; k < scene->postures; k++)
+        if (scene->posture[k] == coordinate)
+            return true;
+    return false;
+}
+
+/* Offsets of the angles tilt the robot about the foot it stands on; those of the translation move
+ * it away from there. */
+static void place_robot(const stance_scene *scene, const struct scenario_values *values,
+                        const double *start, stance_case *out)
+{
+    const int n = scene->coordinates;
+    const double scale = values->offset_scale;
+    for (int i = 0; i < n; i++) {
+        const bool angle = is_posture(scene, i);
+        out->position[i] = start[i] + (angle ? scale * values->offset[i] : 0);
+        out->velocity[i] = angle ? scale * values->offset[n + i] : 0;
+    }
+    scene->stand(out->robot, support_of(values), out->position, out->velocity);
+    for (int i = 0; i < n; i++) {
+        if (!is_posture(scene, i)) {
+            out->position[i] += scale * values->offset[i];
+            out->velocity[i] += scale * values->offset[n + i];
+        }
+    }
+}
+
+static bool check_start(const stance_scene *scene, const stance_case *out, stance_message *message)
+{
+    double gap[STANCE_MAX_CONTACTS];
+    for (int i = 0; i < scene->coordinates; i++) {
+        const char *name = scene->coordinate[i].name;
+        if (!isfinite(out->position[i]))
+            return refuse(message, "the initial %s is not a finite number", name);
+        if (!isfinite(out->velocity[i]))
+            return refuse(message, "the initial v%s is not a finite number", name);
+    }
+    scene->gaps(out->robot, out->position, gap);
+    for (int c = 0; c < scene->contacts; c++) {
+        if (!isfinite(gap[c])) {
+            return refuse(message,
+                          "the initial position of %s is not defined: an angle is beyond "
+                          "1e4 rad",
+                          scene->contact_name[c]);
+        }
+        if ((out->contacts >> c & 1) && gap[c] < -DEEPEST_START) {
+            return refuse(message, "%s would start %.6g m inside the ground",
+                          scene->contact_name[c], -gap[c]);
+        }
+    }
+    return true;
+}
+
+static bool resolve_start(const stance_scene *scene, const struct scenario_values *values,
+                          const struct resolved_design *design, stance_case *out,
+                          stance_message *message)
+{
+    const int n = scene->coordinates;
+    if (values->state_given) {
+        memcpy(out->position, values->state, (size_t)n * sizeof *out->position);
+        memcpy(out->velocity, values->state + n, (size_t)n * sizeof *out->velocity);
+    } else {
+        place_robot(scene, values, design->start, out);
+    }
+    return check_start(scene, out, message);
+}
+
+/* ---- law and time ---------------------------------------------------------------------------- */
+
+/* Actuator i drives the last postures in order: of the biped's (theta, q1, q2) the joints. */
+static void hold(const stance_scene *scene, const struct scenario_values *values, stance_case *out)
+{
+    for (int i = 0; i < scene->actuators; i++) {
+        const int joint = scene->postures - scene->actuators + i;
+        out->gain[i][joint] = values->kp;
+        out->gain[i][scene->postures + joint] = values->kd;
+    }
+    for (int k = 0; k < scene->postures; k++) {
+        const double wanted = values->target[k];
+        out->target[k] = isnan(wanted) ? out->position[scene->posture[k]] : wanted;
+    }
+}
+
+static void feed_back(const stance_scene *scene, const struct scenario_values *values,
+                      const struct resolved_design *design, stance_case *out)
+{
+    memcpy(out->feedforward, design->torque, sizeof out->feedforward);
+    memcpy(out->gain, design->gain, sizeof out->gain);
+    for (int k = 0; k < scene->postures; k++)
+        out->target[k] = design->equilibrium[scene->posture[k]];
+    out->has_target = true;
+    out->support = support_of(values);
+}
+
+/* The law outside the ellipsoid, where state-feedback acts inside it: hold brings the joints to
+ * those of the equilibrium unless told others. */
+static void set_far(const stance_scene *scene, const struct scenario_values *values,
+                    stance_case *out)
+{
+    if (values->far == FAR_NONE)
+        return;
+    out->switches = true;
+    for (int k = 0; k < scene->postures; k++) {
+        out->switch_axis[k] = values->near_angle;
+        out->switch_axis[scene->postures + k] = values->near_rate;
+        out->far.target[k] = isnan(values->target[k]) ? out->target[k] : values->target[k];
+    }
+    for (int i = 0; values->far == FAR_HOLD && i < scene->actuators; i++) {
+        const int joint = scene->postures - scene->actuators + i;
+        out->far.gain[i][joint] = values->kp;
+        out->far.gain[i][scene->postures + joint] = values->kd;
+    }
+}
+
+/* Set-points that are not given: where the run begins, or far from a target that state-feedback
+ * takes over at, that target. */
+static bool decouple(const stance_scene *scene, const struct scenario_values *values,
+                     const struct resolved_design *design, stance_case *out,
+                     stance_message *message)
+{
+    int controlled[2];
+    if (!stance_pair(scene, values->controlled, &controlled[0], &controlled[1]))
+        return refuse(message, "controller.controlled is no pair of coordinates");
+    out->decouples = true;
+    for (int i = 0; i < scene->actuators; i++) {
+        const int k = controlled[i];
+        const double begin = out->switches ? design->equilibrium[k] : out->position[k];
+        const double setpoint = values->setpoint[k];
+        out->servo[i] = (stance_servo){
+            .coordinate = k,
+            .setpoint = isnan(setpoint) ? begin : setpoint,
+            .ramp = values->ramp[k],
+            .duration = values->ramp_time[k],
+            .kp = values->proportional[k],
+            .ki = values->integral[k],
+            .kd = values->derivative[k],
+            .integral_limit = values->integral_limit[k],
+        };
+        if (!isfinite(out->servo[i].setpoint + out->servo[i].ramp + out->servo[i].kp +
+                      out->servo[i].ki + out->servo[i].kd) ||
+            !(out->servo[i].duration >= 0 && out->servo[i].integral_limit >= 0))
+            return refuse(message, "a gain or set-point of the decoupling law is not finite");
+    }
+    return true;
+}
+
+/* A set somewhat smaller than the confirmed one. */
+static void capture(const stance_scene *scene, const struct resolved_design *design,
+                    stance_case *out)
+{
+    out->captures = true;
+    out->capture_time = design->capture_time;
+    for (int i = 0; i < 2 * scene->postures; i++)
+        for (int j = 0; j < 2 * scene->postures; j++)
+            out->captured[i][j] = design->captured[i][j] / KNOWN_BASIN_SAFETY;
+}
+
+static bool check_law(const stance_scene *scene, const stance_case *out, stance_message *message)
+{
+    bool finite = isfinite(out->noise);
+    for (int i = 0; i < scene->actuators; i++) {
+        finite = finite && isfinite(out->feedforward[i]);
+        for (int j = 0; j < 2 * scene->postures; j++)
+            finite = finite && isfinite(out->gain[i][j]);
+    }
+    for (int k = 0; k < scene->postures; k++)
+        finite = finite && isfinite(out->target[k]);
+    if (!finite)
+        return refuse(message, "a gain, a target or the noise of the controller is not finite");
+    if (!(out->torque_limit > 0))
+        return refuse(message, "controller.torque_limit must be positive");
+    if (out->noise != 0 && out->sample_every == 0)
+        return refuse(message, "controller.noise needs a controller.sample_time above 0");
+    if (out->switches && out->sample_every == 0)
+        return refuse(message, "controller.far needs a controller.sample_time above 0");
+    if (out->delay != 0 && out->sample_every == 0)
+        return refuse(message, "controller.delay needs a controller.sample_time above 0");
+    return true;
+}
+
+/* Each sample interval is cut into equal steps no longer than method.step; the 1e-9 lets an
+ * interval that is a multiple of the step but for rounding keep it. */
+static bool resolve_time(const struct scenario_values *values, stance_case *out,
+                         stance_message *message)
+{
+    const double interval = values->sample_time;
+    if (!isfinite(values->step) || values->step <= 0)
+        return refuse(message, "method.step must be positive");
+    if (!isfinite(interval) || interval < 0 || !isfinite(values->stop_time)) {
+        return refuse(message, "controller.sample_time and stop.time must be finite and not "
+                               "negative");
+    }
+    const stance_method *method = stance_methods()[values->method];
+    out->step = values->step;
+    out->tolerance = isnan(values->tolerance) ? method->tolerance : values->tolerance;
+    if (method->tolerance > 0 && !(out->tolerance > 0))
+        return refuse(message, "method.tolerance must be positive");
+    if (interval > 0) {
+        const double pieces = fmax(1, ceil(interval / values->step - 1e-9));
+        if (pieces > MOST_STEPS)
+            return refuse(message, "controller.sample_time has more than %g steps", MOST_STEPS);
+        out->sample_every = (int64_t)pieces;
+        out->step = interval / pieces;
+    }
+    if (values->stop_time > 0 && values->stop_time < out->step)
+        out->step = values->stop_time; /* then there is one step, and no second sample */
+    const double steps = fmax(1, nearbyint(values->stop_time / out->step));
+    if (!(steps <= MOST_STEPS))
+        return refuse(message, "stop.time has more than %g steps", MOST_STEPS);
+    out->steps = (int64_t)steps;
+    return true;
+}
+
+bool resolve_pair(const stance_scene *scene, const struct scenario_values *values,
+                  const stance_case *start, stance_message *message)
+{
+    double condition;
+    int first, second;
+    if (!start->decouples || !stance_pair(scene, values->controlled, &first, &second) ||
+        (stance_pair_condition(scene, start->robot, start->position, values->controlled,
+                               &condition) == STANCE_OK &&
+         condition < MOST_CONDITION))
+        return true;
+    return refuse(message,
+                  "controller.controlled: the pair %s-%s is singular in the initial posture: no "
+                  "torques give it the accelerations that the law asks for",
+                  scene->coordinate[first].name, scene->coordinate[second].name);
+}
+
+bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
+                  const struct resolved_design *design, uint64_t seed, uint64_t index,
+                  stance_case *out, stance_message *message)
+{
+    message->text[0] = '\0';
+    *out = (stance_case){
+        .friction = values->friction,
+        .restitution = values->restitution,
+        .most_energy = values->prefer != 0,
+        .contacts = (uint32_t)values->contacts,
+        .torque_limit = values->torque_limit,
+        .noise = values->noise,
+        .delay = values->law == LAW_NONE ? 0 : values->delay,
+        .settle = values->settle != 0,
+        .support = -1,
+        .settle_angle = values->settle_angle,
+        .settle_rate = values->settle_rate,
+        .settle_hold = values->settle_hold,
+        .fall_height = values->fall_height,
+        .seed = seed,
+        .grid_index = index,
+    };
+    memcpy(out->robot, values->robot, sizeof out->robot);
+    if (!isfinite(out->friction) || out->friction < 0 ||
+        !(out->restitution >= 0 && out->restitution <= 1)) {
+        return refuse(message, "ground.friction must not be negative, ground.restitution lie "
+                               "within 0 ... 1");
+    }
+    if (!resolve_start(scene, values, design, out, message))
+        return false;
+    if (values->law == LAW_HOLD) {
+        hold(scene, values, out);
+    } else if (values->law == LAW_STATE_FEEDBACK) {
+        feed_back(scene, values, design, out);
+        set_far(scene, values, out);
+        if (values->capture && design->capture_time > 0)
+            capture(scene, design, out);
+    }
+    if ((values->law == LAW_DECOUPLING || (out->switches && values->far == FAR_DECOUPLING)) &&
+        !decouple(scene, values, design, out, message))
+        return false;
+    return resolve_time(values, out, message) && check_law(scene, out, message);
+}

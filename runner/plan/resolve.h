@@ -1,0 +1,69 @@
+/* resolve.h - from the numbers of one case to what the engine runs.
+ *
+ * Split in two so that results do not depend on the processor: `resolve_design` uses LAPACK and
+ * libm and may differ in the last bit between machines; it is computed once per distinct design,
+ * stored in the file, and read from there. `resolve_case` uses only IEEE arithmetic and the
+ * engine's own sine and cosine.
+ */
+#ifndef STANCE_PLAN_RESOLVE_H
+#define STANCE_PLAN_RESOLVE_H
+
+#include "runner/scenario/scenario.h"
+
+/* What depends on fields marked `design` in the schema only (robot.*, initial.equilibrium.*,
+ * initial.support_foot, controller.kind, .design, .design_time, .model.*, .equilibrium.*, .poles,
+ * .weights, .gains), and on controller.sample_time where the design is for the sampled model. The
+ * captured set (stop.capture estimated, see known_basin.h) depends on everything but the initial
+ * state: then each point of any other axis is a design of its own. */
+struct resolved_design {
+    double start[STANCE_MAX_COORDINATES]; /* initial equilibrium, foot at the origin; NAN if none */
+    double equilibrium[STANCE_MAX_COORDINATES]; /* controller's equilibrium; NAN if none */
+    double torque[STANCE_MAX_ACTUATORS];        /* feedforward, N m */
+    double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
+    /* The confirmed set x' captured x <= 1, x = (posture - target, rates), and what it rests on;
+     * NAN where none was found, 0 where none was sought. */
+    double captured[2 * STANCE_MAX_POSTURE][2 * STANCE_MAX_POSTURE];
+    double capture_time;                      /* s that a case must have left to be captured */
+    double capture_boundary, capture_batches; /* simulations per batch; batches */
+    double capture_share; /* of the boundary: less than this fails, with 95 % confidence */
+};
+
+/* Without a captured set. false: `message` says what is impossible (no such equilibrium, poles not
+ * placeable, ...). */
+bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
+                    struct resolved_design *design, stance_message *message);
+
+/* Sets to 0 what no design of these values depends on. New fields of the struct count as inputs
+ * until they are named here. Of controller.sample_time only a design for the sampled model depends.
+ */
+void resolve_keep_design_inputs(struct scenario_values *values, bool sampled);
+
+/* The robot that the design believes in, model[STANCE_MAX_ROBOT], and the equilibrium it is made
+ * at: the controller's, or for laws without one the initial one. false: `message` says why there is
+ * none. */
+bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
+                         double *model, stance_equilibrium *equilibrium, stance_message *message);
+
+/* How the gains came about. */
+struct resolved_gains {
+    int sweeps;       /* of robust pole placement; 0: another design */
+    double condition; /* of its eigenvectors; NAN: another design */
+};
+
+/* K[actuators][2 postures] of a state-feedback law for x' = A x + B u: designed, or as given. `how`
+ * may be NULL. */
+bool resolve_gains(const stance_scene *scene, const struct scenario_values *values, const double *A,
+                   const double *B, double *K, struct resolved_gains *how, stance_message *message);
+
+/* Fills *out (trajectory NULL). Checks the initial state: a gap below -1e-9 m of a contact that
+ * may touch is an error, and so is a state that is not finite. `index` is the flat case index. */
+bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
+                  const struct resolved_design *design, uint64_t seed, uint64_t index,
+                  stance_case *out, stance_message *message);
+
+/* false: a decoupling law's pair of coordinates is singular where *start begins. In a sweep such a
+ * case runs all the same, with a damped law. */
+bool resolve_pair(const stance_scene *scene, const struct scenario_values *values,
+                  const stance_case *start, stance_message *message);
+
+#endif

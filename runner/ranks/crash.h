@@ -1,0 +1,25 @@
+/* crash.h - last words of a rank that crashes: which rank, where, and what it was at.
+ *
+ * The handler calls nothing but write(2) and sigaction(2), on a stack of its own; what it says is
+ * kept ready here as the work goes on. Afterwards the signal goes to whoever had it before (Open
+ * MPI prints where the program stood), so that the process still dies of it and the launcher ends
+ * the job. A process that is killed (SIGKILL, also for want of memory) says nothing: its launcher
+ * does.
+ */
+#ifndef STANCE_RANKS_CRASH_H
+#define STANCE_RANKS_CRASH_H
+
+#include <stdint.h>
+
+/* From now on SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGABRT are announced. After MPI has started. */
+void crash_watch(int rank);
+
+/* What this rank is doing ("computing designs"), while it has no case in hand; a constant. */
+void crash_stage(const char *doing);
+
+/* A case comes into hand; returns its place, for crash_leave. More than there is room for are not
+ * named. */
+int crash_take(uint64_t index);
+void crash_leave(int place);
+
+#endif

@@ -1,0 +1,444 @@
+/* parallel.c - the one file that talks to MPI; without STANCE_MPI it does for one rank.
+ *
+ * A single rank never needs MPI, so that `stance run` alone works where MPI cannot start: MPI is
+ * initialised only when a launcher started this process.
+ */
+#include "parallel.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/time.h>
+#include <time.h>
+#include <unistd.h>
+
+#ifdef STANCE_MPI
+#include <mpi.h>
+#endif
+
+struct parallel_shared {
+    int64_t *counter; /* [COUNTERS], then [ranks] numbers of theirs; on rank 0, else none */
+#ifdef STANCE_MPI
+    MPI_Win window; /* when there are several ranks */
+#endif
+};
+
+struct parallel parallel_alone(void)
+{
+    return (struct parallel){.rank = 0, .size = 1};
+}
+
+void parallel_host(char *name, size_t size)
+{
+    if (gethostname(name, size) != 0)
+        snprintf(name, size, "unknown");
+    name[size - 1] = '\0';
+}
+
+/* ---- counters of one rank ----------------------------------------------------------------- */
+
+static bool share_alone(struct parallel *parallel)
+{
+    struct parallel_shared *shared = calloc(1, sizeof *shared);
+    int64_t *counter = calloc(COUNTERS + 1, sizeof *counter);
+    if (!shared || !counter) {
+        free(shared);
+        free(counter);
+        return false;
+    }
+    shared->counter = counter;
+    parallel->shared = shared;
+    return true;
+}
+
+static void unshare_alone(struct parallel *parallel)
+{
+    free(parallel->shared->counter);
+    free(parallel->shared);
+    parallel->shared = NULL;
+}
+
+static int64_t add_alone(const struct parallel *parallel, enum parallel_counter counter,
+                         int64_t value)
+{
+    int64_t before = parallel->shared->counter[counter];
+    parallel->shared->counter[counter] += value;
+    return before;
+}
+
+#ifdef STANCE_MPI
+
+/* MPI counts in int: longer messages go in pieces. */
+enum { PIECE = 1 << 28 };
+
+/* Launchers tell a process its rank in one of these. */
+static bool was_launched(void)
+{
+    static const char *const variable[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
+    for (size_t i = 0; i < sizeof variable / sizeof variable[0]; i++)
+        if (getenv(variable[i]))
+            return true;
+    return false;
+}
+
+/* Within one machine shared memory is all that Open MPI needs; its search for networks takes a
+ * fifth of a second. What the user has set stands. */
+static void skip_networks(void)
+{
+    const char *all = getenv("OMPI_COMM_WORLD_SIZE"), *here = getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+    if (all && here && strcmp(all, here) == 0)
+        setenv("OMPI_MCA_pml", "ob1", 0);
+}
+
+/* Windows between machines are made of messages in Open MPI 4: they work over every network, and
+ * what goes through them is little. Its window for remote memory fails over TCP, and Debian's
+ * configuration leaves no other. Within one machine windows are shared memory. */
+static void choose_windows(void)
+{
+#if defined(OMPI_MAJOR_VERSION) && OMPI_MAJOR_VERSION < 5
+    setenv("OMPI_MCA_osc", "sm,pt2pt", 0);
+#endif
+}
+
+bool parallel_misses_launcher(bool *first)
+{
+    const char *tasks = getenv("SLURM_STEP_NUM_TASKS"), *task = getenv("SLURM_PROCID");
+    *first = !task || strcmp(task, "0") == 0;
+    return tasks && atoi(tasks) > 1 && !was_launched();
+}
+
+/* A rank whose launcher dies while MPI starts waits in MPI_Init for ever (in PMIx, Open MPI 4):
+ * until MPI has started, and looks after that itself, an alarm sees each second who the parent is.
+ */
+static pid_t launcher;
+
+static void look_for_launcher(int number)
+{
+    (void)number;
+    if (getppid() != launcher)
+        _exit(EXIT_FAILURE); /* nothing has been begun, and nobody waits for the code */
+}
+
+static void watch_launcher(bool begin)
+{
+    const struct itimerval interval = {{begin, 0}, {begin, 0}};
+    struct sigaction action = {.sa_handler = begin ? look_for_launcher : SIG_DFL,
+                               .sa_flags = SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    if (begin) {
+        launcher = getppid();
+        sigaction(SIGALRM, &action, NULL);
+        setitimer(ITIMER_REAL, &interval, NULL);
+    } else {
+        setitimer(ITIMER_REAL, &interval, NULL);
+        sigaction(SIGALRM, &action, NULL);
+    }
+}
+
+struct parallel parallel_start(void)
+{
+    struct parallel parallel = parallel_alone();
+    if (was_launched()) {
+        skip_networks();
+        choose_windows();
+        watch_launcher(true);
+        MPI_Init(NULL, NULL);
+        watch_launcher(false);
+        MPI_Comm_rank(MPI_COMM_WORLD, &parallel.rank);
+        MPI_Comm_size(MPI_COMM_WORLD, &parallel.size);
+    }
+    return parallel;
+}
+
+void parallel_finish(struct parallel *parallel)
+{
+    int started = 0;
+    parallel_unshare(parallel);
+    MPI_Initialized(&started);
+    if (started)
+        MPI_Finalize();
+}
+
+static int piece_of(size_t left)
+{
+    return left < PIECE ? (int)left : PIECE;
+}
+
+void parallel_broadcast(const struct parallel *parallel, void *data, size_t size)
+{
+    char *bytes = data;
+    for (size_t at = 0; parallel->size > 1 && at < size; at += PIECE)
+        MPI_Bcast(bytes + at, piece_of(size - at), MPI_BYTE, 0, MPI_COMM_WORLD);
+}
+
+void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all)
+{
+    if (parallel->size == 1)
+        memcpy(all, data, size);
+    else
+        MPI_Gather(data, (int)size, MPI_BYTE, all, (int)size, MPI_BYTE, 0, MPI_COMM_WORLD);
+}
+
+void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,
+                           size_t first, size_t count)
+{
+    char *bytes = array;
+    for (int rank = 1; rank < parallel->size; rank++) {
+        uint64_t block[2] = {first * element, count * element};
+        if (parallel->rank == rank)
+            MPI_Send(block, 2, MPI_UINT64_T, 0, 0, MPI_COMM_WORLD);
+        else if (parallel->rank == 0)
+            MPI_Recv(block, 2, MPI_UINT64_T, rank, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+        else
+            continue;
+        for (uint64_t at = 0; at < block[1]; at += PIECE) {
+            char *piece = bytes + block[0] + at;
+            if (parallel->rank == rank) {
+                MPI_Send(piece, piece_of(block[1] - at), MPI_BYTE, 0, 1, MPI_COMM_WORLD);
+            } else {
+                MPI_Recv(piece, piece_of(block[1] - at), MPI_BYTE, rank, 1, MPI_COMM_WORLD,
+                         MPI_STATUS_IGNORE);
+            }
+        }
+    }
+}
+
+void parallel_sum(const struct parallel *parallel, uint64_t *number, int n)
+{
+    if (parallel->size > 1)
+        MPI_Allreduce(MPI_IN_PLACE, number, n, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+}
+
+void parallel_largest(const struct parallel *parallel, uint8_t *byte, size_t n)
+{
+    for (size_t at = 0; parallel->size > 1 && at < n; at += PIECE) {
+        MPI_Allreduce(MPI_IN_PLACE, byte + at, piece_of(n - at), MPI_UINT8_T, MPI_MAX,
+                      MPI_COMM_WORLD);
+    }
+}
+
+static void barrier(const struct parallel *parallel)
+{
+    if (parallel->size > 1)
+        MPI_Barrier(MPI_COMM_WORLD);
+}
+
+bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size)
+{
+    if (parallel->size == 1)
+        return good;
+    int lowest = good ? parallel->size : parallel->rank;
+    MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (lowest == parallel->size)
+        return true;
+    MPI_Bcast(text, (int)size, MPI_BYTE, lowest, MPI_COMM_WORLD);
+    return false;
+}
+
+bool parallel_share(struct parallel *parallel)
+{
+    if (parallel->size == 1)
+        return share_alone(parallel);
+    struct parallel_shared *shared = calloc(1, sizeof *shared);
+    char none[1] = "";
+    if (!parallel_agree(parallel, shared != NULL, none, sizeof none) || !shared) {
+        free(shared);
+        return false;
+    }
+    const MPI_Aint numbers = COUNTERS + (MPI_Aint)parallel->size;
+    MPI_Aint size = parallel->rank == 0 ? numbers * (MPI_Aint)sizeof(int64_t) : 0;
+    MPI_Win_allocate(size, sizeof(int64_t), MPI_INFO_NULL, MPI_COMM_WORLD, &shared->counter,
+                     &shared->window);
+    MPI_Win_lock_all(0, shared->window);
+    if (parallel->rank == 0) {
+        memset(shared->counter, 0, (size_t)size);
+        MPI_Win_sync(shared->window);
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    parallel->shared = shared;
+    return true;
+}
+
+void parallel_unshare(struct parallel *parallel)
+{
+    if (!parallel->shared)
+        return;
+    if (parallel->size == 1) {
+        unshare_alone(parallel);
+        return;
+    }
+    MPI_Win_unlock_all(parallel->shared->window);
+    MPI_Win_free(&parallel->shared->window);
+    free(parallel->shared);
+    parallel->shared = NULL;
+}
+
+/* One-sided, so nobody serves the counters. Some networks move them on only while rank 0 is
+ * inside MPI: rank 0 must come here often, too. Should rank 0's machine be cut off, this never
+ * returns: see deadline.h. (Open MPI 4's request for the same, which could be given up, is not
+ * atomic in windows made of messages: two ranks got the same number.) */
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
+{
+    int64_t before = 0;
+    if (parallel->size == 1)
+        return add_alone(parallel, counter, value);
+    MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)counter, MPI_SUM,
+                     parallel->shared->window);
+    MPI_Win_flush(0, parallel->shared->window);
+    return before;
+}
+
+void parallel_beat(const struct parallel *parallel, int64_t number)
+{
+    if (parallel->size == 1) {
+        parallel->shared->counter[COUNTERS] = number;
+        return;
+    }
+    MPI_Accumulate(&number, 1, MPI_INT64_T, 0, COUNTERS + (MPI_Aint)parallel->rank, 1, MPI_INT64_T,
+                   MPI_REPLACE, parallel->shared->window);
+    MPI_Win_flush(0, parallel->shared->window);
+}
+
+void parallel_beats(const struct parallel *parallel, int64_t *number)
+{
+    const int n = parallel->size;
+    if (n == 1) {
+        number[0] = parallel->shared->counter[COUNTERS];
+        return;
+    }
+    MPI_Get_accumulate(NULL, 0, MPI_INT64_T, number, n, MPI_INT64_T, 0, COUNTERS, n, MPI_INT64_T,
+                       MPI_NO_OP, parallel->shared->window);
+    MPI_Win_flush(0, parallel->shared->window);
+}
+
+void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context)
+{
+    enum { SHORTEST = 20000, LONGEST = 1000000 }; /* ns */
+    struct timespec pause = {.tv_nsec = SHORTEST};
+    MPI_Request request;
+    int done = 0;
+
+    if (parallel->size == 1)
+        return;
+    MPI_Ibarrier(MPI_COMM_WORLD, &request);
+    for (MPI_Test(&request, &done, MPI_STATUS_IGNORE); !done;
+         MPI_Test(&request, &done, MPI_STATUS_IGNORE)) {
+        wait(context);
+        nanosleep(&pause, NULL);
+        pause.tv_nsec = pause.tv_nsec < LONGEST / 2 ? 2 * pause.tv_nsec : LONGEST;
+    }
+}
+
+void parallel_library(char *text, size_t size)
+{
+    char name[MPI_MAX_LIBRARY_VERSION_STRING];
+    int length;
+    MPI_Get_library_version(name, &length);
+    name[strcspn(name, ",\n")] = '\0';
+    snprintf(text, size, "%s", name);
+}
+
+#else
+
+bool parallel_misses_launcher(bool *first)
+{
+    *first = true;
+    return false;
+}
+
+struct parallel parallel_start(void)
+{
+    return parallel_alone();
+}
+
+void parallel_finish(struct parallel *parallel)
+{
+    parallel_unshare(parallel);
+}
+
+void parallel_broadcast(const struct parallel *parallel, void *data, size_t size)
+{
+    (void)parallel, (void)data, (void)size;
+}
+
+void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all)
+{
+    (void)parallel;
+    if (all)
+        memcpy(all, data, size);
+}
+
+void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,
+                           size_t first, size_t count)
+{
+    (void)parallel, (void)array, (void)element, (void)first, (void)count;
+}
+
+void parallel_sum(const struct parallel *parallel, uint64_t *number, int n)
+{
+    (void)parallel, (void)number, (void)n;
+}
+
+void parallel_largest(const struct parallel *parallel, uint8_t *byte, size_t n)
+{
+    (void)parallel, (void)byte, (void)n;
+}
+
+static void barrier(const struct parallel *parallel)
+{
+    (void)parallel;
+}
+
+bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size)
+{
+    (void)parallel, (void)text, (void)size;
+    return good;
+}
+
+bool parallel_share(struct parallel *parallel)
+{
+    return share_alone(parallel);
+}
+
+void parallel_unshare(struct parallel *parallel)
+{
+    if (parallel->shared)
+        unshare_alone(parallel);
+}
+
+int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
+{
+    return add_alone(parallel, counter, value);
+}
+
+void parallel_beat(const struct parallel *parallel, int64_t number)
+{
+    parallel->shared->counter[COUNTERS] = number;
+}
+
+void parallel_beats(const struct parallel *parallel, int64_t *number)
+{
+    number[0] = parallel->shared->counter[COUNTERS];
+}
+
+void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context)
+{
+    (void)parallel, (void)wait, (void)context;
+}
+
+void parallel_library(char *text, size_t size)
+{
+    snprintf(text, size, "no MPI");
+}
+
+#endif
+
+void parallel_restart(const struct parallel *parallel)
+{
+    barrier(parallel); /* every rank has drawn its last */
+    for (int counter = 0; parallel->rank == 0 && counter < COUNTERS; counter++)
+        if (counter != COUNTER_STOP)
+            parallel_add(parallel, counter, -parallel_add(parallel, counter, 0));
+    barrier(parallel);
+}

@@ -1,0 +1,109 @@
+/* command_check.c - `stance check`: is the scenario sound, and what would running it take? */
+#include "report.h"
+
+#include "runner/base/command.h"
+#include "runner/plan/instruction_set.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+extern const struct command command_check; /* below */
+
+static int print_error(const struct scenario *s, const struct plan_error *error)
+{
+    if (error->line > 0)
+        fprintf(stderr, "%s:%d:%d: %s\n", s->file, error->line, error->column, error->message.text);
+    else
+        fprintf(stderr, "%s: %s\n", s->file, error->message.text);
+    return EXIT_USAGE;
+}
+
+static int check(const struct scenario *s, bool json)
+{
+    struct parallel alone = parallel_alone();
+    struct plan plan;
+    struct plan_error error = {0};
+    char file[sizeof s->name + 16];
+    int code = EXIT_DONE;
+
+    if (!plan_make(&plan, s, false, 0, false, &error))
+        return print_error(s, &error);
+    plan.patience = PLAN_PATIENCE_DESIGNS;
+    if (plan_compute_designs(&plan, &alone, &error) && plan_check_cases(&plan, &error)) {
+        snprintf(file, sizeof file, "results/%s.h5", s->name);
+        report_plan(&plan, 1, file, json, stdout);
+    } else {
+        code = print_error(s, &error);
+    }
+    plan_free(&plan);
+    return code;
+}
+
+static int run_check(int argc, char **argv)
+{
+    const char **sets = malloc((size_t)argc * sizeof *sets), *file;
+    struct scenario *s = calloc(1, sizeof *s);
+    size_t set_count = 0, json = 0, operands;
+    bool help;
+    int code = EXIT_USAGE;
+    const struct option_spec specs[] = {
+        {"--set", true, sets, (size_t)argc, &set_count},
+        {"--json", false, NULL, 0, &json},
+    };
+
+    if (!sets || !s) {
+        fprintf(stderr, "stance check: not enough memory\n");
+        code = EXIT_IO;
+    } else if (command_options(&command_check, argc, argv, specs, 2, &file, 1, &operands, &help)) {
+        if (help) {
+            code = EXIT_DONE;
+        } else if (operands != 1) {
+            fprintf(stderr, "stance check: a scenario file must be given (stance check -h "
+                            "explains)\n");
+        } else if (!instruction_set_usable("check")) {
+            code = EXIT_USAGE;
+        } else if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
+            code = check(s, json > 0);
+            scenario_free(s);
+        } else if (access(file, R_OK) != 0) {
+            code = EXIT_IO;
+        }
+    }
+    free(s);
+    free(sets);
+    return code;
+}
+
+const struct command command_check = {
+    "check",
+    "check SCENARIO [--set PATH=VALUE]... [--json]",
+    "validate a scenario; print cases, cost and file size; touch nothing",
+    run_check,
+    "Reads the scenario, computes the controller designs, tries the initial states of the corners\n"
+    "of the sweep and of up to 4096 other cases, and runs a few cases for a moment to estimate "
+    "the\n"
+    "cost. It returns within seconds: of very many designs those of the corners and others, "
+    "evenly\n"
+    "spread, are computed for 1.5 s, and what is left unchecked is said (`run` computes all of\n"
+    "them). Each error is one line, FILE:LINE:COLUMN: message.\n"
+    "\n"
+    "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
+    "  --json             the same as JSON, with the keys\n"
+    "    scenario, title, scene    strings\n"
+    "    cases                     number of cases\n"
+    "    dimensions                list of {name, count}\n"
+    "    designs, designs_computed, designs_failed   distinct controller designs; those that\n"
+    "                              were computed; those of these that do not exist\n"
+    "    recorded_cases            cases whose trajectories would be recorded\n"
+    "    file, file_bytes          where the results would go, and their size\n"
+    "    ranks                     1\n"
+    "    seconds_on_one_rank       estimate; null when no case could be tried, or for too\n"
+    "                              short a time to tell\n"
+    "    seconds_is_upper_bound    whole cases took too long to try, or may be\n"
+    "                              captured: it is a bound\n"
+    "    capture_seconds_on_one_rank   estimate for the captured sets of stop.capture; 0: none,\n"
+    "                              null: too slow to tell\n"
+    "    refine                    null, or with sweep.refine {coarse_cases, probes (expected),\n"
+    "                              most_cases}: seconds_on_one_rank is then for all of them\n",
+};

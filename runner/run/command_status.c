@@ -1,0 +1,237 @@
+/* command_status.c - `stance status`: how far a run is, seen from another process. */
+#include "heartbeat.h"
+
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+#include "runner/base/units.h"
+#include "runner/store/store.h"
+
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+extern const struct command command_status; /* below */
+
+struct state {
+    struct store_counts counts;
+    struct heartbeat_note note;
+    bool refined; /* a map whose boundary is being sought: the cases left are not all simulated */
+    double rate, mean, left; /* cases/s of late, since the job's start, and s; negative: unknown */
+};
+
+static bool is_refined(const char *file)
+{
+    struct store_origin origin;
+    stance_message ignored;
+    struct scenario *s = calloc(1, sizeof *s);
+    FILE *nowhere = fopen("/dev/null", "w");
+    bool refined = false;
+
+    if (s && nowhere && store_read_origin(file, &origin, &ignored)) {
+        if (scenario_read(s, file, origin.scenario, NULL, 0, nowhere)) {
+            refined = s->refine.given;
+            scenario_free(s);
+        }
+        store_origin_free(&origin);
+    }
+    if (nowhere)
+        fclose(nowhere);
+    free(s);
+    return refined;
+}
+
+static uint64_t count_pending(const struct state *state)
+{
+    return state->counts.cases - state->counts.done - state->counts.failed;
+}
+
+static bool read_state(const char *file, struct state *state, stance_message *message)
+{
+    *state = (struct state){.rate = -1, .mean = -1, .left = -1};
+    heartbeat_read(file, &state->note);
+    const struct heartbeat_note *note = &state->note;
+    if (note->here && access(file, F_OK) != 0) {
+        snprintf(message->text, sizeof message->text, "%.150s: not there yet: a run is %s", file,
+                 note->exists ? note->doing : "starting");
+        return false;
+    }
+    if (!store_count(file, &state->counts, message) || !store_check(file, false, message))
+        return false;
+    state->refined = count_pending(state) > 0 && is_refined(file);
+    if (note->running && note->exists) {
+        state->rate = note->rate;
+        state->mean =
+            note->spent > 0 && note->computed > 0 ? (double)note->computed / note->spent : -1;
+        if (!state->refined && state->rate > 0)
+            state->left = (double)count_pending(state) / state->rate;
+    }
+    return true;
+}
+
+static json_t *number_or_null(double number)
+{
+    return number < 0 ? json_null() : json_real(number);
+}
+
+static void print_json(const char *file, const struct state *state)
+{
+    const struct store_counts *c = &state->counts;
+    const struct heartbeat_note *note = &state->note;
+    const bool known = note->exists && note->running;
+    json_t *root = json_pack(
+        "{s:s, s:I, s:I, s:I, s:o, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "file", file,
+        "cases", (json_int_t)c->cases, "done", (json_int_t)c->done, "failed", (json_int_t)c->failed,
+        "pending", state->refined ? json_null() : json_integer((json_int_t)count_pending(state)),
+        "running", note->running, "rate", number_or_null(state->rate), "mean_rate",
+        number_or_null(state->mean), "seconds_left", number_or_null(state->left), "ranks",
+        known ? json_integer(note->ranks) : json_null(), "ranks_alive",
+        known ? json_integer(note->alive) : json_null(), "host",
+        note->exists ? json_string(note->host) : json_null(), "doing",
+        known ? json_string(note->doing) : json_null(), "round",
+        known && note->round > 0 ? json_integer(note->round) : json_null(), "last_sign",
+        number_or_null(note->exists ? note->age : -1));
+    json_dumpf(root, stdout, JSON_INDENT(2));
+    putchar('\n');
+    json_decref(root);
+}
+
+static void print_running(const struct state *state)
+{
+    const struct heartbeat_note *note = &state->note;
+    char time[32];
+
+    fputs("running", stdout);
+    if (note->exists) {
+        printf(" on %d rank%s", note->ranks, note->ranks == 1 ? "" : "s");
+        if (!note->here)
+            printf(" of %s", note->host);
+        if (note->alive < note->ranks && note->age < HEARTBEAT_SILENCE) {
+            printf(", of which %d gave no sign of life for %g s", note->ranks - note->alive,
+                   HEARTBEAT_SILENCE);
+        } else if (note->age >= HEARTBEAT_SILENCE) {
+            text_of_seconds(time, sizeof time, note->age);
+            printf(", no sign of life for %s", time);
+        }
+        if (strcmp(note->doing, "computing") != 0)
+            printf(", %s", note->doing);
+    }
+    if (state->rate >= 0)
+        printf(", %.0f cases/s", state->rate);
+    if (state->left >= 0) {
+        text_of_seconds(time, sizeof time, state->left);
+        printf(", %s left", time);
+    }
+}
+
+static void print_text(const char *file, const struct state *state)
+{
+    const struct store_counts *c = &state->counts;
+    const struct heartbeat_note *note = &state->note;
+    const uint64_t pending = count_pending(state);
+    char time[32];
+
+    printf("%s: %" PRIu64 " of %" PRIu64 " cases done, %" PRIu64 " failed, ", file, c->done,
+           c->cases, c->failed);
+    if (state->refined)
+        fputs("others to be simulated or inferred as the map is refined; ", stdout);
+    else
+        printf("%" PRIu64 " pending; ", pending);
+    if (note->running) {
+        print_running(state);
+    } else if (pending == 0) {
+        fputs("complete", stdout);
+    } else {
+        fputs("not running", stdout);
+        if (note->exists) { /* it did not end by itself: it would have taken its note along */
+            text_of_seconds(time, sizeof time, note->age);
+            printf(" (the last sign of life was %s ago, on %s)", time, note->host);
+        }
+        fputs(" (stance run --resume goes on)", stdout);
+    }
+    putchar('\n');
+}
+
+struct request {
+    const char *file;
+    bool json, watch;
+};
+
+/* Beside the exit codes, for --watch; s. */
+enum { STILL_RUNNING = 100, WATCH_INTERVAL = 5 };
+
+static int say(void *context)
+{
+    const struct request *request = context;
+    struct state state;
+    stance_message message = {""};
+
+    store_prepare();
+    sandbox_limit(true);
+    bool good = read_state(request->file, &state, &message);
+    sandbox_limit(false);
+    if (!good) {
+        fprintf(stderr, "stance status: %s\n", message.text);
+        return EXIT_IO;
+    }
+    if (request->json)
+        print_json(request->file, &state);
+    else
+        print_text(request->file, &state);
+    return request->watch && state.note.running ? STILL_RUNNING : EXIT_DONE;
+}
+
+static int run_status(int argc, char **argv)
+{
+    const char *file;
+    size_t json = 0, watch = 0, operands;
+    bool help;
+    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
+                                        {"--watch", false, NULL, 0, &watch}};
+
+    if (!command_options(&command_status, argc, argv, specs, 2, &file, 1, &operands, &help))
+        return EXIT_USAGE;
+    if (help)
+        return EXIT_DONE;
+    if (operands != 1) {
+        fprintf(stderr, "stance status: a results file must be given (stance status -h "
+                        "explains)\n");
+        return EXIT_USAGE;
+    }
+    struct request request = {file, json > 0, watch > 0};
+    int code = sandbox(say, &request, file);
+    while (code == STILL_RUNNING) {
+        sleep(WATCH_INTERVAL);
+        code = sandbox(say, &request, file);
+    }
+    return code;
+}
+
+const struct command command_status = {
+    "status",
+    "status FILE [--json] [--watch]",
+    "how far a run is: done, failed, pending, rate, time left, ranks alive",
+    run_status,
+    "Reads the results file, which a run may be writing, and FILE.lock, where the run gives a "
+    "sign\n"
+    "of life every other second, from any machine that sees them. A run elsewhere counts as\n"
+    "running until it was silent for 30 s. The rate is that of the last minute.\n"
+    "\n"
+    "  --watch  again every 5 s, as long as the file is being written\n"
+    "  --json   the same as JSON, with the keys\n"
+    "    file                     as given\n"
+    "    cases, done, failed      numbers of cases\n"
+    "    pending                  the others; null where a map is refined and not complete, for\n"
+    "                             most of them will not be simulated\n"
+    "    running                  whether a run is writing the file now\n"
+    "    rate, mean_rate          cases per second, of late and since the run's start\n"
+    "    seconds_left             of the run; null while a map is refined\n"
+    "    ranks, ranks_alive       of the run; alive: heard of during the last 30 s\n"
+    "    host                     of its rank 0\n"
+    "    doing, round             what it is at; of a refined map, which round\n"
+    "    last_sign                seconds since its last sign of life\n"
+    "  What is unknown is null. A run that was killed leaves host and last_sign behind.\n",
+};

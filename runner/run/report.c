@@ -1,0 +1,246 @@
+/* report.c - cases, dimensions, designs, file size and cost of a plan. */
+#include "report.h"
+
+#include "runner/base/units.h"
+#include "runner/plan/refine.h"
+#include "runner/store/store.h"
+
+#include <inttypes.h>
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+
+struct estimate {
+    size_t designs_failed;
+    uint64_t size;
+    double seconds; /* on one rank; negative: no case can be tried, NAN: these take too long */
+    bool bound;
+    double capture;  /* s on one rank for the captured sets; 0: none is asked for, NAN: unknown */
+    uint64_t coarse; /* points of the coarse lattice; 0: the map is not refined */
+    double probes;   /* expected number beyond these */
+};
+
+static struct estimate estimate(const struct plan *plan, int ranks)
+{
+    struct estimate e = {.size = store_size(plan, ranks)};
+    for (size_t d = 0; d < plan->designs; d++)
+        e.designs_failed += plan->design_status[d] == STANCE_FAILED;
+    e.seconds = plan_cost(plan, PLAN_PATIENCE_COST, &e.bound);
+    e.seconds += e.seconds >= 0 ? plan->design_seconds : 0;
+    e.capture = plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
+    e.bound = e.bound || e.capture != 0; /* captured cases cost less */
+    if (plan->scenario->refine.given && !plan->single) {
+        const struct refine_map map = refine_map_of(plan->scenario);
+        e.coarse = refine_coarse(&map);
+        e.probes = map.probes * (double)(plan->rows - e.coarse);
+        e.bound = true;
+    }
+    return e;
+}
+
+/* "[0.1, 1.5] ... [2, 3] kg", "a, b, c": where a factor leads; the units are those of its first
+ * path. */
+static void factor_text(const struct scenario_axis *axis, const struct scenario_factor *f,
+                        char *text, size_t size)
+{
+    enum { SHOWN = 4 };
+    const struct scenario_axis listed = {.paths = f->paths,
+                                         .count = f->points,
+                                         .value = f->value,
+                                         .meaning = axis->meaning + f->first};
+    size_t used = 0;
+    for (size_t i = 0; i < f->points && used < size; i++) {
+        if (i == SHOWN) {
+            used += (size_t)snprintf(text + used, size - used, ", ... (%zu values)", f->points);
+            break;
+        }
+        used += (size_t)snprintf(text + used, size - used, "%s%s",
+                                 i == 0      ? ""
+                                 : f->listed ? ", "
+                                             : " ... ",
+                                 f->paths > 1 ? "[" : "");
+        for (int k = 0; k < f->paths && used < size; k++) {
+            char value[64];
+            scenario_axis_text(&listed, i, k, value, sizeof value);
+            used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", value);
+        }
+        if (used < size)
+            used += (size_t)snprintf(text + used, size - used, "%s", f->paths > 1 ? "]" : "");
+    }
+    if (used < size && f->paths == 1 && !listed.meaning[0].words &&
+        strcmp(listed.meaning[0].unit, "1") != 0)
+        used += (size_t)snprintf(text + used, size - used, " %s", listed.meaning[0].unit);
+    if (used < size && f->log)
+        snprintf(text + used, size - used, ", log");
+}
+
+static json_t *factor_json(const struct scenario_axis *axis, const struct scenario_factor *f)
+{
+    json_t *paths = json_array();
+    char text[400];
+    for (int k = 0; k < f->paths; k++)
+        json_array_append_new(paths, json_string(axis->path[f->first + k]));
+    factor_text(axis, f, text, sizeof text);
+    return json_pack("{s:o, s:s}", "paths", paths, "range", text);
+}
+
+static json_t *sample_json(const struct plan *plan)
+{
+    const struct scenario *s = plan->scenario;
+    const struct doe *design = &s->sample.design;
+    if (!s->sample.given || plan->single)
+        return json_null();
+    json_t *factors = json_array();
+    for (size_t j = 0; j < design->factors; j++)
+        json_array_append_new(factors, factor_json(&s->axis[s->axes - 1], &s->sample.factor[j]));
+    return json_pack("{s:s, s:I, s:I, s:I, s:o}", "method", doe_words[design->method], "count",
+                     (json_int_t)design->count, "block", (json_int_t)doe_block(design), "points",
+                     (json_int_t)doe_points(design), "factors", factors);
+}
+
+static void report_sample(const struct scenario *s, FILE *out)
+{
+    static const char *const blocks[] = {[DOE_SALTELLI] = "blocks", [DOE_MORRIS] = "trajectories"};
+    const struct doe *design = &s->sample.design;
+    const struct scenario_axis *axis = &s->axis[s->axes - 1];
+    const uint64_t block = doe_block(design);
+
+    fprintf(out, "  %-32s %8zu  points, %s: ", axis->name, axis->count, doe_words[design->method]);
+    if (block > 1) {
+        fprintf(out, "%" PRIu64 " %s of %" PRIu64 ", ", design->count, blocks[design->method],
+                block);
+    }
+    fprintf(out, "%zu factor%s\n", design->factors, design->factors == 1 ? "" : "s");
+    for (size_t j = 0; j < design->factors; j++) {
+        const struct scenario_factor *f = &s->sample.factor[j];
+        char text[400];
+        factor_text(axis, f, text, sizeof text);
+        fprintf(out, "    ");
+        int used = 0;
+        for (int k = 0; k < f->paths; k++)
+            used += fprintf(out, "%s%s", k ? ", " : "", axis->path[f->first + k]);
+        fprintf(out, "%*s  %s\n", used < 39 ? 39 - used : 0, "", text);
+    }
+}
+
+static void report_json(const struct plan *plan, const struct estimate *e, int ranks,
+                        const char *file, FILE *out)
+{
+    const struct scenario *s = plan->scenario;
+    json_t *dimensions = json_array();
+    for (int a = 0; !plan->single && a < s->axes; a++) {
+        json_array_append_new(dimensions, json_pack("{s:s, s:I}", "name", s->axis[a].name, "count",
+                                                    (json_int_t)s->axis[a].count));
+    }
+    if (plan->single || s->axes == 0)
+        json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
+    json_t *root = json_pack(
+        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:o, s:o, s:o}",
+        "scenario", s->file, "title", s->title, "scene", s->scene->name, "cases",
+        (json_int_t)plan->rows, "dimensions", dimensions, "designs", (json_int_t)plan->designs,
+        "designs_computed", (json_int_t)(plan->designs - plan->pending), "designs_failed",
+        (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
+        file, "file_bytes", (json_int_t)e->size, "ranks", ranks, "seconds_on_one_rank",
+        e->seconds >= 0 ? json_real(e->seconds) : json_null(), "seconds_is_upper_bound", e->bound,
+        "capture_seconds_on_one_rank", isnan(e->capture) ? json_null() : json_real(e->capture),
+        "refine",
+        e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
+                              (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
+                  : json_null(),
+        "sample", sample_json(plan));
+    json_dumpf(root, out, JSON_INDENT(2));
+    fputc('\n', out);
+    json_decref(root);
+}
+
+static void report_designs(const struct plan *plan, const struct estimate *e, FILE *out)
+{
+    const size_t computed = plan->designs - plan->pending;
+    fprintf(out, "designs     %zu distinct", plan->designs);
+    if (plan->pending == 0) {
+        if (e->designs_failed > 0)
+            fprintf(out, ", of which %zu do not exist: their cases will fail", e->designs_failed);
+        return;
+    }
+    fprintf(out, ", %zu of them computed: ", computed);
+    if (e->designs_failed == 0)
+        fputs("all exist", out);
+    else if (e->designs_failed == computed)
+        fputs("none exists", out);
+    else
+        fprintf(out, "%zu do not exist and their cases will fail", e->designs_failed);
+    fprintf(out, "\nunchecked   the other %zu and the initial states of their cases",
+            plan->pending);
+}
+
+static void report_text(const struct plan *plan, const struct estimate *e, int ranks,
+                        const char *file, FILE *out)
+{
+    const struct scenario *s = plan->scenario;
+    char text[40];
+
+    fprintf(out, "%s\nscene %s, %" PRIu64 " case%s", s->title[0] ? s->title : s->name,
+            s->scene->name, plan->rows, plan->rows == 1 ? "" : "s");
+    for (int a = 0; !plan->single && a < s->axes; a++)
+        fprintf(out, "%s%zu", a ? " x " : ": ", s->axis[a].count);
+    fputc('\n', out);
+    for (int a = 0; !plan->single && a < s->axes; a++) {
+        char first[64], last[64];
+        if (s->axis[a].sample) {
+            report_sample(s, out);
+            continue;
+        }
+        scenario_axis_text(&s->axis[a], 0, 0, first, sizeof first);
+        scenario_axis_text(&s->axis[a], s->axis[a].count - 1, 0, last, sizeof last);
+        fprintf(out, "  %-32s %8zu  %s ... %s %s\n", s->axis[a].name, s->axis[a].count, first, last,
+                s->axis[a].words ? "" : s->axis[a].unit);
+    }
+    report_designs(plan, e, out);
+    if (plan->record_cases > 0) {
+        fprintf(out, "\nrecorded    %" PRIu64 " trajectories of %" PRId64 " instants",
+                plan->record_cases, plan->record_rows);
+    }
+    if (e->coarse > 0) {
+        fprintf(out,
+                "\nrefine      %" PRIu64 " cases of a coarse lattice and about %.0f probes, then "
+                "those where outcomes differ: at most all",
+                e->coarse, e->probes);
+    }
+    text_of_bytes(text, sizeof text, (double)e->size);
+    fprintf(out, "\nfile        %s, about %s\n", file, text);
+    if (isnan(e->capture)) {
+        fprintf(out, "capture     unknown: nothing was learned of its sets in the time that this "
+                     "command takes\n");
+    } else if (e->capture > 0) {
+        text_of_seconds(text, sizeof text, e->capture / fmin(ranks, (double)plan->designs));
+        fprintf(out, "capture     about %s first, for %zu set%s of states that recover\n", text,
+                plan->designs, plan->designs == 1 ? "" : "s");
+    }
+    if (!(e->seconds >= 0)) {
+        fprintf(out, "cost        unknown: %s\n",
+                isnan(e->seconds) ? "the cases tried take too long to tell"
+                                  : "none of the cases tried can be computed");
+        return;
+    }
+    if (e->coarse > 0) {
+        const double share = ((double)e->coarse + e->probes) / (double)plan->rows;
+        char first[40];
+        text_of_seconds(first, sizeof first, share * e->seconds / ranks);
+        text_of_seconds(text, sizeof text, e->seconds / ranks);
+        fprintf(out, "cost        about %s for lattice and probes, %s for all, on %d rank%s\n",
+                first, text, ranks, ranks == 1 ? "" : "s");
+        return;
+    }
+    text_of_seconds(text, sizeof text, e->seconds / ranks);
+    fprintf(out, "cost        %s %s on %d rank%s\n", e->bound ? "at most about" : "about", text,
+            ranks, ranks == 1 ? "" : "s");
+}
+
+void report_plan(const struct plan *plan, int ranks, const char *file, bool json, FILE *out)
+{
+    struct estimate e = estimate(plan, ranks);
+    if (json)
+        report_json(plan, &e, ranks, file, out);
+    else
+        report_text(plan, &e, ranks, file, out);
+}

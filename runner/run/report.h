@@ -1,0 +1,12 @@
+/* report.h - what `check` and `run --dry-run` print about a plan. */
+#ifndef STANCE_RUN_REPORT_H
+#define STANCE_RUN_REPORT_H
+
+#include "runner/plan/plan.h"
+
+#include <stdio.h>
+
+/* Needs the designs. `file`: where the results would go. */
+void report_plan(const struct plan *plan, int ranks, const char *file, bool json, FILE *out);
+
+#endif

@@ -1,0 +1,691 @@
+/* run.c - `stance run`: from the scenario to the results, on one rank or many.
+ *
+ * The run is a list of stages. Every rank goes through each, then all agree on how it went: an
+ * error of any rank is printed once, and all leave together with its exit code.
+ */
+#include "run.h"
+#include "refinement_run.h"
+#include "report.h"
+
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+#include "runner/base/units.h"
+#include "runner/plan/instruction_set.h"
+#include "runner/ranks/crash.h"
+#include "runner/ranks/deadline.h"
+#include "runner/store/build_info.h"
+#include "runner/store/changed_scenario.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+void run_fail(struct run *run, int code, const char *text)
+{
+    run->failure.code = code;
+    snprintf(run->failure.text, sizeof run->failure.text, "%s", text);
+}
+
+void run_fail_io(struct run *run, const stance_message *message)
+{
+    snprintf(run->failure.text, sizeof run->failure.text, "stance run: %s", message->text);
+    run->failure.code = EXIT_IO;
+}
+
+/* An error of the scenario, with its place in the text. */
+static void fail_scenario(struct run *run, const struct plan_error *error)
+{
+    char place[40] = "";
+    if (error->line > 0)
+        snprintf(place, sizeof place, ":%d:%d", error->line, error->column);
+    snprintf(run->failure.text, sizeof run->failure.text, "%.300s%s: %s", run->scenario->file,
+             place, error->message.text);
+    run->failure.code = EXIT_USAGE;
+}
+
+/* ---- options ------------------------------------------------------------------------------ */
+
+static void stage_options(struct run *run)
+{
+    struct options *o = &run->options;
+    stance_message message;
+    bool good = false;
+
+    o->sets = malloc((size_t)run->argc * sizeof *o->sets);
+    if (!o->sets)
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
+    /* Rank 0 first: it says what is wrong, and the others need not. */
+    if (run->parallel.rank == 0 && o->sets)
+        good = run_read_options(o, run->argc, run->argv);
+    parallel_broadcast(&run->parallel, &good, sizeof good);
+    if (!good) {
+        run->failure.code = run->failure.code ? run->failure.code : EXIT_USAGE;
+        return;
+    }
+    bool help = o->help;
+    parallel_broadcast(&run->parallel, &help, sizeof help);
+    if (run->parallel.rank != 0 && !help && o->sets)
+        run_read_options(o, run->argc, run->argv);
+    o->help = help;
+    deadline_limit(o->time_limit - (clock_seconds() - run->start));
+    if (!help && !instruction_set_check(&message)) {
+        snprintf(run->failure.text, sizeof run->failure.text, "stance run: %s", message.text);
+        run->failure.code = EXIT_USAGE;
+    }
+}
+
+/* ---- the scenario ------------------------------------------------------------------------- */
+
+/* From the file, with what --set changes; --extend changes the count of a sample that there is. */
+static bool read_scenario(struct run *run)
+{
+    const struct options *o = &run->options;
+    struct scenario *s = run->scenario;
+    const size_t own = o->set_count - (o->extend_count > 0);
+
+    if (o->extend_count > 0) {
+        if (!scenario_read(s, o->scenario, NULL, o->sets, own, stderr))
+            return false;
+        const bool good = run_extend_check(run);
+        scenario_free(s);
+        if (!good)
+            return false;
+    }
+    return scenario_read(s, o->scenario, NULL, o->sets, o->set_count, stderr);
+}
+
+/* Rank 0 reads the file; the others read the text that it resolved to. */
+static void stage_scenario(struct run *run)
+{
+    struct options *o = &run->options;
+    uint64_t length = 0;
+    FILE *nowhere = fopen("/dev/null", "w");
+
+    run->scenario = calloc(1, sizeof *run->scenario);
+    if (run->parallel.rank == 0 && run->scenario) {
+        if (read_scenario(run)) {
+            length = strlen(run->scenario->text) + 1;
+        } else if (run->failure.code == EXIT_DONE) {
+            /* The reader has printed why. */
+            run->failure.code = access(o->scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
+        }
+    }
+    parallel_broadcast(&run->parallel, &length, sizeof length);
+    if (run->parallel.rank != 0 && length > 0) {
+        char *text = malloc(length);
+        if (!text)
+            abort(); /* the others wait in the broadcast: MPI ends the job */
+        parallel_broadcast(&run->parallel, text, length);
+        if (!run->scenario || !nowhere ||
+            !scenario_read(run->scenario, o->scenario, text, NULL, 0, nowhere)) {
+            free(run->scenario);
+            run->scenario = NULL;
+            run_fail(run, EXIT_IO, "stance run: a rank cannot read the scenario that rank 0 reads");
+        }
+        free(text);
+    } else if (length > 0) {
+        parallel_broadcast(&run->parallel, run->scenario->text, length);
+    } else {
+        free(run->scenario);
+        run->scenario = NULL;
+    }
+    if (nowhere)
+        fclose(nowhere);
+    if (run->scenario && o->single && o->single_case >= run->scenario->cases) {
+        snprintf(run->failure.text, sizeof run->failure.text,
+                 "stance run: --only %" PRIu64 ": the scenario's cases are 0 ... %" PRIu64,
+                 o->single_case, run->scenario->cases - 1);
+        run->failure.code = EXIT_USAGE;
+    }
+}
+
+/* ---- the file ----------------------------------------------------------------------------- */
+
+static void name_file(struct run *run)
+{
+    const struct options *o = &run->options;
+    if (o->output) {
+        if (snprintf(run->file, sizeof run->file, "%s", o->output) >= (int)sizeof run->file - 8)
+            run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
+    } else if (o->single) {
+        snprintf(run->file, sizeof run->file, "results/%s-case%" PRIu64 ".h5", run->scenario->name,
+                 o->single_case);
+    } else if (o->extend_count > 0) {
+        snprintf(run->file, sizeof run->file, "results/%s-%" PRIu64 ".h5", run->scenario->name,
+                 o->extend_count);
+    } else {
+        snprintf(run->file, sizeof run->file, "results/%s.h5", run->scenario->name);
+    }
+}
+
+/* Shows where they differ. */
+bool run_same_scenario(struct run *run, const char *file, const char *old)
+{
+    const char *new = run->scenario->text;
+    char *text = NULL; /* in one piece */
+    size_t size = 0;
+
+    if (strcmp(old, new) == 0 || (file == run->file && run->options.force_scenario)) {
+        run->succeed = strcmp(old, new) != 0;
+        return true;
+    }
+    const size_t lines = changed_scenario_count_differences(old, new);
+    FILE *to = open_memstream(&text, &size);
+    if (to) {
+        fprintf(to,
+                "stance run: %.200s was made from another scenario%s; %zu line%s of the resolved "
+                "text differ%s:\n",
+                file, file == run->file ? " (--force-scenario goes on with this one)" : "", lines,
+                lines == 1 ? "" : "s", lines == 1 ? "s" : "");
+        changed_scenario_print_difference(to, old, new);
+        if (fclose(to) == 0)
+            fputs(text, stderr);
+        free(text);
+    }
+    run->failure.code = EXIT_USAGE;
+    return false;
+}
+
+/* In a process of its own: see store_check. */
+static int check_file(void *file)
+{
+    stance_message message = {""};
+    sandbox_limit(true);
+    bool good = store_check(file, true, &message);
+    sandbox_limit(false);
+    if (!good)
+        fprintf(stderr, "stance run: %s\n", message.text);
+    return good ? EXIT_DONE : EXIT_IO;
+}
+
+int run_check_file(const char *file)
+{
+    return sandbox(check_file, (void *)(uintptr_t)file, file);
+}
+
+void run_warn_of_revision(const char *file, const char *revision)
+{
+    if (strcmp(revision, build_revision()) != 0) {
+        fprintf(stderr,
+                "stance run: warning: %s was begun by revision %s, this is %s: results may "
+                "differ\n",
+                file, revision, build_revision());
+    }
+}
+
+/* An existing file that is to be gone on with. */
+static void look_into_file(struct run *run)
+{
+    stance_message message = {""};
+
+    run->failure.code = run_check_file(run->file);
+    if (run->failure.code != EXIT_DONE)
+        return; /* it has been said why */
+    if (euidaccess(run->file, W_OK) != 0) {
+        snprintf(message.text, sizeof message.text, "%.150s: cannot write there: %s", run->file,
+                 strerror(errno));
+        run_fail_io(run, &message);
+        return;
+    }
+    if (!store_read_origin(run->file, &run->origin, &message)) {
+        run_fail_io(run, &message);
+        return;
+    }
+    if (!run_same_scenario(run, run->file, run->origin.scenario))
+        return;
+    if ((run->succeed &&
+         !changed_scenario_check_sweep(run->file, &run->origin, run->scenario, &message)) ||
+        !store_same_points(run->file, &run->origin, run->scenario, &message)) {
+        run_fail_io(run, &message);
+        run->failure.code = EXIT_USAGE;
+        return;
+    }
+    if (!run->succeed)
+        run_warn_of_revision(run->file, run->origin.revision);
+    for (int a = 0; a < run->scenario->axes; a++)
+        if (!store_read_axis(run->file, &run->scenario->axis[a], &message))
+            run_fail_io(run, &message);
+}
+
+/* Rank 0: where the results go, whether they may, and nobody else writes there. */
+static void claim_file(struct run *run)
+{
+    const struct options *o = &run->options;
+    stance_message message = {""};
+    struct stat information;
+    bool exists = lstat(run->file, &information) == 0;
+
+    if (exists && !o->force && !o->resume) {
+        snprintf(run->failure.text, sizeof run->failure.text,
+                 "stance run: %.400s exists; --force replaces it, --resume goes on with it",
+                 run->file);
+        run->failure.code = EXIT_IO;
+        return;
+    }
+    if (exists && !S_ISREG(information.st_mode) && !S_ISLNK(information.st_mode)) {
+        snprintf(message.text, sizeof message.text, "%.200s: not a regular file", run->file);
+        run_fail_io(run, &message);
+        return;
+    }
+    if (!o->output && mkdir("results", 0777) != 0 && errno != EEXIST) {
+        snprintf(message.text, sizeof message.text, "cannot make the directory results: %s",
+                 strerror(errno));
+        run_fail_io(run, &message);
+        return;
+    }
+    /* A link that is replaced is a file of its own; through others the file they name is written.
+     */
+    if (!(o->force ? lock_take : lock_take_through)(&run->lock, run->file, &message)) {
+        run_fail_io(run, &message);
+        return;
+    }
+    if (!heartbeat_begin(&run->heartbeat, &run->lock, &run->parallel, "starting")) {
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
+        return;
+    }
+    run->resume = exists && o->resume;
+    run->replace = exists && o->force;
+    if (run->resume)
+        look_into_file(run);
+    else if (o->extend_count > 0)
+        run_extend_open(run);
+}
+
+static void stage_claim(struct run *run)
+{
+    name_file(run);
+    if (run->parallel.rank == 0 && !run->options.dry_run && run->failure.code == EXIT_DONE)
+        claim_file(run);
+    parallel_broadcast(&run->parallel, &run->resume, sizeof run->resume);
+    parallel_broadcast(&run->parallel, &run->succeed, sizeof run->succeed);
+}
+
+/* ---- the plan ----------------------------------------------------------------------------- */
+
+/* Points of logarithmic axes and of samples come from libraries and may differ between machines:
+ * every rank takes those of rank 0, which has them from the file when the run is resumed. */
+static void share_axes(struct run *run)
+{
+    for (int a = 0; a < run->scenario->axes; a++) {
+        struct scenario_axis *axis = &run->scenario->axis[a];
+        if (axis->log || axis->sample) {
+            parallel_broadcast(&run->parallel, axis->value,
+                               axis->count * (size_t)axis->paths * sizeof *axis->value);
+        }
+    }
+}
+
+/* While designs and captured sets are computed: whether any rank is to stop. */
+static bool out_of_time(void *context)
+{
+    struct run *run = context;
+    stance_message message = {""};
+    const double now = clock_seconds();
+    bool stop = work_stop_asked() || now - run->start > run->options.time_limit;
+
+    if (run->parallel.rank == 0 && run->heartbeat.lock)
+        stop = !heartbeat_beat(&run->heartbeat, now, 0, 0, 0, &message) || stop;
+    if (stop || run->parallel.rank == 0 || now >= run->look_at) {
+        run->look_at = now + schedule_look_interval(run->parallel.size);
+        stop = parallel_add(&run->parallel, COUNTER_STOP, stop) != 0 || stop;
+        parallel_beat(&run->parallel, ++run->work.beats);
+    }
+    if (message.text[0])
+        run_fail_io(run, &message);
+    return stop;
+}
+
+static void stage_plan(struct run *run)
+{
+    struct plan_error error = {0};
+    const struct options *o = &run->options;
+
+    share_axes(run);
+    if (!parallel_share(&run->parallel))
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
+    else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error))
+        fail_scenario(run, &error);
+    run->plan.ancestors = run->origin.ancestors;
+    parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
+    run->plan.stop = out_of_time;
+    run->plan.stop_context = run;
+}
+
+/* A stop before there is a file. */
+static void stop_early(struct run *run, const char *what)
+{
+    if (run->failure.code == EXIT_DONE) {
+        run->failure.code = EXIT_INTERRUPTED;
+        run_say_stopped(run, what);
+    }
+}
+
+/* Those that --extend has from the old file; every rank is told which and what they are. */
+static bool take_designs(struct run *run)
+{
+    struct plan *plan = &run->plan;
+    stance_message message = {""};
+    bool good = true;
+
+    if (run->options.extend_count == 0 || run->options.dry_run)
+        return true;
+    if (run->extension)
+        good = run_extend_designs(run, &message);
+    parallel_broadcast(&run->parallel, &good, sizeof good);
+    if (!good && run->parallel.rank == 0)
+        run_fail_io(run, &message);
+    parallel_broadcast(&run->parallel, plan->design, plan->designs * sizeof *plan->design);
+    parallel_broadcast(&run->parallel, plan->design_status, plan->designs);
+    return good;
+}
+
+static void stage_designs(struct run *run)
+{
+    struct plan_error error = {0};
+    bool good = true;
+
+    if (run->resume)
+        return; /* they are in the file */
+    if (!take_designs(run))
+        return;
+    run->plan.patience = run->options.dry_run ? PLAN_PATIENCE_DESIGNS : 0;
+    good = plan_compute_designs(&run->plan, &run->parallel, &error);
+    if (!good && !error.message.text[0]) {
+        stop_early(run, "stopped while designs were computed: nothing is stored");
+        return;
+    }
+    if (good && run->parallel.rank == 0)
+        good = plan_check_cases(&run->plan, &error);
+    if (!good)
+        fail_scenario(run, &error);
+    else if (run->options.dry_run && run->parallel.rank == 0)
+        report_plan(&run->plan, run->parallel.size, run->file, false, stdout);
+}
+
+/* Sets in which cases are captured, where the scenario asks for them. */
+static void stage_captures(struct run *run)
+{
+    stance_message message = {""};
+
+    if (run->resume ||
+        plan_estimate_captures(&run->plan, &run->parallel, out_of_time, run, &message))
+        return;
+    if (message.text[0])
+        run_fail_io(run, &message);
+    else
+        stop_early(run, "stopped while captured sets were estimated: nothing is stored");
+}
+
+/* ---- computing ---------------------------------------------------------------------------- */
+
+/* Names of the ranks' machines, each once, separated by commas; on rank 0. */
+static char *collect_hosts(const struct parallel *parallel)
+{
+    enum { NAME = 64 };
+    char name[NAME];
+    size_t ranks = (size_t)parallel->size, used = 0;
+    char *all = parallel->rank == 0 ? calloc(ranks, NAME) : NULL;
+    char *list = parallel->rank == 0 ? calloc(ranks, NAME + 1) : NULL;
+
+    if (parallel->rank == 0 && (!all || !list))
+        abort(); /* the others wait in the gather: MPI ends the job */
+    parallel_host(name, sizeof name);
+    parallel_gather(parallel, name, NAME, all);
+    for (size_t r = 0; all && r < ranks; r++) {
+        bool known = false;
+        for (size_t q = 0; q < r && !known; q++)
+            known = strcmp(all + q * NAME, all + r * NAME) == 0;
+        if (!known)
+            used += (size_t)sprintf(list + used, "%s%s", used ? "," : "", all + r * NAME);
+    }
+    free(all);
+    return list;
+}
+
+/* The file goes on with a scenario that is not its own. */
+static void succeed(struct run *run, const char *hosts)
+{
+    struct changed_scenario_counts counts;
+    stance_message message = {""};
+
+    if (changed_scenario_make(run->file, &run->origin, &run->plan, run->parallel.size, hosts,
+                              &counts, &message)) {
+        fprintf(stderr,
+                "stance run: %.200s goes on with another scenario; %" PRIu64 " of its %" PRIu64
+                " cases are done and stay as they are",
+                run->file, counts.kept, run->plan.rows);
+        if (counts.damaged > 0)
+            fprintf(stderr, ", %" PRIu64 " did not verify", counts.damaged);
+        fputc('\n', stderr);
+    } else if (message.text[0]) {
+        run_fail_io(run, &message);
+        run->failure.code = counts.refused ? EXIT_USAGE : EXIT_IO;
+    } else {
+        stop_early(run, "stopped before the file could go on with another scenario");
+    }
+}
+
+static void stage_create(struct run *run)
+{
+    stance_message message = {""};
+    if (run->resume && !run->succeed)
+        return;
+    char *hosts = collect_hosts(&run->parallel);
+    if (run->parallel.rank == 0 && run->succeed) {
+        succeed(run, hosts);
+    } else if (run->parallel.rank == 0) {
+        if (run->replace && unlink(run->file) != 0) {
+            snprintf(message.text, sizeof message.text, "cannot replace %.150s: %s", run->file,
+                     strerror(errno));
+            run_fail_io(run, &message);
+        } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &message)) {
+            run_fail_io(run, &message);
+        }
+    }
+    free(hosts);
+    parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
+}
+
+static void stage_open(struct run *run)
+{
+    stance_message message = {""};
+    if (run->parallel.rank == 0)
+        heartbeat_guard(&run->heartbeat, run->file);
+    if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &message) ||
+        !store_read_designs(run->store, &run->plan, &message))
+        run_fail_io(run, &message);
+}
+
+/* Rows of the old file. */
+static void stage_extend(struct run *run)
+{
+    stance_message message = {""};
+    if (run->extension && !run_extend_copy(run, &message))
+        run_fail_io(run, &message);
+    run_extend_close(run);
+}
+
+static void stage_compute(struct run *run)
+{
+    stance_message message = {""};
+    run->work = (struct work){
+        .plan = &run->plan,
+        .parallel = &run->parallel,
+        .heartbeat = run->parallel.rank == 0 ? &run->heartbeat : NULL,
+        .beats = run->work.beats,
+        .store = run->store,
+        .resume = run->resume || run->options.extend_count > 0,
+        .quiet = run->options.quiet,
+        .start = run->start,
+        .time_limit = run->options.time_limit,
+    };
+    const bool refined = run->scenario->refine.given && !run->plan.single;
+    if (refined ? !refinement_run(&run->work, &message)
+                : !work_run(&run->work, NULL, NULL, &message))
+        run_fail_io(run, &message);
+}
+
+/* Rank 0 stores how long each rank computed. */
+static void stage_timing(struct run *run)
+{
+    stance_message message = {""};
+    size_t ranks = (size_t)run->parallel.size;
+    int64_t computed = (int64_t)run->work.computed;
+    double *seconds = run->parallel.rank == 0 ? malloc(ranks * sizeof *seconds) : NULL;
+    int64_t *cases = run->parallel.rank == 0 ? malloc(ranks * sizeof *cases) : NULL;
+
+    if (run->parallel.rank == 0 && (!seconds || !cases))
+        abort(); /* the others wait in the gather: MPI ends the job */
+    parallel_gather(&run->parallel, &run->work.seconds, sizeof *seconds, seconds);
+    parallel_gather(&run->parallel, &computed, sizeof computed, cases);
+    if (run->parallel.rank == 0 &&
+        !store_add_timing(run->store, run->parallel.size, seconds, cases, &message))
+        run_fail_io(run, &message);
+    free(seconds);
+    free(cases);
+}
+
+static void stage_close(struct run *run)
+{
+    stance_message message = {""};
+    struct store *store = run->store;
+
+    run->store = NULL;
+    if (!store_close(store, &message)) {
+        run_fail_io(run, &message);
+    } else if (run->parallel.rank == 0) {
+        int descriptor = open(run->file, O_RDWR | O_CLOEXEC);
+        if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0) {
+            snprintf(message.text, sizeof message.text, "%.150s: cannot bring it to the disk: %s",
+                     run->file, strerror(errno));
+            run_fail_io(run, &message);
+        }
+    }
+}
+
+/* ---- the whole ----------------------------------------------------------------------------- */
+
+/* Goes through the stages; stops where one failed on any rank. */
+static int go_through(struct run *run)
+{
+    static const struct {
+        void (*go)(struct run *);
+        const char *doing;
+    } stage[] = {
+        {stage_options, "reading its options"},
+        {stage_scenario, "reading the scenario"},
+        {stage_claim, "looking into the results file"},
+        {stage_plan, "making the plan"},
+        {stage_designs, "computing designs"},
+        {stage_captures, "estimating captured sets"},
+        {stage_create, "creating the results file"},
+        {stage_open, "opening the results file"},
+        {stage_extend, "copying the results of the old file"},
+        {stage_compute, "computing"},
+        {stage_timing, "storing times"},
+        {stage_close, "closing the results file"},
+    };
+    for (size_t i = 0; i < sizeof stage / sizeof stage[0]; i++) {
+        crash_stage(stage[i].doing);
+        run->heartbeat.doing = stage[i].doing;
+        run->heartbeat.due = 0;
+        stage[i].go(run);
+        if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
+                            sizeof run->failure)) {
+            if (run->parallel.rank == 0 && run->failure.text[0])
+                fprintf(stderr, "%s\n", run->failure.text);
+            return run->failure.code;
+        }
+        if (stage[i].go == stage_options && run->options.help)
+            return EXIT_DONE;
+        if (stage[i].go == stage_designs && run->options.dry_run)
+            return EXIT_DONE;
+    }
+    return run_conclude(run);
+}
+
+static int run_run(int argc, char **argv)
+{
+    struct run *run = calloc(1, sizeof *run);
+    if (!run) {
+        fprintf(stderr, "stance run: not enough memory\n");
+        return EXIT_IO;
+    }
+    bool first;
+    if (parallel_misses_launcher(&first)) {
+        if (first) {
+            fprintf(stderr, "stance run: srun started several of these without an MPI that joins "
+                            "them: use mpirun, or srun --mpi=pmix\n");
+        }
+        free(run);
+        return EXIT_USAGE;
+    }
+    store_prepare();
+    run->argc = argc;
+    run->argv = argv;
+    run->start = clock_seconds();
+    run->lock.descriptor = -1;
+    run->parallel = parallel_start();
+    if (run->parallel.size > 1)
+        deadline_prepare(run->parallel.rank);
+    crash_watch(run->parallel.rank);
+    work_catch_signals();
+    int code = go_through(run);
+    store_abandon(run->store);
+    plan_free(&run->plan);
+    store_origin_free(&run->origin);
+    if (run->scenario)
+        scenario_free(run->scenario);
+    run_extend_close(run);
+    lock_release(&run->lock);
+    heartbeat_end(&run->heartbeat);
+    parallel_finish(&run->parallel);
+    free(run->options.sets);
+    free(run->scenario);
+    free(run);
+    return code;
+}
+
+const struct command command_run = {
+    "run",
+    "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume [--force-scenario]]\n"
+    "           [--extend COUNT [--from FILE]]\n"
+    "           [--time-limit TIME] [--only CASE [--trace]] [--dry-run] [--quiet]",
+    "compute every case of a scenario; alone or under mpirun -n N",
+    run_run,
+    "  -o FILE            results file; default results/<scenario name>.h5 (one case: with\n"
+    "                     -case<N>). An existing file is left alone and the exit code is 3\n"
+    "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
+    "  --force            replace the file of that name, whatever it holds; of a symbolic link\n"
+    "                     the link, not the file that it names\n"
+    "  --resume           go on with an existing file of the same scenario: cases that it holds\n"
+    "                     whole, as their checksums say, are kept. Begins when there is no file\n"
+    "  --force-scenario   ... of another scenario: what is done stays, what is pending is "
+    "computed\n"
+    "                     as this one says. The file keeps both texts and which case is whose\n"
+    "                     (group history, variable scenario_number). The sweep, the answers, the\n"
+    "                     records and the designs must be the same\n"
+    "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
+    "  --only CASE        compute one case of the sweep, by its flat index, to a file of its own\n"
+    "  --trace            ... and record its trajectory, each 0.01 s unless record.every says\n"
+    "  --extend COUNT     a new file with sweep.sample.count COUNT, by default\n"
+    "                     results/<scenario name>-COUNT.h5, which takes over what a file of the\n"
+    "                     same scenario with fewer points holds, and computes the rest. That file\n"
+    "                     need not be complete and stays as it is. Not for method lhs\n"
+    "  --from FILE        ... that file; default results/<scenario name>.h5\n"
+    "  --dry-run          plan and estimate as `check` does, within seconds; write nothing\n"
+    "  --quiet            neither progress nor summary\n"
+    "\n"
+    "SIGINT, SIGTERM and SIGUSR1 to any rank stop the job at once: cases in hand are given up,\n"
+    "what has ended is written, and the command that goes on is printed; mpirun forwards SIGUSR1\n"
+    "but kills its ranks a second after SIGINT or SIGTERM, and returns 1 then. Cases that do not\n"
+    "verify when a run is resumed are computed again and named. Exit\n"
+    "codes: 0 done, 1 some cases failed, 2 bad use or scenario, 3 input or output, 4 stopped and\n"
+    "resumable.\n",
+};

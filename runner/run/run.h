@@ -1,0 +1,77 @@
+/* run.h - what the parts of `stance run` share: run.c (the stages), run_options.c, run_extend.c
+ * (rows of a smaller design) and run_end.c (what is said at the end). */
+#ifndef STANCE_RUN_RUN_H
+#define STANCE_RUN_RUN_H
+
+#include "work.h"
+
+#include "runner/base/command.h"
+#include "runner/base/units.h"
+#include "runner/store/lock.h"
+
+struct options {
+    const char *scenario, *output; /* output NULL: the default */
+    const char **sets;
+    size_t set_count;
+    bool force, force_scenario, resume, single, trace, dry_run, quiet, help;
+    uint64_t single_case;
+    double time_limit;     /* s, INFINITY: none */
+    uint64_t extend_count; /* --extend; 0: not given */
+    char extend_set[64];   /* the same as the --set that it stands for */
+    const char *from;      /* NULL: the default */
+};
+
+struct failure {
+    int code;       /* EXIT_DONE: none */
+    char text[600]; /* one line; empty when it has been printed already */
+};
+
+struct run {
+    int argc;
+    char **argv;
+    struct parallel parallel;
+    struct options options;
+    struct scenario *scenario;
+    char file[1024];
+    bool resume, replace;       /* the file exists and is gone on with, or replaced */
+    bool succeed;               /* ... gone on with by this scenario, which is not its own */
+    struct store_origin origin; /* of a file that is gone on with; on rank 0 */
+    struct lock lock;
+    struct extension *extension; /* --extend, on rank 0 until its rows have been copied */
+    struct heartbeat heartbeat;  /* on rank 0, once the lock is taken */
+    struct plan plan;
+    struct store *store;
+    struct work work;
+    struct failure failure; /* of this rank */
+    double start, look_at;  /* of clock_seconds(): the beginning, the next look at the counters */
+};
+
+/* run_options.c. Prints what is wrong with them on standard error; false then. */
+bool run_read_options(struct options *o, int argc, char **argv);
+
+/* What ends the run, in a line. */
+void run_fail(struct run *run, int code, const char *text);
+void run_fail_io(struct run *run, const stance_message *message);
+/* Whether a file, whose scenario's text is given, is of this scenario; fails where not. */
+bool run_same_scenario(struct run *run, const char *file, const char *text);
+/* Exit code of a look into a results file, in a process of its own; says what is wrong. */
+int run_check_file(const char *file);
+void run_warn_of_revision(const char *file, const char *revision);
+
+/* run_extend.c. Whether the scenario can be extended; fails where not. */
+bool run_extend_check(struct run *run);
+/* On rank 0: locks the old file and takes over its axes; fails where that cannot be. */
+void run_extend_open(struct run *run);
+/* Its designs into those of the plan; its rows into the open file. false: *message says why. */
+bool run_extend_designs(struct run *run, stance_message *message);
+bool run_extend_copy(struct run *run, stance_message *message);
+void run_extend_close(struct run *run);
+
+/* On rank 0: that the run stopped, and the command that goes on with it. */
+void run_say_stopped(const struct run *run, const char *what);
+/* Collective: adds up over the ranks, says what came out, and returns the exit code. */
+int run_conclude(struct run *run);
+
+extern const struct command command_run;
+
+#endif

@@ -1,0 +1,142 @@
+/* run_end.c - what `stance run` says at its end: what came out, what was damaged, how to go on. */
+#include "run.h"
+
+#include "runner/base/command.h"
+#include "runner/base/units.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void print_word(FILE *to, const char *word)
+{
+    if (word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                          "_-+./,:=@%")] == '\0' &&
+        word[0]) {
+        fprintf(to, " %s", word);
+        return;
+    }
+    fputs(" '", to);
+    for (; *word; word++)
+        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, to);
+    fputc('\'', to);
+}
+
+void run_say_stopped(const struct run *run, const char *what)
+{
+    char *line = NULL; /* in one piece: a launcher mixes what ranks write in pieces */
+    size_t size = 0;
+    FILE *to = run->parallel.rank == 0 ? open_memstream(&line, &size) : NULL;
+    if (!to)
+        return;
+    fprintf(to, "stance run: %s; go on with:", what);
+    if (run->parallel.size > 1)
+        fprintf(to, " mpirun -n %d", run->parallel.size);
+    print_word(to, program_invocation_name);
+    fputs(" run", to);
+    for (int i = 1; i < run->argc; i++)
+        if (strcmp(run->argv[i], "--force") != 0 && strcmp(run->argv[i], "--resume") != 0)
+            print_word(to, run->argv[i]);
+    fputs(run->options.single ? " --force\n" : " --resume\n", to);
+    if (fclose(to) == 0)
+        fputs(line, stderr);
+    free(line);
+}
+
+/* What came out, over all ranks. */
+struct sums {
+    uint64_t outcome[STANCE_OUTCOME_COUNT], failed, finished, computed, inferred, damaged;
+};
+
+static void print_summary(const struct run *run, const struct sums *sums)
+{
+    double wall = clock_seconds() - run->start;
+    const char *separator = ": ";
+
+    printf("%s: %" PRIu64 " case%s", run->file, sums->finished, sums->finished == 1 ? "" : "s");
+    for (int i = 0; i < STANCE_OUTCOME_COUNT; i++) {
+        if (sums->outcome[i] > 0) {
+            printf("%s%" PRIu64 " %s", separator, sums->outcome[i],
+                   i == STANCE_NONE ? "without outcome" : stance_outcome_name[i]);
+            separator = ", ";
+        }
+    }
+    if (sums->failed > 0)
+        printf("%s%" PRIu64 " failed", separator, sums->failed);
+    if (sums->inferred > 0)
+        printf("; %" PRIu64 " of them inferred", sums->inferred);
+    if (sums->computed + sums->inferred < sums->finished)
+        printf("; %" PRIu64 " of them computed now", sums->computed);
+    printf("; %.1f s on %d rank%s\n", wall, run->parallel.size, run->parallel.size == 1 ? "" : "s");
+    fflush(stdout);
+}
+
+static int by_number(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Collective: how many cases did not verify, and the first of them. */
+static void say_damaged(const struct run *run, uint64_t damaged)
+{
+    uint64_t mine[WORK_NAMED];
+    const size_t ranks = (size_t)run->parallel.size;
+    uint64_t *all = run->parallel.rank == 0 ? malloc(ranks * sizeof mine) : NULL;
+
+    if (run->parallel.rank == 0 && !all)
+        abort(); /* the others wait in the gather: MPI ends the job */
+    for (uint64_t k = 0; k < WORK_NAMED; k++)
+        mine[k] = k < run->work.damaged ? run->work.damaged_case[k] : UINT64_MAX;
+    parallel_gather(&run->parallel, mine, sizeof mine, all);
+    if (all) {
+        const uint64_t named = damaged < WORK_NAMED ? damaged : WORK_NAMED;
+        char list[WORK_NAMED * 24] = "";
+        size_t used = 0;
+        qsort(all, ranks * WORK_NAMED, sizeof *all, by_number);
+        for (uint64_t k = 0; k < named; k++) {
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%" PRIu64, k ? ", " : "",
+                                     all[k]);
+        }
+        fprintf(stderr,
+                "stance run: warning: %.200s: %" PRIu64 " case%s marked done did not verify and "
+                "%s computed again: %s%s\n",
+                run->file, damaged, damaged == 1 ? "" : "s", damaged == 1 ? "is" : "are", list,
+                named < damaged ? ", ..." : "");
+    }
+    free(all);
+}
+
+int run_conclude(struct run *run)
+{
+    const struct work *work = &run->work;
+    char stopped[80];
+    struct sums sums = {.failed = work->failed,
+                        .finished = work->finished,
+                        .computed = work->computed,
+                        .inferred = work->inferred,
+                        .damaged = work->damaged};
+    memcpy(sums.outcome, work->outcome, sizeof sums.outcome);
+    parallel_sum(&run->parallel, (uint64_t *)&sums, sizeof sums / sizeof(uint64_t));
+    bool complete = sums.finished == run->plan.rows;
+
+    if (sums.damaged > 0)
+        say_damaged(run, sums.damaged);
+    if (run->parallel.rank == 0) {
+        if (!run->options.quiet)
+            print_summary(run, &sums);
+        if (!complete) {
+            snprintf(stopped, sizeof stopped, "stopped at %" PRIu64 " of %" PRIu64 " cases",
+                     sums.finished, run->plan.rows);
+            run_say_stopped(run, stopped);
+        } else if (sums.failed > 0) {
+            fprintf(stderr,
+                    "stance run: %" PRIu64
+                    " case%s failed; the variable `failure` in %s says why\n",
+                    sums.failed, sums.failed == 1 ? "" : "s", run->file);
+        }
+    }
+    return !complete ? EXIT_INTERRUPTED : sums.failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
+}

@@ -1,0 +1,275 @@
+/* run_extend.c - `stance run --extend`: a larger design from a smaller one, whose rows are taken
+ * over.
+ *
+ * Points of a design do not depend on their number and random numbers are keyed by place on the
+ * grid and point, so that a case of the old file is the case of the new file with the same point,
+ * to the bit. What libraries computed, and may give differently on another machine, goes with the
+ * rows: values of axes and of the old points, and the designs that the old cases have used.
+ *
+ * All of it on rank 0, which tells the others by the usual ways.
+ */
+#include "run.h"
+
+#include "runner/base/command.h"
+#include "runner/store/build_info.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+struct extension {
+    char file[1024]; /* the old one */
+    struct lock lock;
+    struct scenario *scenario;
+    struct plan plan;
+    uint64_t old_points, points; /* of the sample */
+};
+
+bool run_extend_check(struct run *run)
+{
+    const struct scenario *s = run->scenario;
+    if (s->sample.given && s->sample.design.method != DOE_LHS)
+        return true;
+    snprintf(run->failure.text, sizeof run->failure.text, "stance run: %.300s: --extend: %s",
+             s->file,
+             s->sample.given ? "points of method lhs depend on their number: begin a new file"
+                             : "the scenario has no sweep.sample");
+    run->failure.code = EXIT_USAGE;
+    return false;
+}
+
+/* ---- the old file --------------------------------------------------------------------------- */
+
+static bool is_same_file(const char *a, const char *b)
+{
+    struct stat first, second;
+    return strcmp(a, b) == 0 || (stat(a, &first) == 0 && stat(b, &second) == 0 &&
+                                 first.st_dev == second.st_dev && first.st_ino == second.st_ino);
+}
+
+/* Nobody writes the file meanwhile: by a lock, or because nobody here could. */
+static bool lock_old(struct extension *e, stance_message *message)
+{
+    char directory[sizeof e->file];
+    snprintf(directory, sizeof directory, "%s", e->file);
+    char *slash = strrchr(directory, '/');
+    if (!slash)
+        snprintf(directory, sizeof directory, ".");
+    else
+        slash[slash == directory] = '\0';
+    return access(directory, W_OK) != 0 || lock_take_through(&e->lock, e->file, message);
+}
+
+/* The scenario of the old file, as it is and with the new count. */
+static bool read_old_scenario(struct run *run, struct extension *e, const char *text)
+{
+    const char *set = run->options.extend_set;
+    struct scenario *larger = calloc(1, sizeof *larger);
+    FILE *nowhere = fopen("/dev/null", "w");
+    bool good = false;
+
+    e->scenario = calloc(1, sizeof *e->scenario);
+    if (!larger || !e->scenario || !nowhere) {
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
+    } else if (!scenario_read(larger, run->scenario->file, text, &set, 1, nowhere)) {
+        /* Most likely another scenario, or one of another version. */
+        run_same_scenario(run, e->file, text);
+    } else {
+        good = run_same_scenario(run, e->file, larger->text);
+        good = good && scenario_read(e->scenario, run->scenario->file, text, NULL, 0, nowhere);
+        scenario_free(larger);
+    }
+    if (!good) {
+        free(e->scenario);
+        e->scenario = NULL;
+    }
+    free(larger);
+    if (nowhere)
+        fclose(nowhere);
+    return good;
+}
+
+/* Values of the old file's axes into the new scenario, point by point of the sample. */
+static bool take_axes(struct run *run, struct extension *e, stance_message *message)
+{
+    for (int a = 0; a < e->scenario->axes; a++) {
+        struct scenario_axis *old = &e->scenario->axis[a], *new = &run->scenario->axis[a];
+        if (!store_read_axis(e->file, old, message))
+            return false;
+        if (old->value)
+            memcpy(new->value, old->value, old->count * (size_t)old->paths * sizeof *old->value);
+    }
+    return true;
+}
+
+static bool check_count(struct run *run, const struct extension *e)
+{
+    const uint64_t count = e->scenario->sample.design.count;
+    if (count < run->options.extend_count)
+        return true;
+    snprintf(run->failure.text, sizeof run->failure.text,
+             "stance run: --extend %" PRIu64 ": %.300s has sweep.sample.count %" PRIu64 " already",
+             run->options.extend_count, e->file, count);
+    run->failure.code = EXIT_USAGE;
+    return false;
+}
+
+/* Cases of other scenarios (--force-scenario) are none of the new file's. */
+static bool check_ancestors(struct run *run, const struct extension *e,
+                            const struct store_origin *origin)
+{
+    if (origin->ancestors == 0)
+        return true;
+    snprintf(run->failure.text, sizeof run->failure.text,
+             "stance run: --extend: %.300s holds cases of several scenarios: begin a new file",
+             e->file);
+    run->failure.code = EXIT_USAGE;
+    return false;
+}
+
+static bool look_into_old(struct run *run, struct extension *e)
+{
+    struct store_origin origin;
+    stance_message message = {""};
+
+    if (!lock_old(e, &message)) {
+        run_fail_io(run, &message);
+        return false;
+    }
+    run->failure.code = run_check_file(e->file);
+    if (run->failure.code != EXIT_DONE)
+        return false; /* it has been said why */
+    if (!store_read_origin(e->file, &origin, &message)) {
+        run_fail_io(run, &message);
+        return false;
+    }
+    bool good = read_old_scenario(run, e, origin.scenario) && check_count(run, e) &&
+                check_ancestors(run, e, &origin);
+    if (good)
+        run_warn_of_revision(e->file, origin.revision);
+    if (good && !store_same_points(e->file, &origin, run->scenario, &message)) {
+        run_fail_io(run, &message);
+        run->failure.code = EXIT_USAGE;
+        good = false;
+    }
+    if (good && !take_axes(run, e, &message)) {
+        run_fail_io(run, &message);
+        good = false;
+    }
+    store_origin_free(&origin);
+    return good;
+}
+
+void run_extend_open(struct run *run)
+{
+    const struct options *o = &run->options;
+    struct extension *e = run->extension = calloc(1, sizeof *e);
+
+    if (!e) {
+        run_fail(run, EXIT_IO, "stance run: not enough memory");
+        return;
+    }
+    e->lock.descriptor = -1;
+    if (o->from)
+        snprintf(e->file, sizeof e->file, "%s", o->from);
+    else
+        snprintf(e->file, sizeof e->file, "results/%s.h5", run->scenario->name);
+    if (o->from && strlen(o->from) >= sizeof e->file - 8) {
+        run_fail(run, EXIT_IO, "stance run: the name of the results file is too long");
+    } else if (is_same_file(e->file, run->file)) {
+        run_fail(run, EXIT_USAGE,
+                 "stance run: --extend makes a new file: -o and --from must differ");
+    } else if (look_into_old(run, e)) {
+        e->old_points = doe_points(&e->scenario->sample.design);
+        e->points = doe_points(&run->scenario->sample.design);
+    }
+}
+
+void run_extend_close(struct run *run)
+{
+    struct extension *e = run->extension;
+    if (e) {
+        plan_free(&e->plan);
+        if (e->scenario)
+            scenario_free(e->scenario);
+        free(e->scenario);
+        lock_release(&e->lock);
+        free(e);
+    }
+    run->extension = NULL;
+}
+
+/* ---- what it holds --------------------------------------------------------------------------- */
+
+/* Where a case or a design of the old file is in the new one. */
+static uint64_t moved(const struct extension *e, uint64_t place)
+{
+    return place / e->old_points * e->points + place % e->old_points;
+}
+
+bool run_extend_designs(struct run *run, stance_message *message)
+{
+    struct extension *e = run->extension;
+    struct plan *new = &run->plan;
+    struct plan_error error = {0};
+    struct store *store = NULL;
+    const bool sampled = e->scenario->axis[e->scenario->axes - 1].design;
+
+    if (!plan_make(&e->plan, e->scenario, false, 0, false, &error)) {
+        *message = error.message;
+        return false;
+    }
+    bool good = store_open_to_read(&store, e->file, &e->plan, message) &&
+                store_read_designs(store, &e->plan, message);
+    for (size_t d = 0; good && d < e->plan.designs; d++) {
+        const size_t to = sampled ? (size_t)moved(e, d) : d;
+        new->design[to] = e->plan.design[d];
+        new->design_status[to] = e->plan.design_status[d];
+    }
+    stance_message ignored;
+    return store && store_close(store, good ? message : &ignored) && good;
+}
+
+/* Whether a row can be taken over with all that the new file has of it. */
+static bool is_whole(const struct extension *e, const struct plan *new, uint64_t row, uint64_t to)
+{
+    uint64_t place;
+    return !plan_recorded(new, to, &place) ||
+           (plan_recorded(&e->plan, row, &place) && e->plan.record_rows == new->record_rows);
+}
+
+bool run_extend_copy(struct run *run, stance_message *message)
+{
+    struct extension *e = run->extension;
+    struct plan *plan = &run->plan;
+    struct store_copied copied = {0};
+    struct store *old = NULL;
+    uint64_t row[STORE_ROWS], target[STORE_ROWS];
+
+    bool good = store_open_to_read(&old, e->file, &e->plan, message);
+    for (uint64_t r = 0, n = 0; good && r < e->plan.rows; r++) {
+        const uint64_t to = moved(e, r);
+        if (is_whole(e, plan, r, to)) {
+            row[n] = r;
+            target[n++] = to;
+        }
+        if (n == STORE_ROWS || (n > 0 && r + 1 == e->plan.rows)) {
+            const struct rows rows = {row, n, 0};
+            good = store_copy(old, &rows, run->store, target, &copied, message);
+            n = 0;
+        }
+        if (plan->stop && r % (1 << 14) == 0)
+            (void)plan->stop(plan->stop_context); /* a sign of life; a stop comes after this */
+    }
+    stance_message ignored;
+    good = old && store_close(old, good ? message : &ignored) && good;
+    if (good && copied.damaged > 0) {
+        fprintf(stderr,
+                "stance run: %s: %" PRIu64 " case%s not as the checksum says: computed again\n",
+                e->file, copied.damaged, copied.damaged == 1 ? " is" : "s are");
+    }
+    return good;
+}

@@ -1,0 +1,697 @@
+/* work.c - a rank's part of the computing: the kernel's lanes take cases from blocks of rows that
+ * are drawn as they run dry, and hand results back into them as they end.
+ *
+ * A block stays open until its last case has ended. Every open block but the one that is being
+ * taken from has a case in a lane, so that there are never more of them than lanes and one; a
+ * straggler keeps its block, not its lane's neighbours. What has ended is written when the block is
+ * whole, and in between every second or so. Only the end of the job makes lanes wait.
+ *
+ * A kernel is of one method. Where methods are swept, streams follow each other: each takes the
+ * rows of its method from the chunk in hand and, once none but its own are left of that, from the
+ * next one. So lanes run empty once a chunk.
+ */
+#include "work.h"
+
+#include "runner/base/units.h"
+#include "runner/plan/instruction_set.h"
+#include "runner/ranks/crash.h"
+#include "runner/ranks/deadline.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum {
+    MAX_METHODS = 32,
+    BLOCKS_OF_METHODS = 16, /* open at once where methods are swept */
+};
+static const double progress_terminal = 0.5, progress_elsewhere = 60;
+
+static volatile sig_atomic_t stop_asked;
+
+static void ask_stop(int number)
+{
+    (void)number;
+    stop_asked = 1;
+    deadline_begin();
+}
+
+void work_catch_signals(void)
+{
+    struct sigaction action = {.sa_handler = ask_stop, .sa_flags = SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGUSR1, &action, NULL);
+    action.sa_flags |= SA_RESETHAND;
+    sigaction(SIGINT, &action, NULL);
+}
+
+bool work_stop_asked(void)
+{
+    return stop_asked != 0;
+}
+
+/* ---- blocks and tasks --------------------------------------------------------------------- */
+
+enum state { PENDING, RUNNING, ENDED, STORED };
+
+/* Rows that were drawn together. */
+struct block {
+    struct block *next;
+    struct store_block *rows;
+    uint64_t first;  /* place in the schedule */
+    size_t count;    /* rows */
+    size_t open;     /* of these, not ended */
+    size_t cursor;   /* where the stream looks for its next case */
+    double write_at; /* when what has ended is written next */
+    int writes;      /* so far */
+    uint8_t *state;  /* [capacity] */
+    uint8_t *method; /* [capacity] */
+};
+
+/* A case in a lane. */
+struct task {
+    stance_case input; /* first: by this the kernel names it */
+    stance_result result;
+    stance_trajectory trajectory;
+    double *samples; /* of the trajectory */
+    uint64_t place;  /* of the trajectory in the file */
+    struct block *block;
+    size_t slot;
+    int hand; /* place in the list of what is in hand, see crash.h */
+    struct task *next, *next_idle;
+};
+
+struct progress {
+    bool terminal;
+    double start;
+};
+
+/* All that the callbacks of a stream know. */
+struct job {
+    struct work *work;
+    const struct plan *plan;
+    struct schedule schedule;
+    uint8_t *label; /* [places of the schedule], or NULL */
+    const stance_kernel *kernel[MAX_METHODS];
+    size_t capacity;             /* rows of a block */
+    struct block *oldest, *idle; /* open blocks in the order of drawing; blocks to be used again */
+    struct block *at;            /* the one that the stream takes from; NULL: none has any */
+    int method;                  /* of the stream */
+    uint64_t pending;            /* rows of open blocks in state PENDING */
+    int blocks;                  /* open */
+    struct task *tasks, *idle_task; /* all; those that are in no lane */
+    uint64_t ended, kept;           /* not yet told to the counters */
+    double look_at;                 /* when next */
+    double checking;                /* s spent on what the file already holds */
+    bool leaving;                   /* no more cases: told to stop, or broken */
+    bool broken;                    /* nothing can be written; *message says why */
+    bool told;                      /* ... and the others know that we are to stop */
+    bool lost;                      /* the file or its lock is; *message says why */
+    stance_message *message;
+    struct progress progress;
+};
+
+/* No more, with the reason in *job->message. */
+static void break_off(struct job *job)
+{
+    job->broken = job->leaving = true;
+    parallel_add(job->work->parallel, COUNTER_STOP, 1);
+}
+
+static void out_of_memory(struct job *job, const char *what)
+{
+    snprintf(job->message->text, sizeof job->message->text, "not enough memory for %s", what);
+    break_off(job);
+}
+
+static void block_free(struct block *block)
+{
+    if (block) {
+        store_block_free(block->rows);
+        free(block->state);
+        free(block->method);
+        free(block);
+    }
+}
+
+static struct block *block_make(const struct job *job)
+{
+    struct block *block = calloc(1, sizeof *block);
+    if (block) {
+        block->rows = store_block_make(job->work->store, job->capacity);
+        block->state = malloc(job->capacity);
+        block->method = malloc(job->capacity);
+        if (!block->rows || !block->state || !block->method) {
+            block_free(block);
+            return NULL;
+        }
+    }
+    return block;
+}
+
+/* Doubles of one recorded instant. */
+static size_t instant_size(const stance_scene *scene)
+{
+    return 2 * (size_t)scene->coordinates + (size_t)scene->actuators + 3 * (size_t)scene->contacts;
+}
+
+/* The task's trajectory, blank: NAN stays where a case ends before. false: no memory. */
+static bool blank_trajectory(struct task *task, const struct plan *plan)
+{
+    const stance_scene *scene = plan->scenario->scene;
+    const size_t rows = (size_t)plan->record_rows, size = rows * instant_size(scene);
+    stance_trajectory *trajectory = &task->trajectory;
+
+    if (!task->samples && !(task->samples = malloc(size * sizeof *task->samples)))
+        return false;
+    double *at = task->samples;
+    for (size_t i = 0; i < size; i++)
+        at[i] = NAN;
+    trajectory->interval = plan->record_interval;
+    trajectory->rows = plan->record_rows;
+    trajectory->position = at;
+    trajectory->velocity = at += rows * (size_t)scene->coordinates;
+    trajectory->torque = at += rows * (size_t)scene->coordinates;
+    trajectory->force = at += rows * (size_t)scene->actuators;
+    trajectory->gap = at + 2 * rows * (size_t)scene->contacts;
+    task->input.trajectory = trajectory;
+    return true;
+}
+
+static struct task *task_take(struct job *job)
+{
+    struct task *task = job->idle_task;
+    if (task) {
+        job->idle_task = task->next_idle;
+        return task;
+    }
+    task = calloc(1, sizeof *task);
+    if (!task) {
+        out_of_memory(job, "the cases");
+        return NULL;
+    }
+    task->hand = -1;
+    task->next = job->tasks;
+    job->tasks = task;
+    return task;
+}
+
+static void task_leave(struct job *job, struct task *task)
+{
+    crash_leave(task->hand);
+    task->hand = -1;
+    task->next_idle = job->idle_task;
+    job->idle_task = task;
+}
+
+/* ---- results ------------------------------------------------------------------------------ */
+
+/* What is stored for a case that does not exist. */
+static void fail_initially(stance_result *result)
+{
+    stance_result_clear(result);
+    result->status = STANCE_FAILED;
+    result->failure = STANCE_FAILURE_INITIAL;
+}
+
+void work_tally(struct work *work, stance_status status, stance_outcome outcome)
+{
+    work->finished++;
+    if (status == STANCE_FAILED)
+        work->failed++;
+    else if ((int)outcome >= 0 && (int)outcome < STANCE_OUTCOME_COUNT)
+        work->outcome[outcome]++;
+}
+
+/* Counts the row at a place of the schedule. */
+static void tally(struct job *job, uint64_t place, stance_status status, stance_outcome outcome)
+{
+    work_tally(job->work, status, outcome);
+    if (job->label)
+        job->label[place] = (uint8_t)(status == STANCE_FAILED ? WORK_FAILED : (int)outcome + 1);
+}
+
+static uint64_t row_at(const struct job *job, const struct block *block, size_t slot)
+{
+    return rows_at(&job->schedule.rows, block->first + slot);
+}
+
+/* Writes the rows of a block that have ended, in stretches of at least so many. */
+static void write_block(struct job *job, struct block *block, size_t least)
+{
+    for (size_t slot = 0, n; slot < block->count && !job->broken; slot += n > 0 ? n : 1) {
+        n = 0;
+        while (slot + n < block->count && block->state[slot + n] == ENDED)
+            n++;
+        if (n < least)
+            continue;
+        const struct rows rows = rows_part(&job->schedule.rows, block->first + slot, n);
+        if (!store_write(job->work->store, block->rows, slot, &rows, job->message)) {
+            break_off(job);
+            return;
+        }
+        memset(block->state + slot, STORED, n);
+    }
+}
+
+/* What has ended of blocks that have been open for long. */
+static void write_ended(struct job *job, double now)
+{
+    for (struct block *block = job->oldest; block; block = block->next) {
+        if (now >= block->write_at) {
+            const double start = clock_seconds();
+            write_block(job, block, ++block->writes % SCHEDULE_ALL == 0 ? 1 : SCHEDULE_STRETCH);
+            const double end = clock_seconds();
+            block->write_at = end + schedule_write_interval(job->work->parallel->size, end - start);
+        }
+    }
+}
+
+/* All that has ended. */
+static void write_open(struct job *job)
+{
+    for (struct block *block = job->oldest; block; block = block->next)
+        write_block(job, block, 1);
+}
+
+/* Takes a block whose rows have all ended out of the list. */
+static void close_block(struct job *job, struct block *block)
+{
+    struct block **link = &job->oldest;
+    while (*link != block)
+        link = &(*link)->next;
+    *link = block->next;
+    if (job->at == block)
+        job->at = block->next;
+    block->next = job->idle;
+    job->idle = block;
+    job->blocks--;
+}
+
+/* The result of a row, which was pending or in a lane. */
+static void end_row(struct job *job, struct block *block, size_t slot, const stance_result *result)
+{
+    store_put(block->rows, slot, result);
+    tally(job, block->first + slot, result->status, result->outcome);
+    block->state[slot] = ENDED;
+    job->work->computed++;
+    job->ended++;
+    if (--block->open == 0) {
+        write_block(job, block, 1);
+        close_block(job, block);
+    }
+}
+
+/* A task's trajectory, then its row. */
+static void end_task(struct job *job, struct task *task)
+{
+    if (!task->input.trajectory ||
+        store_write_trajectory(job->work->store, task->place, &task->trajectory, job->message))
+        end_row(job, task->block, task->slot, &task->result);
+    else
+        break_off(job);
+    task_leave(job, task);
+}
+
+static void case_done(void *context, const stance_case *input, stance_result *result)
+{
+    /* A task begins with its case, which was handed out as const but is not. */
+    struct task *task = (struct task *)(uintptr_t)input;
+    if (result->status == STANCE_DONE && result->evidence == STANCE_EVIDENCE_NONE)
+        result->evidence = STANCE_SIMULATED;
+    end_task(context, task);
+}
+
+/* ---- drawing ------------------------------------------------------------------------------ */
+
+static bool attend(void *context);
+
+/* Counts a row that is marked done but does not verify; the lowest ones are named. */
+static void note_damage(struct work *work, uint64_t row)
+{
+    uint64_t index = plan_case(work->plan, row);
+    const uint64_t named = work->damaged < WORK_NAMED ? work->damaged : WORK_NAMED;
+    work->damaged++;
+    for (uint64_t k = 0; k < named; k++) {
+        if (index < work->damaged_case[k]) {
+            const uint64_t higher = work->damaged_case[k];
+            work->damaged_case[k] = index;
+            index = higher;
+        }
+    }
+    if (named < WORK_NAMED)
+        work->damaged_case[named] = index;
+}
+
+bool work_verify(struct work *work, const struct rows *rows, stance_result *results, bool *whole,
+                 stance_message *message)
+{
+    if (!store_verify(work->store, rows, results, whole, message))
+        return false;
+    for (size_t i = 0; i < rows->count; i++)
+        if (!whole[i] && results[i].status != STANCE_PENDING)
+            note_damage(work, rows_at(rows, i));
+    return true;
+}
+
+/* Rows that the file of a resumed run holds whole are as good as ended. */
+static void keep_rows(struct job *job, struct block *block)
+{
+    const double start = clock_seconds();
+    stance_result results[STORE_ROWS];
+    bool whole[STORE_ROWS];
+
+    for (size_t slot = 0, n; slot < block->count && !job->broken; slot += n) {
+        n = block->count - slot < STORE_ROWS ? block->count - slot : STORE_ROWS;
+        const struct rows rows = rows_part(&job->schedule.rows, block->first + slot, n);
+        if (!work_verify(job->work, &rows, results, whole, job->message)) {
+            break_off(job);
+            return;
+        }
+        for (size_t i = 0; i < n; i++) {
+            if (whole[i]) {
+                tally(job, block->first + slot + i, results[i].status, results[i].outcome);
+                block->state[slot + i] = STORED;
+                block->open--;
+                job->kept++;
+            }
+        }
+    }
+    job->checking += clock_seconds() - start;
+}
+
+/* The next rows of the chunk in hand, or of a new one. false: there are none, or no memory. */
+static bool open_block(struct job *job)
+{
+    uint64_t first;
+    size_t count = schedule_take(&job->schedule, job->capacity, &first);
+    if (count == 0) {
+        const int64_t k = parallel_add(job->work->parallel, COUNTER_CHUNK, 1);
+        if (!schedule_draw(&job->schedule, (uint64_t)k))
+            return false;
+        count = schedule_take(&job->schedule, job->capacity, &first);
+    }
+    struct block *block = job->idle;
+    if (block) {
+        job->idle = block->next;
+    } else if (!(block = block_make(job))) {
+        out_of_memory(job, "the results");
+        return false;
+    }
+    block->next = NULL;
+    block->first = first;
+    block->count = block->open = count;
+    block->cursor = 0;
+    block->writes = 0;
+    block->write_at = clock_seconds() + schedule_write_interval(job->work->parallel->size, 0);
+    memset(block->state, PENDING, count);
+    struct block **link = &job->oldest;
+    while (*link)
+        link = &(*link)->next;
+    *link = block;
+    job->blocks++;
+    for (size_t slot = 0; slot < count; slot++)
+        block->method[slot] = (uint8_t)plan_method(job->plan, row_at(job, block, slot));
+    if (job->work->resume)
+        keep_rows(job, block);
+    job->pending += block->open;
+    job->at = job->at ? job->at : block;
+    if (block->open == 0)
+        close_block(job, block);
+    return true;
+}
+
+/* Whether the stream may draw: not while rows of other methods wait, but for the rest of a chunk as
+ * far as memory goes. */
+static bool may_draw(const struct job *job)
+{
+    return job->pending == 0 ||
+           (job->blocks < BLOCKS_OF_METHODS && job->schedule.next < job->schedule.end);
+}
+
+/* The next pending row of the stream's method. */
+static bool find_row(struct job *job, struct block **block, size_t *slot)
+{
+    for (;;) {
+        for (; job->at; job->at = job->at->next) {
+            for (struct block *b = job->at; b->cursor < b->count; b->cursor++) {
+                if (b->state[b->cursor] == PENDING && b->method[b->cursor] == job->method) {
+                    *block = b;
+                    *slot = b->cursor++;
+                    job->pending--;
+                    return true;
+                }
+            }
+        }
+        if (!may_draw(job) || attend(job) || !open_block(job) || job->leaving)
+            return false;
+    }
+}
+
+static bool next_case(void *context, const stance_case **input, stance_result **result)
+{
+    struct job *job = context;
+    struct block *block;
+    size_t slot;
+    int method;
+
+    while (!job->leaving && find_row(job, &block, &slot)) {
+        struct task *task = task_take(job);
+        if (!task)
+            return false;
+        const uint64_t row = row_at(job, block, slot);
+        const bool exists = plan_resolve(job->plan, row, &task->input, &method);
+        task->block = block;
+        task->slot = slot;
+        task->input.trajectory = NULL;
+        if (plan_recorded(job->plan, row, &task->place) && !blank_trajectory(task, job->plan)) {
+            task_leave(job, task);
+            out_of_memory(job, "trajectories");
+            return false;
+        }
+        block->state[slot] = RUNNING;
+        if (exists) {
+            task->hand = crash_take(plan_case(job->plan, row));
+            *input = &task->input;
+            *result = &task->result;
+            return true;
+        }
+        fail_initially(&task->result);
+        end_task(job, task);
+    }
+    return false;
+}
+
+/* ---- counters, progress, stops -------------------------------------------------------------- */
+
+static void duration(char *text, size_t size, double seconds)
+{
+    if (!(seconds < 360000)) {
+        snprintf(text, size, "%.0f h", seconds / 3600);
+    } else {
+        int s = (int)(seconds + 0.5);
+        snprintf(text, size, "%d:%02d:%02d", s / 3600, s / 60 % 60, s % 60);
+    }
+}
+
+static void show_progress(struct job *job, double now)
+{
+    struct work *work = job->work;
+    const struct progress *progress = &job->progress;
+    if (work->quiet || work->parallel->rank != 0 || now < work->progress_due)
+        return;
+    char left[32] = "?", round[32] = "";
+    uint64_t finished = (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
+    uint64_t kept = (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
+    double rate = (double)(finished - kept) / (now - progress->start);
+    if (rate > 0)
+        duration(left, sizeof left, (double)(job->schedule.rows.count - finished) / rate);
+    if (work->round > 0)
+        snprintf(round, sizeof round, "round %d: ", work->round);
+    fprintf(stderr, "%s%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left%s",
+            progress->terminal ? "\r" : "", round, finished, job->schedule.rows.count, rate, left,
+            progress->terminal ? "\033[K" : "\n");
+    fflush(stderr);
+    work->progress_due = now + (progress->terminal ? progress_terminal : progress_elsewhere);
+}
+
+/* Tells the counters what has ended. */
+static void report(struct job *job)
+{
+    const struct parallel *parallel = job->work->parallel;
+    if (job->kept > 0)
+        parallel_add(parallel, COUNTER_KEPT, (int64_t)job->kept);
+    if (job->ended + job->kept > 0)
+        parallel_add(parallel, COUNTER_DONE, (int64_t)(job->ended + job->kept));
+    job->ended = job->kept = 0;
+}
+
+static bool asked_to_stop(const struct work *work, double now)
+{
+    return stop_asked || now - work->start > work->time_limit;
+}
+
+/* Rank 0's sign of life for the whole job. */
+static void keep_pulse(struct job *job, double now)
+{
+    struct work *work = job->work;
+    if (!work->heartbeat || now < work->heartbeat->due || job->broken || job->lost)
+        return;
+    const uint64_t done = work->before + (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
+    const uint64_t kept =
+        work->kept_before + (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
+    if (!heartbeat_beat(work->heartbeat, now, done, done - kept, work->round, job->message)) {
+        job->lost = job->leaving = true;
+        parallel_add(work->parallel, COUNTER_STOP, 1);
+    }
+}
+
+bool work_told_to_stop(const struct work *work)
+{
+    const bool asked = asked_to_stop(work, clock_seconds());
+    return parallel_add(work->parallel, COUNTER_STOP, asked) != 0 || asked;
+}
+
+/* Called about every millisecond: what must not wait for the end of a case. true: leave. On rank 0
+ * it always looks at the counters, which live there, so that others get at them. */
+static bool attend(void *context)
+{
+    struct job *job = context;
+    const struct work *work = job->work;
+    const double now = clock_seconds();
+    const int ranks = work->parallel->size;
+
+    if (job->leaving)
+        return true;
+    if (asked_to_stop(work, now)) {
+        write_open(job); /* before others are told: rank 0 may not answer */
+        parallel_add(work->parallel, COUNTER_STOP, 1);
+        job->leaving = job->told = true;
+        return true;
+    }
+    write_ended(job, now);
+    if (now >= job->look_at) {
+        report(job);
+        parallel_beat(work->parallel, ++job->work->beats);
+        job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
+        job->look_at = now + schedule_look_interval(ranks);
+    } else if (work->parallel->rank == 0) {
+        job->leaving |= parallel_add(work->parallel, COUNTER_STOP, 0) != 0;
+    }
+    keep_pulse(job, now);
+    show_progress(job, now);
+    return job->leaving;
+}
+
+/* While other ranks still work. */
+static void wait_for_others(void *context)
+{
+    struct job *job = context;
+    const double now = clock_seconds();
+    if (!job->told && asked_to_stop(job->work, now)) {
+        parallel_add(job->work->parallel, COUNTER_STOP, 1);
+        job->told = true;
+    }
+    keep_pulse(job, now);
+    show_progress(job, now);
+}
+
+/* The ranks come together again; rank 0 remembers what this was. */
+static void meet(struct job *job)
+{
+    struct work *work = job->work;
+    parallel_beat(work->parallel, HEARTBEAT_WAITS);
+    parallel_meet(work->parallel, wait_for_others, job);
+    if (work->parallel->rank == 0) {
+        work->before += (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
+        work->kept_before += (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
+    }
+}
+
+/* ---- the whole ---------------------------------------------------------------------------- */
+
+/* Method of the first row that waits; draws where none does. false: there are no more. */
+static bool find_method(struct job *job)
+{
+    while (!attend(job)) {
+        for (struct block *block = job->oldest; job->pending > 0 && block; block = block->next) {
+            for (size_t slot = 0; slot < block->count; slot++) {
+                if (block->state[slot] == PENDING) {
+                    job->method = block->method[slot];
+                    return true;
+                }
+            }
+        }
+        if (!open_block(job))
+            return false;
+    }
+    return false;
+}
+
+static void run_streams(struct job *job)
+{
+    const stance_feed feed = {job, next_case, case_done, attend};
+    while (find_method(job)) {
+        for (struct block *block = job->oldest; block; block = block->next)
+            block->cursor = 0;
+        job->at = job->oldest;
+        job->kernel[job->method]->stream(&feed); /* the plan saw to it that there is a kernel */
+    }
+}
+
+static void job_free(struct job *job)
+{
+    for (struct block *block = job->oldest, *next; block; block = next) {
+        next = block->next;
+        block_free(block);
+    }
+    for (struct block *block = job->idle, *next; block; block = next) {
+        next = block->next;
+        block_free(block);
+    }
+    for (struct task *task = job->tasks, *next; task; task = next) {
+        next = task->next;
+        crash_leave(task->hand);
+        free(task->samples);
+        free(task);
+    }
+}
+
+bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance_message *message)
+{
+    const double start = clock_seconds();
+    struct job job = {
+        .work = work,
+        .plan = work->plan,
+        .schedule = schedule_make(work->plan->rows, work->parallel->size, only),
+        .label = label,
+        .message = message,
+        .capacity = schedule_block_rows(store_row_size(work->store)),
+        .progress = {.terminal = isatty(STDERR_FILENO) == 1, .start = start},
+    };
+    uint64_t first, largest;
+    if (schedule_chunk(job.schedule.rows.count, work->parallel->size, 0, &first, &largest))
+        job.capacity = job.capacity < largest ? job.capacity : (size_t)largest;
+    if (work->progress_due <= 0) {
+        work->progress_due =
+            start + (job.progress.terminal ? progress_terminal : progress_elsewhere);
+    }
+    for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++)
+        job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
+    run_streams(&job);
+    write_open(&job);
+    if (job.leaving)
+        deadline_begin();
+    report(&job);
+    work->seconds += clock_seconds() - start - job.checking;
+    meet(&job);
+    if (job.progress.terminal && !work->quiet && work->parallel->rank == 0)
+        fputs("\r\033[K", stderr);
+    job_free(&job);
+    return !job.broken && !job.lost;
+}

@@ -1,0 +1,504 @@
+/* describe.c - documentation of the scenario format, and its JSON Schema, from the table. */
+#include "schema.h"
+#include "tree.h"
+
+#include "runner/base/words.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 78, TEXT_INDENT = 4 };
+
+/* ---- text ------------------------------------------------------------------------------------ */
+
+/* Prints words, broken at WIDTH. */
+static void print_wrapped(FILE *out, const char *text, int indent)
+{
+    int column = indent;
+    fprintf(out, "%*s", indent, "");
+    while (*text) {
+        int length = (int)strcspn(text, " ");
+        if (column > indent && column + 1 + length > WIDTH) {
+            fprintf(out, "\n%*s", indent, "");
+            column = indent;
+        } else if (column > indent) {
+            fputc(' ', out);
+            column++;
+        }
+        fprintf(out, "%.*s", length, text);
+        column += length;
+        text += length + (text[length] == ' ');
+    }
+    fputc('\n', out);
+}
+
+static const char *default_text(const struct scenario_field *field, char *buffer, size_t size)
+{
+    if (field->fallback_text) {
+        snprintf(buffer, size, ", default: %s", field->fallback_text);
+    } else if (field->required) {
+        snprintf(buffer, size, ", required");
+    } else if (isnan(field->fallback) || field->offset == NO_OFFSET) {
+        bool plain = field->type == FIELD_NUMBER || field->type == FIELD_INTEGER;
+        buffer[0] = '\0';
+        if (plain && !isnan(field->fallback))
+            snprintf(buffer, size, ", default %.9g", field->fallback);
+    } else if (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER) {
+        snprintf(buffer, size, ", default %.9g", field->fallback);
+    } else {
+        buffer[0] = '\0';
+    }
+    if (!field->fallback_text && !field->required && !isnan(field->fallback) && field->words &&
+        (field->type == FIELD_WORD || field->type == FIELD_CASES))
+        snprintf(buffer, size, ", default %s", field->words[(size_t)field->fallback]);
+    return buffer;
+}
+
+static const char *kind_text(const struct scenario_field *field, char *buffer, size_t size)
+{
+    char range[96], words[400] = "";
+    const char *unit = strcmp(field->unit, "1") != 0 && field->columns == 0 ? field->unit : "";
+
+    word_list(words, sizeof words, field->words, field->word_count);
+    schema_range_text(field, range, sizeof range);
+    switch (field->type) {
+    case FIELD_MAP:
+        snprintf(buffer, size, "mapping");
+        break;
+    case FIELD_TEXT:
+        snprintf(buffer, size, "text");
+        break;
+    case FIELD_NUMBER:
+    case FIELD_INTEGER:
+        snprintf(buffer, size, "%s, %s%s%s%s%s",
+                 field->type == FIELD_NUMBER ? "number" : "whole number", range, unit[0] ? " " : "",
+                 unit, field->words ? ", or " : "", words);
+        break;
+    case FIELD_WORD:
+        snprintf(buffer, size, "one of: %s", words);
+        break;
+    case FIELD_WORDS:
+        snprintf(buffer, size, "list of: %s", words);
+        break;
+    case FIELD_POLES:
+    case FIELD_NUMBERS:
+        snprintf(buffer, size, "list of %zu numbers, %s", field->items, field->unit);
+        break;
+    case FIELD_MATRIX:
+        snprintf(buffer, size, "%zu lists of %zu numbers, %s", field->items, field->columns,
+                 field->unit);
+        break;
+    case FIELD_MAP_OR_WORD:
+        snprintf(buffer, size, "mapping, or %s", words);
+        break;
+    case FIELD_CASES:
+        snprintf(buffer, size, "one of: %s; or a list of cases", words);
+        break;
+    case FIELD_AXES:
+    case FIELD_FACTORS:
+        snprintf(buffer, size, "list of mappings");
+        break;
+    case FIELD_ENDS:
+        snprintf(buffer, size, "number, or list of numbers");
+        break;
+    case FIELD_PATH:
+        snprintf(buffer, size, "path");
+        break;
+    case FIELD_PATHS:
+        snprintf(buffer, size, "list of at most %d paths", SCENARIO_MAX_PATHS);
+        break;
+    case FIELD_VALUES:
+        snprintf(buffer, size, "list of numbers, words or lists of these");
+        break;
+    }
+    return buffer;
+}
+
+static const char *use_text(enum field_use use)
+{
+    static const char *const text[] = {
+        [USE_ALWAYS] = "",
+        [USE_CONTROL] = "Only with a controller.kind other than none.",
+        [USE_HOLD] = "Only with controller.kind hold, or controller.far hold.",
+        [USE_DECOUPLING] = "Only with controller.kind decoupling, or controller.far decoupling.",
+        [USE_FAR] = "Only with a controller.far other than none.",
+        [USE_FEEDBACK] = "Only with controller.kind state-feedback.",
+        [USE_PLACE] = "Only with controller.kind state-feedback, design place or place-schur.",
+        [USE_LQR] = "Only with controller.kind state-feedback and controller.design lqr.",
+        [USE_MODEL] = "Only with controller.kind state-feedback, any design but gains.",
+        [USE_GAINS] = "Only with controller.kind state-feedback and controller.design gains.",
+        [USE_EQUILIBRIUM] = "Only where the run starts from an equilibrium.",
+        [USE_STATE] = "Only where the run starts from a state.",
+        [USE_SETTLE] = "Not with stop.settle off.",
+    };
+    return text[use];
+}
+
+static void print_row(FILE *out, const struct scenario_field *field)
+{
+    char kind[700], fallback[128], line[900];
+
+    snprintf(line, sizeof line, "%s%s", kind_text(field, kind, sizeof kind),
+             default_text(field, fallback, sizeof fallback));
+    fprintf(out, "%s\n", field->path);
+    print_wrapped(out, field->text, TEXT_INDENT);
+    print_wrapped(out, line, TEXT_INDENT);
+}
+
+static void print_field(FILE *out, const struct schema *schema, const struct scenario_field *field)
+{
+    const char *names[SCHEMA_MAX_FIELDS];
+    char list[700], line[720], path[sizeof field->path + 2];
+
+    print_row(out, field);
+    if (field->more)
+        print_wrapped(out, field->more, TEXT_INDENT);
+    if (field->use != USE_ALWAYS)
+        print_wrapped(out, use_text(field->use), TEXT_INDENT);
+    if (field->sweep) {
+        print_wrapped(out,
+                      field->design ? "May be swept; each value is a controller design of its own."
+                                    : "May be swept.",
+                      TEXT_INDENT);
+    }
+    const bool is_list = field->type == FIELD_AXES || field->type == FIELD_FACTORS;
+    snprintf(path, sizeof path, "%s%s", field->path, is_list ? "[]" : "");
+    size_t n = schema_children(schema, path, names, SCHEMA_MAX_FIELDS);
+    if (n > 0) {
+        snprintf(line, sizeof line, "Keys: %s", word_list(list, sizeof list, names, n));
+        print_wrapped(out, line, TEXT_INDENT);
+    }
+}
+
+/* Whether a path stands for the same in every scene. */
+static bool is_common(const struct schema *schemas, size_t count,
+                      const struct scenario_field *field)
+{
+    bool common = !field->by_scene;
+    for (size_t k = 0; common && k < count; k++)
+        common = schema_find(&schemas[k], field->path) != NULL;
+    return common;
+}
+
+static void print_all(FILE *out, const struct schema *schemas, size_t count)
+{
+    fputs("The scenario format, version 1. Units are SI; [] stands for an index from 0.\n"
+          "stance describe PATH tells more; stance describe --schema prints JSON Schema.\n",
+          out);
+    /* What is the same in every scene is said once, before what each brings. */
+    for (size_t k = 0; k <= count; k++) {
+        const struct schema *schema = &schemas[k > 0 ? k - 1 : 0];
+        if (k == 0)
+            fputs("\nIn every scene\n\n", out);
+        else
+            fprintf(out, "\nscene: %s (%s)\n\n", schema->scene->name, schema->scene->text);
+        for (size_t i = 0; i < schema->count; i++)
+            if (is_common(schemas, count, &schema->field[i]) == (k == 0))
+                print_row(out, &schema->field[i]);
+    }
+}
+
+/* ---- JSON Schema ----------------------------------------------------------------------------- */
+
+/* Every function below returns a new reference, NULL without memory; json_object_set_new and
+ * json_pack accept that and fail in turn. */
+
+/* A whole number without a decimal point, which some readers want. */
+static json_t *json_number(double value)
+{
+    if (value >= 0x1p63)
+        return json_integer(INT64_MAX);
+    return value == floor(value) && fabs(value) < 0x1p53 ? json_integer((json_int_t)value)
+                                                         : json_real(value);
+}
+
+static json_t *number_schema(const struct scenario_field *field)
+{
+    json_t *schema =
+        json_pack("{s:s}", "type", field->type == FIELD_INTEGER ? "integer" : "number");
+    if (isfinite(field->low)) {
+        json_object_set_new(schema, field->low_open ? "exclusiveMinimum" : "minimum",
+                            json_number(field->low));
+    }
+    if (isfinite(field->high)) {
+        json_object_set_new(schema, field->high_open ? "exclusiveMaximum" : "maximum",
+                            json_number(field->high));
+    }
+    if (field->words)
+        return json_pack("{s:[o,{s:s}]}", "anyOf", schema, "const", field->words[0]);
+    return schema;
+}
+
+static bool is_truth(const struct scenario_field *field)
+{
+    return field->word_count == 2 && strcmp(field->words[0], "false") == 0;
+}
+
+static json_t *words_schema(const struct scenario_field *field)
+{
+    if (is_truth(field))
+        return json_pack("{s:s}", "type", "boolean");
+    json_t *words = json_array();
+    for (size_t i = 0; i < field->word_count; i++)
+        json_array_append_new(words, json_string(field->words[i]));
+    return json_pack("{s:o}", "enum", words);
+}
+
+static json_t *list_schema(json_t *items, size_t count)
+{
+    json_t *schema = json_pack("{s:s,s:o,s:i}", "type", "array", "items", items, "minItems",
+                               count ? (int)count : 1);
+    if (count)
+        json_object_set_new(schema, "maxItems", json_integer((json_int_t)count));
+    return schema;
+}
+
+static json_t *map_schema(const struct schema *schema, const char *path);
+
+static json_t *values_schema(void)
+{
+    json_t *scalar = json_pack("{s:[s,s]}", "type", "number", "string");
+    json_t *row = list_schema(json_copy(scalar), 0);
+    return list_schema(json_pack("{s:[o,o]}", "anyOf", scalar, row), 0);
+}
+
+/* A list of mappings of a path or several. */
+static json_t *varied_schema(const struct schema *schema, const char *path, int most)
+{
+    json_t *entry = map_schema(schema, path);
+    json_object_set_new(entry, "oneOf",
+                        json_pack("[{s:[s]},{s:[s]}]", "required", "path", "required", "paths"));
+    json_t *list = list_schema(entry, 0);
+    json_object_set_new(list, "maxItems", json_integer(most));
+    return list;
+}
+
+static json_t *ends_schema(void)
+{
+    json_t *number = json_pack("{s:s}", "type", "number");
+    json_t *list = list_schema(json_copy(number), 0);
+    return json_pack("{s:[o,o]}", "anyOf", number, list);
+}
+
+static json_t *complex_schema(const struct schema *schema)
+{
+    static const char pattern[] = "^[-+]?[0-9.]+([eE][-+]?[0-9]+)?[-+][0-9.]+([eE][-+]?[0-9]+)?i$";
+    return json_pack("{s:[o,{s:s,s:s}]}", "anyOf",
+                     number_schema(schema_find(schema, "controller.poles[]")), "type", "string",
+                     "pattern", pattern);
+}
+
+static json_t *type_schema(const struct schema *schema, const struct scenario_field *field)
+{
+    switch (field->type) {
+    case FIELD_MAP:
+        return map_schema(schema, field->path);
+    case FIELD_NUMBER:
+    case FIELD_INTEGER:
+        return number_schema(field);
+    case FIELD_WORD:
+        return words_schema(field);
+    case FIELD_WORDS: {
+        json_t *list = list_schema(words_schema(field), 0);
+        json_object_set_new(list, "uniqueItems", json_true());
+        return list;
+    }
+    case FIELD_POLES:
+        return list_schema(complex_schema(schema), field->items);
+    case FIELD_NUMBERS: {
+        char item[sizeof field->path + 2];
+        snprintf(item, sizeof item, "%s[]", field->path);
+        return list_schema(number_schema(schema_find(schema, item)), field->items);
+    }
+    case FIELD_MATRIX:
+        return list_schema(
+            list_schema(number_schema(schema_find(schema, "controller.gains[][]")), field->columns),
+            field->items);
+    case FIELD_MAP_OR_WORD:
+        return json_pack("{s:[o,o]}", "anyOf", words_schema(field),
+                         map_schema(schema, field->path));
+    case FIELD_CASES:
+        return json_pack("{s:[o,o]}", "anyOf", words_schema(field),
+                         list_schema(json_pack("{s:s,s:i}", "type", "integer", "minimum", 0), 0));
+    case FIELD_AXES:
+        return varied_schema(schema, "sweep.grid[]", SCENARIO_MAX_AXES);
+    case FIELD_FACTORS:
+        return varied_schema(schema, "sweep.sample.vary[]", DOE_MAX_FACTORS);
+    case FIELD_ENDS:
+        return ends_schema();
+    case FIELD_PATHS: {
+        json_t *list = list_schema(json_pack("{s:s}", "type", "string"), 0);
+        json_object_set_new(list, "maxItems", json_integer(SCENARIO_MAX_PATHS));
+        return list;
+    }
+    case FIELD_VALUES:
+        return values_schema();
+    default:
+        return json_pack("{s:s}", "type", "string");
+    }
+}
+
+static json_t *default_value(const struct scenario_field *field)
+{
+    bool word = field->type == FIELD_WORD || field->type == FIELD_CASES;
+    bool number = field->type == FIELD_NUMBER || field->type == FIELD_INTEGER;
+    if (field->required || isnan(field->fallback) || !(word || number))
+        return NULL;
+    if (number && isinf(field->fallback))
+        return json_string("none");
+    if (field->fallback_text)
+        return NULL;
+    if (word && is_truth(field))
+        return json_boolean(field->fallback != 0);
+    return word ? json_string(field->words[(size_t)field->fallback]) : json_number(field->fallback);
+}
+
+static json_t *field_schema(const struct schema *schema, const struct scenario_field *field)
+{
+    char text[900];
+    bool unit = field->unit[0] && strcmp(field->unit, "1") != 0;
+    json_t *object = type_schema(schema, field), *fallback = default_value(field);
+
+    snprintf(text, sizeof text, "%s%s%s%s%s%s", field->text, unit ? ", in " : "",
+             unit ? field->unit : "", field->more ? ". " : "", field->more ? field->more : "",
+             field->use != USE_ALWAYS && !field->more ? "." : "");
+    size_t length = strlen(text);
+    if (field->use != USE_ALWAYS)
+        snprintf(text + length, sizeof text - length, " %s", use_text(field->use));
+    json_object_set_new(object, "description", json_string(text));
+    if (fallback)
+        json_object_set_new(object, "default", fallback);
+    return object;
+}
+
+/* A mapping with the keys below `path`. */
+static json_t *map_schema(const struct schema *schema, const char *path)
+{
+    const char *names[SCHEMA_MAX_FIELDS];
+    char below[256];
+    size_t count = schema_children(schema, path, names, SCHEMA_MAX_FIELDS);
+    json_t *properties = json_object(), *required = json_array();
+
+    for (size_t i = 0; i < count; i++) {
+        snprintf(below, sizeof below, "%s%s%s", path, path[0] ? "." : "", names[i]);
+        const struct scenario_field *field = schema_find(schema, below);
+        json_object_set_new(properties, names[i], field_schema(schema, field));
+        /* What may also come from a sweep, or only some kinds need, cannot be asked for here. */
+        if (field->required && field->type != FIELD_MAP && field->use == USE_ALWAYS &&
+            !field->sweep)
+            json_array_append_new(required, json_string(names[i]));
+    }
+    json_t *object = json_pack("{s:s,s:o,s:b}", "type", "object", "properties", properties,
+                               "additionalProperties", 0);
+    if (json_array_size(required) > 0)
+        json_object_set(object, "required", required);
+    json_decref(required);
+    if (strcmp(path, "sweep.sample") == 0)
+        json_object_set_new(object, "required", json_pack("[s,s,s]", "method", "count", "vary"));
+    if (strcmp(path, "initial") == 0) {
+        json_object_set_new(object, "not",
+                            json_pack("{s:[s,s]}", "required", "equilibrium", "state"));
+    }
+    return object;
+}
+
+static json_t *scene_schema(const struct schema *schema)
+{
+    json_t *object = map_schema(schema, "");
+    json_t *scene = json_object_get(json_object_get(object, "properties"), "scene");
+    json_object_set_new(scene, "enum", json_pack("[s]", schema->scene->name));
+    return object;
+}
+
+static bool print_schema(FILE *out, const struct schema *schemas, size_t count)
+{
+    json_t *root;
+    if (count == 1) {
+        root = scene_schema(&schemas[0]);
+    } else {
+        json_t *scenes = json_array();
+        for (size_t i = 0; i < count; i++)
+            json_array_append_new(scenes, scene_schema(&schemas[i]));
+        root = json_pack("{s:o}", "oneOf", scenes);
+    }
+    json_object_set_new(root, "$schema",
+                        json_string("https://json-schema.org/draft/2020-12/schema"));
+    json_object_set_new(root, "title", json_string("stance scenario, format version 1"));
+    bool good = root && json_dumpf(root, out, JSON_INDENT(2) | JSON_REAL_PRECISION(15)) == 0;
+    json_decref(root);
+    fputc('\n', out);
+    return good;
+}
+
+/* ---- which of them --------------------------------------------------------------------------- */
+
+/* What a path that no scene has may have meant, or NULL. */
+static const char *nearest_path(const char *path, const struct schema *schemas, size_t count)
+{
+    const char **known = malloc(count * SCHEMA_MAX_FIELDS * sizeof *known), *near = NULL;
+    size_t n = 0;
+    for (size_t k = 0; known && k < count; k++)
+        for (size_t i = 0; i < schemas[k].count; i++)
+            known[n++] = schemas[k].field[i].path;
+    if (known)
+        near = nearest_word(path, known, n);
+    free(known);
+    return near;
+}
+
+/* A path, for every scene where it stands for something else. */
+static bool print_path(const char *path, FILE *out, FILE *errors, const struct schema *schemas,
+                       size_t count)
+{
+    char word[SHOWN_SIZE];
+    size_t index[2];
+    bool found = false;
+
+    for (size_t k = 0; k < count; k++) {
+        const struct scenario_field *field = schema_find(&schemas[k], path);
+        field = field ? field : schema_find_concrete(&schemas[k], path, index);
+        if (!field)
+            continue;
+        bool common = is_common(schemas, count, field);
+        if (!common)
+            fprintf(out, "%sscene: %s\n", found ? "\n" : "", schemas[k].scene->name);
+        print_field(out, &schemas[k], field);
+        found = true;
+        if (common)
+            break;
+    }
+    if (found)
+        return true;
+    const char *near = nearest_path(path, schemas, count);
+    fprintf(errors, "stance describe: unknown path '%s'%s%s%s\n", shown(word, path),
+            near ? "; did you mean '" : "", near ? near : "",
+            near ? "'?" : " (stance describe lists them)");
+    return false;
+}
+
+bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *errors)
+{
+    size_t count = 0;
+    while (stance_scenes()[count])
+        count++;
+    struct schema *schemas = calloc(count ? count : 1, sizeof *schemas);
+    bool good = schemas != NULL && count > 0;
+
+    for (size_t i = 0; i < count && good; i++)
+        good = schema_build(&schemas[i], stance_scenes()[i]);
+    if (!good) {
+        fputs("stance describe: out of memory\n", errors);
+    } else if (path) {
+        good = print_path(path, out, errors, schemas, count);
+    } else if (json_schema) {
+        good = print_schema(out, schemas, count) || ferror(out);
+        if (!good)
+            fputs("stance describe: out of memory\n", errors);
+    } else {
+        print_all(out, schemas, count);
+    }
+    free(schemas);
+    return good;
+}

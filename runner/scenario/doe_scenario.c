@@ -1,0 +1,397 @@
+/* doe_scenario.c - sweep.sample: an experimental design in the unit cube, and where its factors
+ * lead.
+ *
+ * A factor takes the unit interval to its values: a range linearly or by equal ratios, whole
+ * numbers and listed values by equal parts. Several paths move together.
+ */
+#include "reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_CASES 0x1p53
+#define MOST_NUMBERS 0x1p25 /* that a rank keeps: 256 MB */
+
+/* ---- where a factor leads -------------------------------------------------------------------- */
+
+/* Part of n equal ones of the unit interval in which u lies. */
+static size_t part(double u, size_t n)
+{
+    const double place = u * (double)n;
+    return place < (double)n ? (size_t)place : n - 1;
+}
+
+/* Value of path k of the factor. */
+static double factor_value(const struct scenario_factor *f, bool integer, int k, double u)
+{
+    const size_t paths = (size_t)f->paths;
+    if (f->listed)
+        return f->value[part(u, f->points) * paths + (size_t)k];
+    const double from = f->value[k], to = f->value[paths + (size_t)k];
+    if (integer) {
+        const double step = (double)part(u, (size_t)fabs(to - from) + 1);
+        return from <= to ? from + step : from - step;
+    }
+    const double value = u >= 1 ? to : f->log ? from * pow(to / from, u) : from + u * (to - from);
+    return fmin(fmax(value, fmin(from, to)), fmax(from, to)); /* rounding stays inside */
+}
+
+/* Values of all points. False: no memory. */
+static bool make_values(struct scenario *s, struct scenario_axis *axis)
+{
+    const struct scenario_sample *sample = &s->sample;
+    struct doe design = sample->design;
+    double u[DOE_MAX_FACTORS];
+    const size_t paths = (size_t)axis->paths;
+
+    axis->value = malloc(axis->count * paths * sizeof *axis->value);
+    const bool good = doe_begin(&design) && axis->value;
+    for (size_t i = 0; good && i < axis->count; i++) {
+        doe_unit(&design, i, u);
+        for (size_t j = 0; j < design.factors; j++) {
+            const struct scenario_factor *f = &sample->factor[j];
+            for (int k = 0; k < f->paths; k++) {
+                axis->value[i * paths + (size_t)(f->first + k)] =
+                    factor_value(f, axis->integer[f->first + k], k, u[j]);
+            }
+        }
+    }
+    doe_end(&design);
+    return good;
+}
+
+/* ---- factors --------------------------------------------------------------------------------- */
+
+static bool out_of_memory(struct reader *r)
+{
+    problem_add(&r->problems, (struct mark){0}, "out of memory");
+    return false;
+}
+
+static char *join_words(const struct scenario_field *field)
+{
+    size_t size = 1;
+    for (size_t i = 0; i < field->word_count; i++)
+        size += strlen(field->words[i]) + 1;
+    char *text = calloc(size, 1), *end = text;
+    for (size_t i = 0; text && i < field->word_count; i++)
+        end += sprintf(end, "%s%s", i ? " " : "", field->words[i]);
+    return text;
+}
+
+/* The values of one point for each path of the factor, from a list where there are `rows`. */
+static bool read_row(struct axis_reader *a, const struct scenario_factor *f, const char *key,
+                     const struct tree_node *node, bool rows, double *value)
+{
+    bool good = true;
+    if (!rows) {
+        return key ? axis_read_end(a, key, node, f->first, value)
+                   : axis_read_value(a, node, f->first, value);
+    }
+    if (node->kind != TREE_LIST || node->count != (size_t)f->paths) {
+        char wanted[80];
+        snprintf(wanted, sizeof wanted, "a list of %d values, one for each path", f->paths);
+        if (node->kind != TREE_LIST)
+            return field_mismatch(&a->r->problems, a->name, wanted, node);
+        problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name, wanted,
+                    node->count);
+        return false;
+    }
+    for (int k = 0; k < f->paths; k++) {
+        const struct tree_node *item = node->item[k];
+        good = (key ? axis_read_end(a, key, item, f->first + k, value + k)
+                    : axis_read_value(a, item, f->first + k, value + k)) &&
+               good;
+    }
+    return good;
+}
+
+static bool read_listed(struct axis_reader *a, struct scenario_factor *f,
+                        const struct tree_node *values, bool rows)
+{
+    bool good = true;
+    f->listed = true;
+    if (!field_list(&a->r->problems, a->name, "a list of values", values))
+        return false;
+    f->points = values->count;
+    f->value = calloc(f->points * (size_t)f->paths, sizeof *f->value);
+    if (!f->value)
+        return out_of_memory(a->r);
+    for (size_t i = 0; i < f->points; i++)
+        good = read_row(a, f, NULL, values->item[i], rows, f->value + i * (size_t)f->paths) && good;
+    return good;
+}
+
+/* What the ends must be to each other. */
+static bool check_ends(struct axis_reader *a, const struct scenario_factor *f, bool rows)
+{
+    const double *from = f->value, *to = f->value + f->paths;
+    bool differ = false;
+
+    for (int k = 0; k < f->paths; k++) {
+        differ = differ || from[k] != to[k];
+        if (f->log && a->axis->integer[f->first + k]) {
+            axis_complain(a, "spacing log is for numbers that need not be whole");
+            return false;
+        }
+        if (f->log && (from[k] <= 0 || to[k] <= 0)) {
+            axis_complain(a, "spacing log needs from and to above 0");
+            return false;
+        }
+    }
+    if (rows ? !differ : !(from[0] < to[0])) {
+        axis_complain(a, rows ? "from and to are the same point" : "from must be less than to");
+        return false;
+    }
+    return true;
+}
+
+static bool read_range(struct axis_reader *a, struct scenario_factor *f, bool rows)
+{
+    const struct tree_node *from = tree_find(a->node, "from"), *to = tree_find(a->node, "to"),
+                           *spacing = tree_find(a->node, "spacing");
+    char text[AXIS_NAME + 16];
+    int word = 0;
+
+    for (int k = 0; k < f->paths; k++) {
+        if (a->axis->enumeration[f->first + k]) {
+            axis_complain(a, "a field of words needs values");
+            return false;
+        }
+    }
+    if (!from || !to) {
+        axis_complain(a, from ? "to is missing"
+                         : to ? "from is missing"
+                              : "give from and to, or values");
+        return false;
+    }
+    f->points = 2;
+    f->value = calloc(2 * (size_t)f->paths, sizeof *f->value);
+    if (!f->value)
+        return out_of_memory(a->r);
+    bool good = read_row(a, f, "from", from, rows, f->value);
+    good = read_row(a, f, "to", to, rows, f->value + f->paths) && good;
+    snprintf(text, sizeof text, "%s.spacing", a->name);
+    good = (!spacing ||
+            field_word(&a->r->problems, schema_find(&a->r->schema, "sweep.sample.vary[].spacing"),
+                       text, spacing, &word)) &&
+           good;
+    f->log = word != 0;
+    return good && check_ends(a, f, rows);
+}
+
+static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
+{
+    static const char *const range_keys[] = {"from", "to", "spacing"};
+    struct problems *problems = &a->r->problems;
+    const size_t before = problems->count + problems->lost;
+
+    if (a->node->kind != TREE_MAP)
+        return field_mismatch(problems, a->name, "a mapping with path, from, to", a->node);
+    reader_check_keys(a->r, a->node, "sweep.sample.vary[]", a->name);
+    f->first = a->axis->paths;
+    if (problems->count + problems->lost > before || !axis_read_paths(a))
+        return false;
+    f->paths = a->axis->paths - f->first;
+    for (int k = f->first; k < a->axis->paths; k++) {
+        struct scenario_meaning *meaning = &a->axis->meaning[k];
+        axis_describe(a, k, meaning->unit, meaning->text);
+        if (a->axis->enumeration[k] && !(meaning->words = join_words(a->swept[k].field)))
+            return out_of_memory(a->r);
+    }
+    const bool rows = tree_find(a->node, "paths") != NULL;
+    const struct tree_node *values = tree_find(a->node, "values");
+    for (size_t i = 0; values && i < sizeof range_keys / sizeof range_keys[0]; i++) {
+        if (tree_find(a->node, range_keys[i])) {
+            problem_add(problems, a->node->mark, "%s: values and %s exclude each other", a->name,
+                        range_keys[i]);
+            return false;
+        }
+    }
+    return values ? read_listed(a, f, values, rows) : read_range(a, f, rows);
+}
+
+/* ---- the design ------------------------------------------------------------------------------ */
+
+/* A whole number or a word of sweep.sample; its default where it is not given. */
+static bool read_setting(struct reader *r, const char *path, bool needed, double *value)
+{
+    const struct scenario_field *field = schema_find(&r->schema, path);
+    const struct tree_node *node = reader_seen(r, path)->node;
+    int place = 0;
+
+    *value = field->fallback;
+    if (!node && needed) {
+        problem_add(&r->problems, reader_seen(r, "sweep.sample")->key, "%s is missing", path);
+        return false;
+    }
+    if (!node || field->type == FIELD_INTEGER)
+        return !node || field_integer(&r->problems, field, path, node, value);
+    const bool good = field_word(&r->problems, field, path, node, &place);
+    *value = place;
+    return good;
+}
+
+/* A key that one method alone has. */
+static bool check_only(struct reader *r, const char *path, enum doe_method method)
+{
+    const struct seen *seen = reader_seen(r, path);
+    const enum doe_method here = r->s->sample.design.method;
+    if (!seen->node || here == method)
+        return true;
+    problem_add(&r->problems, seen->key, "%s is used only with method %s (here: %s)", path,
+                doe_words[method], doe_words[here]);
+    return false;
+}
+
+static bool read_design(struct reader *r)
+{
+    struct doe *design = &r->s->sample.design;
+    double method, count, second, levels;
+
+    bool good = read_setting(r, "sweep.sample.method", true, &method);
+    bool rest = read_setting(r, "sweep.sample.count", true, &count);
+    rest = read_setting(r, "sweep.sample.second_order", false, &second) && rest;
+    rest = read_setting(r, "sweep.sample.levels", false, &levels) && rest;
+    if (!good)
+        return false;
+    design->method = (enum doe_method)method;
+    good = check_only(r, "sweep.sample.second_order", DOE_SALTELLI);
+    good = check_only(r, "sweep.sample.levels", DOE_MORRIS) && good && rest;
+    if (!good)
+        return false;
+    design->count = (uint64_t)count;
+    design->second_order = second != 0;
+    design->levels = design->method == DOE_MORRIS ? (int)levels : 0;
+    design->seed = r->s->seed;
+    if (design->levels % 2 != 0) {
+        problem_add(&r->problems, reader_seen(r, "sweep.sample.levels")->node->mark,
+                    "sweep.sample.levels: %d is not even", design->levels);
+        return false;
+    }
+    return true;
+}
+
+/* Directions are those of a space of numbers. */
+static bool check_sphere(struct axis_reader *a, const struct scenario_factor *f)
+{
+    bool whole = false;
+    for (int k = 0; k < f->paths; k++)
+        whole = whole || a->axis->integer[f->first + k];
+    if (f->listed || f->log || whole) {
+        axis_complain(a, "method sphere needs linear ranges of numbers that need not be whole");
+        return false;
+    }
+    return true;
+}
+
+static bool read_factors(struct reader *r, struct scenario_axis *axis)
+{
+    struct scenario_sample *sample = &r->s->sample;
+    const struct tree_node *vary = reader_seen(r, "sweep.sample.vary")->node;
+    bool good = true;
+
+    if (!vary) {
+        problem_add(&r->problems, reader_seen(r, "sweep.sample")->key,
+                    "sweep.sample.vary is missing");
+        return false;
+    }
+    if (!field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary))
+        return false;
+    if (vary->count > DOE_MAX_FACTORS) {
+        problem_add(&r->problems, vary->mark, "sweep.sample.vary: more than %d factors",
+                    DOE_MAX_FACTORS);
+        return false;
+    }
+    sample->factor = calloc(vary->count, sizeof *sample->factor);
+    axis->meaning = calloc(SCENARIO_MAX_PATHS, sizeof *axis->meaning);
+    if (!sample->factor || !axis->meaning)
+        return out_of_memory(r);
+    for (size_t j = 0; j < vary->count; j++) {
+        struct axis_reader a = {.r = r,
+                                .axis = axis,
+                                .swept = r->swept[r->s->axes - 1],
+                                .node = vary->item[j],
+                                .number = r->s->axes - 1};
+        snprintf(a.name, sizeof a.name, "sweep.sample.vary[%zu]", j);
+        sample->design.factors = j + 1; /* as many as there are to free */
+        good = read_factor(&a, &sample->factor[j]) &&
+               (sample->design.method != DOE_SPHERE || check_sphere(&a, &sample->factor[j])) &&
+               good;
+    }
+    axis->words = false; /* words are numbers here, with their meaning */
+    return good;
+}
+
+static bool check_size(struct reader *r, const struct scenario_axis *axis)
+{
+    const struct doe *design = &r->s->sample.design;
+    const size_t most = doe_most_factors(design->method);
+    const double points = (double)design->count * (double)doe_block(design);
+
+    if (design->factors > most) {
+        problem_add(&r->problems, reader_seen(r, "sweep.sample.vary")->key,
+                    "sweep.sample.vary: method %s has at most %zu factors, here are %zu",
+                    doe_words[design->method], most, design->factors);
+        return false;
+    }
+    if (points * axis->paths > MOST_NUMBERS) {
+        problem_add(&r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
+                    "sweep.sample.count: %.0f points of %d value%s each are more than the 2^25 "
+                    "numbers that can be kept in memory",
+                    points, axis->paths, axis->paths == 1 ? "" : "s");
+        return false;
+    }
+    if (points > MOST_CASES / (double)r->s->cases) {
+        problem_add(&r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
+                    "sweep.sample: its %.0f points make more than 2^53 cases with the grid",
+                    points);
+        return false;
+    }
+    return true;
+}
+
+void doe_read(struct reader *r)
+{
+    struct scenario *s = r->s;
+    const struct seen *seen = reader_seen(r, "sweep.sample");
+
+    if (!seen->node || seen->bad || !s->scene)
+        return;
+    if (s->axes == SCENARIO_MAX_AXES) {
+        problem_add(&r->problems, seen->key, "sweep.sample: more than %d axes with the grid",
+                    SCENARIO_MAX_AXES);
+        r->axes_bad = true;
+        return;
+    }
+    struct scenario_axis *axis = &s->axis[s->axes++];
+    axis->sample = true;
+    axis->line = seen->key.line;
+    axis->column = seen->key.column;
+    snprintf(axis->name, sizeof axis->name, "sample");
+    snprintf(axis->unit, sizeof axis->unit, "1");
+    snprintf(axis->text, sizeof axis->text, "point of the design");
+    s->sample.given = true;
+    bool good = read_design(r);
+    good = read_factors(r, axis) && good && check_size(r, axis);
+    if (!good) {
+        r->axes_bad = true;
+        return;
+    }
+    axis->count = (size_t)doe_points(&s->sample.design);
+    if (!make_values(s, axis)) {
+        r->axes_bad = true;
+        out_of_memory(r);
+        return;
+    }
+    s->cases *= axis->count;
+}
+
+void doe_free(struct scenario_sample *sample)
+{
+    for (size_t j = 0; sample->factor && j < sample->design.factors; j++)
+        free(sample->factor[j].value);
+    free(sample->factor);
+    sample->factor = NULL;
+}

@@ -1,0 +1,329 @@
+/* field.c - one value of a scenario: read from a node, checked against its row of the schema. */
+#include "field.h"
+
+#include "runner/base/words.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- numbers as text ------------------------------------------------------------------------- */
+
+/* Length of the decimal number that `text` begins with; 0: none. */
+static size_t number_length(const char *text)
+{
+    const char *s = text;
+    size_t whole = 0, fraction = 0;
+
+    if (*s == '+' || *s == '-')
+        s++;
+    const char *digits = s;
+    for (; isdigit((unsigned char)*s); s++)
+        whole++;
+    if (whole > 1 && digits[0] == '0')
+        return 0;
+    if (*s == '.')
+        for (s++; isdigit((unsigned char)*s); s++)
+            fraction++;
+    if (whole + fraction == 0)
+        return 0;
+    if (*s == 'e' || *s == 'E') {
+        const char *exponent = s + 1;
+        if (*exponent == '+' || *exponent == '-')
+            exponent++;
+        if (isdigit((unsigned char)*exponent)) {
+            for (s = exponent; isdigit((unsigned char)*s); s++) {
+            }
+        }
+    }
+    return (size_t)(s - text);
+}
+
+bool number_parse(const char *text, double *value, bool *finite)
+{
+    size_t length = number_length(text);
+
+    *finite = true;
+    if (length == 0 || text[length])
+        return false;
+    *value = strtod(text, NULL);
+    *finite = isfinite(*value);
+    return *finite;
+}
+
+/* "5 mm", "10ms": a number with letters after it. */
+static bool has_unit(const char *text)
+{
+    size_t length = number_length(text);
+    if (length == 0)
+        return false;
+    const char *rest = text + length + strspn(text + length, " ");
+    return isalpha((unsigned char)*rest) || *rest == '%' || (unsigned char)*rest >= 0x80;
+}
+
+/* ---- problems -------------------------------------------------------------------------------- */
+
+static const char *found(char *buffer, size_t size, const struct tree_node *node)
+{
+    char word[SHOWN_SIZE];
+    if (node->kind != TREE_SCALAR)
+        snprintf(buffer, size, "%s", node->kind == TREE_LIST ? "a list" : "a mapping");
+    else if (node->quoted)
+        snprintf(buffer, size, "the text \"%s\"", shown(word, node->text));
+    else if (!node->text[0] || strcmp(node->text, "~") == 0 || strcmp(node->text, "null") == 0)
+        snprintf(buffer, size, "nothing");
+    else
+        snprintf(buffer, size, "'%s'", shown(word, node->text));
+    return buffer;
+}
+
+bool field_mismatch(struct problems *problems, const char *name, const char *wanted,
+                    const struct tree_node *node)
+{
+    char what[2 * SHOWN_SIZE];
+    problem_add(problems, node->mark, "%s: expected %s, found %s", name, wanted,
+                found(what, sizeof what, node));
+    return false;
+}
+
+bool field_unknown(struct problems *problems, const char *name, const char *what, const char *word,
+                   struct mark mark, const char *const *known, size_t count)
+{
+    char wrong[SHOWN_SIZE], list[500], hint[2 * SHOWN_SIZE] = "";
+    const char *near = problems_full(problems) ? NULL : nearest_word(word, known, count);
+
+    if (near)
+        snprintf(hint, sizeof hint, "; did you mean '%.96s'?", near);
+    problem_add(problems, mark, "%s%sunknown %s '%s'%s (known: %s)", name, name[0] ? ": " : "",
+                what, shown(wrong, word), hint, word_list(list, sizeof list, known, count));
+    return false;
+}
+
+bool field_admits(struct problems *problems, const struct scenario_field *field, const char *name,
+                  const char *what, struct mark mark, double value)
+{
+    char range[96], word[SHOWN_SIZE];
+    if (isnan(value) || value < field->low || value > field->high ||
+        (field->low_open && value == field->low) || (field->high_open && value == field->high)) {
+        bool quantity = field->unit[0] && strcmp(field->unit, "1") != 0 && field->columns == 0;
+        problem_add(problems, mark, "%s: %s is out of range (%s%s%s)", name, shown(word, what),
+                    schema_range_text(field, range, sizeof range), quantity ? " " : "",
+                    quantity ? field->unit : "");
+        return false;
+    }
+    return true;
+}
+
+/* Says why a node is no number. */
+static bool no_number(struct problems *problems, const struct scenario_field *field,
+                      const char *name, const char *wanted, const struct tree_node *node)
+{
+    char what[2 * SHOWN_SIZE];
+    double value;
+    bool finite = true;
+
+    if (node->kind != TREE_SCALAR)
+        return field_mismatch(problems, name, wanted, node);
+    found(what, sizeof what, node);
+    if (node->quoted && number_parse(node->text, &value, &finite)) {
+        problem_add(problems, node->mark, "%s: expected %s, found %s; remove the quotes", name,
+                    wanted, what);
+    } else if (!node->quoted && (!number_parse(node->text, &value, &finite) && !finite)) {
+        problem_add(problems, node->mark, "%s: %s is too large for a number", name, what);
+    } else if (!node->quoted && strspn(node->text, "+-") <= 1 &&
+               (!strcasecmp(node->text + strspn(node->text, "+-"), ".inf") ||
+                !strcasecmp(node->text, ".nan"))) {
+        problem_add(problems, node->mark, "%s: expected %s, found %s; it must be finite%s", name,
+                    wanted, what, field->type == FIELD_NUMBER && field->words ? ", or none" : "");
+    } else if (has_unit(node->text)) {
+        const char *unit = field->unit;
+        problem_add(problems, node->mark, "%s: expected %s, found %s (numbers only; %s %s%s)", name,
+                    wanted, what, schema_last_name(name),
+                    !unit[0] || strcmp(unit, "1") == 0 ? "has no unit" : "is in ",
+                    !unit[0] || strcmp(unit, "1") == 0 ? "" : unit);
+    } else {
+        return field_mismatch(problems, name, wanted, node);
+    }
+    return false;
+}
+
+/* ---- values ---------------------------------------------------------------------------------- */
+
+bool field_number(struct problems *problems, const struct scenario_field *field, const char *name,
+                  const struct tree_node *node, double *value)
+{
+    bool finite;
+    if (field->words && node->kind == TREE_SCALAR && strcmp(node->text, field->words[0]) == 0) {
+        *value = INFINITY;
+        return true;
+    }
+    if (node->kind != TREE_SCALAR || node->quoted || !number_parse(node->text, value, &finite)) {
+        return no_number(problems, field, name, field->words ? "a number or none" : "a number",
+                         node);
+    }
+    return field_admits(problems, field, name, node->text, node->mark, *value);
+}
+
+bool field_integer(struct problems *problems, const struct scenario_field *field, const char *name,
+                   const struct tree_node *node, double *value)
+{
+    bool finite;
+    if (node->kind != TREE_SCALAR || node->quoted || !number_parse(node->text, value, &finite))
+        return no_number(problems, field, name, "a whole number", node);
+    if (*value != floor(*value))
+        return field_mismatch(problems, name, "a whole number", node);
+    return field_admits(problems, field, name, node->text, node->mark, *value);
+}
+
+bool field_seed(struct problems *problems, const char *name, const struct tree_node *node,
+                uint64_t *value)
+{
+    static const struct scenario_field field = {
+        .type = FIELD_INTEGER, .low = -INFINITY, .high = INFINITY};
+    double number = 0;
+    if (!field_integer(problems, &field, name, node, &number))
+        return false;
+    bool digits = !node->text[strspn(node->text, "+-0123456789")]; /* unlike 1e3 or 7.0 */
+    *value = UINT64_MAX;
+    if (number >= 0 && digits)
+        *value = strtoull(node->text, NULL, 10);
+    else if (number >= 0 && number < 0x1p63)
+        *value = (uint64_t)number;
+    if (*value > INT64_MAX) {
+        char word[SHOWN_SIZE];
+        problem_add(problems, node->mark, "%s: %s is out of range (0 ... 9223372036854775807)",
+                    name, shown(word, node->text));
+        return false;
+    }
+    return true;
+}
+
+bool field_word(struct problems *problems, const struct scenario_field *field, const char *name,
+                const struct tree_node *node, int *place)
+{
+    if (node->kind != TREE_SCALAR || (!node->text[0] && !node->quoted)) {
+        char list[300], wanted[320];
+        snprintf(wanted, sizeof wanted, "one of %s",
+                 word_list(list, sizeof list, field->words, field->word_count));
+        return field_mismatch(problems, name, wanted, node);
+    }
+    for (size_t i = 0; i < field->word_count; i++) {
+        if (strcmp(node->text, field->words[i]) == 0) {
+            *place = (int)i;
+            return true;
+        }
+    }
+    return field_unknown(problems, name, "word", node->text, node->mark, field->words,
+                         field->word_count);
+}
+
+bool field_list(struct problems *problems, const char *name, const char *wanted,
+                const struct tree_node *node)
+{
+    if (node->kind != TREE_LIST)
+        return field_mismatch(problems, name, wanted, node);
+    if (node->count == 0) {
+        problem_add(problems, node->mark, "%s: the list is empty", name);
+        return false;
+    }
+    return true;
+}
+
+bool field_words(struct problems *problems, const struct scenario_field *field, const char *name,
+                 const struct tree_node *node, uint32_t *mask)
+{
+    bool good = true;
+    uint32_t bits = 0;
+
+    if (!field_list(problems, name, "a list of names", node))
+        return false;
+    for (size_t i = 0; i < node->count; i++) {
+        int place;
+        if (!field_word(problems, field, name, node->item[i], &place)) {
+            good = false;
+        } else if (bits >> place & 1) {
+            problem_add(problems, node->item[i]->mark, "%s: '%s' is listed twice", name,
+                        field->words[place]);
+            good = false;
+        } else {
+            bits |= (uint32_t)1 << place;
+        }
+    }
+    *mask = bits;
+    return good;
+}
+
+bool field_text(struct problems *problems, const char *name, const struct tree_node *node,
+                char *text, size_t size)
+{
+    double value;
+    bool finite;
+
+    if (node->kind != TREE_SCALAR)
+        return field_mismatch(problems, name, "text", node);
+    if (!node->quoted) {
+        static const char *const others[] = {"", "~", "null", "true", "false"};
+        bool other = number_parse(node->text, &value, &finite) || !finite;
+        for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+            other = other || strcmp(node->text, others[i]) == 0;
+        if (other) {
+            return field_mismatch(problems, name, "text (in quotes where it looks otherwise)",
+                                  node);
+        }
+    }
+    for (const unsigned char *s = (const unsigned char *)node->text; *s; s++) {
+        if (*s < 0x20 || *s == 0x7f || (*s == 0xc2 && s[1] < 0xa0)) {
+            problem_add(problems, node->mark, "%s: more than a line, or control characters", name);
+            return false;
+        }
+    }
+    if (strlen(node->text) >= size) {
+        problem_add(problems, node->mark, "%s: longer than %zu bytes", name, size - 1);
+        return false;
+    }
+    memcpy(text, node->text, strlen(node->text) + 1);
+    return true;
+}
+
+static bool stable_pole(struct problems *problems, const struct scenario_field *field,
+                        const char *name, const struct tree_node *node, double re)
+{
+    char word[SHOWN_SIZE];
+    if (re >= 0) {
+        problem_add(problems, node->mark,
+                    "%s: %s is not in the open left half plane: the loop would not be stable", name,
+                    shown(word, node->text));
+        return false;
+    }
+    return field_admits(problems, field, name, node->text, node->mark, re);
+}
+
+bool field_pole(struct problems *problems, const struct scenario_field *field, const char *name,
+                const struct tree_node *node, double *re, double *im)
+{
+    static const char wanted[] = "a number, or a complex one such as -3+1.5i";
+    struct scenario_field imaginary = *field;
+    char part[64];
+    bool finite;
+
+    *im = 0;
+    if (node->kind != TREE_SCALAR || node->quoted)
+        return no_number(problems, field, name, wanted, node);
+    size_t length = number_length(node->text), total = strlen(node->text);
+    bool sign = node->text[length] == '+' || node->text[length] == '-';
+    if (length == 0 || !sign || node->text[total - 1] != 'i' || total >= sizeof part) {
+        if (!number_parse(node->text, re, &finite))
+            return no_number(problems, field, name, wanted, node);
+        return stable_pole(problems, field, name, node, *re);
+    }
+    snprintf(part, sizeof part, "%.*s", (int)(total - length - 1), node->text + length);
+    bool good = number_parse(part, im, &finite);
+    snprintf(part, sizeof part, "%.*s", (int)length, node->text);
+    if (!good || !number_parse(part, re, &finite))
+        return field_mismatch(problems, name, wanted, node);
+    imaginary.high = -field->low;
+    imaginary.high_open = false;
+    return stable_pole(problems, field, name, node, *re) &&
+           field_admits(problems, &imaginary, name, node->text, node->mark, *im);
+}

@@ -1,0 +1,89 @@
+/* reader.h - the state of reading a scenario, shared by scenario.c, scenario_check.c, sweep.c and
+ * sample.c. */
+#ifndef STANCE_SCENARIO_READER_H
+#define STANCE_SCENARIO_READER_H
+
+#include "field.h"
+
+/* What is known of a field of the schema. */
+struct seen {
+    const struct tree_node *node; /* its value in the tree, NULL: not given */
+    struct mark key;              /* of its key there */
+    bool bad;                     /* given, but not good; already reported */
+    bool excused;                 /* not given, but some unknown key is nearly its name */
+    bool swept;
+    struct mark sweep; /* of the path in the axis */
+};
+
+/* A field that an axis varies. */
+struct swept_field {
+    const struct scenario_field *field;
+    size_t index[2];
+    struct mark mark;
+};
+
+struct reader {
+    struct scenario *s;
+    struct tree tree;
+    struct problems problems;
+    struct schema schema;
+    struct seen seen[SCHEMA_MAX_FIELDS];
+    struct seen nothing; /* of paths that the scene lacks */
+    struct swept_field swept[SCENARIO_MAX_AXES][SCENARIO_MAX_PATHS];
+    bool axes_bad; /* the number of cases is not known */
+};
+
+/* What is known of the field at a path of the schema ("[]" for indices); never NULL, for a path
+ * that the scene lacks something that is not given. */
+struct seen *reader_seen(struct reader *r, const char *path);
+
+static inline bool reader_given(const struct seen *seen)
+{
+    return seen->node || seen->swept;
+}
+
+/* Reports keys of a mapping that the schema does not have below `path`; `name` is the path as it
+ * stands in the file, with indices. */
+void reader_check_keys(struct reader *r, const struct tree_node *map, const char *path,
+                       const char *name);
+
+/* scenario_check.c: what the keys mean for each other; completes the base values. */
+void scenario_cross_check(struct reader *r);
+
+/* The axis being read: its place in the scenario and in the file. */
+enum { AXIS_NAME = 48 };
+struct axis_reader {
+    struct reader *r;
+    struct scenario_axis *axis;
+    struct swept_field *swept;    /* [axis->paths] */
+    const struct tree_node *node; /* the mapping */
+    int number;                   /* of the axis */
+    char name[AXIS_NAME];         /* sweep.grid[0], sweep.sample.vary[0] */
+};
+
+/* sweep.c: the path or paths of the mapping, behind those that the axis has. False: a problem. */
+bool axis_read_paths(struct axis_reader *a);
+/* sweep.c: a value of path k. False: a problem. */
+bool axis_read_value(struct axis_reader *a, const struct tree_node *node, int k, double *value);
+/* sweep.c: one of from and to of a range of path k, a finite number. False: a problem. */
+bool axis_read_end(struct axis_reader *a, const char *key, const struct tree_node *node, int k,
+                   double *value);
+/* sweep.c: unit and text of path k. */
+void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[160]);
+/* A problem of the mapping as a whole. */
+void axis_complain(struct axis_reader *a, const char *what);
+/* "sweep.grid[2]" or "sweep.sample". */
+const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME]);
+
+/* sample.c: the last axis from sweep.sample, after the others. */
+void doe_read(struct reader *r);
+void doe_free(struct scenario_sample *sample);
+
+/* sweep.c: the axes from the value of sweep.grid, into r->s. */
+void sweep_read(struct reader *r, const struct tree_node *grid);
+/* The keys of sweep.refine, and what they mean for the axes and for what is recorded; after both.
+ */
+void sweep_read_refine(struct reader *r);
+void sweep_free(struct scenario_axis *axis);
+
+#endif

@@ -1,0 +1,687 @@
+/* scenario.c - a scenario file, read, checked and bound into struct scenario.
+ *
+ * First every value by itself, against its row of the schema; then the axes; then what the keys
+ * mean for each other. A key whose value was bad counts as given, so that one error does not lead
+ * to others.
+ */
+#include "scenario.h"
+#include "reader.h"
+
+#include "runner/base/command.h"
+#include "runner/base/words.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/magic.h>
+#include <math.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+
+#define DEFAULT_RECORD_EVERY 0.01 /* s */
+
+enum { PATH_SIZE = 160 };
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+/* Whether reading would wait for a writer who may never come. A pipe without a name, such as the
+ * shell's <(command), has one from the start. */
+static bool is_deserted(int descriptor)
+{
+    enum { PATIENCE = 900 }; /* ms */
+    struct pollfd waited = {.fd = descriptor, .events = POLLIN};
+    struct stat status;
+    struct statfs system;
+
+    return fstat(descriptor, &status) == 0 && S_ISFIFO(status.st_mode) &&
+           fstatfs(descriptor, &system) == 0 && system.f_type != PIPEFS_MAGIC &&
+           poll(&waited, 1, PATIENCE) == 0;
+}
+
+/* NULL: see errno. */
+static FILE *open_file(const char *file)
+{
+    int descriptor = open(file, O_RDONLY | O_NONBLOCK | O_CLOEXEC), error = ETIMEDOUT;
+    FILE *in = NULL;
+
+    if (descriptor >= 0 && !is_deserted(descriptor)) {
+        fcntl(descriptor, F_SETFL, 0); /* now wait for whatever comes */
+        in = fdopen(descriptor, "rb");
+        error = errno;
+    }
+    if (descriptor >= 0 && !in) {
+        close(descriptor);
+        errno = error;
+    }
+    return in;
+}
+
+/* The whole file as a string, or NULL after a problem. */
+static char *read_file(struct reader *r, const char *file, size_t *length)
+{
+    struct mark nowhere = {0};
+    struct stat status;
+    char *text = NULL;
+    FILE *in = open_file(file);
+
+    if (!in || fstat(fileno(in), &status) != 0) {
+        problem_add(&r->problems, nowhere, "%s",
+                    errno == ETIMEDOUT ? "a named pipe into which nothing is written"
+                                       : strerror(errno));
+    } else if (S_ISDIR(status.st_mode)) {
+        problem_add(&r->problems, nowhere, "is a directory, not a scenario file");
+    } else if (!(text = malloc(TREE_MAX_BYTES + 2))) {
+        problem_add(&r->problems, nowhere, "out of memory");
+    } else {
+        *length = fread(text, 1, TREE_MAX_BYTES + 1, in);
+        text[*length] = '\0';
+        const char *wrong = ferror(in) ? strerror(errno) : NULL;
+        if (!wrong && *length > TREE_MAX_BYTES)
+            wrong = "larger than 1 MiB, the most a scenario may take";
+        if (wrong) {
+            problem_add(&r->problems, nowhere, "%s", wrong);
+            free(text);
+            text = NULL;
+        }
+    }
+    if (in)
+        fclose(in);
+    return text;
+}
+
+static bool read_tree(struct reader *r, const char *file, const char *given)
+{
+    size_t length = given ? strlen(given) : 0;
+    char *own = given ? NULL : read_file(r, file, &length);
+    const char *text = given ? given : own;
+    bool good = text != NULL;
+
+    if (good && length > TREE_MAX_BYTES) {
+        problem_add(&r->problems, (struct mark){0}, "larger than 1 MiB");
+        good = false;
+    }
+    good = good && tree_check_text(text, length, &r->problems) &&
+           tree_parse(&r->tree, text, length, &r->problems);
+    free(own);
+    return good;
+}
+
+/* ---- keys ------------------------------------------------------------------------------------ */
+
+struct seen *reader_seen(struct reader *r, const char *path)
+{
+    const struct scenario_field *field = schema_find(&r->schema, path);
+    return field ? &r->seen[field - r->schema.field] : &r->nothing;
+}
+
+/* A key that is unknown here but stands elsewhere in the format, or NULL. */
+static const struct scenario_field *elsewhere(const struct schema *schema, const char *key)
+{
+    for (size_t i = 0; i < schema->count; i++)
+        if (!strchr(schema->field[i].path, '[') &&
+            strcmp(schema_last_name(schema->field[i].path), key) == 0)
+            return &schema->field[i];
+    return NULL;
+}
+
+static void unknown_key(struct reader *r, const struct tree_key *key, const char *path,
+                        const char *name, const char *const *known, size_t count)
+{
+    char near_path[PATH_SIZE], word[SHOWN_SIZE], list[500];
+    if (problems_full(&r->problems)) {
+        field_unknown(&r->problems, name, "key", key->name, key->mark, known, count);
+        return;
+    }
+    const char *near = nearest_word(key->name, known, count);
+    const struct scenario_field *other = elsewhere(&r->schema, key->name);
+
+    if (!near && r->s->scene) {
+        snprintf(near_path, sizeof near_path, "%s%s%.64s", path, path[0] ? "." : "", key->name);
+        if (schema_scene_with(near_path)) {
+            problem_add(&r->problems, key->mark, "%s%sthe scene %s has no key '%s' (known: %s)",
+                        name, name[0] ? ": " : "", r->s->scene->name, shown(word, key->name),
+                        word_list(list, sizeof list, known, count));
+            if (strcmp(path, "initial") == 0)
+                reader_seen(r, path)->excused = true; /* that there is no start is said already */
+            return;
+        }
+    }
+    if (!near && other) {
+        problem_add(&r->problems, key->mark, "%s%sunknown key '%s'; did you mean '%s'?", name,
+                    name[0] ? ": " : "", shown(word, key->name), other->path);
+        return;
+    }
+    field_unknown(&r->problems, name, "key", key->name, key->mark, known, count);
+    if (near) {
+        snprintf(near_path, sizeof near_path, "%s%s%s", path, path[0] ? "." : "", near);
+        const struct scenario_field *field = schema_find(&r->schema, near_path);
+        if (field)
+            r->seen[field - r->schema.field].excused = true;
+    }
+}
+
+void reader_check_keys(struct reader *r, const struct tree_node *map, const char *path,
+                       const char *name)
+{
+    const char *known[SCHEMA_MAX_FIELDS];
+    size_t count = schema_children(&r->schema, path, known, SCHEMA_MAX_FIELDS);
+
+    for (size_t i = 0; i < map->count; i++) {
+        bool found = false;
+        for (size_t k = 0; k < count && !found; k++)
+            found = strcmp(map->key[i].name, known[k]) == 0;
+        if (!found)
+            unknown_key(r, &map->key[i], path, name, known, count);
+    }
+}
+
+/* ---- values by themselves -------------------------------------------------------------------- */
+
+static void read_map(struct reader *r, const struct tree_node *map, const char *path);
+
+/* Reads a value that is bound by its offset in the table. */
+static bool read_bound(struct reader *r, const struct scenario_field *field,
+                       const struct tree_node *node)
+{
+    char *place = (char *)&r->s->base + field->offset;
+    double number = 0;
+    int word = 0;
+    uint32_t mask = 0;
+    bool good;
+
+    switch (field->type) {
+    case FIELD_NUMBER:
+        good = field_number(&r->problems, field, field->path, node, &number);
+        memcpy(place, &number, good ? sizeof number : 0);
+        return good;
+    case FIELD_INTEGER:
+        good = field_integer(&r->problems, field, field->path, node, &number);
+        word = good ? (int)number : 0; /* what is out of range need not fit */
+        break;
+    case FIELD_WORD:
+        good = field_word(&r->problems, field, field->path, node, &word);
+        break;
+    default:
+        good = field_words(&r->problems, field, field->path, node, &mask);
+        word = (int)mask;
+        break;
+    }
+    memcpy(place, &word, good ? sizeof word : 0);
+    return good;
+}
+
+static void read_value(struct reader *r, const struct scenario_field *field,
+                       const struct tree_key *key, const struct tree_node *node)
+{
+    struct seen *seen = &r->seen[field - r->schema.field];
+
+    seen->node = node;
+    seen->key = key->mark;
+    if (field->by_scene && !r->schema.scene)
+        return;
+    if (field->type == FIELD_MAP || (field->type == FIELD_MAP_OR_WORD && node->kind == TREE_MAP)) {
+        if (node->kind != TREE_MAP) {
+            seen->bad = true;
+            field_mismatch(&r->problems, field->path, "a mapping", node);
+        } else {
+            read_map(r, node, field->path);
+        }
+    } else if (field->offset != NO_OFFSET) {
+        seen->bad = !read_bound(r, field, node);
+    }
+}
+
+static void read_map(struct reader *r, const struct tree_node *map, const char *path)
+{
+    reader_check_keys(r, map, path, path);
+    for (size_t i = 0; i < map->count; i++) {
+        char below[PATH_SIZE];
+        snprintf(below, sizeof below, "%s%s%.64s", path, path[0] ? "." : "", map->key[i].name);
+        const struct scenario_field *field =
+            strpbrk(map->key[i].name, ".[") ? NULL : schema_find(&r->schema, below);
+        if (field)
+            read_value(r, field, &map->key[i], map->item[i]);
+    }
+}
+
+static void set_defaults(struct reader *r)
+{
+    struct scenario_values *base = &r->s->base;
+
+    for (int i = 0; i < STANCE_MAX_ROBOT; i++)
+        base->model[i] = NAN;
+    for (int i = 0; i < STANCE_MAX_POSTURE; i++)
+        base->equilibrium.posture[i] = base->design_point.posture[i] = base->target[i] = NAN;
+    for (int i = 0; i < SCENARIO_MAX_POLES; i++)
+        base->state_weights[i] = 1;
+    for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
+        base->torque_weights[i] = 1;
+    for (size_t i = 0; i < r->schema.count; i++) {
+        const struct scenario_field *field = &r->schema.field[i];
+        if (field->offset == NO_OFFSET || strchr(field->path, '['))
+            continue;
+        char *place = (char *)base + field->offset;
+        if (field->type == FIELD_NUMBER) {
+            memcpy(place, &field->fallback, sizeof field->fallback);
+        } else if (field->type == FIELD_WORD) {
+            int word = isnan(field->fallback) ? 0 : (int)field->fallback;
+            memcpy(place, &word, sizeof word);
+        }
+    }
+    if (r->s->scene && r->s->scene->actuators == 0)
+        base->torque_limit = INFINITY;
+    if (r->s->scene && r->s->scene->postures == 0)
+        base->settle_angle = 1; /* of no angle */
+    base->settle = 1;
+    base->contacts = r->s->scene ? (1 << r->s->scene->contacts) - 1 : 0;
+    r->s->cases = 1;
+    r->s->seed = 1;
+}
+
+/* ---- values that are bound by hand ----------------------------------------------------------- */
+
+static void check_conjugates(struct reader *r, const struct tree_node *node)
+{
+    const struct scenario_values *base = &r->s->base;
+    bool taken[SCENARIO_MAX_POLES] = {false};
+    char word[SHOWN_SIZE];
+
+    for (size_t i = 0; i < node->count; i++) {
+        bool paired = taken[i] || base->pole_im[i] == 0;
+        for (size_t k = i + 1; k < node->count && !paired; k++) {
+            paired = !taken[k] && base->pole_re[k] == base->pole_re[i] &&
+                     base->pole_im[k] == -base->pole_im[i];
+            taken[k] = taken[k] || paired;
+        }
+        if (!paired) {
+            problem_add(&r->problems, node->item[i]->mark,
+                        "controller.poles[%zu]: %s lacks its conjugate", i,
+                        shown(word, node->item[i]->text));
+            reader_seen(r, "controller.poles")->bad = true;
+        }
+    }
+}
+
+static bool has_items(struct reader *r, const char *name, const struct tree_node *node,
+                      size_t items, const char *what)
+{
+    char wanted[64];
+    snprintf(wanted, sizeof wanted, "%zu %s", items, what);
+    if (node->kind != TREE_LIST)
+        return field_mismatch(&r->problems, name, wanted, node);
+    if (node->count != items) {
+        problem_add(&r->problems, node->mark, "%s: expected %s, found %zu", name, wanted,
+                    node->count);
+        return false;
+    }
+    return true;
+}
+
+static void read_poles(struct reader *r)
+{
+    struct seen *seen = reader_seen(r, "controller.poles");
+    const struct scenario_field *field = schema_find(&r->schema, "controller.poles[]");
+    char name[PATH_SIZE];
+
+    if (!seen->node || !field)
+        return;
+    seen->bad = !has_items(r, "controller.poles", seen->node, field->items, "poles");
+    for (size_t i = 0; i < field->items && !seen->bad; i++) {
+        snprintf(name, sizeof name, "controller.poles[%zu]", i);
+        if (!field_pole(&r->problems, field, name, seen->node->item[i], &r->s->base.pole_re[i],
+                        &r->s->base.pole_im[i]))
+            seen->bad = true;
+    }
+    if (!seen->bad)
+        check_conjugates(r, seen->node);
+}
+
+static void read_gains(struct reader *r)
+{
+    struct seen *seen = reader_seen(r, "controller.gains");
+    const struct scenario_field *field = schema_find(&r->schema, "controller.gains[][]");
+    char name[PATH_SIZE];
+
+    if (!seen->node || !field)
+        return;
+    seen->bad = !has_items(r, "controller.gains", seen->node, field->items, "rows");
+    for (size_t i = 0; i < field->items && !seen->bad; i++) {
+        const struct tree_node *row = seen->node->item[i];
+        snprintf(name, sizeof name, "controller.gains[%zu]", i);
+        seen->bad = !has_items(r, name, row, field->columns, "numbers");
+        for (size_t k = 0; k < field->columns && !seen->bad; k++) {
+            snprintf(name, sizeof name, "controller.gains[%zu][%zu]", i, k);
+            seen->bad = !field_number(&r->problems, field, name, row->item[k],
+                                      &r->s->base.gains[i * field->columns + k]);
+        }
+    }
+}
+
+static void read_weights(struct reader *r, const char *path, double *weight)
+{
+    struct seen *seen = reader_seen(r, path);
+    char name[PATH_SIZE];
+
+    snprintf(name, sizeof name, "%s[]", path);
+    const struct scenario_field *field = schema_find(&r->schema, name);
+    if (!seen->node || !field)
+        return;
+    seen->bad = !has_items(r, path, seen->node, field->items, "numbers");
+    for (size_t i = 0; i < field->items && !seen->bad; i++) {
+        snprintf(name, sizeof name, "%s[%zu]", path, i);
+        seen->bad = !field_number(&r->problems, field, name, seen->node->item[i], &weight[i]);
+    }
+}
+
+static void read_settle(struct reader *r)
+{
+    struct seen *seen = reader_seen(r, "stop.settle");
+    char word[SHOWN_SIZE];
+
+    if (!seen->node || seen->node->kind == TREE_MAP)
+        return;
+    if (seen->node->kind == TREE_SCALAR && strcmp(seen->node->text, "off") == 0) {
+        r->s->base.settle = 0;
+        return;
+    }
+    seen->bad = true;
+    if (seen->node->kind == TREE_SCALAR && seen->node->text[0]) {
+        problem_add(&r->problems, seen->node->mark,
+                    "stop.settle: expected off, or a mapping with angle, rate, hold; found '%s'",
+                    shown(word, seen->node->text));
+    } else {
+        field_mismatch(&r->problems, "stop.settle", "off, or a mapping with angle, rate, hold",
+                       seen->node);
+    }
+}
+
+static int by_number(const void *left, const void *right)
+{
+    const uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+    return a < b ? -1 : a > b;
+}
+
+static void read_record_list(struct reader *r, const struct tree_node *node)
+{
+    struct scenario *s = r->s;
+    struct scenario_field index = {.type = FIELD_INTEGER, .high = (double)(s->cases - 1)};
+    double number;
+
+    if (!field_list(&r->problems, "record.cases", "none, all or a list of cases", node))
+        return;
+    if (r->axes_bad)
+        index.high = 0x1p53;
+    s->record_cases = RECORD_LIST;
+    s->record_list = malloc(node->count * sizeof *s->record_list);
+    if (!s->record_list) {
+        problem_add(&r->problems, (struct mark){0}, "out of memory");
+        return;
+    }
+    for (size_t i = 0; i < node->count; i++)
+        if (field_integer(&r->problems, &index, "record.cases", node->item[i], &number))
+            s->record_list[s->record_count++] = (uint64_t)number;
+    qsort(s->record_list, s->record_count, sizeof *s->record_list, by_number);
+    size_t unique = 0;
+    for (size_t i = 0; i < s->record_count; i++)
+        if (i == 0 || s->record_list[i] != s->record_list[unique - 1])
+            s->record_list[unique++] = s->record_list[i];
+    s->record_count = unique;
+}
+
+static void read_record(struct reader *r)
+{
+    struct scenario *s = r->s;
+    const struct tree_node *every = reader_seen(r, "record.every")->node;
+    const struct tree_node *cases = reader_seen(r, "record.cases")->node;
+    const struct tree_node *answers = reader_seen(r, "record.answers")->node;
+    int word = 0;
+
+    if (cases && cases->kind == TREE_SCALAR) {
+        field_word(&r->problems, schema_find(&r->schema, "record.cases"), "record.cases", cases,
+                   &word);
+        s->record_cases = word ? RECORD_ALL : RECORD_NONE;
+    } else if (cases) {
+        read_record_list(r, cases);
+    }
+    if (every) {
+        field_number(&r->problems, schema_find(&r->schema, "record.every"), "record.every", every,
+                     &s->record_every);
+    } else if (s->record_cases != RECORD_NONE) {
+        s->record_every = DEFAULT_RECORD_EVERY;
+    }
+    s->answers = UINT32_MAX;
+    if (answers && field_words(&r->problems, schema_find(&r->schema, "record.answers"),
+                               "record.answers", answers, &s->answers))
+        s->answers |= (s->answers >> SCENARIO_FINAL_STATE & 1) << 31;
+}
+
+static void read_by_hand(struct reader *r)
+{
+    const struct tree_node *title = reader_seen(r, "title")->node;
+    const struct tree_node *seed = reader_seen(r, "seed")->node;
+    const struct tree_node *grid = reader_seen(r, "sweep.grid")->node;
+
+    snprintf(r->s->title, sizeof r->s->title, "%s", r->s->name);
+    if (title)
+        field_text(&r->problems, "title", title, r->s->title, sizeof r->s->title);
+    if (seed)
+        field_seed(&r->problems, "seed", seed, &r->s->seed);
+    read_poles(r);
+    read_gains(r);
+    read_weights(r, "controller.weights.states", r->s->base.state_weights);
+    read_weights(r, "controller.weights.torques", r->s->base.torque_weights);
+    read_settle(r);
+    r->axes_bad = !r->s->scene;
+    if (grid && r->s->scene)
+        sweep_read(r, grid);
+    doe_read(r);
+    read_record(r);
+    sweep_read_refine(r);
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+/* Format version and scene decide what else may stand in the file. */
+static bool read_version(struct reader *r)
+{
+    const struct tree_node *version = tree_find(r->tree.root, "stance");
+    char word[SHOWN_SIZE];
+    double number;
+    bool finite;
+
+    if (!version)
+        return true; /* reported as missing */
+    if (version->kind != TREE_SCALAR || version->quoted ||
+        !number_parse(version->text, &number, &finite))
+        return field_mismatch(&r->problems, "stance", "the version of the format, 1", version);
+    if (number != 1) {
+        problem_add(&r->problems, version->mark,
+                    "stance: this program reads version 1 of the format, not %s",
+                    shown(word, version->text));
+        return false;
+    }
+    return true;
+}
+
+static void read_scene(struct reader *r)
+{
+    const struct tree_node *scene = tree_find(r->tree.root, "scene");
+    int place;
+
+    schema_build(&r->schema, NULL);
+    if (scene &&
+        field_word(&r->problems, schema_find(&r->schema, "scene"), "scene", scene, &place)) {
+        r->s->scene = stance_scenes()[place];
+        if (!schema_build(&r->schema, r->s->scene)) {
+            problem_add(&r->problems, scene->mark, "scene: %s has more names than fit",
+                        r->s->scene->name);
+            r->s->scene = NULL;
+            schema_build(&r->schema, NULL);
+        }
+    }
+}
+
+static struct mark place_of(struct reader *r, const char *path)
+{
+    const struct seen *seen = reader_seen(r, path);
+    return seen->node && seen->key.set == 0 ? seen->key : (struct mark){0, 1, 1};
+}
+
+/* Remembers where keys stand. Without memory later errors point at the mapping instead. */
+static void note_places(struct reader *r)
+{
+    struct scenario *s = r->s;
+    s->place = calloc(r->schema.count, sizeof *s->place);
+    for (size_t i = 0; s->place && i < r->schema.count; i++) {
+        if (r->seen[i].node && r->seen[i].key.set == 0) {
+            struct scenario_place *place = &s->place[s->places++];
+            snprintf(place->path, sizeof place->path, "%s", r->schema.field[i].path);
+            place->line = r->seen[i].key.line;
+            place->column = r->seen[i].key.column;
+        }
+    }
+}
+
+bool scenario_place(const struct scenario *s, const char *text, int *line, int *column)
+{
+    size_t best = 0;
+    for (size_t i = 0; i < s->places; i++) {
+        const size_t length = strlen(s->place[i].path);
+        if (length > best && strncmp(text, s->place[i].path, length) == 0 &&
+            strchr(".[: ", text[length]) && text[length]) {
+            best = length;
+            *line = s->place[i].line;
+            *column = s->place[i].column;
+        }
+    }
+    return best > 0;
+}
+
+/* Keys in the order of the table, so that equal scenarios have equal text. */
+static void sort_keys(const struct schema *schema, struct tree_node *node, const char *path)
+{
+    const char *known[SCHEMA_MAX_FIELDS];
+    char below[PATH_SIZE];
+
+    if (node->kind == TREE_LIST) {
+        snprintf(below, sizeof below, "%.100s[]", path);
+        for (size_t i = 0; i < node->count; i++)
+            sort_keys(schema, node->item[i], below);
+    }
+    if (node->kind != TREE_MAP)
+        return;
+    size_t count = schema_children(schema, path, known, SCHEMA_MAX_FIELDS), sorted = 0;
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = sorted; i < node->count; i++) {
+            if (strcmp(node->key[i].name, known[k]) != 0)
+                continue;
+            struct tree_key key = node->key[i];
+            struct tree_node *item = node->item[i];
+            node->key[i] = node->key[sorted];
+            node->item[i] = node->item[sorted];
+            node->key[sorted] = key;
+            node->item[sorted++] = item;
+            break;
+        }
+    }
+    for (size_t i = 0; i < node->count; i++) {
+        snprintf(below, sizeof below, "%.90s%s%.64s", path, path[0] ? "." : "", node->key[i].name);
+        sort_keys(schema, node->item[i], below);
+    }
+}
+
+static void read_all(struct reader *r, const char *file, const char *text, const char *const *sets,
+                     size_t set_count)
+{
+    struct scenario *s = r->s;
+
+    if (!read_tree(r, file, text))
+        return;
+    for (size_t i = 0; i < set_count; i++)
+        tree_set(&r->tree, sets[i], (int)i + 1, &r->problems);
+    if (r->tree.root->kind != TREE_MAP) {
+        problem_add(&r->problems, r->tree.root->mark,
+                    "a scenario is a mapping that begins with \"stance: 1\"");
+        return;
+    }
+    if (!read_version(r))
+        return;
+    read_scene(r);
+    set_defaults(r);
+    read_map(r, r->tree.root, "");
+    read_by_hand(r);
+    scenario_cross_check(r);
+    struct mark initial = place_of(r, "initial"), controller = place_of(r, "controller");
+    s->initial_line = initial.line;
+    s->initial_column = initial.column;
+    s->controller_line = controller.line;
+    s->controller_column = controller.column;
+    note_places(r);
+    if (r->problems.count == 0) {
+        sort_keys(&r->schema, r->tree.root, "");
+        s->text = tree_write(r->tree.root);
+        if (!s->text)
+            problem_add(&r->problems, (struct mark){0}, "out of memory");
+    }
+}
+
+/* The file's name without its directory and .yaml. That of a text that is given, most often out of
+ * a results file, names no results: it may be cut. */
+static bool set_names(struct scenario *s, const char *file, bool given)
+{
+    const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
+    size_t length = strlen(name);
+
+    for (size_t i = 0; i < 2; i++) {
+        const char *ending = i == 0 ? ".yaml" : ".yml";
+        size_t n = strlen(ending);
+        if (length > n && strcmp(name + length - n, ending) == 0) {
+            length -= n;
+            break;
+        }
+    }
+    if (!given && (length >= sizeof s->name || strlen(file) >= sizeof s->file))
+        return false;
+    snprintf(s->file, sizeof s->file, "%s", file);
+    snprintf(s->name, sizeof s->name, "%.*s", (int)length, name);
+    return true;
+}
+
+bool scenario_read(struct scenario *s, const char *file, const char *text, const char *const *sets,
+                   size_t set_count, FILE *errors)
+{
+    struct reader *r = calloc(1, sizeof *r);
+
+    memset(s, 0, sizeof *s);
+    if (!r) {
+        fprintf(errors, "%s: out of memory\n", file);
+        return false;
+    }
+    r->s = s;
+    if (!set_names(s, file, text != NULL))
+        problem_add(&r->problems, (struct mark){0}, "the file's name is too long");
+    else
+        read_all(r, file, text, sets, set_count);
+    bool good = r->problems.count == 0;
+    if (!good) {
+        problems_print(&r->problems, file, sets, errors);
+        scenario_free(s);
+    }
+    tree_free(&r->tree);
+    free(r);
+    return good;
+}
+
+void scenario_free(struct scenario *s)
+{
+    for (int a = 0; a < s->axes; a++)
+        sweep_free(&s->axis[a]);
+    doe_free(&s->sample);
+    free(s->record_list);
+    free(s->text);
+    free(s->place);
+    memset(s, 0, sizeof *s);
+}

@@ -1,0 +1,210 @@
+/* scenario.h - a scenario file, read, checked and resolved.
+ *
+ * scenario text -> tree of nodes with line and column (libyaml) -> checked against one table of
+ * keys (schema.c: path, type, unit, default, range, documentation) -> struct scenario.
+ * Nothing here runs a simulation.
+ */
+#ifndef STANCE_SCENARIO_SCENARIO_H
+#define STANCE_SCENARIO_SCENARIO_H
+
+#include "doe.h"
+
+#include "engine/stance.h"
+
+#include <stdio.h>
+
+enum {
+    SCENARIO_MAX_AXES = 24,
+    SCENARIO_MAX_PATHS = 48, /* paths of one axis */
+    SCENARIO_MAX_STATES = 2 * STANCE_MAX_COORDINATES,
+    SCENARIO_MAX_GAINS = STANCE_MAX_ACTUATORS * 2 * STANCE_MAX_POSTURE,
+    SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
+    SCENARIO_FINAL_STATE = STANCE_ANSWER_COUNT, /* bit of `answers` for final_state */
+};
+_Static_assert(SCENARIO_FINAL_STATE < 31, "bits for all answers");
+
+/* Most points of a map that is refined: each takes two to four bytes in the memory of every rank.
+ */
+#define SCENARIO_MOST_REFINED 0x1p28
+
+enum scenario_law { LAW_NONE, LAW_HOLD, LAW_STATE_FEEDBACK, LAW_DECOUPLING };
+enum scenario_far { FAR_NONE, FAR_HOLD, FAR_DECOUPLING };
+enum scenario_design { DESIGN_PLACE, DESIGN_PLACE_SCHUR, DESIGN_LQR, DESIGN_GAINS };
+enum scenario_design_time { DESIGN_CONTINUOUS, DESIGN_SAMPLED };
+enum scenario_record { RECORD_NONE, RECORD_ALL, RECORD_LIST };
+
+/* Which member of the family of equilibria, as the user gave it: NAN where not given. */
+struct scenario_equilibrium {
+    bool given;
+    double posture[STANCE_MAX_POSTURE]; /* theta, q1, q2 for the biped */
+    int lower;                          /* branch: 0 upper (default), 1 lower */
+};
+
+/* Everything that one case needs, as numbers: a sweep changes fields of this struct only, found
+ * by their offset. Enumerations and indices are ints, all else double. */
+struct scenario_values {
+    double robot[STANCE_MAX_ROBOT];
+    double friction, restitution;
+    int prefer;   /* of several motions: 0 least energy, 1 most */
+    int contacts; /* bit mask */
+
+    struct scenario_equilibrium equilibrium; /* initial.equilibrium */
+    int support_foot;                        /* 1-based contact; 0: none */
+    double offset[SCENARIO_MAX_STATES];      /* positions, then velocities, in the scene's order */
+    double offset_scale;                     /* of all of them */
+    int state_given;                         /* initial.state instead of an equilibrium */
+    double state[SCENARIO_MAX_STATES];
+
+    int law;                        /* enum scenario_law */
+    int design;                     /* enum scenario_design */
+    int design_time;                /* enum scenario_design_time: the model of the design */
+    double model[STANCE_MAX_ROBOT]; /* the robot that the design believes in; NAN: as robot */
+    struct scenario_equilibrium design_point; /* controller.equilibrium; not given: initial's */
+    double pole_re[SCENARIO_MAX_POLES], pole_im[SCENARIO_MAX_POLES];
+    double gains[SCENARIO_MAX_GAINS]; /* [actuators][2 postures] */
+    double state_weights[SCENARIO_MAX_POLES], torque_weights[STANCE_MAX_ACTUATORS]; /* lqr */
+    double kp, kd;                                                                  /* hold */
+    double target[STANCE_MAX_POSTURE]; /* hold: controller.target; NAN: the initial angles */
+    /* decoupling, over the scene's coordinates; NAN: the initial value */
+    int controlled; /* which pair: stance_pair */
+    double proportional[STANCE_MAX_COORDINATES], integral[STANCE_MAX_COORDINATES];
+    double derivative[STANCE_MAX_COORDINATES], integral_limit[STANCE_MAX_COORDINATES];
+    double setpoint[STANCE_MAX_COORDINATES], ramp[STANCE_MAX_COORDINATES];
+    double ramp_time[STANCE_MAX_COORDINATES];
+    int far;                      /* enum scenario_far: what acts far from the target */
+    double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
+    double sample_time;           /* 0: continuous */
+    int delay;                    /* whole samples between measuring and acting, 0 or 1 */
+    double torque_limit;          /* INFINITY: none */
+    double noise;
+
+    int method;             /* index into stance_methods() */
+    double step, tolerance; /* tolerance: NAN: the method's own */
+
+    double stop_time;
+    int settle; /* 1: judge on the way (default), 0: `off` */
+    double settle_angle, settle_rate, settle_hold, fall_height;
+    int capture; /* 1: stop.capture estimated */
+};
+
+struct scenario_field; /* a row of the schema, see schema.h */
+
+/* What there is to know of a path that sweep.sample varies. */
+struct scenario_meaning {
+    char unit[24], text[160]; /* as of an axis */
+    char *words;              /* of an enumeration, separated by blanks; NULL: it is none */
+};
+
+/* One axis of the grid: `count` points; along it `paths` fields change together. The last axis may
+ * be that of sweep.sample: its points are those of the design. */
+struct scenario_axis {
+    char name[96];  /* the path as written (the first one), used as dimension name; or "sample" */
+    char unit[24];  /* of the first path, "1" where it has none */
+    char text[160]; /* its documentation, as long_name */
+    int paths;
+    char path[SCENARIO_MAX_PATHS][96];
+    size_t offset[SCENARIO_MAX_PATHS];    /* of the field in struct scenario_values */
+    bool integer[SCENARIO_MAX_PATHS];     /* the field is an int (an enumeration: words below) */
+    bool enumeration[SCENARIO_MAX_PATHS]; /* ... of words */
+    bool words;                           /* some path is an enumeration: the axis lists strings */
+    bool design;                          /* some path changes what the design depends on */
+    size_t count;
+    /* value[point * paths + k] for lists and logarithmic ranges; for linear ranges NULL: computed
+     * from `from` and `to`. Words are stored as the enumeration's numbers; on an axis of words
+     * word[point * paths + k] is the text of every value, numbers as they were written. */
+    double *value;
+    char **word;
+    double from, to;
+    bool log;
+    bool refined;                     /* sweep.refine leaves points of it out */
+    bool sample;                      /* the points of sweep.sample; `words` is false */
+    struct scenario_meaning *meaning; /* sample: [paths] */
+    int line, column;
+};
+
+/* One entry of sweep.sample.vary: where the unit interval goes. */
+struct scenario_factor {
+    int first, paths; /* of the axis: what it moves together */
+    bool listed;      /* `values`, each equally likely */
+    bool log;
+    size_t points; /* listed: how many; else 2: from and to */
+    double *value; /* [points * paths] */
+};
+
+/* sweep.sample: a design in the unit cube, and what its factors are; the axis of its points is the
+ * last one. Without it `given` is false. */
+struct scenario_sample {
+    bool given;
+    struct doe design;              /* without its tables: doe_begin makes them */
+    struct scenario_factor *factor; /* [design.factors] */
+};
+
+/* sweep.refine: which cases are simulated depends on what others became, see refine.h. */
+struct scenario_refine {
+    bool given;
+    size_t start, margin;
+    double probes;
+};
+
+struct scenario_place {
+    char path[96];
+    int line, column;
+};
+
+struct scenario {
+    char file[512];
+    char name[128]; /* file name without directory and .yaml */
+    char title[256];
+    const stance_scene *scene;
+    struct scenario_values base;
+    uint64_t seed;
+
+    int axes;
+    struct scenario_axis axis[SCENARIO_MAX_AXES];
+    uint64_t cases; /* product of the counts; 1 without a sweep */
+    struct scenario_sample sample;
+    struct scenario_refine refine;
+
+    double record_every; /* s; 0: not given, and no trajectories */
+    enum scenario_record record_cases;
+    uint64_t *record_list; /* sorted, unique, all < cases */
+    size_t record_count;
+    uint32_t answers; /* bit per row of STANCE_ANSWERS, then SCENARIO_FINAL_STATE, which bit 31
+                       * stands for as well; all ones by default */
+
+    char *text; /* resolved scenario: after --set, as YAML; what the file stores and hashes */
+    /* Where fields stand, for errors found later (design, initial state). */
+    int initial_line, initial_column, controller_line, controller_column;
+    struct scenario_place *place; /* of every key that is given */
+    size_t places;
+};
+
+/* One error or many on `errors` as "FILE:LINE:COLUMN: message"; false then, and *s is empty.
+ * `sets`: PATH=VALUE strings of --set. Reads a file, or (text not NULL) that text under the name
+ * `file`. */
+bool scenario_read(struct scenario *s, const char *file, const char *text, const char *const *sets,
+                   size_t set_count, FILE *errors);
+void scenario_free(struct scenario *s);
+
+/* Where the key stands that a message begins with ("controller.poles: ..."), or the nearest mapping
+ * around it. False: it does not begin with a key that is given. */
+bool scenario_place(const struct scenario *s, const char *text, int *line, int *column);
+
+/* Value k of point `i` of an axis (k < paths); for words the enumeration's number. */
+double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);
+/* Text of that value, for messages and pictures; of an infinite one "none". */
+void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer,
+                        size_t size);
+
+/* Where a case stands on the grid axes alone, flat, and which point of sweep.sample it has (0
+ * without one). By these random numbers are keyed: they do not depend on sweep.sample.count. */
+void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid, uint64_t *sample);
+
+/* Fields of case `index` (flat, row-major in the order of the axes): base, then the axes. */
+void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);
+
+/* Documentation of the format from the table: all of it, one path, or JSON Schema.
+ * false: no such path, or no memory (a message on `errors`); errors of `out` are the caller's. */
+bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *errors);
+
+#endif

@@ -1,0 +1,571 @@
+/* scenario_check.c - what the keys of a scenario mean for each other: keys that are missing, that
+ * have no meaning beside others, or that contradict each other.
+ */
+#include "reader.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MOST_STEPS 1e15 /* of one case; resolve.c has the same limit */
+
+/* ---- what the scenario is -------------------------------------------------------------------- */
+
+struct situation {
+    bool law_known, design_known;
+    int law, far;
+    bool places, regulates, gives_gains; /* controller.design, base or swept */
+    bool places_robustly, models;
+    bool from_equilibrium, from_state; /* at most one, or the start is in doubt */
+    bool start_known;
+    bool settles;
+};
+
+static bool any_below(struct reader *r, const char *prefix, bool (*test)(const struct seen *))
+{
+    size_t length = strlen(prefix);
+    for (size_t i = 0; i < r->schema.count; i++) {
+        const char *path = r->schema.field[i].path;
+        if (strncmp(path, prefix, length) == 0 && (path[length] == '.' || !path[length]) &&
+            test(&r->seen[i]))
+            return true;
+    }
+    return false;
+}
+
+static bool is_swept(const struct seen *seen)
+{
+    return seen->swept;
+}
+
+static bool is_excused(const struct seen *seen)
+{
+    return seen->excused;
+}
+
+static bool takes_word(const struct reader *r, size_t offset, int word)
+{
+    const struct scenario *s = r->s;
+    bool swept = false;
+    int base;
+
+    for (int a = 0; a < s->axes; a++) {
+        const struct scenario_axis *axis = &s->axis[a];
+        for (int k = 0; k < axis->paths; k++) {
+            if (axis->offset[k] != offset || !axis->value)
+                continue;
+            swept = true;
+            for (size_t i = 0; i < axis->count; i++)
+                if ((int)scenario_axis_value(axis, i, k) == word)
+                    return true;
+        }
+    }
+    memcpy(&base, (const char *)&s->base + offset, sizeof base);
+    return !swept && base == word;
+}
+
+static struct situation find_situation(struct reader *r)
+{
+    const size_t design = offsetof(struct scenario_values, design);
+    const struct seen *controller = reader_seen(r, "controller"),
+                      *initial = reader_seen(r, "initial");
+    struct situation is = {.law = r->s->base.law};
+
+    is.far = is.law == LAW_STATE_FEEDBACK ? r->s->base.far : FAR_NONE;
+
+    is.law_known = !controller->bad && !controller->excused &&
+                   !reader_seen(r, "controller.kind")->bad &&
+                   !reader_seen(r, "controller.kind")->excused;
+    is.design_known = !reader_seen(r, "controller.design")->bad &&
+                      !reader_seen(r, "controller.design")->excused &&
+                      !(reader_seen(r, "controller.design")->swept && r->axes_bad);
+    is.places_robustly = takes_word(r, design, DESIGN_PLACE);
+    is.places = is.places_robustly || takes_word(r, design, DESIGN_PLACE_SCHUR);
+    is.regulates = takes_word(r, design, DESIGN_LQR);
+    is.models = is.places || is.regulates;
+    is.gives_gains = takes_word(r, design, DESIGN_GAINS);
+    is.from_equilibrium = reader_seen(r, "initial.equilibrium")->node != NULL;
+    is.from_state = reader_seen(r, "initial.state")->node != NULL;
+    if (!is.from_equilibrium && !is.from_state) {
+        is.from_equilibrium = any_below(r, "initial.equilibrium", is_swept);
+        is.from_state = !is.from_equilibrium && any_below(r, "initial.state", is_swept);
+    }
+    is.start_known = !initial->bad && !initial->excused && !any_below(r, "initial", is_excused) &&
+                     is.from_equilibrium != is.from_state;
+    is.settles = r->s->base.settle != 0;
+    return is;
+}
+
+static const char *law_word(const struct reader *r)
+{
+    return schema_find(&r->schema, "controller.kind")->words[r->s->base.law];
+}
+
+/* The same for what depends on controller.design. */
+static const char *design_obstacle(const struct reader *r, const struct situation *is,
+                                   enum field_use use, const char **instead)
+{
+    const struct scenario_field *design = schema_find(&r->schema, "controller.design");
+    const bool fits = use == USE_PLACE   ? is->places
+                      : use == USE_LQR   ? is->regulates
+                      : use == USE_MODEL ? is->models
+                                         : is->gives_gains;
+    if (!is->design_known || fits)
+        return NULL;
+    *instead = "others";
+    for (size_t i = 0; design && i < design->word_count; i++) {
+        if (takes_word(r, offsetof(struct scenario_values, design), (int)i)) {
+            *instead = design->words[i];
+            break;
+        }
+    }
+    return use == USE_PLACE   ? "controller.design place or place-schur"
+           : use == USE_LQR   ? "controller.design lqr"
+           : use == USE_MODEL ? "a controller.design other than gains"
+                              : "controller.design gains";
+}
+
+/* Why a field must not be given or swept, as what would be needed and what there is instead; NULL:
+ * it may be. */
+static const char *obstacle(const struct reader *r, const struct situation *is, enum field_use use,
+                            const char **instead)
+{
+    bool feedback = is->law == LAW_STATE_FEEDBACK;
+    *instead = law_word(r);
+    switch (use) {
+    case USE_CONTROL:
+        return is->law_known && is->law == LAW_NONE ? "a controller.kind" : NULL;
+    case USE_HOLD:
+        return is->law_known && is->law != LAW_HOLD && is->far != FAR_HOLD ? "controller.kind hold"
+                                                                           : NULL;
+    case USE_DECOUPLING:
+        return is->law_known && is->law != LAW_DECOUPLING && is->far != FAR_DECOUPLING
+                   ? "controller.kind decoupling"
+                   : NULL;
+    case USE_FAR:
+        return is->law_known && is->far == FAR_NONE ? "a controller.far" : NULL;
+    case USE_FEEDBACK:
+        return is->law_known && !feedback ? "controller.kind state-feedback" : NULL;
+    case USE_PLACE:
+    case USE_LQR:
+    case USE_MODEL:
+    case USE_GAINS:
+        if (is->law_known && !feedback)
+            return "controller.kind state-feedback";
+        return design_obstacle(r, is, use, instead);
+    case USE_EQUILIBRIUM:
+        *instead = "initial.state";
+        return is->start_known && !is->from_equilibrium ? "initial.equilibrium" : NULL;
+    case USE_STATE:
+        *instead = "initial.equilibrium";
+        return is->start_known && !is->from_state ? "initial.state" : NULL;
+    case USE_SETTLE:
+        *instead = "off";
+        return !is->settles ? "a stop.settle other than off" : NULL;
+    default:
+        return NULL;
+    }
+}
+
+/* ---- keys that have no meaning here ---------------------------------------------------------- */
+
+/* Whether the mapping that a field stands in is subject to the same condition. */
+static bool parent_has_use(const struct reader *r, const struct scenario_field *field)
+{
+    char path[sizeof field->path];
+    snprintf(path, sizeof path, "%s", field->path);
+    char *dot = strrchr(path, '.');
+    if (!dot)
+        return false;
+    *dot = '\0';
+    const struct scenario_field *parent = schema_find(&r->schema, path);
+    return parent && parent->use == field->use;
+}
+
+static void check_uses(struct reader *r, const struct situation *is)
+{
+    const char *needed, *instead;
+    for (size_t i = 0; i < r->schema.count; i++) {
+        const struct scenario_field *field = &r->schema.field[i];
+        if (!r->seen[i].node || parent_has_use(r, field))
+            continue;
+        needed = obstacle(r, is, field->use, &instead);
+        if (needed) {
+            problem_add(&r->problems, r->seen[i].key, "%s is used only with %s (here: %s)",
+                        field->path, needed, instead);
+        }
+    }
+    for (int a = 0; a < r->s->axes; a++) {
+        for (int k = 0; k < r->s->axis[a].paths; k++) {
+            const struct swept_field *swept = &r->swept[a][k];
+            needed = obstacle(r, is, swept->field->use, &instead);
+            if (needed) {
+                char name[AXIS_NAME];
+                problem_add(&r->problems, swept->mark, "%s: %s is used only with %s (here: %s)",
+                            axis_key(r->s, a, name), r->s->axis[a].path[k], needed, instead);
+            }
+        }
+    }
+}
+
+/* ---- keys that are missing ------------------------------------------------------------------- */
+
+/* Where to report that a field is missing: the nearest mapping around it. False: that one is bad,
+ * so that nothing is known of the field. */
+static bool surrounding(struct reader *r, const struct scenario_field *field, struct mark *mark)
+{
+    char path[sizeof field->path];
+    snprintf(path, sizeof path, "%s", field->path);
+    for (char *dot; (dot = strrchr(path, '.')) != NULL;) {
+        *dot = '\0';
+        const struct seen *seen = reader_seen(r, path);
+        if (seen->bad || seen->excused)
+            return false;
+        if (seen->node) {
+            *mark = seen->key;
+            return true;
+        }
+    }
+    *mark = r->tree.root->mark;
+    return true;
+}
+
+static void check_required(struct reader *r, const struct situation *is)
+{
+    static const char *const reason[] = {
+        [USE_ALWAYS] = "",
+        [USE_HOLD] = " (hold needs it)",
+        [USE_DECOUPLING] = " (decoupling needs it)",
+        [USE_FAR] = " (controller.far needs it)",
+        [USE_PLACE] = " (controller.design place and place-schur need it)",
+        [USE_GAINS] = " (controller.design gains needs it)",
+    };
+    for (size_t i = 0; i < r->schema.count; i++) {
+        const struct scenario_field *field = &r->schema.field[i];
+        const char *instead;
+        struct mark mark;
+        bool known = field->use == USE_ALWAYS || is->law_known;
+        if (field->use == USE_PLACE || field->use == USE_GAINS)
+            known = known && is->design_known;
+        if (!field->required || field->type == FIELD_MAP || !known || r->seen[i].excused ||
+            r->seen[i].node || r->seen[i].swept || obstacle(r, is, field->use, &instead) ||
+            !surrounding(r, field, &mark))
+            continue;
+        problem_add(&r->problems, mark, "%s is missing%s", field->path, reason[field->use]);
+    }
+}
+
+/* ---- equilibria ------------------------------------------------------------------------------ */
+
+/* All angles but one must be given; `path` is initial.equilibrium or controller.equilibrium. True:
+ * the equilibrium is there. */
+static bool check_equilibrium(struct reader *r, const char *path)
+{
+    const struct seen *map = reader_seen(r, path);
+    const stance_scene *scene = r->s->scene;
+    int given = 0, wanted = scene->postures - 1;
+    bool doubtful = map->bad || map->excused;
+    struct mark mark = map->key;
+    char name[96], list[128];
+    const char *names[STANCE_MAX_POSTURE];
+
+    for (int i = 0; i < scene->postures; i++) {
+        names[i] = scene->coordinate[scene->posture[i]].name;
+        snprintf(name, sizeof name, "%s.%s", path, names[i]);
+        const struct seen *angle = reader_seen(r, name);
+        given += reader_given(angle);
+        doubtful = doubtful || angle->excused;
+        if (angle->swept && !map->node)
+            mark = angle->sweep;
+    }
+    snprintf(name, sizeof name, "%s.branch", path);
+    if (!map->node && given == 0 && !reader_seen(r, name)->swept)
+        return doubtful;
+    if (!map->node && given == 0)
+        mark = reader_seen(r, name)->sweep;
+    if (given != wanted && !doubtful) {
+        problem_add(&r->problems, mark, "%s: give %d of %s; %d given", path, wanted,
+                    word_list(list, sizeof list, names, (size_t)scene->postures), given);
+    }
+    return true;
+}
+
+static void check_start(struct reader *r, const struct situation *is)
+{
+    const struct seen *state = reader_seen(r, "initial.state"),
+                      *equilibrium = reader_seen(r, "initial.equilibrium"),
+                      *initial = reader_seen(r, "initial");
+    struct scenario_values *base = &r->s->base;
+
+    if (state->node && equilibrium->node) {
+        bool later = state->key.set > equilibrium->key.set ||
+                     (state->key.set == equilibrium->key.set &&
+                      (state->key.line > equilibrium->key.line ||
+                       (state->key.line == equilibrium->key.line &&
+                        state->key.column > equilibrium->key.column)));
+        problem_add(&r->problems, later ? state->key : equilibrium->key,
+                    "initial.state and initial.equilibrium exclude each other");
+        return;
+    }
+    if (initial->bad || initial->excused || any_below(r, "initial", is_excused))
+        return;
+    if (!is->from_state && !is->from_equilibrium) {
+        problem_add(&r->problems, initial->node ? initial->key : r->tree.root->mark,
+                    schema_find(&r->schema, "initial.equilibrium")
+                        ? "initial: give an equilibrium or a state"
+                        : "initial: give a state");
+        return;
+    }
+    base->state_given = is->from_state;
+    base->equilibrium.given = is->from_equilibrium;
+    if (is->from_equilibrium) {
+        check_equilibrium(r, "initial.equilibrium");
+        if (!reader_seen(r, "initial.support_foot")->node)
+            base->support_foot = 1;
+    }
+}
+
+static void check_controller(struct reader *r, const struct situation *is)
+{
+    struct scenario_values *base = &r->s->base;
+    const struct seen *kind = reader_seen(r, "controller.kind");
+
+    if (!is->law_known)
+        return;
+    if (is->law != LAW_NONE && r->s->scene->actuators == 0) {
+        problem_add(&r->problems, kind->node->mark,
+                    "controller.kind: the scene %s has no actuators", r->s->scene->name);
+    }
+    if (is->law != LAW_STATE_FEEDBACK)
+        return;
+    base->design_point.given = check_equilibrium(r, "controller.equilibrium");
+    if (!base->design_point.given && is->start_known && !is->from_equilibrium) {
+        problem_add(&r->problems, reader_seen(r, "controller")->key,
+                    "controller.equilibrium is missing: state-feedback needs one where the run "
+                    "does not begin at one");
+    }
+    for (int a = 0; a < r->s->axes; a++) {
+        for (int k = 0; k < r->s->axis[a].paths; k++) {
+            const struct swept_field *swept = &r->swept[a][k];
+            if (strcmp(swept->field->path, "controller.poles[]") == 0 &&
+                base->pole_im[swept->index[0]] != 0) {
+                char name[AXIS_NAME];
+                problem_add(&r->problems, swept->mark,
+                            "%s: %s is complex; only a real pole can be swept",
+                            axis_key(r->s, a, name), r->s->axis[a].path[k]);
+            }
+        }
+    }
+}
+
+/* ---- numbers that must fit each other -------------------------------------------------------- */
+
+/* Least and largest value that a number takes, base or swept. */
+static void extent(const struct reader *r, size_t offset, double *least, double *largest)
+{
+    const struct scenario *s = r->s;
+
+    memcpy(least, (const char *)&s->base + offset, sizeof *least);
+    *largest = *least;
+    for (int a = 0; a < s->axes; a++) {
+        const struct scenario_axis *axis = &s->axis[a];
+        for (int k = 0; k < axis->paths; k++) {
+            if (axis->offset[k] != offset || axis->count == 0)
+                continue;
+            *least = INFINITY;
+            *largest = -INFINITY;
+            /* Ranges are monotonic: their ends will do. */
+            size_t stride = axis->value && !axis->log ? 1 : axis->count - 1;
+            for (size_t i = 0; i < axis->count; i += stride ? stride : 1) {
+                double value = scenario_axis_value(axis, i, k);
+                *least = fmin(*least, value);
+                *largest = fmax(*largest, value);
+            }
+        }
+    }
+}
+
+static bool samples_in_design(const struct reader *r, const struct situation *is)
+{
+    return is->law_known && is->law == LAW_STATE_FEEDBACK && is->models &&
+           takes_word(r, offsetof(struct scenario_values, design_time), DESIGN_SAMPLED);
+}
+
+static struct mark where(struct reader *r, const char *path)
+{
+    const struct seen *seen = reader_seen(r, path);
+    return seen->swept ? seen->sweep : seen->node ? seen->key : r->tree.root->mark;
+}
+
+/* What has a meaning only where the controller samples. */
+static void check_sampling(struct reader *r, const struct situation *is)
+{
+    double quiet, loud, shortest, longest;
+    const struct seen *time = reader_seen(r, "controller.sample_time");
+
+    if (!is->law_known || is->law == LAW_NONE || r->axes_bad || time->bad || time->excused)
+        return;
+    extent(r, offsetof(struct scenario_values, sample_time), &shortest, &longest);
+    if (shortest > 0)
+        return;
+    extent(r, offsetof(struct scenario_values, noise), &quiet, &loud);
+    if (loud > 0 && !reader_seen(r, "controller.noise")->bad) {
+        problem_add(&r->problems, where(r, "controller.noise"),
+                    "controller.noise needs controller.sample_time > 0: it is new at each sample");
+    }
+    if (takes_word(r, offsetof(struct scenario_values, delay), 1) &&
+        !reader_seen(r, "controller.delay")->bad) {
+        problem_add(&r->problems, where(r, "controller.delay"),
+                    "controller.delay needs controller.sample_time > 0: it counts samples");
+    }
+    if (samples_in_design(r, is) && !reader_seen(r, "controller.design_time")->bad) {
+        problem_add(&r->problems, where(r, "controller.design_time"),
+                    "controller.design_time sampled needs controller.sample_time > 0");
+    }
+}
+
+/* Gains designed for the sampled model differ with the sample time. */
+static void mark_sampled_designs(struct reader *r, const struct situation *is)
+{
+    for (int a = 0; a < r->s->axes; a++) {
+        struct scenario_axis *axis = &r->s->axis[a];
+        for (int k = 0; k < axis->paths; k++)
+            if (axis->offset[k] == offsetof(struct scenario_values, sample_time))
+                axis->design = axis->design || samples_in_design(r, is);
+    }
+}
+
+/* Robust placement gives every pole an eigenvector of its own, from as many directions as there
+ * are inputs. Axes may still make poles coincide: then the design of that point fails. */
+static void check_multiplicity(struct reader *r, const struct situation *is)
+{
+    const struct seen *poles = reader_seen(r, "controller.poles");
+    const struct scenario_values *base = &r->s->base;
+    const size_t most = (size_t)r->s->scene->actuators;
+
+    if (is->law != LAW_STATE_FEEDBACK || !is->design_known || !is->places_robustly ||
+        !poles->node || poles->bad)
+        return;
+    for (size_t i = 0; i < poles->node->count; i++) {
+        size_t times = 1;
+        for (size_t k = 0; k < i; k++)
+            times += base->pole_re[k] == base->pole_re[i] && base->pole_im[k] == base->pole_im[i];
+        if (times > most) {
+            char word[SHOWN_SIZE];
+            problem_add(&r->problems, poles->node->item[i]->mark,
+                        "controller.poles[%zu]: %s stands here %zu times; controller.design place "
+                        "can repeat a pole as often as there are actuators, %zu times",
+                        i, shown(word, poles->node->item[i]->text), times, most);
+            return;
+        }
+    }
+}
+
+/* What acts far from the target is decided at samples. */
+static void check_far(struct reader *r, const struct situation *is)
+{
+    double shortest, longest;
+
+    if (!is->law_known || is->far == FAR_NONE || r->axes_bad ||
+        reader_seen(r, "controller.far")->bad || reader_seen(r, "controller.sample_time")->bad ||
+        reader_seen(r, "controller.sample_time")->excused)
+        return;
+    extent(r, offsetof(struct scenario_values, sample_time), &shortest, &longest);
+    if (shortest <= 0) {
+        problem_add(&r->problems, where(r, "controller.far"),
+                    "controller.far needs controller.sample_time > 0: which law acts is decided at "
+                    "each sample");
+    }
+}
+
+/* Whether the set of states that recover differs along a path. */
+static bool shapes_capture(const char *path)
+{
+    return strncmp(path, "initial.offset.", 15) != 0 && strncmp(path, "initial.state.", 14) != 0;
+}
+
+/* A captured set is one of states: of a law that knows nothing else, and of whole runs that settle.
+ * It depends on all of the case but its initial state. */
+static void check_capture(struct reader *r, const struct situation *is)
+{
+    const struct seen *seen = reader_seen(r, "stop.capture");
+
+    if (!r->s->base.capture || !seen->node || seen->bad || !is->law_known)
+        return;
+    const struct mark mark = seen->node->mark;
+    if (is->law != LAW_STATE_FEEDBACK) {
+        problem_add(&r->problems, mark,
+                    "stop.capture estimated needs controller.kind state-feedback (here: %s)",
+                    law_word(r));
+    } else if (is->far != FAR_NONE) {
+        problem_add(&r->problems, mark,
+                    "stop.capture estimated has no meaning with controller.far: another law acts "
+                    "outside");
+    }
+    if (!is->settles) {
+        problem_add(&r->problems, mark,
+                    "stop.capture estimated has no meaning with stop.settle off: runs last their "
+                    "whole time");
+    }
+    if (!r->axes_bad && !reader_seen(r, "controller.delay")->bad &&
+        takes_word(r, offsetof(struct scenario_values, delay), 1)) {
+        problem_add(&r->problems, where(r, "controller.delay"),
+                    "controller.delay 1 has no meaning with stop.capture estimated: the torques "
+                    "under way belong to the state");
+    }
+    for (int a = 0; a < r->s->axes; a++) {
+        struct scenario_axis *axis = &r->s->axis[a];
+        for (int k = 0; k < axis->paths; k++)
+            axis->design = axis->design || shapes_capture(axis->path[k]);
+    }
+}
+
+static void check_steps(struct reader *r)
+{
+    double least_time, time, step, largest_step;
+
+    if (r->axes_bad || !reader_given(reader_seen(r, "stop.time")) ||
+        reader_seen(r, "stop.time")->bad || reader_seen(r, "method.step")->bad)
+        return;
+    extent(r, offsetof(struct scenario_values, stop_time), &least_time, &time);
+    extent(r, offsetof(struct scenario_values, step), &step, &largest_step);
+    if (time / step > MOST_STEPS) {
+        problem_add(&r->problems, where(r, "stop.time"),
+                    "stop.time: more than %.0e steps of method.step", MOST_STEPS);
+    }
+}
+
+/* The foot that the robot starts on must be able to carry it. */
+static void check_support(struct reader *r, const struct situation *is)
+{
+    const struct scenario *s = r->s;
+    if (!is->from_equilibrium || r->axes_bad || reader_seen(r, "ground.contacts")->bad ||
+        reader_seen(r, "initial.support_foot")->bad)
+        return;
+    for (int foot = 1; foot <= s->scene->contacts; foot++) {
+        if (!(s->base.contacts >> (foot - 1) & 1) &&
+            takes_word(r, offsetof(struct scenario_values, support_foot), foot)) {
+            problem_add(&r->problems, where(r, "ground.contacts"),
+                        "ground.contacts: %s, the support foot, is not among them",
+                        s->scene->contact_name[foot - 1]);
+        }
+    }
+}
+
+void scenario_cross_check(struct reader *r)
+{
+    struct situation is = find_situation(r);
+
+    check_required(r, &is);
+    check_uses(r, &is);
+    check_steps(r);
+    if (!r->s->scene)
+        return;
+    check_start(r, &is);
+    check_controller(r, &is);
+    check_multiplicity(r, &is);
+    check_sampling(r, &is);
+    mark_sampled_designs(r, &is);
+    check_far(r, &is);
+    check_capture(r, &is);
+    check_support(r, &is);
+}

@@ -1,0 +1,706 @@
+/* schema.c - the scenario format: the table and how a scene's names fill it. */
+#include "schema.h"
+#include "tree.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- words ----------------------------------------------------------------------------------- */
+
+/* In the order of the enumerations in scenario.h. */
+static const char *const kind_words[] = {"none", "hold", "state-feedback", "decoupling"};
+static const char *const far_words[] = {"none", "hold", "decoupling"};
+static const char *const design_words[] = {"place", "place-schur", "lqr", "gains"};
+static const char *const design_time_words[] = {"continuous", "sampled"};
+static const char *const branch_words[] = {"upper", "lower"};
+static const char *const prefer_words[] = {"least-energy", "most-energy"};
+static const char *const spacing_words[] = {"linear", "log"};
+static const char *const truth_words[] = {"false", "true"};
+static const char *const record_words[] = {"none", "all"};
+static const char *const settle_words[] = {"off"};
+static const char *const capture_words[] = {"off", "estimated"};
+static const char *const limit_words[] = {"none"};
+
+static const char *const answer_words[] = {
+#define ANSWER_WORD(name, ...) #name,
+    STANCE_ANSWERS(ANSWER_WORD)
+#undef ANSWER_WORD
+        "final_state",
+};
+
+#define WORDS(list) .words = (list), .word_count = sizeof(list) / sizeof((list)[0])
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+/* What the '*' of a path stands for, or what else of a row is the scene's. */
+enum family {
+    FAMILY_NONE,
+    FAMILY_ROBOT,       /* parameters of the body */
+    FAMILY_STATE,       /* coordinates, then their rates with a "v" before the name */
+    FAMILY_OFFSET,      /* the same, as differences */
+    FAMILY_POSTURE,     /* angles that a posture law acts on */
+    FAMILY_COORDINATES, /* the unit is the coordinate's where it says %s */
+    FAMILY_PAIRS,       /* the words are pairs of coordinates */
+    FAMILY_ACTUATED,    /* the last of these, one for each actuator */
+    FAMILY_CONTACTS,    /* the words are names of contacts */
+    FAMILY_FOOT,        /* the range is 1 ... contacts */
+    FAMILY_POLES,       /* 2 postures items */
+    FAMILY_ACTUATORS,   /* one item for each */
+    FAMILY_MATRIX,      /* actuators x 2 postures */
+    FAMILY_SCENES,
+    FAMILY_METHODS,
+    FAMILY_TOLERANCE, /* the text names the methods that read it */
+};
+
+struct row {
+    enum family family;
+    struct scenario_field field;
+};
+
+#define VALUE(member) .offset = offsetof(struct scenario_values, member)
+#define BY_HAND .offset = NO_OFFSET
+
+/* Loose bounds that keep nonsense out where physics gives none. */
+#define LARGE 1e9
+
+/* One member a line would make the table hard to read. */
+/* clang-format off */
+static const struct row rows[] = {
+    {0, {.path = "stance", .type = FIELD_INTEGER, .required = true, BY_HAND, .low = 1, .high = 1,
+         .fallback = NAN, .text = "version of this format"}},
+    {0, {.path = "title", .type = FIELD_TEXT, BY_HAND, .fallback_text = "the file's name",
+         .text = "what the study is about, in a line"}},
+    {FAMILY_SCENES, {.path = "scene", .type = FIELD_WORD, .required = true, BY_HAND,
+                     .fallback = NAN, .text = "what is simulated"}},
+
+    {0, {.path = "robot", .type = FIELD_MAP, .by_scene = true, BY_HAND,
+         .text = "the body that is simulated"}},
+    {FAMILY_ROBOT, {.path = "robot.*", .type = FIELD_NUMBER, .by_scene = true, .design = true,
+                    .sweep = true, VALUE(robot)}},
+
+    {0, {.path = "ground", .type = FIELD_MAP, BY_HAND, .text = "the ground, a half plane z <= 0"}},
+    {0, {.path = "ground.friction", .type = FIELD_NUMBER, .sweep = true, VALUE(friction),
+         .unit = "1", .fallback = 0.8, .low = 0, .high = 10,
+         .text = "Coulomb coefficient of friction"}},
+    {0, {.path = "ground.restitution", .type = FIELD_NUMBER, .sweep = true, VALUE(restitution),
+         .unit = "1", .fallback = 0, .low = 0, .high = 1,
+         .text = "Newton's coefficient of restitution",
+         .more = "Together with friction it can create energy in impacts; 0 never does."}},
+    {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(prefer), .fallback = 0,
+         WORDS(prefer_words),
+         .text = "which motion, where several obey the contact laws",
+         .more = "The one that leaves the least kinetic energy, or the most; contacts that stand go "
+                 "on standing while they can. Such steps are counted as ambiguous_steps. Swept over "
+                 "both, each case is followed down both branches."}},
+    {FAMILY_CONTACTS, {.path = "ground.contacts", .type = FIELD_WORDS, .by_scene = true,
+                       VALUE(contacts), .fallback_text = "all of the scene's",
+                       .text = "points that may touch the ground"}},
+
+    {0, {.path = "initial", .type = FIELD_MAP, .required = true, BY_HAND,
+         .text = "how a run begins: from an equilibrium or from a given state"}},
+    {0, {.path = "initial.equilibrium", .type = FIELD_MAP, .by_scene = true,
+         .use = USE_EQUILIBRIUM, BY_HAND,
+         .text = "the position of rest that the run begins at",
+         .more = "Give all but one of the angles; the last follows. Excludes initial.state.",
+         .need = NEED_EQUILIBRIUM}},
+    {FAMILY_POSTURE, {.path = "initial.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
+                      .use = USE_EQUILIBRIUM, .design = true, .sweep = true,
+                      VALUE(equilibrium.posture), .fallback_text = "follows from the others",
+                      .text = "equilibrium: %s", .need = NEED_EQUILIBRIUM}},
+    {0, {.path = "initial.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
+         .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.lower),
+         .fallback = 0, WORDS(branch_words),
+         .text = "which of the two solutions: hip above or below the foot",
+         .need = NEED_EQUILIBRIUM}},
+    {FAMILY_FOOT, {.path = "initial.support_foot", .type = FIELD_INTEGER, .by_scene = true,
+                   .design = true, .sweep = true, VALUE(support_foot), .unit = "1",
+                   .fallback_text = "1 with an equilibrium, else none",
+                   .text = "number of the foot that the robot stands on",
+                   .more = "With an equilibrium this foot stands at rest at the origin: offsets of "
+                           "angles and their rates apply first, the translation follows from the "
+                           "foot, offsets of the translation come last.",
+         .need = NEED_EQUILIBRIUM}},
+    {0, {.path = "initial.offset", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
+         BY_HAND, .text = "how far from the equilibrium the run begins", .need = NEED_EQUILIBRIUM}},
+    {FAMILY_OFFSET, {.path = "initial.offset.*", .type = FIELD_NUMBER, .by_scene = true,
+                     .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset),
+                     .text = "initial offset: %s", .need = NEED_EQUILIBRIUM}},
+    {0, {.path = "initial.offset.scale", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset_scale), .unit = "1", .fallback = 1,
+         .low = -1e6, .high = 1e6, .text = "factor of all other offsets",
+         .more = "Swept beside directions (sweep.sample.method sphere) it goes along rays from the "
+                 "equilibrium.",
+         .need = NEED_EQUILIBRIUM}},
+    {0, {.path = "initial.state", .type = FIELD_MAP, .by_scene = true, .use = USE_STATE, BY_HAND,
+         .text = "the whole initial state by hand", .more = "Excludes initial.equilibrium."}},
+    {FAMILY_STATE, {.path = "initial.state.*", .type = FIELD_NUMBER, .by_scene = true,
+                    .use = USE_STATE, .sweep = true, VALUE(state), .text = "initial %s"}},
+
+    {0, {.path = "controller", .type = FIELD_MAP, BY_HAND,
+         .text = "what drives the actuators"}},
+    {0, {.path = "controller.kind", .type = FIELD_WORD, .design = true, VALUE(law), .fallback = 0,
+         WORDS(kind_words), .text = "control law",
+         .more = "hold: a servo in each joint. state-feedback: torque = equilibrium torque - gains "
+                 "times the deviation of angles and rates from an equilibrium. decoupling: torques and "
+                 "reactions solved together so that two coordinates follow set-points."}},
+    {0, {.path = "controller.design", .type = FIELD_WORD, .use = USE_FEEDBACK, .design = true,
+         .sweep = true, VALUE(design), .fallback = 0, WORDS(design_words),
+         .text = "where the gains come from",
+         .more = "place: robust pole placement. place-schur: the same poles by SLICOT's Schur "
+                 "method. lqr: linear quadratic regulator. gains: they are given.",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.design_time", .type = FIELD_WORD, .use = USE_MODEL, .design = true,
+         .sweep = true, VALUE(design_time), .fallback = 0, WORDS(design_time_words),
+         .text = "model that the gains are designed for",
+         .more = "sampled: the robot sampled every controller.sample_time with torques held in "
+                 "between; a pole s becomes exp(s T), the cost of lqr stays the integral over all "
+                 "time. Each sample time of a sweep is then a design of its own.",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_POLES, {.path = "controller.poles", .type = FIELD_POLES, .by_scene = true,
+                    .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",
+                    .text = "poles of the closed loop, in the open left half plane",
+                    .more = "Real, or complex as -3+1.5i with -3-1.5i beside it; with place none "
+                            "may stand there more often than there are actuators.",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_POLES, {.path = "controller.poles[]", .type = FIELD_NUMBER, .by_scene = true,
+                    .use = USE_PLACE, .design = true, .sweep = true, VALUE(pole_re),
+                    .unit = "1/s", .fallback = NAN, .low = -1e6, .high = 0, .high_open = true,
+                    .text = "pole of the closed loop", .more = "Only a real pole can be swept.",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_MATRIX, {.path = "controller.gains", .type = FIELD_MATRIX, .by_scene = true,
+                     .use = USE_GAINS, .required = true, .design = true, BY_HAND,
+                     .unit = "N m/rad, N m s/rad",
+                     .text = "gains: a row for each actuator; angles, then rates",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_MATRIX, {.path = "controller.gains[][]", .type = FIELD_NUMBER, .by_scene = true,
+                     .use = USE_GAINS, .design = true, .sweep = true, VALUE(gains),
+                     .unit = "N m/rad, N m s/rad", .fallback = NAN, .low = -LARGE, .high = LARGE,
+                     .text = "gain of an actuator on an angle or a rate", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.weights", .type = FIELD_MAP, .by_scene = true, .use = USE_LQR, BY_HAND,
+         .text = "what the regulator minimises: weights times squares, integrated over time",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_POLES, {.path = "controller.weights.states", .type = FIELD_NUMBERS, .by_scene = true,
+                    .use = USE_LQR, .design = true, BY_HAND, .unit = "1/rad^2, s^2/rad^2",
+                    .fallback_text = "1 each", .text = "weights of the angles, then of the rates",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_POLES, {.path = "controller.weights.states[]", .type = FIELD_NUMBER, .by_scene = true,
+                    .use = USE_LQR, .design = true, .sweep = true, VALUE(state_weights),
+                    .unit = "1/rad^2, s^2/rad^2", .fallback = 1, .low = 0, .high = LARGE,
+                    .text = "weight of an angle or a rate", .need = NEED_ACTUATORS}},
+    {FAMILY_ACTUATORS, {.path = "controller.weights.torques", .type = FIELD_NUMBERS,
+                        .by_scene = true, .use = USE_LQR, .design = true, BY_HAND,
+                        .unit = "1/(N m)^2", .fallback_text = "1 each",
+                        .text = "weights of the torques", .need = NEED_ACTUATORS}},
+    {FAMILY_ACTUATORS, {.path = "controller.weights.torques[]", .type = FIELD_NUMBER,
+                        .by_scene = true, .use = USE_LQR, .design = true, .sweep = true,
+                        VALUE(torque_weights), .unit = "1/(N m)^2", .fallback = 1, .low = 0,
+                        .high = LARGE, .low_open = true, .text = "weight of a torque",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.model", .type = FIELD_MAP, .by_scene = true, .use = USE_FEEDBACK,
+         BY_HAND, .text = "the robot that the design believes in", .need = NEED_ACTUATORS}},
+    {FAMILY_ROBOT, {.path = "controller.model.*", .type = FIELD_NUMBER, .by_scene = true,
+                    .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model),
+                    .fallback_text = "as the robot", .text = "model of the design: %s",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.equilibrium", .type = FIELD_MAP, .by_scene = true,
+         .use = USE_FEEDBACK, BY_HAND, .fallback_text = "initial.equilibrium",
+         .text = "the equilibrium that the controller is designed at", .need = NEED_ACTUATORS}},
+    {FAMILY_POSTURE, {.path = "controller.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
+                      .use = USE_FEEDBACK, .design = true, .sweep = true,
+                      VALUE(design_point.posture), .fallback_text = "follows from the others",
+                      .text = "equilibrium of the controller: %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.lower),
+         .fallback = 0, WORDS(branch_words),
+         .text = "which of the two solutions: hip above or below the foot",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.kp", .type = FIELD_NUMBER, .use = USE_HOLD, .required = true,
+         .sweep = true, VALUE(kp), .unit = "N m/rad", .fallback = NAN, .low = 0, .high = LARGE,
+         .text = "stiffness of the servo", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.kd", .type = FIELD_NUMBER, .use = USE_HOLD, .required = true,
+         .sweep = true, VALUE(kd), .unit = "N m s/rad", .fallback = NAN, .low = 0, .high = LARGE,
+         .text = "damping of the servo", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.target", .type = FIELD_MAP, .by_scene = true, .use = USE_HOLD, BY_HAND,
+         .text = "the joint angles that the servo holds", .need = NEED_ACTUATORS}},
+    {FAMILY_ACTUATED, {.path = "controller.target.*", .type = FIELD_NUMBER, .by_scene = true,
+                       .use = USE_HOLD, .sweep = true, VALUE(target),
+                       .fallback_text = "as the run begins; with far the equilibrium", .text = "angle to hold: %s",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
+         .fallback = 0, WORDS(far_words),
+         .text = "law that acts outside an ellipsoid about the target",
+         .more = "state-feedback acts inside it, where sum((angle/near.angle)^2) + "
+                 "sum((rate/near.rate)^2) <= 1 for the deviations from the target. Decided at "
+                 "each sample: needs sample_time > 0.",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.near", .type = FIELD_MAP, .use = USE_FAR, BY_HAND,
+         .text = "the ellipsoid inside which state-feedback acts", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.near.angle", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
+         .sweep = true, VALUE(near_angle), .unit = "rad", .fallback = NAN, .low = 0, .high = LARGE,
+         .low_open = true, .text = "its semi-axis in each angle", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.near.rate", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
+         .sweep = true, VALUE(near_rate), .unit = "rad/s", .fallback = NAN, .low = 0,
+         .high = LARGE, .low_open = true, .text = "its semi-axis in each rate",
+         .need = NEED_ACTUATORS}},
+    {FAMILY_PAIRS, {.path = "controller.controlled", .type = FIELD_WORD, .by_scene = true,
+                    .use = USE_DECOUPLING, .required = true, .sweep = true, VALUE(controlled),
+                    .fallback = NAN, .text = "the two coordinates that the law controls",
+                    .more = "The others move as they must. Where the law would need a ground that "
+                            "pulls, or is near a singular posture, it degrades: see the answer "
+                            "degraded_samples.",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.proportional", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "proportional gains: acceleration per error of a coordinate", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.proportional.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(proportional),
+                          .unit = "1/s^2", .fallback = 100, .low = 0, .high = LARGE,
+                          .text = "proportional gain on %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.derivative", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "derivative gains: acceleration per rate of the error", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.derivative.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(derivative),
+                          .unit = "1/s", .fallback = 20, .low = 0, .high = LARGE,
+                          .text = "derivative gain on %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.integral", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "integral gains: acceleration per integral of the error", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.integral.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(integral),
+                          .unit = "1/s^3", .fallback = 0, .low = 0, .high = LARGE,
+                          .text = "integral gain on %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.integral_limit", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "bounds of the integrals (anti-windup; they also rest while a torque is at its limit)", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.integral_limit.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(integral_limit),
+                          .unit = "%s s", .fallback = INFINITY, .fallback_text = "none", .low = 0, .high = LARGE, WORDS(limit_words),
+                          .text = "largest integral of the error of %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.setpoint", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "set-points of the coordinates", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.setpoint.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(setpoint),
+                          .unit = "%s", .fallback = NAN, .fallback_text = "as the run begins; with far the equilibrium",
+                          .low = -LARGE, .high = LARGE,
+                          .text = "set-point of %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.ramp", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "rates at which the set-points move", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.ramp.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(ramp),
+                          .unit = "%s/s", .fallback = 0, .low = -LARGE, .high = LARGE,
+                          .text = "rate at which the set-point moves: %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.ramp_time", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
+         BY_HAND, .text = "how long the set-points move", .need = NEED_ACTUATORS}},
+    {FAMILY_COORDINATES, {.path = "controller.ramp_time.*", .type = FIELD_NUMBER, .by_scene = true,
+                          .use = USE_DECOUPLING, .sweep = true, VALUE(ramp_time),
+                          .unit = "s", .fallback = INFINITY, .fallback_text = "none", .low = 0, .high = LARGE, WORDS(limit_words),
+                          .text = "time after which the set-point stays: %s", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(sample_time), .unit = "s", .fallback = 0, .low = 0, .high = LARGE,
+         .text = "time between samples of the controller",
+         .more = "Torques are held in between; 0: it acts continuously, inside the step (decoupling "
+                 "with implicit and midpoint: once a step).",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.delay", .type = FIELD_INTEGER, .use = USE_CONTROL, .sweep = true,
+         VALUE(delay), .unit = "1", .fallback = 0, .low = 0, .high = 1,
+         .text = "whole samples between measuring and acting",
+         .more = "1: the torques of a sample act from the next one on, until then those that "
+                 "state-feedback has at its target (none with hold and decoupling). Gains do not "
+                 "take it into account. Needs sample_time > 0.",
+         .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL,
+         .sweep = true, VALUE(torque_limit), .unit = "N m", .fallback = INFINITY,
+         .fallback_text = "none", .low = 0, .high = LARGE, .low_open = true, WORDS(limit_words),
+         .text = "largest torque of each actuator", .need = NEED_ACTUATORS}},
+    {0, {.path = "controller.noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(noise), .unit = "N m", .fallback = 0, .low = 0, .high = LARGE,
+         .text = "half-width of uniform noise on the torques",
+         .more = "White, new at each sample, added before the limit; needs sample_time > 0.",
+         .need = NEED_ACTUATORS}},
+
+    {0, {.path = "method", .type = FIELD_MAP, BY_HAND, .text = "how time is stepped"}},
+    {FAMILY_METHODS, {.path = "method.name", .type = FIELD_WORD, .sweep = true, VALUE(method),
+                      .text = "time stepping method"}},
+    {0, {.path = "method.step", .type = FIELD_NUMBER, .sweep = true, VALUE(step), .unit = "s",
+         .fallback = 0.001, .low = 0, .high = 0.1, .low_open = true, .text = "time step",
+         .more = "An upper bound: a sample interval is cut into equal steps no longer than this."}},
+    {FAMILY_TOLERANCE, {.path = "method.tolerance", .type = FIELD_NUMBER, .sweep = true,
+                        VALUE(tolerance), .unit = "m, rad", .fallback = NAN,
+                        .fallback_text = "the method's own", .low = 0, .high = 1, .low_open = true,
+                        .text = "admitted error of a step"}},
+
+    {0, {.path = "stop", .type = FIELD_MAP, .required = true, BY_HAND,
+         .text = "when a run ends and what it counts as"}},
+    {0, {.path = "stop.time", .type = FIELD_NUMBER, .required = true, .sweep = true,
+         VALUE(stop_time), .unit = "s", .fallback = NAN, .low = 0, .high = LARGE, .low_open = true,
+         .text = "longest duration of a run"}},
+    {0, {.path = "stop.settle", .type = FIELD_MAP_OR_WORD, BY_HAND, WORDS(settle_words),
+         .text = "when a run counts as stabilised or at rest",
+         .more = "off: a run lasts its whole time, unless the robot falls, and is judged at its end."}},
+    {0, {.path = "stop.settle.angle", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
+         VALUE(settle_angle), .unit = "rad", .fallback = 0.05, .low = 0, .high = LARGE,
+         .low_open = true, .text = "largest deviation of an angle that counts as settled",
+         .need = NEED_POSTURE}},
+    {0, {.path = "stop.settle.rate", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
+         VALUE(settle_rate), .unit = "rad/s", .fallback = 0.5, .low = 0, .high = LARGE,
+         .low_open = true, .text = "largest rate that counts as settled, in m/s for the translation"}},
+    {0, {.path = "stop.settle.hold", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
+         VALUE(settle_hold), .unit = "s", .fallback = 0.5, .low = 0, .high = LARGE,
+         .text = "how long it must stay settled"}},
+    {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
+         .unit = "1", .fallback = 0.2, .low = 0, .high = 1,
+         .text = "height of the hip, in leg lengths, below which the robot has fallen",
+         .need = NEED_HEIGHT}},
+
+    {0, {.path = "stop.capture", .type = FIELD_WORD, VALUE(capture), .fallback = 0,
+         WORDS(capture_words),
+         .text = "whether a run may end where state-feedback is known to recover",
+         .more = "estimated: for each design the largest ellipsoid about the target is sought from "
+                 "whose boundary 10000 simulations all end as stabilised, with the noise, limits, "
+                 "method and rules of the case; a run that comes into it (0.8 of its level) on the "
+                 "support foot alone, at rest, ends as stabilised with evidence inferred. Its "
+                 "settle_time is then missing, and largest values and sums end where the run does. "
+                 "Only for state-feedback without far or delay, with stop.settle; each point of an "
+                 "axis other than initial.offset and initial.state is then a design of its own.",
+         .need = NEED_ACTUATORS}},
+
+    {0, {.path = "sweep", .type = FIELD_MAP, BY_HAND, .text = "what varies between cases"}},
+    {0, {.path = "sweep.grid", .type = FIELD_AXES, BY_HAND,
+         .text = "axes whose product are the cases, the last one fastest",
+         .more = "An axis is {path, from, to, count, spacing}, {path, values: [...]} or {paths: "
+                 "[...], values: [[...], ...]}; the last varies several fields together."}},
+    {0, {.path = "sweep.grid[].path", .type = FIELD_PATH, BY_HAND,
+         .text = "the field that varies along the axis",
+         .more = "Any number of this format, such as controller.gains[0][3] or ground.friction."}},
+    {0, {.path = "sweep.grid[].paths", .type = FIELD_PATHS, BY_HAND, .high = SCENARIO_MAX_PATHS,
+         .text = "fields that vary together along the axis"}},
+    {0, {.path = "sweep.grid[].from", .type = FIELD_NUMBER, BY_HAND, .fallback = NAN,
+         .low = -INFINITY, .high = INFINITY, .text = "value at the first point"}},
+    {0, {.path = "sweep.grid[].to", .type = FIELD_NUMBER, BY_HAND, .fallback = NAN,
+         .low = -INFINITY, .high = INFINITY, .text = "value at the last point"}},
+    {0, {.path = "sweep.grid[].count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN, .low = 1,
+         .high = 1e9, .text = "number of points"}},
+    {0, {.path = "sweep.grid[].spacing", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(spacing_words), .text = "equal differences or equal ratios between points"}},
+    {0, {.path = "sweep.grid[].values", .type = FIELD_VALUES, BY_HAND,
+         .text = "the points one by one: numbers or words, with `paths` a list for each point"}},
+    {0, {.path = "sweep.sample", .type = FIELD_MAP, BY_HAND,
+         .text = "a designed sample of several fields, at each point of the grid",
+         .more = "A further dimension, sample, after the grid's. Points follow from seed and their "
+                 "number alone, whatever count is (but for lhs): stance run --extend adds some."}},
+    {0, {.path = "sweep.sample.method", .type = FIELD_WORD, BY_HAND, .fallback = NAN,
+         .words = doe_words, .word_count = DOE_METHODS,
+         .text = "how points are chosen",
+         .more = "random: independent. lhs: Latin hypercube, each of count strata of each factor "
+                 "holds one point. sobol: Sobol' sequence, shifted digitally; best with a power of "
+                 "two. saltelli: blocks of factors + 2 points for Sobol' indices. morris: "
+                 "trajectories of factors + 1 points for elementary effects. sphere: directions, "
+                 "uniform on the ellipsoid inscribed in the box of the ranges."}},
+    {0, {.path = "sweep.sample.count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN, .low = 1,
+         .high = 1 << DOE_MAX_BITS,
+         .text = "number of points; of blocks with saltelli, of trajectories with morris"}},
+    {0, {.path = "sweep.sample.second_order", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(truth_words), .text = "whether saltelli's blocks have what second-order indices need",
+         .more = "2 factors + 2 points in each. Only with method saltelli."}},
+    {0, {.path = "sweep.sample.levels", .type = FIELD_INTEGER, BY_HAND, .fallback = 4, .low = 2,
+         .high = 1000, .text = "levels of each factor, an even number",
+         .more = "A step of a trajectory is levels / (2 (levels - 1)) of the range. Only with method "
+                 "morris."}},
+    {0, {.path = "sweep.sample.vary", .type = FIELD_FACTORS, BY_HAND,
+         .text = "the factors: what varies, and within which bounds",
+         .more = "A factor is {path, from, to, spacing}, {path, values: [...]}, or of several fields "
+                 "that move together {paths: [...], from: [...], to: [...]} or {paths: [...], "
+                 "values: [[...], ...]}."}},
+    {0, {.path = "sweep.sample.vary[].path", .type = FIELD_PATH, BY_HAND,
+         .text = "the field that the factor varies", .more = "Whatever may be swept."}},
+    {0, {.path = "sweep.sample.vary[].paths", .type = FIELD_PATHS, BY_HAND,
+         .high = SCENARIO_MAX_PATHS, .text = "fields that the factor varies together"}},
+    {0, {.path = "sweep.sample.vary[].from", .type = FIELD_ENDS, BY_HAND,
+         .text = "lower bound; with paths a list, one end of the segment",
+         .more = "Whole numbers between the bounds are equally likely, both included."}},
+    {0, {.path = "sweep.sample.vary[].to", .type = FIELD_ENDS, BY_HAND,
+         .text = "upper bound; with paths a list, the other end"}},
+    {0, {.path = "sweep.sample.vary[].spacing", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(spacing_words), .text = "uniform in the value or in its logarithm"}},
+    {0, {.path = "sweep.sample.vary[].values", .type = FIELD_VALUES, BY_HAND,
+         .text = "equally likely values: numbers or words, with paths a list for each"}},
+    {0, {.path = "sweep.refine", .type = FIELD_MAP, BY_HAND,
+         .text = "map the outcomes adaptively: simulate a coarse lattice, then only where they differ",
+         .more = "Along axes of numbers with more than start points; others are taken in full, each "
+                 "combination a map of its own. Cases that are not simulated take the outcome of "
+                 "their cell, with evidence inferred and no other answers. The same for any number "
+                 "of ranks."}},
+    {0, {.path = "sweep.refine.start", .type = FIELD_INTEGER, BY_HAND, .fallback = 32, .low = 2,
+         .high = 1e9, .text = "most cells of the coarse lattice along an axis",
+         .more = "Its stride is the smallest power of two that leaves no more; each level halves it."}},
+    {0, {.path = "sweep.refine.margin", .type = FIELD_INTEGER, BY_HAND, .fallback = 1, .low = 0,
+         .high = 1e9, .text = "cells around one of several outcomes that are refined with it"}},
+    {0, {.path = "sweep.refine.probes", .type = FIELD_NUMBER, BY_HAND, .unit = "1", .fallback = 0.01,
+         .low = 0, .high = 1, .text = "share of all cases that is simulated in search of islands",
+         .more = "Chosen by seed. An island of k cases between the points of the lattice stays "
+                 "unseen with probability (1 - probes)^k."}},
+
+    {0, {.path = "record", .type = FIELD_MAP, BY_HAND,
+         .text = "what is stored besides the parameters"}},
+    {0, {.path = "record.every", .type = FIELD_NUMBER, BY_HAND, .unit = "s", .fallback = 0.01,
+         .low = 0, .high = LARGE, .low_open = true, .text = "time between rows of a trajectory"}},
+    {0, {.path = "record.cases", .type = FIELD_CASES, BY_HAND, .fallback = 0, WORDS(record_words),
+         .text = "cases whose trajectories are stored",
+         .more = "A list counts them from 0, the last axis fastest."}},
+    {0, {.path = "record.answers", .type = FIELD_WORDS, BY_HAND, WORDS(answer_words),
+         .fallback_text = "all", .text = "answers that are stored"}},
+
+    {0, {.path = "seed", .type = FIELD_INTEGER, BY_HAND, .fallback = 1, .low = 0, .high = 0x1p63,
+         .text = "seed of the random numbers, up to 9223372036854775807"}},
+};
+/* clang-format on */
+
+/* ---- writing the table out for a scene ------------------------------------------------------- */
+
+/* A further field made from a row; `name` takes the place of the '*'. NULL: no room. */
+static struct scenario_field *add_field(struct schema *schema, const struct row *row,
+                                        const char *prefix, const char *name)
+{
+    if (schema->count == SCHEMA_MAX_FIELDS)
+        return NULL;
+    struct scenario_field *field = &schema->field[schema->count++];
+    *field = row->field;
+    const char *star = strchr(row->field.path, '*');
+    if (star) {
+        int n = snprintf(field->path, sizeof field->path, "%.*s%s%s", (int)(star - row->field.path),
+                         row->field.path, prefix, name);
+        if (n < 0 || (size_t)n >= sizeof field->path)
+            return NULL;
+    }
+    return field;
+}
+
+/* Unit, range and text of a quantity of the scene. */
+static void describe_quantity(struct scenario_field *field, const struct row *row,
+                              const stance_quantity *quantity, const char *rate)
+{
+    char text[sizeof field->text];
+    const char *format = row->field.text;
+    const char *place = strstr(format, "%s");
+
+    snprintf(field->unit, sizeof field->unit, "%s%s", quantity->unit, rate[0] ? "/s" : "");
+    snprintf(text, sizeof text, "%s%s", rate, quantity->text);
+    if (place) {
+        snprintf(field->text, sizeof field->text, "%.*s%.120s", (int)(place - format), format,
+                 text);
+    } else {
+        snprintf(field->text, sizeof field->text, "%s", text);
+    }
+    field->low = quantity->low;
+    field->high = quantity->high;
+}
+
+static bool add_robot(struct schema *schema, const struct row *row)
+{
+    for (int i = 0; i < schema->scene->robot_count; i++) {
+        const stance_quantity *quantity = &schema->scene->robot[i];
+        struct scenario_field *field = add_field(schema, row, "", quantity->name);
+        if (!field)
+            return false;
+        describe_quantity(field, row, quantity, "");
+        field->offset += (size_t)i * sizeof(double);
+        field->fallback = field->fallback_text ? NAN : quantity->fallback;
+    }
+    return true;
+}
+
+static bool add_states(struct schema *schema, const struct row *row)
+{
+    const int n = schema->scene->coordinates;
+    for (int i = 0; i < 2 * n; i++) {
+        const stance_quantity *quantity = &schema->scene->coordinate[i % n];
+        const bool rate = i >= n;
+        struct scenario_field *field = add_field(schema, row, rate ? "v" : "", quantity->name);
+        if (!field)
+            return false;
+        describe_quantity(field, row, quantity, rate ? "rate of " : "");
+        field->offset += (size_t)i * sizeof(double);
+        if (rate) {
+            field->low = -1e6;
+            field->high = 1e6;
+        } else if (row->family == FAMILY_STATE) {
+            field->fallback = quantity->fallback;
+        } else if (row->family == FAMILY_OFFSET) {
+            field->low = quantity->low - quantity->high;
+            field->high = quantity->high - quantity->low;
+        }
+    }
+    return true;
+}
+
+/* Rows over the coordinates that keep their own range and default. */
+static bool add_coordinates(struct schema *schema, const struct row *row)
+{
+    for (int i = 0; i < schema->scene->coordinates; i++) {
+        const stance_quantity *quantity = &schema->scene->coordinate[i];
+        struct scenario_field *field = add_field(schema, row, "", quantity->name);
+        if (!field)
+            return false;
+        const double low = field->low, high = field->high;
+        char unit[sizeof field->unit];
+        memcpy(unit, row->field.unit, sizeof unit);
+        describe_quantity(field, row, quantity, "");
+        const char *place = strstr(unit, "%s");
+        if (place) {
+            snprintf(field->unit, sizeof field->unit, "%.*s%.12s%s", (int)(place - unit), unit,
+                     quantity->unit, place + 2);
+        } else {
+            memcpy(field->unit, unit, sizeof unit);
+        }
+        field->low = low;
+        field->high = high;
+        field->offset += (size_t)i * sizeof(double);
+    }
+    return true;
+}
+
+/* Names of the pairs of coordinates, in stance_pair's order. */
+static size_t name_pairs(struct schema *schema)
+{
+    const stance_scene *scene = schema->scene;
+    int first, second;
+    size_t count = 0;
+    while (count < SCHEMA_MAX_WORDS && stance_pair(scene, (int)count, &first, &second)) {
+        snprintf(schema->pair[count], sizeof schema->pair[count], "%s-%s",
+                 scene->coordinate[first].name, scene->coordinate[second].name);
+        schema->pairs[count] = schema->pair[count];
+        count++;
+    }
+    return count;
+}
+
+static bool add_postures(struct schema *schema, const struct row *row)
+{
+    const stance_scene *scene = schema->scene;
+    int first = row->family == FAMILY_ACTUATED ? scene->postures - scene->actuators : 0;
+    for (int i = first > 0 ? first : 0; i < scene->postures; i++) {
+        const stance_quantity *quantity = &scene->coordinate[scene->posture[i]];
+        struct scenario_field *field = add_field(schema, row, "", quantity->name);
+        if (!field)
+            return false;
+        describe_quantity(field, row, quantity, "");
+        field->offset += (size_t)i * sizeof(double);
+        field->fallback = NAN;
+    }
+    return true;
+}
+
+/* Which methods read method.tolerance, and what it is by default there. */
+static const char *describe_tolerance(char *text, size_t size)
+{
+    size_t used = 0, count = 0;
+    for (const stance_method *const *method = stance_methods(); *method && used < size; method++) {
+        if ((*method)->tolerance > 0) {
+            used += (size_t)snprintf(text + used, size - used, "%s%s (default %.3g)",
+                                     count++ ? ", "
+                                             : "Read by the methods that control their "
+                                               "error: ",
+                                     (*method)->name, (*method)->tolerance);
+        }
+    }
+    if (used < size) {
+        snprintf(text + used, size - used,
+                 count ? ". It has no effect with the others."
+                       : "No method of this build reads it.");
+    }
+    return text;
+}
+
+/* Rows that stay one field, whose words or sizes are the scene's. */
+static bool add_single(struct schema *schema, const struct row *row)
+{
+    const stance_scene *scene = schema->scene;
+    struct scenario_field *field = add_field(schema, row, "", "");
+    if (!field)
+        return false;
+    if (row->family == FAMILY_SCENES) {
+        field->words = schema->scenes;
+        field->word_count = schema->scene_count;
+    } else if (row->family == FAMILY_METHODS) {
+        field->words = schema->methods;
+        field->word_count = schema->method_count;
+        while (strcmp(schema->methods[(int)field->fallback], "capturing") != 0)
+            field->fallback++; /* the one that the charts of scenarios/accuracy recommend */
+    } else if (row->family == FAMILY_PAIRS) {
+        field->words = schema->pairs;
+        field->word_count = name_pairs(schema);
+    } else if (row->family == FAMILY_TOLERANCE) {
+        field->more = describe_tolerance(schema->tolerance, sizeof schema->tolerance);
+    } else if (row->family == FAMILY_CONTACTS) {
+        field->words = scene->contact_name;
+        field->word_count = (size_t)scene->contacts;
+    } else if (row->family == FAMILY_FOOT) {
+        field->low = 1;
+        field->high = scene->contacts;
+        field->fallback = NAN;
+    } else if (row->family == FAMILY_POLES) {
+        field->items = 2 * (size_t)scene->postures;
+    } else if (row->family == FAMILY_ACTUATORS) {
+        field->items = (size_t)scene->actuators;
+    } else if (row->family == FAMILY_MATRIX) {
+        field->items = (size_t)scene->actuators;
+        field->columns = 2 * (size_t)scene->postures;
+    }
+    return true;
+}
+
+static bool scene_has(const stance_scene *scene, enum field_need need)
+{
+    switch (need) {
+    case NEED_EQUILIBRIUM:
+        return scene->equilibrium && scene->stand;
+    case NEED_ACTUATORS:
+        return scene->actuators > 0;
+    case NEED_POSTURE:
+        return scene->postures > 0;
+    case NEED_HEIGHT:
+        return scene->height != NULL;
+    default:
+        return true;
+    }
+}
+
+static bool add_row(struct schema *schema, const struct row *row)
+{
+    if (schema->scene && !scene_has(schema->scene, row->field.need))
+        return true;
+    if (row->field.by_scene && !schema->scene) {
+        /* The key is known all the same; what stands below it is not looked at. */
+        return strpbrk(row->field.path, "*[") || add_field(schema, row, "", "") != NULL;
+    }
+    switch (row->family) {
+    case FAMILY_ROBOT:
+        return add_robot(schema, row);
+    case FAMILY_STATE:
+    case FAMILY_OFFSET:
+        return add_states(schema, row);
+    case FAMILY_COORDINATES:
+        return add_coordinates(schema, row);
+    case FAMILY_POSTURE:
+    case FAMILY_ACTUATED:
+        return add_postures(schema, row);
+    default:
+        return add_single(schema, row);
+    }
+}
+
+bool schema_build(struct schema *schema, const stance_scene *scene)
+{
+    *schema = (struct schema){.scene = scene};
+    for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_scenes()[i]; i++)
+        schema->scenes[schema->scene_count++] = stance_scenes()[i]->name;
+    for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_methods()[i]; i++)
+        schema->methods[schema->method_count++] = stance_methods()[i]->name;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        if (!add_row(schema, &rows[i]))
+            return false;
+    /* Where there is neither an equilibrium nor a controller no design depends on anything. */
+    for (size_t i = 0; scene && !scene->equilibrium && scene->actuators == 0 && i < schema->count;
+         i++)
+        schema->field[i].design = false;
+    return true;
+}

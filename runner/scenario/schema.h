@@ -1,0 +1,123 @@
+/* schema.h - the scenario format as one table: it gives parser, defaults, checks, documentation and
+ * JSON Schema.
+ *
+ * Rows with a '*' in their path stand for the names that a scene brings; schema_build writes them
+ * out, and leaves out what the scene has no use for (a controller where nothing acts). "[]" in a
+ * path stands for any index of a list.
+ */
+#ifndef STANCE_SCENARIO_SCHEMA_H
+#define STANCE_SCENARIO_SCHEMA_H
+
+#include "scenario.h"
+
+enum field_type {
+    FIELD_MAP,
+    FIELD_TEXT,
+    FIELD_NUMBER, /* `words`: words that may stand for it, see field.h */
+    FIELD_INTEGER,
+    FIELD_WORD,    /* one of `words`; its number is its place there */
+    FIELD_WORDS,   /* a list of different words of `words` */
+    FIELD_POLES,   /* a list of numbers or complex numbers, pairs complete */
+    FIELD_NUMBERS, /* a list of numbers */
+    FIELD_MATRIX,  /* a list of lists of numbers */
+    FIELD_MAP_OR_WORD,
+    FIELD_CASES,   /* a word or a list of case indices */
+    FIELD_AXES,    /* a list of mappings */
+    FIELD_FACTORS, /* the same, of sweep.sample */
+    FIELD_ENDS,    /* a number, or a list of as many as there are paths */
+    FIELD_PATH,    /* path of a field that may be swept */
+    FIELD_PATHS,
+    FIELD_VALUES, /* what an axis lists */
+};
+
+/* When a key may be given, or its field swept. */
+enum field_use {
+    USE_ALWAYS,
+    USE_CONTROL, /* controller.kind is not none */
+    USE_HOLD,
+    USE_FEEDBACK,
+    USE_DECOUPLING,
+    USE_FAR, /* controller.far is not none */
+    USE_PLACE,
+    USE_LQR,
+    USE_MODEL, /* a design from the model: all but gains */
+    USE_GAINS,
+    USE_EQUILIBRIUM, /* the scenario starts from initial.equilibrium */
+    USE_STATE,       /* ... from initial.state */
+    USE_SETTLE,      /* stop.settle is not off */
+};
+
+/* What a scene must have, or it lacks the row. */
+enum field_need {
+    NEED_NOTHING,
+    NEED_EQUILIBRIUM, /* positions of rest, and a way to stand there */
+    NEED_ACTUATORS,
+    NEED_POSTURE, /* angles that a controller brings to a target */
+    NEED_HEIGHT,  /* something that falls */
+};
+
+/* One row, written out for a scene. */
+struct scenario_field {
+    char path[96];
+    enum field_type type;
+    enum field_use use;
+    enum field_need need;
+    bool required;             /* must stand in the file where `use` allows it, unless swept */
+    bool design;               /* what the design depends on, see resolve.h */
+    bool sweep;                /* may vary along an axis */
+    bool by_scene;             /* cannot be checked without a known scene */
+    size_t offset;             /* in struct scenario_values; NO_OFFSET: bound by hand */
+    char unit[24];             /* "1": without unit; "": not a quantity */
+    double fallback;           /* default of a number; of a word its place; NAN: none */
+    const char *fallback_text; /* where the default is not a plain number; may be NULL */
+    double low, high;
+    bool low_open, high_open; /* `low`, `high` itself is out of range */
+    size_t items; /* lists of fixed length (poles, rows of the matrix): how many; else 0 */
+    size_t columns;
+    const char *const *words;
+    size_t word_count;
+    char text[160];   /* what it is, in a line; long_name of an axis */
+    const char *more; /* what else there is to know; may be NULL */
+};
+
+#define NO_OFFSET ((size_t)-1)
+
+enum { SCHEMA_MAX_FIELDS = 256, SCHEMA_MAX_WORDS = 32 };
+
+struct schema {
+    const stance_scene *scene; /* NULL: unknown; fields by scene are left out then */
+    size_t count;
+    struct scenario_field field[SCHEMA_MAX_FIELDS];
+    const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
+    size_t scene_count, method_count;
+    char pair[SCHEMA_MAX_WORDS][24]; /* "x-theta" */
+    const char *pairs[SCHEMA_MAX_WORDS];
+    char tolerance[400]; /* what there is to know of method.tolerance */
+};
+
+/* Writes the table out for a scene. False: it has more rows than fit (a scene that is too large).
+ */
+bool schema_build(struct schema *schema, const stance_scene *scene);
+
+/* The row of a path, "[]" for indices; NULL: none. */
+const struct scenario_field *schema_find(const struct schema *schema, const char *path);
+
+/* The row of a path with indices, "controller.gains[0][3]": the indices go to index[2] (0 where
+ * there is none). NULL: no such row, or malformed. */
+const struct scenario_field *schema_find_concrete(const struct schema *schema, const char *path,
+                                                  size_t index[2]);
+
+/* A scene whose format has a path (general, or with indices); NULL: none has. */
+const stance_scene *schema_scene_with(const char *path);
+
+/* Last names of the paths right below `path` ("" is the top); returns how many, at most `room`. */
+size_t schema_children(const struct schema *schema, const char *path, const char **names,
+                       size_t room);
+
+/* Where the path's last name begins. */
+const char *schema_last_name(const char *path);
+
+/* "0 ... 10", "more than 0, at most 0.1" and the like. */
+const char *schema_range_text(const struct scenario_field *field, char *buffer, size_t size);
+
+#endif

@@ -1,0 +1,90 @@
+/* schema_find.c - looks up rows of the scenario format. */
+#include "schema.h"
+#include "tree.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const struct scenario_field *schema_find(const struct schema *schema, const char *path)
+{
+    for (size_t i = 0; i < schema->count; i++)
+        if (strcmp(schema->field[i].path, path) == 0)
+            return &schema->field[i];
+    return NULL;
+}
+
+const struct scenario_field *schema_find_concrete(const struct schema *schema, const char *path,
+                                                  size_t index[2])
+{
+    char general[128] = "", name[TREE_MAX_NAME];
+    size_t length = 0, indices = 0, number;
+
+    index[0] = index[1] = 0;
+    for (const char *at = path; at == path || *at;) {
+        bool first = at == path;
+        if (!tree_path_step(&at, first, name, &number))
+            return NULL;
+        int n = snprintf(general + length, sizeof general - length, "%s%s",
+                         name[0] && !first ? "." : "", name[0] ? name : "[]");
+        length += (size_t)n;
+        if (length >= sizeof general)
+            return NULL;
+        if (!name[0]) {
+            if (indices == 2)
+                return NULL;
+            index[indices++] = number;
+        }
+    }
+    return schema_find(schema, general);
+}
+
+const stance_scene *schema_scene_with(const char *path)
+{
+    const stance_scene *found = NULL;
+    struct schema *schema = malloc(sizeof *schema);
+    size_t index[2];
+    for (const stance_scene *const *scene = stance_scenes(); schema && !found && *scene; scene++)
+        if (schema_build(schema, *scene) &&
+            (schema_find(schema, path) || schema_find_concrete(schema, path, index)))
+            found = *scene;
+    free(schema);
+    return found;
+}
+
+const char *schema_last_name(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+size_t schema_children(const struct schema *schema, const char *path, const char **names,
+                       size_t room)
+{
+    size_t length = strlen(path), n = 0;
+    for (size_t i = 0; i < schema->count && n < room; i++) {
+        const char *child = schema->field[i].path;
+        const char *rest = child + length + (length > 0);
+        if (length > 0 && (strncmp(child, path, length) != 0 || child[length] != '.'))
+            continue;
+        if (!strpbrk(rest, ".["))
+            names[n++] = rest;
+    }
+    return n;
+}
+
+const char *schema_range_text(const struct scenario_field *field, char *buffer, size_t size)
+{
+    if (field->low == field->high)
+        snprintf(buffer, size, "%.9g", field->low);
+    else if (isinf(field->low))
+        snprintf(buffer, size, "any finite number");
+    else if (field->high_open)
+        snprintf(buffer, size, "less than %.9g, at least %.9g", field->high, field->low);
+    else if (field->low_open)
+        snprintf(buffer, size, "more than %.9g, at most %.9g", field->low, field->high);
+    else
+        snprintf(buffer, size, "%.9g ... %.9g", field->low, field->high);
+    return buffer;
+}

@@ -1,0 +1,576 @@
+/* sweep.c - the axes of the grid, and the cases that they make. */
+#include "reader.h"
+
+#include "runner/base/words.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_CASES 0x1p53   /* exact as a double, and within what HDF5 can address */
+#define MOST_LOG_POINTS 1e7 /* these are computed beforehand */
+
+void axis_complain(struct axis_reader *a, const char *what)
+{
+    problem_add(&a->r->problems, a->node->mark, "%s: %s", a->name, what);
+}
+
+const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME])
+{
+    if (s->axis[axis].sample)
+        snprintf(name, AXIS_NAME, "sweep.sample");
+    else
+        snprintf(name, AXIS_NAME, "sweep.grid[%d]", axis);
+    return name;
+}
+
+/* ---- paths ----------------------------------------------------------------------------------- */
+
+static bool unknown_path(struct axis_reader *a, const struct tree_node *node)
+{
+    const struct schema *schema = &a->r->schema;
+    char path[SCHEMA_MAX_FIELDS][96], word[SHOWN_SIZE];
+    const char *known[SCHEMA_MAX_FIELDS], *near;
+    size_t n = 0;
+
+    for (size_t i = 0; i < schema->count; i++) {
+        if (!schema->field[i].sweep)
+            continue;
+        size_t length = 0;
+        for (const char *s = schema->field[i].path; *s && length + 2 < sizeof path[0]; s++) {
+            path[n][length++] = *s;
+            if (*s == '[')
+                path[n][length++] = '0';
+        }
+        path[n][length] = '\0';
+        known[n] = path[n];
+        n++;
+    }
+    near = nearest_word(node->text, known, n);
+    shown(word, node->text);
+    if (schema->scene && schema_scene_with(node->text)) {
+        problem_add(&a->r->problems, node->mark,
+                    "%s: the scene %s has no field '%s' (stance describe lists them)", a->name,
+                    schema->scene->name, word);
+    } else if (near) {
+        problem_add(&a->r->problems, node->mark,
+                    "%s: unknown field '%s'; did you mean '%s'? (stance describe lists them)",
+                    a->name, word, near);
+    } else {
+        problem_add(&a->r->problems, node->mark,
+                    "%s: unknown field '%s' (stance describe lists them)", a->name, word);
+    }
+    return false;
+}
+
+static bool beyond_end(struct axis_reader *a, const struct tree_node *node,
+                       const struct swept_field *swept)
+{
+    const struct scenario_field *field = swept->field;
+    size_t limit = field->items, index = swept->index[0];
+    if (field->items == 0 ||
+        (index < field->items && swept->index[1] < (field->columns + !field->columns)))
+        return false;
+    if (index < field->items) {
+        limit = field->columns;
+        index = swept->index[1];
+    }
+    problem_add(&a->r->problems, node->mark, "%s: %s has %zu %s, so [%zu] is beyond the end",
+                a->name, node->text, limit, limit == field->columns ? "columns" : "items", index);
+    return true;
+}
+
+static bool swept_before(struct axis_reader *a, const struct tree_node *node)
+{
+    for (int i = 0; i <= a->number; i++) {
+        const struct scenario_axis *axis = &a->r->s->axis[i];
+        for (int k = 0; k < axis->paths; k++) {
+            if (strcmp(axis->path[k], node->text) == 0) {
+                char first[AXIS_NAME];
+                problem_add(&a->r->problems, node->mark, "%s: %s is swept twice (first in %s)",
+                            a->name, node->text, axis_key(a->r->s, i, first));
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/* One more path of the axis. */
+static bool read_path(struct axis_reader *a, const struct tree_node *node)
+{
+    struct scenario_axis *axis = a->axis;
+    struct swept_field swept = {.mark = node->mark};
+    char word[SHOWN_SIZE];
+
+    if (node->kind != TREE_SCALAR)
+        return field_mismatch(&a->r->problems, a->name, "a path such as ground.friction", node);
+    swept.field = schema_find_concrete(&a->r->schema, node->text, swept.index);
+    if (!swept.field)
+        return unknown_path(a, node);
+    if (!swept.field->sweep) {
+        problem_add(&a->r->problems, node->mark, "%s: %s cannot be swept", a->name,
+                    shown(word, node->text));
+        return false;
+    }
+    if (beyond_end(a, node, &swept) || swept_before(a, node))
+        return false;
+    int k = axis->paths++;
+    a->swept[k] = swept;
+    snprintf(axis->path[k], sizeof axis->path[k], "%s", node->text);
+    axis->integer[k] = swept.field->type != FIELD_NUMBER;
+    axis->enumeration[k] = swept.field->type == FIELD_WORD;
+    axis->offset[k] = swept.field->offset;
+    if (axis->integer[k]) {
+        axis->offset[k] += swept.index[0] * sizeof(int);
+    } else {
+        size_t columns = swept.field->columns ? swept.field->columns : 1;
+        axis->offset[k] += (swept.index[0] * columns + swept.index[1]) * sizeof(double);
+    }
+    axis->words = axis->words || axis->enumeration[k];
+    axis->design = axis->design || swept.field->design;
+
+    struct seen *seen = &a->r->seen[swept.field - a->r->schema.field];
+    seen->swept = true;
+    seen->sweep = node->mark;
+    return true;
+}
+
+bool axis_read_paths(struct axis_reader *a)
+{
+    const struct tree_node *path = tree_find(a->node, "path"), *paths = tree_find(a->node, "paths");
+    if (!path && !paths) {
+        axis_complain(a, "path is missing");
+        return false;
+    }
+    if (path && paths) {
+        axis_complain(a, "path and paths exclude each other");
+        return false;
+    }
+    if (path)
+        return read_path(a, path);
+    if (!field_list(&a->r->problems, a->name, "a list of paths", paths))
+        return false;
+    if (paths->count > SCENARIO_MAX_PATHS - (size_t)a->axis->paths) {
+        problem_add(&a->r->problems, paths->mark, "%s: more than %d paths", a->name,
+                    SCENARIO_MAX_PATHS);
+        return false;
+    }
+    bool good = true;
+    for (size_t k = 0; k < paths->count; k++)
+        good = read_path(a, paths->item[k]) && good;
+    return good;
+}
+
+/* ---- points ---------------------------------------------------------------------------------- */
+
+bool axis_read_value(struct axis_reader *a, const struct tree_node *node, int k, double *value)
+{
+    const struct scenario_field *field = a->swept[k].field;
+    const char *path = a->axis->path[k];
+
+    if (field->type == FIELD_WORD) {
+        int place = 0;
+        bool good = field_word(&a->r->problems, field, path, node, &place);
+        *value = place;
+        return good;
+    }
+    return field->type == FIELD_INTEGER ? field_integer(&a->r->problems, field, path, node, value)
+                                        : field_number(&a->r->problems, field, path, node, value);
+}
+
+static bool read_point(struct axis_reader *a, const struct tree_node *node, size_t at, int k)
+{
+    struct scenario_axis *axis = a->axis;
+    bool good = axis_read_value(a, node, k, &axis->value[at]);
+
+    if (good && axis->word) {
+        axis->word[at] = strdup(node->text);
+        if (!axis->word[at]) {
+            problem_add(&a->r->problems, (struct mark){0}, "out of memory");
+            return false;
+        }
+    }
+    return good;
+}
+
+/* A point of several paths is a list with a value for each. */
+static bool read_points(struct axis_reader *a, const struct tree_node *node, size_t point,
+                        bool rows)
+{
+    const size_t paths = (size_t)a->axis->paths;
+    bool good = true;
+
+    if (!rows)
+        return read_point(a, node, point, 0);
+    if (node->kind != TREE_LIST || node->count != paths) {
+        char wanted[80];
+        snprintf(wanted, sizeof wanted, "a list of %zu values, one for each path", paths);
+        if (node->kind != TREE_LIST)
+            return field_mismatch(&a->r->problems, a->name, wanted, node);
+        problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name, wanted,
+                    node->count);
+        return false;
+    }
+    for (size_t k = 0; k < paths; k++)
+        good = read_point(a, node->item[k], point * paths + k, (int)k) && good;
+    return good;
+}
+
+static bool read_values(struct axis_reader *a, const struct tree_node *values, bool rows)
+{
+    static const char *const range_keys[] = {"from", "to", "count", "spacing"};
+    struct scenario_axis *axis = a->axis;
+    bool good = true;
+
+    for (size_t i = 0; i < sizeof range_keys / sizeof range_keys[0]; i++) {
+        if (tree_find(a->node, range_keys[i])) {
+            problem_add(&a->r->problems, a->node->mark, "%s: values and %s exclude each other",
+                        a->name, range_keys[i]);
+            return false;
+        }
+    }
+    if (!field_list(&a->r->problems, a->name, "a list of values", values))
+        return false;
+    axis->count = values->count;
+    size_t n = axis->count * (size_t)axis->paths;
+    axis->value = calloc(n, sizeof *axis->value);
+    axis->word = axis->words ? calloc(n, sizeof *axis->word) : NULL;
+    if (!axis->value || (axis->words && !axis->word)) {
+        problem_add(&a->r->problems, (struct mark){0}, "out of memory");
+        return false;
+    }
+    for (size_t i = 0; i < values->count; i++)
+        good = read_points(a, values->item[i], i, rows) && good;
+    return good;
+}
+
+bool axis_read_end(struct axis_reader *a, const char *key, const struct tree_node *node, int k,
+                   double *value)
+{
+    if (!axis_read_value(a, node, k, value))
+        return false;
+    if (!isfinite(*value)) {
+        problem_add(&a->r->problems, node->mark, "%s: %s must be a number", a->name, key);
+        return false;
+    }
+    return true;
+}
+
+static bool read_end(struct axis_reader *a, const char *key, double *value)
+{
+    return axis_read_end(a, key, tree_find(a->node, key), 0, value);
+}
+
+static bool compute_log_points(struct axis_reader *a, struct mark mark)
+{
+    struct scenario_axis *axis = a->axis;
+    if (axis->from <= 0 || axis->to <= 0) {
+        problem_add(&a->r->problems, mark, "%s: spacing log needs from and to above 0", a->name);
+        return false;
+    }
+    if ((double)axis->count > MOST_LOG_POINTS) {
+        problem_add(&a->r->problems, mark, "%s: spacing log has at most %.0f points", a->name,
+                    MOST_LOG_POINTS);
+        return false;
+    }
+    axis->value = malloc(axis->count * sizeof *axis->value);
+    if (!axis->value) {
+        problem_add(&a->r->problems, (struct mark){0}, "out of memory");
+        return false;
+    }
+    for (size_t i = 0; i < axis->count; i++) {
+        axis->value[i] =
+            i == 0 ? axis->from
+                   : axis->from * pow(axis->to / axis->from, (double)i / (double)(axis->count - 1));
+    }
+    if (axis->count > 1)
+        axis->value[axis->count - 1] = axis->to;
+    return true;
+}
+
+/* What `from`, `to` and `count` must be to each other. */
+static bool check_range(struct axis_reader *a, bool has_to)
+{
+    struct scenario_axis *axis = a->axis;
+    const char *wrong = NULL;
+
+    if (axis->count > 1 && !has_to)
+        wrong = "to is missing";
+    else if (axis->count > 1 && axis->from == axis->to)
+        wrong = "from and to are equal: use count 1";
+    else if (axis->count == 1 && axis->from != axis->to)
+        wrong = "count 1 leaves no room for to";
+    else if (axis->integer[0] && axis->count > 1 &&
+             fmod(axis->to - axis->from, (double)(axis->count - 1)) != 0)
+        wrong = "this count leads to values that are not whole numbers";
+    if (wrong)
+        axis_complain(a, wrong);
+    return !wrong;
+}
+
+static bool read_range(struct axis_reader *a)
+{
+    struct reader *r = a->r;
+    struct scenario_axis *axis = a->axis;
+    const struct tree_node *count = tree_find(a->node, "count"),
+                           *spacing = tree_find(a->node, "spacing");
+    bool has_to = tree_find(a->node, "to") != NULL;
+    char name[AXIS_NAME + 16];
+    double number = 0;
+    int log_spacing = 0;
+
+    if (axis->enumeration[0]) {
+        char what[160];
+        snprintf(what, sizeof what, "%s takes words: list them as values", axis->path[0]);
+        axis_complain(a, what);
+        return false;
+    }
+    if (!tree_find(a->node, "from")) {
+        axis_complain(a,
+                      count || has_to ? "from is missing" : "give from, to and count, or values");
+        return false;
+    }
+    bool good = read_end(a, "from", &axis->from);
+    axis->to = axis->from;
+    good = (!has_to || read_end(a, "to", &axis->to)) && good;
+    if (!count) {
+        axis_complain(a, "count is missing");
+        return false;
+    }
+    snprintf(name, sizeof name, "%s.count", a->name);
+    good = field_integer(&r->problems, schema_find(&r->schema, "sweep.grid[].count"), name, count,
+                         &number) &&
+           good;
+    snprintf(name, sizeof name, "%s.spacing", a->name);
+    if (spacing) {
+        good = field_word(&r->problems, schema_find(&r->schema, "sweep.grid[].spacing"), name,
+                          spacing, &log_spacing) &&
+               good;
+    }
+    if (!good)
+        return false;
+    axis->count = (size_t)number;
+    axis->log = log_spacing != 0;
+    return check_range(a, has_to) && (!axis->log || compute_log_points(a, spacing->mark));
+}
+
+/* ---- axes ------------------------------------------------------------------------------------ */
+
+void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[160])
+{
+    const struct scenario_field *field = a->swept[k].field;
+    snprintf(unit, 24, "%s", field->unit[0] ? field->unit : "1");
+    if (field->columns > 0) { /* gains on angles, then on rates */
+        const bool angle = a->swept[k].index[1] < field->columns / 2;
+        snprintf(unit, 24, "%s", angle ? "N m/rad" : "N m s/rad");
+    }
+    snprintf(text, 160, "%s", field->text);
+}
+
+static bool read_axis(struct axis_reader *a)
+{
+    struct scenario_axis *axis = a->axis;
+    const struct tree_node *paths, *values;
+    size_t problems = a->r->problems.count + a->r->problems.lost;
+
+    if (a->node->kind != TREE_MAP) {
+        return field_mismatch(&a->r->problems, a->name, "a mapping with path, from, to, count",
+                              a->node);
+    }
+    axis->line = a->node->mark.line;
+    axis->column = a->node->mark.column;
+    reader_check_keys(a->r, a->node, "sweep.grid[]", a->name);
+    bool keys_good = problems == a->r->problems.count + a->r->problems.lost;
+    if (!keys_good || !axis_read_paths(a))
+        return false;
+    snprintf(axis->name, sizeof axis->name, "%s", axis->path[0]);
+    axis_describe(a, 0, axis->unit, axis->text);
+    paths = tree_find(a->node, "paths");
+    values = tree_find(a->node, "values");
+    if (paths && !values) {
+        axis_complain(a, "paths needs values, a list for each point");
+        return false;
+    }
+    return values ? read_values(a, values, paths != NULL) : read_range(a);
+}
+
+void sweep_read(struct reader *r, const struct tree_node *grid)
+{
+    struct scenario *s = r->s;
+
+    if (!field_list(&r->problems, "sweep.grid", "a list of axes", grid)) {
+        r->axes_bad = true;
+        return;
+    }
+    if (grid->count > SCENARIO_MAX_AXES) {
+        problem_add(&r->problems, grid->mark, "sweep.grid: more than %d axes", SCENARIO_MAX_AXES);
+        r->axes_bad = true;
+        return;
+    }
+    for (size_t i = 0; i < grid->count; i++) {
+        struct axis_reader a = {.r = r,
+                                .axis = &s->axis[i],
+                                .swept = r->swept[i],
+                                .node = grid->item[i],
+                                .number = (int)i};
+        snprintf(a.name, sizeof a.name, "sweep.grid[%zu]", i);
+        s->axes = (int)i + 1;
+        if (!read_axis(&a)) {
+            r->axes_bad = true;
+        } else if ((double)a.axis->count > MOST_CASES / (double)s->cases) {
+            if (!r->axes_bad) {
+                problem_add(&r->problems, a.node->mark,
+                            "sweep.grid: the axes up to this one make more than 2^53 cases");
+            }
+            r->axes_bad = true;
+        } else {
+            s->cases *= a.axis->count;
+        }
+    }
+}
+
+/* ---- refinement ------------------------------------------------------------------------------ */
+
+/* A number of sweep.refine, its default where it is not given. False: a problem. */
+static bool refine_number(struct reader *r, const char *path, double *value)
+{
+    const struct scenario_field *field = schema_find(&r->schema, path);
+    const struct tree_node *node = reader_seen(r, path)->node;
+
+    *value = field->fallback;
+    return !node ||
+           (field->type == FIELD_INTEGER ? field_integer(&r->problems, field, path, node, value)
+                                         : field_number(&r->problems, field, path, node, value));
+}
+
+/* What is stored must leave room for cases that are not simulated. */
+static void check_refined_record(struct reader *r)
+{
+    const struct scenario *s = r->s;
+    const uint32_t needed = 1u << STANCE_ANSWER_outcome | 1u << STANCE_ANSWER_evidence;
+
+    if (s->record_cases == RECORD_ALL) {
+        problem_add(&r->problems, reader_seen(r, "record.cases")->key,
+                    "record.cases all has no meaning with sweep.refine: list those to be recorded");
+    }
+    if ((s->answers & needed) != needed) {
+        problem_add(&r->problems, reader_seen(r, "record.answers")->key,
+                    "record.answers: sweep.refine needs outcome and evidence among them");
+    }
+}
+
+void sweep_read_refine(struct reader *r)
+{
+    struct scenario *s = r->s;
+    const struct seen *seen = reader_seen(r, "sweep.refine");
+    double start, margin, probes;
+    bool any = false;
+
+    if (!seen->node || seen->bad)
+        return;
+    bool good = refine_number(r, "sweep.refine.start", &start);
+    good = refine_number(r, "sweep.refine.margin", &margin) && good;
+    good = refine_number(r, "sweep.refine.probes", &probes) && good;
+    if (!reader_seen(r, "sweep.grid")->node) {
+        problem_add(&r->problems, seen->key, "sweep.refine needs sweep.grid: axes to refine");
+        return;
+    }
+    if (!good || r->axes_bad)
+        return;
+    s->refine = (struct scenario_refine){true, (size_t)start, (size_t)margin, probes};
+    for (int a = 0; a < s->axes; a++) {
+        struct scenario_axis *axis = &s->axis[a];
+        axis->refined = !axis->words && !axis->sample && axis->count > s->refine.start;
+        any = any || axis->refined;
+    }
+    if (!any) {
+        problem_add(&r->problems, seen->key,
+                    "sweep.refine: no axis of numbers has more points than start, %zu",
+                    s->refine.start);
+    } else if ((double)s->cases > SCENARIO_MOST_REFINED) {
+        problem_add(&r->problems, seen->key,
+                    "sweep.refine: %llu cases are more than the %.0f that it can keep in memory",
+                    (unsigned long long)s->cases, SCENARIO_MOST_REFINED);
+    }
+    check_refined_record(r);
+}
+
+void sweep_free(struct scenario_axis *axis)
+{
+    if (axis->word)
+        for (size_t i = 0; i < axis->count * (size_t)axis->paths; i++)
+            free(axis->word[i]);
+    for (int k = 0; axis->meaning && k < axis->paths; k++)
+        free(axis->meaning[k].words);
+    free(axis->word);
+    free(axis->value);
+    free(axis->meaning);
+    axis->word = NULL;
+    axis->value = NULL;
+    axis->meaning = NULL;
+}
+
+/* ---- values of cases ------------------------------------------------------------------------- */
+
+double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k)
+{
+    if (axis->value)
+        return axis->value[i * (size_t)axis->paths + (size_t)k];
+    if (i + 1 == axis->count)
+        return axis->to;
+    return axis->from + (double)i * (axis->to - axis->from) / (double)(axis->count - 1);
+}
+
+void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer,
+                        size_t size)
+{
+    if (axis->word && axis->word[i * (size_t)axis->paths + (size_t)k]) {
+        snprintf(buffer, size, "%s", axis->word[i * (size_t)axis->paths + (size_t)k]);
+        return;
+    }
+    double value = scenario_axis_value(axis, i, k);
+    if (axis->meaning && axis->meaning[k].words) {
+        const char *word = axis->meaning[k].words;
+        for (int skipped = 0; skipped < (int)value && strchr(word, ' '); skipped++)
+            word = strchr(word, ' ') + 1;
+        snprintf(buffer, size, "%.*s", (int)strcspn(word, " "), word);
+        return;
+    }
+    if (isinf(value)) {
+        snprintf(buffer, size, "none");
+        return;
+    }
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(buffer, size, "%.*g", digits, value);
+        if (strtod(buffer, NULL) == value)
+            return;
+    }
+}
+
+void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid, uint64_t *sample)
+{
+    const uint64_t points = s->sample.given ? s->axis[s->axes - 1].count : 1;
+    *grid = index / points;
+    *sample = index % points;
+}
+
+void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values)
+{
+    *values = s->base;
+    for (int a = s->axes - 1; a >= 0; a--) {
+        const struct scenario_axis *axis = &s->axis[a];
+        size_t point = (size_t)(index % axis->count);
+        index /= axis->count;
+        for (int k = 0; k < axis->paths; k++) {
+            double value = scenario_axis_value(axis, point, k);
+            char *place = (char *)values + axis->offset[k];
+            if (axis->integer[k]) {
+                int number = (int)value;
+                memcpy(place, &number, sizeof number);
+            } else {
+                memcpy(place, &value, sizeof value);
+            }
+        }
+    }
+}

@@ -1,0 +1,198 @@
+/* tree_text.c - the characters of a tree: which a text may hold, and how nodes are written back. */
+#include "tree.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- characters
+ * ------------------------------------------------------------------------------------ */
+
+/* Decodes one character of UTF-8; returns its length, 0 when it is malformed. */
+static size_t decode(const unsigned char *s, size_t left, uint32_t *character)
+{
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    size_t length = s[0] < 0x80             ? 1
+                    : (s[0] & 0xe0) == 0xc0 ? 2
+                    : (s[0] & 0xf0) == 0xe0 ? 3
+                    : (s[0] & 0xf8) == 0xf0 ? 4
+                                            : 0;
+    if (length == 0 || length > left)
+        return 0;
+    uint32_t c = length == 1 ? s[0] : s[0] & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if ((s[i] & 0xc0) != 0x80)
+            return 0;
+        c = c << 6 | (s[i] & 0x3fu);
+    }
+    if (c < least[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff))
+        return 0;
+    *character = c;
+    return length;
+}
+
+/* What YAML lets stand in a text as it is. */
+static bool printable(uint32_t c)
+{
+    return c == '\t' || c == '\n' || c == '\r' || (c >= 0x20 && c < 0x7f) || c == 0x85 ||
+           (c >= 0xa0 && c != 0xfeff && c != 0xfffe && c != 0xffff);
+}
+
+bool tree_check_text(const char *text, size_t length, struct problems *problems)
+{
+    struct mark mark = {0, 1, 1};
+    for (size_t i = 0; i < length;) {
+        uint32_t c = 0;
+        size_t n = decode((const unsigned char *)text + i, length - i, &c);
+        if (n == 0) {
+            problem_add(problems, mark, "not UTF-8 text (byte 0x%02x)", (unsigned char)text[i]);
+            return false;
+        }
+        if (!printable(c) && !(i == 0 && c == 0xfeff)) {
+            problem_add(problems, mark, "not text: the control character U+%04X stands here", c);
+            return false;
+        }
+        i += n;
+        mark.column++;
+        if (c == '\n') {
+            mark.line++;
+            mark.column = 1;
+        }
+    }
+    return true;
+}
+
+bool tree_name_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
+}
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+enum { WRITE_WIDTH = 96 };
+
+struct writer {
+    FILE *out;
+    int column;
+};
+
+static void put(struct writer *w, const char *text)
+{
+    fputs(text, w->out);
+    w->column += (int)strlen(text);
+}
+
+static void new_line(struct writer *w, int indent)
+{
+    fprintf(w->out, "\n%*s", indent, "");
+    w->column = indent;
+}
+
+/* Whether a plain scalar reads back as itself in every context; all numbers do. */
+static bool safe_plain(const char *text)
+{
+    size_t n = 0;
+    for (; text[n]; n++)
+        if (!tree_name_letter(text[n]) && text[n] != '.' && text[n] != '+')
+            return false;
+    return n > 0 && !(text[0] == '-' && (n == 1 || text[1] == '-')) && strcmp(text, "...") != 0;
+}
+
+static void write_scalar(struct writer *w, const struct tree_node *node)
+{
+    size_t left = strlen(node->text);
+    const unsigned char *s = (const unsigned char *)node->text;
+    char escape[16];
+
+    if (!node->quoted && safe_plain(node->text)) {
+        put(w, node->text);
+        return;
+    }
+    put(w, "\"");
+    while (left > 0) {
+        uint32_t c = 0xfffd;
+        size_t n = decode(s, left, &c);
+        n = n ? n : 1;
+        if (c == '"' || c == '\\')
+            snprintf(escape, sizeof escape, "\\%c", (char)c);
+        else if (c < 0x20 || !printable(c) || c == 0x85 || c == 0xa0 || c == 0x2028 || c == 0x2029)
+            snprintf(escape, sizeof escape, "\\U%08X", c);
+        else
+            snprintf(escape, sizeof escape, "%.*s", (int)n, (const char *)s);
+        put(w, escape);
+        s += n;
+        left -= n;
+    }
+    put(w, "\"");
+}
+
+static void write_flow(struct writer *w, const struct tree_node *node, int indent)
+{
+    if (node->kind == TREE_SCALAR) {
+        write_scalar(w, node);
+        return;
+    }
+    put(w, node->kind == TREE_LIST ? "[" : "{");
+    for (size_t i = 0; i < node->count; i++) {
+        if (i > 0) {
+            put(w, ",");
+            if (w->column > WRITE_WIDTH - 10)
+                new_line(w, indent + 4);
+            else
+                put(w, " ");
+        }
+        if (node->kind == TREE_MAP) {
+            put(w, node->key[i].name);
+            put(w, ": ");
+        }
+        write_flow(w, node->item[i], indent);
+    }
+    put(w, node->kind == TREE_LIST ? "]" : "}");
+}
+
+static bool holds_maps(const struct tree_node *node)
+{
+    return node->kind == TREE_LIST && node->count > 0 && node->item[0]->kind == TREE_MAP;
+}
+
+/* Mappings as blocks, one key a line; mappings inside lists on one line. */
+static void write_map(struct writer *w, const struct tree_node *map, int indent)
+{
+    for (size_t i = 0; i < map->count; i++) {
+        const struct tree_node *item = map->item[i];
+        if (i > 0)
+            new_line(w, indent);
+        put(w, map->key[i].name);
+        put(w, ":");
+        if (item->kind == TREE_MAP && item->count > 0) {
+            new_line(w, indent + 2);
+            write_map(w, item, indent + 2);
+        } else if (holds_maps(item)) {
+            for (size_t k = 0; k < item->count; k++) {
+                new_line(w, indent + 2);
+                put(w, "- ");
+                write_flow(w, item->item[k], indent + 2);
+            }
+        } else {
+            put(w, " ");
+            write_flow(w, item, indent + 2);
+        }
+    }
+}
+
+char *tree_write(const struct tree_node *root)
+{
+    char *text = NULL;
+    size_t size = 0;
+    struct writer w = {.out = open_memstream(&text, &size)};
+    if (!w.out)
+        return NULL;
+    write_map(&w, root, 0);
+    fputc('\n', w.out);
+    if (fclose(w.out) != 0) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}

@@ -1,0 +1,54 @@
+/* build_info.c - the Makefile hands over revision, compiler and flags as macros. */
+#include "build_info.h"
+#include "store.h"
+
+#include "runner/ranks/parallel.h"
+
+#include <gnu/libc-version.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <sundials/sundials_version.h>
+#include <yaml.h>
+
+#ifndef STANCE_REVISION
+#define STANCE_REVISION "unknown"
+#endif
+#ifndef STANCE_COMPILER
+#define STANCE_COMPILER "unknown compiler"
+#endif
+#ifndef STANCE_CFLAGS
+#define STANCE_CFLAGS "unknown flags"
+#endif
+
+/* LAPACK's own version query, a Fortran routine. */
+extern void ilaver_(int *major, int *minor, int *patch);
+
+const char *build_revision(void)
+{
+    return STANCE_REVISION;
+}
+
+const char *build_compiler(void)
+{
+    return STANCE_COMPILER;
+}
+
+const char *build_flags(void)
+{
+    return STANCE_CFLAGS;
+}
+
+void build_libraries(char text[BUILD_LIBRARIES_SIZE])
+{
+    char mpi[64], hdf5[32], sundials[32] = "?";
+    int major = 0, minor = 0, patch = 0;
+
+    parallel_library(mpi, sizeof mpi);
+    store_library(hdf5, sizeof hdf5);
+    ilaver_(&major, &minor, &patch);
+    (void)SUNDIALSGetVersion(sundials, sizeof sundials);
+    snprintf(text, BUILD_LIBRARIES_SIZE,
+             "%s, %s, libyaml %s, jansson %s, LAPACK %d.%d.%d, SUNDIALS %s, glibc %s", hdf5, mpi,
+             yaml_get_version_string(), JANSSON_VERSION, major, minor, patch, sundials,
+             gnu_get_libc_version());
+}

@@ -1,0 +1,41 @@
+/* changed_scenario.h - a results file that goes on with another scenario than it was begun with.
+ *
+ * `run --resume --force-scenario`: what is done stays, what is pending is computed as the new
+ * scenario says. The file never changes its structure: a new one is made beside it, with the same
+ * axes, designs and answers, the old scenarios in group `history` and one more variable over the
+ * cases, `scenario_number`; the rows that verify are copied; then it takes the old one's name. A
+ * kill at any moment leaves one or the other. What would not fit together is refused: other axes,
+ * answers, records or designs, and any other case of a map that is refined or has captured sets,
+ * for these infer cases from each other.
+ */
+#ifndef STANCE_STORE_CHANGED_SCENARIO_H
+#define STANCE_STORE_CHANGED_SCENARIO_H
+
+#include "store.h"
+
+#include "runner/plan/plan.h"
+
+/* Prints the lines in which two texts differ, the first ones of many, as "  - old" and "  + new".
+ */
+void changed_scenario_print_difference(FILE *to, const char *before, const char *after);
+/* Number of lines that are in one of the texts only. */
+size_t changed_scenario_count_differences(const char *before, const char *after);
+
+/* Whether a scenario, whose axes are still its own and not the file's, has the axes and the sample
+ * of a file's: false with the reason in *message. */
+bool changed_scenario_check_sweep(const char *file, const struct store_origin *origin,
+                                  const struct scenario *scenario, stance_message *message);
+/* On rank 0, with the lock, after that: puts the successor in the place of `file`, whose origin is
+ * given; the scenario is the plan's. Reads the plan's designs from the file, and sets
+ * plan->ancestors. False with the reason in *message, which is empty where `plan->stop` said to
+ * stop; then the file is as it was. */
+struct changed_scenario_counts { /* rows that were copied; that did not verify and are pending again
+                                  */
+    uint64_t kept, damaged;
+    bool refused; /* this scenario cannot follow that one */
+};
+bool changed_scenario_make(const char *file, const struct store_origin *origin, struct plan *plan,
+                           int ranks, const char *hosts, struct changed_scenario_counts *counts,
+                           stance_message *message);
+
+#endif

@@ -1,0 +1,213 @@
+/* command_merge.c - `stance merge OUT FILE FILE...`: the files of an array job into one. */
+#include "lock.h"
+#include "merge.h"
+
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+extern const struct command command_merge; /* below */
+
+struct request {
+    const char *output;
+    const char **files;
+    size_t count;
+    bool force;
+};
+
+static void print_result(const struct request *request, const struct merge *m)
+{
+    const struct store_copied *copied = &m->copied;
+    const uint64_t done = copied->copied;
+    printf("%s: %llu cases from %zu files", request->output, (unsigned long long)m->scenario.cases,
+           m->parts);
+    if (m->kind != MERGE_EQUAL)
+        printf(" along %s, %zu values", m->path, m->points);
+    if (copied->same > 0)
+        printf("; %llu were in several files, and equal", (unsigned long long)copied->same);
+    if (done < m->scenario.cases)
+        printf("; %llu are not computed yet", (unsigned long long)(m->scenario.cases - done));
+    putchar('\n');
+    if (copied->damaged > 0) {
+        fprintf(stderr, "stance merge: %llu case%s not as %s checksum%s left out\n",
+                (unsigned long long)copied->damaged, copied->damaged == 1 ? " is" : "s are",
+                copied->damaged == 1 ? "its" : "their",
+                copied->damaged == 1 ? " says and was" : "s say and were");
+    }
+    if (m->keyed) {
+        fprintf(stderr,
+                "stance merge: random numbers are keyed by the cases' indices in the parts: one "
+                "run of the whole has other ones (attribute merge_note)\n");
+    }
+    for (size_t p = 1; p < m->parts; p++) {
+        if (strcmp(m->part[p].origin.revision, m->part[0].origin.revision) != 0) {
+            fprintf(stderr,
+                    "stance merge: warning: %s was begun by revision %s, %s by %s: results "
+                    "may differ\n",
+                    m->part[p].file, m->part[p].origin.revision, m->part[0].file,
+                    m->part[0].origin.revision);
+            break;
+        }
+    }
+    if (m->refined) {
+        fprintf(stderr,
+                "stance merge: the parts were refined each for itself: one run of the whole "
+                "simulates other cases (attribute merge_note)\n");
+    }
+    if (m->designs_differ) {
+        fprintf(stderr, "stance merge: the parts' designs differ in last bits; those of the first "
+                        "part that has them are in the file (attribute merge_note)\n");
+    }
+}
+
+/* Whether all parts can be read now: nobody writes them. */
+static bool at_rest(const struct request *request)
+{
+    char note[LOCK_NOTE];
+    for (size_t p = 0; p < request->count; p++) {
+        if (lock_is_held(request->files[p], note)) {
+            fprintf(stderr, "stance merge: %s: a job is writing it\n", request->files[p]);
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The file is made under another name and takes its own when it is whole. */
+static int write_file(const struct request *request, struct merge *m)
+{
+    char made[1100];
+    stance_message message = {""};
+    struct lock lock = {.descriptor = -1};
+    bool usage = false;
+
+    snprintf(made, sizeof made, "%s.merging", request->output);
+    if (!lock_take(&lock, request->output, &message)) {
+        fprintf(stderr, "stance merge: %s\n", message.text);
+        return EXIT_IO;
+    }
+    unlink(made);
+    bool good = merge_write(m, made, &usage, &message);
+    if (good && rename(made, request->output) != 0) {
+        snprintf(message.text, sizeof message.text, "%.150s: %s", request->output, strerror(errno));
+        unlink(made);
+        good = false;
+    }
+    lock_release(&lock);
+    if (!good) {
+        fprintf(stderr, "stance merge: %s\n", message.text);
+        return usage ? EXIT_USAGE : EXIT_IO;
+    }
+    print_result(request, m);
+    return EXIT_DONE;
+}
+
+static int work(void *context)
+{
+    const struct request *request = context;
+    stance_message message = {""};
+    bool usage = false;
+    struct merge *m = calloc(1, sizeof *m);
+    int code = EXIT_IO;
+
+    store_prepare();
+    if (!m) {
+        fputs("stance merge: not enough memory\n", stderr);
+        return EXIT_IO;
+    }
+    if (merge_plan(m, request->files, request->count, &usage, &message)) {
+        code = write_file(request, m);
+    } else {
+        fprintf(stderr, "stance merge: %s\n", message.text);
+        code = usage ? EXIT_USAGE : EXIT_IO;
+    }
+    merge_free(m);
+    free(m);
+    return code;
+}
+
+static int start(struct request *request)
+{
+    if (request->count < 2) {
+        fputs("stance merge: a file to write and two or more to read are needed (stance merge -h "
+              "explains)\n",
+              stderr);
+        return EXIT_USAGE;
+    }
+    if (strlen(request->output) >= 1024) {
+        fprintf(stderr, "stance merge: %.60s...: %s\n", request->output, strerror(ENAMETOOLONG));
+        return EXIT_USAGE;
+    }
+    for (size_t p = 1; p < request->count; p++) {
+        for (size_t q = 0; q < p; q++) {
+            if (strcmp(request->files[p], request->files[q]) == 0) {
+                fprintf(stderr, "stance merge: %s is given twice\n", request->files[p]);
+                return EXIT_USAGE;
+            }
+        }
+    }
+    if (!request->force && access(request->output, F_OK) == 0) {
+        fprintf(stderr, "stance merge: %s exists; --force replaces it\n", request->output);
+        return EXIT_IO;
+    }
+    return at_rest(request) ? sandbox(work, request, "one of the files") : EXIT_IO;
+}
+
+static int run(int argc, char **argv)
+{
+    const char **operand = calloc((size_t)argc, sizeof *operand);
+    size_t force = 0, operands = 0;
+    bool help = false;
+    const struct option_spec specs[] = {{"--force", false, NULL, 0, &force}};
+    int code = EXIT_DONE;
+
+    if (!operand) {
+        fputs("stance merge: not enough memory\n", stderr);
+        return EXIT_IO;
+    }
+    if (!command_options(&command_merge, argc, argv, specs, 1, operand, (size_t)argc, &operands,
+                         &help)) {
+        code = EXIT_USAGE;
+    } else if (!help) {
+        struct request request = {operands > 0 ? operand[0] : "", operand + 1,
+                                  operands > 0 ? operands - 1 : 0, force > 0};
+        code = start(&request);
+    }
+    free(operand);
+    return code;
+}
+
+const struct command command_merge = {
+    "merge",
+    "merge OUT FILE FILE... [--force]",
+    "the files of an array job into one",
+    run,
+    "The files' scenarios may\n"
+    "\n"
+    "  be equal                 each file has computed some of the cases\n"
+    "  differ along one axis    each file has some of its points: an array of tasks with\n"
+    "                           --set sweep.grid[0].from=... or --set sweep.grid[0].values=...\n"
+    "  differ in one value      which becomes the first axis: tasks with --set "
+    "ground.friction=...\n"
+    "\n"
+    "and in their titles, of which the first is kept. Numbers are sorted where the files' own\n"
+    "are; words stay in the order of the files. Every row is verified by its checksum and copied\n"
+    "as it is, with its trajectory; cases that no file has stay pending. A case that several "
+    "files\n"
+    "have must be the same in all of them. OUT is a results file like any other, and `stance run\n"
+    "--resume` computes what is pending; its attribute `merged_from` names the files and how many\n"
+    "cases came from each.\n"
+    "\n"
+    "Random numbers are keyed by a case's index in its own file: with torque noise, "
+    "stop.capture\n"
+    "or sweep.refine.probes the merged file is not what one run of the whole gives. Nor is it\n"
+    "along an axis that sweep.refine refines: each part was refined for itself. This is said,\n"
+    "also in the attribute `merge_note`.\n"
+    "\n"
+    "  --force   replace OUT\n",
+};

@@ -1,0 +1,607 @@
+/* compare.c - walks through two results files and compares variables and attributes. */
+#include "compare_values.h"
+
+#include "file_checksums.h"
+#include "store.h"
+
+#include <hdf5.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK = 1 << 18 }; /* elements read at a time */
+
+/* ---- lists of names ----------------------------------------------------------------------- */
+
+struct names {
+    char **name;
+    size_t count, room;
+    bool failed;
+};
+
+static void names_add(struct names *names, const char *name)
+{
+    if (names->count == names->room) {
+        size_t room = names->room ? 2 * names->room : 64;
+        char **larger = realloc(names->name, room * sizeof *larger);
+        if (!larger) {
+            names->failed = true;
+            return;
+        }
+        names->name = larger;
+        names->room = room;
+    }
+    char *own = strdup(name);
+    names->failed = names->failed || !own;
+    if (own)
+        names->name[names->count++] = own;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* Sorts, and drops what is there twice. */
+static void names_unite(struct names *names)
+{
+    size_t kept = 0;
+    if (names->count > 0)
+        qsort(names->name, names->count, sizeof *names->name, by_name);
+    for (size_t i = 0; i < names->count; i++)
+        if (kept > 0 && strcmp(names->name[i], names->name[kept - 1]) == 0)
+            free(names->name[i]);
+        else
+            names->name[kept++] = names->name[i];
+    names->count = kept;
+}
+
+static void names_free(struct names *names)
+{
+    for (size_t i = 0; i < names->count; i++)
+        free(names->name[i]);
+    free(names->name);
+}
+
+static herr_t add_link(hid_t group, const char *name, const H5L_info_t *info, void *names)
+{
+    (void)group, (void)info;
+    if (strcmp(name, "timing") != 0 && strncmp(name, "timing/", 7) != 0)
+        names_add(names, name);
+    return 0;
+}
+
+static bool list_objects(const struct results *r, struct names *names)
+{
+    return H5Lvisit((hid_t)r->id, H5_INDEX_NAME, H5_ITER_INC, add_link, names) >= 0;
+}
+
+static bool is_listed(const char *name, const char *const *list)
+{
+    for (; *list; list++)
+        if (strcmp(name, *list) == 0)
+            return true;
+    return false;
+}
+
+static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *info, void *names)
+{
+    /* What ties dimensions together holds addresses within the file; checksums say what the values
+     * say. */
+    static const char *const structure[] = {"DIMENSION_LIST", "REFERENCE_LIST", SEAL_ATTRIBUTE,
+                                            NULL};
+    (void)object, (void)info;
+    if (!is_listed(name, structure))
+        names_add(names, name);
+    return 0;
+}
+
+/* ---- differences -------------------------------------------------------------------------- */
+
+/* A new entry, or NULL without memory; valid until the next. */
+static struct compare_difference *add_difference(struct comparison *comparison, const char *name,
+                                                 const char *reason)
+{
+    if (comparison->count == comparison->room) {
+        size_t room = comparison->room ? 2 * comparison->room : 16;
+        struct compare_difference *larger = realloc(comparison->difference, room * sizeof *larger);
+        if (!larger)
+            return NULL;
+        comparison->difference = larger;
+        comparison->room = room;
+    }
+    struct compare_difference *difference = &comparison->difference[comparison->count++];
+    *difference = (struct compare_difference){.differing = 0};
+    snprintf(difference->name, sizeof difference->name, "%s", name);
+    results_clean(difference->name);
+    snprintf(difference->reason, sizeof difference->reason, "%s", reason);
+    comparison->beyond += strcmp(reason, "values") != 0;
+    return difference;
+}
+
+static bool no_memory(stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "stance compare: not enough memory");
+    return false;
+}
+
+static bool unreadable(const struct results *r, const char *name, stance_message *message)
+{
+    H5Eclear2(H5E_DEFAULT);
+    snprintf(message->text, sizeof message->text, "%.100s: damaged: cannot read %.80s", r->file,
+             name);
+    return false;
+}
+
+void compare_free(struct comparison *comparison)
+{
+    free(comparison->difference);
+    *comparison = (struct comparison){0};
+}
+
+/* ---- attributes --------------------------------------------------------------------------- */
+
+/* Two texts: shows them from a little before the first letter that differs. */
+static void show_texts(struct compare_place *place, const char *a, const char *b)
+{
+    size_t same = 0;
+    while (a[same] && a[same] == b[same])
+        same++;
+    size_t from = same > 20 ? same - 20 : 0;
+    while (from > 0 && ((unsigned char)a[from] & 0xc0) == 0x80) /* within a letter */
+        from--;
+    values_quote(from ? "..." : "", a + from, place->value[0]);
+    values_quote(from ? "..." : "", b + from, place->value[1]);
+}
+
+static bool open_attribute(hid_t object, const char *name, hid_t *attribute, hid_t *type,
+                           size_t *count)
+{
+    *attribute = H5Aopen(object, name, H5P_DEFAULT);
+    *type = H5Aget_type(*attribute);
+    hid_t space = H5Aget_space(*attribute);
+    hssize_t points = H5Sget_simple_extent_npoints(space);
+    *count = points > 0 && points < BLOCK ? (size_t)points : 0;
+    H5Sclose(space);
+    return *attribute >= 0 && *type >= 0 && points >= 0 && points < BLOCK;
+}
+
+static bool compare_attribute(struct comparison *comparison, const struct results *const r[2],
+                              const hid_t object[2], const char *owner, const char *attribute_name,
+                              stance_message *message)
+{
+    hid_t attribute[2] = {-1, -1}, type[2] = {-1, -1};
+    struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
+    size_t count[2] = {0};
+    char name[192];
+    bool good = true;
+
+    snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
+             attribute_name);
+    for (int f = 0; f < 2 && good; f++) {
+        good = (open_attribute(object[f], attribute_name, &attribute[f], &type[f], &count[f]) &&
+                values_read(attribute[f], -1, type[f], count[f], &values[f])) ||
+               unreadable(r[f], name, message);
+    }
+    const struct compare_difference *added = NULL;
+    if (good && (count[0] != count[1] || values[0].kind != values[1].kind)) {
+        added = add_difference(comparison, name, "types");
+        good = added || no_memory(message);
+    }
+    struct compare_difference *difference = NULL;
+    for (size_t i = 0; good && !added && i < count[0]; i++) {
+        if (values_same(&values[0], &values[1], i))
+            continue;
+        difference = difference ? difference : add_difference(comparison, name, "values");
+        good = difference || no_memory(message);
+        if (good && difference->shown < COMPARE_SHOWN) {
+            struct compare_place *place = &difference->place[difference->shown++];
+            place->index = i;
+            if (values[0].kind == VALUE_TEXT) {
+                show_texts(place, values[0].data.text[i], values[1].data.text[i]);
+            } else {
+                values_text(&values[0], i, place->value[0]);
+                values_text(&values[1], i, place->value[1]);
+            }
+        }
+        if (good) {
+            comparison->beyond += difference->differing++ == 0;
+            difference->of = count[0];
+        }
+    }
+    for (int f = 0; f < 2; f++) {
+        values_free(&values[f]);
+        H5Tclose(type[f]);
+        H5Aclose(attribute[f]);
+    }
+    return good;
+}
+
+/* All attributes of an object that both files have; `owner` "" is the file itself. */
+static bool compare_attributes(struct comparison *comparison, const struct results *const r[2],
+                               const hid_t object[2], const char *owner, stance_message *message)
+{
+    static const char *const provenance[] = {
+        "program_version", "git_revision", "compiler", "library_versions",
+        "instruction_set", "ranks",        "hosts",    "date",
+        "merged_from",     "merge_note",   NULL};
+    struct names names = {0};
+    bool good = true;
+    char name[192];
+
+    for (int f = 0; f < 2 && good; f++) {
+        good =
+            H5Aiterate2(object[f], H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &names) >= 0 ||
+            unreadable(r[f], "attributes", message);
+    }
+    good = good && (!names.failed || no_memory(message));
+    names_unite(&names);
+    for (size_t i = 0; good && i < names.count; i++) {
+        if (!owner[0] && is_listed(names.name[i], provenance))
+            continue;
+        bool has[2] = {H5Aexists(object[0], names.name[i]) > 0,
+                       H5Aexists(object[1], names.name[i]) > 0};
+        if (has[0] && has[1]) {
+            good = compare_attribute(comparison, r, object, owner, names.name[i], message);
+        } else {
+            snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
+                     names.name[i]);
+            good = add_difference(comparison, name,
+                                  has[0] ? "only in the first file" : "only in the second file") ||
+                   no_memory(message);
+        }
+    }
+    names_free(&names);
+    return good;
+}
+
+/* ---- variables ---------------------------------------------------------------------------- */
+
+/* A variable that both files have. */
+struct variable {
+    const char *name;
+    const struct results *const *r; /* [2] */
+    hid_t dataset[2], type[2], space[2];
+    int rank;
+    hsize_t length[H5S_MAX_RANK];
+    size_t elements;
+    size_t width;                              /* elements per case; 0: it is not over the cases */
+    const struct compare_tolerance *tolerance; /* NULL: bit for bit */
+    const uint64_t *list;                      /* cases of a trajectory; NULL: rows are the cases */
+};
+
+static bool is_answer(const char *name)
+{
+    static const char *const answers[] = {
+#define STORE_NAME(name, ...) #name,
+        STANCE_ANSWERS(STORE_NAME)
+#undef STORE_NAME
+            "final_state",
+        "checksum", "status", NULL};
+    return is_listed(name, answers);
+}
+
+static bool is_trajectory(const char *name)
+{
+    static const char *const tracks[] = {"trajectory/position",
+                                         "trajectory/velocity",
+                                         "trajectory/torque",
+                                         "trajectory/force",
+                                         "trajectory/gap",
+                                         "trajectory/checksum",
+                                         NULL};
+    return is_listed(name, tracks);
+}
+
+static bool is_pending(const struct results *r, uint64_t index)
+{
+    uint64_t row = r->single ? 0 : index;
+    return row < r->cases && r->kind[row] == RESULTS_PENDING;
+}
+
+/* Whether element i counts: rows of cases that either file lacks do not, `status` tells of them. */
+static bool counts(const struct variable *v, size_t i)
+{
+    if (v->width == 0 || strcmp(v->name, "status") == 0)
+        return true;
+    uint64_t index = v->list ? v->list[i / v->width] : i / v->width;
+    return !is_pending(v->r[0], index) && !is_pending(v->r[1], index);
+}
+
+static struct compare_place place_of(const struct variable *v, size_t i, size_t within,
+                                     const struct values values[2])
+{
+    struct compare_place place = {.component = v->width ? i % v->width : 0};
+    const uint64_t row = v->width ? i / v->width : i;
+    place.index = v->list ? v->list[row] : v->width && v->r[0]->single ? v->r[0]->index : row;
+    values_text(&values[0], within, place.value[0]);
+    values_text(&values[1], within, place.value[1]);
+    return place;
+}
+
+/* |a - b|; INFINITY where one of them is no number. */
+static double distance_of(const struct values values[2], size_t k)
+{
+    double number[2];
+    for (int f = 0; f < 2; f++) {
+        number[f] = values[f].kind == VALUE_REAL      ? values[f].data.real[k]
+                    : values[f].kind == VALUE_INTEGER ? (double)values[f].data.integer[k]
+                                                      : NAN;
+    }
+    const double distance = fabs(number[0] - number[1]);
+    return isnan(distance) ? INFINITY : distance;
+}
+
+static bool is_close(const struct compare_tolerance *tolerance, const struct values values[2],
+                     size_t k, double distance)
+{
+    if (!isfinite(distance))
+        return false;
+    const double size = values[0].kind == VALUE_REAL
+                            ? fmax(fabs(values[0].data.real[k]), fabs(values[1].data.real[k]))
+                            : fmax(fabs((double)values[0].data.integer[k]),
+                                   fabs((double)values[1].data.integer[k]));
+    return distance <= tolerance->absolute + tolerance->relative * size;
+}
+
+/* The entry of a variable, made when its first difference is met. */
+static struct compare_difference *entry_of(struct comparison *comparison, const struct variable *v,
+                                           struct compare_difference **difference)
+{
+    if (!*difference && (*difference = add_difference(comparison, v->name, "values"))) {
+        (*difference)->cases = v->width > 0;
+        (*difference)->several = v->width > 1;
+        (*difference)->of = v->width ? v->elements / v->width : v->elements;
+    }
+    return *difference;
+}
+
+/* Compares elements [first, first + n) that have been read. *last is the row noted last. */
+static bool compare_block(struct comparison *comparison, const struct variable *v, size_t first,
+                          const struct values values[2], struct compare_difference **difference,
+                          size_t *last)
+{
+    for (size_t k = 0; k < values[0].count; k++) {
+        const size_t i = first + k, row = v->width ? i / v->width : i;
+        const bool noted = *difference && (*difference)->differing > 0 && *last == row;
+        if (values_same(&values[0], &values[1], k) || !counts(v, i) || (noted && !v->tolerance))
+            continue;
+        if (!entry_of(comparison, v, difference))
+            return false;
+        if (v->tolerance) {
+            const double distance = distance_of(values, k);
+            if (distance > (*difference)->largest) {
+                (*difference)->largest = distance;
+                (*difference)->largest_place = place_of(v, i, k, values);
+            }
+            if (noted || is_close(v->tolerance, values, k, distance))
+                continue;
+        }
+        *last = row;
+        comparison->beyond += (*difference)->differing++ == 0;
+        if ((*difference)->shown < COMPARE_SHOWN)
+            (*difference)->place[(*difference)->shown++] = place_of(v, i, k, values);
+    }
+    return true;
+}
+
+/* Selects rows [at, at + n) of the first dimension in both files. */
+static bool select_rows(const struct variable *v, hsize_t at, hsize_t n)
+{
+    hsize_t start[H5S_MAX_RANK] = {0}, count[H5S_MAX_RANK];
+    if (v->rank == 0)
+        return true;
+    memcpy(count, v->length, sizeof count);
+    start[0] = at;
+    count[0] = n;
+    return H5Sselect_hyperslab(v->space[0], H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+           H5Sselect_hyperslab(v->space[1], H5S_SELECT_SET, start, NULL, count, NULL) >= 0;
+}
+
+static bool compare_values(struct comparison *comparison, const struct variable *v,
+                           stance_message *message)
+{
+    hsize_t rows = v->rank > 0 ? v->length[0] : 1;
+    size_t per_row = v->elements / (size_t)rows, last = 0;
+    hsize_t step = per_row < BLOCK ? BLOCK / per_row : 1;
+    struct compare_difference *difference = NULL;
+    bool good = true;
+
+    for (hsize_t at = 0; at < rows && good; at += step) {
+        hsize_t n = rows - at < step ? rows - at : step;
+        struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
+        good = select_rows(v, at, n) || no_memory(message);
+        for (int f = 0; f < 2 && good; f++) {
+            good = values_read(v->dataset[f], v->space[f], v->type[f], (size_t)n * per_row,
+                               &values[f]) ||
+                   unreadable(v->r[f], v->name, message);
+        }
+        good = good &&
+               (compare_block(comparison, v, (size_t)at * per_row, values, &difference, &last) ||
+                no_memory(message));
+        values_free(&values[0]);
+        values_free(&values[1]);
+    }
+    return good;
+}
+
+/* Number of elements; 0 when a damaged header claims more than the file can hold. */
+static size_t count_elements(const struct variable *v)
+{
+    hsize_t size = 0, product = 1;
+    if (H5Fget_filesize((hid_t)v->r[0]->id, &size) < 0)
+        return 0;
+    for (int d = 0; d < v->rank; d++) {
+        if (v->length[d] == 0 || product > size / v->length[d])
+            return 0;
+        product *= v->length[d];
+    }
+    return (size_t)product;
+}
+
+/* How the elements belong to cases. `list` is what trajectories are over. */
+static void find_rows(struct variable *v, const uint64_t *list, size_t list_count)
+{
+    uint64_t rows = 0;
+    if (is_answer(v->name)) {
+        rows = v->r[0]->cases;
+    } else if (is_trajectory(v->name) && v->rank > 0 && v->length[0] == list_count) {
+        rows = list_count;
+        v->list = list;
+    }
+    v->width = rows && v->elements % rows == 0 ? (size_t)(v->elements / rows) : 0;
+    v->list = v->width ? v->list : NULL;
+}
+
+/* What holds for a variable: its own tolerance, or that of all; NULL: none. */
+static const struct compare_tolerance *tolerance_of(const struct comparison *comparison,
+                                                    const struct variable *v)
+{
+    const struct compare_tolerances *all = comparison->tolerances;
+    const enum value_kind kind = value_kind_of(v->type[0]);
+    const struct compare_tolerance *found = NULL;
+    if (!all || !(kind == VALUE_REAL || (kind == VALUE_INTEGER && is_answer(v->name))))
+        return NULL;
+    for (size_t i = 0; i < all->count; i++) {
+        const struct compare_tolerance *tolerance = &all->tolerance[i];
+        if (tolerance->name && strcmp(tolerance->name, v->name) == 0)
+            return tolerance;
+        found = tolerance->name ? found : tolerance;
+    }
+    return found;
+}
+
+static bool open_variable(struct variable *v, const hid_t object[2], const char **differs)
+{
+    hsize_t length[2][H5S_MAX_RANK];
+    int rank[2];
+    for (int f = 0; f < 2; f++) {
+        v->dataset[f] = object[f];
+        v->type[f] = H5Dget_type(object[f]);
+        v->space[f] = H5Dget_space(object[f]);
+        rank[f] = H5Sget_simple_extent_dims(v->space[f], length[f], NULL);
+        if (v->type[f] < 0 || rank[f] < 0)
+            return false;
+    }
+    v->rank = rank[0];
+    memcpy(v->length, length[0], sizeof v->length);
+    bool text = value_kind_of(v->type[0]) == VALUE_TEXT && value_kind_of(v->type[1]) == VALUE_TEXT;
+    if (rank[0] != rank[1] ||
+        memcmp(length[0], length[1], (size_t)rank[0] * sizeof length[0][0]) != 0)
+        *differs = "shapes";
+    else if (value_kind_of(v->type[0]) == VALUE_OTHER)
+        *differs = "types that stance does not write";
+    else if (!text && H5Tequal(v->type[0], v->type[1]) <= 0)
+        *differs = "types";
+    return true;
+}
+
+static bool compare_variable(struct comparison *comparison, const struct results *const r[2],
+                             const hid_t object[2], const char *name, const uint64_t *list,
+                             size_t list_count, stance_message *message)
+{
+    struct variable v = {.name = name, .r = r, .type = {-1, -1}, .space = {-1, -1}};
+    const char *differs = NULL;
+    bool good = open_variable(&v, object, &differs) || unreadable(r[0], name, message);
+    if (good && differs) {
+        good = add_difference(comparison, name, differs) || no_memory(message);
+    } else if (good) {
+        v.elements = count_elements(&v);
+        good = v.elements > 0 || unreadable(r[0], name, message);
+        if (good) {
+            find_rows(&v, list, list_count);
+            v.tolerance = tolerance_of(comparison, &v);
+            good = compare_values(comparison, &v, message);
+        }
+    }
+    for (int f = 0; f < 2; f++) {
+        H5Sclose(v.space[f]);
+        H5Tclose(v.type[f]);
+    }
+    return good;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+static bool compare_object(struct comparison *comparison, const struct results *const r[2],
+                           const char *name, const uint64_t *list, size_t list_count,
+                           stance_message *message)
+{
+    bool has[2] = {H5Lexists((hid_t)r[0]->id, name, H5P_DEFAULT) > 0,
+                   H5Lexists((hid_t)r[1]->id, name, H5P_DEFAULT) > 0};
+    hid_t object[2] = {-1, -1};
+    if (!has[0] || !has[1]) {
+        return add_difference(comparison, name,
+                              has[0] ? "only in the first file" : "only in the second file") ||
+               no_memory(message);
+    }
+    bool good = true;
+    for (int f = 0; f < 2 && good; f++) {
+        object[f] = H5Oopen((hid_t)r[f]->id, name, H5P_DEFAULT);
+        good = object[f] >= 0 || unreadable(r[f], name, message);
+    }
+    if (good && H5Iget_type(object[0]) != H5Iget_type(object[1])) {
+        good = add_difference(comparison, name, "types") || no_memory(message);
+    } else if (good) {
+        good =
+            (comparison->tolerances || compare_attributes(comparison, r, object, name, message)) &&
+            (H5Iget_type(object[0]) != H5I_DATASET ||
+             compare_variable(comparison, r, object, name, list, list_count, message));
+    }
+    for (int f = 0; f < 2; f++)
+        if (object[f] >= 0)
+            H5Oclose(object[f]);
+    return good;
+}
+
+/* The group that an object is in is missing in one of the files, which is said once. */
+static bool lacks_group(const struct results *const r[2], const char *name)
+{
+    char group[192];
+    const char *slash = strrchr(name, '/');
+    if (!slash)
+        return false;
+    snprintf(group, sizeof group, "%.*s", (int)(slash - name), name);
+    return lacks_group(r, group) || H5Lexists((hid_t)r[0]->id, group, H5P_DEFAULT) <= 0 ||
+           H5Lexists((hid_t)r[1]->id, group, H5P_DEFAULT) <= 0;
+}
+
+bool compare_has(const struct results *r, const char *name)
+{
+    const char *slash = strchr(name, '/');
+    char group[96];
+    snprintf(group, sizeof group, "%.*s", slash ? (int)(slash - name) : 0, name);
+    return name[0] && (!slash || H5Lexists((hid_t)r->id, group, H5P_DEFAULT) > 0) &&
+           H5Lexists((hid_t)r->id, name, H5P_DEFAULT) > 0;
+}
+
+bool compare_results(struct comparison *comparison, const struct results *first,
+                     const struct results *second, const struct compare_tolerances *tolerances,
+                     stance_message *message)
+{
+    static const char *const checksums[] = {"checksum", "trajectory/checksum", NULL};
+    const struct results *const r[] = {first, second};
+    const hid_t roots[] = {(hid_t)first->id, (hid_t)second->id};
+    struct names names = {0};
+    uint64_t *list = NULL;
+    size_t list_count = 0;
+
+    *comparison = (struct comparison){.tolerances = tolerances};
+    bool good = results_recorded(first, &list, &list_count, message);
+    for (int f = 0; f < 2 && good; f++)
+        good = list_objects(r[f], &names) || unreadable(r[f], "its variables", message);
+    good = good && (!names.failed || no_memory(message));
+    names_unite(&names);
+    good = good && (tolerances || compare_attributes(comparison, r, roots, "", message));
+    for (size_t i = 0; good && i < names.count; i++) {
+        good = lacks_group(r, names.name[i]) ||
+               (tolerances && is_listed(names.name[i], checksums)) ||
+               compare_object(comparison, r, names.name[i], list, list_count, message);
+    }
+    names_free(&names);
+    free(list);
+    if (!good)
+        compare_free(comparison);
+    return good;
+}

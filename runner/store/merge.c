@@ -1,0 +1,333 @@
+/* merge.c - writes the merged file: designs, then rows, part after part. */
+#include "merge.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const double last_bits = 1e-9; /* relative difference of designs that are the same */
+
+static bool no_memory(stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "stance merge: not enough memory");
+    return false;
+}
+
+/* ---- a part, opened ----------------------------------------------------------------------- */
+
+struct opened {
+    struct scenario scenario;
+    struct plan plan;
+    struct store *store;
+    bool planned;
+};
+
+static void close_part(struct opened *part)
+{
+    stance_message ignored;
+    if (part->store)
+        store_close(part->store, &ignored);
+    if (part->planned)
+        plan_free(&part->plan);
+    scenario_free(&part->scenario);
+    free(part);
+}
+
+static bool is_single(const struct scenario *s, const struct store_counts *counts)
+{
+    return counts->cases != s->cases;
+}
+
+/* NULL: one line in *message. */
+static struct opened *open_part(const struct merge_part *part, stance_message *message)
+{
+    struct opened *opened = calloc(1, sizeof *opened);
+    struct plan_error error;
+    struct store_counts counts;
+    if (!opened) {
+        no_memory(message);
+        return NULL;
+    }
+    bool good = merge_read_part(part, &opened->scenario, message) &&
+                store_count(part->file, &counts, message);
+    if (good && is_single(&opened->scenario, &counts)) {
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: holds one case of a sweep (run --only), not the sweep", part->file);
+        good = false;
+    }
+    if (good && !plan_make(&opened->plan, &opened->scenario, false, 0, false, &error)) {
+        snprintf(message->text, sizeof message->text, "%.60s: %.160s", part->file,
+                 error.message.text);
+        good = false;
+    } else if (good) {
+        opened->planned = true;
+        good = store_open_to_read(&opened->store, part->file, &opened->plan, message) &&
+               store_read_designs(opened->store, &opened->plan, message);
+    }
+    if (!good) {
+        close_part(opened);
+        return NULL;
+    }
+    return opened;
+}
+
+/* ---- axes --------------------------------------------------------------------------------- */
+
+/* How far the values of two axes are apart, relative to the largest of each path. */
+static double axis_distance(const struct scenario_axis *a, const struct scenario_axis *b)
+{
+    double most = 0;
+    for (int k = 0; k < a->paths; k++) {
+        double scale = 0, distance = 0;
+        for (size_t i = 0; i < a->count; i++) {
+            const double x = scenario_axis_value(a, i, k), y = scenario_axis_value(b, i, k);
+            scale = isfinite(x) ? fmax(scale, fabs(x)) : scale;
+            distance = x == y ? distance : fmax(distance, fabs(x - y));
+        }
+        most = distance > 0 ? fmax(most, distance / scale) : most;
+    }
+    return most;
+}
+
+/* The points of a sample or of a logarithmic axis are what the program that made the part computed:
+ * equal scenarios of two versions need not have equal ones. */
+static bool check_axes(struct merge *m, const struct merge_part *part,
+                       const struct scenario *scenario, stance_message *message)
+{
+    const int shift = m->kind == MERGE_VALUE; /* the new axis is the first one */
+    for (int a = 0; a < scenario->axes; a++) {
+        const struct scenario_axis *axis = &scenario->axis[a];
+        if ((!axis->log && !axis->sample) || (m->kind == MERGE_AXIS && a == m->axis))
+            continue;
+        const double distance = axis_distance(axis, &m->scenario.axis[a + shift]);
+        if (distance > last_bits) {
+            snprintf(message->text, sizeof message->text,
+                     "%.70s: its points along %.50s are not those of %.70s", part->file, axis->name,
+                     m->part[0].file);
+            return false;
+        }
+        m->designs_differ = m->designs_differ || distance > 0;
+    }
+    return true;
+}
+
+/* ---- designs ------------------------------------------------------------------------------ */
+
+/* A row of a plan that has design `design`: the first point of the axes that it does not depend
+ * on. */
+static uint64_t row_with_design(const struct plan *plan, size_t design)
+{
+    const struct scenario *s = plan->scenario;
+    uint64_t row = 0, stride = 1;
+    for (int a = s->axes - 1; a >= 0; a--) {
+        if (s->axis[a].design) {
+            row += design % s->axis[a].count * stride;
+            design /= s->axis[a].count;
+        }
+        stride *= s->axis[a].count;
+    }
+    return row;
+}
+
+/* How far two designs are apart, relative to their largest number; captured sets, which are
+ * estimates, left out. Designs made on different processors differ in last bits. */
+static double distance_between(const struct resolved_design *a, const struct resolved_design *b)
+{
+    const double *x = (const double *)(const void *)a, *y = (const double *)(const void *)b;
+    double scale = 0, distance = 0;
+    for (size_t i = 0; i < offsetof(struct resolved_design, captured) / sizeof *x; i++) {
+        if (isfinite(x[i]) && isfinite(y[i])) {
+            scale = fmax(scale, fabs(x[i]));
+            distance = fmax(distance, fabs(x[i] - y[i]));
+        } else if (isfinite(x[i]) != isfinite(y[i])) {
+            return INFINITY;
+        }
+    }
+    return distance > 0 ? distance / scale : 0;
+}
+
+/* Takes the designs that a part has into the merged plan, where they are not yet. */
+static bool take_designs(struct merge *m, const struct merge_part *part,
+                         const struct opened *opened, struct plan *plan, bool *taken,
+                         stance_message *message)
+{
+    for (size_t d = 0; d < opened->plan.designs; d++) {
+        const struct resolved_design *design = &opened->plan.design[d];
+        const size_t at = plan_design(plan, merge_row(m, part, row_with_design(&opened->plan, d)));
+        if (!taken[at]) {
+            taken[at] = true;
+            plan->design[at] = *design;
+            plan->design_status[at] = opened->plan.design_status[d];
+            continue;
+        }
+        const double distance = distance_between(&plan->design[at], design);
+        if (plan->design_status[at] != opened->plan.design_status[d] || distance > last_bits) {
+            snprintf(message->text, sizeof message->text,
+                     "%.100s: its controller design differs from that of another part", part->file);
+            return false;
+        }
+        m->designs_differ = m->designs_differ || distance > 0;
+    }
+    return true;
+}
+
+static bool collect_designs(struct merge *m, struct plan *plan, bool *usage,
+                            stance_message *message)
+{
+    bool *taken = calloc(plan->designs, sizeof *taken);
+    bool good = taken || no_memory(message);
+    for (size_t p = 0; good && p < m->parts; p++) {
+        struct opened *opened = open_part(&m->part[p], message);
+        good = opened != NULL;
+        if (opened && opened->plan.record_rows != plan->record_rows) {
+            snprintf(message->text, sizeof message->text,
+                     "%.100s: its trajectories have another length than those of the whole",
+                     m->part[p].file);
+            *usage = true;
+            good = false;
+        }
+        if (good) {
+            good = check_axes(m, &m->part[p], &opened->scenario, message) &&
+                   take_designs(m, &m->part[p], opened, plan, taken, message);
+            *usage = !good;
+        }
+        if (opened)
+            close_part(opened);
+    }
+    free(taken);
+    return good;
+}
+
+/* ---- rows --------------------------------------------------------------------------------- */
+
+static bool copy_rows(struct merge *m, struct merge_part *part, const struct opened *opened,
+                      struct store *store, stance_message *message)
+{
+    uint64_t target[STORE_ROWS];
+    const uint64_t before = m->copied.copied + m->copied.same;
+    for (uint64_t row = 0; row < opened->plan.rows;) {
+        struct rows rows = {NULL, 0, row};
+        while (row < opened->plan.rows && rows.count < STORE_ROWS) {
+            const uint64_t aim = merge_row(m, part, row);
+            if (rows.count > 0 && aim <= target[rows.count - 1])
+                break; /* a part whose points are in another order */
+            target[rows.count++] = aim;
+            row++;
+        }
+        if (!store_copy(opened->store, &rows, store, target, &m->copied, message))
+            return false;
+    }
+    part->taken = m->copied.copied + m->copied.same - before;
+    return true;
+}
+
+static bool copy_parts(struct merge *m, struct store *store, bool *usage, stance_message *message)
+{
+    int rank = 0;
+    for (size_t p = 0; p < m->parts; p++) {
+        struct opened *opened = open_part(&m->part[p], message);
+        bool good = opened && copy_rows(m, &m->part[p], opened, store, message) &&
+                    store_copy_timing(opened->store, store, &rank, message);
+        if (opened)
+            close_part(opened);
+        if (good && m->copied.conflicting > 0) {
+            snprintf(message->text, sizeof message->text,
+                     "%.80s: %llu case%s from what another part has, the first is case %llu "
+                     "of the whole",
+                     m->part[p].file, (unsigned long long)m->copied.conflicting,
+                     m->copied.conflicting == 1 ? " differs" : "s differ",
+                     (unsigned long long)m->copied.conflict);
+            *usage = true;
+            good = false;
+        }
+        if (!good)
+            return false;
+    }
+    return true;
+}
+
+/* ---- where it comes from ------------------------------------------------------------------ */
+
+static const char keys_note[] =
+    "Random numbers (torque noise, captured sets, probes) are keyed by the indices that cases had "
+    "in their parts: one run of this scenario has other ones.";
+static const char refined_note[] =
+    "The parts were refined each for itself: one run of this scenario simulates other cases.";
+static const char designs_note[] =
+    "The parts' controller designs or computed axes differ in last bits; those of the first part "
+    "that has them are in this file.";
+
+/* One line for each part; freed by the caller. */
+static char *history(const struct merge *m)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    for (size_t p = 0; p < m->parts; p++) {
+        const struct merge_part *part = &m->part[p];
+        fprintf(out, "%s%s: %llu cases, %s, revision %s, %d rank%s on %s", p ? "\n" : "",
+                part->file, (unsigned long long)part->taken, part->origin.date,
+                part->origin.revision, part->origin.ranks, part->origin.ranks == 1 ? "" : "s",
+                part->origin.hosts ? part->origin.hosts : "unknown");
+    }
+    return fclose(out) == 0 ? text : (free(text), NULL);
+}
+
+static bool annotate(const struct merge *m, struct store *store, stance_message *message)
+{
+    const char *const notes[] = {m->keyed ? keys_note : "", m->refined ? refined_note : "",
+                                 m->designs_differ ? designs_note : ""};
+    char note[800] = "";
+    char *text = history(m);
+    for (size_t i = 0, used = 0; i < sizeof notes / sizeof notes[0]; i++) {
+        used += (size_t)snprintf(note + used, sizeof note - used, "%s%s",
+                                 used > 0 && notes[i][0] ? " " : "", notes[i]);
+    }
+    bool good = (text || no_memory(message)) &&
+                store_annotate(store, "merged_from", text, message) &&
+                (!note[0] || store_annotate(store, "merge_note", note, message));
+    free(text);
+    return good;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+static bool fill(struct merge *m, const struct plan *plan, const char *file, bool *usage,
+                 stance_message *message)
+{
+    struct store *store = NULL;
+    if (!store_open(&store, file, plan, 1, message) || !copy_parts(m, store, usage, message) ||
+        !annotate(m, store, message)) {
+        store_abandon(store);
+        return false;
+    }
+    return store_close(store, message);
+}
+
+bool merge_write(struct merge *m, const char *file, bool *usage, stance_message *message)
+{
+    struct plan plan;
+    struct plan_error error;
+    int ranks = 0;
+
+    *usage = false;
+    for (size_t p = 0; p < m->parts; p++)
+        ranks += m->part[p].origin.ranks > 0 ? m->part[p].origin.ranks : 1;
+    if (!plan_make(&plan, &m->scenario, false, 0, false, &error)) {
+        *message = error.message;
+        return false;
+    }
+    const char *hosts = m->part[0].origin.hosts ? m->part[0].origin.hosts : "";
+    bool good = collect_designs(m, &plan, usage, message) &&
+                store_create(file, &plan, ranks, hosts, message);
+    if (good && !fill(m, &plan, file, usage, message)) {
+        unlink(file);
+        good = false;
+    }
+    plan_free(&plan);
+    return good;
+}

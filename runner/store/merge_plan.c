@@ -1,0 +1,655 @@
+/* merge_plan.c - how the scenarios of parts differ, and the scenario of them all. */
+#include "merge.h"
+
+#include "runner/scenario/field.h"
+#include "runner/scenario/tree.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool no_memory(stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "stance merge: not enough memory");
+    return false;
+}
+
+/* ---- scenarios as trees ------------------------------------------------------------------- */
+
+static bool read_tree(struct tree *tree, const struct merge_part *part, stance_message *message)
+{
+    struct problems *problems = calloc(1, sizeof *problems);
+    *tree = (struct tree){0};
+    const bool good =
+        problems && part->origin.scenario &&
+        tree_parse(tree, part->origin.scenario, strlen(part->origin.scenario), problems);
+    free(problems);
+    if (!good) {
+        snprintf(message->text, sizeof message->text, "%.100s: its scenario cannot be read",
+                 part->file);
+    }
+    return good;
+}
+
+enum { MOST_DIFFERENCES = 64, PATH = 128 };
+
+struct differences {
+    char path[MOST_DIFFERENCES][PATH];
+    size_t count;
+};
+
+static void note(struct differences *found, const char *path)
+{
+    for (size_t i = 0; i < found->count; i++)
+        if (strcmp(found->path[i], path) == 0)
+            return;
+    if (found->count < MOST_DIFFERENCES)
+        snprintf(found->path[found->count++], PATH, "%s", path);
+}
+
+static void find_differences(const struct tree_node *a, const struct tree_node *b, const char *path,
+                             struct differences *found)
+{
+    char below[PATH];
+    if (!a || !b || a->kind != b->kind || (a->kind == TREE_LIST && a->count != b->count) ||
+        (a->kind == TREE_SCALAR && strcmp(a->text, b->text) != 0)) {
+        note(found, path);
+        return;
+    }
+    for (size_t i = 0; i < a->count; i++) {
+        if (a->kind == TREE_LIST) {
+            snprintf(below, sizeof below, "%.100s[%zu]", path, i);
+            find_differences(a->item[i], b->item[i], below, found);
+        } else {
+            const char *key = a->key[i].name;
+            snprintf(below, sizeof below, "%.60s%s%.64s", path, path[0] ? "." : "", key);
+            find_differences(a->item[i], tree_find(b, key), below, found);
+        }
+    }
+    for (size_t i = 0; b->kind == TREE_MAP && i < b->count; i++) {
+        if (!tree_find(a, b->key[i].name)) {
+            snprintf(below, sizeof below, "%.60s%s%.64s", path, path[0] ? "." : "", b->key[i].name);
+            note(found, below);
+        }
+    }
+}
+
+/* The text of the scalar at a path; NULL: there is none. */
+static const char *text_at(const struct tree_node *node, const char *path)
+{
+    char name[TREE_MAX_NAME];
+    size_t index;
+    for (bool first = true; node && *path; first = false) {
+        if (!tree_path_step(&path, first, name, &index))
+            return NULL;
+        node = name[0]                                          ? tree_find(node, name)
+               : node->kind == TREE_LIST && index < node->count ? node->item[index]
+                                                                : NULL;
+    }
+    return node && node->kind == TREE_SCALAR ? node->text : NULL;
+}
+
+/* ---- how the parts fit -------------------------------------------------------------------- */
+
+/* "sweep.grid[2].from" is of axis 2; -1: of none. */
+static int axis_of(const char *path)
+{
+    int axis = -1;
+    return sscanf(path, "sweep.grid[%d]", &axis) == 1 ? axis : -1;
+}
+
+static bool misfit(const struct merge *m, const struct differences *found, size_t part,
+                   stance_message *message)
+{
+    char list[84] = "";
+    for (size_t i = 0, used = 0; i < found->count && used + 41 < sizeof list; i++) {
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%.38s", i ? ", " : "",
+                                 found->path[i]);
+    }
+    snprintf(message->text, sizeof message->text,
+             "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
+             "that can be swept",
+             m->part[part].file, m->part[0].file, list);
+    return false;
+}
+
+/* A value that stands in every part and may become an axis. */
+static bool is_value(const struct merge *m, const struct tree *trees, const char *path)
+{
+    static const char *const fixed[] = {"stance", "title", "scene", "seed", "sweep", "record"};
+    for (size_t i = 0; i < sizeof fixed / sizeof fixed[0]; i++) {
+        const size_t length = strlen(fixed[i]);
+        if (strncmp(path, fixed[i], length) == 0 && (!path[length] || strchr(".[", path[length])))
+            return false;
+    }
+    for (size_t p = 0; p < m->parts; p++)
+        if (!text_at(trees[p].root, path))
+            return false;
+    return true;
+}
+
+static bool classify(struct merge *m, const struct tree *trees, stance_message *message)
+{
+    struct differences found = {.count = 0};
+    size_t last = 0;
+    for (size_t p = 1; p < m->parts; p++) {
+        const size_t before = found.count;
+        find_differences(trees[0].root, trees[p].root, "", &found);
+        last = found.count > before ? p : last;
+    }
+    for (size_t i = found.count; i-- > 0;) { /* names do not matter; lists are united */
+        if (strcmp(found.path[i], "title") == 0 ||
+            strncmp(found.path[i], "record.cases", strlen("record.cases")) == 0) {
+            memmove(found.path[i], found.path[found.count - 1], PATH);
+            found.count--;
+        }
+    }
+    if (found.count == 0) {
+        m->kind = MERGE_EQUAL;
+        return true;
+    }
+    m->axis = axis_of(found.path[0]);
+    for (size_t i = 1; i < found.count; i++)
+        m->axis = axis_of(found.path[i]) == m->axis ? m->axis : -1;
+    if (m->axis >= 0) {
+        m->kind = MERGE_AXIS;
+        return true;
+    }
+    m->axis = 0;
+    m->kind = MERGE_VALUE;
+    snprintf(m->path, sizeof m->path, "%s", found.path[0]);
+    return (found.count == 1 && is_value(m, trees, m->path)) || misfit(m, &found, last, message);
+}
+
+/* ---- points of the merged axis ------------------------------------------------------------ */
+
+/* A point of some part: its text, as YAML, and its number, where it is one. */
+struct point {
+    char *text;
+    double number; /* NAN: words, or several paths */
+    size_t part, place;
+    size_t order; /* in which it appeared */
+};
+
+struct points {
+    struct point *point;
+    size_t count, room;
+    bool numbers, rising, falling; /* all of them; in every part */
+};
+
+static void free_points(struct points *points)
+{
+    for (size_t i = 0; i < points->count; i++)
+        free(points->point[i].text);
+    free(points->point);
+}
+
+static bool add_point(struct points *points, const char *text, double number, size_t part,
+                      size_t place)
+{
+    if (points->count == points->room) {
+        const size_t room = points->room ? 2 * points->room : 64;
+        struct point *larger = realloc(points->point, room * sizeof *larger);
+        if (!larger)
+            return false;
+        points->point = larger;
+        points->room = room;
+    }
+    if (place > 0) {
+        const double before = points->point[points->count - 1].number;
+        points->rising = points->rising && number > before;
+        points->falling = points->falling && number < before;
+    }
+    points->numbers = points->numbers && !isnan(number);
+    struct point *point = &points->point[points->count];
+    *point = (struct point){strdup(text), number, part, place, points->count};
+    points->count += point->text != NULL;
+    return point->text != NULL;
+}
+
+/* Text of a point of an axis: "0.1", or "[0.1, 2]" for several paths. */
+static void axis_text(const struct scenario_axis *axis, size_t i, char *text, size_t size)
+{
+    size_t used = 0;
+    for (int k = 0; k < axis->paths && used < size; k++) {
+        char value[128];
+        scenario_axis_text(axis, i, k, value, sizeof value);
+        used += (size_t)snprintf(text + used, size - used, "%s%s", k ? ", " : "", value);
+    }
+}
+
+static bool same_paths(const struct scenario_axis *a, const char paths[][96], int count)
+{
+    bool same = a->paths == count;
+    for (int k = 0; same && k < count; k++)
+        same = strcmp(a->path[k], paths[k]) == 0;
+    return same;
+}
+
+/* The points that the parts have along the axis. */
+static bool collect_axis(struct merge *m, struct points *points, stance_message *message)
+{
+    char(*paths)[96] = calloc(SCENARIO_MAX_PATHS, sizeof *paths), text[1024];
+    struct scenario *s = calloc(1, sizeof *s);
+    int path_count = 0;
+    bool good = (paths && s) || no_memory(message);
+
+    for (size_t p = 0; good && p < m->parts; p++) {
+        good = merge_read_part(&m->part[p], s, message);
+        if (!good)
+            break;
+        const struct scenario_axis *axis = &s->axis[m->axis];
+        if (p == 0) {
+            path_count = axis->paths;
+            memcpy(paths, axis->path, (size_t)path_count * sizeof *paths);
+            snprintf(m->path, sizeof m->path, "%s", axis->name);
+        } else if (!same_paths(axis, (const char(*)[96])paths, path_count)) {
+            snprintf(message->text, sizeof message->text,
+                     "%.80s: its axis %.40s is not that of %.80s", m->part[p].file, axis->name,
+                     m->part[0].file);
+            good = false;
+        }
+        m->part[p].points = axis->count;
+        for (size_t i = 0; good && i < axis->count; i++) {
+            const bool number = !axis->words && axis->paths == 1;
+            axis_text(axis, i, text, sizeof text);
+            good = add_point(points, text, number ? scenario_axis_value(axis, i, 0) : NAN, p, i) ||
+                   no_memory(message);
+        }
+        scenario_free(s);
+    }
+    free(paths);
+    free(s);
+    return good;
+}
+
+/* The value that each part has instead of an axis. */
+static bool collect_values(struct merge *m, const struct tree *trees, struct points *points,
+                           stance_message *message)
+{
+    for (size_t p = 0; p < m->parts; p++) {
+        const char *text = text_at(trees[p].root, m->path);
+        double number;
+        bool finite;
+        if (!number_parse(text, &number, &finite))
+            number = strcmp(text, "none") == 0 ? INFINITY : NAN;
+        m->part[p].points = 1;
+        if (!add_point(points, text, number, p, 0))
+            return no_memory(message);
+    }
+    return true;
+}
+
+static int by_number(const void *left, const void *right)
+{
+    const struct point *a = left, *b = right;
+    return a->number != b->number ? (a->number > b->number) - (a->number < b->number)
+                                  : (a->order > b->order) - (a->order < b->order);
+}
+
+static int by_number_falling(const void *left, const void *right)
+{
+    return by_number(right, left);
+}
+
+static bool same_point(const struct points *points, const struct point *a, const struct point *b)
+{
+    return points->numbers ? a->number == b->number : strcmp(a->text, b->text) == 0;
+}
+
+/* Finds the place of every point in the merged axis; only the first of equal ones is kept in the
+ * list, which is then the axis. */
+static bool place_points(struct merge *m, struct points *points, stance_message *message)
+{
+    for (size_t p = 0; p < m->parts; p++) {
+        m->part[p].position = calloc(m->part[p].points, sizeof *m->part[p].position);
+        if (!m->part[p].position)
+            return no_memory(message);
+    }
+    const bool sort = points->numbers && (points->rising || points->falling);
+    if (sort && points->count > 1) {
+        qsort(points->point, points->count, sizeof *points->point,
+              points->rising ? by_number : by_number_falling);
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < points->count; i++) {
+        struct point *point = &points->point[i];
+        size_t at = sort && kept > 0 ? kept - 1 : 0; /* equal ones are neighbours when sorted */
+        while (at < kept && !same_point(points, point, &points->point[at]))
+            at++;
+        m->part[point->part].position[point->place] = at;
+        if (at == kept) {
+            struct point moved = *point;
+            *point = points->point[kept];
+            points->point[kept++] = moved;
+        }
+    }
+    m->points = kept;
+    return true;
+}
+
+/* ---- the merged scenario ------------------------------------------------------------------ */
+
+/* Values `first`, `last` and their number give all of them, to the bit. */
+static bool is_range(const struct points *points, size_t count)
+{
+    if (!points->numbers || count < 3)
+        return false;
+    const double from = points->point[0].number, to = points->point[count - 1].number;
+    bool same = isfinite(from) && isfinite(to);
+    for (size_t i = 0; same && i + 1 < count; i++)
+        same = points->point[i].number == from + (double)i * (to - from) / (double)(count - 1);
+    return same;
+}
+
+/* "sweep.grid[AXIS]={path: ..., values: [...]}"; freed by the caller. */
+static char *axis_setting(const struct merge *m, const struct points *points, int axis,
+                          const struct tree_node *paths)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = points->point ? open_memstream(&text, &size) : NULL;
+    if (!out)
+        return NULL;
+    fprintf(out, "sweep.grid[%d]={", axis);
+    if (paths) {
+        fputs("paths: [", out);
+        for (size_t k = 0; k < paths->count; k++)
+            fprintf(out, "%s%s", k ? ", " : "", paths->item[k]->text);
+        fputs("]", out);
+    } else {
+        fprintf(out, "path: %s", m->path);
+    }
+    if (!paths && is_range(points, m->points)) {
+        fprintf(out, ", from: %s, to: %s, count: %zu}", points->point[0].text,
+                points->point[m->points - 1].text, m->points);
+    } else {
+        fputs(", values: [", out);
+        for (size_t i = 0; i < m->points; i++) {
+            fprintf(out, "%s%s%s%s", i ? ", " : "", paths ? "[" : "", points->point[i].text,
+                    paths ? "]" : "");
+        }
+        fputs("]}", out);
+    }
+    const bool good = !ferror(out);
+    if (fclose(out) != 0 || !good) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+static struct tree_node *grid_of(const struct tree *tree)
+{
+    struct tree_node *sweep = tree_find(tree->root, "sweep");
+    return sweep && sweep->kind == TREE_MAP ? tree_find(sweep, "grid") : NULL;
+}
+
+/* Gives the tree of the first part the merged axis. */
+static bool set_axis(const struct merge *m, const struct points *points, struct tree *tree,
+                     struct problems *problems)
+{
+    struct tree_node *grid = grid_of(tree);
+    const size_t axes = grid ? grid->count : 0;
+    const struct tree_node *paths =
+        grid && m->kind == MERGE_AXIS ? tree_find(grid->item[m->axis], "paths") : NULL;
+    char *setting = axis_setting(m, points, m->kind == MERGE_AXIS ? m->axis : (int)axes, paths);
+    const bool good = setting && tree_set(tree, setting, 1, problems);
+    free(setting);
+    grid = grid_of(tree);
+    if (good && m->kind == MERGE_VALUE && grid && grid->count == axes + 1) { /* to the front */
+        struct tree_node *made = grid->item[axes];
+        memmove(grid->item + 1, grid->item, axes * sizeof(struct tree_node *));
+        grid->item[0] = made;
+    }
+    return good;
+}
+
+/* Cases that are recorded, by their numbers in the merged file. */
+struct recorded {
+    uint64_t *row;
+    size_t count, room;
+};
+
+static int by_row(const void *left, const void *right)
+{
+    const uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
+    return (a > b) - (a < b);
+}
+
+static bool add_recorded(struct recorded *list, const struct merge *m, size_t p,
+                         const struct scenario *s)
+{
+    if (list->count + s->record_count > list->room) {
+        const size_t room = 2 * (list->count + s->record_count);
+        uint64_t *larger = realloc(list->row, room * sizeof *larger);
+        if (!larger)
+            return false;
+        list->row = larger;
+        list->room = room;
+    }
+    for (size_t i = 0; i < s->record_count; i++)
+        list->row[list->count++] = merge_row(m, &m->part[p], s->record_list[i]);
+    return true;
+}
+
+/* The cases that any part lists; those of a part that records all of them need no list, but then
+ * all parts have to. */
+static bool collect_recorded(const struct merge *m, bool all, struct recorded *list,
+                             stance_message *message)
+{
+    struct scenario *s = calloc(1, sizeof *s);
+    bool good = s || no_memory(message);
+    for (size_t p = 0; good && p < m->parts; p++) {
+        good = merge_read_part(&m->part[p], s, message);
+        if (good && (s->record_cases == RECORD_ALL) != all) {
+            snprintf(message->text, sizeof message->text,
+                     "%.60s: record.cases is `all` in some of the files only", m->part[p].file);
+            good = false;
+        } else if (good) {
+            good = add_recorded(list, m, p, s) || no_memory(message);
+        }
+        if (s)
+            scenario_free(s);
+    }
+    free(s);
+    if (good && list->count > 0) {
+        qsort(list->row, list->count, sizeof *list->row, by_row);
+        size_t unique = 1;
+        for (size_t i = 1; i < list->count; i++)
+            if (list->row[i] != list->row[unique - 1])
+                list->row[unique++] = list->row[i];
+        list->count = unique;
+    }
+    return good;
+}
+
+/* record.cases lists cases by their number, which the merged axis changes. `first`: the first
+ * part, whose text is left where it says the same. */
+static bool set_recorded(struct merge *m, const struct scenario *first, struct tree *tree,
+                         struct problems *problems, stance_message *message)
+{
+    struct recorded list = {.count = 0};
+    char *text = NULL;
+    size_t size = 0;
+    bool good = collect_recorded(m, first->record_cases == RECORD_ALL, &list, message);
+    const bool same = list.count == first->record_count &&
+                      (list.count == 0 ||
+                       memcmp(list.row, first->record_list, list.count * sizeof *list.row) == 0);
+    FILE *out = good && !same ? open_memstream(&text, &size) : NULL;
+    if (out) {
+        fputs("record.cases=", out);
+        for (size_t i = 0; i < list.count; i++)
+            fprintf(out, "%s%llu", i ? ", " : "[", (unsigned long long)list.row[i]);
+        fputs("]", out);
+        fclose(out);
+        good = tree_set(tree, text, 1, problems) || no_memory(message);
+    } else if (good && !same) {
+        good = no_memory(message);
+    }
+    free(list.row);
+    free(text);
+    return good;
+}
+
+static bool read_merged(struct merge *m, const struct tree *tree, stance_message *message)
+{
+    char *text = tree_write(tree->root), *said = NULL;
+    size_t size = 0;
+    FILE *errors = open_memstream(&said, &size);
+    bool good = text && errors;
+    if (!good) {
+        no_memory(message);
+    } else if (!scenario_read(&m->scenario, "the merged scenario", text, NULL, 0, errors)) {
+        fflush(errors);
+        snprintf(message->text, sizeof message->text, "%.*s", (int)strcspn(said, "\n"), said);
+        good = false;
+    }
+    if (good && m->part[0].origin.title)
+        snprintf(m->scenario.title, sizeof m->scenario.title, "%s", m->part[0].origin.title);
+    if (errors)
+        fclose(errors);
+    free(said);
+    free(text);
+    /* Computed axes as the first file has them: they may differ in last bits between processors. */
+    for (int a = 0; good && a < m->scenario.axes; a++) {
+        good = (a == m->axis && m->kind != MERGE_EQUAL) ||
+               store_read_axis(m->part[0].file, &m->scenario.axis[a], message);
+    }
+    return good;
+}
+
+static bool make_scenario(struct merge *m, struct tree *trees, stance_message *message)
+{
+    struct points points = {.numbers = true, .rising = true, .falling = true};
+    struct problems *problems = calloc(1, sizeof *problems);
+    struct scenario *first = calloc(1, sizeof *first);
+    bool good = (problems && first) || no_memory(message);
+
+    good = good && (m->kind == MERGE_EQUAL
+                        ? true
+                        : (m->kind == MERGE_AXIS ? collect_axis(m, &points, message)
+                                                 : collect_values(m, trees, &points, message)) &&
+                              place_points(m, &points, message));
+    if (good && m->kind != MERGE_EQUAL && !set_axis(m, &points, &trees[0], problems)) {
+        good = no_memory(message);
+        if (problems->count > 0) {
+            snprintf(message->text, sizeof message->text, "the merged axis: %.200s",
+                     problems->list[0].text);
+        }
+    }
+    good = good && merge_read_part(&m->part[0], first, message);
+    if (good) {
+        m->inner = first->cases;
+        for (int a = 0; m->kind == MERGE_AXIS && a <= m->axis; a++)
+            m->inner /= first->axis[a].count;
+        good = set_recorded(m, first, &trees[0], problems, message);
+        scenario_free(first);
+    }
+    free(first);
+    free(problems);
+    free_points(&points);
+    return good && read_merged(m, &trees[0], message);
+}
+
+/* ---- parts -------------------------------------------------------------------------------- */
+
+bool merge_read_part(const struct merge_part *part, struct scenario *scenario,
+                     stance_message *message)
+{
+    char *said = NULL;
+    size_t size = 0;
+    FILE *errors = open_memstream(&said, &size);
+    if (!errors)
+        return no_memory(message);
+    bool good = scenario_read(scenario, part->file, part->origin.scenario, NULL, 0, errors);
+    fclose(errors);
+    if (!good)
+        snprintf(message->text, sizeof message->text, "%.*s", (int)strcspn(said, "\n"), said);
+    free(said);
+    for (int a = 0; good && a < scenario->axes; a++) {
+        good = store_read_axis(part->file, &scenario->axis[a], message);
+        if (!good)
+            scenario_free(scenario);
+    }
+    return good;
+}
+
+/* Of the values of keys that cases of several scenarios have, a file tells those of the last one.
+ */
+static bool have_one_scenario(const struct merge *m, stance_message *message)
+{
+    for (size_t p = 0; p < m->parts; p++) {
+        if (m->part[p].origin.ancestors > 0) {
+            snprintf(message->text, sizeof message->text,
+                     "%.120s: was made from several scenarios: it cannot be merged",
+                     m->part[p].file);
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool open_parts(struct merge *m, const char *const *files, size_t count,
+                       stance_message *message)
+{
+    m->part = calloc(count, sizeof *m->part);
+    if (!m->part)
+        return no_memory(message);
+    for (; m->parts < count; m->parts++) {
+        struct merge_part *part = &m->part[m->parts];
+        part->file = files[m->parts];
+        part->points = 1;
+        if (!store_check(part->file, true, message) ||
+            !store_read_origin(part->file, &part->origin, message))
+            return false;
+    }
+    return true;
+}
+
+/* Where random numbers come in, other than by an axis: half-width of the noise, captured sets,
+ * probes. */
+static bool has_random_numbers(const struct scenario *s)
+{
+    bool noise = s->base.noise > 0 || s->base.capture || (s->refine.given && s->refine.probes > 0);
+    for (int a = 0; a < s->axes; a++)
+        for (int k = 0; k < s->axis[a].paths; k++)
+            noise = noise || strcmp(s->axis[a].path[k], "controller.noise") == 0;
+    return noise;
+}
+
+bool merge_plan(struct merge *m, const char *const *files, size_t count, bool *usage,
+                stance_message *message)
+{
+    *m = (struct merge){.points = 1};
+    *usage = false;
+    struct tree *trees = calloc(count, sizeof *trees);
+    bool good = (trees || no_memory(message)) && open_parts(m, files, count, message);
+    for (size_t p = 0; good && p < count; p++)
+        good = read_tree(&trees[p], &m->part[p], message);
+    if (good) {
+        *usage = true;
+        good = have_one_scenario(m, message) && classify(m, trees, message) &&
+               make_scenario(m, trees, message);
+    }
+    for (size_t p = 0; good && p < count; p++)
+        good = store_same_points(m->part[p].file, &m->part[p].origin, &m->scenario, message);
+    for (size_t p = 0; trees && p < count; p++)
+        tree_free(&trees[p]);
+    free(trees);
+    m->keyed = good && m->kind != MERGE_EQUAL && has_random_numbers(&m->scenario);
+    m->refined = good && m->kind != MERGE_EQUAL && m->scenario.axis[m->axis].refined;
+    return good;
+}
+
+void merge_free(struct merge *m)
+{
+    for (size_t p = 0; p < m->parts; p++) {
+        store_origin_free(&m->part[p].origin);
+        free(m->part[p].position);
+    }
+    free(m->part);
+    scenario_free(&m->scenario);
+    *m = (struct merge){0};
+}

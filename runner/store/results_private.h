@@ -1,0 +1,36 @@
+/* results_private.h - how results files are read, shared by results.c (what is in all of them),
+ * results_sample.c (values of a sample), results_rows.c and results_trajectory.c; nothing else
+ * includes it.
+ */
+#ifndef STANCE_STORE_RESULTS_PRIVATE_H
+#define STANCE_STORE_RESULTS_PRIVATE_H
+
+#include "results.h"
+
+#include <hdf5.h>
+
+/* Every link of a path such as "trajectory/time" exists. */
+bool results_exists(hid_t file, const char *path);
+/* Opens a dataset and its shape; -1 when it does not exist or is none. */
+hid_t results_dataset(const struct results *r, const char *path, int *rank,
+                      hsize_t length[H5S_MAX_RANK]);
+/* Product of lengths, 0 when it overflows. A damaged header must not make us ask for terabytes:
+ * no array of ours has more elements than its file has bytes. */
+size_t results_elements(const struct results *r, int rank, const hsize_t *length);
+bool results_failed(const struct results *r, const char *what, stance_message *message);
+bool results_damaged(const struct results *r, const char *what, stance_message *message);
+bool results_no_memory(const struct results *r, stance_message *message);
+bool results_is_number(hid_t dataset);
+H5T_class_t results_class(hid_t dataset);
+void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t size);
+/* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
+char *results_attribute(hid_t object, const char *name);
+
+/* A positive whole number, or where there is none the fallback. */
+int results_whole_attribute(hid_t object, const char *name, int fallback);
+
+/* What the axis `sample` varies, once the axes have been read; nothing where there is none. */
+bool results_read_sample(struct results *r, stance_message *message);
+void results_free_sample(struct results *r);
+
+#endif

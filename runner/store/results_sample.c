@@ -1,0 +1,171 @@
+/* results_sample.c - what the axis `sample` of a results file stands for: the values of the points
+ * of sweep.sample; and the file's scenario, which has them. */
+#include "results_private.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The words of an enumeration, from CF's flag_meanings. */
+static bool read_words(const struct results *r, hid_t dataset, struct results_varied *v,
+                       stance_message *message)
+{
+    char *words = results_attribute(dataset, "flag_meanings");
+    size_t n = 1;
+    if (!words)
+        return true;
+    results_clean(words);
+    for (const char *c = words; *c; c++)
+        n += *c == ' ';
+    v->word = n <= UINT8_MAX ? calloc(n, sizeof *v->word) : NULL;
+    char *rest = words;
+    for (v->words = 0; v->word && rest; v->words++)
+        snprintf(v->word[v->words], sizeof *v->word, "%s", strsep(&rest, " "));
+    free(words);
+    return v->word || results_no_memory(r, message);
+}
+
+static bool read_values(const struct results *r, hid_t dataset, struct results_varied *v,
+                        stance_message *message)
+{
+    v->of.value = malloc(v->of.count * sizeof *v->of.value);
+    if (!v->of.value)
+        return results_no_memory(r, message);
+    if (!results_is_number(dataset) ||
+        H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, v->of.value) < 0)
+        return results_failed(r, v->of.name, message);
+    for (size_t i = 0; i < v->of.count; i++) { /* an absent limit is infinite */
+        const double value = v->of.value[i];
+        if (isnan(value) || (v->word && !(value >= 0 && value < v->words)))
+            return results_damaged(r, "a sampled value is none", message);
+    }
+    return true;
+}
+
+static bool read_varied(struct results *r, const char *path, int factor, stance_message *message)
+{
+    struct results_varied *v = &r->vary[r->varied];
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+
+    hid_t dataset = results_dataset(r, path, &rank, length);
+    if (dataset < 0)
+        return results_failed(r, path, message);
+    r->varied++;
+    v->factor = factor;
+    v->of.count = r->axis[r->sample].count;
+    snprintf(v->of.name, sizeof v->of.name, "%s", path);
+    results_clean(v->of.name);
+    results_copy_attribute(dataset, "units", v->of.unit, sizeof v->of.unit);
+    results_copy_attribute(dataset, "long_name", v->of.text, sizeof v->of.text);
+    if (strcmp(v->of.unit, "1") == 0)
+        v->of.unit[0] = '\0';
+    bool good = rank == 1 && length[0] == v->of.count
+                    ? read_words(r, dataset, v, message) && read_values(r, dataset, v, message)
+                    : results_damaged(r, "a variable is not as its axes say", message);
+    H5Dclose(dataset);
+    return good;
+}
+
+bool results_read_sample(struct results *r, stance_message *message)
+{
+    enum { MOST = 256 };
+    hsize_t length[H5S_MAX_RANK];
+    int rank, factor = 0;
+    const int last = r->axes - 1;
+
+    r->block = 1;
+    if (last < 0 || strcmp(r->axis[last].name, "sample") != 0)
+        return true;
+    hid_t dataset = results_dataset(r, "sample", &rank, length);
+    char *paths = dataset < 0 ? NULL : results_attribute(dataset, "paths"), *rest = paths;
+    results_copy_attribute(dataset, "method", r->method, sizeof r->method);
+    r->block = (size_t)results_whole_attribute(dataset, "block", 1);
+    char generator[64];
+    results_copy_attribute(dataset, "generator", generator, sizeof generator);
+    for (int m = 0; m < DOE_METHODS; m++) {
+        r->other_points =
+            r->other_points || (strcmp(r->method, doe_words[m]) == 0 &&
+                                strcmp(generator, doe_generator((enum doe_method)m)) != 0);
+    }
+    H5Dclose(dataset);
+    r->vary = calloc(MOST, sizeof *r->vary);
+    if (!r->vary) {
+        free(paths);
+        return results_no_memory(r, message);
+    }
+    bool good = paths || results_damaged(r, "it does not say what its sample varies", message);
+    r->sample = good ? last : -1;
+    while (good && rest) { /* "a;b,c": two factors, the second of two paths */
+        const size_t end = strcspn(rest, ",;");
+        const bool ends = rest[end] != ',';
+        char *path = strsep(&rest, ",;");
+        good = r->varied < MOST ? read_varied(r, path, factor, message)
+                                : results_damaged(r, "its sample varies too much", message);
+        factor += ends;
+    }
+    free(paths);
+    return good;
+}
+
+/* ---- the scenario ------------------------------------------------------------------------- */
+
+/* The value of a path in the only case of a file; false: it is not there, or none. */
+static bool read_single(const struct results *r, const struct scenario_axis *axis, int k,
+                        double *value)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank, words = 1;
+    hid_t dataset = results_dataset(r, axis->path[k], &rank, length);
+    const bool good =
+        dataset >= 0 && rank == 1 && length[0] == 1 && results_is_number(dataset) &&
+        H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
+    H5Dclose(dataset);
+    for (const char *c = axis->meaning[k].words; c && *c; c++)
+        words += *c == ' ';
+    return good && !isnan(*value) && (!axis->meaning[k].words || (*value >= 0 && *value < words));
+}
+
+/* Gives a scenario of the file the file's points: another version's need not be this one's. */
+static void take_points(const struct results *r, struct scenario *s)
+{
+    struct scenario_axis *axis = s->axes > 0 ? &s->axis[s->axes - 1] : NULL;
+    if (!axis || !axis->sample || axis->count == 0)
+        return;
+    for (int k = 0; k < axis->paths; k++) {
+        double value;
+        if (r->single && read_single(r, axis, k, &value))
+            axis->value[r->index % axis->count * (size_t)axis->paths + (size_t)k] = value;
+        const bool fits =
+            r->sample >= 0 && r->varied == axis->paths && r->axis[r->sample].count == axis->count;
+        for (size_t i = 0; fits && i < axis->count; i++)
+            axis->value[i * (size_t)axis->paths + (size_t)k] = r->vary[k].of.value[i];
+    }
+}
+
+bool results_scenario(const struct results *r, struct scenario *s)
+{
+    char *said = NULL;
+    size_t length = 0;
+    FILE *errors = open_memstream(&said, &length);
+    if (!errors)
+        return false;
+    bool good = scenario_read(s, r->file, r->scenario, NULL, 0, errors);
+    fclose(errors);
+    free(said);
+    if (good)
+        take_points(r, s);
+    return good;
+}
+
+void results_free_sample(struct results *r)
+{
+    for (int k = 0; k < r->varied; k++) {
+        free(r->vary[k].of.value);
+        free(r->vary[k].word);
+    }
+    free(r->vary);
+    r->vary = NULL;
+    r->varied = 0;
+}

@@ -1,0 +1,127 @@
+/* results_text.c - the words for what a results file holds: cases, values, its scenario. */
+#include "results.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Significant digits of a number for people, and where its neighbours ask for more. */
+enum { DIGITS = 6, MOST_DIGITS = 17 };
+
+/* ---- letters ------------------------------------------------------------------------------ */
+
+int results_letter(const char *text)
+{
+    const unsigned char *c = (const unsigned char *)text;
+    int length = c[0] < 0x80                    ? 1
+                 : c[0] >= 0xc2 && c[0] < 0xe0  ? 2
+                 : (c[0] & 0xf0) == 0xe0        ? 3
+                 : c[0] >= 0xf0 && c[0] <= 0xf4 ? 4
+                                                : 0;
+    for (int i = 1; i < length; i++)
+        if ((c[i] & 0xc0) != 0x80)
+            return 0;
+    /* Overlong forms, surrogates and what lies beyond Unicode. */
+    if ((c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xed && c[1] > 0x9f) ||
+        (c[0] == 0xf0 && c[1] < 0x90) || (c[0] == 0xf4 && c[1] > 0x8f))
+        return 0;
+    return length;
+}
+
+void results_clean(char *text)
+{
+    while (*text) {
+        int length = results_letter(text);
+        if (length == 0)
+            *text = '?';
+        else if ((unsigned char)*text < ' ' || *text == 0x7f)
+            *text = ' ';
+        text += length > 0 ? length : 1;
+    }
+}
+
+/* ---- cases -------------------------------------------------------------------------------- */
+
+void results_point(const struct results *r, uint64_t index, size_t *point)
+{
+    for (int a = r->axes - 1; a >= 0; a--) {
+        point[a] = (size_t)(index % r->axis[a].count);
+        index /= r->axis[a].count;
+    }
+}
+
+void results_number_text(double value, double gap, char *buffer, size_t size)
+{
+    int digits = DIGITS;
+    do { /* the text is nearer to this value than to its neighbours */
+        snprintf(buffer, size, "%.*g", digits, value);
+    } while (gap > 0 && fabs(strtod(buffer, NULL) - value) > gap / 4 && digits++ < MOST_DIGITS);
+}
+
+/* Distance of a value of an axis from the nearest other one; 0: there is none. */
+static double gap_at(const struct results_axis *axis, size_t i)
+{
+    double below = i > 0 ? fabs(axis->value[i] - axis->value[i - 1]) : 0;
+    double above = i + 1 < axis->count ? fabs(axis->value[i + 1] - axis->value[i]) : 0;
+    return below > 0 && (below < above || above == 0) ? below : above;
+}
+
+void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,
+                        size_t size)
+{
+    char number[32];
+    if (axis->word) {
+        snprintf(buffer, size, "%s", axis->word[i]);
+    } else {
+        results_number_text(axis->value[i], gap_at(axis, i), number, sizeof number);
+        snprintf(buffer, size, "%s%s%s", number, unit && axis->unit[0] ? " " : "",
+                 unit ? axis->unit : "");
+    }
+}
+
+void results_varied_text(const struct results_varied *v, size_t i, bool unit, char *buffer,
+                         size_t size)
+{
+    char number[32];
+    if (v->word) {
+        snprintf(buffer, size, "%s", v->word[(int)v->of.value[i]]);
+    } else if (isinf(v->of.value[i])) {
+        snprintf(buffer, size, "none");
+    } else {
+        results_number_text(v->of.value[i], 0, number, sizeof number);
+        snprintf(buffer, size, "%s%s%s", number, unit && v->of.unit[0] ? " " : "",
+                 unit ? v->of.unit : "");
+    }
+}
+
+void results_case_text(const struct results *r, uint64_t index, char *buffer, size_t size)
+{
+    size_t point[SCENARIO_MAX_AXES], used = 0;
+    char text[128];
+
+    buffer[0] = '\0';
+    results_point(r, index, point);
+    for (int a = 0; !r->single && a < r->axes && used < size; a++) {
+        results_value_text(&r->axis[a], point[a], true, text, sizeof text);
+        used += (size_t)snprintf(buffer + used, size - used, "%s%s = %s", a ? ", " : "",
+                                 r->axis[a].name, text);
+    }
+    for (int k = 0; k < r->varied && used < size; k++) {
+        results_varied_text(&r->vary[k], point[r->sample], true, text, sizeof text);
+        used += (size_t)snprintf(buffer + used, size - used, "%s%s = %s%s", k ? ", " : " (",
+                                 r->vary[k].of.name, text, k + 1 == r->varied ? ")" : "");
+    }
+}
+
+void results_warn(const struct results *r)
+{
+    const bool one = r->damage.cases == 1;
+    if (r->damage.cases > 0) {
+        fprintf(stderr,
+                "stance: warning: %.200s: %llu case%s not verify and %s as pending, the first is "
+                "%llu; stance run --resume computes %s again\n",
+                r->file, (unsigned long long)r->damage.cases, one ? " does" : "s do",
+                one ? "counts" : "count", (unsigned long long)r->damage.first, one ? "it" : "them");
+    }
+}

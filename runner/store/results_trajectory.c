@@ -1,0 +1,158 @@
+/* results_trajectory.c - recorded trajectories of a results file. */
+#include "results_private.h"
+
+#include "runner/base/checksum.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
+                      stance_message *message)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+    *list = NULL;
+    *count = 0;
+    if (!results_exists((hid_t)r->id, "trajectory/case"))
+        return true;
+    hid_t dataset = results_dataset(r, "trajectory/case", &rank, length);
+    if (dataset < 0)
+        return results_failed(r, "trajectory/case", message);
+    size_t n = rank == 1 ? results_elements(r, rank, length) : 0;
+    *list = n ? malloc(n * sizeof **list) : NULL;
+    bool good = *list && results_class(dataset) == H5T_INTEGER &&
+                H5Dread(dataset, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, *list) >= 0;
+    H5Dclose(dataset);
+    if (!good) {
+        free(*list);
+        *list = NULL;
+        return results_failed(r, "trajectory/case", message);
+    }
+    *count = n;
+    return true;
+}
+
+/* One case of a variable (case, time, ...) of `width` numbers per instant; *values NULL when the
+ * variable does not exist. */
+static bool read_track(const struct results *r, const char *path, size_t place, size_t rows,
+                       size_t width, double **values, stance_message *message)
+{
+    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
+    int rank;
+    if (width == 0 || !results_exists((hid_t)r->id, path))
+        return true;
+    hid_t dataset = results_dataset(r, path, &rank, length);
+    if (dataset < 0)
+        return results_failed(r, path, message);
+    size_t n =
+        rank >= 3 && length[1] == rows && place < length[0] ? results_elements(r, rank, length) : 0;
+    bool good = rows > 0 && n > 0 && n / length[0] == rows * width && results_is_number(dataset);
+    if (!good) {
+        H5Dclose(dataset);
+        return results_damaged(r, "a trajectory is not as its dimensions say", message);
+    }
+    hsize_t number = rows * width;
+    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &number, NULL);
+    start[0] = place;
+    length[0] = 1;
+    *values = malloc(rows * width * sizeof **values);
+    good = *values && H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, length, NULL) >= 0 &&
+           H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, *values) >= 0;
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Dclose(dataset);
+    return good || results_failed(r, path, message);
+}
+
+static size_t count_instants(const struct results *r)
+{
+    hsize_t length[H5S_MAX_RANK];
+    int rank;
+    hid_t dataset = results_dataset(r, "trajectory/time", &rank, length);
+    if (dataset < 0)
+        return 0;
+    H5Dclose(dataset);
+    return rank == 1 ? results_elements(r, rank, length) : 0;
+}
+
+static bool is_finite(const double *values, size_t n)
+{
+    for (size_t i = 0; values && i < n; i++)
+        if (!isfinite(values[i]))
+            return false;
+    return true;
+}
+
+/* Rows before the first that is not a number: a case ends there. */
+static size_t count_rows(const struct results_trajectory *t, size_t rows)
+{
+    size_t k = 0;
+    while (k < rows && isfinite(t->time[k]) &&
+           is_finite(t->position + k * t->coordinates, t->coordinates))
+        k++;
+    return k;
+}
+
+/* A trajectory of `rows` instants is as its checksum says, where it has one. */
+static bool is_whole(const struct results *r, const struct results_trajectory *t, size_t place,
+                     size_t rows)
+{
+    const struct {
+        const double *values;
+        size_t width;
+    } part[] = {{t->position, t->coordinates},
+                {t->velocity, t->coordinates},
+                {t->torque, t->actuators},
+                {t->force, 2 * t->contacts},
+                {t->gap, t->contacts}};
+    uint32_t crc = 0, expected;
+
+    for (size_t k = 0; k < sizeof part / sizeof part[0]; k++)
+        if (part[k].values)
+            crc = checksum_crc32c(crc, part[k].values, rows * part[k].width * sizeof(double));
+    return !results_exists((hid_t)r->id, "trajectory/checksum") ||
+           (store_trajectory_checksum(r->id, place, &expected) && crc == expected);
+}
+
+bool results_trajectory(const struct results *r, size_t place, uint64_t index,
+                        struct results_trajectory *t, stance_message *message)
+{
+    *t = (struct results_trajectory){.index = index};
+    size_t rows = count_instants(r);
+    t->coordinates =
+        results_words(r, "trajectory/coordinate", t->coordinate, STANCE_MAX_COORDINATES);
+    t->actuators = results_words(r, "trajectory/actuator", t->actuator, STANCE_MAX_ACTUATORS);
+    t->contacts = results_words(r, "trajectory/contact", t->contact, STANCE_MAX_CONTACTS);
+    t->time = rows ? malloc(rows * sizeof *t->time) : NULL;
+    bool good = t->time && t->coordinates > 0 &&
+                results_numbers(r, "trajectory/time", t->time, rows) == rows;
+    good = good || results_damaged(r, "the trajectories lack a dimension", message);
+    good =
+        good &&
+        read_track(r, "trajectory/position", place, rows, t->coordinates, &t->position, message) &&
+        read_track(r, "trajectory/velocity", place, rows, t->coordinates, &t->velocity, message) &&
+        read_track(r, "trajectory/torque", place, rows, t->actuators, &t->torque, message) &&
+        read_track(r, "trajectory/force", place, rows, 2 * t->contacts, &t->force, message) &&
+        read_track(r, "trajectory/gap", place, rows, t->contacts, &t->gap, message);
+    if (good && !t->position)
+        good = results_damaged(r, "the trajectories have no positions", message);
+    if (good && r->kind[r->single ? 0 : index] != RESULTS_PENDING && !is_whole(r, t, place, rows))
+        good = results_damaged(r, "a trajectory is not as its checksum says", message);
+    if (good)
+        t->rows = count_rows(t, rows);
+    else
+        results_trajectory_free(t);
+    return good;
+}
+
+void results_trajectory_free(struct results_trajectory *t)
+{
+    free(t->time);
+    free(t->position);
+    free(t->velocity);
+    free(t->torque);
+    free(t->force);
+    free(t->gap);
+    *t = (struct results_trajectory){0};
+}

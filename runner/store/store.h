@@ -1,0 +1,185 @@
+/* store.h - the results file: HDF5 that follows netCDF-4, written by independent raw writes.
+ *
+ * Layout (root group):
+ *   one dimension scale per grid axis, named by its path, with values, `units`, `long_name`;
+ *     an axis of several paths adds a variable "<path>" over that dimension for every further
+ *     path; an axis of words is a string variable. Without a sweep: one dimension `case`, length 1.
+ *   with sweep.sample as the last dimension `sample`, with what design its points are of and, where
+ *     that has changed since there are files, the `generator` that made them: points of another
+ *     generator are never mixed with new ones; "<path>" over it for every path that it varies.
+ *   every answer of STANCE_ANSWERS (stance.h) over those dimensions, row-major in their order;
+ *     `status` (0 pending, 1 done, 2 failed), written after everything else of a case;
+ *     `final_state` has a last dimension `state` (string names x ... vq2);
+ *     `checksum`: CRC-32C over the case's stored answers in the order of the table, then
+ *     `final_state` (where stored), then `status`, as the little-endian bytes of the file.
+ *   group `design`: over those grid axes that the design depends on (scalar when none does):
+ *     `gain` (..., actuator, posture_state), `equilibrium_position` (..., coordinate),
+ *     `equilibrium_torque` (..., actuator), `start_position` (..., coordinate), all NAN where there
+ *     is none, and `status`: done, or failed where the design does not exist. With stop.capture
+ *     estimated also the set in which cases are captured, `captured` (..., posture_state,
+ *     posture_state_other), and what it rests on: `capture_time`, `capture_boundary`,
+ *     `capture_batches`, `capture_share`; NAN where there is none.
+ *   group `trajectory`, when recorded: dimensions case (value: flat index), time, coordinate,
+ *     actuator, contact, component; `position`, `velocity`, `torque`, `force`, `gap`; NAN after
+ *     the end of a case; `checksum` (case): CRC-32C over these five in this order.
+ *   group `timing`: `wall_time` (rank, seconds of computing), `cases` (rank): the only part that
+ *     differs between runs. A resumed run adds its ranks' numbers, modulo the length.
+ *   root attributes: Conventions "CF-1.8", title, format_version (int 1), program_version,
+ *     git_revision, compiler (with flags), library_versions, instruction_set (of rank 0), ranks,
+ *     hosts, date, seed, scenario (text), axes (comma-separated dimension names, in order),
+ *     scenario_sha256.
+ *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
+ *     gives, merge_note.
+ *   group `history`, in a file that went on with another scenario: the texts of the earlier ones,
+ *     `scenario`, and their `git_revision` and `date`, the first one first; root attributes are the
+ *     newest's. Then a variable `scenario_number` over the cases says which scenario a case was
+ *     computed with, counted from 0; the newest has the highest number. Its checksum takes it after
+ *     `final_state`.
+ *   every variable but the answers, the trajectories' own and those of `timing` has an attribute
+ *     `checksum` over its values (file_checksums.h), which whoever reads the file verifies.
+ * A file of one case of a sweep (`run --only`) has the dimension `case` with the flat index as
+ * its value, and over it one variable per path of the axes.
+ *
+ * Rows of pending cases are whatever the file system hands out for reserved space, mostly zeros:
+ * look at `status` first. A variable of an actuator that a scene lacks is left out.
+ */
+#ifndef STANCE_STORE_STORE_H
+#define STANCE_STORE_STORE_H
+
+#include "runner/plan/rows.h"
+#include "runner/scenario/scenario.h"
+
+enum { STORE_ROWS = 256 }; /* most rows in one call of store_verify */
+
+struct plan;        /* plan.h */
+struct store;       /* an open file */
+struct store_block; /* rows in memory as they will be in the file, column after column */
+
+/* Call before MPI starts: an unfinished file must not be touched again at exit. */
+void store_prepare(void);
+/* Name and version of the HDF5 library. */
+void store_library(char *text, size_t size);
+
+/* Bytes that the file of a plan takes, near enough to say whether it fits. */
+uint64_t store_size(const struct plan *plan, int ranks);
+
+/* Every function below writes the one-line reason of a failure into *message. */
+
+/* Rank 0 alone: creates the file, which must not exist, with everything but the cases, and
+ * reserves its space. On failure nothing is left behind. Designs must have been computed. */
+bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
+                  stance_message *message);
+
+/* Whether axes, designs and scenario of a file are as their checksums say (file_checksums.h). To
+ * `resume` asks for more: that there are checksums, and that nothing in the file is out of order.
+ * Damage may crash the HDF5 library: call it where that does no harm (sandbox.h). */
+bool store_check(const char *file, bool resume, stance_message *message);
+
+enum { STORE_MOST_ANCESTORS = 200 };
+
+/* A scenario that cases of a file were computed with before it went on with another. */
+struct store_ancestor {
+    char *scenario; /* resolved text */
+    char *revision, *date;
+};
+
+/* What a file was made from, for a resume; release with store_origin_free. */
+struct store_origin {
+    char *scenario; /* resolved text */
+    char revision[80], date[40];
+    char *title, *hosts;
+    char *generator; /* of the points of its sample, doe_generator; NULL: none is named */
+    int ranks;
+    size_t ancestors; /* scenarios before that one, the first one first */
+    struct store_ancestor *ancestor;
+};
+bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message);
+void store_origin_free(struct store_origin *origin);
+/* Whether the points of the file's sample are those that the scenario's are: not where another
+ * generator made them. */
+bool store_same_points(const char *file, const struct store_origin *origin,
+                       const struct scenario *scenario, stance_message *message);
+/* Values of a logarithmic axis or of a sample as the file has them, into axis->value; other axes
+ * are left. */
+bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message);
+
+/* Collective when `ranks` > 1: opens a file of this plan for writing. */
+bool store_open(struct store **store, const char *file, const struct plan *plan, int ranks,
+                stance_message *message);
+/* The same, alone and for reading only. */
+bool store_open_to_read(struct store **store, const char *file, const struct plan *plan,
+                        stance_message *message);
+/* Collective: ends the writing; the store is freed in any case. After a failed write call
+ * store_abandon instead, which leaves the file as it is. */
+bool store_close(struct store *store, stance_message *message);
+void store_abandon(struct store *store);
+
+/* Collective, right after store_open: designs of the file into the plan. */
+bool store_read_designs(struct store *store, struct plan *plan, stance_message *message);
+/* Bytes of a row in a block; a block for `rows` rows, NULL: no memory. */
+size_t store_row_size(const struct store *store);
+struct store_block *store_block_make(const struct store *store, size_t rows);
+void store_block_free(struct store_block *block);
+/* What is stored of a result, its checksum included, into a slot of the block. */
+void store_put(struct store_block *block, size_t slot, const stance_result *result);
+/* As many slots of the block as there are rows (one at least), from `slot` on, to those rows of the
+ * file, their status last; one write per variable and unbroken stretch of the innermost axis. */
+bool store_write(struct store *store, struct store_block *block, size_t slot,
+                 const struct rows *rows, stance_message *message);
+/* The trajectory at one place of the recorded cases; before the row itself. */
+bool store_write_trajectory(struct store *store, uint64_t place,
+                            const stance_trajectory *trajectory, stance_message *message);
+/* Which of 1 to STORE_ROWS rows are whole: done or failed, and as their checksums say; status (of
+ * all rows, as the file has it) and outcome (where stored) are filled in. Trajectories of recorded
+ * cases are verified, too. */
+bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
+                  stance_message *message);
+/* What became of rows that were to be copied; the numbers add up over calls. */
+struct store_copied {
+    uint64_t copied;
+    uint64_t same;        /* were there already */
+    uint64_t pending;     /* are in neither file */
+    uint64_t damaged;     /* are not as their checksums say, and were left out */
+    uint64_t conflicting; /* differ from what was there; left as they were */
+    uint64_t conflict;    /* where the first of these is, in the file that is written */
+};
+/* Copies 1 to STORE_ROWS rows, with their trajectories, to the rows target[rows->count] (ascending)
+ * of a file whose cases have the same answers and the same instants, each once it has been
+ * verified. Where only that file has numbers of scenarios, the rows are of the first one, 0. */
+bool store_copy(struct store *from, const struct rows *rows, struct store *to,
+                const uint64_t *target, struct store_copied *copied, stance_message *message);
+/* Appends the times of a file to those of another, rank after rank from *rank on, which moves on.
+ */
+bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_message *message);
+/* An attribute of the whole file. */
+bool store_annotate(struct store *store, const char *name, const char *text,
+                    stance_message *message);
+
+/* A file that goes on with another scenario (changed_scenario.h): for a file that store_create has
+ * just made, the group `history` with the scenarios of `origin`, and the variable
+ * `scenario_number`. */
+bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
+                       stance_message *message);
+/* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
+bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
+                      stance_message *message);
+
+/* Rows of an open file (HDF5 identifier) whose answers are not as their checksums say become
+ * pending in status[cases], which holds the file's own; trajectories are not looked at. false: the
+ * rows cannot be read, or no memory. A file without checksums is taken as it is. */
+struct store_damage {
+    uint64_t cases, first; /* how many, the lowest of them */
+};
+bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage);
+
+/* The checksum that an open file has for the trajectory at a place; false: none that can be read.
+ */
+bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc);
+
+/* Counts the cases of a file, which another process may be writing. */
+struct store_counts {
+    uint64_t cases, done, failed;
+};
+bool store_count(const char *file, struct store_counts *counts, stance_message *message);
+
+#endif

@@ -1,0 +1,118 @@
+/* store_history.c - what files that went on with another scenario (changed_scenario.h) were made
+ * from before. */
+#include "file_checksums.h"
+#include "store_make.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the group `history` ------------------------------------------------------------------ */
+
+enum { TEXTS = 3 };
+static const char *const text_names[TEXTS] = {"scenario", "git_revision", "date"};
+
+/* Text k of a scenario. */
+static char **text_of(struct store_ancestor *ancestor, int k)
+{
+    return k == 0 ? &ancestor->scenario : k == 1 ? &ancestor->revision : &ancestor->date;
+}
+
+/* Words of a variable, each freed by the caller; their number must be `count`, unless that is 0. */
+static bool read_texts(hid_t group, int k, struct store_origin *origin)
+{
+    hid_t dataset = H5Dopen2(group, text_names[k], H5P_DEFAULT);
+    hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
+    const hssize_t n = H5Sget_simple_extent_npoints(space);
+    bool good = n > 0 && n <= STORE_MOST_ANCESTORS && H5Tis_variable_str(type) > 0;
+    char *word[STORE_MOST_ANCESTORS] = {NULL};
+
+    if (good && !origin->ancestor) {
+        origin->ancestor = calloc((size_t)n, sizeof *origin->ancestor);
+        origin->ancestors = origin->ancestor ? (size_t)n : 0;
+    }
+    good = good && (size_t)n == origin->ancestors &&
+           H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, word) >= 0;
+    for (hssize_t i = 0; good && i < n; i++) {
+        char **text = text_of(&origin->ancestor[i], k);
+        *text = strdup(word[i] ? word[i] : "");
+        good = *text != NULL;
+    }
+    for (int i = 0; i < STORE_MOST_ANCESTORS; i++)
+        H5free_memory(word[i]);
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Dclose(dataset);
+    return good;
+}
+
+bool store_read_history(hid_t file, struct store_origin *origin)
+{
+    bool good = true;
+    if (H5Lexists(file, "history", H5P_DEFAULT) <= 0)
+        return true;
+    hid_t group = H5Gopen2(file, "history", H5P_DEFAULT);
+    for (int k = 0; good && k < TEXTS; k++)
+        good = read_texts(group, k, origin);
+    H5Gclose(group);
+    return good;
+}
+
+/* The earlier scenarios of the origin, and its own. */
+static bool put_texts(hid_t group, int k, const struct store_origin *origin)
+{
+    const char *word[STORE_MOST_ANCESTORS + 1];
+    struct store_ancestor own = {origin->scenario, (char *)(uintptr_t)origin->revision,
+                                 (char *)(uintptr_t)origin->date};
+    const hsize_t n = origin->ancestors + 1;
+    for (size_t i = 0; i < origin->ancestors; i++)
+        word[i] = *text_of(&origin->ancestor[i], k);
+    word[origin->ancestors] = *text_of(&own, k);
+    hid_t type = H5Tcopy(H5T_C_S1);
+    bool good = H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0;
+    hid_t dataset = make_dataset(group, text_names[k], type, 1, &n);
+    good =
+        good && dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, word) >= 0;
+    H5Dclose(dataset);
+    H5Tclose(type);
+    return good;
+}
+
+/* The variable over the cases. */
+static bool put_numbers(hid_t file, const struct plan *plan)
+{
+    const struct store_column *column = &store_columns[COLUMN_SCENARIO_NUMBER];
+    const struct scenario *s = plan->scenario;
+    hsize_t length[SCENARIO_MAX_AXES];
+    const int rank = store_dimensions(plan, length);
+    const bool one = plan->single || s->axes == 0;
+    hid_t dataset = make_dataset(file, column->name, store_file_type(column->kind), rank, length);
+    bool good = dataset >= 0 &&
+                H5LTset_attribute_string(file, column->name, "long_name", column->text) >= 0;
+    for (int d = 0; good && d < rank; d++) {
+        hid_t scale = H5Dopen2(file, one ? "case" : s->axis[d].name, H5P_DEFAULT);
+        good = scale >= 0 && H5DSattach_scale(dataset, scale, (unsigned)d) >= 0;
+        H5Dclose(scale);
+    }
+    H5Dclose(dataset);
+    return good;
+}
+
+bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
+                       stance_message *message)
+{
+    hid_t access = store_serial_access(), id = H5Fopen(file, H5F_ACC_RDWR, access);
+    hid_t properties = H5Pcreate(H5P_GROUP_CREATE), group = -1;
+    H5Pclose(access);
+    if (H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0)
+        group = H5Gcreate2(id, "history", H5P_DEFAULT, properties, H5P_DEFAULT);
+    H5Pclose(properties);
+    bool good = group >= 0;
+    for (int k = 0; good && k < TEXTS; k++)
+        good = put_texts(group, k, origin);
+    H5Gclose(group);
+    good = good && file_checksums_put_group(id, "history") && put_numbers(id, plan);
+    good = good || store_failed(message, file, "lay out its history");
+    if (id >= 0 && H5Fclose(id) < 0 && good)
+        good = store_failed(message, file, "write its history");
+    return good && store_reserve(file, message);
+}

@@ -1,0 +1,198 @@
+/* store_make.c - see store_make.h. */
+#include "store_make.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { PIECE = 1 << 16 };
+
+/* ---- attributes --------------------------------------------------------------------------- */
+
+static bool put_attribute(hid_t object, const char *name, hid_t type, hid_t space,
+                          const void *value)
+{
+    hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    bool good = attribute >= 0 && H5Awrite(attribute, type, value) >= 0;
+    H5Aclose(attribute);
+    H5Sclose(space);
+    return good;
+}
+
+bool put_text(hid_t object, const char *name, const char *text)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    size_t size = text[0] ? strlen(text) : 1;
+    bool good = H5Tset_size(type, size) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0 &&
+                H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0 &&
+                put_attribute(object, name, type, H5Screate(H5S_SCALAR), text);
+    H5Tclose(type);
+    return good;
+}
+
+bool put_number(hid_t object, const char *name, enum store_kind kind, const void *value)
+{
+    hsize_t one = 1;
+    return put_attribute(object, name, store_file_type(kind), H5Screate_simple(1, &one, NULL),
+                         value);
+}
+
+bool put_int(hid_t object, const char *name, int value)
+{
+    int32_t number = value;
+    return put_number(object, name, KIND_int32_t, &number);
+}
+
+bool put_meaning(hid_t object, const char *unit, const char *text)
+{
+    return (!unit || put_text(object, "units", unit)) &&
+           (!text || !text[0] || put_text(object, "long_name", text));
+}
+
+/* CF's flags: the values 0 ... n - 1 and a word for each. */
+bool put_flags(hid_t object, const char *words)
+{
+    uint8_t values[32];
+    hsize_t n = 1;
+    for (const char *c = words; *c; c++)
+        n += *c == ' ';
+    for (hsize_t i = 0; i < n; i++)
+        values[i] = (uint8_t)i;
+    return put_attribute(object, "flag_values", store_file_type(KIND_uint8_t),
+                         H5Screate_simple(1, &n, NULL), values) &&
+           put_text(object, "flag_meanings", words);
+}
+
+/* `_FillValue` in the variable's own type. */
+bool put_fill(hid_t object, enum store_kind kind, double fill)
+{
+    uint8_t flag = 0;
+    int64_t count = 0;
+    const void *value = kind == KIND_uint8_t   ? (const void *)&flag
+                        : kind == KIND_int64_t ? (const void *)&count
+                                               : (const void *)&fill;
+    return put_number(object, "_FillValue", kind, value);
+}
+
+/* ---- groups and datasets ------------------------------------------------------------------ */
+
+/* Like datasets, see make_dataset: without its checksum a flipped bit makes variables vanish. */
+hid_t make_group(hid_t parent, const char *name)
+{
+    hid_t properties = H5Pcreate(H5P_GROUP_CREATE), group = -1;
+    if (H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
+            0 &&
+        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
+            0 &&
+        H5Pset_obj_track_times(properties, false) >= 0)
+        group = H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT);
+    H5Pclose(properties);
+    return group;
+}
+
+/* Contiguous, its place in the file given at once; nothing is written, so that large files start
+ * fast. No times are kept, so that equal runs give equal bytes. Attributes in the order of their
+ * making are netCDF's, and the header that this takes has a checksum of HDF5's own. */
+hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *length)
+{
+    hid_t properties = H5Pcreate(H5P_DATASET_CREATE), dataset = -1;
+    hid_t space = rank > 0 ? H5Screate_simple(rank, length, NULL) : H5Screate(H5S_SCALAR);
+    bool string = H5Tis_variable_str(type) > 0; /* pointers need their zeros */
+    if (space >= 0 && H5Pset_layout(properties, H5D_CONTIGUOUS) >= 0 &&
+        H5Pset_alloc_time(properties, H5D_ALLOC_TIME_EARLY) >= 0 &&
+        H5Pset_fill_time(properties, string ? H5D_FILL_TIME_ALLOC : H5D_FILL_TIME_NEVER) >= 0 &&
+        H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >=
+            0 &&
+        H5Pset_obj_track_times(properties, false) >= 0)
+        dataset = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
+    H5Sclose(space);
+    H5Pclose(properties);
+    return dataset;
+}
+
+bool attach(hid_t dataset, const struct dimension *const *dimension, int rank)
+{
+    for (int d = 0; d < rank; d++)
+        if (H5DSattach_scale(dataset, dimension[d]->id, (unsigned)d) < 0)
+            return false;
+    return true;
+}
+
+/* A variable over dimensions; -1 on failure. */
+hid_t make_variable(hid_t parent, const char *name, hid_t type,
+                    const struct dimension *const *dimension, int rank, const char *unit,
+                    const char *text)
+{
+    hsize_t length[SCENARIO_MAX_AXES + 2];
+    for (int d = 0; d < rank; d++)
+        length[d] = dimension[d]->length;
+    hid_t dataset = make_dataset(parent, name, type, rank, length);
+    if (dataset >= 0 && !(put_meaning(dataset, unit, text) && attach(dataset, dimension, rank))) {
+        H5Dclose(dataset);
+        return -1;
+    }
+    return dataset;
+}
+
+/* Turns a one-dimensional dataset into a dimension. `label` is what netCDF looks at. */
+bool make_scale(int *dimensions, hid_t dataset, const char *label, hsize_t length,
+                struct dimension *dimension)
+{
+    dimension->id = dataset;
+    dimension->length = length;
+    return dataset >= 0 && H5DSset_scale(dataset, label) >= 0 &&
+           put_int(dataset, "_Netcdf4Dimid", (*dimensions)++);
+}
+
+hid_t word_type(void)
+{
+    hid_t type = H5Tcopy(H5T_C_S1);
+    if (H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0) {
+        H5Tclose(type);
+        return -1;
+    }
+    return type;
+}
+
+bool write_words(hid_t dataset, hid_t type, const char *const *words)
+{
+    return H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, words) >= 0;
+}
+
+/* A dimension whose points are words. */
+bool make_words(int *dimensions, hid_t parent, const char *name, const char *const *words,
+                hsize_t n, struct dimension *dimension)
+{
+    hid_t type = word_type(), dataset = make_dataset(parent, name, type, 1, &n);
+    bool good = dataset >= 0 && write_words(dataset, type, words) &&
+                make_scale(dimensions, dataset, name, n, dimension);
+    H5Tclose(type);
+    return good;
+}
+
+bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context)
+{
+    double *buffer = malloc((n < PIECE ? n : PIECE) * sizeof *buffer);
+    hid_t space = H5Screate_simple(1, &n, NULL);
+    bool good = buffer && space >= 0;
+    for (hsize_t at = 0; good && at < n; at += PIECE) {
+        hsize_t count = n - at < PIECE ? n - at : PIECE;
+        hid_t memory = H5Screate_simple(1, &count, NULL);
+        for (hsize_t i = 0; i < count; i++)
+            buffer[i] = value(context, at + i);
+        good = H5Sselect_hyperslab(space, H5S_SELECT_SET, &at, NULL, &count, NULL) >= 0 &&
+               H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, buffer) >= 0;
+        H5Sclose(memory);
+    }
+    H5Sclose(space);
+    free(buffer);
+    return good;
+}
+
+/* A dimension whose points are numbers. */
+bool make_numbers(int *dimensions, hid_t parent, const char *name, enum store_kind kind, hsize_t n,
+                  value_function value, const void *context, struct dimension *dimension)
+{
+    hid_t dataset = make_dataset(parent, name, store_file_type(kind), 1, &n);
+    return dataset >= 0 && write_values(dataset, n, value, context) &&
+           make_scale(dimensions, dataset, name, n, dimension);
+}

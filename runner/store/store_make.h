@@ -1,0 +1,54 @@
+/* store_make.h - pieces that results files are made of: attributes, variables, dimensions, as
+ * netCDF-4 has them. For store_layout.c alone. -1 or false: HDF5 remembers why.
+ */
+#ifndef STANCE_STORE_STORE_MAKE_H
+#define STANCE_STORE_STORE_MAKE_H
+
+#include "store_private.h"
+
+struct dimension {
+    hid_t id;
+    hsize_t length;
+};
+
+/* ---- attributes --------------------------------------------------------------------------- */
+
+bool put_text(hid_t object, const char *name, const char *text);
+bool put_number(hid_t object, const char *name, enum store_kind kind, const void *value);
+bool put_int(hid_t object, const char *name, int value);
+/* `units` and `long_name`, where not NULL. */
+bool put_meaning(hid_t object, const char *unit, const char *text);
+/* CF's flags: the values 0 ... n - 1 and a word for each; n <= 32. */
+bool put_flags(hid_t object, const char *words);
+/* `_FillValue` in the variable's own type. */
+bool put_fill(hid_t object, enum store_kind kind, double fill);
+
+/* ---- groups, variables, dimensions --------------------------------------------------------- */
+
+hid_t make_group(hid_t parent, const char *name);
+/* A variable of `rank` lengths; 0: a number. */
+hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *length);
+bool attach(hid_t dataset, const struct dimension *const *dimension, int rank);
+/* A variable over dimensions. */
+hid_t make_variable(hid_t parent, const char *name, hid_t type,
+                    const struct dimension *const *dimension, int rank, const char *unit,
+                    const char *text);
+/* Turns a one-dimensional dataset into a dimension. `label` is what netCDF looks at; `dimensions`
+ * counts those of the file. */
+bool make_scale(int *dimensions, hid_t dataset, const char *label, hsize_t length,
+                struct dimension *dimension);
+/* The type of words of any length; to be closed. */
+hid_t word_type(void);
+bool write_words(hid_t dataset, hid_t type, const char *const *words);
+/* A dimension whose points are words. */
+bool make_words(int *dimensions, hid_t parent, const char *name, const char *const *words,
+                hsize_t n, struct dimension *dimension);
+
+/* Value i of a coordinate. */
+typedef double (*value_function)(const void *context, uint64_t i);
+bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context);
+/* A dimension whose points are numbers. */
+bool make_numbers(int *dimensions, hid_t parent, const char *name, enum store_kind kind, hsize_t n,
+                  value_function value, const void *context, struct dimension *dimension);
+
+#endif

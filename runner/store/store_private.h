@@ -1,0 +1,154 @@
+/* store_private.h - shared by store.c (rows), store_copy.c (rows of another file), store_select.c
+ * (which elements those are), store_layout.c (creation), store_history.c (files of several
+ * scenarios), store_space.c (room on the disk), store_look.c (questions) and file_checksums.c
+ * (checksums); nothing else includes it, so that HDF5 stays between them. */
+#ifndef STANCE_STORE_STORE_PRIVATE_H
+#define STANCE_STORE_STORE_PRIVATE_H
+
+#include "store.h"
+
+#include "runner/plan/plan.h"
+
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+/* Bytes in memory are bytes of the file, checksums included. */
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is little-endian");
+
+enum store_kind {
+    KIND_uint8_t,
+    KIND_uint32_t,
+    KIND_int32_t,
+    KIND_int64_t,
+    KIND_uint64_t,
+    KIND_double
+};
+
+/* The variables over the cases, in the order of the table, then those of our own. */
+enum {
+    COLUMN_FINAL_STATE = SCENARIO_FINAL_STATE, /* after the answers, STANCE_ANSWER_... */
+    COLUMN_SCENARIO_NUMBER,                    /* of files with a history only */
+    COLUMN_CHECKSUM,
+    COLUMN_STATUS,
+    COLUMNS,
+};
+
+struct store_column {
+    const char *name;
+    enum store_kind kind;
+    size_t size; /* of one element */
+    double fill; /* value of `_FillValue` */
+    bool filled; /* has that attribute */
+    const char *unit, *text;
+};
+extern const struct store_column store_columns[COLUMNS];
+
+/* The variables of a trajectory: (case, time, width, parts). */
+enum {
+    TRAJECTORY_POSITION,
+    TRAJECTORY_VELOCITY,
+    TRAJECTORY_TORQUE,
+    TRAJECTORY_FORCE,
+    TRAJECTORY_GAP,
+    TRAJECTORIES
+};
+extern const char *const store_trajectories[TRAJECTORIES];
+
+/* Whether a scenario stores a column; elements per case (2 coordinates for the final state). */
+bool store_has_column(const struct scenario *scenario, int column);
+size_t store_column_width(const struct scenario *scenario, int column);
+/* Elements per row of a trajectory; 0: the variable is left out. */
+size_t store_trajectory_width(const stance_scene *scene, int variable);
+
+/* Lengths of the dimensions of the cases; returns how many (>= 1). */
+int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
+
+/* The scenarios of a file before its own; none without a group `history`. false: no memory, or it
+ * cannot be read. */
+bool store_read_history(hid_t file, struct store_origin *origin);
+
+/* "FILE: cannot ...: reason" of a system call. Returns false. */
+bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
+/* Whether a file of that size can fit at all, before HDF5 begins what it could not end. */
+bool store_fits(const char *file, uint64_t size, stance_message *message);
+/* Reserves the space of the whole file and brings it to the disk. */
+bool store_reserve(const char *file, stance_message *message);
+
+/* Dimensions of the columns of group `design` beside the axes. */
+enum design_dimension {
+    DESIGN_COORDINATE,
+    DESIGN_ACTUATOR,
+    DESIGN_POSTURE,       /* posture_state */
+    DESIGN_POSTURE_OTHER, /* the same names again: no variable has a dimension twice */
+    DESIGN_DIMENSIONS,
+};
+
+/* Columns of group `design`, in struct resolved_design: name, first element, width per design. */
+struct store_design_column {
+    const char *name, *unit, *text;
+    size_t offset;             /* in struct resolved_design */
+    int rows, columns, stride; /* of the matrix; its row length in memory; rows 0: left out */
+    int dimensions;            /* 0: a number */
+    enum design_dimension over[2];
+};
+enum { DESIGN_COLUMNS = 9 };
+void store_design_columns(const struct scenario *scenario,
+                          struct store_design_column columns[DESIGN_COLUMNS]);
+
+struct store {
+    char file[1024];
+    const struct plan *plan;
+    hid_t id;
+    int ranks;                      /* that have it open together */
+    hid_t column[COLUMNS];          /* -1: not stored */
+    size_t width[COLUMNS];          /* elements per case */
+    struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
+    hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
+    hid_t trajectory_checksum;
+    int rank; /* dimensions of the cases */
+    hsize_t length[SCENARIO_MAX_AXES];
+};
+
+/* Rows in memory, column after column. */
+struct store_block {
+    const struct store *store;
+    size_t rows;
+    void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
+};
+
+enum store_direction { STORE_READ, STORE_WRITE };
+
+/* Moves rows between the file and a block, from `slot` on: all columns in order, the checksum and
+ * then the status last. */
+bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
+                     const struct rows *rows, enum store_direction way, stance_message *message);
+/* What the checksum of a row of a block ought to be. */
+uint32_t store_row_checksum(const struct store_block *block, size_t slot);
+/* Moves one case's part, `elements` long, of a variable whose first dimension is the case. */
+bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
+                      enum store_direction way, void *data);
+
+/* The dataset has exactly this shape. */
+bool store_has_shape(hid_t dataset, int rank, const hsize_t *length);
+/* Adds to a selection the flat, row-major range [first, last) below dimension `level` of a grid: a
+ * part of a row, whole rows, and a part of a row again, each a hyperslab at its level. start[] is
+ * fixed above `level`. */
+bool store_select_range(hid_t space, int rank, const hsize_t *length, int level, hsize_t *start,
+                        hsize_t first, hsize_t last);
+
+/* File space of a variable over the cases, of `width` elements each, with some rows selected (one
+ * at least); or -1. */
+hid_t store_select_rows(int dimensions, const hsize_t *lengths, size_t width,
+                        const struct rows *rows);
+
+hid_t store_file_type(enum store_kind kind);
+hid_t store_memory_type(enum store_kind kind);
+
+/* File access for one process: no HDF5 locks (ours is another), no buffering of raw data, so that
+ * writes reach the system in the order in which they are made. Close with H5Pclose. */
+hid_t store_serial_access(void);
+
+/* "FILE: what: reason", with the reason that HDF5 remembers. Returns false. */
+bool store_failed(stance_message *message, const char *file, const char *what);
+
+#endif

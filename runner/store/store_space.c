@@ -1,0 +1,71 @@
+/* store_space.c - room on the disk: whether there is enough, and that it stays there. */
+#include "store_private.h"
+
+#include "runner/base/units.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+bool store_system_failed(stance_message *message, const char *file, const char *what, int error)
+{
+    snprintf(message->text, sizeof message->text, "%.100s: cannot %s: %s", file, what,
+             strerror(error));
+    return false;
+}
+
+bool store_fits(const char *file, uint64_t size, stance_message *message)
+{
+    struct statvfs system;
+    struct rlimit limit;
+    char directory[1024], needed[32], there[32];
+
+    snprintf(directory, sizeof directory, "%s", file);
+    char *slash = strrchr(directory, '/');
+    if (!slash)
+        snprintf(directory, sizeof directory, ".");
+    else
+        slash[slash == directory] = '\0';
+    text_of_bytes(needed, sizeof needed, (double)size);
+    if (statvfs(directory, &system) == 0 && (uint64_t)system.f_bavail * system.f_frsize < size) {
+        text_of_bytes(there, sizeof there, (double)system.f_bavail * (double)system.f_frsize);
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: needs about %s but only %s are free: %s", file, needed, there,
+                 strerror(ENOSPC));
+        return false;
+    }
+    if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
+        limit.rlim_cur < size) {
+        text_of_bytes(there, sizeof there, (double)limit.rlim_cur);
+        snprintf(message->text, sizeof message->text,
+                 "%.100s: needs about %s but the limit on file sizes is %s: %s", file, needed,
+                 there, strerror(EFBIG));
+        return false;
+    }
+    return true;
+}
+
+bool store_reserve(const char *file, stance_message *message)
+{
+    struct stat information;
+    int descriptor = open(file, O_RDWR | O_CLOEXEC);
+    if (descriptor < 0 || fstat(descriptor, &information) != 0) {
+        bool result = store_system_failed(message, file, "open", errno);
+        if (descriptor >= 0)
+            close(descriptor);
+        return result;
+    }
+    /* Where the file system cannot reserve, a full disk shows when rows are written. */
+    int error = fallocate(descriptor, 0, 0, information.st_size) == 0 ? 0 : errno;
+    error = error == EOPNOTSUPP ? 0 : error;
+    if (error == 0 && fsync(descriptor) != 0)
+        error = errno;
+    if (close(descriptor) != 0 && error == 0)
+        error = errno;
+    return error == 0 || store_system_failed(message, file, "reserve its space", error);
+}

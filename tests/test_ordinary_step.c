@@ -1,0 +1,185 @@
+/* test_ordinary_step - the ordinary step against the step in full, and direct contact solutions
+ * against the trial of every mode: the kernel's own functions, one lane wide.
+ */
+#define STANCE_LANES 1
+#define STANCE_SCENE biped
+#define STANCE_ISA inside
+#define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
+#include "engine/methods/implicit.c"
+#include "support.h"
+
+/* A random operator: symmetric and positive, of condition up to 1e4, bent a little. */
+static void random_operator(uint64_t *seed, int n, double bend, double D[2][2][2][2])
+{
+    double root[4][6];
+    for (int i = 0; i < n; i++)
+        for (int k = 0; k < 6; k++)
+            root[i][k] = uniform(seed, -1, 1) * (k == i ? 1 : 0.6);
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double sum = i == j ? 1e-3 : 0;
+            for (int k = 0; k < 6; k++)
+                sum += root[i][k] * root[j][k];
+            D[i / 2][j / 2][i % 2][j % 2] = sum + (i == j ? 0 : bend * uniform(seed, -1, 1));
+        }
+}
+
+/* Where direct solutions call themselves certain, trying every mode finds the same and no other. */
+static void direct_is_exact(void **state)
+{
+    (void)state;
+    enum { TRIES = 200000 };
+    uint64_t seed = 5;
+    for (int contacts = 1; contacts <= 2; contacts++) {
+        int certain = 0, modes[3] = {0};
+        double worst = 0;
+        for (int i = 0; i < TRIES; i++) {
+            double D[2][2][2][2] = {{{{0}}}}, uf[2][2], r[2][2] = {{0}}, sliding[2];
+            const double friction = i % 7 == 0 ? 0 : uniform(&seed, 0, 1.5);
+            const bool slides = i % 3 == 0;
+            random_operator(&seed, 2 * contacts, i % 2 ? 1e-2 : 0, D);
+            for (int c = 0; c < 2; c++) {
+                uf[c][0] = uniform(&seed, -1, 0.5), uf[c][1] = uniform(&seed, -1, 1);
+                sliding[c] = floor(uniform(&seed, -1, 2)); /* -1, 0, 1 */
+            }
+            const double *const goes_on = slides ? sliding : NULL;
+            const struct contact_rule rule = {.friction = friction, .sliding = goes_on};
+            const bool sure =
+                contacts == 1 ? direct_one((const double(*)[2])D[0][0], (const double(*)[2])D[0][0],
+                                           uf[0], friction, goes_on, r[0])
+                              : direct_two((const double(*)[2][2][2])D, (const double(*)[2])uf,
+                                           &rule, 1e-11, true, r);
+            if (!sure)
+                continue;
+            contact_choice best;
+            contact_solve(&(contact_problem){(const double(*)[2][2][2])D, (const double(*)[2])uf,
+                                             goes_on, NULL, friction, 1, 1e-11, contacts, false},
+                          &best);
+            certain++;
+            assert_true(best.violation <= 1e-8);
+            for (int c = 0; c < contacts; c++) {
+                modes[r[c][0] <= 0 ? 0 : fabs(r[c][1]) < friction * r[c][0] * (1 - 1e-9) ? 1 : 2]++;
+                for (int a = 0; a < 2; a++) {
+                    const double scale = 1 + fabs(best.r[c][0]) + fabs(best.r[c][1]);
+                    worst = fmax(worst, fabs(r[c][a] - best.r[c][a]) / scale);
+                }
+            }
+            assert_false(best.ambiguous);
+        }
+        print_message("# %d contact%s: %d of %d certain (contacts open %d, stick %d, slip %d), "
+                      "impulses off by %.1e at most\n",
+                      contacts, contacts > 1 ? "s" : "", certain, TRIES, modes[0], modes[1],
+                      modes[2], worst);
+        assert_true(worst < 1e-8);
+        assert_true(certain > TRIES / 2);
+        assert_true(modes[0] > TRIES / 20 && modes[1] > TRIES / 20 && modes[2] > TRIES / 20);
+    }
+}
+
+/* A biped that stands on one foot or two or flies, at random. */
+static void random_motion(uint64_t *seed, int i, double h, struct bundle *b)
+{
+    stance_case c = {.robot = {0.5, 0.5, 1, 1, 3}, .step = h, .steps = 1, .torque_limit = 10};
+    const stance_scene *const scene = stance_scene_find("biped");
+    for (int k = 0; k < scene->robot_count; k++)
+        c.robot[k] = scene->robot[k].fallback * uniform(seed, 0.7, 1.4);
+    c.contacts = i % 3;
+    if (c.contacts == 2)
+        c.contacts = 3;
+    c.friction = uniform(seed, 0, 1.2);
+    c.support = -1;
+    c.position[1] = 2;
+    c.position[2] = uniform(seed, -0.6, 0.6);
+    c.position[3] = uniform(seed, 0.2, 0.8), c.position[4] = uniform(seed, -0.8, -0.2);
+    for (int k = 2; k < 5; k++)
+        c.velocity[k] = uniform(seed, -2, 2);
+    if (c.contacts)
+        scene->stand(c.robot, 0, c.position, c.velocity);
+    static const stance_feed feed;
+    static stance_case kept;
+    static stance_result result;
+    memset(b, 0, sizeof *b);
+    b->feed = &feed;
+    kept = c;
+    bundle_load(b, 0, &kept, &result);
+    bundle_begin(b, true);
+}
+
+/* Every ordinary step ends where the full iteration ends, to what ordinary_step.h promises; and it
+ * is what nearly all steps are. */
+static void ordinary_steps_are_converged(void **state)
+{
+    (void)state;
+    static const double steps[] = {1e-4, 1e-3, 5e-3, 2e-2};
+    enum { TRIES = 600, LENGTH = 100 };
+    uint64_t seed = 17;
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
+        double worst = 0, most = 0, total = 0, iterations = 0;
+        int taken = 0, ordinary = 0, redundant = 0,
+            grazed = 0; /* by an iterate of the full iteration alone */
+        for (int i = 0; i < TRIES; i++) {
+            struct bundle b;
+            const double h = steps[k];
+            double torque[2] = {uniform(&seed, -5, 5), uniform(&seed, -5, 5)};
+            random_motion(&seed, i, h, &b);
+            for (int n = 0; n < LENGTH; n++) {
+                struct iterate it;
+                struct step_report quick, full;
+                struct motion next = b.now;
+                for (int a = 0; a < 2; a++) /* torques change as a law's would */
+                    torque[a] += h * uniform(&seed, -20, 20);
+                struct iterate raw;
+                double reached;
+                const contact_set touching = step_touching(&b.set, b.now.gap, true);
+                ordinary_reach(&b.advance.quick, &b.set, &b.now, torque, h, true, touching, false,
+                               &raw, &reached);
+                const bool good = ordinary_try(&b.advance.quick, &b.set, &b.now, torque, h, true,
+                                               touching, false, &it, &quick);
+                const bool there = take_step(&b.set, &b.now, torque, h, true, false,
+                                             STEP_MAX_ITERATIONS, &next, &full);
+                taken++;
+                if (!there)
+                    break;
+                if (good) {
+                    ordinary++;
+                    iterations += quick.iterations;
+                    const double speed = iterate_speed(&it);
+                    double mended = 0, off = 0;
+                    grazed += full.landed;
+                    for (int a = 0; a < 5; a++) {
+                        mended = fmax(mended, fabs(it.w[a] - raw.w[a]));
+                        off = fmax(off, fabs(it.w[a] - next.w[a]));
+                    }
+                    /* On parallel legs the iteration's way decides on what the feet do. */
+                    const bool parallel =
+                        it.active[0] && it.active[1] && fabs(sin(b.now.s[3] - b.now.s[4])) < 1e-3;
+                    redundant += parallel;
+                    if (full.landed == 0 && !parallel)
+                        worst = fmax(worst, (off - 1e-4 * mended) / speed);
+                    most = fmax(most, mended / speed);
+                    total = fmax(total, off / speed);
+                    ordinary_keep(&b.advance.quick, &it, h, true, true, &b.now);
+                } else {
+                    ordinary_forget(&b.advance.quick, true);
+                    b.now = next;
+                }
+            }
+        }
+        print_message("# h = %g: %d of %d steps ordinary, %.2f iterations each, velocities off by "
+                      "%.1e of the speed at most, of the mending by %.1e where it is up to %.1e\n",
+                      steps[k], ordinary, taken, iterations / ordinary, worst, total, most);
+        assert_true(worst <= 1e-10);
+        assert_true(grazed <= 1e-4 * ordinary);
+        assert_true(redundant <= 0.05 * ordinary);
+        assert_true(ordinary > 0.8 * taken);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(direct_is_exact),
+        cmocka_unit_test(ordinary_steps_are_converged),
+    };
+    return cmocka_run_group_tests_name("quick", tests, NULL, NULL);
+}
