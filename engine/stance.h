@@ -82,6 +82,7 @@ typedef struct stance_scene {
     const char *const *contact_name;  /* [contacts] */
     const char *const *actuator_name; /* [actuators] */
     const int *posture;               /* [postures] indices into the coordinates */
+    const int *actuated;              /* [actuators] the coordinate that each drives */
     /* Gap of each contact above the ground, m. position[coordinates], gap[contacts]. */
     void (*gaps)(const double *robot, const double *position, double *gap);
     /* Position (x, z) and velocity of a contact point. */
@@ -91,9 +92,9 @@ typedef struct stance_scene {
     void (*stand)(const double *robot, int support, double *position, double *velocity);
     /* Stick figure: a polyline of `n` points (x, z); returns n <= STANCE_MAX_POINTS. */
     int (*figure)(const double *robot, const double *position, double points[][2]);
-    /* Height (hip, m) that `fell` is judged by and the length that it is measured in; NULL where
-     * nothing falls. */
-    void (*height)(const double *robot, const double *position, double *height, double *length);
+    /* Has it fallen: the hip is lower than fall_height leg lengths, or the trunk's end touches the
+     * ground. NULL where nothing falls. */
+    bool (*fallen)(const double *robot, const double *position, double fall_height);
     /* Kinetic and potential energy, J. */
     double (*energy)(const double *robot, const double *position, const double *velocity);
     /* Inertia matrix A[n][n] in these coordinates, n = coordinates; NULL where nothing needs it. */
@@ -125,7 +126,7 @@ const stance_scene *stance_scene_find(const char *name);
 typedef enum stance_status { STANCE_PENDING, STANCE_DONE, STANCE_FAILED } stance_status;
 
 /* How a case ended, in the order of legends: one table gives the enumeration, the names, the
- * numbers in files (0: none) and the texts. */
+ * numbers in files (0: none) and the texts. Of several that are true at once the last one holds. */
 #define STANCE_OUTCOMES(X)                                                                         \
     X(STABILISED, stabilised, 1, "stands at its target, and the loop holds it there")              \
     X(RESTED, rested, 3, "is at rest elsewhere, for good")                                         \
@@ -201,6 +202,51 @@ typedef struct stance_servo {
     double integral_limit;           /* of the integral, its unit times s; may be INFINITY */
 } stance_servo;
 
+/* ---- control laws: what they are told, and what that makes of a case ------------------------ */
+
+/* How many numbers a parameter of a law is. */
+typedef enum stance_per {
+    STANCE_PER_LAW,        /* one */
+    STANCE_PER_ACTUATOR,   /* one for each, named by the coordinate that it drives */
+    STANCE_PER_COORDINATE, /* one for each coordinate of the scene */
+    STANCE_PER_PAIR,       /* a pair of coordinates, see stance_pair: an int */
+} stance_per;
+
+typedef struct stance_parameter {
+    stance_quantity of; /* in `unit` and `text` %s stands for what the coordinate has there; unit ""
+                         * of an actuator's: its coordinate's. fallback NAN: none */
+    stance_per per;
+    bool required;                          /* must be given */
+    bool positive;                          /* `low` itself is out of range */
+    bool unlimited;                         /* the word `none`, INFINITY, may stand for it */
+    bool told;                              /* a summary tells it even where it is the default */
+    const char *fallback_text, *all, *more; /* of NAN; of the numbers together; may be NULL */
+} stance_parameter;
+
+enum { STANCE_LAW_PARAMETERS = 8, STANCE_LAW_ROOM = STANCE_MAX_COORDINATES, STANCE_MAX_LAWS = 8 };
+
+struct stance_case;
+
+/* A file of engine/laws each. What is not linear acts in core/law and core/mode, too. */
+typedef struct stance_law {
+    const char *name, *text;
+    bool designed; /* brings the robot to an equilibrium by gains that are designed or given */
+    bool acts_far; /* may act outside the ellipsoid inside which a designed law does */
+    int parameters;
+    const stance_parameter *parameter; /* [parameters] */
+    /* Makes *c act by it. value[parameters * STANCE_LAW_ROOM]: of each parameter one number, or by
+     * actuators or coordinates; NAN: as the scene is at `begin`[coordinates]. `linear`: c's near or
+     * far. Errors: BAD_ARGUMENT. NULL: nothing acts, or a designed law. */
+    stance_error (*set)(const stance_scene *scene, const double *value, const double *begin,
+                        stance_linear_law *linear, struct stance_case *c, stance_message *message);
+} stance_law;
+
+/* The laws there are, NULL-terminated; the first one is `none`. */
+#define STANCE_LAWS(X) X(none) X(hold) X(state_feedback) X(decoupling)
+const stance_law *const *stance_laws(void);
+/* One by name, or NULL. */
+const stance_law *stance_law_find(const char *name);
+
 typedef struct stance_case {
     double robot[STANCE_MAX_ROBOT];
     double friction;    /* Coulomb coefficient, >= 0 */
@@ -211,15 +257,12 @@ typedef struct stance_case {
     uint32_t contacts; /* bit c: contact c may touch the ground */
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
 
-    /* torque = clip(feedforward - gain * (posture - target, rates) + noise, +-torque_limit).
-     * `decouples`: by the servos instead (where sample_every is 0: continuously with methods that
-     * integrate between events, else once a step). `switches`: by this inside the ellipsoid
-     * sum(((posture - target), rates) / switch_axis)^2 <= 1, and outside it by the servos or,
-     * where the case does not decouple, by `far`; needs sample_every > 0. */
-    double feedforward[STANCE_MAX_ACTUATORS];
-    double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
-    double target[STANCE_MAX_POSTURE];
-    stance_linear_law far;
+    /* The law `near` acts, with noise, clipped to +-torque_limit. `decouples`: the servos instead
+     * (where sample_every is 0: continuously with methods that integrate between events, else once
+     * a step). `switches`: `near` inside the ellipsoid sum(((posture - near.target), rates) /
+     * switch_axis)^2 <= 1, and outside it the servos or, where the case does not decouple, `far`;
+     * needs sample_every > 0. */
+    stance_linear_law near, far;
     bool decouples, switches;
     stance_servo servo[STANCE_MAX_ACTUATORS];
     double switch_axis[2 * STANCE_MAX_POSTURE]; /* rad, rad/s, > 0 */
@@ -242,13 +285,13 @@ typedef struct stance_case {
     double settle_angle; /* rad */
     double settle_rate;  /* rad/s, and m/s for the translation */
     double settle_hold;  /* s */
-    double fall_height;  /* in lengths of the scene, see stance_scene.height */
+    double fall_height;  /* see stance_scene.fallen */
 
     /* `captures`: a case ends as `stabilised`, evidence `inferred`, at the first step (sampling
      * instant, where the law samples) at whose end the support foot alone carries and stands and
-     * x = (posture - target, rates) has x' captured x <= 1, unless less than capture_time is left.
-     * Has no effect unless `settle` and has_target hold, nor on laws that decouple, switch or act
-     * late, whose next torques do not follow from x. When such a case would have settled is not
+     * x = (posture - near.target, rates) has x' captured x <= 1, unless less than capture_time is
+     * left. Has no effect unless `settle` and has_target hold, nor on laws that decouple, switch or
+     * act late, whose next torques do not follow from x. When such a case would have settled is not
      * known: settle_time is NAN, and what is counted or summed ends with the simulation. */
     bool captures;
     double captured[2 * STANCE_MAX_POSTURE][2 * STANCE_MAX_POSTURE]; /* symmetric; units 1/x^2 */

@@ -124,7 +124,7 @@ static double model_difference(const mjModel *model, mjData *data, const stance_
     for (int n = 0; n < STATES; n++) {
         stance_case c = *base;
         double ours[STANCE_MAX_COORDINATES], size = 0, off = 0;
-        memset(c.gain, 0, sizeof c.gain);
+        memset(c.near.gain, 0, sizeof c.near.gain);
         c.position[1] = 100;
         for (int i = 0; i < 5; i++) {
             if (i > 1)
@@ -132,12 +132,12 @@ static double model_difference(const mjModel *model, mjData *data, const stance_
             c.velocity[i] = random_in(&state, -2, 2);
         }
         for (int i = 0; i < 2; i++)
-            c.feedforward[i] = random_in(&state, -10, 10);
+            c.near.feedforward[i] = random_in(&state, -10, 10);
         acceleration(kernel, &c, ours);
         mj_resetData(model, data);
         memcpy(data->qpos, c.position, 5 * sizeof(double));
         memcpy(data->qvel, c.velocity, 5 * sizeof(double));
-        memcpy(data->ctrl, c.feedforward, 2 * sizeof(double));
+        memcpy(data->ctrl, c.near.feedforward, 2 * sizeof(double));
         mj_forward(model, data);
         for (int i = 0; i < 5; i++) {
             size = fmax(size, fabs(ours[i]));
@@ -190,9 +190,10 @@ static void simulate(const mjModel *model, mjData *data, const stance_scene *sce
     for (int64_t k = 0; k < c->steps; k++) {
         const double *const q = data->qpos + 2, *const v = data->qvel + 2;
         for (int i = 0; i < 2; i++) {
-            double sum = c->feedforward[i];
+            double sum = c->near.feedforward[i];
             for (int j = 0; j < 3; j++)
-                sum -= c->gain[i][j] * (q[j] - c->target[j]) + c->gain[i][3 + j] * v[j];
+                sum -=
+                    c->near.gain[i][j] * (q[j] - c->near.target[j]) + c->near.gain[i][3 + j] * v[j];
             torque[i] = fmax(fmin(sum, c->torque_limit), -c->torque_limit);
         }
         mj_step(model, data);

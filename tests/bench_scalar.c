@@ -269,17 +269,17 @@ static bool simulate(const stance_case *c, double *position, double *velocity)
     s.v[0] = c->velocity[0] + lt * s.cosine[TRUNK] * s.rate[TRUNK];
     s.v[1] = c->velocity[1] + lt * s.sine[TRUNK] * s.rate[TRUNK];
     for (int64_t k = 0; k < c->steps; k++) {
-        const double x[6] = {s.angle[0] - c->target[0],
-                             s.angle[1] - s.angle[0] - c->target[1],
-                             s.angle[2] - s.angle[0] - c->target[2],
+        const double x[6] = {s.angle[0] - c->near.target[0],
+                             s.angle[1] - s.angle[0] - c->near.target[1],
+                             s.angle[2] - s.angle[0] - c->near.target[2],
                              s.rate[0],
                              s.rate[1] - s.rate[0],
                              s.rate[2] - s.rate[0]};
         double torque[2];
         for (int i = 0; i < 2; i++) {
-            torque[i] = c->feedforward[i];
+            torque[i] = c->near.feedforward[i];
             for (int j = 0; j < 6; j++)
-                torque[i] -= c->gain[i][j] * x[j];
+                torque[i] -= c->near.gain[i][j] * x[j];
             torque[i] = fmax(fmin(torque[i], c->torque_limit), -c->torque_limit);
         }
         const double tau[ANGLES] = {-(torque[0] + torque[1]), torque[0], torque[1]};

@@ -48,9 +48,9 @@ static inline stance_case plain_case(void)
 static inline void hold_legs(stance_case *c, double kp, double kd)
 {
     for (int i = 0; i < 2; i++) {
-        c->gain[i][1 + i] = kp;
-        c->gain[i][4 + i] = kd;
-        c->target[1 + i] = c->position[3 + i];
+        c->near.gain[i][1 + i] = kp;
+        c->near.gain[i][4 + i] = kd;
+        c->near.target[1 + i] = c->position[3 + i];
     }
 }
 
@@ -95,9 +95,9 @@ static inline void golden_case(uint64_t *seed, int i, stance_case *c)
     random_case(seed, i, i % 7 ? 1e-3 : 1e-2, c);
     c->seed = 42, c->grid_index = (uint64_t)i;
     if (i % 3 == 0) {
-        memcpy(c->gain, gain, sizeof gain);
-        c->target[0] = -0.41, c->target[1] = 0.570127, c->target[2] = 0.82;
-        c->feedforward[0] = -7.53135, c->feedforward[1] = 3.76567;
+        memcpy(c->near.gain, gain, sizeof gain);
+        c->near.target[0] = -0.41, c->near.target[1] = 0.570127, c->near.target[2] = 0.82;
+        c->near.feedforward[0] = -7.53135, c->near.feedforward[1] = 3.76567;
         c->position[2] = uniform(seed, -0.5, -0.36);
         c->position[3] = 0.570127, c->position[4] = 0.82;
         c->velocity[2] = c->velocity[3] = c->velocity[4] = 0;

@@ -22,7 +22,7 @@ static inline void hunt_law(uint64_t *seed, bool extreme, double moment, double 
     const double kp = moment * (extreme ? spread(seed, 1e-2, 1e5) : spread(seed, 0.1, 100));
     hold_legs(c, kp, kp * time * spread(seed, 1e-3, 1));
     for (int i = 1; i < 3; i++)
-        c->target[i] += uniform(seed, -0.1, 0.1) * (kind < 0.6);
+        c->near.target[i] += uniform(seed, -0.1, 0.1) * (kind < 0.6);
     if (kind > 0.7)
         c->torque_limit = moment * spread(seed, 1e-2, 1e2);
     if (kind > 0.9 && c->sample_every > 0)

@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 rooms="
 engine
 engine/core/lanes engine/core/contact engine/core/law engine/core/implicit engine/core/mode engine/core/loop
-engine/scenes engine/methods engine/control
+engine/scenes engine/laws engine/methods engine/control
 runner/base runner/ranks runner/scenario runner/plan runner/store runner/run
 analysis/statistics analysis/table analysis/draw
 analysis/summary analysis/basin analysis/sensitivity analysis/compare analysis/plot analysis/bench

@@ -37,11 +37,11 @@ static inline stance_case balance_case(double theta, double vtheta)
     stance_case c = plain_case();
     if (scene->equilibrium(c.robot, &choice, &equilibrium, &message) != STANCE_OK ||
         scene->linearise(c.robot, &equilibrium, A, B) != STANCE_OK ||
-        stance_place(6, 2, A, B, re, im, &c.gain[0][0], NULL, NULL, &message) != STANCE_OK)
+        stance_place(6, 2, A, B, re, im, &c.near.gain[0][0], NULL, NULL, &message) != STANCE_OK)
         fail_msg("no balance controller");
     memcpy(c.position, equilibrium.position, sizeof c.position);
-    memcpy(c.feedforward, equilibrium.torque, sizeof c.feedforward);
-    memcpy(c.target, equilibrium.position + 2, sizeof c.target);
+    memcpy(c.near.feedforward, equilibrium.torque, sizeof c.near.feedforward);
+    memcpy(c.near.target, equilibrium.position + 2, sizeof c.near.target);
     c.position[2] += theta;
     c.velocity[2] = vtheta;
     scene->stand(c.robot, 0, c.position, c.velocity);

@@ -141,9 +141,9 @@ static void domain_against_pinned_robot(void **state)
             k->friction = 1e6; /* never slips */
             for (int a = 0; a < 2; a++) {
                 json_t *row = json_array_get(gains, (size_t)a);
-                k->feedforward[a] = json_number_value(json_array_get(torques, (size_t)a));
+                k->near.feedforward[a] = json_number_value(json_array_get(torques, (size_t)a));
                 for (int b = 0; b < 6; b++)
-                    k->gain[a][b] = json_number_value(json_array_get(row, (size_t)b));
+                    k->near.gain[a][b] = json_number_value(json_array_get(row, (size_t)b));
             }
         }
     }
@@ -192,7 +192,7 @@ static bool grows(const char *method, double T, double step)
         run(method, &c, &r, 1);
         size[k] = 0;
         for (int i = 0; i < 3; i++)
-            size[k] += pow(r.position[2 + i] - c.target[i], 2) + pow(r.velocity[2 + i] / 4, 2);
+            size[k] += pow(r.position[2 + i] - c.near.target[i], 2) + pow(r.velocity[2 + i] / 4, 2);
     }
     return size[1] > size[0];
 }

@@ -241,7 +241,7 @@ static void delay_shortens(void **state)
                 loop[8 * i + j] = Ad[6 * i + j];
             for (int j = 0; j < 2; j++) {
                 loop[8 * i + 6 + j] = Bd[2 * i + j];
-                loop[8 * (6 + j) + i] = -c.gain[j][i];
+                loop[8 * (6 + j) + i] = -c.near.gain[j][i];
             }
         }
         assert_int_equal(stance_eigenvalues(8, loop, re, im), STANCE_OK);
@@ -264,7 +264,7 @@ static void delay_shortens(void **state)
         c.steps = 500;
         kernel_of("capturing", NULL)->run(&c, &r, 1);
         assert_int_equal(r.status, STANCE_DONE);
-        size[side] = fabs(r.position[2] - c.target[0]);
+        size[side] = fabs(r.position[2] - c.near.target[0]);
     }
     print_message("# with a delay T* = %.6f s; 1e-6 rad became %.1e just below, %.1e just above\n",
                   low, size[0], size[1]);
@@ -285,12 +285,12 @@ static void switching_is_either(void **state)
         c.switches = true;
         for (int j = 0; j < 6; j++)
             c.switch_axis[j] = far ? 0.019 : 0.021;
-        memcpy(c.far.target, c.target, sizeof c.far.target);
+        memcpy(c.far.target, c.near.target, sizeof c.far.target);
         for (int i = 0; i < 2; i++)
             c.far.gain[i][1 + i] = 100, c.far.gain[i][4 + i] = 10;
         if (far) {
-            memcpy(alone.gain, c.far.gain, sizeof alone.gain);
-            memset(alone.feedforward, 0, sizeof alone.feedforward);
+            memcpy(alone.near.gain, c.far.gain, sizeof alone.near.gain);
+            memset(alone.near.feedforward, 0, sizeof alone.near.feedforward);
         }
         kernel_of("capturing", NULL)->run(&alone, &a, 1);
         kernel_of("capturing", NULL)->run(&c, &b, 1);
@@ -314,7 +314,7 @@ static void constant_torque_acts(void **state)
         c.step = 1e-5;
         c.steps = 10;
         c.tolerance = 1e-10;
-        c.feedforward[0] = 1, c.feedforward[1] = -1;
+        c.near.feedforward[0] = 1, c.near.feedforward[1] = -1;
         kernel_of(methods[m], NULL)->run(&c, &r, 1);
         /* Opposite torques on legs that hang straight: phi_i'' = +-1 / (m l^2). */
         const double l = c.robot[0], turn = 1 / (c.robot[2] * l * l);

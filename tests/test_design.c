@@ -524,7 +524,7 @@ static void force_in_simulation(void **state)
         }
         for (int i = 0; i < M; i++) {
             const double off = uniform(&seed, -0.05, 0.05);
-            c.feedforward[i] = e.torque[i] + off;
+            c.near.feedforward[i] = e.torque[i] + off;
             for (int j = 0; j < 2; j++)
                 force[j] += by_torque[j * M + i] * off;
         }

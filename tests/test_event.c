@@ -194,7 +194,7 @@ static void flight_conserves(void **state)
         const stance_scene *biped = stance_scene_find("biped");
         const bool passive = i % 2 == 0;
         if (passive)
-            memset(c.gain, 0, sizeof c.gain);
+            memset(c.near.gain, 0, sizeof c.near.gain);
         c.sample_every = passive ? 1 : 0;
         c.contacts = 0;
         c.step = i % 3 ? 1e-3 : 1e-2;

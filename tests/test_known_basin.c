@@ -249,7 +249,7 @@ static void stops_only_where_it_may(void **state)
             break;
         case 5:
             other.switches = true;
-            memcpy(other.far.target, other.target, sizeof other.far.target);
+            memcpy(other.far.target, other.near.target, sizeof other.far.target);
             for (int i = 0; i < N; i++)
                 other.switch_axis[i] = 100;
             break;

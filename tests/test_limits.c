@@ -106,7 +106,7 @@ static bool swings_up(const char *method, double h, double kp, double kd, const 
     for (int k = 0; k < ROWS; k++)
         for (int i = 0; i < 2; i++) {
             double *const mine = &size[k < 100 ? 0 : k < 1500 ? 1 : 2];
-            *mine = fmax(*mine, fabs(t.position[5 * k + 3 + i] - c.target[i + 1]));
+            *mine = fmax(*mine, fabs(t.position[5 * k + 3 + i] - c.near.target[i + 1]));
         }
     trajectory_free(&t);
     return r.status != STANCE_DONE || size[2] > 1.01 * size[0] || size[1] > 1e-3;
@@ -172,13 +172,13 @@ static stance_case sampled_case(const struct balance *b, double *critical)
     if (scene->equilibrium(c.robot, &choice, &equilibrium, &message) != STANCE_OK)
         fail_msg("no equilibrium: %s", message.text);
     assert_int_equal(scene->linearise(c.robot, &equilibrium, A, B), STANCE_OK);
-    assert_int_equal(stance_place(6, 2, A, B, re, im, &c.gain[0][0], NULL, NULL, &message),
+    assert_int_equal(stance_place(6, 2, A, B, re, im, &c.near.gain[0][0], NULL, NULL, &message),
                      STANCE_OK);
-    assert_int_equal(stance_critical_sample_time(6, 2, A, B, &c.gain[0][0], 0, 2, critical),
+    assert_int_equal(stance_critical_sample_time(6, 2, A, B, &c.near.gain[0][0], 0, 2, critical),
                      STANCE_OK);
     memcpy(c.position, equilibrium.position, sizeof c.position);
-    memcpy(c.feedforward, equilibrium.torque, sizeof c.feedforward);
-    memcpy(c.target, equilibrium.position + 2, sizeof c.target);
+    memcpy(c.near.feedforward, equilibrium.torque, sizeof c.near.feedforward);
+    memcpy(c.near.target, equilibrium.position + 2, sizeof c.near.target);
     c.position[2] += 1e-6;
     scene->stand(c.robot, 0, c.position, c.velocity);
     c.contacts = 1;
@@ -196,7 +196,7 @@ static double deviation(const stance_case *c, const stance_trajectory *t, int fr
     double largest = 0;
     for (int k = from; k < to; k++)
         for (int i = 0; i < 3; i++)
-            largest = fmax(largest, fmax(fabs(t->position[5 * k + 2 + i] - c->target[i]),
+            largest = fmax(largest, fmax(fabs(t->position[5 * k + 2 + i] - c->near.target[i]),
                                          fabs(t->velocity[5 * k + 2 + i]) * c->step *
                                              (double)c->sample_every));
     return largest;
@@ -341,12 +341,12 @@ static stance_case wild_case(uint64_t *random, int *group, double *stored)
     *stored = 0;
     for (int i = 0; i < 2; i++) {
         const double off = uniform(random, -0.5, 0.5);
-        c.target[1 + i] = c.position[3 + i] + off;
+        c.near.target[1 + i] = c.position[3 + i] + off;
         *stored += 0.5 * kp * off * off;
         for (int j = 0; j < 6 && !servo; j++)
-            c.gain[i][j] = logarithmic(random, 1e-2, 1e6) * (chance(random, 0.5) ? -1 : 1);
+            c.near.gain[i][j] = logarithmic(random, 1e-2, 1e6) * (chance(random, 0.5) ? -1 : 1);
         if (servo)
-            c.gain[i][1 + i] = kp, c.gain[i][4 + i] = kd;
+            c.near.gain[i][1 + i] = kp, c.near.gain[i][4 + i] = kd;
     }
     c.fall_height = -1e15;
     c.step = logarithmic(random, 1e-4, 0.1);
@@ -501,7 +501,7 @@ static stance_case endless_case(double damping)
     c.position[1] = 62.51, c.position[2] = 0.02, c.position[3] = 0.011, c.position[4] = -0.106;
     c.velocity[3] = 0.028, c.velocity[4] = 0.295;
     hold_legs(&c, 65, damping);
-    c.target[1] += 0.017, c.target[2] += 0.0055;
+    c.near.target[1] += 0.017, c.near.target[2] += 0.0055;
     c.torque_limit = 8;
     c.friction = 0, c.fall_height = 0;
     c.tolerance = 1e-4;

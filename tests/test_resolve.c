@@ -3,6 +3,18 @@
 
 #include "runner/plan/resolve.h"
 
+static int law_index(const char *name)
+{
+    int i = 0;
+    while (stance_laws()[i] != stance_law_find(name))
+        i++;
+    return i;
+}
+static double *law_value(struct scenario_values *v, const char *law, const char *parameter)
+{
+    return (double *)scenario_law_value(v, law, parameter);
+}
+
 static const double PAPER_POLES[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6};
 
 /* What the scenario of section 3.2 says, in numbers. */
@@ -14,10 +26,8 @@ static struct scenario_values balance_values(void)
         .contacts = 1,
         .equilibrium = {true, {-0.41, NAN, 0.82}, 0},
         .support_foot = 1,
-        .law = LAW_STATE_FEEDBACK,
         .design = DESIGN_PLACE,
         .design_point = {false, {NAN, NAN, NAN}, 0},
-        .target = {NAN, NAN, NAN},
         .offset_scale = 1,
         .sample_time = 0.001,
         .torque_limit = 10,
@@ -29,6 +39,9 @@ static struct scenario_values balance_values(void)
         .settle_hold = 0.5,
         .fall_height = 0.2,
     };
+    v.law = law_index("state-feedback");
+    for (int i = 0; i < 2; i++)
+        law_value(&v, "hold", "target")[i] = NAN;
     for (int i = 0; i < scene->robot_count; i++)
         v.robot[i] = scene->robot[i].fallback;
     for (int i = 0; i < STANCE_MAX_ROBOT; i++)
@@ -72,9 +85,9 @@ static void balance(void **state)
     const stance_case c = resolved(&v), wanted = balance_case(-0.04, 0.3);
     assert_memory_equal(c.position, wanted.position, sizeof c.position);
     assert_memory_equal(c.velocity, wanted.velocity, sizeof c.velocity);
-    assert_memory_equal(c.gain, wanted.gain, sizeof c.gain);
-    assert_memory_equal(c.feedforward, wanted.feedforward, sizeof c.feedforward);
-    assert_memory_equal(c.target, wanted.target, sizeof c.target);
+    assert_memory_equal(c.near.gain, wanted.near.gain, sizeof c.near.gain);
+    assert_memory_equal(c.near.feedforward, wanted.near.feedforward, sizeof c.near.feedforward);
+    assert_memory_equal(c.near.target, wanted.near.target, sizeof c.near.target);
     assert_true(c.settle && c.has_target && c.support == 0 && !c.trajectory);
     assert_true(c.seed == 42 && c.grid_index == 17 && c.sample_index == 0);
     assert_true(c.sample_every == 1 && c.step == 0.001 && c.steps == 8000);
@@ -159,12 +172,12 @@ static void no_law(void **state)
 {
     (void)state;
     struct scenario_values v = balance_values();
-    v.law = LAW_NONE;
+    v.law = law_index("none");
     const stance_case c = resolved(&v);
     for (int i = 0; i < 2; i++) {
-        assert_true(c.feedforward[i] == 0);
+        assert_true(c.near.feedforward[i] == 0);
         for (int j = 0; j < 6; j++)
-            assert_true(c.gain[i][j] == 0);
+            assert_true(c.near.gain[i][j] == 0);
     }
     assert_true(!c.has_target && c.support == -1 && c.settle);
 }
@@ -174,9 +187,9 @@ static void hold_law(void **state)
     (void)state;
     struct scenario_values v = balance_values();
     const double dropped[10] = {0, 1.5, -0.5, 0.9, -1, 2};
-    v.law = LAW_HOLD;
-    v.kp = 500;
-    v.kd = 50;
+    v.law = law_index("hold");
+    *law_value(&v, "hold", "kp") = 500;
+    *law_value(&v, "hold", "kd") = 50;
     v.state_given = 1;
     v.equilibrium.given = false;
     memcpy(v.state, dropped, sizeof dropped);
@@ -184,18 +197,18 @@ static void hold_law(void **state)
     assert_memory_equal(c.position, dropped, sizeof c.position);
     assert_memory_equal(c.velocity, dropped + 5, sizeof c.velocity);
     const double gain[2][6] = {{0, 500, 0, 0, 50, 0}, {0, 0, 500, 0, 0, 50}};
-    assert_memory_equal(c.gain, gain, sizeof gain);
-    assert_true(c.target[1] == 0.9 && c.target[2] == -1);
-    assert_true(c.feedforward[0] == 0 && !c.has_target && c.support == -1);
-    v.target[2] = -0.7;
+    assert_memory_equal(c.near.gain, gain, sizeof gain);
+    assert_true(c.near.target[1] == 0.9 && c.near.target[2] == -1);
+    assert_true(c.near.feedforward[0] == 0 && !c.has_target && c.support == -1);
+    law_value(&v, "hold", "target")[1] = -0.7; /* of the second joint */
     c = resolved(&v);
-    assert_true(c.target[1] == 0.9 && c.target[2] == -0.7);
+    assert_true(c.near.target[1] == 0.9 && c.near.target[2] == -0.7);
 
     struct scenario_values tilted = balance_values();
-    tilted.law = LAW_HOLD;
+    tilted.law = law_index("hold");
     tilted.offset[3] = 0.1;
     const stance_case start = resolved(&tilted);
-    assert_true(start.target[1] == start.position[3]); /* the offset is held, not undone */
+    assert_true(start.near.target[1] == start.position[3]); /* the offset is held, not undone */
 }
 
 /* Target, torque and gains come from the model, the start from the robot. */
@@ -208,13 +221,14 @@ static void wrong_model(void **state)
     const stance_case deceived = resolved(&v);
     assert_memory_equal(deceived.position, honest.position, sizeof honest.position);
     const double sine = (2.0 * sin(0.41) + 1.8 * sin(0.41)) / (2.0 + 1.8 + 5.4);
-    assert_true(fabs(deceived.target[1] - (asin(sine) + 0.41)) < 1e-14);
-    assert_true(fabs(deceived.feedforward[1] - honest.feedforward[1]) < 1e-14);
-    assert_true(fabs(deceived.gain[0][0] - honest.gain[0][0]) > 1);
+    assert_true(fabs(deceived.near.target[1] - (asin(sine) + 0.41)) < 1e-14);
+    assert_true(fabs(deceived.near.feedforward[1] - honest.near.feedforward[1]) < 1e-14);
+    assert_true(fabs(deceived.near.gain[0][0] - honest.near.gain[0][0]) > 1);
     v.robot[3] = 2.0;
     const stance_case consistent = resolved(&v);
-    assert_memory_equal(deceived.gain, consistent.gain, sizeof consistent.gain);
-    assert_memory_equal(deceived.target, consistent.target, sizeof consistent.target);
+    assert_memory_equal(deceived.near.gain, consistent.near.gain, sizeof consistent.near.gain);
+    assert_memory_equal(deceived.near.target, consistent.near.target,
+                        sizeof consistent.near.target);
 }
 
 static void own_equilibrium_and_gains(void **state)
@@ -226,8 +240,8 @@ static void own_equilibrium_and_gains(void **state)
     for (int i = 0; i < 12; i++)
         v.gains[i] = i + 0.5;
     const stance_case c = resolved(&v);
-    assert_true(c.target[0] == 0 && c.target[1] == 0 && c.target[2] == 0);
-    assert_true(c.gain[0][0] == 0.5 && c.gain[0][5] == 5.5 && c.gain[1][0] == 6.5);
+    assert_true(c.near.target[0] == 0 && c.near.target[1] == 0 && c.near.target[2] == 0);
+    assert_true(c.near.gain[0][0] == 0.5 && c.near.gain[0][5] == 5.5 && c.near.gain[1][0] == 6.5);
     assert_true(c.position[2] == -0.41);
     v.gains[11] = NAN;
     assert_refused(&v, "12 finite gains are needed");
@@ -243,7 +257,7 @@ static void refusals(void **state)
     v.state[1] = 2;
     assert_refused(&v, "the controller needs an equilibrium to work at: give "
                        "controller.equilibrium or initial.equilibrium");
-    v.law = LAW_NONE;
+    v.law = law_index("none");
     v.state[1] = NAN;
     assert_refused(&v, "the initial z is not a finite number");
     v.state[1] = 2;
@@ -303,7 +317,7 @@ static void scenes_without_equilibrium(void **state)
         struct resolved_design design;
         stance_message message;
         stance_case c;
-        v.law = LAW_NONE;
+        v.law = law_index("none");
         v.tolerance = NAN;
         for (int i = 0; i < scene->robot_count; i++)
             v.robot[i] = scene->robot[i].fallback;

@@ -160,7 +160,7 @@ static void every_key_is_read(void **state)
     assert_int_equal(v->design_point.lower, 0);
     assert_int_equal(v->support_foot, 2);
     check_numbers(v->offset, offset, 10);
-    assert_int_equal(v->law, LAW_STATE_FEEDBACK);
+    assert_string_equal(scenario_law(&s.base)->name, "state-feedback");
     assert_int_equal(v->design, DESIGN_PLACE);
     check_numbers(v->pole_re, re, 6);
     check_numbers(v->pole_im, im, 6);
@@ -204,7 +204,7 @@ static void defaults_hold(void **state)
     assert_true(isnan(v->tolerance)); /* the method's own */
     assert_int_equal(v->contacts, 3);
     assert_int_equal(v->support_foot, 1);
-    assert_int_equal(v->law, LAW_NONE);
+    assert_string_equal(scenario_law(&s.base)->name, "none");
     assert_int_equal(v->settle, 1);
     assert_string_equal(stance_methods()[v->method]->name, "capturing");
     assert_true(isnan(v->equilibrium.posture[0]));
@@ -217,13 +217,15 @@ static void defaults_hold(void **state)
     scenario_free(&s);
 
     read_good(&s, holds, NULL, 0);
-    assert_int_equal(s.base.law, LAW_HOLD);
+    assert_string_equal(scenario_law(&s.base)->name, "hold");
     assert_int_equal(s.base.settle, 0);
     assert_int_equal(s.base.support_foot, 0);
     assert_true(s.base.state_given && !s.base.equilibrium.given);
     check_numbers(s.base.state, (double[]){0, 1.5, -0.5, 0.9, -1, 2, 0, 0, 0, 0}, 10);
-    check_numbers(s.base.target, (double[]){NAN, NAN, -0.9}, 3);
-    check_numbers((double[]){s.base.kp, s.base.kd, s.record_every}, (double[]){500, 50, 0.01}, 3);
+    check_numbers(scenario_law_value(&s.base, "hold", "target"), (double[]){NAN, -0.9}, 2);
+    check_numbers((double[]){*scenario_law_value(&s.base, "hold", "kp"),
+                             *scenario_law_value(&s.base, "hold", "kd"), s.record_every},
+                  (double[]){500, 50, 0.01}, 3);
     assert_int_equal(s.record_cases, RECORD_ALL);
     scenario_free(&s);
 
@@ -359,7 +361,7 @@ static void other_scenes_are_read(void **state)
     for (size_t i = 0; i < sizeof plain / sizeof plain[0]; i++) {
         read_good(&s, plain[i].text, NULL, 0);
         assert_string_equal(s.scene->name, plain[i].scene);
-        assert_true(s.base.state_given && s.base.law == LAW_NONE);
+        assert_true(s.base.state_given && s.base.law == 0);
         check_numbers(s.base.robot, plain[i].robot, (size_t)s.scene->robot_count);
         check_numbers(s.base.state, plain[i].start, (size_t)s.scene->coordinates);
         scenario_free(&s);
@@ -627,14 +629,16 @@ static void several_errors_are_sorted(void **state)
  */
 
 /* A scenario in which a field may be given. */
-static const char *text_for(enum field_use use)
+static const char *text_for(const struct scenario_field *field)
 {
-    return use == USE_HOLD || use == USE_STATE ? holds
-           : use == USE_GAINS                  ? gives_gains
-           : use == USE_LQR                    ? regulates
-           : use == USE_DECOUPLING             ? decouples
-           : use == USE_FAR                    ? switches
-                                               : places;
+    const enum field_use use = field->use;
+    const char *const law = use == USE_LAW ? stance_laws()[field->law]->name : "";
+    return strcmp(law, "hold") == 0 || use == USE_STATE ? holds
+           : use == USE_GAINS                           ? gives_gains
+           : use == USE_LQR                             ? regulates
+           : strcmp(law, "decoupling") == 0             ? decouples
+           : use == USE_FAR                             ? switches
+                                                        : places;
 }
 
 static void set_path(const struct scenario_field *field, char *path, size_t size)
@@ -674,7 +678,7 @@ static void set_and_sweep(const struct scenario_field *field, uint64_t *random)
         offset += (1 + field->columns) * sizeof(double);
     for (int k = 0; k < 2; k++) {
         const char *const sets[] = {k == 0 ? set : axis};
-        read_good(&s, text_for(field->use), sets, 1);
+        read_good(&s, text_for(field), sets, 1);
         scenario_case_values(&s, 0, &v);
         if (real) {
             memcpy(&found, (const char *)&v + offset, sizeof found);

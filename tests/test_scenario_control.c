@@ -123,7 +123,7 @@ static void leads_to(const struct scenario *s, uint64_t index, const double *K, 
     if (!resolve_design(s->scene, &v, &design, &message) ||
         !resolve_case(s->scene, &v, &design, 1, index, &c, &message))
         fail_msg("%s", message.text);
-    assert_memory_equal(c.gain, K, sizeof c.gain);
+    assert_memory_equal(c.near.gain, K, sizeof c.near.gain);
     assert_int_equal(c.delay, delay);
 }
 

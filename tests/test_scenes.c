@@ -60,9 +60,9 @@ static stance_case known_case(const stance_scene *scene, const json_t *entry,
         double target[2];
         numbers(json_object_get(entry, "target"), target, 2);
         for (int i = 0; i < 2; i++) {
-            c.gain[i][1 + i] = number(entry, "kp");
-            c.gain[i][4 + i] = number(entry, "kd");
-            c.target[1 + i] = target[i];
+            c.near.gain[i][1 + i] = number(entry, "kp");
+            c.near.gain[i][4 + i] = number(entry, "kd");
+            c.near.target[1 + i] = target[i];
         }
         const double sample = number(entry, "sample_time");
         if (sample > 0) {
@@ -344,6 +344,33 @@ static void redundant_rest(void **state)
     }
 }
 
+/* The kernels' rule and the description's. */
+static void fallen_is_said_alike(void **state)
+{
+    (void)state;
+    const stance_scene *const scene = stance_scene_find("biped");
+    uint64_t seed = 17;
+    int fallen = 0, by_trunk = 0;
+    for (int i = 0; i < 3000; i++) {
+        stance_case c = plain_case();
+        stance_result r;
+        c.contacts = 0;
+        for (int k = 2; k < 5; k++)
+            c.position[k] = uniform(&seed, -3, 3);
+        c.position[1] = uniform(&seed, -0.3, 1.2);
+        c.fall_height = uniform(&seed, 0, 0.5);
+        c.step = 1e-6;
+        c.steps = 1;
+        kernel_of("implicit", NULL)->run(&c, &r, 1);
+        const bool says = scene->fallen(c.robot, r.position, c.fall_height);
+        assert_int_equal(r.outcome == STANCE_FELL, says);
+        fallen += says;
+        by_trunk += says && !scene->fallen(c.robot, (double[]){0, 5, 0, 0, 0}, c.fall_height) &&
+                    r.position[1] <= 0;
+    }
+    assert_true(fallen > 500 && fallen < 2500 && by_trunk > 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -353,6 +380,7 @@ int main(void)
         cmocka_unit_test(painleve),
         cmocka_unit_test(jams),
         cmocka_unit_test(redundant_rest),
+        cmocka_unit_test(fallen_is_said_alike),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

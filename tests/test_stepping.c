@@ -402,7 +402,7 @@ static void far_roots_are_refused(void **state)
         double worst = 0;
         for (int i = 0; i < N; i++) {
             random_case(&seed, i, i % 2 ? 0.02 : 0.05, &cases[i]);
-            memset(cases[i].gain, 0, sizeof cases[i].gain);
+            memset(cases[i].near.gain, 0, sizeof cases[i].near.gain);
             cases[i].steps = i % 2 ? 50 : 20;
         }
         kernel_of(methods[m], NULL)->run(cases, results, N);

@@ -88,12 +88,12 @@ static bool biped_balance(const stance_scene *scene, stance_case *c)
     double A[36], B[12];
     if (scene->equilibrium(c->robot, &choice, &equilibrium, NULL) != STANCE_OK ||
         scene->linearise(c->robot, &equilibrium, A, B) != STANCE_OK ||
-        stance_place(6, 2, A, B, re, im, &c->gain[0][0], NULL, NULL, NULL) != STANCE_OK)
+        stance_place(6, 2, A, B, re, im, &c->near.gain[0][0], NULL, NULL, NULL) != STANCE_OK)
         return false;
     memcpy(c->position, equilibrium.position, sizeof c->position);
-    memcpy(c->feedforward, equilibrium.torque, sizeof c->feedforward);
+    memcpy(c->near.feedforward, equilibrium.torque, sizeof c->near.feedforward);
     for (int k = 0; k < scene->postures; k++)
-        c->target[k] = equilibrium.position[scene->posture[k]];
+        c->near.target[k] = equilibrium.position[scene->posture[k]];
     c->torque_limit = 10;
     c->has_target = true;
     return true;
@@ -121,9 +121,9 @@ static bool biped_servo(const stance_scene *scene, stance_case *c)
     (void)scene;
     c->torque_limit = 100;
     for (int k = 0; k < 2; k++) {
-        c->gain[k][1 + k] = 200, c->gain[k][4 + k] = 10;
-        c->target[1 + k] = k ? -leg : leg;
-        c->position[3 + k] = c->target[1 + k];
+        c->near.gain[k][1 + k] = 200, c->near.gain[k][4 + k] = 10;
+        c->near.target[1 + k] = k ? -leg : leg;
+        c->position[3 + k] = c->near.target[1 + k];
     }
     return true;
 }

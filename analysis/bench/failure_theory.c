@@ -140,7 +140,7 @@ static double servo_limit(const struct scenario *s, const stance_case *c)
     if (!flies(s->scene, c))
         return NAN;
     servo_eigenvalues(c->robot, c->position, eigenvalue);
-    return runge_kutta_limit(eigenvalue, c->gain[0][1], c->gain[0][4]);
+    return runge_kutta_limit(eigenvalue, c->near.gain[0][1], c->near.gain[0][4]);
 }
 
 /* ---- the sampled controller ----------------------------------------------------------------- */
@@ -160,7 +160,7 @@ static double critical_sample_time(const struct scenario *s, const struct scenar
         return NAN;
     for (int i = 0; i < scene->actuators; i++)
         for (int j = 0; j < n; j++)
-            K[i * n + j] = c->gain[i][j];
+            K[i * n + j] = c->near.gain[i][j];
     return stance_critical_sample_time(n, scene->actuators, A, B, K, (int)c->delay, 10, &T) ==
                    STANCE_OK
                ? T
@@ -196,12 +196,13 @@ enum theory { NO_THEORY, SERVO, SAMPLED, PAINLEVE };
 static enum theory which_theory(const struct scenario *s, int *axis)
 {
     const struct scenario_values *base = &s->base;
-    if (strcmp(s->scene->name, "biped") == 0 && base->law == LAW_HOLD && base->sample_time == 0 &&
-        axis_of(s, "method.step") > 0 && axis_of(s, "controller.kp") > 0) {
+    if (strcmp(s->scene->name, "biped") == 0 && strcmp(scenario_law(base)->name, "hold") == 0 &&
+        base->sample_time == 0 && axis_of(s, "method.step") > 0 &&
+        axis_of(s, "controller.kp") > 0) {
         *axis = axis_of(s, "controller.kp");
         return SERVO;
     }
-    if (base->law == LAW_STATE_FEEDBACK && axis_of(s, "controller.sample_time") > 0) {
+    if (scenario_law(base)->designed && axis_of(s, "controller.sample_time") > 0) {
         *axis = 3 - axis_of(s, "controller.sample_time");
         return SAMPLED;
     }

@@ -286,7 +286,7 @@ static const stance_quantity *quantity(const struct plot_case *c, size_t i)
 static double target_of(const struct plot_case *c, size_t i)
 {
     const stance_scene *scene = c->readable ? c->scenario.scene : NULL;
-    for (int p = 0; scene && c->values.law == LAW_STATE_FEEDBACK && p < scene->postures; p++)
+    for (int p = 0; scene && scenario_law(&c->values)->designed && p < scene->postures; p++)
         if ((size_t)scene->posture[p] == i)
             return c->equilibrium[i];
     return NAN;
@@ -300,14 +300,18 @@ struct setpoint {
 static bool setpoint_of(const struct plot_case *c, size_t i, struct setpoint *setpoint)
 {
     const struct scenario_values *v = &c->values;
-    int pair[2];
-    if (!c->readable || v->law != LAW_DECOUPLING ||
-        !stance_pair(c->scenario.scene, v->controlled, &pair[0], &pair[1]) ||
+    const char *const law = "decoupling";
+    int index, pair[2];
+    if (!c->readable || scenario_law(v) != stance_law_find(law))
+        return false;
+    memcpy(&index, scenario_law_value(v, law, "controlled"), sizeof index);
+    if (!stance_pair(c->scenario.scene, index, &pair[0], &pair[1]) ||
         ((int)i != pair[0] && (int)i != pair[1]))
         return false;
-    setpoint->start = isnan(v->setpoint[i]) ? c->t->position[i] : v->setpoint[i];
-    setpoint->rate = v->ramp[i];
-    setpoint->end = fmin(v->ramp_time[i], c->t->time[c->t->rows - 1]);
+    const double start = scenario_law_value(v, law, "setpoint")[i];
+    setpoint->start = isnan(start) ? c->t->position[i] : start;
+    setpoint->rate = scenario_law_value(v, law, "ramp")[i];
+    setpoint->end = fmin(scenario_law_value(v, law, "ramp_time")[i], c->t->time[c->t->rows - 1]);
     return isfinite(setpoint->start);
 }
 

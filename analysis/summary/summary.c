@@ -225,7 +225,7 @@ static bool collect_intervals(struct summary *summary, const struct results *r,
 
 enum results_kind summary_judged(const struct scenario *s)
 {
-    return s->base.law == LAW_STATE_FEEDBACK ? RESULTS_STABILISED : RESULTS_RESTED;
+    return scenario_law(&s->base)->designed ? RESULTS_STABILISED : RESULTS_RESTED;
 }
 
 bool summary_make(struct summary *summary, const struct results *r, stance_message *message)

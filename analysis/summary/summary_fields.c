@@ -113,28 +113,29 @@ static void add_entry(struct collection *c, const char *path, const struct scena
     }
 }
 
-/* The pair of coordinates and what their loops are told. Where the pair is varied the loops of all
- * coordinates may act, and nothing is told. */
-static void add_decoupling(struct collection *c, const struct scenario_values *v)
+/* What a law is told: of parameters by coordinates those of the pair that it controls. Where the
+ * pair is varied the loops of all coordinates may act, and nothing is told. */
+static void add_law(struct collection *c, const struct scenario_values *v, const stance_law *law)
 {
-    static const struct {
-        const char *name;
-        enum telling telling;
-    } parts[] = {{"proportional", ALWAYS},        {"derivative", ALWAYS}, {"integral", WHERE_GIVEN},
-                 {"integral_limit", WHERE_GIVEN}, {"setpoint", ALWAYS},   {"ramp", WHERE_GIVEN},
-                 {"ramp_time", WHERE_GIVEN}};
-    int pair[2];
+    const stance_scene *const scene = c->s->scene;
     char path[96];
+    int pair[2] = {-1, -1};
 
-    add_entry(c, "controller.controlled", v, ALWAYS);
-    if (is_varied(c->r, c->s, "controller.controlled") ||
-        !stance_pair(c->s->scene, v->controlled, &pair[0], &pair[1]))
-        return;
-    for (size_t part = 0; part < sizeof parts / sizeof parts[0]; part++) {
-        for (int k = 0; k < 2; k++) {
-            snprintf(path, sizeof path, "controller.%s.%s", parts[part].name,
-                     c->s->scene->coordinate[pair[k]].name);
-            add_entry(c, path, v, parts[part].telling);
+    for (int p = 0; p < law->parameters; p++) {
+        const stance_parameter *const parameter = &law->parameter[p];
+        const enum telling telling = parameter->told ? ALWAYS : WHERE_GIVEN;
+        snprintf(path, sizeof path, "controller.%s", parameter->of.name);
+        if (parameter->per == STANCE_PER_PAIR && !is_varied(c->r, c->s, path)) {
+            int index;
+            memcpy(&index, scenario_law_value(v, law->name, parameter->of.name), sizeof index);
+            stance_pair(scene, index, &pair[0], &pair[1]);
+        }
+        if (parameter->per == STANCE_PER_LAW || parameter->per == STANCE_PER_PAIR)
+            add_entry(c, path, v, telling);
+        for (int k = 0; parameter->per == STANCE_PER_COORDINATE && k < 2 && pair[k] >= 0; k++) {
+            snprintf(path, sizeof path, "controller.%s.%s", parameter->of.name,
+                     scene->coordinate[pair[k]].name);
+            add_entry(c, path, v, telling);
         }
     }
 }
@@ -145,7 +146,7 @@ static void add_feedback(struct collection *c, const struct scenario_values *v)
     add_entry(c, "controller.design", v, ALWAYS);
     if (v->design != DESIGN_GAINS)
         add_entry(c, "controller.design_time", v, ALWAYS);
-    if (v->far != FAR_NONE) {
+    if (scenario_far(v)->set) {
         add_entry(c, "controller.far", v, ALWAYS);
         add_entry(c, "controller.near.angle", v, ALWAYS);
         add_entry(c, "controller.near.rate", v, ALWAYS);
@@ -154,18 +155,13 @@ static void add_feedback(struct collection *c, const struct scenario_values *v)
 
 static void add_controller(struct collection *c, const struct scenario_values *v)
 {
-    bool feedback = v->law == LAW_STATE_FEEDBACK;
     add_entry(c, "controller.kind", v, ALWAYS);
-    if (v->law == LAW_NONE)
+    if (v->law == 0)
         return;
-    if (feedback)
+    if (scenario_law(v)->designed)
         add_feedback(c, v);
-    if (v->law == LAW_HOLD || (feedback && v->far == FAR_HOLD)) {
-        add_entry(c, "controller.kp", v, ALWAYS);
-        add_entry(c, "controller.kd", v, ALWAYS);
-    }
-    if (v->law == LAW_DECOUPLING || (feedback && v->far == FAR_DECOUPLING))
-        add_decoupling(c, v);
+    add_law(c, v, scenario_law(v));
+    add_law(c, v, scenario_far(v));
     add_entry(c, "controller.sample_time", v, ALWAYS);
     add_entry(c, "controller.delay", v, WHERE_GIVEN);
     add_entry(c, "controller.torque_limit", v, ALWAYS);
@@ -212,7 +208,7 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
         add_number(c, "stop.settle.rate", v->settle_rate, "rad/s");
         add_number(c, "stop.settle.hold", v->settle_hold, "s");
     }
-    add_number(c, "stop.fall_height", scene->height ? v->fall_height : NAN, "");
+    add_number(c, "stop.fall_height", scene->fallen ? v->fall_height : NAN, "");
     if (v->capture)
         add_text(c, "stop.capture", "estimated");
 }

@@ -90,7 +90,7 @@ static bool begin(const struct search *s, uint64_t point, double radius, bool in
     memset(c->position, 0, sizeof c->position);
     memset(c->velocity, 0, sizeof c->velocity);
     for (int k = 0; k < postures; k++) {
-        c->position[scene->posture[k]] = c->target[k] + x[k];
+        c->position[scene->posture[k]] = c->near.target[k] + x[k];
         c->velocity[scene->posture[k]] = x[postures + k];
     }
     scene->stand(c->robot, s->support, c->position, c->velocity);

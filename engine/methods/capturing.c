@@ -308,7 +308,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD
-const stance_method stance_method_capturing = {
+WEAK const stance_method stance_method_capturing = {
     .name = "capturing",
     .text = "order 5 between events; the implicit law, refined to tolerance, across them",
     .order_smooth = 5,

@@ -82,6 +82,7 @@ static const stance_quantity coordinate_quantities[COORDINATES] = {
 static const char *const contact_names[FEET] = {"foot1", "foot2"};
 static const char *const actuator_names[TORQUES] = {"hip1", "hip2"};
 static const int posture_coordinates[POSTURES] = {THETA, Q1, Q2};
+static const int actuated_coordinates[TORQUES] = {Q1, Q2};
 
 /* ---- angles: the same bits whatever the C library -------------------------------------------- */
 
@@ -190,10 +191,9 @@ static int figure(const double *robot, const double *position, double points[][2
     return n;
 }
 
-static void height(const double *robot, const double *position, double *hip_height, double *length)
+static bool fallen(const double *robot, const double *position, double fall_height)
 {
-    *hip_height = hip(robot, position).z;
-    *length = robot[LEG_LENGTH];
+    return hip(robot, position).z < fall_height * robot[LEG_LENGTH] || position[Z] <= 0;
 }
 
 static double energy(const double *robot, const double *position, const double *velocity)
@@ -496,11 +496,12 @@ const stance_scene stance_scene_biped = {
     .contact_name = contact_names,
     .actuator_name = actuator_names,
     .posture = posture_coordinates,
+    .actuated = actuated_coordinates,
     .gaps = gaps,
     .contact_point = contact_point,
     .stand = stand,
     .figure = figure,
-    .height = height,
+    .fallen = fallen,
     .energy = energy,
     .inertia = inertia,
     .equilibrium = equilibrium,

@@ -40,8 +40,8 @@ static int complain(const struct scenario *s, const char *text)
     stance_equilibrium ignored;
     stance_message message;
 
-    values.law = LAW_NONE;
-    const bool controller = s->base.law == LAW_STATE_FEEDBACK &&
+    values.law = 0;
+    const bool controller = scenario_law(&s->base)->designed &&
                             ((s->base.design_point.given && values.state_given) ||
                              resolve_equilibrium(s->scene, &values, model, &ignored, &message));
     int line = controller ? s->controller_line : s->initial_line;
@@ -79,7 +79,7 @@ static int design(const struct scenario *s, bool json)
                 s->file, s->scene->name);
         return EXIT_USAGE;
     }
-    if (s->base.law == LAW_DECOUPLING)
+    if (scenario_law(&s->base) == stance_law_find("decoupling"))
         return design_decoupling(s, json);
     if (!design_compute(&report, s, &message))
         return complain(s, message.text);

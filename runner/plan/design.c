@@ -52,21 +52,22 @@ static bool open_loop(struct design_report *r, stance_message *message)
 
 /* ---- the loop -------------------------------------------------------------------------------- */
 
-/* K, for `hold` too: the servo written as a gain matrix. */
+/* K, of a law that is not designed too: what it is as a gain matrix. */
 static bool gains(struct design_report *r, stance_message *message)
 {
-    const struct scenario_values *values = &r->scenario->base;
+    const stance_scene *const scene = r->scenario->scene;
+    const struct scenario_values *const values = &r->scenario->base;
+    const double begin[STANCE_MAX_COORDINATES] = {0};
+    stance_case c = {0};
 
     r->how = (struct resolved_gains){0, NAN};
-    if (values->law != LAW_HOLD)
-        return resolve_gains(r->scenario->scene, values, r->A, r->B, r->K, &r->how, message);
-    const int postures = r->states / 2;
-    memset(r->K, 0, sizeof r->K);
-    for (int i = 0; i < r->inputs; i++) {
-        const int joint = i * r->states + postures - r->inputs + i;
-        r->K[joint] = values->kp;
-        r->K[joint + postures] = values->kd;
-    }
+    if (scenario_law(values)->designed)
+        return resolve_gains(scene, values, r->A, r->B, r->K, &r->how, message);
+    if (!resolve_law(scene, values, scenario_law(values), begin, &c.near, &c, message))
+        return false;
+    for (int i = 0; i < r->inputs; i++)
+        for (int j = 0; j < r->states; j++)
+            r->K[i * r->states + j] = c.near.gain[i][j];
     return true;
 }
 
@@ -108,7 +109,7 @@ static stance_error sampled_loop(struct design_report *r)
 
 static const char *why_no_set(const struct design_report *r)
 {
-    if (r->scenario->base.law != LAW_STATE_FEEDBACK || !r->scenario->scene->contact_force)
+    if (!scenario_law(&r->scenario->base)->designed || !r->scenario->scene->contact_force)
         return "only for state feedback on one foot";
     if (r->delay)
         return "not for a loop with a delay";
@@ -189,7 +190,7 @@ static bool closed_loop(struct design_report *r, stance_message *message)
     const int n = r->states, m = r->inputs;
     double loop[DESIGN_STATES * DESIGN_STATES];
 
-    r->closed = r->scenario->base.law != LAW_NONE;
+    r->closed = r->scenario->base.law != 0;
     r->delay = r->scenario->base.delay;
     if (!r->closed)
         return true;

@@ -132,19 +132,18 @@ static void put_design(const struct design_report *r, json_t *controller)
 
 static json_t *json_controller(const struct design_report *r)
 {
-    static const char *const laws[] = {"none", "hold", "state-feedback", "decoupling"};
     const struct scenario_values *values = &r->scenario->base;
     const int n = r->states;
 
     if (!r->closed)
-        return json_pack("{s:s}", "kind", laws[LAW_NONE]);
+        return json_pack("{s:s}", "kind", stance_laws()[0]->name);
     json_t *controller =
-        json_pack("{s:s, s:o, s:o, s:b, s:o, s:o, s:o}", "kind", laws[values->law], "gain",
+        json_pack("{s:s, s:o, s:o, s:b, s:o, s:o, s:o}", "kind", scenario_law(values)->name, "gain",
                   json_matrix(r->inputs, n, r->K), "closed_loop_eigenvalues",
                   json_complex(n, r->closed_re, r->closed_im), "stable", r->stable, "sampled_loop",
                   json_sampled(r), "critical_sample_time", json_bounded(r->critical[0]),
                   "critical_sample_time_delayed", json_bounded(r->critical[1]));
-    if (controller && values->law == LAW_STATE_FEEDBACK)
+    if (controller && scenario_law(values)->designed)
         put_design(r, controller);
     return controller;
 }

@@ -22,7 +22,7 @@ bool design_pairs_compute(struct design_pairs *d, const struct scenario *s, stan
         return false;
     while (d->count < STANCE_MAX_PAIRS && stance_pair(s->scene, d->count, &first, &second))
         d->count++;
-    d->singular = !resolve_pair(s->scene, &s->base, &start, &d->complaint);
+    d->singular = !resolve_pair(s->scene, &start, &d->complaint);
     stance_error error = STANCE_OK;
     for (int p = 0; error == STANCE_OK && p < d->count; p++)
         error = stance_pair_condition(s->scene, start.robot, start.position, p, &d->at_start[p]);
@@ -46,7 +46,9 @@ static const char *pair_name(const struct design_pairs *d, int pair, char name[4
 
 static bool is_used(const struct design_pairs *d, int pair)
 {
-    return pair == d->scenario->base.controlled;
+    int used;
+    memcpy(&used, scenario_law_value(&d->scenario->base, "decoupling", "controlled"), sizeof used);
+    return pair == used;
 }
 
 void design_pairs_print(const struct design_pairs *d)

@@ -208,12 +208,13 @@ static void print_closed_loop(const struct design_report *r)
         puts("\nController: none");
         return;
     }
-    const bool hold = values->law == LAW_HOLD;
+    const stance_law *const law = scenario_law(values);
     const bool places =
-        !hold && (values->design == DESIGN_PLACE || values->design == DESIGN_PLACE_SCHUR);
-    if (hold) {
-        puts(
-            "\nController: hold, as a gain matrix: torques = -K X, X counted from the held angles");
+        law->designed && (values->design == DESIGN_PLACE || values->design == DESIGN_PLACE_SCHUR);
+    if (!law->designed) {
+        printf(
+            "\nController: %s, as a gain matrix: torques = -K X, X counted from the held angles\n",
+            law->name);
     } else {
         printf("\nController: state feedback, %s%s;\ntorques = those of the equilibrium - K X\n",
                design_text(values),
@@ -225,7 +226,7 @@ static void print_closed_loop(const struct design_report *r)
     putchar('\n');
     if (places)
         print_complex("wanted poles", r->states, values->pole_re, values->pole_im);
-    else if (!hold && values->design == DESIGN_LQR)
+    else if (law->designed && values->design == DESIGN_LQR)
         print_weights(r);
     print_complex("closed loop", r->states, r->closed_re, r->closed_im);
     if (r->how.sweeps > 0) {
@@ -233,7 +234,7 @@ static void print_closed_loop(const struct design_report *r)
                "conditioning", r->how.condition, r->how.sweeps);
     }
     print_sampled(r);
-    if (!hold)
+    if (law->designed)
         print_set(r);
     if (r->capture.asked)
         print_capture(r);

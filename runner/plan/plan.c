@@ -245,7 +245,7 @@ static void blame_design(const struct plan *plan, size_t design, struct plan_err
 
     scenario_case_values(s, design_case(plan, design), &values);
     resolve_design(s->scene, &values, &result, &error->message);
-    values.law = LAW_NONE;
+    values.law = 0;
     bool law = resolve_design(s->scene, &values, &result, &ignored);
     error->line = law ? s->controller_line : s->initial_line;
     error->column = law ? s->controller_column : s->initial_column;
@@ -434,7 +434,7 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
     scenario_case_values(s, index, &values);
     if (resolve_case(s->scene, &values, &plan->design[design], s->seed, index, &resolved,
                      &message) &&
-        (s->cases > 1 || resolve_pair(s->scene, &values, &resolved, &message)))
+        (s->cases > 1 || resolve_pair(s->scene, &resolved, &message)))
         return true;
     error->line = s->initial_line;
     error->column = s->initial_column;

@@ -55,7 +55,7 @@ static bool solve_equilibrium(const stance_scene *scene, const double *robot,
 bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
                          double *model, stance_equilibrium *equilibrium, stance_message *message)
 {
-    const bool law = values->law == LAW_STATE_FEEDBACK;
+    const bool law = scenario_law(values)->designed;
     const bool own = law && values->design_point.given;
 
     message->text[0] = '\0';
@@ -156,10 +156,7 @@ void resolve_keep_design_inputs(struct scenario_values *values, bool sampled)
     LEAVE_OUT(friction), LEAVE_OUT(restitution), LEAVE_OUT(contacts);
     LEAVE_OUT(prefer);
     LEAVE_OUT(offset), LEAVE_OUT(offset_scale), LEAVE_OUT(state);
-    LEAVE_OUT(kp), LEAVE_OUT(kd), LEAVE_OUT(target);
-    LEAVE_OUT(controlled), LEAVE_OUT(proportional), LEAVE_OUT(integral), LEAVE_OUT(derivative);
-    LEAVE_OUT(integral_limit), LEAVE_OUT(setpoint), LEAVE_OUT(ramp), LEAVE_OUT(ramp_time);
-    LEAVE_OUT(far), LEAVE_OUT(near_angle), LEAVE_OUT(near_rate);
+    LEAVE_OUT(law_value), LEAVE_OUT(far), LEAVE_OUT(near_angle), LEAVE_OUT(near_rate);
     LEAVE_OUT(delay), LEAVE_OUT(torque_limit), LEAVE_OUT(noise);
     LEAVE_OUT(method), LEAVE_OUT(step), LEAVE_OUT(tolerance);
     LEAVE_OUT(stop_time), LEAVE_OUT(settle), LEAVE_OUT(settle_angle), LEAVE_OUT(settle_rate);
@@ -184,8 +181,7 @@ bool resolve_design(const stance_scene *scene, const struct scenario_values *val
             return false;
         memcpy(design->start, start.position, (size_t)scene->coordinates * sizeof *design->start);
     }
-    if (values->law == LAW_STATE_FEEDBACK &&
-        !design_state_feedback(scene, values, design, message)) {
+    if (scenario_law(values)->designed && !design_state_feedback(scene, values, design, message)) {
         clear_design(design);
         return false;
     }
@@ -265,81 +261,15 @@ static bool resolve_start(const stance_scene *scene, const struct scenario_value
 
 /* ---- law and time ---------------------------------------------------------------------------- */
 
-/* Actuator i drives the last postures in order: of the biped's (theta, q1, q2) the joints. */
-static void hold(const stance_scene *scene, const struct scenario_values *values, stance_case *out)
-{
-    for (int i = 0; i < scene->actuators; i++) {
-        const int joint = scene->postures - scene->actuators + i;
-        out->gain[i][joint] = values->kp;
-        out->gain[i][scene->postures + joint] = values->kd;
-    }
-    for (int k = 0; k < scene->postures; k++) {
-        const double wanted = values->target[k];
-        out->target[k] = isnan(wanted) ? out->position[scene->posture[k]] : wanted;
-    }
-}
-
 static void feed_back(const stance_scene *scene, const struct scenario_values *values,
                       const struct resolved_design *design, stance_case *out)
 {
-    memcpy(out->feedforward, design->torque, sizeof out->feedforward);
-    memcpy(out->gain, design->gain, sizeof out->gain);
+    memcpy(out->near.feedforward, design->torque, sizeof out->near.feedforward);
+    memcpy(out->near.gain, design->gain, sizeof out->near.gain);
     for (int k = 0; k < scene->postures; k++)
-        out->target[k] = design->equilibrium[scene->posture[k]];
+        out->near.target[k] = design->equilibrium[scene->posture[k]];
     out->has_target = true;
     out->support = support_of(values);
-}
-
-/* The law outside the ellipsoid, where state-feedback acts inside it: hold brings the joints to
- * those of the equilibrium unless told others. */
-static void set_far(const stance_scene *scene, const struct scenario_values *values,
-                    stance_case *out)
-{
-    if (values->far == FAR_NONE)
-        return;
-    out->switches = true;
-    for (int k = 0; k < scene->postures; k++) {
-        out->switch_axis[k] = values->near_angle;
-        out->switch_axis[scene->postures + k] = values->near_rate;
-        out->far.target[k] = isnan(values->target[k]) ? out->target[k] : values->target[k];
-    }
-    for (int i = 0; values->far == FAR_HOLD && i < scene->actuators; i++) {
-        const int joint = scene->postures - scene->actuators + i;
-        out->far.gain[i][joint] = values->kp;
-        out->far.gain[i][scene->postures + joint] = values->kd;
-    }
-}
-
-/* Set-points that are not given: where the run begins, or far from a target that state-feedback
- * takes over at, that target. */
-static bool decouple(const stance_scene *scene, const struct scenario_values *values,
-                     const struct resolved_design *design, stance_case *out,
-                     stance_message *message)
-{
-    int controlled[2];
-    if (!stance_pair(scene, values->controlled, &controlled[0], &controlled[1]))
-        return refuse(message, "controller.controlled is no pair of coordinates");
-    out->decouples = true;
-    for (int i = 0; i < scene->actuators; i++) {
-        const int k = controlled[i];
-        const double begin = out->switches ? design->equilibrium[k] : out->position[k];
-        const double setpoint = values->setpoint[k];
-        out->servo[i] = (stance_servo){
-            .coordinate = k,
-            .setpoint = isnan(setpoint) ? begin : setpoint,
-            .ramp = values->ramp[k],
-            .duration = values->ramp_time[k],
-            .kp = values->proportional[k],
-            .ki = values->integral[k],
-            .kd = values->derivative[k],
-            .integral_limit = values->integral_limit[k],
-        };
-        if (!isfinite(out->servo[i].setpoint + out->servo[i].ramp + out->servo[i].kp +
-                      out->servo[i].ki + out->servo[i].kd) ||
-            !(out->servo[i].duration >= 0 && out->servo[i].integral_limit >= 0))
-            return refuse(message, "a gain or set-point of the decoupling law is not finite");
-    }
-    return true;
 }
 
 /* A set somewhat smaller than the confirmed one. */
@@ -353,16 +283,49 @@ static void capture(const stance_scene *scene, const struct resolved_design *des
             out->captured[i][j] = design->captured[i][j] / KNOWN_BASIN_SAFETY;
 }
 
+bool resolve_law(const stance_scene *scene, const struct scenario_values *values,
+                 const stance_law *law, const double *begin, stance_linear_law *linear,
+                 stance_case *out, stance_message *message)
+{
+    int index = 0;
+    while (stance_laws()[index] != law)
+        index++;
+    return !law->set ||
+           law->set(scene, values->law_value[index], begin, linear, out, message) == STANCE_OK;
+}
+
+/* What acts from where the run begins or, outside the ellipsoid about the target of a designed law,
+ * from that target. */
+static bool set_laws(const stance_scene *scene, const struct scenario_values *values,
+                     const struct resolved_design *design, stance_case *out,
+                     stance_message *message)
+{
+    const stance_law *const law = scenario_law(values), *const far = scenario_far(values);
+    if (!law->designed)
+        return resolve_law(scene, values, law, out->position, &out->near, out, message);
+    feed_back(scene, values, design, out);
+    if (values->capture && design->capture_time > 0)
+        capture(scene, design, out);
+    if (!far->set)
+        return true;
+    out->switches = true;
+    for (int k = 0; k < scene->postures; k++) {
+        out->switch_axis[k] = values->near_angle;
+        out->switch_axis[scene->postures + k] = values->near_rate;
+    }
+    return resolve_law(scene, values, far, design->equilibrium, &out->far, out, message);
+}
+
 static bool check_law(const stance_scene *scene, const stance_case *out, stance_message *message)
 {
     bool finite = isfinite(out->noise);
     for (int i = 0; i < scene->actuators; i++) {
-        finite = finite && isfinite(out->feedforward[i]);
+        finite = finite && isfinite(out->near.feedforward[i]);
         for (int j = 0; j < 2 * scene->postures; j++)
-            finite = finite && isfinite(out->gain[i][j]);
+            finite = finite && isfinite(out->near.gain[i][j]);
     }
     for (int k = 0; k < scene->postures; k++)
-        finite = finite && isfinite(out->target[k]);
+        finite = finite && isfinite(out->near.target[k]);
     if (!finite)
         return refuse(message, "a gain, a target or the noise of the controller is not finite");
     if (!(out->torque_limit > 0))
@@ -409,15 +372,19 @@ static bool resolve_time(const struct scenario_values *values, stance_case *out,
     return true;
 }
 
-bool resolve_pair(const stance_scene *scene, const struct scenario_values *values,
-                  const stance_case *start, stance_message *message)
+bool resolve_pair(const stance_scene *scene, const stance_case *start, stance_message *message)
 {
     double condition;
-    int first, second;
-    if (!start->decouples || !stance_pair(scene, values->controlled, &first, &second) ||
-        (stance_pair_condition(scene, start->robot, start->position, values->controlled,
-                               &condition) == STANCE_OK &&
-         condition < MOST_CONDITION))
+    int pair = 0, first, second;
+    const stance_servo *const servo = start->servo;
+    if (!start->decouples)
+        return true;
+    while (stance_pair(scene, pair, &first, &second) &&
+           (first != servo[0].coordinate || second != servo[1].coordinate))
+        pair++;
+    if (stance_pair_condition(scene, start->robot, start->position, pair, &condition) ==
+            STANCE_OK &&
+        condition < MOST_CONDITION)
         return true;
     return refuse(message,
                   "controller.controlled: the pair %s-%s is singular in the initial posture: no "
@@ -437,7 +404,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .contacts = (uint32_t)values->contacts,
         .torque_limit = values->torque_limit,
         .noise = values->noise,
-        .delay = values->law == LAW_NONE ? 0 : values->delay,
+        .delay = values->law == 0 ? 0 : values->delay,
         .settle = values->settle != 0,
         .support = -1,
         .settle_angle = values->settle_angle,
@@ -455,16 +422,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
     }
     if (!resolve_start(scene, values, design, out, message))
         return false;
-    if (values->law == LAW_HOLD) {
-        hold(scene, values, out);
-    } else if (values->law == LAW_STATE_FEEDBACK) {
-        feed_back(scene, values, design, out);
-        set_far(scene, values, out);
-        if (values->capture && design->capture_time > 0)
-            capture(scene, design, out);
-    }
-    if ((values->law == LAW_DECOUPLING || (out->switches && values->far == FAR_DECOUPLING)) &&
-        !decouple(scene, values, design, out, message))
+    if (!set_laws(scene, values, design, out, message))
         return false;
     return resolve_time(values, out, message) && check_law(scene, out, message);
 }

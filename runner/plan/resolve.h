@@ -61,9 +61,14 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
                   const struct resolved_design *design, uint64_t seed, uint64_t index,
                   stance_case *out, stance_message *message);
 
+/* Makes *out act by a law that is not designed, from the coordinates `begin`; `linear`: its near or
+ * far. */
+bool resolve_law(const stance_scene *scene, const struct scenario_values *values,
+                 const stance_law *law, const double *begin, stance_linear_law *linear,
+                 stance_case *out, stance_message *message);
+
 /* false: a decoupling law's pair of coordinates is singular where *start begins. In a sweep such a
  * case runs all the same, with a damped law. */
-bool resolve_pair(const stance_scene *scene, const struct scenario_values *values,
-                  const stance_case *start, stance_message *message);
+bool resolve_pair(const stance_scene *scene, const stance_case *start, stance_message *message);
 
 #endif

@@ -116,13 +116,11 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
     return buffer;
 }
 
-static const char *use_text(enum field_use use)
+static const char *use_text(const struct scenario_field *field, char *buffer, size_t size)
 {
     static const char *const text[] = {
         [USE_ALWAYS] = "",
         [USE_CONTROL] = "Only with a controller.kind other than none.",
-        [USE_HOLD] = "Only with controller.kind hold, or controller.far hold.",
-        [USE_DECOUPLING] = "Only with controller.kind decoupling, or controller.far decoupling.",
         [USE_FAR] = "Only with a controller.far other than none.",
         [USE_FEEDBACK] = "Only with controller.kind state-feedback.",
         [USE_PLACE] = "Only with controller.kind state-feedback, design place or place-schur.",
@@ -133,7 +131,12 @@ static const char *use_text(enum field_use use)
         [USE_STATE] = "Only where the run starts from a state.",
         [USE_SETTLE] = "Not with stop.settle off.",
     };
-    return text[use];
+    if (field->use != USE_LAW)
+        return text[field->use];
+    const stance_law *const law = stance_laws()[field->law];
+    snprintf(buffer, size, "Only with controller.kind %s%s%s.", law->name,
+             law->acts_far ? ", or controller.far " : "", law->acts_far ? law->name : "");
+    return buffer;
 }
 
 static void print_row(FILE *out, const struct scenario_field *field)
@@ -150,13 +153,13 @@ static void print_row(FILE *out, const struct scenario_field *field)
 static void print_field(FILE *out, const struct schema *schema, const struct scenario_field *field)
 {
     const char *names[SCHEMA_MAX_FIELDS];
-    char list[700], line[720], path[sizeof field->path + 2];
+    char use[96], list[700], line[720], path[sizeof field->path + 2];
 
     print_row(out, field);
     if (field->more)
         print_wrapped(out, field->more, TEXT_INDENT);
     if (field->use != USE_ALWAYS)
-        print_wrapped(out, use_text(field->use), TEXT_INDENT);
+        print_wrapped(out, use_text(field, use, sizeof use), TEXT_INDENT);
     if (field->sweep) {
         print_wrapped(out,
                       field->design ? "May be swept; each value is a controller design of its own."
@@ -357,7 +360,7 @@ static json_t *default_value(const struct scenario_field *field)
 
 static json_t *field_schema(const struct schema *schema, const struct scenario_field *field)
 {
-    char text[900];
+    char text[900], use[96];
     bool unit = field->unit[0] && strcmp(field->unit, "1") != 0;
     json_t *object = type_schema(schema, field), *fallback = default_value(field);
 
@@ -366,7 +369,7 @@ static json_t *field_schema(const struct schema *schema, const struct scenario_f
              field->use != USE_ALWAYS && !field->more ? "." : "");
     size_t length = strlen(text);
     if (field->use != USE_ALWAYS)
-        snprintf(text + length, sizeof text - length, " %s", use_text(field->use));
+        snprintf(text + length, sizeof text - length, " %s", use_text(field, use, sizeof use));
     json_object_set_new(object, "description", json_string(text));
     if (fallback)
         json_object_set_new(object, "default", fallback);

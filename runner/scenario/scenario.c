@@ -254,7 +254,7 @@ static void set_defaults(struct reader *r)
     for (int i = 0; i < STANCE_MAX_ROBOT; i++)
         base->model[i] = NAN;
     for (int i = 0; i < STANCE_MAX_POSTURE; i++)
-        base->equilibrium.posture[i] = base->design_point.posture[i] = base->target[i] = NAN;
+        base->equilibrium.posture[i] = base->design_point.posture[i] = NAN;
     for (int i = 0; i < SCENARIO_MAX_POLES; i++)
         base->state_weights[i] = 1;
     for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
@@ -684,4 +684,31 @@ void scenario_free(struct scenario *s)
     free(s->text);
     free(s->place);
     memset(s, 0, sizeof *s);
+}
+
+/* ---- laws ------------------------------------------------------------------------------------ */
+
+const stance_law *scenario_law(const struct scenario_values *values)
+{
+    return stance_laws()[values->law];
+}
+
+const stance_law *scenario_far(const struct scenario_values *values)
+{
+    int far = scenario_law(values)->designed ? values->far : 0; /* counts those that act far */
+    const stance_law *const *law = stance_laws();
+    while (far > 0 || !(*law)->acts_far)
+        far -= (*law++)->acts_far;
+    return *law;
+}
+
+const double *scenario_law_value(const struct scenario_values *values, const char *law,
+                                 const char *parameter)
+{
+    int l = 0, p = 0;
+    while (strcmp(stance_laws()[l]->name, law) != 0)
+        l++;
+    while (strcmp(stance_laws()[l]->parameter[p].of.name, parameter) != 0)
+        p++;
+    return &values->law_value[l][p * STANCE_LAW_ROOM];
 }

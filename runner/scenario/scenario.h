@@ -27,8 +27,6 @@ _Static_assert(SCENARIO_FINAL_STATE < 31, "bits for all answers");
  */
 #define SCENARIO_MOST_REFINED 0x1p28
 
-enum scenario_law { LAW_NONE, LAW_HOLD, LAW_STATE_FEEDBACK, LAW_DECOUPLING };
-enum scenario_far { FAR_NONE, FAR_HOLD, FAR_DECOUPLING };
 enum scenario_design { DESIGN_PLACE, DESIGN_PLACE_SCHUR, DESIGN_LQR, DESIGN_GAINS };
 enum scenario_design_time { DESIGN_CONTINUOUS, DESIGN_SAMPLED };
 enum scenario_record { RECORD_NONE, RECORD_ALL, RECORD_LIST };
@@ -55,7 +53,7 @@ struct scenario_values {
     int state_given;                         /* initial.state instead of an equilibrium */
     double state[SCENARIO_MAX_STATES];
 
-    int law;                        /* enum scenario_law */
+    int law;                        /* index into stance_laws() */
     int design;                     /* enum scenario_design */
     int design_time;                /* enum scenario_design_time: the model of the design */
     double model[STANCE_MAX_ROBOT]; /* the robot that the design believes in; NAN: as robot */
@@ -63,15 +61,10 @@ struct scenario_values {
     double pole_re[SCENARIO_MAX_POLES], pole_im[SCENARIO_MAX_POLES];
     double gains[SCENARIO_MAX_GAINS]; /* [actuators][2 postures] */
     double state_weights[SCENARIO_MAX_POLES], torque_weights[STANCE_MAX_ACTUATORS]; /* lqr */
-    double kp, kd;                                                                  /* hold */
-    double target[STANCE_MAX_POSTURE]; /* hold: controller.target; NAN: the initial angles */
-    /* decoupling, over the scene's coordinates; NAN: the initial value */
-    int controlled; /* which pair: stance_pair */
-    double proportional[STANCE_MAX_COORDINATES], integral[STANCE_MAX_COORDINATES];
-    double derivative[STANCE_MAX_COORDINATES], integral_limit[STANCE_MAX_COORDINATES];
-    double setpoint[STANCE_MAX_COORDINATES], ramp[STANCE_MAX_COORDINATES];
-    double ramp_time[STANCE_MAX_COORDINATES];
-    int far;                      /* enum scenario_far: what acts far from the target */
+    /* Of each law (stance_laws) its parameters as stance_law.set takes them; NAN: as it is at the
+     * beginning. What is a pair is an int in the first bytes of its place. */
+    double law_value[STANCE_MAX_LAWS][STANCE_LAW_PARAMETERS * STANCE_LAW_ROOM];
+    int far;                      /* what acts far from the target, see scenario_far; 0: none */
     double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
     double sample_time;           /* 0: continuous */
     int delay;                    /* whole samples between measuring and acting, 0 or 1 */
@@ -202,6 +195,13 @@ void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid
 
 /* Fields of case `index` (flat, row-major in the order of the axes): base, then the axes. */
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);
+
+/* The law that acts, and the one far from its target: `none` where there is no other. */
+const stance_law *scenario_law(const struct scenario_values *values);
+const stance_law *scenario_far(const struct scenario_values *values);
+/* The numbers of a law's parameter, by coordinates or actuators. Both must exist. */
+const double *scenario_law_value(const struct scenario_values *values, const char *law,
+                                 const char *parameter);
 
 /* Documentation of the format from the table: all of it, one path, or JSON Schema.
  * false: no such path, or no memory (a message on `errors`); errors of `out` are the caller's. */

@@ -12,7 +12,7 @@
 
 struct situation {
     bool law_known, design_known;
-    int law, far;
+    const stance_law *law, *far;
     bool places, regulates, gives_gains; /* controller.design, base or swept */
     bool places_robustly, models;
     bool from_equilibrium, from_state; /* at most one, or the start is in doubt */
@@ -68,9 +68,7 @@ static struct situation find_situation(struct reader *r)
     const size_t design = offsetof(struct scenario_values, design);
     const struct seen *controller = reader_seen(r, "controller"),
                       *initial = reader_seen(r, "initial");
-    struct situation is = {.law = r->s->base.law};
-
-    is.far = is.law == LAW_STATE_FEEDBACK ? r->s->base.far : FAR_NONE;
+    struct situation is = {.law = scenario_law(&r->s->base), .far = scenario_far(&r->s->base)};
 
     is.law_known = !controller->bad && !controller->excused &&
                    !reader_seen(r, "controller.kind")->bad &&
@@ -126,23 +124,22 @@ static const char *design_obstacle(const struct reader *r, const struct situatio
 
 /* Why a field must not be given or swept, as what would be needed and what there is instead; NULL:
  * it may be. */
-static const char *obstacle(const struct reader *r, const struct situation *is, enum field_use use,
-                            const char **instead)
+static const char *obstacle(const struct reader *r, const struct situation *is,
+                            const struct scenario_field *field, const char **instead)
 {
-    bool feedback = is->law == LAW_STATE_FEEDBACK;
+    const enum field_use use = field->use;
+    const bool feedback = is->law->designed;
     *instead = law_word(r);
     switch (use) {
     case USE_CONTROL:
-        return is->law_known && is->law == LAW_NONE ? "a controller.kind" : NULL;
-    case USE_HOLD:
-        return is->law_known && is->law != LAW_HOLD && is->far != FAR_HOLD ? "controller.kind hold"
-                                                                           : NULL;
-    case USE_DECOUPLING:
-        return is->law_known && is->law != LAW_DECOUPLING && is->far != FAR_DECOUPLING
-                   ? "controller.kind decoupling"
+        return is->law_known && is->law == stance_laws()[0] ? "a controller.kind" : NULL;
+    case USE_LAW:
+        return is->law_known && is->law != stance_laws()[field->law] &&
+                       is->far != stance_laws()[field->law]
+                   ? r->schema.kind_of[field->law]
                    : NULL;
     case USE_FAR:
-        return is->law_known && is->far == FAR_NONE ? "a controller.far" : NULL;
+        return is->law_known && is->far == stance_laws()[0] ? "a controller.far" : NULL;
     case USE_FEEDBACK:
         return is->law_known && !feedback ? "controller.kind state-feedback" : NULL;
     case USE_PLACE:
@@ -178,7 +175,7 @@ static bool parent_has_use(const struct reader *r, const struct scenario_field *
         return false;
     *dot = '\0';
     const struct scenario_field *parent = schema_find(&r->schema, path);
-    return parent && parent->use == field->use;
+    return parent && parent->use == field->use && parent->law == field->law;
 }
 
 static void check_uses(struct reader *r, const struct situation *is)
@@ -188,7 +185,7 @@ static void check_uses(struct reader *r, const struct situation *is)
         const struct scenario_field *field = &r->schema.field[i];
         if (!r->seen[i].node || parent_has_use(r, field))
             continue;
-        needed = obstacle(r, is, field->use, &instead);
+        needed = obstacle(r, is, field, &instead);
         if (needed) {
             problem_add(&r->problems, r->seen[i].key, "%s is used only with %s (here: %s)",
                         field->path, needed, instead);
@@ -197,7 +194,7 @@ static void check_uses(struct reader *r, const struct situation *is)
     for (int a = 0; a < r->s->axes; a++) {
         for (int k = 0; k < r->s->axis[a].paths; k++) {
             const struct swept_field *swept = &r->swept[a][k];
-            needed = obstacle(r, is, swept->field->use, &instead);
+            needed = obstacle(r, is, swept->field, &instead);
             if (needed) {
                 char name[AXIS_NAME];
                 problem_add(&r->problems, swept->mark, "%s: %s is used only with %s (here: %s)",
@@ -233,8 +230,6 @@ static void check_required(struct reader *r, const struct situation *is)
 {
     static const char *const reason[] = {
         [USE_ALWAYS] = "",
-        [USE_HOLD] = " (hold needs it)",
-        [USE_DECOUPLING] = " (decoupling needs it)",
         [USE_FAR] = " (controller.far needs it)",
         [USE_PLACE] = " (controller.design place and place-schur need it)",
         [USE_GAINS] = " (controller.design gains needs it)",
@@ -247,10 +242,14 @@ static void check_required(struct reader *r, const struct situation *is)
         if (field->use == USE_PLACE || field->use == USE_GAINS)
             known = known && is->design_known;
         if (!field->required || field->type == FIELD_MAP || !known || r->seen[i].excused ||
-            r->seen[i].node || r->seen[i].swept || obstacle(r, is, field->use, &instead) ||
+            r->seen[i].node || r->seen[i].swept || obstacle(r, is, field, &instead) ||
             !surrounding(r, field, &mark))
             continue;
-        problem_add(&r->problems, mark, "%s is missing%s", field->path, reason[field->use]);
+        if (field->use == USE_LAW)
+            problem_add(&r->problems, mark, "%s is missing (%s needs it)", field->path,
+                        stance_laws()[field->law]->name);
+        else
+            problem_add(&r->problems, mark, "%s is missing%s", field->path, reason[field->use]);
     }
 }
 
@@ -331,11 +330,11 @@ static void check_controller(struct reader *r, const struct situation *is)
 
     if (!is->law_known)
         return;
-    if (is->law != LAW_NONE && r->s->scene->actuators == 0) {
+    if (is->law != stance_laws()[0] && r->s->scene->actuators == 0) {
         problem_add(&r->problems, kind->node->mark,
                     "controller.kind: the scene %s has no actuators", r->s->scene->name);
     }
-    if (is->law != LAW_STATE_FEEDBACK)
+    if (!is->law->designed)
         return;
     base->design_point.given = check_equilibrium(r, "controller.equilibrium");
     if (!base->design_point.given && is->start_known && !is->from_equilibrium) {
@@ -386,7 +385,7 @@ static void extent(const struct reader *r, size_t offset, double *least, double 
 
 static bool samples_in_design(const struct reader *r, const struct situation *is)
 {
-    return is->law_known && is->law == LAW_STATE_FEEDBACK && is->models &&
+    return is->law_known && is->law->designed && is->models &&
            takes_word(r, offsetof(struct scenario_values, design_time), DESIGN_SAMPLED);
 }
 
@@ -402,7 +401,7 @@ static void check_sampling(struct reader *r, const struct situation *is)
     double quiet, loud, shortest, longest;
     const struct seen *time = reader_seen(r, "controller.sample_time");
 
-    if (!is->law_known || is->law == LAW_NONE || r->axes_bad || time->bad || time->excused)
+    if (!is->law_known || is->law == stance_laws()[0] || r->axes_bad || time->bad || time->excused)
         return;
     extent(r, offsetof(struct scenario_values, sample_time), &shortest, &longest);
     if (shortest > 0)
@@ -442,8 +441,8 @@ static void check_multiplicity(struct reader *r, const struct situation *is)
     const struct scenario_values *base = &r->s->base;
     const size_t most = (size_t)r->s->scene->actuators;
 
-    if (is->law != LAW_STATE_FEEDBACK || !is->design_known || !is->places_robustly ||
-        !poles->node || poles->bad)
+    if (!is->law->designed || !is->design_known || !is->places_robustly || !poles->node ||
+        poles->bad)
         return;
     for (size_t i = 0; i < poles->node->count; i++) {
         size_t times = 1;
@@ -465,7 +464,7 @@ static void check_far(struct reader *r, const struct situation *is)
 {
     double shortest, longest;
 
-    if (!is->law_known || is->far == FAR_NONE || r->axes_bad ||
+    if (!is->law_known || is->far == stance_laws()[0] || r->axes_bad ||
         reader_seen(r, "controller.far")->bad || reader_seen(r, "controller.sample_time")->bad ||
         reader_seen(r, "controller.sample_time")->excused)
         return;
@@ -492,11 +491,11 @@ static void check_capture(struct reader *r, const struct situation *is)
     if (!r->s->base.capture || !seen->node || seen->bad || !is->law_known)
         return;
     const struct mark mark = seen->node->mark;
-    if (is->law != LAW_STATE_FEEDBACK) {
+    if (!is->law->designed) {
         problem_add(&r->problems, mark,
                     "stop.capture estimated needs controller.kind state-feedback (here: %s)",
                     law_word(r));
-    } else if (is->far != FAR_NONE) {
+    } else if (is->far != stance_laws()[0]) {
         problem_add(&r->problems, mark,
                     "stop.capture estimated has no meaning with controller.far: another law acts "
                     "outside");

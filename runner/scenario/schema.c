@@ -1,5 +1,6 @@
 /* schema.c - the scenario format: the table and how a scene's names fill it. */
 #include "schema.h"
+#include "schema_laws.h"
 #include "tree.h"
 
 #include <math.h>
@@ -10,8 +11,6 @@
 /* ---- words ----------------------------------------------------------------------------------- */
 
 /* In the order of the enumerations in scenario.h. */
-static const char *const kind_words[] = {"none", "hold", "state-feedback", "decoupling"};
-static const char *const far_words[] = {"none", "hold", "decoupling"};
 static const char *const design_words[] = {"place", "place-schur", "lqr", "gains"};
 static const char *const design_time_words[] = {"continuous", "sampled"};
 static const char *const branch_words[] = {"upper", "lower"};
@@ -21,7 +20,7 @@ static const char *const truth_words[] = {"false", "true"};
 static const char *const record_words[] = {"none", "all"};
 static const char *const settle_words[] = {"off"};
 static const char *const capture_words[] = {"off", "estimated"};
-static const char *const limit_words[] = {"none"};
+const char *const schema_none[1] = {"none"};
 
 static const char *const answer_words[] = {
 #define ANSWER_WORD(name, ...) #name,
@@ -37,21 +36,21 @@ static const char *const answer_words[] = {
 /* What the '*' of a path stands for, or what else of a row is the scene's. */
 enum family {
     FAMILY_NONE,
-    FAMILY_ROBOT,       /* parameters of the body */
-    FAMILY_STATE,       /* coordinates, then their rates with a "v" before the name */
-    FAMILY_OFFSET,      /* the same, as differences */
-    FAMILY_POSTURE,     /* angles that a posture law acts on */
-    FAMILY_COORDINATES, /* the unit is the coordinate's where it says %s */
-    FAMILY_PAIRS,       /* the words are pairs of coordinates */
-    FAMILY_ACTUATED,    /* the last of these, one for each actuator */
-    FAMILY_CONTACTS,    /* the words are names of contacts */
-    FAMILY_FOOT,        /* the range is 1 ... contacts */
-    FAMILY_POLES,       /* 2 postures items */
-    FAMILY_ACTUATORS,   /* one item for each */
-    FAMILY_MATRIX,      /* actuators x 2 postures */
+    FAMILY_ROBOT,     /* parameters of the body */
+    FAMILY_STATE,     /* coordinates, then their rates with a "v" before the name */
+    FAMILY_OFFSET,    /* the same, as differences */
+    FAMILY_POSTURE,   /* angles that a posture law acts on */
+    FAMILY_CONTACTS,  /* the words are names of contacts */
+    FAMILY_FOOT,      /* the range is 1 ... contacts */
+    FAMILY_POLES,     /* 2 postures items */
+    FAMILY_ACTUATORS, /* one item for each */
+    FAMILY_MATRIX,    /* actuators x 2 postures */
     FAMILY_SCENES,
     FAMILY_METHODS,
-    FAMILY_TOLERANCE, /* the text names the methods that read it */
+    FAMILY_KINDS,      /* the words are laws */
+    FAMILY_FAR,        /* those that may act far from a target */
+    FAMILY_PARAMETERS, /* stands for the rows of all laws */
+    FAMILY_TOLERANCE,  /* the text names the methods that read it */
 };
 
 struct row {
@@ -140,11 +139,8 @@ static const struct row rows[] = {
 
     {0, {.path = "controller", .type = FIELD_MAP, BY_HAND,
          .text = "what drives the actuators"}},
-    {0, {.path = "controller.kind", .type = FIELD_WORD, .design = true, VALUE(law), .fallback = 0,
-         WORDS(kind_words), .text = "control law",
-         .more = "hold: a servo in each joint. state-feedback: torque = equilibrium torque - gains "
-                 "times the deviation of angles and rates from an equilibrium. decoupling: torques and "
-                 "reactions solved together so that two coordinates follow set-points."}},
+    {FAMILY_KINDS, {.path = "controller.kind", .type = FIELD_WORD, .design = true, VALUE(law),
+                    .fallback = 0, .text = "control law"}},
     {0, {.path = "controller.design", .type = FIELD_WORD, .use = USE_FEEDBACK, .design = true,
          .sweep = true, VALUE(design), .fallback = 0, WORDS(design_words),
          .text = "where the gains come from",
@@ -216,20 +212,8 @@ static const struct row rows[] = {
          .fallback = 0, WORDS(branch_words),
          .text = "which of the two solutions: hip above or below the foot",
          .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.kp", .type = FIELD_NUMBER, .use = USE_HOLD, .required = true,
-         .sweep = true, VALUE(kp), .unit = "N m/rad", .fallback = NAN, .low = 0, .high = LARGE,
-         .text = "stiffness of the servo", .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.kd", .type = FIELD_NUMBER, .use = USE_HOLD, .required = true,
-         .sweep = true, VALUE(kd), .unit = "N m s/rad", .fallback = NAN, .low = 0, .high = LARGE,
-         .text = "damping of the servo", .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.target", .type = FIELD_MAP, .by_scene = true, .use = USE_HOLD, BY_HAND,
-         .text = "the joint angles that the servo holds", .need = NEED_ACTUATORS}},
-    {FAMILY_ACTUATED, {.path = "controller.target.*", .type = FIELD_NUMBER, .by_scene = true,
-                       .use = USE_HOLD, .sweep = true, VALUE(target),
-                       .fallback_text = "as the run begins; with far the equilibrium", .text = "angle to hold: %s",
-         .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
-         .fallback = 0, WORDS(far_words),
+    {FAMILY_FAR, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
+         .fallback = 0,
          .text = "law that acts outside an ellipsoid about the target",
          .more = "state-feedback acts inside it, where sum((angle/near.angle)^2) + "
                  "sum((rate/near.rate)^2) <= 1 for the deviations from the target. Decided at "
@@ -244,56 +228,8 @@ static const struct row rows[] = {
          .sweep = true, VALUE(near_rate), .unit = "rad/s", .fallback = NAN, .low = 0,
          .high = LARGE, .low_open = true, .text = "its semi-axis in each rate",
          .need = NEED_ACTUATORS}},
-    {FAMILY_PAIRS, {.path = "controller.controlled", .type = FIELD_WORD, .by_scene = true,
-                    .use = USE_DECOUPLING, .required = true, .sweep = true, VALUE(controlled),
-                    .fallback = NAN, .text = "the two coordinates that the law controls",
-                    .more = "The others move as they must. Where the law would need a ground that "
-                            "pulls, or is near a singular posture, it degrades: see the answer "
-                            "degraded_samples.",
-         .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.proportional", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
-         BY_HAND, .text = "proportional gains: acceleration per error of a coordinate", .need = NEED_ACTUATORS}},
-    {FAMILY_COORDINATES, {.path = "controller.proportional.*", .type = FIELD_NUMBER, .by_scene = true,
-                          .use = USE_DECOUPLING, .sweep = true, VALUE(proportional),
-                          .unit = "1/s^2", .fallback = 100, .low = 0, .high = LARGE,
-                          .text = "proportional gain on %s", .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.derivative", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
-         BY_HAND, .text = "derivative gains: acceleration per rate of the error", .need = NEED_ACTUATORS}},
-    {FAMILY_COORDINATES, {.path = "controller.derivative.*", .type = FIELD_NUMBER, .by_scene = true,
-                          .use = USE_DECOUPLING, .sweep = true, VALUE(derivative),
-                          .unit = "1/s", .fallback = 20, .low = 0, .high = LARGE,
-                          .text = "derivative gain on %s", .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.integral", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
-         BY_HAND, .text = "integral gains: acceleration per integral of the error", .need = NEED_ACTUATORS}},
-    {FAMILY_COORDINATES, {.path = "controller.integral.*", .type = FIELD_NUMBER, .by_scene = true,
-                          .use = USE_DECOUPLING, .sweep = true, VALUE(integral),
-                          .unit = "1/s^3", .fallback = 0, .low = 0, .high = LARGE,
-                          .text = "integral gain on %s", .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.integral_limit", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
-         BY_HAND, .text = "bounds of the integrals (anti-windup; they also rest while a torque is at its limit)", .need = NEED_ACTUATORS}},
-    {FAMILY_COORDINATES, {.path = "controller.integral_limit.*", .type = FIELD_NUMBER, .by_scene = true,
-                          .use = USE_DECOUPLING, .sweep = true, VALUE(integral_limit),
-                          .unit = "%s s", .fallback = INFINITY, .fallback_text = "none", .low = 0, .high = LARGE, WORDS(limit_words),
-                          .text = "largest integral of the error of %s", .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.setpoint", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
-         BY_HAND, .text = "set-points of the coordinates", .need = NEED_ACTUATORS}},
-    {FAMILY_COORDINATES, {.path = "controller.setpoint.*", .type = FIELD_NUMBER, .by_scene = true,
-                          .use = USE_DECOUPLING, .sweep = true, VALUE(setpoint),
-                          .unit = "%s", .fallback = NAN, .fallback_text = "as the run begins; with far the equilibrium",
-                          .low = -LARGE, .high = LARGE,
-                          .text = "set-point of %s", .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.ramp", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
-         BY_HAND, .text = "rates at which the set-points move", .need = NEED_ACTUATORS}},
-    {FAMILY_COORDINATES, {.path = "controller.ramp.*", .type = FIELD_NUMBER, .by_scene = true,
-                          .use = USE_DECOUPLING, .sweep = true, VALUE(ramp),
-                          .unit = "%s/s", .fallback = 0, .low = -LARGE, .high = LARGE,
-                          .text = "rate at which the set-point moves: %s", .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.ramp_time", .type = FIELD_MAP, .by_scene = true, .use = USE_DECOUPLING,
-         BY_HAND, .text = "how long the set-points move", .need = NEED_ACTUATORS}},
-    {FAMILY_COORDINATES, {.path = "controller.ramp_time.*", .type = FIELD_NUMBER, .by_scene = true,
-                          .use = USE_DECOUPLING, .sweep = true, VALUE(ramp_time),
-                          .unit = "s", .fallback = INFINITY, .fallback_text = "none", .low = 0, .high = LARGE, WORDS(limit_words),
-                          .text = "time after which the set-point stays: %s", .need = NEED_ACTUATORS}},
+    {FAMILY_PARAMETERS, {.path = "controller.*", .type = FIELD_NUMBER, .use = USE_LAW, .sweep = true,
+                         .need = NEED_ACTUATORS}},
     {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(sample_time), .unit = "s", .fallback = 0, .low = 0, .high = LARGE,
          .text = "time between samples of the controller",
@@ -309,7 +245,7 @@ static const struct row rows[] = {
          .need = NEED_ACTUATORS}},
     {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL,
          .sweep = true, VALUE(torque_limit), .unit = "N m", .fallback = INFINITY,
-         .fallback_text = "none", .low = 0, .high = LARGE, .low_open = true, WORDS(limit_words),
+         .fallback_text = "none", .low = 0, .high = LARGE, .low_open = true, WORDS(schema_none),
          .text = "largest torque of each actuator", .need = NEED_ACTUATORS}},
     {0, {.path = "controller.noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(noise), .unit = "N m", .fallback = 0, .low = 0, .high = LARGE,
@@ -456,18 +392,17 @@ static const struct row rows[] = {
 
 /* ---- writing the table out for a scene ------------------------------------------------------- */
 
-/* A further field made from a row; `name` takes the place of the '*'. NULL: no room. */
-static struct scenario_field *add_field(struct schema *schema, const struct row *row,
-                                        const char *prefix, const char *name)
+struct scenario_field *schema_add(struct schema *schema, const struct scenario_field *row,
+                                  const char *prefix, const char *name)
 {
     if (schema->count == SCHEMA_MAX_FIELDS)
         return NULL;
     struct scenario_field *field = &schema->field[schema->count++];
-    *field = row->field;
-    const char *star = strchr(row->field.path, '*');
+    *field = *row;
+    const char *star = strchr(row->path, '*');
     if (star) {
-        int n = snprintf(field->path, sizeof field->path, "%.*s%s%s", (int)(star - row->field.path),
-                         row->field.path, prefix, name);
+        int n = snprintf(field->path, sizeof field->path, "%.*s%s%s", (int)(star - row->path),
+                         row->path, prefix, name);
         if (n < 0 || (size_t)n >= sizeof field->path)
             return NULL;
     }
@@ -496,9 +431,11 @@ static void describe_quantity(struct scenario_field *field, const struct row *ro
 
 static bool add_robot(struct schema *schema, const struct row *row)
 {
+    if (!schema->scene)
+        return true;
     for (int i = 0; i < schema->scene->robot_count; i++) {
         const stance_quantity *quantity = &schema->scene->robot[i];
-        struct scenario_field *field = add_field(schema, row, "", quantity->name);
+        struct scenario_field *field = schema_add(schema, &row->field, "", quantity->name);
         if (!field)
             return false;
         describe_quantity(field, row, quantity, "");
@@ -510,11 +447,14 @@ static bool add_robot(struct schema *schema, const struct row *row)
 
 static bool add_states(struct schema *schema, const struct row *row)
 {
+    if (!schema->scene)
+        return true;
     const int n = schema->scene->coordinates;
     for (int i = 0; i < 2 * n; i++) {
         const stance_quantity *quantity = &schema->scene->coordinate[i % n];
         const bool rate = i >= n;
-        struct scenario_field *field = add_field(schema, row, rate ? "v" : "", quantity->name);
+        struct scenario_field *field =
+            schema_add(schema, &row->field, rate ? "v" : "", quantity->name);
         if (!field)
             return false;
         describe_quantity(field, row, quantity, rate ? "rate of " : "");
@@ -532,54 +472,14 @@ static bool add_states(struct schema *schema, const struct row *row)
     return true;
 }
 
-/* Rows over the coordinates that keep their own range and default. */
-static bool add_coordinates(struct schema *schema, const struct row *row)
-{
-    for (int i = 0; i < schema->scene->coordinates; i++) {
-        const stance_quantity *quantity = &schema->scene->coordinate[i];
-        struct scenario_field *field = add_field(schema, row, "", quantity->name);
-        if (!field)
-            return false;
-        const double low = field->low, high = field->high;
-        char unit[sizeof field->unit];
-        memcpy(unit, row->field.unit, sizeof unit);
-        describe_quantity(field, row, quantity, "");
-        const char *place = strstr(unit, "%s");
-        if (place) {
-            snprintf(field->unit, sizeof field->unit, "%.*s%.12s%s", (int)(place - unit), unit,
-                     quantity->unit, place + 2);
-        } else {
-            memcpy(field->unit, unit, sizeof unit);
-        }
-        field->low = low;
-        field->high = high;
-        field->offset += (size_t)i * sizeof(double);
-    }
-    return true;
-}
-
-/* Names of the pairs of coordinates, in stance_pair's order. */
-static size_t name_pairs(struct schema *schema)
-{
-    const stance_scene *scene = schema->scene;
-    int first, second;
-    size_t count = 0;
-    while (count < SCHEMA_MAX_WORDS && stance_pair(scene, (int)count, &first, &second)) {
-        snprintf(schema->pair[count], sizeof schema->pair[count], "%s-%s",
-                 scene->coordinate[first].name, scene->coordinate[second].name);
-        schema->pairs[count] = schema->pair[count];
-        count++;
-    }
-    return count;
-}
-
 static bool add_postures(struct schema *schema, const struct row *row)
 {
+    if (!schema->scene)
+        return true;
     const stance_scene *scene = schema->scene;
-    int first = row->family == FAMILY_ACTUATED ? scene->postures - scene->actuators : 0;
-    for (int i = first > 0 ? first : 0; i < scene->postures; i++) {
+    for (int i = 0; i < scene->postures; i++) {
         const stance_quantity *quantity = &scene->coordinate[scene->posture[i]];
-        struct scenario_field *field = add_field(schema, row, "", quantity->name);
+        struct scenario_field *field = schema_add(schema, &row->field, "", quantity->name);
         if (!field)
             return false;
         describe_quantity(field, row, quantity, "");
@@ -614,7 +514,7 @@ static const char *describe_tolerance(char *text, size_t size)
 static bool add_single(struct schema *schema, const struct row *row)
 {
     const stance_scene *scene = schema->scene;
-    struct scenario_field *field = add_field(schema, row, "", "");
+    struct scenario_field *field = schema_add(schema, &row->field, "", "");
     if (!field)
         return false;
     if (row->family == FAMILY_SCENES) {
@@ -623,13 +523,20 @@ static bool add_single(struct schema *schema, const struct row *row)
     } else if (row->family == FAMILY_METHODS) {
         field->words = schema->methods;
         field->word_count = schema->method_count;
-        while (strcmp(schema->methods[(int)field->fallback], "capturing") != 0)
-            field->fallback++; /* the one that the charts of scenarios/accuracy recommend */
-    } else if (row->family == FAMILY_PAIRS) {
-        field->words = schema->pairs;
-        field->word_count = name_pairs(schema);
+        for (size_t i = 0; i < schema->method_count; i++)
+            if (strcmp(schema->methods[i], "capturing") == 0)
+                field->fallback = (double)i; /* what the charts of scenarios/accuracy recommend */
+    } else if (row->family == FAMILY_KINDS) {
+        field->words = schema->laws;
+        field->word_count = schema->law_count;
+        field->more = schema_describe_laws(schema);
+    } else if (row->family == FAMILY_FAR) {
+        field->words = schema->far_laws;
+        field->word_count = schema->far_law_count;
     } else if (row->family == FAMILY_TOLERANCE) {
         field->more = describe_tolerance(schema->tolerance, sizeof schema->tolerance);
+    } else if (!scene) {
+        return true; /* what follows is the scene's */
     } else if (row->family == FAMILY_CONTACTS) {
         field->words = scene->contact_name;
         field->word_count = (size_t)scene->contacts;
@@ -658,7 +565,7 @@ static bool scene_has(const stance_scene *scene, enum field_need need)
     case NEED_POSTURE:
         return scene->postures > 0;
     case NEED_HEIGHT:
-        return scene->height != NULL;
+        return scene->fallen != NULL;
     default:
         return true;
     }
@@ -670,7 +577,7 @@ static bool add_row(struct schema *schema, const struct row *row)
         return true;
     if (row->field.by_scene && !schema->scene) {
         /* The key is known all the same; what stands below it is not looked at. */
-        return strpbrk(row->field.path, "*[") || add_field(schema, row, "", "") != NULL;
+        return strpbrk(row->field.path, "*[") || schema_add(schema, &row->field, "", "") != NULL;
     }
     switch (row->family) {
     case FAMILY_ROBOT:
@@ -678,10 +585,9 @@ static bool add_row(struct schema *schema, const struct row *row)
     case FAMILY_STATE:
     case FAMILY_OFFSET:
         return add_states(schema, row);
-    case FAMILY_COORDINATES:
-        return add_coordinates(schema, row);
+    case FAMILY_PARAMETERS:
+        return schema_add_laws(schema, &row->field);
     case FAMILY_POSTURE:
-    case FAMILY_ACTUATED:
         return add_postures(schema, row);
     default:
         return add_single(schema, row);
@@ -695,6 +601,13 @@ bool schema_build(struct schema *schema, const stance_scene *scene)
         schema->scenes[schema->scene_count++] = stance_scenes()[i]->name;
     for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_methods()[i]; i++)
         schema->methods[schema->method_count++] = stance_methods()[i]->name;
+    for (const stance_law *const *law = stance_laws(); *law; law++) {
+        snprintf(schema->kind_of[schema->law_count], sizeof *schema->kind_of, "controller.kind %s",
+                 (*law)->name);
+        schema->laws[schema->law_count++] = (*law)->name;
+        if ((*law)->acts_far)
+            schema->far_laws[schema->far_law_count++] = (*law)->name;
+    }
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         if (!add_row(schema, &rows[i]))
             return false;

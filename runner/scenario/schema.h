@@ -34,9 +34,8 @@ enum field_type {
 enum field_use {
     USE_ALWAYS,
     USE_CONTROL, /* controller.kind is not none */
-    USE_HOLD,
+    USE_LAW,     /* controller.kind or controller.far is `law` */
     USE_FEEDBACK,
-    USE_DECOUPLING,
     USE_FAR, /* controller.far is not none */
     USE_PLACE,
     USE_LQR,
@@ -61,6 +60,7 @@ struct scenario_field {
     char path[96];
     enum field_type type;
     enum field_use use;
+    int law; /* of USE_LAW: index into stance_laws() */
     enum field_need need;
     bool required;             /* must stand in the file where `use` allows it, unless swept */
     bool design;               /* what the design depends on, see resolve.h */
@@ -89,8 +89,11 @@ struct schema {
     size_t count;
     struct scenario_field field[SCHEMA_MAX_FIELDS];
     const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
-    size_t scene_count, method_count;
-    char pair[SCHEMA_MAX_WORDS][24]; /* "x-theta" */
+    const char *laws[STANCE_MAX_LAWS], *far_laws[STANCE_MAX_LAWS];
+    size_t scene_count, method_count, law_count, far_law_count;
+    char kind_of[STANCE_MAX_LAWS][48]; /* "controller.kind NAME" */
+    char kinds[600];                   /* what there is to know of controller.kind */
+    char pair[SCHEMA_MAX_WORDS][24];   /* "x-theta" */
     const char *pairs[SCHEMA_MAX_WORDS];
     char tolerance[400]; /* what there is to know of method.tolerance */
 };

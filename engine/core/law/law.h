@@ -37,7 +37,7 @@ struct servo {
 };
 
 struct law {
-    struct linear_law linear, far;
+    struct linear_law near, far;
     struct servo servo[ACTUATORS];
     lanes decouples; /* 1: torques are those of the servos, where the law does not switch */
     lanes switches;  /* 1: `linear` inside the ellipsoid only */
@@ -71,7 +71,7 @@ static inline void law_torque(const struct law *law, const lanes *s, const lanes
     lanes posture[POSTURES], rate[POSTURES];
     scene_posture(s, posture);
     scene_posture(w, rate);
-    linear_torque(&law->linear, posture, rate, torque);
+    linear_torque(&law->near, posture, rate, torque);
 }
 static inline void law_clip(const struct law *law, lanes *torque)
 {
@@ -101,8 +101,8 @@ static inline void law_inside(const struct law *law, const lanes *s, const lanes
         }
         torque[i] = choose(decouples, held[i], torque[i]);
         for (int j = 0; j < SCENE_POSTURE; j++) {
-            const lanes slope = law->linear.gain[i][j] * lever +
-                                law->linear.gain[i][SCENE_POSTURE + j] * rate_lever;
+            const lanes slope =
+                law->near.gain[i][j] * lever + law->near.gain[i][SCENE_POSTURE + j] * rate_lever;
             rate[i][j] = choose(free, -slope, lanes_of(0));
         }
     }
@@ -127,7 +127,7 @@ static inline mask law_near(const struct law *law, const lanes *posture, const l
 {
     lanes sum = lanes_of(0);
     for (int j = 0; j < SCENE_POSTURE; j++) {
-        const lanes angle = law->inverse_axis[j] * (posture[j] - law->linear.target[j]);
+        const lanes angle = law->inverse_axis[j] * (posture[j] - law->near.target[j]);
         const lanes turn = law->inverse_axis[SCENE_POSTURE + j] * rate[j];
         sum += angle * angle + turn * turn;
     }

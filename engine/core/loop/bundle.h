@@ -93,7 +93,7 @@ static bool case_is_coupled(const stance_case *c)
         return false;
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         for (int j = 0; j < 2 * SCENE_POSTURE; j++)
-            if (c->gain[i][j] != 0)
+            if (c->near.gain[i][j] != 0)
                 return true;
     return SCENE_ACTUATORS > 0 && c->decouples;
 }
@@ -118,11 +118,7 @@ static void bundle_load_linear(struct linear_law *law, int lane, const stance_li
 
 static void bundle_load_law(struct law *law, int lane, const stance_case *c)
 {
-    stance_linear_law linear;
-    memcpy(linear.feedforward, c->feedforward, sizeof linear.feedforward);
-    memcpy(linear.gain, c->gain, sizeof linear.gain);
-    memcpy(linear.target, c->target, sizeof linear.target);
-    bundle_load_linear(&law->linear, lane, &linear);
+    bundle_load_linear(&law->near, lane, &c->near);
     bundle_load_linear(&law->far, lane, &c->far);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         struct servo *const servo = &law->servo[i];
@@ -207,7 +203,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         lane_set(&b->torque[i], lane, 0);
         lane_set(&b->pending[i], lane,
-                 fmax(fmin(c->feedforward[i], c->torque_limit), -c->torque_limit));
+                 fmax(fmin(c->near.feedforward[i], c->torque_limit), -c->torque_limit));
         lane_set(&b->now.integral[i], lane, 0);
     }
     lane_set(&b->delayed, lane, c->delay > 0);

@@ -88,10 +88,17 @@ HOT mask window_advance(struct window *w, mask live, mask holds, lanes measure, 
     return live & full & calm;
 }
 
+/* What is said of each lane, by outcome: v.fell and so on. */
 struct verdict {
-    mask stabilised, rested, fell;
+#define VERDICT(NAME, name, number, text) mask name;
+    STANCE_OUTCOMES(VERDICT)
     mask captured; /* will be stabilised */
 };
+static inline mask verdict_any(const struct verdict *v)
+{
+#define VERDICT_OR(NAME, name, number, text) | v->name
+    return MASK_NONE STANCE_OUTCOMES(VERDICT_OR);
+}
 
 /* The outcome rules at the present state; `loaded`: contacts that carry, of those in `touching`.
  * `last`: time is up. */
@@ -103,7 +110,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     scene_posture(b->now.s, posture);
     scene_posture(b->now.w, rate);
     for (int i = 0; i < SCENE_POSTURE; i++) {
-        angle = lanes_max(lanes_abs(posture[i] - b->set.law.linear.target[i]), angle);
+        angle = lanes_max(lanes_abs(posture[i] - b->set.law.near.target[i]), angle);
         speed = lanes_max(lanes_abs(rate[i]), speed);
     }
     angle = angle * b->angle_scale;
@@ -131,6 +138,8 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     }
     const mask on_way = mask_less(none, b->judge_on_way);
     struct verdict v;
+#define VERDICT_NONE(NAME, name, number, text) v.name = MASK_NONE;
+    STANCE_OUTCOMES(VERDICT_NONE)
     v.fell = live & scene_fallen(&b->set.body, b->now.s, &b->now.trig, b->fall_height);
     v.stabilised =
         on_way & window_advance(&b->settled, live, at_target, error, b->n, b->settle_steps);
@@ -160,7 +169,7 @@ static mask bundle_captured(const struct bundle *b, mask live, const mask *loade
     scene_posture(b->now.s, posture);
     scene_posture(b->now.w, rate);
     for (int i = 0; i < SCENE_POSTURE; i++)
-        posture[i] = posture[i] - b->set.law.linear.target[i];
+        posture[i] = posture[i] - b->set.law.near.target[i];
     in &= known_basin_contains(&b->capture, posture, rate);
     if (!mask_any(in))
         return in;

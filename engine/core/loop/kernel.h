@@ -17,6 +17,10 @@
 #define STANCE_JOIN2_(a, b) stance_##a##_##b
 #define STANCE_JOIN2(a, b) STANCE_JOIN2_(a, b)
 
+/* A method's description is in every kernel of the first scene: which of these are built is open.
+ */
+#define WEAK __attribute__((weak))
+
 extern const stance_scene STANCE_JOIN2(scene, STANCE_SCENE);
 
 #define STANCE_KERNEL(name)                                                                        \

@@ -118,13 +118,12 @@ COLD void bundle_end_lanes(struct bundle *b, mask over, mask failed, const struc
             bundle_finish(b, lane, STANCE_FAILED, STANCE_NONE, bundle_failure(b, lane), false);
             continue;
         }
-        const bool simulated = mask_get(v->stabilised | v->rested | v->fell, lane);
-        const bool inferred = !simulated && mask_get(v->captured, lane);
-        const stance_outcome outcome = mask_get(v->fell, lane) ? STANCE_FELL
-                                       : inferred || mask_get(v->stabilised, lane)
-                                           ? STANCE_STABILISED
-                                       : mask_get(v->rested, lane) ? STANCE_RESTED
-                                                                   : STANCE_UNDECIDED;
+        const bool inferred = !mask_get(verdict_any(v), lane) && mask_get(v->captured, lane);
+        stance_outcome outcome = inferred ? STANCE_STABILISED : STANCE_UNDECIDED;
+        /* Of several that are true the last one of the table holds. */
+#define OUTCOME_HOLDS(NAME, name, number, text)                                                    \
+    outcome = mask_get(v->name, lane) ? STANCE_##NAME : outcome;
+        STANCE_OUTCOMES(OUTCOME_HOLDS)
         bundle_finish(b, lane, STANCE_DONE, outcome, STANCE_FAILURE_NONE, inferred);
     }
 }
@@ -132,7 +131,7 @@ COLD void bundle_end_lanes(struct bundle *b, mask over, mask failed, const struc
 /* Ends the lanes that a verdict or the clock ends. */
 HOT void bundle_end(struct bundle *b, mask live, mask failed, const struct verdict *v, mask last)
 {
-    const mask over = failed | v->fell | v->stabilised | v->rested | v->captured | last;
+    const mask over = failed | verdict_any(v) | v->captured | last;
     if (mask_any(live & over))
         bundle_end_lanes(b, live & over, failed, v);
 }

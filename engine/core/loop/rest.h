@@ -689,7 +689,7 @@ COLD bool rest_target(struct bundle *b, int lane)
         return b->target_holds;
     lanes s[SCENE_COORDINATES], integral[ACTUATORS];
     for (int i = 0; i < scene->postures; i++)
-        q[scene->posture[i]] = c->target[i];
+        q[scene->posture[i]] = c->near.target[i];
     if (c->support >= 0)
         scene->stand(c->robot, c->support, q, v);
     scene_enter(c->robot, q, v, s1, w1);
