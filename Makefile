@@ -70,9 +70,10 @@ scalar_method_flags = -DSTANCE_LANES=1
 kernels        := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i))))
 scalar_kernels := $(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
 kernel_objects := $(patsubst %,$(BUILD)/kernel/%.o,$(kernels) $(scalar_kernels))
-CONTROL        ?= engine/control
-engine_sources := $(wildcard engine/*.c engine/core/lanes/*.c engine/laws/*.c $(CONTROL:%=%/*.c) engine/scenes/*.c)
+engine_sources := $(wildcard engine/*.c engine/core/lanes/*.c engine/laws/*.c engine/scenes/*.c)
 engine_objects := $(engine_sources:%.c=$(BUILD)/%.o) $(kernel_objects)
+control_objects := $(patsubst %.c,$(BUILD)/%.o,$(wildcard engine/control/*.c))
+archives = $(BUILD)/libstance_control.a $(BUILD)/libstance.a
 comma := ,
 isa_list     = -DSTANCE_ISA_LIST='$(foreach i,$(ISAS),ISA($(i)))'
 kernel_lists = $(isa_list) -DSTANCE_METHOD_LIST='$(foreach m,$(METHODS) $(SCALAR_METHODS),METHOD($(m)))' \
@@ -89,14 +90,16 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run profile lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-schedule profile lint sanitize install clean FORCE
 all: $(PROGRAM)
 
-$(PROGRAM): $(program_objects) $(BUILD)/libstance.a
+$(PROGRAM): $(program_objects) $(archives)
 	@mkdir -p $(@D)
 	$(call QUIET,link,$@)$(CC) $(CFLAGS) $(SANITIZE) -o $@ $^ $(LDFLAGS) $(LIBS)
 
 $(BUILD)/libstance.a: $(engine_objects)
+$(BUILD)/libstance_control.a: $(control_objects)
+$(BUILD)/%.a:
 	$(call QUIET,ar,$@)rm -f $@ && ar rcs $@ $^
 
 define kernel_rule
@@ -136,10 +139,10 @@ $(BUILD)/revision: FORCE
 test_sources  := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
-$(BUILD)/tests/%: tests/%.c $(shared_objects) $(BUILD)/libstance.a
+$(BUILD)/tests/%: tests/%.c $(shared_objects) $(archives)
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
-	    $(shared_objects) $(BUILD)/libstance.a $(LDFLAGS) $(LIBS) -lcmocka
+	    $(shared_objects) $(archives) $(LDFLAGS) $(LIBS) -lcmocka
 
 # Each instruction set's fused multiply-adds, for test_fma.
 fused_objects = $(ISAS:%=$(BUILD)/tests/lanes_fma-%.o)
@@ -180,7 +183,7 @@ GOLDEN_LIBS = $(LIBS)
 NEON_CFLAGS ?= -O1
 golden-neon:
 	@$(MAKE) BUILD=build/neon$(NEON_CFLAGS) KERNEL_CFLAGS=$(NEON_CFLAGS) MACHINE=aarch64 \
-	    CC=aarch64-linux-gnu-gcc SCALAR_METHODS= CONTROL= LIBRARY_CFLAGS= LDFLAGS=-static \
+	    CC=aarch64-linux-gnu-gcc SCALAR_METHODS= LIBRARY_CFLAGS= LDFLAGS=-static \
 	    GOLDEN_LIBS=-lm golden
 
 # ---- benchmarks: what the kernels are held to; a program without MuJoCo skips that comparison -----
@@ -189,10 +192,17 @@ bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench
 $(BUILD)/tests/bench_mujoco: LIBS += -lmujoco
 # By hand as fast as the compiler makes it: the instructions of the one-lane kernel, contracted.
 $(BUILD)/tests/bench_scalar: BENCH_FLAGS = $(filter -m%,$(isa_flags_scalar)) -ffp-contract=fast
-$(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(BUILD)/libstance.a
+$(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(archives)
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(BENCH_FLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< \
-	    $(shared_objects) $(BUILD)/libstance.a $(LDFLAGS) $(LIBS)
+	    $(test_objects) $(shared_objects) $(archives) $(LDFLAGS) $(LIBS)
+
+# Large jobs on a simulated clock.
+$(BUILD)/tests/simulate.o: tests/simulate.c Makefile
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) -MMD -MP -c -o $@ $<
+$(BUILD)/tests/bench_schedule $(BUILD)/tests/test_schedule: $(BUILD)/tests/simulate.o
+$(BUILD)/tests/bench_schedule $(BUILD)/tests/test_schedule: test_objects = $(BUILD)/tests/simulate.o
 
 # What Open MPI wants in a container, as root, on few cores. PMIx keeps its data in the memory of each
 # process (hash): in shared memory (ds21) a mutex that a killed rank holds is never given back, and
@@ -210,10 +220,10 @@ test-neon: packages-neon
 
 test: packages-test
 	$(MAKE) check
-check: $(PROGRAM) $(test_programs) golden fuzz-programs
+check: $(PROGRAM) $(test_programs) $(BUILD)/tests/bench_schedule golden fuzz-programs
 	@$(TEST_ENVIRONMENT) bash tests/run.sh
 test-long: packages-test
-	$(MAKE) $(PROGRAM) $(test_programs) golden fuzz-programs
+	$(MAKE) $(PROGRAM) $(test_programs) $(BUILD)/tests/bench_schedule golden fuzz-programs
 	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
 # Numbers that depend on the neighbours: HUNT_CASES of each kind for every method of the biped, a core
@@ -257,9 +267,9 @@ $(FUZZ)/%.o: %.c Makefile
 	@mkdir -p $(@D)
 	$(call QUIET,fuzz,$@)$(FUZZ_CC) -I. $(STRICT) $(WARNINGS) $(FUZZ_CFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
 $(FUZZ)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
-$(FUZZ)/fuzz_scenario: $(FUZZ)/tests/fuzz_scenario.o $(FUZZ)/tests/fuzz_mutate.o $(fuzz_objects) $(BUILD)/libstance.a
+$(FUZZ)/fuzz_scenario: $(FUZZ)/tests/fuzz_scenario.o $(FUZZ)/tests/fuzz_mutate.o $(fuzz_objects) $(archives)
 	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined,fuzzer $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
-$(FUZZ)/fuzz_results: $(FUZZ)/tests/fuzz_results.o $(FUZZ)/tests/damage.o $(fuzz_objects) $(BUILD)/libstance.a
+$(FUZZ)/fuzz_results: $(FUZZ)/tests/fuzz_results.o $(FUZZ)/tests/damage.o $(fuzz_objects) $(archives)
 	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined -shared-libasan -Wl,-rpath,$(dir $(fuzz_library)) \
 	    $(foreach f,sandbox sandbox_limit gnuplot_end,-Wl,--wrap=$(f)) $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
 
@@ -300,6 +310,10 @@ bench: packages
 	@$(MAKE) bench-run
 bench-run: $(PROGRAM) $(bench_programs)
 	@$(TEST_ENVIRONMENT) bash tests/bench.sh
+bench-schedule: $(PROGRAM) $(BUILD)/tests/bench_schedule
+	@mkdir -p results
+	$(MPI_ENVIRONMENT) mpirun -n $(CORES) bin/stance run --force scenarios/basin_one_foot.yaml
+	$(BUILD)/tests/bench_schedule results/basin_one_foot.h5
 profile: $(PROGRAM)
 	@$(MAKE) packages-bench || echo 'profile: what needs $(PACKAGES_BENCH) and is missing is skipped' >&2
 	@$(TEST_ENVIRONMENT) bash tests/profile.sh
@@ -329,6 +343,7 @@ help:
 	@echo 'make test-slurm install Slurm, run the batch scripts of scenarios/cluster under one of its own'
 	@echo 'make test-hosts run on three hosts (network namespaces), one of them cut off in mid-run'
 	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
+	@echo 'make bench-schedule  how a large job would go on thousands of ranks, simulated'
 	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
 	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'

@@ -20,8 +20,8 @@ for f in "${sources[@]}"; do
     ((lines <= 800)) || complain "$f has $lines lines"
 done
 
-make -s build/libstance.a || complain "the engine does not build"
-nm -g --defined-only build/libstance.a 2>/dev/null | awk 'NF == 3 && $3 !~ /^stance_/ {print $3}' | sort -u |
+make -s build/libstance.a build/libstance_control.a || complain "the engine does not build"
+nm -g --defined-only build/libstance.a build/libstance_control.a 2>/dev/null | awk 'NF == 3 && $3 !~ /^stance_/ {print $3}' | sort -u |
     while read -r symbol; do echo "lint: exported engine symbol without stance_: $symbol"; done | tee /tmp/lint.$$
 [ -s /tmp/lint.$$ ] && bad=1
 rm -f /tmp/lint.$$

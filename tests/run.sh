@@ -11,11 +11,12 @@ export ASAN_OPTIONS=abort_on_error=1 UBSAN_OPTIONS=abort_on_error=1:print_stackt
 mpi_options=$ASAN_OPTIONS:detect_leaks=0
 scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
 
-# name, command ...: leaves what it said, its exit status and its seconds in the scratch directory.
+# name, command ...: leaves what it said, its exit status, its seconds and those of processors in the
+# scratch directory.
 run() {
     local log="$scratch/$1" begin=$SECONDS
     shift
-    "$@" >"$log" 2>"$log.err" </dev/null
+    { TIMEFORMAT="%U"; time "$@" >"$log" 2>"$log.err" </dev/null; } 2>"$log.cpu"
     echo $? $((SECONDS - begin)) >"$log.end"
 }
 
@@ -25,7 +26,7 @@ report() { # name
     ok=$(grep -c '^ok' "$log") bad=$(grep -c '^not ok' "$log")
     # A program that dies, or that tests nothing, has failed whatever it printed.
     if ((status != 0 && bad == 0)) || ((ok + bad == 0)); then bad=$((bad + 1)); fi
-    printf '%-28s %4d passed %4d failed  %3d s\n' "$name" "$ok" "$bad" "$seconds"
+    printf '%-28s %4d passed %4d failed  %3d s, computing %s\n' "$name" "$ok" "$bad" "$seconds" "$(tail -n 1 "$log.cpu")"
     sed -n 's/^## /    /p' "$log"
     if ((bad > 0)); then
         grep -v '^ok' "$log" | tail -n 60
@@ -44,18 +45,24 @@ names() {
     done
 }
 
-# Test programs use one core each, whole-program tests all of them.
-programs=$(names tests/test_*.c)
-for name in $programs; do
+# As many at a time as there are cores, those that take longest first.
+tests=$(
+    for name in whole_runner whole_program whole_robust test_rest whole_adding test_stepping test_balance test_lanes; do
+        names tests/$name.*
+    done
+    names tests/whole_*.sh tests/test_*.c
+)
+tests=$(awk '!seen[$1]++' <<<"$tests")
+for name in $tests; do
     while (($(jobs -rp | wc -l) >= $(nproc))); do wait -n; done
-    run "$name" "$build/tests/$name" &
+    if [[ $name == whole_* ]]; then
+        run "$name" env ASAN_OPTIONS="$mpi_options" bash "tests/$name.sh" &
+    else
+        run "$name" "$build/tests/$name" &
+    fi
 done
 wait
-for name in $programs; do report "$name"; done
-for name in $(names tests/whole_*.sh); do
-    run "$name" env ASAN_OPTIONS="$mpi_options" bash "tests/$name.sh"
-    report "$name"
-done
+for name in $tests; do report "$name"; done
 echo
 echo "$passed passed, $failed failed"
 ((failed == 0 && passed > 0))

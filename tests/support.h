@@ -17,6 +17,8 @@
 
 #include "cases.h"
 
+#include "engine/control/design.h"
+
 static inline const stance_kernel *kernel_of(const char *method, const char *isa)
 {
     const stance_kernel *k =

@@ -1,9 +1,9 @@
 /* test_schedule.c - the drawing of rows, the computing loop on lists of rows, and the simulator of
  * large jobs against schedules and sums made here. */
 #include "runner/base/units.h"
+#include "simulate.h"
 #include "support.h"
 
-#include "analysis/bench/simulate.h"
 #include "runner/plan/schedule.h"
 #include "runner/run/work.h"
 

@@ -102,7 +102,7 @@ for file in pipe to_pipe /dev/zero loop folder.yaml missing; do
     missing) why='No such file or directory' ;;
     *) why='not a file' ;;
     esac
-    for command in summary status plot "compare one.h5" "bench plot" "bench schedule"; do
+    for command in summary status plot "compare one.h5" "bench plot"; do
         # shellcheck disable=SC2086
         refused "$command $file" 3 "$file: .*$why" "$stance" $command $file
     done
@@ -209,4 +209,3 @@ refused "an unknown instruction set" 2 'STANCE_ISA' env STANCE_ISA="$(head -c 50
 refused "a name longer than names are" 3 'too long' "$stance" run "$good" -o "$(head -c 5000 /dev/zero | tr '\0' x)"
 refused "a scenario with such a name" 3 'too long' "$stance" check "$(head -c 5000 /dev/zero | tr '\0' x)"
 refused "an option that is none" 2 'unknown option' "$stance" check "--$(head -c 5000 /dev/zero | tr '\0' x)"
-refused "too many ranks to draw" 2 'stance bench schedule' "$stance" bench schedule one.h5 --ranks 99999999999999999999

@@ -1,17 +1,94 @@
-/* basin_print.c - the tables of `stance basin`, for people and as CSV. */
+/* basin_print.c - the table of `stance basin`, for people and for programs; -h lists the names. */
 #include "basin_print.h"
 
-#include "analysis/table/csv.h"
-
+#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-enum { TABLE_ROWS = 40, LABEL = 16 };
+/* ---- the table ---------------------------------------------------------------------------- */
 
-double basin_dimension(const struct basin *basin, const struct basin_row *row)
+static void add_shape(struct table *t, const struct basin *b, const struct basin_row *row)
 {
-    return basin->start_axes - basin_exponent(&row->uncertainty).alpha;
+    const struct basin_uncertainty *uncertainty = &row->uncertainty;
+    const struct basin_exponent exponent = basin_exponent(uncertainty);
+    const bool fractal = basin_is_fractal(&row->entropy, uncertainty);
+    json_t *distances = json_array(), *shares = json_array();
+    for (int k = 0; k < uncertainty->scales; k++) {
+        table_append(distances, as_whole((uint64_t)1 << k));
+        table_append(
+            shares, as_number((double)uncertainty->uncertain[k] / (double)uncertainty->counted[k]));
+    }
+    TABLE_FACTS(
+        t, {{"entropy", "S_b", "%.4f", .width = 9}, as_number(basin_entropy(&row->entropy))},
+        {{"boundary_entropy", "S_bb", "%.4f", .width = 9},
+         as_number(basin_boundary_entropy(&row->entropy))},
+        {{"star", "", .width = 1, .hidden = TABLE_VIEW_ONLY, .before = "", .empty = ""},
+         as_nothing(fractal ? "*" : NULL)},
+        {{"boxes", "boxes", .width = -8, .before = " of "}, as_whole(row->entropy.boxes)},
+        {{"mixed_boxes", "mixed", .width = 8}, as_whole(row->entropy.mixed)},
+        {{"alpha", "alpha", "%.3f", .width = 8}, as_number(exponent.alpha)},
+        {{"alpha_error", "+- 1 sd", "%.3f", .width = 8}, as_number(exponent.error)},
+        {{.name = "alpha_distances"}, as_whole((uint64_t)exponent.scales)},
+        {{.name = "alpha_missing", .hidden = TABLE_NO_CSV},
+         as_text(exponent.refusal == BASIN_FITTED ? NULL : basin_refusal_words[exponent.refusal])},
+        {{.name = "fractal", .hidden = TABLE_NO_CSV}, as_truth(fractal)},
+        {{"dimension", "dimension", "%.3f", .width = 10},
+         as_number(b->start_axes - exponent.alpha)},
+        {{.name = "distances", .hidden = TABLE_NO_CSV}, as_tree(distances)},
+        {{.name = "uncertain", .hidden = TABLE_NO_CSV}, as_tree(shares)});
+}
+
+static void add_distance(struct table *t, const struct basin *b, const struct basin_row *row)
+{
+    const struct basin_distance *distance = &row->distance;
+    const bool any = row->has_distance && distance->inside;
+    json_t *extent = any ? json_object() : NULL;
+    json_t *at = any && isfinite(distance->nearest) ? json_object() : NULL;
+    for (int d = 0; any && d < b->start_axes; d++) {
+        const char *name = b->r->axis[b->start[d]].name;
+        json_t *ends = json_array();
+        table_append(ends, as_number(distance->low[d]));
+        table_append(ends, as_number(distance->high[d]));
+        json_object_set_new(extent, name, ends);
+        if (at)
+            json_object_set_new(at, name, table_value_json(as_number(distance->at[d])));
+    }
+    TABLE_FACTS(
+        t, {{"nearest", "nearest", "%.4f", .width = 9}, as_number(any ? distance->nearest : NAN)},
+        {{.name = "nearest_at", .hidden = TABLE_NO_CSV}, as_tree(at)},
+        {{.name = "extent", .hidden = TABLE_NO_CSV}, as_tree(extent)});
+}
+
+static void make_table(struct table *t, const struct basin *b)
+{
+    char level[32], remark[64];
+    snprintf(level, sizeof level, "+- %.4g %%", 100 * b->choice.level);
+    for (size_t k = 0; k < b->rows; k++) {
+        const struct basin_row *row = &b->row[k];
+        snprintf(remark, sizeof remark, "%" PRIu64 " failed, %" PRIu64 " pending", row->failed,
+                 row->pending);
+        table_axes(t, b->r, b->by, b->by_axes, row->point);
+        TABLE_FACTS(t, {{.name = "cases", .before = " of ", .width = -10}, as_whole(row->cases)},
+                    {{"inside", "cases", .width = 10}, as_whole(row->inside)},
+                    {{.name = "failed"}, as_whole(row->failed)},
+                    {{.name = "pending"}, as_whole(row->pending)},
+                    {{.name = "remark", .hidden = TABLE_VIEW_ONLY, .empty = ""},
+                     as_nothing(row->failed + row->pending > 0 ? remark : NULL)},
+                    {{"share", "share", "%.3f %%", .width = 9, .percent = true},
+                     as_number(row->volume / b->box)},
+                    {{"volume", "volume", "%.5g", .width = 11}, as_number(row->volume)},
+                    {{"reach", level, "%.2g", .width = 9}, as_number(row->reach)},
+                    {{"low", b->starts == BASIN_GRID ? "bounds" : "interval", "%.5g", .width = -25,
+                      .before = "   "},
+                     as_number(row->low)},
+                    {{.name = "high", .format = "%.5g", .joined = true, .before = " ... "},
+                     as_number(row->high)},
+                    {{.name = "cells", .hidden = TABLE_NO_CSV}, as_whole(row->cells)},
+                    {{.name = "crossed", .hidden = TABLE_NO_CSV}, as_whole(row->crossed)});
+        add_shape(t, b, row);
+        add_distance(t, b, row);
+        table_end_row(t);
+    }
 }
 
 /* ---- text --------------------------------------------------------------------------------- */
@@ -55,21 +132,37 @@ static void print_averaged(const struct basin *b)
     }
 }
 
+void basin_print_axis(const struct results_axis *axis)
+{
+    char first[64], last[64];
+    results_value_text(axis, 0, false, first, sizeof first);
+    results_value_text(axis, axis->count - 1, true, last, sizeof last);
+    printf("  %-24s %s ... %s, %zu places", axis->name, first, last, axis->count);
+}
+
+void basin_print_factor(const struct basin_factor *factor, const char *otherwise)
+{
+    printf("  %-24s", factor->of->name);
+    if (isnan(factor->from))
+        puts(otherwise);
+    else
+        printf(" %.6g ... %.6g %s\n", factor->from, factor->to, factor->of->unit);
+}
+
+static void print_box(const struct basin *b, double box)
+{
+    if (isfinite(box))
+        printf("  a box of %.6g%s%s\n", b->box, b->unit[0] ? " " : "", b->unit);
+}
+
 static void print_sample(const struct basin *b)
 {
     const struct basin_sample *sample = &b->sample;
-    printf("\n\nStarts that end as %s, of %zu points (%s) over\n", results_kind_names[b->choice.of],
+    printf("Starts that end as %s, of %zu points (%s) over\n", results_kind_names[b->choice.of],
            sample->points, doe_words[sample->method]);
-    for (size_t k = 0; k < sample->factors; k++) {
-        const struct basin_factor *factor = &sample->factor[k];
-        printf("  %-24s", factor->of->name);
-        if (isnan(factor->from))
-            puts(" not evenly over a range: no volume, shares alone");
-        else
-            printf(" %.6g ... %.6g %s\n", factor->from, factor->to, factor->of->unit);
-    }
-    if (isfinite(sample->box))
-        printf("  a box of %.6g%s%s\n", b->box, b->unit[0] ? " " : "", b->unit);
+    for (size_t k = 0; k < sample->factors; k++)
+        basin_print_factor(&sample->factor[k], " not evenly over a range: no volume, shares alone");
+    print_box(b, sample->box);
     if (sample->others)
         puts("  averaged over what else is sampled");
     print_averaged(b);
@@ -84,97 +177,48 @@ static void print_head(const struct basin *b)
         failed += b->row[k].failed;
         pending += b->row[k].pending;
     }
-    printf("%s\n%s: %llu cases", r->title[0] ? r->title : r->name, r->file,
-           (unsigned long long)r->cases);
-    if (failed + pending > 0) {
-        printf(", %llu failed, %llu pending", (unsigned long long)failed,
-               (unsigned long long)pending);
-    }
+    printf("%s\n%s: %" PRIu64 " cases", r->title[0] ? r->title : r->name, r->file, r->cases);
+    if (failed + pending > 0)
+        printf(", %" PRIu64 " failed, %" PRIu64 " pending", failed, pending);
+    puts("\n");
     if (b->starts == BASIN_SAMPLE) {
         print_sample(b);
         return;
     }
-    printf("\n\nStarts that end as %s, on a grid over\n", results_kind_names[b->choice.of]);
+    printf("Starts that end as %s, on a grid over\n", results_kind_names[b->choice.of]);
     for (int d = 0; d < b->start_axes; d++) {
-        const struct results_axis *axis = &r->axis[b->start[d]];
-        char first[64], last[64];
-        results_value_text(axis, 0, false, first, sizeof first);
-        results_value_text(axis, axis->count - 1, true, last, sizeof last);
-        printf("  %-24s %s ... %s, %zu places\n", axis->name, first, last, axis->count);
+        basin_print_axis(&r->axis[b->start[d]]);
+        putchar('\n');
     }
-    printf("  a box of %.6g%s%s\n", b->box, b->unit[0] ? " " : "", b->unit);
+    print_box(b, b->box);
     print_averaged(b);
 }
 
-static void print_labels(const struct basin *b, const struct basin_row *row)
+/* What the marks in the table of boundaries mean. */
+static void print_notes(const struct basin *b)
 {
-    char text[128];
-    fputs(" ", stdout);
-    for (int k = 0; k < b->by_axes; k++) {
-        const int a = b->by[k];
-        results_value_text(&b->r->axis[a], row ? row->point[a] : 0, false, text, sizeof text);
-        printf(" %*s", LABEL, row ? text : b->r->axis[a].name);
+    bool starred = false;
+    size_t refused[BASIN_REFUSALS] = {0};
+    for (size_t k = 0; k < b->rows; k++) {
+        const struct basin_row *row = &b->row[k];
+        starred = starred || basin_is_fractal(&row->entropy, &row->uncertainty);
+        refused[basin_exponent(&row->uncertainty).refusal]++;
+    }
+    if (starred) {
+        puts("  (* above log 2 by more than its interval, alpha below 1 by more than its own: "
+             "fractal)");
+    }
+    for (int k = BASIN_FITTED + 1; k < BASIN_REFUSALS; k++) {
+        if (refused[k] > 0) {
+            printf("  (no alpha%s: %s)\n", b->rows > 1 ? " in some rows" : "",
+                   basin_refusal_text((enum basin_refusal)k));
+        }
     }
 }
 
-/* A number in its column, "-" where there is none. */
-static void print_number(int width, const char *format, double value)
+static void print_distance(const struct basin *b, const struct basin_distance *distance)
 {
-    char text[64] = "-";
-    if (isfinite(value))
-        snprintf(text, sizeof text, format, value);
-    printf(" %*s", width, text);
-}
-
-static void print_volume(const struct basin *b, const struct basin_row *row)
-{
-    char text[64];
-    print_labels(b, row);
-    print_number(9, "%.3f %%", 100 * row->volume / b->box);
-    print_number(11, "%.5g", row->volume);
-    print_number(9, "%.2g", row->reach);
-    snprintf(text, sizeof text, "%.5g ... %.5g", row->low, row->high);
-    printf("   %-25s %10llu of %-10llu", text, (unsigned long long)row->inside,
-           (unsigned long long)row->cases);
-    if (row->failed + row->pending > 0) {
-        printf(" %llu failed, %llu pending", (unsigned long long)row->failed,
-               (unsigned long long)row->pending);
-    }
-    putchar('\n');
-}
-
-static void print_shape(const struct basin *b, const struct basin_row *row)
-{
-    const struct basin_exponent exponent = basin_exponent(&row->uncertainty);
-    const double s_bb = basin_boundary_entropy(&row->entropy);
-    print_labels(b, row);
-    print_number(9, "%.4f", basin_entropy(&row->entropy));
-    print_number(9, "%.4f", s_bb);
-    putchar(basin_is_fractal(&row->entropy, &row->uncertainty) ? '*' : ' ');
-    printf(" %8llu of %-8llu", (unsigned long long)row->entropy.mixed,
-           (unsigned long long)row->entropy.boxes);
-    print_number(8, "%.3f", exponent.alpha);
-    print_number(8, "%.3f", exponent.error);
-    print_number(10, "%.3f", basin_dimension(b, row));
-    print_number(9, "%.4f", row->has_distance ? row->distance.nearest : NAN);
-    putchar('\n');
-}
-
-/* Row k of those shown: all, or some spread over them. */
-static const struct basin_row *shown(const struct basin *b, size_t k, size_t rows)
-{
-    return &b->row[rows == b->rows || rows < 2 ? k : k * (b->rows - 1) / (rows - 1)];
-}
-
-static void print_left_out(const struct basin *b, size_t rows)
-{
-    if (rows < b->rows)
-        printf("  (%zu of %zu rows; --csv and --json have them all)\n", rows, b->rows);
-}
-
-static void print_distance(const struct basin *b, const struct basin_row *row)
-{
-    const struct basin_distance *distance = &row->distance;
+    struct table ends = {0};
     if (!distance->inside) {
         printf("\nThe start nearest to the equilibrium is not %s.\n",
                results_kind_names[b->choice.of]);
@@ -183,12 +227,15 @@ static void print_distance(const struct basin *b, const struct basin_row *row)
     puts("\nFrom the equilibrium to the end of the outcome");
     for (int d = 0; d < b->start_axes; d++) {
         const struct results_axis *axis = &b->r->axis[b->start[d]];
-        printf("  along %-24s", axis->name);
-        print_number(12, "%.6g", distance->low[d]);
-        printf(" ...");
-        print_number(12, "%.6g", distance->high[d]);
-        printf(" %s\n", axis->unit);
+        TABLE_FACTS(
+            &ends, {{.name = "axis", .before = "  along ", .width = -24}, as_text(axis->name)},
+            {{.name = "low", .width = 12}, as_number(distance->low[d])},
+            {{.name = "high", .width = 12, .before = " ... "}, as_number(distance->high[d])},
+            {{.name = "unit", .width = -1}, as_text(axis->unit)});
+        table_end_row(&ends);
     }
+    table_write_text(&ends, stdout, "axis low high unit", 0);
+    table_free(&ends);
     if (isfinite(distance->nearest)) {
         printf("  nearest, offsets in units of their ranges: %.4g, at", distance->nearest);
         for (int d = 0; d < b->start_axes; d++) {
@@ -200,150 +247,107 @@ static void print_distance(const struct basin *b, const struct basin_row *row)
     puts("  (- where the outcome reaches the end of the axis, or a case that is not known)");
 }
 
-bool basin_print_text(const struct basin *b)
+static bool print_text(const struct basin *b, const struct table *t)
 {
-    const size_t rows = b->rows < TABLE_ROWS ? b->rows : TABLE_ROWS;
-    char level[32];
-
     print_head(b);
     puts("\nVolume");
-    snprintf(level, sizeof level, "+- %.4g %%", 100 * b->choice.level);
-    print_labels(b, NULL);
-    printf(" %9s %11s %9s   %-25s %10s\n", "share", "volume", level,
-           b->starts == BASIN_GRID ? "bounds" : "interval", "cases");
-    for (size_t k = 0; k < rows; k++)
-        print_volume(b, shown(b, k, rows));
-    if (b->starts == BASIN_SAMPLE) {
-        print_left_out(b, rows);
-        return true;
-    }
+    bool good = table_write_text(t, stdout, "at/ share volume reach low high inside cases remark",
+                                 BASIN_SHOWN);
+    if (b->starts == BASIN_SAMPLE)
+        return good;
     puts("\nBoundary");
-    print_labels(b, NULL);
-    printf(" %9s %9s  %8s of %-8s %8s %8s %10s %9s\n", "S_b", "S_bb", "mixed", "boxes", "alpha",
-           "+- 1 sd", "dimension", "nearest");
-    bool starred = false;
-    size_t refused[BASIN_REFUSALS] = {0};
-    for (size_t k = 0; k < rows; k++) {
-        print_shape(b, shown(b, k, rows));
-        const struct basin_row *row = shown(b, k, rows);
-        starred = starred || basin_is_fractal(&row->entropy, &row->uncertainty);
-        refused[basin_exponent(&row->uncertainty).refusal]++;
-    }
-    if (starred) {
-        puts("  (* above log 2 by more than its interval, alpha below 1 by more than its own: "
-             "fractal)");
-    }
-    for (int k = BASIN_FITTED + 1; k < BASIN_REFUSALS; k++) {
-        if (refused[k] > 0) {
-            printf("  (no alpha%s: %s)\n", rows > 1 ? " in some rows" : "",
-                   basin_refusal_text((enum basin_refusal)k));
-        }
-    }
-    print_left_out(b, rows);
+    good = good && table_write_text(t, stdout,
+                                    "at/ entropy boundary_entropy star mixed_boxes boxes alpha "
+                                    "alpha_error dimension nearest",
+                                    BASIN_SHOWN);
+    print_notes(b);
     if (b->rows == 1 && b->row[0].has_distance)
-        print_distance(b, &b->row[0]);
-    return true;
+        print_distance(b, &b->row[0].distance);
+    return good;
 }
 
-/* ---- CSV ---------------------------------------------------------------------------------- */
+/* ---- JSON --------------------------------------------------------------------------------- */
 
-static void put_value(struct csv *csv, const struct results_axis *axis, size_t i)
+static json_t *names(const struct basin *b, const int *axis, int count)
 {
-    if (axis->word)
-        csv_text(csv, axis->word[i]);
-    else
-        csv_number(csv, axis->value[i]);
+    json_t *list = json_array();
+    for (int k = 0; k < count; k++)
+        table_append(list, as_text(b->r->axis[axis[k]].name));
+    return list;
 }
 
-static void put_csv_row(struct csv *csv, const struct basin *b, const struct basin_row *row)
+json_t *basin_factor_names(const struct basin_sample *sample)
 {
-    const struct basin_exponent exponent = basin_exponent(&row->uncertainty);
-    const double numbers[] = {
-        (double)row->cases,
-        (double)row->inside,
-        (double)row->failed,
-        (double)row->pending,
-        row->volume / b->box,
-        row->volume,
-        row->reach,
-        row->low,
-        row->high,
-        basin_entropy(&row->entropy),
-        basin_boundary_entropy(&row->entropy),
-        (double)row->entropy.boxes,
-        (double)row->entropy.mixed,
-        exponent.alpha,
-        exponent.error,
-        exponent.scales,
-        basin_dimension(b, row),
-        row->has_distance ? row->distance.nearest : NAN,
-    };
-    for (int k = 0; k < b->by_axes; k++)
-        put_value(csv, &b->r->axis[b->by[k]], row->point[b->by[k]]);
-    for (size_t k = 0; k < sizeof numbers / sizeof numbers[0]; k++)
-        csv_number(csv, numbers[k]);
-    csv_end_row(csv);
+    json_t *list = json_array();
+    for (size_t k = 0; k < sample->factors; k++)
+        table_append(list, as_text(sample->factor[k].of->name));
+    return list;
 }
 
-bool basin_print_csv(const struct basin *b)
+static bool print_json(const struct basin *b, const struct table *t)
 {
-    static const char *const names[] = {
-        "cases",
-        "inside",
-        "failed",
-        "pending",
-        "share",
-        "volume",
-        "reach",
-        "low",
-        "high",
-        "entropy",
-        "boundary_entropy",
-        "boxes",
-        "mixed_boxes",
-        "alpha",
-        "alpha_error",
-        "alpha_distances",
-        "dimension",
-        "nearest",
-    };
-    struct csv csv = {.file = stdout};
-    for (int k = 0; k < b->by_axes; k++)
-        csv_text(&csv, b->r->axis[b->by[k]].name);
-    csv_row(&csv, names, sizeof names / sizeof names[0]);
-    for (size_t k = 0; k < b->rows; k++)
-        put_csv_row(&csv, b, &b->row[k]);
-    return !ferror(stdout);
+    const bool grid = b->starts == BASIN_GRID;
+    const char *path[256];
+    json_t *averaged = json_array();
+    const size_t count = basin_averaged(b, path, sizeof path / sizeof path[0]);
+    for (size_t k = 0; k < count; k++)
+        table_append(averaged, as_text(path[k]));
+    return table_write_json(
+        TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
+                     {"level", as_number(b->choice.level)}, {"box_side", as_whole(b->choice.side)},
+                     {"design", as_text(grid ? "grid" : doe_words[b->sample.method])},
+                     {"starts", as_tree(grid ? names(b, b->start, b->start_axes)
+                                             : basin_factor_names(&b->sample))},
+                     {"parameters", as_tree(names(b, b->by, b->by_axes))},
+                     {"averaged", as_tree(averaged)}, {"box", as_number(b->box)},
+                     {"unit", as_text(b->unit)}, {"rows", as_tree(table_json(t))}),
+        stdout);
 }
+
+bool basin_print(const struct basin *b, enum table_form form)
+{
+    struct table t = {0};
+    make_table(&t, b);
+    const bool good = form == TABLE_AS_JSON  ? print_json(b, &t)
+                      : form == TABLE_AS_CSV ? table_write_csv(&t, stdout)
+                                             : print_text(b, &t);
+    table_free(&t);
+    return good;
+}
+
+/* ---- the boundary ------------------------------------------------------------------------- */
 
 static bool put_crossing(void *context, const struct basin_slice *slice,
                          const struct basin_crossing *crossing)
 {
-    struct csv *csv = context;
+    struct table *t = context;
     const struct basin *b = slice->basin;
     for (int a = 0, d = 0; a < b->r->axes; a++) {
         if (d == b->start_axes || b->start[d] != a) {
-            put_value(csv, &b->r->axis[a], slice->point[a]);
+            TABLE_VALUES(t, as_place(&b->r->axis[a], slice->point[a]));
             continue;
         }
-        csv_number(csv, d == crossing->axis ? crossing->middle
-                                            : slice->map.place[d][crossing->point[d]]);
+        TABLE_VALUES(t, as_number(d == crossing->axis ? crossing->middle
+                                                      : slice->map.place[d][crossing->point[d]]));
         d++;
     }
-    csv_text(csv, b->r->axis[b->start[crossing->axis]].name);
-    csv_number(csv, crossing->half_width);
-    csv_text(csv, results_kind_names[crossing->from]);
-    csv_text(csv, results_kind_names[crossing->to]);
-    csv_end_row(csv);
-    return !ferror(csv->file);
+    TABLE_VALUES(t, as_text(b->r->axis[b->start[crossing->axis]].name),
+                 as_number(crossing->half_width), as_text(results_kind_names[crossing->from]),
+                 as_text(results_kind_names[crossing->to]));
+    const bool good = table_write_csv(t, stdout);
+    table_clear(t);
+    return good;
 }
 
 bool basin_print_boundary(const struct basin *b)
 {
-    static const char *const names[] = {"along", "half_width", "from", "to"};
-    struct csv csv = {.file = stdout};
+    struct table t = {0};
     for (int a = 0; a < b->r->axes; a++)
-        csv_text(&csv, b->r->axis[a].name);
-    csv_row(&csv, names, sizeof names / sizeof names[0]);
-    return basin_boundary(b, put_crossing, &csv);
+        TABLE_COLUMNS(&t, {.name = b->r->axis[a].name});
+    TABLE_COLUMNS(&t, {.name = "along"}, {.name = "half_width"}, {.name = "from"}, {.name = "to"});
+    bool good = table_write_csv(&t, stdout); /* the head */
+    table_clear(&t);
+    good = good && basin_boundary(b, put_crossing, &t);
+    table_free(&t);
+    return good;
 }

@@ -58,11 +58,4 @@ static inline double basin_ray_middle(const struct basin_ray *ray)
 /* Point of axis by[k] that a row has. */
 size_t basin_rays_point(const struct basin_rays *rays, size_t row, int k);
 
-/* The tables; each returns false when memory or the output fails. */
-bool basin_rays_print_text(const struct basin_rays *rays);
-bool basin_rays_print_json(const struct basin_rays *rays);
-bool basin_rays_print_csv(const struct basin_rays *rays);
-/* Every ray as a row of CSV. */
-bool basin_rays_print_boundary(const struct basin_rays *rays);
-
 #endif

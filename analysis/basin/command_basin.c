@@ -1,7 +1,8 @@
 /* command_basin.c - `stance basin FILE`: how large the basin is, how sure that is, and what its
  * boundary looks like; as text, JSON or CSV. */
 #include "basin_print.h"
-#include "basin_rays.h"
+
+#include "analysis/statistics/statistics.h"
 
 #include "runner/base/command.h"
 #include "runner/base/sandbox.h"
@@ -19,7 +20,8 @@ enum { MOST_BY = SCENARIO_MAX_AXES, DEFAULT_SIDE = 5, MOST_SIDE = 1000 };
 struct request {
     const char *file, *of;
     struct basin_choice choice;
-    bool json, csv, boundary;
+    enum table_form form;
+    bool boundary;
 };
 
 static bool find_outcome(const char *word, enum results_kind *of)
@@ -44,19 +46,11 @@ static enum results_kind outcome_of(const struct results *r)
                : RESULTS_STABILISED;
 }
 
-static int unprinted(void)
+static int printed(bool good)
 {
-    fputs("stance basin: not enough memory, or the output could not be written\n", stderr);
-    return EXIT_IO;
-}
-
-static int show(const struct request *request, const struct basin *basin)
-{
-    const bool good = request->boundary ? basin_print_boundary(basin)
-                      : request->json   ? basin_print_json(basin)
-                      : request->csv    ? basin_print_csv(basin)
-                                        : basin_print_text(basin);
-    return good ? EXIT_DONE : unprinted();
+    if (!good)
+        fputs("stance basin: not enough memory, or the output could not be written\n", stderr);
+    return good ? EXIT_DONE : EXIT_IO;
 }
 
 static int fail(const stance_message *message, bool usage)
@@ -78,12 +72,10 @@ static int show_rays(const struct request *request, const struct results *r,
     }
     if (!basin_rays_make(&rays, r, request->choice.of, sample, &message))
         return fail(&message, false);
-    const bool good = request->boundary ? basin_rays_print_boundary(&rays)
-                      : request->json   ? basin_rays_print_json(&rays)
-                      : request->csv    ? basin_rays_print_csv(&rays)
-                                        : basin_rays_print_text(&rays);
+    const int code = printed(request->boundary ? basin_rays_print_boundary(&rays)
+                                               : basin_rays_print(&rays, request->form));
     basin_rays_free(&rays);
-    return good ? EXIT_DONE : unprinted();
+    return code;
 }
 
 static int show_basin(const struct request *request, const struct results *r,
@@ -101,7 +93,8 @@ static int show_basin(const struct request *request, const struct results *r,
                 "stance basin: --boundary needs starts on a grid; those of %s are a sample\n",
                 request->file);
     } else {
-        code = show(request, &basin);
+        code = printed(request->boundary ? basin_print_boundary(&basin)
+                                         : basin_print(&basin, request->form));
     }
     basin_free(&basin);
     return code;
@@ -196,7 +189,7 @@ static int run(int argc, char **argv)
         return EXIT_USAGE;
     }
     struct request request = {
-        .file = file, .of = of, .json = json > 0, .csv = csv > 0, .boundary = boundary > 0};
+        .file = file, .of = of, .form = table_form(json, csv), .boundary = boundary > 0};
     request.choice.by = by;
     request.choice.by_count = by_count;
     if (!read_choice(&request, level, side))

@@ -1,6 +1,7 @@
 /* bench.c - the workloads of the speed benchmarks, and their results as CSV. */
 #include "bench.h"
 
+#include "engine/control/design.h"
 #include "runner/store/build_info.h"
 
 #include <math.h>
@@ -12,156 +13,44 @@
 enum { STEPS = 1000 };
 static const double step = 1e-3; /* s */
 
-/* Numbers in [0, 1) that are the same everywhere and evenly spread however many are taken. */
-static double even(int i, int k)
-{
-    const double x = (i + 1) * (k == 0 ? 0.6180339887498949 : 0.7548776662466927);
-    return x - floor(x);
-}
-
 /* ---- workloads ---------------------------------------------------------------------------- */
 
-/* Makes *c, a copy of what all cases of the workload share, the i-th of them. */
-typedef void regime_maker(const stance_scene *scene, int i, stance_case *c);
-/* Gives what they share a controller. */
-typedef bool regime_controller(const stance_scene *scene, stance_case *c);
-
-static void ball_flight(const stance_scene *scene, int i, stance_case *c)
+/* Numbers in [0, 1) that are the same everywhere and evenly spread however many are taken. */
+static double even(int i, double ratio)
 {
-    (void)scene;
-    c->position[1] = 1000;
-    c->velocity[0] = 4 * even(i, 0) - 2;
+    return (i + 1) * ratio - floor((i + 1) * ratio);
 }
 
-/* Friction 0.05 takes 0.5 m/s in a second. */
-static void ball_sliding(const stance_scene *scene, int i, stance_case *c)
+/* Brings *c to an equilibrium and balances it there by gains with real poles. */
+static bool balance(const stance_scene *scene, const stance_equilibrium_choice *choice,
+                    stance_case *c)
 {
-    (void)scene;
-    c->friction = 0.05;
-    c->position[1] = c->robot[1];
-    c->velocity[0] = 1 + even(i, 0);
-}
-
-static void block_at_rest(const stance_scene *scene, int i, stance_case *c)
-{
-    (void)scene;
-    c->robot[1] = 0.6 * even(i, 0); /* arctan 0.8 = 0.67 */
-}
-
-static void block_sliding(const stance_scene *scene, int i, stance_case *c)
-{
-    (void)scene;
-    c->friction = 0.3;
-    c->robot[1] = 0.5 + 0.5 * even(i, 0);
-}
-
-static void rod_flight(const stance_scene *scene, int i, stance_case *c)
-{
-    (void)scene;
-    c->position[1] = 1000;
-    c->velocity[2] = 8 * even(i, 0) - 4;
-}
-
-/* Upright on an end but for a hundredth: it tilts about that end for more than a second. */
-static void rod_on_one_end(const stance_scene *scene, int i, stance_case *c)
-{
-    double gap[STANCE_MAX_CONTACTS];
-    c->position[2] = 1.5707963267948966 + 0.02 * even(i, 0) - 0.01;
-    scene->gaps(c->robot, c->position, gap);
-    c->position[1] -= gap[0];
-}
-
-static void rod_on_two_ends(const stance_scene *scene, int i, stance_case *c)
-{
-    (void)scene;
-    c->friction = 0.05;
-    c->position[1] = c->position[2] = 0;
-    c->velocity[0] = 1 + even(i, 0);
-}
-
-/* The paper's balance controller at its equilibrium. */
-static bool biped_balance(const stance_scene *scene, stance_case *c)
-{
-    const stance_equilibrium_choice choice = {0, {-0.41, NAN, 0.82}, false};
-    static const double re[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6}, im[6] = {0};
+    enum { STATES = 2 * STANCE_MAX_POSTURE };
+    const int n = 2 * scene->postures, m = scene->actuators;
     stance_equilibrium equilibrium;
-    double A[36], B[12];
-    if (scene->equilibrium(c->robot, &choice, &equilibrium, NULL) != STANCE_OK ||
+    double A[STATES * STATES], B[STATES * STANCE_MAX_ACTUATORS];
+    double re[STATES], im[STATES] = {0}, K[STANCE_MAX_ACTUATORS * STATES];
+    for (int i = 0; i < n; i++)
+        re[i] = -3 - 0.3 * i;
+    if (scene->equilibrium(c->robot, choice, &equilibrium, NULL) != STANCE_OK ||
         scene->linearise(c->robot, &equilibrium, A, B) != STANCE_OK ||
-        stance_place(6, 2, A, B, re, im, &c->near.gain[0][0], NULL, NULL, NULL) != STANCE_OK)
+        stance_place(n, m, A, B, re, im, K, NULL, NULL, NULL) != STANCE_OK)
         return false;
     memcpy(c->position, equilibrium.position, sizeof c->position);
     memcpy(c->near.feedforward, equilibrium.torque, sizeof c->near.feedforward);
+    for (int i = 0; i < m; i++)
+        memcpy(c->near.gain[i], &K[i * n], (size_t)n * sizeof *K);
     for (int k = 0; k < scene->postures; k++)
         c->near.target[k] = equilibrium.position[scene->posture[k]];
-    c->torque_limit = 10;
     c->has_target = true;
     return true;
 }
 
-static void biped_flight(const stance_scene *scene, int i, stance_case *c)
-{
-    (void)scene;
-    c->position[1] += 1000;
-    for (int k = 2; k < 5; k++)
-        c->velocity[k] = 4 * even(i, k % 2) - 2;
-}
-
-static void biped_on_one_foot(const stance_scene *scene, int i, stance_case *c)
-{
-    c->contacts = 1;
-    c->position[2] += -0.09 + 0.1 * even(i, 0);
-    scene->stand(c->robot, 0, c->position, c->velocity);
-}
-
-/* The legs held apart. */
-static bool biped_servo(const stance_scene *scene, stance_case *c)
-{
-    const double leg = 0.5;
-    (void)scene;
-    c->torque_limit = 100;
-    for (int k = 0; k < 2; k++) {
-        c->near.gain[k][1 + k] = 200, c->near.gain[k][4 + k] = 10;
-        c->near.target[1 + k] = k ? -leg : leg;
-        c->position[3 + k] = c->near.target[1 + k];
-    }
-    return true;
-}
-
-static void biped_on_two_feet(const stance_scene *scene, int i, stance_case *c)
-{
-    c->position[2] = -0.02 * even(i, 0); /* the other foot up to a centimetre high */
-    scene->stand(c->robot, 0, c->position, c->velocity);
-}
-
-static const struct regime {
-    const char *scene, *name;
-    regime_maker *make;
-    regime_controller *control; /* NULL: none */
-} regimes[] = {
-    {"ball", "flight", ball_flight, NULL},
-    {"ball", "sliding", ball_sliding, NULL},
-    {"block", "at rest", block_at_rest, NULL},
-    {"block", "sliding", block_sliding, NULL},
-    {"rod", "flight", rod_flight, NULL},
-    {"rod", "one end", rod_on_one_end, NULL},
-    {"rod", "two ends", rod_on_two_ends, NULL},
-    {"biped", "flight", biped_flight, biped_balance},
-    {"biped", "one foot", biped_on_one_foot, biped_balance},
-    {"biped", "two feet", biped_on_two_feet, biped_servo},
-};
-enum { REGIMES = sizeof regimes / sizeof regimes[0] };
-
-const char *bench_regime(const stance_scene *scene, int index)
-{
-    for (int r = 0; r < REGIMES; r++)
-        if (strcmp(regimes[r].scene, scene->name) == 0 && index-- == 0)
-            return regimes[r].name;
-    return NULL;
-}
-
 bool bench_cases(const stance_scene *scene, const char *regime, stance_case *cases, int count)
 {
+    const stance_workload *workload = scene->workload;
+    while (workload->name && strcmp(workload->name, regime) != 0)
+        workload++;
     stance_case base = {.friction = 0.8,
                         .contacts = (1U << scene->contacts) - 1,
                         .torque_limit = INFINITY,
@@ -174,15 +63,12 @@ bool bench_cases(const stance_scene *scene, const char *regime, stance_case *cas
                         .fall_height = -1e9 /* never */};
     for (int k = 0; k < scene->robot_count; k++)
         base.robot[k] = scene->robot[k].fallback;
-    int r = 0;
-    while (r < REGIMES &&
-           (strcmp(regimes[r].scene, scene->name) != 0 || strcmp(regimes[r].name, regime) != 0))
-        r++;
-    if (r == REGIMES || (regimes[r].control && !regimes[r].control(scene, &base)))
+    if (!workload->name || (workload->balance && !balance(scene, workload->balance, &base)))
         return false;
     for (int i = 0; i < count; i++) {
         cases[i] = base;
-        regimes[r].make(scene, i, &cases[i]);
+        workload->begin((double[2]){even(i, 0.6180339887498949), even(i, 0.7548776662466927)},
+                        &cases[i]);
     }
     return true;
 }

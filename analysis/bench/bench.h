@@ -1,11 +1,7 @@
 /* bench.h - what all speed benchmarks share: workloads, a clock, medians and rows of CSV.
  *
  * A workload is a scene in a regime: cases of one second in steps of 1 ms that stay in the regime,
- * spread evenly over some range of starts. Those of the biped have the default robot:
- *
- *   flight    nothing near the ground, the joints turning
- *   one foot  the balance of section 3.2 inside its domain, torques held for 1 ms
- *   two feet  standing, the legs held by a sampled servo
+ * spread evenly over some range of starts. The scene says which; torques are held for 1 ms.
  */
 #ifndef STANCE_BENCH_BENCH_H
 #define STANCE_BENCH_BENCH_H
@@ -14,10 +10,8 @@
 
 #include <stdio.h>
 
-/* Name of a scene's regime, in order; NULL past the last. */
-const char *bench_regime(const stance_scene *scene, int index);
 /* The workload's cases, cases[count]: the first n of them are as evenly spread as all. False: there
- * is no such regime, or no controller for it. */
+ * is no such regime, or no gains for it. */
 bool bench_cases(const stance_scene *scene, const char *regime, stance_case *cases, int count);
 
 /* Seconds that this process has computed: what else runs on the machine takes no part in them. */

@@ -14,11 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-extern const struct command command_bench; /* below */
-
-/* `stance bench`, below, and `stance bench accuracy`, `failure`, `schedule` and `plot`. */
-extern const struct command command_bench, command_accuracy, command_failure, command_schedule,
-    command_speed;
+/* `stance bench`, below, and `stance bench accuracy`, `failure` and `plot`. */
+extern const struct command command_bench, command_accuracy, command_failure, command_speed;
 
 enum { MOST_CASES = 512, FEWEST_CASES = 16, MOST_REPEATS = 99, MOST_KERNELS = 64 };
 static const double wanted_time = 0.02; /* s, of one measurement */
@@ -196,14 +193,13 @@ static int bench(const struct selection *what)
                instruction_set(), "scene", "regime", "method", "isa", "lanes", "ns / step",
                "lowest", "highest", "ns / sim. s", "iterations", "x scalar");
     for (const stance_scene *const *scene = stance_scenes(); *scene; scene++) {
-        const char *regime;
         if (what->scene && strcmp(what->scene, (*scene)->name) != 0)
             continue;
-        for (int r = 0; (regime = bench_regime(*scene, r)) != NULL; r++) {
-            if (what->regime && strcmp(what->regime, regime) != 0)
+        for (const stance_workload *w = (*scene)->workload; w->name; w++) {
+            if (what->regime && strcmp(what->regime, w->name) != 0)
                 continue;
             any = true;
-            if (!bench_workload(what, *scene, regime))
+            if (!bench_workload(what, *scene, w->name))
                 return EXIT_CASES_FAILED;
         }
     }
@@ -237,8 +233,6 @@ static int run(int argc, char **argv)
         return command_accuracy.run(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "failure") == 0)
         return command_failure.run(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "schedule") == 0)
-        return command_schedule.run(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "plot") == 0)
         return command_speed.run(argc - 1, argv + 1);
     struct selection what = {.repeats = 5};
@@ -299,8 +293,8 @@ const struct command command_bench = {
     "of them run once more to warm up.\n"
     "\n"
     "`make bench` measures all of this, the whole program and other engines, and draws it with\n"
-    "`stance bench plot`. `stance bench accuracy -h`, `failure -h` and `schedule -h` tell of the\n"
-    "studies of error against cost, of where methods fail, and of jobs on thousands of ranks.\n"
+    "`stance bench plot`. `stance bench accuracy -h` and `failure -h` tell of the studies of\n"
+    "error against cost and of where methods fail.\n"
     "\n"
     "--csv: columns as in results/bench.csv.\n"
     "--json: a list of objects with keys scene, regime, method, isa, lanes, ns_per_step, ns_min,\n"

@@ -76,12 +76,12 @@ bool failure_make(struct failure *f, const struct results *r, stance_message *me
 void failure_free(struct failure *f);
 
 /* The line of theory that goes with a scenario, *line zero where none is known:
- * - axes method.step and controller.kp of a biped that begins in free flight with its legs held by
- *   a servo that acts continuously: |R(h lambda)| = 1 of the classical Runge-Kutta formula;
+ * - axes method.step and controller.kp of a robot that begins in free flight with its joints held
+ *   by a servo that acts continuously: |R(h lambda)| = 1 of the classical Runge-Kutta formula;
  * - axis controller.sample_time of a state feedback: T*, where Ad(T) - Bd(T) K leaves the unit
  *   circle;
- * - axis ground.friction of a rod that begins sliding on an end: where no single contact force
- *   fits the accelerations (Painleve). */
+ * - axis ground.friction where a contact begins sliding: where no single contact force fits the
+ *   accelerations (Painleve). */
 bool failure_theory(struct failure_line *line, const struct scenario *s, stance_message *message);
 
 /* DIRECTORY/STEM.svg and .png: a map for each row. DIRECTORY/STEM-energy: the energy gained. */

@@ -1,19 +1,22 @@
 /* failure_theory.c - where theory says that a step is too long, a controller too slow, or a slide
  * without accelerations.
  *
- * Stability of the classical Runge-Kutta formula, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24, on legs
+ * Stability of the classical Runge-Kutta formula, R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24, on joints
  * held by a servo in free flight (Hairer and Wanner, Solving Ordinary Differential Equations II,
- * IV.2). With the hip's place eliminated the angles a = (theta, phi1, phi2) of the links have the
- * inertia J_ij = m_i l_i (delta_ij l_i - m_j l_j cos(a_i - a_j) / M), the trunk counted from above,
- * M the whole mass; the joint angles q = B^T a, phi_i = theta + q_i, feel the torques of the servo
- * alone, q'' = -S (kp q + kd q'), S = B^T J^-1 B. Each eigenvalue s of S gives two of
- * lambda^2 + kd s lambda + kp s = 0.
+ * IV.2). With S the actuated joints' part of the inverse inertia matrix, q'' = -S (kp q + kd q').
+ * Each eigenvalue s of S gives two of lambda^2 + kd s lambda + kp s = 0.
+ *
+ * Painleve: a contact with normal and tangential rows n, t of its Jacobian, that slides with sign s
+ * under full friction, feels the normal acceleration D lambda_N + free, D = n A^-1 (n - mu s t)'.
+ * Where D < 0 no single force fits.
  */
 #include "failure.h"
 
+#include "engine/control/design.h"
 #include "runner/plan/plan.h"
 
 #include <complex.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -46,53 +49,41 @@ static uint64_t case_at(const struct scenario *s, int axis, size_t i)
     return axis == 1 ? i * s->axis[2].count : i;
 }
 
-/* ---- the servo's legs in free flight ------------------------------------------------------- */
+/* ---- the servo's joints in free flight ----------------------------------------------------- */
 
-/* Eigenvalues of S, both real and positive. */
-static void servo_eigenvalues(const double *robot, const double *position, double eigenvalue[2])
+/* inverse[n][n] of the inertia matrix; false: there is none. */
+static bool invert_inertia(const stance_scene *scene, const stance_case *c, double *inverse)
 {
-    enum { LEG_LENGTH, TRUNK_LENGTH, FOOT_MASS, TRUNK_MASS, HIP_MASS };
-    const double m[3] = {robot[TRUNK_MASS], robot[FOOT_MASS], robot[FOOT_MASS]};
-    const double l[3] = {robot[TRUNK_LENGTH], robot[LEG_LENGTH], robot[LEG_LENGTH]};
-    const double total = robot[HIP_MASS] + m[0] + m[1] + m[2];
-    /* Legs point down at 0, the trunk up. */
-    const double angle[3] = {position[2] + acos(-1), position[2] + position[3],
-                             position[2] + position[4]};
-    double J[3][3], inverse[3][3], S[2][2];
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            J[i][j] = -m[i] * l[i] * m[j] * l[j] * cos(angle[i] - angle[j]) / total +
-                      (i == j ? m[i] * l[i] * l[i] : 0);
-        }
-    }
-    double determinant = 0;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            const int a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
-            inverse[i][j] = J[a][c] * J[b][d] - J[a][d] * J[b][c];
-        }
-        determinant +=
-            i == 0 ? J[0][0] * inverse[0][0] + J[0][1] * inverse[1][0] + J[0][2] * inverse[2][0]
-                   : 0;
-    }
-    for (int i = 0; i < 2; i++) {
-        for (int j = 0; j < 2; j++) {
-            S[i][j] =
-                (inverse[i + 1][j + 1] - inverse[0][j + 1] - inverse[i + 1][0] + inverse[0][0]) /
-                determinant;
-        }
-    }
-    const double mean = 0.5 * (S[0][0] + S[1][1]);
-    const double root = sqrt(fmax(0, mean * mean - (S[0][0] * S[1][1] - S[0][1] * S[1][0])));
-    eigenvalue[0] = mean - root;
-    eigenvalue[1] = mean + root;
+    const int n = scene->coordinates;
+    scene->inertia(c->robot, c->position, inverse);
+    if (LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', n, inverse, n) != 0 ||
+        LAPACKE_dpotri(LAPACK_ROW_MAJOR, 'L', n, inverse, n) != 0)
+        return false;
+    for (int i = 0; i < n; i++)
+        for (int j = i + 1; j < n; j++)
+            inverse[i * n + j] = inverse[j * n + i];
+    return true;
 }
 
-/* Largest |R(h lambda)| over the eigenvalues of the servo's legs. */
-static double runge_kutta_growth(const double eigenvalue[2], double kp, double kd, double h)
+/* Eigenvalues of S, smallest first. */
+static bool servo_eigenvalues(const stance_scene *scene, const stance_case *c, double *eigenvalue)
+{
+    const int n = scene->coordinates, m = scene->actuators;
+    double inverse[STANCE_MAX_COORDINATES * STANCE_MAX_COORDINATES];
+    double S[STANCE_MAX_ACTUATORS * STANCE_MAX_ACTUATORS];
+    if (m == 0 || !invert_inertia(scene, c, inverse))
+        return false;
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < m; j++)
+            S[i * m + j] = inverse[scene->actuated[i] * n + scene->actuated[j]];
+    return LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'L', m, S, m, eigenvalue) == 0;
+}
+
+/* Largest |R(h lambda)| over the n eigenvalues of S. */
+static double runge_kutta_growth(int n, const double *eigenvalue, double kp, double kd, double h)
 {
     double largest = 0;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 2 * n; k++) {
         const double s = eigenvalue[k / 2], sign = k % 2 ? 1 : -1;
         const double complex root = csqrt(kd * s * kd * s - 4 * kp * s);
         const double complex z = 0.5 * h * (-kd * s + sign * root);
@@ -103,20 +94,20 @@ static double runge_kutta_growth(const double eigenvalue[2], double kp, double k
 
 /* Smallest step at which the growth passes 1: the limit lies near 2.8 / |lambda|, and below a
  * quarter of that every formula of this kind is stable. */
-static double runge_kutta_limit(const double eigenvalue[2], double kp, double kd)
+static double runge_kutta_limit(int n, const double *eigenvalue, double kp, double kd)
 {
-    const double s = eigenvalue[1];
+    const double s = eigenvalue[n - 1];
     const double fastest = kd * s > 2 * sqrt(kp * s)
                                ? 0.5 * (kd * s + sqrt(kd * s * kd * s - 4 * kp * s))
                                : sqrt(kp * s);
     double low = 0.7 / fastest, high = low;
-    while (runge_kutta_growth(eigenvalue, kp, kd, high) <= 1 + 1e-12 && high * fastest < 10) {
+    while (runge_kutta_growth(n, eigenvalue, kp, kd, high) <= 1 + 1e-12 && high * fastest < 10) {
         low = high;
         high *= 1.01;
     }
     for (int i = 0; i < 60; i++) {
         const double middle = 0.5 * (low + high);
-        if (runge_kutta_growth(eigenvalue, kp, kd, middle) <= 1 + 1e-12)
+        if (runge_kutta_growth(n, eigenvalue, kp, kd, middle) <= 1 + 1e-12)
             low = middle;
         else
             high = middle;
@@ -136,11 +127,15 @@ static bool flies(const stance_scene *scene, const stance_case *c)
 
 static double servo_limit(const struct scenario *s, const stance_case *c)
 {
-    double eigenvalue[2];
-    if (!flies(s->scene, c))
+    const stance_scene *scene = s->scene;
+    double eigenvalue[STANCE_MAX_ACTUATORS];
+    if (!flies(scene, c) || !servo_eigenvalues(scene, c, eigenvalue))
         return NAN;
-    servo_eigenvalues(c->robot, c->position, eigenvalue);
-    return runge_kutta_limit(eigenvalue, c->near.gain[0][1], c->near.gain[0][4]);
+    int joint = 0; /* the place of the first actuated coordinate in the law's state */
+    while (scene->posture[joint] != scene->actuated[0])
+        joint++;
+    return runge_kutta_limit(scene->actuators, eigenvalue, c->near.gain[0][joint],
+                             c->near.gain[0][scene->postures + joint]);
 }
 
 /* ---- the sampled controller ----------------------------------------------------------------- */
@@ -169,22 +164,35 @@ static double critical_sample_time(const struct scenario *s, const struct scenar
 
 /* ---- Painleve ------------------------------------------------------------------------------- */
 
-/* Friction from which the slide of an end has no accelerations, see engine/scenes/rod.c:
- * 1 + p (cos^2 + mu s sin cos) = 0 with p = m L^2 / (4 I); INFINITY where there is none. */
+/* Friction from which some contact's slide has D < 0; INFINITY where there is none. */
 static double jamming_friction(const struct scenario *s, const stance_case *c)
 {
-    enum { LENGTH, MASS, INERTIA_RATIO, THETA = 2 };
+    const stance_scene *scene = s->scene;
+    const int n = scene->coordinates;
+    double inverse[STANCE_MAX_COORDINATES * STANCE_MAX_COORDINATES];
     double gap[STANCE_MAX_CONTACTS], point[2], speed[2], lowest = INFINITY;
-    const double p = 1 / (4 * c->robot[INERTIA_RATIO]);
-    s->scene->gaps(c->robot, c->position, gap);
-    for (int end = 0; end < s->scene->contacts; end++) {
-        s->scene->contact_point(c->robot, c->position, c->velocity, end, point, speed);
-        if (gap[end] > 1e-12 || speed[0] == 0)
+    if (!invert_inertia(scene, c, inverse))
+        return INFINITY;
+    scene->gaps(c->robot, c->position, gap);
+    for (int k = 0; k < scene->contacts; k++) {
+        scene->contact_point(c->robot, c->position, c->velocity, k, point, speed);
+        if (gap[k] > 1e-12 || speed[0] == 0)
             continue;
-        const double sine = sin(c->position[THETA]), cosine = cos(c->position[THETA]);
-        const double edge = (speed[0] > 0 ? 1 : -1) * sine * cosine;
-        if (edge < 0)
-            lowest = fmin((1 + p * cosine * cosine) / (-p * edge), lowest);
+        const double sign = speed[0] > 0 ? 1 : -1;
+        double row[2][STANCE_MAX_COORDINATES], normal = 0, tangential = 0;
+        for (int i = 0; i < n; i++) {
+            double unit[STANCE_MAX_COORDINATES] = {0};
+            unit[i] = 1;
+            scene->contact_point(c->robot, c->position, unit, k, point, speed);
+            row[0][i] = speed[1], row[1][i] = speed[0];
+        }
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < n; j++) {
+                normal += row[0][i] * inverse[i * n + j] * row[0][j];
+                tangential += row[0][i] * inverse[i * n + j] * row[1][j];
+            }
+        if (sign * tangential > 0)
+            lowest = fmin(normal / (sign * tangential), lowest);
     }
     return lowest;
 }
@@ -196,9 +204,8 @@ enum theory { NO_THEORY, SERVO, SAMPLED, PAINLEVE };
 static enum theory which_theory(const struct scenario *s, int *axis)
 {
     const struct scenario_values *base = &s->base;
-    if (strcmp(s->scene->name, "biped") == 0 && strcmp(scenario_law(base)->name, "hold") == 0 &&
-        base->sample_time == 0 && axis_of(s, "method.step") > 0 &&
-        axis_of(s, "controller.kp") > 0) {
+    if (strcmp(scenario_law(base)->name, "hold") == 0 && base->sample_time == 0 &&
+        axis_of(s, "method.step") > 0 && axis_of(s, "controller.kp") > 0) {
         *axis = axis_of(s, "controller.kp");
         return SERVO;
     }
@@ -206,7 +213,7 @@ static enum theory which_theory(const struct scenario *s, int *axis)
         *axis = 3 - axis_of(s, "controller.sample_time");
         return SAMPLED;
     }
-    if (strcmp(s->scene->name, "rod") == 0 && axis_of(s, "ground.friction") > 0) {
+    if (axis_of(s, "ground.friction") > 0) {
         *axis = 3 - axis_of(s, "ground.friction");
         return PAINLEVE;
     }
@@ -234,6 +241,10 @@ static bool make_line(struct failure_line *line, const struct scenario *s, enum 
                          : theory == SAMPLED ? critical_sample_time(s, &values, &c)
                                              : jamming_friction(s, &c);
     }
+    bool any = false;
+    for (size_t i = 0; line->value && i < n; i++)
+        any |= isfinite(line->value[i]);
+    line->axis = any ? line->axis : 0;
     return line->value != NULL;
 }
 

@@ -2,15 +2,13 @@
 #include "compare_labels.h"
 #include "runner/store/compare.h"
 
-#include "analysis/table/csv.h"
-#include "analysis/table/json.h"
+#include "analysis/table/table.h"
 #include "runner/base/command.h"
 #include "runner/base/sandbox.h"
 #include "runner/store/results_rows.h"
 
-#include <jansson.h>
+#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,9 +21,9 @@ static void place_text(const struct results *r, const struct compare_difference 
     char where[600] = "";
     if (difference->cases && !r->single && place->index < r->cases)
         results_case_text(r, place->index, where, sizeof where);
-    size_t used = (size_t)snprintf(
-        text, size, "%s %llu%s%s%s", difference->cases ? "case" : "element",
-        (unsigned long long)place->index, where[0] ? " (" : "", where, where[0] ? ")" : "");
+    size_t used =
+        (size_t)snprintf(text, size, "%s %" PRIu64 "%s%s%s", difference->cases ? "case" : "element",
+                         place->index, where[0] ? " (" : "", where, where[0] ? ")" : "");
     if (difference->several && used < size)
         snprintf(text + used, size - used, ", component %zu", place->component);
 }
@@ -43,7 +41,6 @@ static void print_largest(const struct results *r, const struct compare_differen
 static void print_difference(const struct results *r, const struct compare_difference *difference)
 {
     char where[800];
-    const char *what = difference->cases ? "case" : "element";
     if (strcmp(difference->reason, "values") != 0) {
         bool missing = strncmp(difference->reason, "only", 4) == 0;
         printf("%s: %s%s\n", difference->name, missing ? "" : "different ", difference->reason);
@@ -59,9 +56,8 @@ static void print_difference(const struct results *r, const struct compare_diffe
                difference->place[0].value[1]);
         return;
     }
-    printf("%s: %llu of %llu %s%s differ\n", difference->name,
-           (unsigned long long)difference->differing, (unsigned long long)difference->of, what,
-           difference->of == 1 ? "" : "s");
+    printf("%s: %" PRIu64 " of %" PRIu64 " %s%s differ\n", difference->name, difference->differing,
+           difference->of, difference->cases ? "case" : "element", difference->of == 1 ? "" : "s");
     for (int k = 0; k < difference->shown; k++) {
         const struct compare_place *place = &difference->place[k];
         place_text(r, difference, place, where, sizeof where);
@@ -71,116 +67,70 @@ static void print_difference(const struct results *r, const struct compare_diffe
         print_largest(r, difference);
 }
 
-/* Of a name that may not be UTF-8, which JSON asks for. */
-static json_t *json_name(const char *name)
-{
-    char *clean = strdup(name);
-    if (clean)
-        results_clean(clean);
-    json_t *text = clean ? json_string(clean) : NULL;
-    free(clean);
-    return text ? text : json_null();
-}
-
 /* Coordinates of a case as {path: value}. */
 static json_t *json_point(const struct results *r, uint64_t index)
 {
     json_t *at = json_object();
     size_t point[SCENARIO_MAX_AXES];
     results_point(r, index, point);
-    for (int a = 0; a < r->axes; a++)
-        json_object_set_new(at, r->axis[a].name, results_json_value(&r->axis[a], point[a]));
+    for (int a = 0; !r->single && a < r->axes; a++)
+        json_object_set_new(at, r->axis[a].name, table_value_json(as_place(&r->axis[a], point[a])));
     return at;
 }
 
 static json_t *json_place(const struct results *r, const struct compare_difference *difference,
                           const struct compare_place *place)
 {
-    json_t *entry = json_object(), *values = json_array();
-    const bool known = difference->cases && !r->single && place->index < r->cases;
-    json_object_set_new(entry, "index", json_integer((json_int_t)place->index));
-    json_object_set_new(entry, "component", json_integer((json_int_t)place->component));
-    json_object_set_new(entry, "at", known ? json_point(r, place->index) : json_object());
-    for (int f = 0; f < 2; f++)
-        json_array_append_new(values, json_string(place->value[f]));
-    json_object_set_new(entry, "values", values);
-    return entry;
+    const bool known = difference->cases && place->index < r->cases;
+    return TABLE_OBJECT({"index", as_whole(place->index)},
+                        {"component", as_whole(place->component)},
+                        {"at", as_tree(known ? json_point(r, place->index) : json_object())},
+                        {"values", as_tree(table_texts(place->value[0], place->value[1]))});
 }
 
-static json_t *json_places(const struct results *r, const struct compare_difference *difference)
+static void add_difference(struct table *t, const struct results *r,
+                           const struct compare_difference *difference)
 {
-    json_t *list = json_array();
+    const bool measured = difference->largest > 0;
+    const struct compare_place *place =
+        measured ? &difference->largest_place : &difference->place[0];
+    char where[800] = "";
+    json_t *first = json_array();
     for (int k = 0; k < difference->shown; k++)
-        json_array_append_new(list, json_place(r, difference, &difference->place[k]));
-    return list;
+        json_array_append_new(first, json_place(r, difference, &difference->place[k]));
+    if (measured || difference->shown > 0)
+        place_text(r, difference, place, where, sizeof where);
+    TABLE_VALUES(t, as_text(difference->name), as_text(difference->reason),
+                 as_truth(difference->cases), as_whole(difference->differing),
+                 as_whole(difference->of), as_tree(first),
+                 as_number(measured ? difference->largest : NAN),
+                 as_tree(measured ? json_place(r, difference, place) : NULL), as_text(where),
+                 as_text(place->value[0]), as_text(place->value[1]));
 }
 
-static json_t *json_files(const struct results r[2])
+static bool print_for_programs(const struct results r[2], const struct comparison *comparison,
+                               enum table_form form)
 {
-    json_t *files = json_array();
-    json_array_append_new(files, json_name(r[0].file));
-    json_array_append_new(files, json_name(r[1].file));
-    return files;
-}
-
-static bool print_json(const struct results r[2], const struct comparison *comparison)
-{
-    json_t *differences = json_array();
-    for (size_t i = 0; i < comparison->count; i++) {
-        const struct compare_difference *difference = &comparison->difference[i];
-        json_t *entry = json_object();
-        json_object_set_new(entry, "name", json_string(difference->name));
-        json_object_set_new(entry, "reason", json_string(difference->reason));
-        json_object_set_new(entry, "of_cases", json_boolean(difference->cases));
-        json_object_set_new(entry, "differing", json_integer((json_int_t)difference->differing));
-        json_object_set_new(entry, "of", json_integer((json_int_t)difference->of));
-        json_object_set_new(entry, "first", json_places(&r[0], difference));
-        json_object_set_new(entry, "largest",
-                            difference->largest > 0 && isfinite(difference->largest)
-                                ? json_real(difference->largest)
-                                : json_null());
-        json_object_set_new(entry, "largest_at",
-                            difference->largest > 0
-                                ? json_place(&r[0], difference, &difference->largest_place)
-                                : json_null());
-        json_array_append_new(differences, entry);
-    }
-    json_t *root = json_object();
-    json_object_set_new(root, "files", json_files(r));
-    json_object_set_new(root, "identical",
-                        json_boolean(comparison->count == 0 && !comparison->tolerances));
-    json_object_set_new(root, "equal", json_boolean(comparison->beyond == 0));
-    json_object_set_new(root, "differences", differences);
-    bool good = root && json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
-    json_decref(root);
-    putchar('\n');
+    struct table t = {0};
+    TABLE_COLUMNS(
+        &t, {.name = "name"}, {.name = "reason"}, {.name = "of_cases", .hidden = TABLE_NO_CSV},
+        {.name = "differing"}, {.name = "of"}, {.name = "first", .hidden = TABLE_NO_CSV},
+        {.name = "largest"}, {.name = "largest_at", .hidden = TABLE_NO_CSV},
+        {.name = "largest_case", .hidden = TABLE_NO_JSON},
+        {.name = "first", .hidden = TABLE_NO_JSON}, {.name = "second", .hidden = TABLE_NO_JSON});
+    for (size_t i = 0; i < comparison->count; i++)
+        add_difference(&t, &r[0], &comparison->difference[i]);
+    const bool same = comparison->count == 0 && !comparison->tolerances;
+    const bool good =
+        form == TABLE_AS_CSV
+            ? table_write_csv(&t, stdout)
+            : table_write_json(TABLE_OBJECT({"files", as_tree(table_texts(r[0].file, r[1].file))},
+                                            {"identical", as_truth(same)},
+                                            {"equal", as_truth(comparison->beyond == 0)},
+                                            {"differences", as_tree(table_json(&t))}),
+                               stdout);
+    table_free(&t);
     return good;
-}
-
-static void print_csv(const struct results r[2], const struct comparison *comparison)
-{
-    static const char *const head[] = {"name",    "reason",       "differing", "of",
-                                       "largest", "largest_case", "first",     "second"};
-    struct csv csv = {.file = stdout};
-    csv_row(&csv, head, sizeof head / sizeof head[0]);
-    for (size_t i = 0; i < comparison->count; i++) {
-        const struct compare_difference *difference = &comparison->difference[i];
-        const bool measured = difference->largest > 0;
-        const struct compare_place *place =
-            measured ? &difference->largest_place : &difference->place[0];
-        char where[800] = "";
-        if (measured || difference->shown > 0)
-            place_text(&r[0], difference, place, where, sizeof where);
-        csv_text(&csv, difference->name);
-        csv_text(&csv, difference->reason);
-        csv_number(&csv, (double)difference->differing);
-        csv_number(&csv, (double)difference->of);
-        csv_number(&csv, measured ? difference->largest : NAN);
-        csv_text(&csv, where);
-        csv_text(&csv, place->value[0]);
-        csv_text(&csv, place->value[1]);
-        csv_end_row(&csv);
-    }
 }
 
 static void print_text(const struct results r[2], const struct comparison *comparison)
@@ -216,19 +166,18 @@ static bool print_labels_json(const struct results r[2], const struct label_comp
     json_t *first = json_array();
     for (int k = 0; k < c->shown; k++) {
         const uint64_t i = c->place[k];
-        json_array_append_new(first, json_pack("{s:I, s:o, s:[s,s]}", "index", (json_int_t)i, "at",
-                                               r[0].single ? json_object() : json_point(&r[0], i),
-                                               "values", label_at(&r[0], i), label_at(&r[1], i)));
+        json_array_append_new(
+            first,
+            TABLE_OBJECT({"index", as_whole(i)}, {"at", as_tree(json_point(&r[0], i))},
+                         {"values", as_tree(table_texts(label_at(&r[0], i), label_at(&r[1], i)))}));
     }
-    json_t *root = json_pack("{s:o, s:I, s:I, s:f, s:o, s:o}", "files", json_files(r), "compared",
-                             (json_int_t)c->compared, "equal", (json_int_t)c->equal, "equal_share",
-                             equal_share(c), "farthest",
-                             c->farthest ? json_integer((json_int_t)c->farthest) : json_null(),
-                             "first", first);
-    bool good = root && json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
-    json_decref(root);
-    putchar('\n');
-    return good;
+    return table_write_json(
+        TABLE_OBJECT({"files", as_tree(table_texts(r[0].file, r[1].file))},
+                     {"compared", as_whole(c->compared)}, {"equal", as_whole(c->equal)},
+                     {"equal_share", as_number(equal_share(c))},
+                     {"farthest", c->farthest ? as_whole(c->farthest) : as_nothing(NULL)},
+                     {"first", as_tree(first)}),
+        stdout);
 }
 
 static void print_labels(const struct results r[2], const struct label_comparison *c)
@@ -236,20 +185,18 @@ static void print_labels(const struct results r[2], const struct label_compariso
     const uint64_t unequal = c->compared - c->equal;
     char where[600];
 
-    printf("labels: %llu of %llu equal (%.5g %%)\n", (unsigned long long)c->equal,
-           (unsigned long long)c->compared, 100 * equal_share(c));
+    printf("labels: %" PRIu64 " of %" PRIu64 " equal (%.5g %%)\n", c->equal, c->compared,
+           100 * equal_share(c));
     if (c->farthest > 0) {
-        printf("unequal: %llu, at most %llu cell%s from another label in %s\n",
-               (unsigned long long)unequal, (unsigned long long)c->farthest,
-               c->farthest == 1 ? "" : "s", r[0].file);
+        printf("unequal: %" PRIu64 ", at most %" PRIu64 " cell%s from another label in %s\n",
+               unequal, c->farthest, c->farthest == 1 ? "" : "s", r[0].file);
     } else if (unequal > 0) {
-        printf("unequal: %llu, and %s has no boundary\n", (unsigned long long)unequal, r[0].file);
+        printf("unequal: %" PRIu64 ", and %s has no boundary\n", unequal, r[0].file);
     }
     for (int k = 0; k < c->shown; k++) {
         results_case_text(&r[0], c->place[k], where, sizeof where);
-        printf("  case %llu%s%s%s: %s | %s\n", (unsigned long long)c->place[k],
-               where[0] ? " (" : "", where, where[0] ? ")" : "", label_at(&r[0], c->place[k]),
-               label_at(&r[1], c->place[k]));
+        printf("  case %" PRIu64 "%s%s%s: %s | %s\n", c->place[k], where[0] ? " (" : "", where,
+               where[0] ? ")" : "", label_at(&r[0], c->place[k]), label_at(&r[1], c->place[k]));
     }
 }
 
@@ -257,7 +204,8 @@ static void print_labels(const struct results r[2], const struct label_compariso
 
 struct request {
     const char *file[2];
-    bool json, csv, labels;
+    enum table_form form;
+    bool labels;
     const char **tolerance; /* as given */
     size_t tolerance_count;
 };
@@ -297,6 +245,13 @@ static bool is_flag(const struct results *r, const char *name)
     return flag;
 }
 
+static bool written(bool good)
+{
+    if (!good)
+        fputs("stance compare: the comparison could not be written\n", stderr);
+    return good;
+}
+
 static int compare_all(const struct results r[2], const struct request *request)
 {
     struct compare_tolerances tolerances = {.count = request->tolerance_count};
@@ -323,20 +278,17 @@ static int compare_all(const struct results r[2], const struct request *request)
         fprintf(stderr, "%s\n", message.text);
         return EXIT_IO;
     }
-    int code = comparison.beyond == 0 ? EXIT_DONE : EXIT_CASES_FAILED;
-    if (request->csv) {
-        print_csv(r, &comparison);
-    } else if (!request->json) {
+    const int code = comparison.beyond == 0 ? EXIT_DONE : EXIT_CASES_FAILED;
+    bool good = true;
+    if (request->form == TABLE_AS_TEXT)
         print_text(r, &comparison);
-    } else if (!print_json(r, &comparison)) {
-        fputs("stance compare: the comparison could not be written\n", stderr);
-        code = EXIT_IO;
-    }
+    else
+        good = print_for_programs(r, &comparison, request->form);
     compare_free(&comparison);
-    return code;
+    return written(good) ? code : EXIT_IO;
 }
 
-static int compare_only_labels(const struct results r[2], bool json)
+static int compare_only_labels(const struct results r[2], enum table_form form)
 {
     struct label_comparison comparison;
     stance_message message = {""};
@@ -345,13 +297,14 @@ static int compare_only_labels(const struct results r[2], bool json)
         fprintf(stderr, "%s\n", message.text);
         return EXIT_USAGE;
     }
-    if (!json) {
+    bool good = true;
+    if (form == TABLE_AS_TEXT)
         print_labels(r, &comparison);
-    } else if (!print_labels_json(r, &comparison)) {
-        fputs("stance compare: the comparison could not be written\n", stderr);
-        return EXIT_IO;
-    }
-    return comparison.equal == comparison.compared ? EXIT_DONE : EXIT_CASES_FAILED;
+    else
+        good = print_labels_json(r, &comparison);
+    return !written(good)                            ? EXIT_IO
+           : comparison.equal == comparison.compared ? EXIT_DONE
+                                                     : EXIT_CASES_FAILED;
 }
 
 /* Cases that do not verify would be left out as pending ones are. */
@@ -378,7 +331,7 @@ static int compare(void *context)
     }
     int code = EXIT_IO;
     if (!refuse_damage(&r[0]) && !refuse_damage(&r[1]))
-        code = request->labels ? compare_only_labels(r, request->json) : compare_all(r, request);
+        code = request->labels ? compare_only_labels(r, request->form) : compare_all(r, request);
     results_close(&r[0]);
     results_close(&r[1]);
     return code;
@@ -410,8 +363,8 @@ static int run(int argc, char **argv)
                             : "--labels goes with neither --tolerance nor --csv");
         return EXIT_USAGE;
     }
-    struct request request = {{files[0], files[1]}, json > 0,  csv > 0,
-                              labels > 0,           tolerance, tolerances};
+    struct request request = {
+        {files[0], files[1]}, table_form(json, csv), labels > 0, tolerance, tolerances};
     char names[2100];
     snprintf(names, sizeof names, "%s or %s", files[0], files[1]);
     return sandbox(compare, &request, names);

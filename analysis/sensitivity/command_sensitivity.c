@@ -14,11 +14,9 @@ extern const struct command command_sensitivity; /* below */
 
 enum { MOST_BY = SCENARIO_MAX_AXES, LEAST_RESAMPLES = 100, MOST_RESAMPLES = 100000 };
 
-enum output { OUTPUT_TEXT, OUTPUT_JSON, OUTPUT_CSV };
-
 struct asked {
     const char *file, *directory; /* directory NULL: no picture */
-    enum output output;
+    enum table_form form;
     struct sensitivity_request request;
 };
 
@@ -98,17 +96,7 @@ static bool report(const struct asked *asked, const struct sensitivity_study *st
                    stance_message *message)
 {
     char stem[400];
-    bool good = true;
-    switch (asked->output) {
-    case OUTPUT_JSON:
-        good = sensitivity_print_json(study);
-        break;
-    case OUTPUT_CSV:
-        sensitivity_print_csv(study);
-        break;
-    default:
-        sensitivity_print_text(study);
-    }
+    bool good = sensitivity_print(study, asked->form);
     if (!good) {
         snprintf(message->text, sizeof message->text,
                  "stance sensitivity: the result could not be written");
@@ -186,7 +174,7 @@ static int run(int argc, char **argv)
         return EXIT_USAGE;
     if (asked.directory && !gnuplot_directory(asked.directory))
         return EXIT_IO;
-    asked.output = json ? OUTPUT_JSON : csv ? OUTPUT_CSV : OUTPUT_TEXT;
+    asked.form = table_form(json, csv);
     return sandbox(work, &asked, asked.file);
 }
 

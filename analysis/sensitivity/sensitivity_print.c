@@ -1,14 +1,8 @@
 /* sensitivity_print.c - the sensitivity of a study as text, JSON and comma-separated values. */
 #include "sensitivity_study.h"
 
-#include "analysis/table/csv.h"
-#include "analysis/table/json.h"
-
+#include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-enum { INTERVAL = 24 }; /* columns of an interval */
 
 static bool is_sobol(const struct sensitivity_study *study)
 {
@@ -36,6 +30,66 @@ static const char *blocks_word(const struct sensitivity_study *study)
     return is_sobol(study) ? "blocks" : is_morris(study) ? "trajectories" : "points";
 }
 
+/* ---- the table ---------------------------------------------------------------------------- */
+
+static json_t *paths_json(const struct sensitivity_study *study, size_t factor)
+{
+    json_t *paths = json_array();
+    const char *path;
+    for (int k = 0; (path = sensitivity_factor_path(study, factor, k)); k++)
+        table_append(paths, as_text(path));
+    return paths;
+}
+
+/* Indices are shares, with as many decimals as matter; effects have a unit. */
+static void add_measure(struct table *t, const char *word, const struct sensitivity_value *v,
+                        bool share)
+{
+    char low[32], high[32];
+    snprintf(low, sizeof low, "%s_low", word);
+    snprintf(high, sizeof high, "%s_high", word);
+    TABLE_FACTS(
+        t,
+        {{word, word, share ? "%.4f" : "%.4g", .width = 10, .group = word, .key = "estimate"},
+         as_number(v->estimate)},
+        {{low, "interval", share ? "(%.4f" : "(%.4g", .width = 24, .empty = "", .group = word,
+          .key = "low"},
+         as_number(v->low)},
+        {{high, .format = share ? "%.4f)" : "%.4g)", .joined = true, .before = " ... ",
+          .group = word, .key = "high"},
+         as_number(v->high)});
+}
+
+/* A row for each factor, the most important first. */
+static void add_factors(struct table *t, const struct sensitivity_study *study,
+                        const struct sensitivity_table *table, enum table_form form)
+{
+    int kept[SCENARIO_MAX_AXES], count = 0;
+    char name[128], response[200];
+    for (int a = 0; a < study->r->axes; a++)
+        if (study->response.kept[a])
+            kept[count++] = a;
+    sensitivity_response_text(study, response, sizeof response);
+    for (size_t i = 0; i < study->factors; i++) {
+        const size_t j = study->order[i];
+        if (form == TABLE_AS_CSV)
+            table_axes(t, study->r, kept, count, table->response->point);
+        sensitivity_factor_text(study, j, name, sizeof name);
+        TABLE_FACTS(t, {{"factor", .key = "path"}, as_text(sensitivity_factor_path(study, j, 0))},
+                    {{"label", "factor", .hidden = TABLE_VIEW_ONLY, .width = -1}, as_text(name)},
+                    {{"paths", .hidden = TABLE_NO_CSV}, as_tree(paths_json(study, j))});
+        for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++)
+            if (table->s.measure[m])
+                add_measure(t, sensitivity_words[m], &table->s.measure[m][j], !is_morris(study));
+        TABLE_FACTS(t, {{"response", .hidden = TABLE_NO_JSON}, as_text(response)},
+                    {{"failed_cases", .hidden = TABLE_NO_JSON}, as_text(policy_word(study))},
+                    {{"blocks", .hidden = TABLE_NO_JSON}, as_whole(table->s.blocks)},
+                    {{"mean", .hidden = TABLE_NO_JSON}, as_number(table->s.mean)},
+                    {{"deviation", .hidden = TABLE_NO_JSON}, as_number(table->s.deviation)});
+        table_end_row(t);
+    }
+}
+
 /* ---- text --------------------------------------------------------------------------------- */
 
 static void print_head(const struct sensitivity_study *study)
@@ -47,7 +101,7 @@ static void print_head(const struct sensitivity_study *study)
 
     printf("%s\n%s, %zu factors: ", r->title[0] ? r->title : r->name, doe_words[d->method],
            study->factors);
-    printf("%llu %s", (unsigned long long)d->count, blocks_word(study));
+    printf("%" PRIu64 " %s", (uint64_t)d->count, blocks_word(study));
     if (study->block > 1)
         printf(" of %zu points", study->block);
     sensitivity_response_text(study, text, sizeof text);
@@ -63,14 +117,14 @@ static void print_head(const struct sensitivity_study *study)
         }
     }
     if (over > 1)
-        printf(": %llu cases", (unsigned long long)over);
+        printf(": %" PRIu64 " cases", over);
     for (size_t t = 0; t < study->response.tables; t++)
         failed += study->response.table[t].failed;
     printf("\nfailed cases: ");
     if (failed == 0) {
         puts("none");
     } else {
-        printf("%llu of %llu, %s\n", (unsigned long long)failed, (unsigned long long)r->cases,
+        printf("%" PRIu64 " of %" PRIu64 ", %s\n", failed, r->cases,
                study->request.fallen ? "counted as fallen"
                                      : "left out; a point without another case takes its "
                                        "block or effects along");
@@ -83,45 +137,6 @@ static void print_head(const struct sensitivity_study *study)
     } else {
         printf("from %zu quarters of the points%s\n", study->request.bootstrap.resamples,
                study->design->method == DOE_SOBOL ? ", conservative" : "");
-    }
-}
-
-/* Indices are shares, with as many decimals as matter; effects have a unit. */
-static void print_value(const struct sensitivity_value *v, bool share)
-{
-    char interval[64] = "";
-    if (isnan(v->estimate)) {
-        printf(" %10s %*s", "-", INTERVAL, "");
-        return;
-    }
-    if (!isnan(v->low)) {
-        snprintf(interval, sizeof interval, share ? "(%.4f ... %.4f)" : "(%.4g ... %.4g)", v->low,
-                 v->high);
-    }
-    printf(share ? " %10.4f %*s" : " %10.4g %*s", v->estimate, INTERVAL, interval);
-}
-
-static void print_factors(const struct sensitivity_study *study,
-                          const struct sensitivity_table *table)
-{
-    char name[128];
-    int width = 6;
-    for (size_t j = 0; j < study->factors; j++) {
-        sensitivity_factor_text(study, j, name, sizeof name);
-        width = (int)strlen(name) > width ? (int)strlen(name) : width;
-    }
-    printf("  %-*s", width, "factor");
-    for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++)
-        if (table->s.measure[m])
-            printf(" %10s %*s", sensitivity_words[m], INTERVAL, "interval");
-    putchar('\n');
-    for (size_t i = 0; i < study->factors; i++) {
-        sensitivity_factor_text(study, study->order[i], name, sizeof name);
-        printf("  %-*s", width, name);
-        for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++)
-            if (table->s.measure[m])
-                print_value(&table->s.measure[m][study->order[i]], !is_morris(study));
-        putchar('\n');
     }
 }
 
@@ -215,17 +230,22 @@ static void print_policies(const struct sensitivity_study *study,
     }
 }
 
-void sensitivity_print_text(const struct sensitivity_study *study)
+static bool print_text(const struct sensitivity_study *study)
 {
     char at[400];
+    bool good = true;
     print_head(study);
-    for (size_t t = 0; t < study->response.tables; t++) {
-        const struct sensitivity_table *table = &study->table[t];
-        sensitivity_table_text(study, t, at, sizeof at);
+    for (size_t k = 0; k < study->response.tables; k++) {
+        const struct sensitivity_table *table = &study->table[k];
+        sensitivity_table_text(study, k, at, sizeof at);
         printf("\n%s%s", at, at[0] ? "\n" : "");
         print_counts(study, table);
         if (table->s.blocks > 1 && table->s.deviation > 0) {
-            print_factors(study, table);
+            struct table t = {0};
+            add_factors(&t, study, table, TABLE_AS_TEXT);
+            good =
+                table_write_text(&t, stdout, "label first/ total/ mu/ mu_star/ sigma/", 0) && good;
+            table_free(&t);
             if (table->s.measure[SENSITIVITY_FIRST])
                 print_sum(table);
             if (table->s.second)
@@ -234,55 +254,27 @@ void sensitivity_print_text(const struct sensitivity_study *study)
         }
         print_policies(study, table);
     }
+    return good;
 }
 
 /* ---- JSON --------------------------------------------------------------------------------- */
 
 static json_t *value_json(const struct sensitivity_value *v)
 {
-    return json_pack("{s:o, s:o, s:o}", "estimate", results_json_number(v->estimate), "low",
-                     results_json_number(v->low), "high", results_json_number(v->high));
+    return TABLE_OBJECT({"estimate", as_number(v->estimate)}, {"low", as_number(v->low)},
+                        {"high", as_number(v->high)});
 }
 
 static json_t *at_json(const struct sensitivity_study *study, const struct sensitivity_table *table)
 {
     json_t *at = json_object();
     for (int a = 0; a < study->r->axes; a++) {
-        if (study->response.kept[a]) {
-            const struct results_axis *axis = &study->r->axis[a];
-            const size_t i = table->response->point[a];
-            json_object_set_new(at, axis->name, results_json_value(axis, i));
-        }
+        const struct results_axis *axis = &study->r->axis[a];
+        if (study->response.kept[a])
+            json_object_set_new(at, axis->name,
+                                table_value_json(as_place(axis, table->response->point[a])));
     }
     return at;
-}
-
-static json_t *paths_json(const struct sensitivity_study *study, size_t factor)
-{
-    json_t *paths = json_array();
-    const char *path;
-    for (int k = 0; (path = sensitivity_factor_path(study, factor, k)); k++)
-        json_array_append_new(paths, json_string(path));
-    return paths;
-}
-
-static json_t *factors_json(const struct sensitivity_study *study,
-                            const struct sensitivity_table *table)
-{
-    json_t *list = json_array();
-    for (size_t i = 0; i < study->factors; i++) {
-        const size_t j = study->order[i];
-        json_t *entry = json_pack("{s:s, s:o}", "path", sensitivity_factor_path(study, j, 0),
-                                  "paths", paths_json(study, j));
-        for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++) {
-            if (table->s.measure[m]) {
-                json_object_set_new(entry, sensitivity_words[m],
-                                    value_json(&table->s.measure[m][j]));
-            }
-        }
-        json_array_append_new(list, entry);
-    }
-    return list;
 }
 
 static json_t *pairs_json(const struct sensitivity_study *study,
@@ -294,114 +286,78 @@ static json_t *pairs_json(const struct sensitivity_study *study,
         for (size_t j = i + 1; j < k; j++) {
             json_t *entry = value_json(&table->s.second[i * k + j]);
             json_object_set_new(entry, "paths",
-                                json_pack("[s, s]", sensitivity_factor_path(study, i, 0),
-                                          sensitivity_factor_path(study, j, 0)));
+                                table_texts(sensitivity_factor_path(study, i, 0),
+                                            sensitivity_factor_path(study, j, 0)));
             json_array_append_new(list, entry);
         }
     }
     return list;
 }
 
-static json_t *table_json(const struct sensitivity_study *study,
-                          const struct sensitivity_table *table)
+static json_t *table_of(const struct sensitivity_study *study,
+                        const struct sensitivity_table *table)
 {
     const struct response_table *response = table->response;
-    json_t *object = json_pack(
-        "{s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:b}", "at", at_json(study, table),
-        "cases", (json_int_t)response->cases, "failed", (json_int_t)response->failed, "pending",
-        (json_int_t)response->pending, "blocks", (json_int_t)table->blocks, "used",
-        (json_int_t)table->s.blocks, "incomplete", (json_int_t)table->waiting,
-        is_morris(study) ? "lost_effects" : "lost", (json_int_t)table->lost, "mean",
-        results_json_number(table->s.mean), "deviation", results_json_number(table->s.deviation),
-        "factors", factors_json(study, table), "policies_differ", table->moved);
+    struct table factors = {0};
+    add_factors(&factors, study, table, TABLE_AS_JSON);
+    json_t *object = TABLE_OBJECT(
+        {"at", as_tree(at_json(study, table))}, {"cases", as_whole(response->cases)},
+        {"failed", as_whole(response->failed)}, {"pending", as_whole(response->pending)},
+        {"blocks", as_whole(table->blocks)}, {"used", as_whole(table->s.blocks)},
+        {"incomplete", as_whole(table->waiting)},
+        {is_morris(study) ? "lost_effects" : "lost", as_whole(table->lost)},
+        {"mean", as_number(table->s.mean)}, {"deviation", as_number(table->s.deviation)},
+        {"factors", as_tree(table_json(&factors))}, {"policies_differ", as_truth(table->moved)});
     if (table->s.measure[SENSITIVITY_FIRST])
         json_object_set_new(object, "first_sum", value_json(&table->s.first_sum));
     if (table->s.second)
         json_object_set_new(object, "pairs", pairs_json(study, table));
+    table_free(&factors);
     return object;
 }
 
-/* Intervals of saltelli and morris draw nothing. */
-static json_t *drawn_json(const struct sensitivity_study *study, uint64_t number)
-{
-    return is_sobol(study) || is_morris(study) ? json_null() : json_integer((json_int_t)number);
-}
-
-bool sensitivity_print_json(const struct sensitivity_study *study)
+static bool print_json(const struct sensitivity_study *study)
 {
     const struct sensitivity_request *request = &study->request;
+    const bool drawn = !is_sobol(study) && !is_morris(study); /* intervals of these draw nothing */
     json_t *tables = json_array(), *over = json_array();
     char text[200];
-    for (size_t t = 0; t < study->response.tables; t++)
-        json_array_append_new(tables, table_json(study, &study->table[t]));
+    for (size_t k = 0; k < study->response.tables; k++)
+        json_array_append_new(tables, table_of(study, &study->table[k]));
     for (int a = 0; a < study->r->sample; a++)
         if (!study->response.kept[a])
-            json_array_append_new(over, json_string(study->r->axis[a].name));
+            table_append(over, as_text(study->r->axis[a].name));
     sensitivity_response_text(study, text, sizeof text);
-    json_t *root = json_pack(
-        "{s:o, s:s, s:s, s:I, s:I, s:s, s:s?, s:s?, s:s, s:o, s:s, s:f, s:o, s:o, s:o}", "file",
-        json_string(study->r->file) ? json_string(study->r->file) : json_null(), "title",
-        study->r->title, "method", doe_words[study->design->method], "count",
-        (json_int_t)study->design->count, "block", (json_int_t)study->block, "response", text,
-        "answer", request->answer, "of",
-        request->of == RESULTS_KIND_COUNT ? NULL : results_kind_names[request->of], "unit",
-        request->unit, "over", over, "failed_cases", policy_word(study), "level",
-        request->bootstrap.level, "resamples", drawn_json(study, request->bootstrap.resamples),
-        "seed", drawn_json(study, request->bootstrap.seed), "tables", tables);
-    bool good = root && json_dumpf(root, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
-    json_decref(root);
-    putchar('\n');
-    return good;
+    return table_write_json(
+        TABLE_OBJECT(
+            {"file", as_text(study->r->file)}, {"title", as_text(study->r->title)},
+            {"method", as_text(doe_words[study->design->method])},
+            {"count", as_whole(study->design->count)}, {"block", as_whole(study->block)},
+            {"response", as_text(text)}, {"answer", as_text(request->answer)},
+            {"of",
+             as_text(request->of == RESULTS_KIND_COUNT ? NULL : results_kind_names[request->of])},
+            {"unit", as_text(request->unit)}, {"over", as_tree(over)},
+            {"failed_cases", as_text(policy_word(study))},
+            {"level", as_number(request->bootstrap.level)},
+            {"resamples", drawn ? as_whole(request->bootstrap.resamples) : as_nothing(NULL)},
+            {"seed", drawn ? as_whole(request->bootstrap.seed) : as_nothing(NULL)},
+            {"tables", as_tree(tables)}),
+        stdout);
 }
 
-/* ---- comma-separated values --------------------------------------------------------------- */
+/* ---- all forms ---------------------------------------------------------------------------- */
 
-void sensitivity_print_csv(const struct sensitivity_study *study)
+bool sensitivity_print(const struct sensitivity_study *study, enum table_form form)
 {
-    struct csv csv = {.file = stdout};
-    const struct results *r = study->r;
-    char text[200];
-
-    for (int a = 0; a < r->axes; a++)
-        if (study->response.kept[a])
-            csv_text(&csv, r->axis[a].name);
-    csv_text(&csv, "factor");
-    for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++) {
-        static const char *const ends[] = {"", "_low", "_high"};
-        for (int e = 0; study->table[0].s.measure[m] && e < 3; e++) {
-            snprintf(text, sizeof text, "%s%s", sensitivity_words[m], ends[e]);
-            csv_text(&csv, text);
-        }
-    }
-    csv_row(&csv, (const char *const[]){"response", "failed_cases", "blocks", "mean", "deviation"},
-            5);
-    sensitivity_response_text(study, text, sizeof text);
-    for (size_t t = 0; t < study->response.tables; t++) {
-        const struct sensitivity_table *table = &study->table[t];
-        for (size_t i = 0; i < study->factors; i++) {
-            const size_t j = study->order[i];
-            for (int a = 0; a < r->axes; a++) {
-                const size_t at = table->response->point[a];
-                if (study->response.kept[a] && r->axis[a].word)
-                    csv_text(&csv, r->axis[a].word[at]);
-                else if (study->response.kept[a])
-                    csv_number(&csv, r->axis[a].value[at]);
-            }
-            csv_text(&csv, sensitivity_factor_path(study, j, 0));
-            for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++) {
-                const struct sensitivity_value *v = table->s.measure[m];
-                if (v) {
-                    csv_number(&csv, v[j].estimate);
-                    csv_number(&csv, v[j].low);
-                    csv_number(&csv, v[j].high);
-                }
-            }
-            csv_text(&csv, text);
-            csv_text(&csv, policy_word(study));
-            csv_number(&csv, (double)table->s.blocks);
-            csv_number(&csv, table->s.mean);
-            csv_number(&csv, table->s.deviation);
-            csv_end_row(&csv);
-        }
-    }
+    struct table t = {0};
+    bool good = true;
+    if (form == TABLE_AS_TEXT)
+        return print_text(study);
+    if (form == TABLE_AS_JSON)
+        return print_json(study);
+    for (size_t k = 0; k < study->response.tables; k++)
+        add_factors(&t, study, &study->table[k], form);
+    good = table_write_csv(&t, stdout);
+    table_free(&t);
+    return good;
 }

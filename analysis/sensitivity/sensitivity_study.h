@@ -11,6 +11,8 @@
 #include "response.h"
 #include "sensitivity.h"
 
+#include "analysis/table/table.h"
+
 struct sensitivity_request {
     const char *answer;   /* NULL: the share of cases with the outcome */
     const char *unit;     /* of the answer, "": none */
@@ -64,10 +66,8 @@ void sensitivity_response_text(const struct sensitivity_study *study, char *text
 void sensitivity_table_text(const struct sensitivity_study *study, size_t table, char *text,
                             size_t size);
 
-/* The results as text, JSON (false: no memory, or output failed) and comma-separated values. */
-void sensitivity_print_text(const struct sensitivity_study *study);
-bool sensitivity_print_json(const struct sensitivity_study *study);
-void sensitivity_print_csv(const struct sensitivity_study *study);
+/* Prints the results; false: no memory, or the output failed. */
+bool sensitivity_print(const struct sensitivity_study *study, enum table_form form);
 /* DIRECTORY/STEM.svg and .png; prints their paths. */
 bool sensitivity_picture(const struct sensitivity_study *study, const char *directory,
                          const char *stem, stance_message *message);

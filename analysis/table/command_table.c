@@ -1,5 +1,5 @@
 /* command_table.c - `stance table FILE`: every case as a row of CSV, a block of rows at a time. */
-#include "csv.h"
+#include "table.h"
 
 #include "analysis/statistics/statistics.h"
 #include "runner/base/command.h"
@@ -31,9 +31,9 @@ struct parameter {
     double *value;
 };
 
-struct table {
+struct listing {
     const struct results *r;
-    struct csv csv;
+    struct table rows;
     size_t columns, parameters;
     struct results_column column[MOST_COLUMNS];
     double *block[MOST_COLUMNS]; /* [ROWS][width] */
@@ -44,8 +44,14 @@ struct table {
 
 /* ---- what there is ------------------------------------------------------------------------ */
 
+static bool no_memory(stance_message *message)
+{
+    snprintf(message->text, sizeof message->text, "stance table: not enough memory");
+    return false;
+}
+
 /* The answers that are stored, or those that are asked for. */
-static bool open_columns(struct table *t, const char *const *names, size_t count,
+static bool open_columns(struct listing *t, const char *const *names, size_t count,
                          stance_message *message)
 {
     for (size_t k = 0; k < count; k++) {
@@ -55,17 +61,15 @@ static bool open_columns(struct table *t, const char *const *names, size_t count
         if (column->id < 0)
             continue;
         t->block[t->columns++] = malloc(ROWS * column->width * sizeof(double));
-        if (!t->block[t->columns - 1]) {
-            snprintf(message->text, sizeof message->text, "stance table: not enough memory");
-            return false;
-        }
+        if (!t->block[t->columns - 1])
+            return no_memory(message);
     }
     return true;
 }
 
 /* Adds a path that varies together with the first one of an axis; of words, whose values are not
  * read, none. */
-static bool add_parameter(struct table *t, const char *path, int axis)
+static bool add_parameter(struct listing *t, const char *path, int axis)
 {
     const size_t count = t->r->axis[axis].count;
     struct parameter *parameter = &t->parameter[t->parameters];
@@ -82,7 +86,7 @@ static bool add_parameter(struct table *t, const char *path, int axis)
 }
 
 /* The further paths of the grid's axes, from the file's scenario. */
-static bool find_parameters(struct table *t, stance_message *message)
+static bool find_parameters(struct listing *t, stance_message *message)
 {
     const struct results *r = t->r;
     struct scenario *s = calloc(1, sizeof *s);
@@ -96,13 +100,12 @@ static bool find_parameters(struct table *t, stance_message *message)
         scenario_free(s);
     }
     free(s);
-    if (!good)
-        snprintf(message->text, sizeof message->text, "stance table: not enough memory");
-    return good;
+    return good || no_memory(message);
 }
 
-static void close_table(struct table *t)
+static void close_listing(struct listing *t)
 {
+    table_free(&t->rows);
     for (size_t k = 0; k < t->columns; k++) {
         results_column_close(&t->column[k]);
         free(t->block[k]);
@@ -114,76 +117,66 @@ static void close_table(struct table *t)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-static void put_head(struct table *t)
+static void add_column(struct table *rows, const char *name)
+{
+    TABLE_COLUMNS(rows, {.name = name});
+}
+
+static void add_columns(struct listing *t)
 {
     char states[SCENARIO_MAX_STATES][32], name[48];
     const size_t words = results_words(t->r, "state", states, SCENARIO_MAX_STATES);
-    csv_text(&t->csv, "case");
+    add_column(&t->rows, "case");
     for (int a = 0; !t->r->single && a < t->r->axes; a++)
-        csv_text(&t->csv, t->r->axis[a].name);
+        add_column(&t->rows, t->r->axis[a].name);
     for (size_t k = 0; k < t->parameters; k++)
-        csv_text(&t->csv, t->parameter[k].name);
+        add_column(&t->rows, t->parameter[k].name);
     for (int k = 0; k < t->r->varied; k++)
-        csv_text(&t->csv, t->r->vary[k].of.name);
+        add_column(&t->rows, t->r->vary[k].of.name);
     for (size_t k = 0; k < t->columns; k++) {
         const struct results_column *column = &t->column[k];
         for (size_t i = 0; i < column->width; i++) {
-            if (column->width == 1) {
-                csv_text(&t->csv, column->name);
-            } else if (i < words) {
+            if (i < words)
                 snprintf(name, sizeof name, "final_%s", states[i]);
-                csv_text(&t->csv, name);
-            } else {
+            else
                 snprintf(name, sizeof name, "final_%zu", i);
-                csv_text(&t->csv, name);
-            }
+            add_column(&t->rows, column->width == 1 ? column->name : name);
         }
     }
-    csv_end_row(&t->csv);
 }
 
 /* The word that a flag stands for, or its number. */
-static void put_flag(struct csv *csv, const char *words, double value)
+static void put_flag(struct table *rows, const char *words, double value)
 {
     char word[64];
     for (double k = 0; k < value && words; k++) {
         words = strchr(words, ' ');
         words = words ? words + 1 : NULL;
     }
-    if (!words) {
-        csv_number(csv, value);
-        return;
-    }
-    snprintf(word, sizeof word, "%.*s", (int)strcspn(words, " "), words);
-    csv_text(csv, word);
+    snprintf(word, sizeof word, "%.*s", words ? (int)strcspn(words, " ") : 0, words ? words : "");
+    TABLE_VALUES(rows, words ? as_text(word) : as_number(value));
 }
 
-static void put_point(struct table *t, uint64_t index)
+static void put_point(struct listing *t, uint64_t index)
 {
     const struct results *r = t->r;
     size_t point[SCENARIO_MAX_AXES];
     results_point(r, index, point);
-    csv_number(&t->csv, (double)(r->single ? r->index : index));
+    TABLE_VALUES(&t->rows, as_whole(r->single ? r->index : index));
     for (int a = 0; !r->single && a < r->axes; a++)
-        if (r->axis[a].word)
-            csv_text(&t->csv, r->axis[a].word[point[a]]);
-        else
-            csv_number(&t->csv, r->axis[a].value[point[a]]);
+        TABLE_VALUES(&t->rows, as_place(&r->axis[a], point[a]));
     for (size_t k = 0; k < t->parameters; k++)
-        csv_number(&t->csv, t->parameter[k].value[point[t->parameter[k].axis]]);
+        TABLE_VALUES(&t->rows, as_number(t->parameter[k].value[point[t->parameter[k].axis]]));
     for (int k = 0; k < r->varied; k++) {
         const struct results_varied *v = &r->vary[k];
         const double value = v->of.value[point[r->sample]];
-        if (v->word)
-            csv_text(&t->csv, v->word[(int)value]);
-        else
-            csv_number(&t->csv, value);
+        TABLE_VALUES(&t->rows, v->word ? as_text(v->word[(int)value]) : as_number(value));
     }
 }
 
 /* What stands in the row of a pending case means nothing, and counts of an inferred one say 0 where
  * there is no answer. */
-static bool says_something(const struct table *t, const struct results_column *column,
+static bool says_something(const struct listing *t, const struct results_column *column,
                            uint64_t index)
 {
     if (t->r->kind[index] == RESULTS_PENDING)
@@ -191,7 +184,7 @@ static bool says_something(const struct table *t, const struct results_column *c
     return column->words || !t->inferred || !t->inferred[index];
 }
 
-static void put_case(struct table *t, uint64_t first, size_t row)
+static void put_case(struct listing *t, uint64_t first, size_t row)
 {
     const uint8_t kind = t->r->kind[first + row];
     if (t->of && strcmp(t->of, results_kind_names[kind]) != 0)
@@ -202,28 +195,29 @@ static void put_case(struct table *t, uint64_t first, size_t row)
         for (size_t i = 0; i < column->width; i++) {
             const double value = t->block[k][row * column->width + i];
             if (!says_something(t, column, first + row))
-                csv_text(&t->csv, "");
+                TABLE_VALUES(&t->rows, as_nothing(NULL));
             else if (column->words)
-                put_flag(&t->csv, column->words, value);
+                put_flag(&t->rows, column->words, value);
             else
-                csv_number(&t->csv, value);
+                TABLE_VALUES(&t->rows, as_number(value));
         }
     }
-    csv_end_row(&t->csv);
 }
 
-static bool put_rows(struct table *t, stance_message *message)
+static bool put_rows(struct listing *t, stance_message *message)
 {
-    for (uint64_t first = 0; first < t->r->cases;) {
-        const size_t rows = results_block(t->r, first, ROWS);
+    for (uint64_t first = 0, rows; first < t->r->cases; first += rows) {
+        rows = t->r->cases - first < ROWS ? t->r->cases - first : ROWS;
         for (size_t k = 0; k < t->columns; k++)
             if (!results_column_read(t->r, &t->column[k], first, rows, t->block[k], message))
                 return false;
         for (size_t row = 0; row < rows; row++)
             put_case(t, first, row);
+        if (!table_write_csv(&t->rows, stdout) && !ferror(stdout)) /* that the program's end says */
+            return no_memory(message);
         if (ferror(stdout))
-            return true; /* said by the program's end */
-        first += rows;
+            return true;
+        table_clear(&t->rows);
     }
     return true;
 }
@@ -241,7 +235,7 @@ static int work(void *context)
     const struct request *request = context;
     struct results r;
     stance_message message = {""};
-    struct table *t = calloc(1, sizeof *t);
+    struct listing *t = calloc(1, sizeof *t);
     if (!t) {
         fputs("stance table: not enough memory\n", stderr);
         return EXIT_IO;
@@ -252,7 +246,6 @@ static int work(void *context)
         return EXIT_IO;
     }
     t->r = &r;
-    t->csv.file = stdout;
     t->of = request->of;
     uint64_t ignored;
     bool good = find_parameters(t, &message) &&
@@ -260,12 +253,12 @@ static int work(void *context)
                 open_columns(t, request->answers ? request->answer : answers,
                              request->answers ? request->answers : ANSWERS, &message);
     if (good) {
-        put_head(t);
+        add_columns(t);
         good = put_rows(t, &message);
     }
     if (!good)
         fprintf(stderr, "%s\n", message.text);
-    close_table(t);
+    close_listing(t);
     free(t);
     results_close(&r);
     return good ? EXIT_DONE : EXIT_IO;

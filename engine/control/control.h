@@ -7,7 +7,7 @@
 #ifndef STANCE_CONTROL_CONTROL_H
 #define STANCE_CONTROL_CONTROL_H
 
-#include "engine/stance.h"
+#include "design.h"
 
 #include <complex.h>
 #include <math.h>

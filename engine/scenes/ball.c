@@ -68,6 +68,30 @@ static double energy(const double *robot, const double *position, const double *
                           STANCE_GRAVITY * position[Z]);
 }
 
+static void inertia(const double *robot, const double *position, double *A)
+{
+    (void)position;
+    A[0] = A[3] = robot[MASS];
+    A[1] = A[2] = 0;
+}
+
+static void flight(const double even[2], stance_case *c)
+{
+    c->position[Z] = 1000;
+    c->velocity[X] = 4 * even[0] - 2;
+}
+
+/* Friction 0.05 takes 0.5 m/s in a second. */
+static void sliding(const double even[2], stance_case *c)
+{
+    c->friction = 0.05;
+    c->position[Z] = c->robot[RADIUS];
+    c->velocity[X] = 1 + even[0];
+}
+
+static const stance_workload workloads[] = {
+    {"flight", NULL, flight}, {"sliding", NULL, sliding}, {0}};
+
 const stance_scene stance_scene_ball = {
     .name = "ball",
     .text = "ball that does not spin, on level ground",
@@ -81,4 +105,6 @@ const stance_scene stance_scene_ball = {
     .contact_point = contact_point,
     .figure = figure,
     .energy = energy,
+    .inertia = inertia,
+    .workload = workloads,
 };

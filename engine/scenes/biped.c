@@ -483,6 +483,45 @@ static stance_error contact_force(const double *robot, const stance_equilibrium 
     return STANCE_OK;
 }
 
+/* ---- workloads ------------------------------------------------------------------------------- */
+
+/* The paper's balance controller at its equilibrium, torques within 10 N m. */
+static const stance_equilibrium_choice balanced = {0, {-0.41, NAN, 0.82}, false};
+
+static void flight(const double even[2], stance_case *c)
+{
+    c->torque_limit = 10;
+    c->position[Z] += 1000;
+    for (int k = THETA; k <= Q2; k++)
+        c->velocity[k] = 4 * even[k % 2] - 2;
+}
+
+static void one_foot(const double even[2], stance_case *c)
+{
+    c->torque_limit = 10;
+    c->contacts = 1;
+    c->position[THETA] += -0.09 + 0.1 * even[0];
+    stand(c->robot, 0, c->position, c->velocity);
+}
+
+/* The legs held apart; the other foot up to a centimetre high. */
+static void two_feet(const double even[2], stance_case *c)
+{
+    const double leg = 0.5;
+    c->torque_limit = 100;
+    for (int k = 0; k < TORQUES; k++) {
+        c->near.gain[k][1 + k] = 200, c->near.gain[k][4 + k] = 10;
+        c->near.target[1 + k] = c->position[Q1 + k] = k ? -leg : leg;
+    }
+    c->position[THETA] = -0.02 * even[0];
+    stand(c->robot, 0, c->position, c->velocity);
+}
+
+static const stance_workload workloads[] = {{"flight", &balanced, flight},
+                                            {"one foot", &balanced, one_foot},
+                                            {"two feet", NULL, two_feet},
+                                            {0}};
+
 const stance_scene stance_scene_biped = {
     .name = "biped",
     .text = "planar biped: trunk, hip and two legs with point feet, torques at the hip",
@@ -507,4 +546,5 @@ const stance_scene stance_scene_biped = {
     .equilibrium = equilibrium,
     .linearise = linearise,
     .contact_force = contact_force,
+    .workload = workloads,
 };

@@ -77,6 +77,27 @@ static double energy(const double *robot, const double *position, const double *
                           STANCE_GRAVITY * (cosine * position[Z] - sine * position[X]));
 }
 
+static void inertia(const double *robot, const double *position, double *A)
+{
+    (void)position;
+    A[0] = A[3] = robot[MASS];
+    A[1] = A[2] = 0;
+}
+
+static void at_rest(const double even[2], stance_case *c)
+{
+    c->robot[SLOPE] = 0.6 * even[0]; /* arctan 0.8 = 0.67 */
+}
+
+static void sliding(const double even[2], stance_case *c)
+{
+    c->friction = 0.3;
+    c->robot[SLOPE] = 0.5 + 0.5 * even[0];
+}
+
+static const stance_workload workloads[] = {
+    {"at rest", NULL, at_rest}, {"sliding", NULL, sliding}, {0}};
+
 const stance_scene stance_scene_block = {
     .name = "block",
     .text = "block that does not turn, on an inclined plane, pulled along it",
@@ -90,4 +111,6 @@ const stance_scene stance_scene_block = {
     .contact_point = contact_point,
     .figure = figure,
     .energy = energy,
+    .inertia = inertia,
+    .workload = workloads,
 };

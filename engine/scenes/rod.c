@@ -90,6 +90,39 @@ static double energy(const double *robot, const double *position, const double *
                           STANCE_GRAVITY * position[Z]);
 }
 
+static void inertia(const double *robot, const double *position, double *A)
+{
+    (void)position;
+    for (int i = 0; i < COORDINATES * COORDINATES; i++)
+        A[i] = 0;
+    A[0] = A[4] = robot[MASS];
+    A[8] = robot[INERTIA_RATIO] * robot[MASS] * (robot[LENGTH] * robot[LENGTH]);
+}
+
+static void flight(const double even[2], stance_case *c)
+{
+    c->position[Z] = 1000;
+    c->velocity[THETA] = 8 * even[0] - 4;
+}
+
+/* Upright on an end but for a hundredth: it tilts about that end for more than a second. */
+static void one_end(const double even[2], stance_case *c)
+{
+    double gap[ENDS];
+    c->position[THETA] = 1.5707963267948966 + 0.02 * even[0] - 0.01;
+    gaps(c->robot, c->position, gap);
+    c->position[Z] -= gap[0];
+}
+
+static void two_ends(const double even[2], stance_case *c)
+{
+    c->friction = 0.05;
+    c->velocity[X] = 1 + even[0];
+}
+
+static const stance_workload workloads[] = {
+    {"flight", NULL, flight}, {"one end", NULL, one_end}, {"two ends", NULL, two_ends}, {0}};
+
 const stance_scene stance_scene_rod = {
     .name = "rod",
     .text = "rigid rod, both ends of which may touch level ground",
@@ -103,4 +136,6 @@ const stance_scene stance_scene_rod = {
     .contact_point = contact_point,
     .figure = figure,
     .energy = energy,
+    .inertia = inertia,
+    .workload = workloads,
 };

@@ -10,7 +10,7 @@ static bool same_place(struct mark a, struct mark b)
     return a.set == b.set && a.line == b.line && a.column == b.column;
 }
 
-void problem_add(struct problems *problems, struct mark mark, const char *format, ...)
+void problem_record(struct problems *problems, struct mark mark, const char *format, ...)
 {
     if (problems_full(problems)) {
         problems->lost++;

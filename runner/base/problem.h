@@ -2,9 +2,9 @@
 #ifndef STANCE_BASE_PROBLEM_H
 #define STANCE_BASE_PROBLEM_H
 
-#include <stdbool.h>
+#include "message.h"
+
 #include <stddef.h>
-#include <stdio.h>
 
 /* Where something stands. `set` 0: in the file, at line and column (from 1, in characters);
  * k > 0: in the k-th --set, where the position means nothing. */
@@ -30,9 +30,15 @@ struct problems {
     struct problem list[PROBLEMS_KEPT];
 };
 
-/* Adds one line; what is said twice of the same place is kept once. */
-void problem_add(struct problems *problems, struct mark mark, const char *format, ...)
+/* Adds one line (problems, mark, format, ...); what is said twice of the same place is kept once.
+ * Returns false. */
+#define problem_add(...) (problem_record(__VA_ARGS__), as_false())
+void problem_record(struct problems *problems, struct mark mark, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+static inline bool problem_no_memory(struct problems *problems)
+{
+    return problem_add(problems, (struct mark){0}, "out of memory");
+}
 
 /* No more is kept: hints, which take time to find, need not be looked for. */
 static inline bool problems_full(const struct problems *problems)

@@ -5,6 +5,7 @@
 #include "instruction_set.h"
 
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -33,7 +34,7 @@ static int print_json(json_t *report)
 
 /* One line at the part of the scenario that is to blame: the initial equilibrium where that alone
  * already fails, else the controller. */
-static int complain(const struct scenario *s, const char *text)
+static int report_at(const struct scenario *s, const char *text)
 {
     struct scenario_values values = s->base;
     double model[STANCE_MAX_ROBOT];
@@ -58,15 +59,15 @@ static int design_decoupling(const struct scenario *s, bool json)
     stance_message message = {""};
 
     if (!design_pairs_compute(&pairs, s, &message))
-        return complain(s, message.text);
+        return report_at(s, message.text);
     if (json) {
         const int code = print_json(design_pairs_json(&pairs));
-        return code == EXIT_DONE && pairs.singular ? complain(s, pairs.complaint.text) : code;
+        return code == EXIT_DONE && pairs.singular ? report_at(s, pairs.complaint.text) : code;
     }
     printf("%s\n\n", s->title);
     design_pairs_print(&pairs);
     fflush(stdout);
-    return pairs.singular ? complain(s, pairs.complaint.text) : EXIT_DONE;
+    return pairs.singular ? report_at(s, pairs.complaint.text) : EXIT_DONE;
 }
 
 static int design(const struct scenario *s, bool json)
@@ -82,7 +83,7 @@ static int design(const struct scenario *s, bool json)
     if (scenario_law(&s->base) == stance_law_find("decoupling"))
         return design_decoupling(s, json);
     if (!design_compute(&report, s, &message))
-        return complain(s, message.text);
+        return report_at(s, message.text);
     if (json)
         return print_json(design_json(&report));
     design_print(&report);

@@ -5,14 +5,15 @@
 #include "design.h"
 #include "known_basin.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 static bool refuse(stance_message *message, const char *what, stance_error error)
 {
-    snprintf(message->text, sizeof message->text, "%s: %s", what, stance_error_text(error));
-    return false;
+    return complain(message, "%s: %s", what, stance_error_text(error));
 }
 
 /* ---- the model ------------------------------------------------------------------------------- */
@@ -35,11 +36,8 @@ static bool open_loop(struct design_report *r, stance_message *message)
 
     if (!resolve_equilibrium(scene, values, r->model, &r->equilibrium, message))
         return false;
-    if (!scene->linearise) {
-        snprintf(message->text, sizeof message->text, "the scene %s has no linearisation",
-                 scene->name);
-        return false;
-    }
+    if (!scene->linearise)
+        return complain(message, "the scene %s has no linearisation", scene->name);
     r->weight = weight_of(scene, r->model, r->equilibrium.position);
     stance_error error = scene->linearise(r->model, &r->equilibrium, r->A, r->B);
     if (error != STANCE_OK)
@@ -69,19 +67,6 @@ static bool gains(struct design_report *r, stance_message *message)
         for (int j = 0; j < r->states; j++)
             r->K[i * r->states + j] = c.near.gain[i][j];
     return true;
-}
-
-/* loop[n][n] = A - B K. */
-static void close_loop(int n, int m, const double *A, const double *B, const double *K,
-                       double *loop)
-{
-    for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            loop[i * n + j] = A[i * n + j];
-            for (int k = 0; k < m; k++)
-                loop[i * n + j] -= B[i * m + k] * K[k * n + j];
-        }
-    }
 }
 
 /* The loop as the controller acts. */
@@ -121,7 +106,6 @@ static bool sublevel(struct design_report *r, stance_message *message)
     const int n = r->states, m = r->inputs;
     const struct scenario_values *values = &r->scenario->base;
     double loop[DESIGN_STATES * DESIGN_STATES], weight[DESIGN_STATES];
-    double Ad[DESIGN_STATES * DESIGN_STATES], Bd[DESIGN_STATES * DESIGN_INPUTS];
     double a[DESIGN_BOUNDS * DESIGN_STATES], d[DESIGN_BOUNDS];
     struct design_set *set = &r->set;
 
@@ -133,13 +117,8 @@ static bool sublevel(struct design_report *r, stance_message *message)
         const double tolerance = i < n / 2 ? values->settle_angle : values->settle_rate;
         weight[i] = 1 / (tolerance * tolerance);
     }
-    stance_error error = STANCE_OK;
-    if (r->sampled) {
-        error = stance_discretise(n, m, r->A, r->B, values->sample_time, Ad, Bd);
-        close_loop(n, m, Ad, Bd, r->K, loop);
-    } else {
-        close_loop(n, m, r->A, r->B, r->K, loop);
-    }
+    stance_error error =
+        resolve_loop(n, m, r->A, r->B, r->K, r->sampled ? values->sample_time : 0, loop);
     if (error == STANCE_OK &&
         stance_lyapunov(n, loop, r->sampled > 0, weight, set->P, message) != STANCE_OK) {
         set->exists = false; /* on the border of stability */
@@ -196,8 +175,9 @@ static bool closed_loop(struct design_report *r, stance_message *message)
         return true;
     if (!gains(r, message))
         return false;
-    close_loop(n, m, r->A, r->B, r->K, loop);
-    stance_error error = stance_eigenvalues(n, loop, r->closed_re, r->closed_im);
+    stance_error error = resolve_loop(n, m, r->A, r->B, r->K, 0, loop);
+    if (error == STANCE_OK)
+        error = stance_eigenvalues(n, loop, r->closed_re, r->closed_im);
     for (int delay = 0; delay < 2 && error == STANCE_OK; delay++) {
         error = stance_critical_sample_time(n, m, r->A, r->B, r->K, delay, DESIGN_LONGEST,
                                             &r->critical[delay]);

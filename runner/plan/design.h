@@ -5,6 +5,8 @@
 
 #include "resolve.h"
 
+#include "engine/control/design.h"
+
 #include <jansson.h>
 
 enum {

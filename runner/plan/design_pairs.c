@@ -3,6 +3,8 @@
  */
 #include "design.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -28,10 +30,8 @@ bool design_pairs_compute(struct design_pairs *d, const struct scenario *s, stan
         error = stance_pair_condition(s->scene, start.robot, start.position, p, &d->at_start[p]);
     if (error == STANCE_OK)
         error = stance_pair_survey(s->scene, start.robot, SURVEY_RESOLUTION, d->count, d->report);
-    if (error != STANCE_OK) {
-        snprintf(message->text, sizeof message->text, "pairs of coordinates: %s",
-                 stance_error_text(error));
-    }
+    if (error != STANCE_OK)
+        complain(message, "pairs of coordinates: %s", stance_error_text(error));
     return error == STANCE_OK;
 }
 

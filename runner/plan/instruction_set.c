@@ -1,6 +1,8 @@
 /* instruction_set.c - the fastest instruction set, or the one that STANCE_ISA names. */
 #include "instruction_set.h"
 
+#include "runner/base/message.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,10 +36,8 @@ bool instruction_set_check(stance_message *message)
         if (strcmp(instruction_set(), stance_isa(rank)) == 0)
             return true;
     instruction_set_names(names);
-    snprintf(message->text, sizeof message->text,
-             "STANCE_ISA is '%.40s'; instruction sets of this machine: %s", instruction_set_asked(),
-             names);
-    return false;
+    return complain(message, "STANCE_ISA is '%.40s'; instruction sets of this machine: %s",
+                    instruction_set_asked(), names);
 }
 
 bool instruction_set_usable(const char *command)

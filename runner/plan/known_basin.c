@@ -12,6 +12,8 @@
 #include "known_basin.h"
 #include "instruction_set.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -55,31 +57,6 @@ stance_error known_basin_bounds(const stance_scene *scene, const struct scenario
 }
 
 /* ---- candidates ------------------------------------------------------------------------------ */
-
-/* The loop as the controller acts, loop[n][n]. */
-static stance_error find_loop(const stance_scene *scene, const struct scenario_values *values,
-                              const double *model, const stance_equilibrium *equilibrium,
-                              const double *K, double *loop)
-{
-    const int n = 2 * scene->postures, m = scene->actuators;
-    double A[STATES * STATES], B[STATES * INPUTS];
-
-    stance_error error = scene->linearise(model, equilibrium, A, B);
-    if (error == STANCE_OK && values->sample_time > 0) {
-        double Ad[STATES * STATES], Bd[STATES * INPUTS];
-        error = stance_discretise(n, m, A, B, values->sample_time, Ad, Bd);
-        memcpy(A, Ad, sizeof A);
-        memcpy(B, Bd, sizeof B);
-    }
-    for (int i = 0; error == STANCE_OK && i < n; i++) {
-        for (int j = 0; j < n; j++) {
-            loop[i * n + j] = A[i * n + j];
-            for (int k = 0; k < m; k++)
-                loop[i * n + j] -= B[i * m + k] * K[k * n + j];
-        }
-    }
-    return error;
-}
 
 /* The printed Lyapunov function at its level of first order. */
 static stance_error settling_shape(const struct scenario_values *values, int n, const double *loop,
@@ -163,7 +140,8 @@ bool known_basin_prepare(const stance_scene *scene, const struct scenario_values
                          const struct resolved_design *design, uint64_t seed,
                          stance_known_basin_search *search, stance_message *message)
 {
-    double model[STANCE_MAX_ROBOT], K[STATES * INPUTS] = {0}, loop[STATES * STATES];
+    double model[STANCE_MAX_ROBOT], A[STATES * STATES], B[STATES * INPUTS];
+    double K[STATES * INPUTS] = {0}, loop[STATES * STATES];
     double a[KNOWN_BASIN_BOUNDS * STATES], d[KNOWN_BASIN_BOUNDS];
     const int n = 2 * scene->postures;
     stance_equilibrium equilibrium;
@@ -171,22 +149,22 @@ bool known_basin_prepare(const stance_scene *scene, const struct scenario_values
     *search = (stance_known_basin_search){
         .scene = scene, .boundary = KNOWN_BASIN_BOUNDARY, .interior = KNOWN_BASIN_INTERIOR};
     search->kernel = instruction_set_kernel(scene, stance_methods()[values->method]);
-    if (!search->kernel || !scene->contact_force || !scene->linearise) {
-        snprintf(message->text, sizeof message->text, "no captured set: not for this scene");
-        return false;
-    }
+    if (!search->kernel || !scene->contact_force || !scene->linearise)
+        return complain(message, "no captured set: not for this scene");
     if (!resolve_equilibrium(scene, values, model, &equilibrium, message) ||
         !standing_case(scene, values, design, seed, &search->base, message))
         return false;
     for (int i = 0; i < scene->actuators * n; i++)
         K[i] = design->gain[i / n][i % n];
-    stance_error error = find_loop(scene, values, model, &equilibrium, K, loop);
+    stance_error error = scene->linearise(model, &equilibrium, A, B);
+    if (error == STANCE_OK)
+        error = resolve_loop(n, scene->actuators, A, B, K, values->sample_time, loop);
     if (error == STANCE_OK)
         error = known_basin_bounds(scene, values, model, &equilibrium, K, a, d);
     if (error == STANCE_OK)
         error = add_shapes(scene, values, loop, a, d, search);
     if (error != STANCE_OK) {
-        snprintf(message->text, sizeof message->text,
+        complain(message,
                  "no captured set: the loop is not stable, or the equilibrium is beyond the torque "
                  "limit or the friction cone");
     }
@@ -215,11 +193,11 @@ bool known_basin_estimate(const stance_scene *scene, const struct scenario_value
         return false;
     }
     if (error != STANCE_OK) {
-        snprintf(message->text, sizeof message->text, "captured set: %s", stance_error_text(error));
+        complain(message, "captured set: %s", stance_error_text(error));
         return error != STANCE_NO_MEMORY;
     }
     if (!set->exists) {
-        snprintf(message->text, sizeof message->text,
+        complain(message,
                  "no captured set: however near, some start does not settle within half of "
                  "stop.time");
         return true;

@@ -5,6 +5,8 @@
 
 #include "resolve.h"
 
+#include "engine/control/design.h"
+
 enum {
     KNOWN_BASIN_BOUNDARY = 10000, /* simulations from the boundary that must all be good */
     KNOWN_BASIN_INTERIOR = 1000,  /* and from inside */

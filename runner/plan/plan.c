@@ -3,6 +3,8 @@
 #include "instruction_set.h"
 #include "known_basin.h"
 
+#include "runner/base/message.h"
+#include "runner/base/numbers.h"
 #include "runner/base/units.h"
 
 #include <math.h>
@@ -95,9 +97,8 @@ static bool method_runs(const struct scenario *s, int method, struct plan_error 
     const stance_method *m = stance_methods()[method];
     if (instruction_set_kernel(s->scene, m))
         return true;
-    snprintf(error->message.text, sizeof error->message.text,
-             "method '%s' cannot run scene '%s' in this build", m->name, s->scene->name);
-    return false;
+    return complain(&error->message, "method '%s' cannot run scene '%s' in this build", m->name,
+                    s->scene->name);
 }
 
 static bool methods_run(struct plan *plan, struct plan_error *error)
@@ -133,7 +134,7 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
     for (int a = 0; !single && a < scenario->axes; a++) {
         const struct scenario_axis *axis = &scenario->axis[a];
         if (axis->design && axis->count > MOST_DESIGNS / plan->designs) {
-            snprintf(error->message.text, sizeof error->message.text,
+            complain(&error->message,
                      "along its axes the scenario has more than the %d controller designs that are "
                      "kept in memory",
                      MOST_DESIGNS);
@@ -148,8 +149,7 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
     plan->design = calloc(plan->designs, sizeof *plan->design);
     plan->design_status = calloc(plan->designs, sizeof *plan->design_status);
     if (!plan->design || !plan->design_status) {
-        snprintf(error->message.text, sizeof error->message.text,
-                 "not enough memory for %zu controller designs", plan->designs);
+        complain(&error->message, "not enough memory for %zu controller designs", plan->designs);
         plan_free(plan);
         return false;
     }
@@ -213,16 +213,8 @@ bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place)
         *place = row;
         return true;
     }
-    size_t low = 0, high = s->record_count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (s->record_list[middle] < row)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    *place = low;
-    return low < s->record_count && s->record_list[low] == row;
+    *place = numbers_find(s->record_list, s->record_count, row);
+    return *place < s->record_count && s->record_list[*place] == row;
 }
 
 uint64_t plan_recorded_case(const struct plan *plan, uint64_t place)
@@ -439,12 +431,10 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
     error->line = s->initial_line;
     error->column = s->initial_column;
     scenario_place(s, message.text, &error->line, &error->column);
-    if (s->cases == 1) {
+    if (s->cases == 1)
         error->message = message;
-    } else {
-        snprintf(error->message.text, sizeof error->message.text, "case %llu: %.200s",
-                 (unsigned long long)index, message.text);
-    }
+    else
+        complain(&error->message, "case %llu: %.200s", (unsigned long long)index, message.text);
     return false;
 }
 

@@ -13,26 +13,15 @@
 #include "resolve.h"
 #include "known_basin.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 #define DEEPEST_START 1e-9 /* m: penetration of an initial state that counts as rounding */
 #define MOST_STEPS 1e15
 #define MOST_CONDITION 1e12 /* of a pair of coordinates: above it is singular */
-
-static bool refuse(stance_message *message, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static bool refuse(stance_message *message, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(message->text, sizeof message->text, format, arguments);
-    va_end(arguments);
-    return false;
-}
 
 /* ---- design ---------------------------------------------------------------------------------- */
 
@@ -47,7 +36,7 @@ static bool solve_equilibrium(const stance_scene *scene, const double *robot,
 {
     stance_equilibrium_choice choice = {.support = support, .lower = wanted->lower != 0};
     if (!scene->equilibrium || !scene->stand)
-        return refuse(message, "the scene %s has no equilibria: give initial.state", scene->name);
+        return complain(message, "the scene %s has no equilibria: give initial.state", scene->name);
     memcpy(choice.posture, wanted->posture, sizeof choice.posture);
     return scene->equilibrium(robot, &choice, result, message) == STANCE_OK;
 }
@@ -62,9 +51,9 @@ bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values
     for (int i = 0; i < STANCE_MAX_ROBOT; i++)
         model[i] = law && !isnan(values->model[i]) ? values->model[i] : values->robot[i];
     if (!own && !values->equilibrium.given) {
-        return refuse(message, law ? "the controller needs an equilibrium to work at: give "
-                                     "controller.equilibrium or initial.equilibrium"
-                                   : "the scenario has no equilibrium: give initial.equilibrium");
+        return complain(message, law ? "the controller needs an equilibrium to work at: give "
+                                       "controller.equilibrium or initial.equilibrium"
+                                     : "the scenario has no equilibrium: give initial.equilibrium");
     }
     return solve_equilibrium(scene, model, own ? &values->design_point : &values->equilibrium,
                              support_of(values), equilibrium, message);
@@ -101,12 +90,12 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     }
     for (int i = 0; error == STANCE_OK && i < m * n; i++)
         if (!isfinite(K[i]))
-            return refuse(message, "%d finite gains are needed", m * n);
+            return complain(message, "%d finite gains are needed", m * n);
     if (error != STANCE_OK) { /* say which key asked for it */
         stance_message told = *message;
         const char *point =
             values->design_point.given ? "controller.equilibrium" : "initial.equilibrium";
-        snprintf(message->text, sizeof message->text, "%s: %.200s",
+        complain(message, "%s: %.200s",
                  error == STANCE_UNCONTROLLABLE   ? point
                  : sampled                        ? "controller.design_time"
                  : values->design == DESIGN_LQR   ? "controller.weights"
@@ -115,6 +104,25 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
                  told.text);
     }
     return error == STANCE_OK;
+}
+
+stance_error resolve_loop(int n, int m, const double *A, const double *B, const double *K,
+                          double interval, double *loop)
+{
+    double Ad[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
+    double Bd[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
+    if (interval > 0) {
+        const stance_error error = stance_discretise(n, m, A, B, interval, Ad, Bd);
+        return error == STANCE_OK ? resolve_loop(n, m, Ad, Bd, K, 0, loop) : error;
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            loop[i * n + j] = A[i * n + j];
+            for (int k = 0; k < m; k++)
+                loop[i * n + j] -= B[i * m + k] * K[k * n + j];
+        }
+    }
+    return STANCE_OK;
 }
 
 static bool design_state_feedback(const stance_scene *scene, const struct scenario_values *values,
@@ -129,10 +137,10 @@ static bool design_state_feedback(const stance_scene *scene, const struct scenar
     if (!resolve_equilibrium(scene, values, model, &equilibrium, message))
         return false;
     if (!scene->linearise)
-        return refuse(message, "the scene %s has no linearisation", scene->name);
+        return complain(message, "the scene %s has no linearisation", scene->name);
     const stance_error error = scene->linearise(model, &equilibrium, A, B);
     if (error != STANCE_OK)
-        return refuse(message, "linearisation: %s", stance_error_text(error));
+        return complain(message, "linearisation: %s", stance_error_text(error));
     if (!resolve_gains(scene, values, A, B, K, NULL, message))
         return false;
     for (int i = 0; i < m * n; i++)
@@ -173,8 +181,8 @@ bool resolve_design(const stance_scene *scene, const struct scenario_values *val
     if (!values->state_given) {
         stance_equilibrium start;
         if (!values->equilibrium.given) {
-            return refuse(message,
-                          "an initial state is needed: initial.equilibrium or initial.state");
+            return complain(message,
+                            "an initial state is needed: initial.equilibrium or initial.state");
         }
         if (!solve_equilibrium(scene, values->robot, &values->equilibrium, support_of(values),
                                &start, message))
@@ -225,21 +233,21 @@ static bool check_start(const stance_scene *scene, const stance_case *out, stanc
     for (int i = 0; i < scene->coordinates; i++) {
         const char *name = scene->coordinate[i].name;
         if (!isfinite(out->position[i]))
-            return refuse(message, "the initial %s is not a finite number", name);
+            return complain(message, "the initial %s is not a finite number", name);
         if (!isfinite(out->velocity[i]))
-            return refuse(message, "the initial v%s is not a finite number", name);
+            return complain(message, "the initial v%s is not a finite number", name);
     }
     scene->gaps(out->robot, out->position, gap);
     for (int c = 0; c < scene->contacts; c++) {
         if (!isfinite(gap[c])) {
-            return refuse(message,
-                          "the initial position of %s is not defined: an angle is beyond "
-                          "1e4 rad",
-                          scene->contact_name[c]);
+            return complain(message,
+                            "the initial position of %s is not defined: an angle is beyond "
+                            "1e4 rad",
+                            scene->contact_name[c]);
         }
         if ((out->contacts >> c & 1) && gap[c] < -DEEPEST_START) {
-            return refuse(message, "%s would start %.6g m inside the ground",
-                          scene->contact_name[c], -gap[c]);
+            return complain(message, "%s would start %.6g m inside the ground",
+                            scene->contact_name[c], -gap[c]);
         }
     }
     return true;
@@ -327,15 +335,15 @@ static bool check_law(const stance_scene *scene, const stance_case *out, stance_
     for (int k = 0; k < scene->postures; k++)
         finite = finite && isfinite(out->near.target[k]);
     if (!finite)
-        return refuse(message, "a gain, a target or the noise of the controller is not finite");
+        return complain(message, "a gain, a target or the noise of the controller is not finite");
     if (!(out->torque_limit > 0))
-        return refuse(message, "controller.torque_limit must be positive");
+        return complain(message, "controller.torque_limit must be positive");
     if (out->noise != 0 && out->sample_every == 0)
-        return refuse(message, "controller.noise needs a controller.sample_time above 0");
+        return complain(message, "controller.noise needs a controller.sample_time above 0");
     if (out->switches && out->sample_every == 0)
-        return refuse(message, "controller.far needs a controller.sample_time above 0");
+        return complain(message, "controller.far needs a controller.sample_time above 0");
     if (out->delay != 0 && out->sample_every == 0)
-        return refuse(message, "controller.delay needs a controller.sample_time above 0");
+        return complain(message, "controller.delay needs a controller.sample_time above 0");
     return true;
 }
 
@@ -346,20 +354,20 @@ static bool resolve_time(const struct scenario_values *values, stance_case *out,
 {
     const double interval = values->sample_time;
     if (!isfinite(values->step) || values->step <= 0)
-        return refuse(message, "method.step must be positive");
+        return complain(message, "method.step must be positive");
     if (!isfinite(interval) || interval < 0 || !isfinite(values->stop_time)) {
-        return refuse(message, "controller.sample_time and stop.time must be finite and not "
-                               "negative");
+        return complain(message, "controller.sample_time and stop.time must be finite and not "
+                                 "negative");
     }
     const stance_method *method = stance_methods()[values->method];
     out->step = values->step;
     out->tolerance = isnan(values->tolerance) ? method->tolerance : values->tolerance;
     if (method->tolerance > 0 && !(out->tolerance > 0))
-        return refuse(message, "method.tolerance must be positive");
+        return complain(message, "method.tolerance must be positive");
     if (interval > 0) {
         const double pieces = fmax(1, ceil(interval / values->step - 1e-9));
         if (pieces > MOST_STEPS)
-            return refuse(message, "controller.sample_time has more than %g steps", MOST_STEPS);
+            return complain(message, "controller.sample_time has more than %g steps", MOST_STEPS);
         out->sample_every = (int64_t)pieces;
         out->step = interval / pieces;
     }
@@ -367,7 +375,7 @@ static bool resolve_time(const struct scenario_values *values, stance_case *out,
         out->step = values->stop_time; /* then there is one step, and no second sample */
     const double steps = fmax(1, nearbyint(values->stop_time / out->step));
     if (!(steps <= MOST_STEPS))
-        return refuse(message, "stop.time has more than %g steps", MOST_STEPS);
+        return complain(message, "stop.time has more than %g steps", MOST_STEPS);
     out->steps = (int64_t)steps;
     return true;
 }
@@ -386,10 +394,10 @@ bool resolve_pair(const stance_scene *scene, const stance_case *start, stance_me
             STANCE_OK &&
         condition < MOST_CONDITION)
         return true;
-    return refuse(message,
-                  "controller.controlled: the pair %s-%s is singular in the initial posture: no "
-                  "torques give it the accelerations that the law asks for",
-                  scene->coordinate[first].name, scene->coordinate[second].name);
+    return complain(message,
+                    "controller.controlled: the pair %s-%s is singular in the initial posture: no "
+                    "torques give it the accelerations that the law asks for",
+                    scene->coordinate[first].name, scene->coordinate[second].name);
 }
 
 bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
@@ -417,8 +425,8 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
     memcpy(out->robot, values->robot, sizeof out->robot);
     if (!isfinite(out->friction) || out->friction < 0 ||
         !(out->restitution >= 0 && out->restitution <= 1)) {
-        return refuse(message, "ground.friction must not be negative, ground.restitution lie "
-                               "within 0 ... 1");
+        return complain(message, "ground.friction must not be negative, ground.restitution lie "
+                                 "within 0 ... 1");
     }
     if (!resolve_start(scene, values, design, out, message))
         return false;

@@ -55,6 +55,10 @@ struct resolved_gains {
 bool resolve_gains(const stance_scene *scene, const struct scenario_values *values, const double *A,
                    const double *B, double *K, struct resolved_gains *how, stance_message *message);
 
+/* loop[n][n] = A - B K; with interval > 0 of the model sampled so, torques held in between. */
+stance_error resolve_loop(int n, int m, const double *A, const double *B, const double *K,
+                          double interval, double *loop);
+
 /* Fills *out (trajectory NULL). Checks the initial state: a gap below -1e-9 m of a contact that
  * may touch is an error, and so is a state that is not finite. `index` is the flat case index. */
 bool resolve_case(const stance_scene *scene, const struct scenario_values *values,

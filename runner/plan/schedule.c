@@ -4,7 +4,7 @@
  * batch of one chunk per rank takes half of what is left (factoring: Hummel, Schonberg and Flynn,
  * CACM 35(8), 1992, after Polychronopoulos and Kuck, IEEE Trans. Computers C-36, 1987), so that the
  * last chunks are small. A chunk follows from its number alone: a fetch-and-add on one counter is
- * all that ranks need to tell each other. The sizes are what `stance bench schedule` tells of.
+ * all that ranks need to tell each other. The sizes are what tests/bench_schedule.c tells of.
  */
 #include "schedule.h"
 

@@ -2,6 +2,7 @@
 #include "heartbeat.h"
 
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/base/units.h"
 #include "runner/store/store.h"
@@ -28,18 +29,15 @@ static bool is_refined(const char *file)
     struct store_origin origin;
     stance_message ignored;
     struct scenario *s = calloc(1, sizeof *s);
-    FILE *nowhere = fopen("/dev/null", "w");
     bool refined = false;
 
-    if (s && nowhere && store_read_origin(file, &origin, &ignored)) {
-        if (scenario_read(s, file, origin.scenario, NULL, 0, nowhere)) {
+    if (s && store_read_origin(file, &origin, &ignored)) {
+        if (scenario_read(s, file, origin.scenario, NULL, 0, NULL)) {
             refined = s->refine.given;
             scenario_free(s);
         }
         store_origin_free(&origin);
     }
-    if (nowhere)
-        fclose(nowhere);
     free(s);
     return refined;
 }
@@ -55,9 +53,8 @@ static bool read_state(const char *file, struct state *state, stance_message *me
     heartbeat_read(file, &state->note);
     const struct heartbeat_note *note = &state->note;
     if (note->here && access(file, F_OK) != 0) {
-        snprintf(message->text, sizeof message->text, "%.150s: not there yet: a run is %s", file,
-                 note->exists ? note->doing : "starting");
-        return false;
+        return complain(message, "%.150s: not there yet: a run is %s", file,
+                        note->exists ? note->doing : "starting");
     }
     if (!store_count(file, &state->counts, message) || !store_check(file, false, message))
         return false;

@@ -1,6 +1,7 @@
 /* heartbeat.c - see heartbeat.h. */
 #include "heartbeat.h"
 
+#include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/plan.h"
 
@@ -128,9 +129,8 @@ static bool has_file(const struct heartbeat *heartbeat, stance_message *message)
         (stat(heartbeat->file, &information) == 0 && information.st_dev == heartbeat->device &&
          information.st_ino == heartbeat->inode))
         return true;
-    snprintf(message->text, sizeof message->text,
-             "%.150s: was removed, moved or replaced while it was written", heartbeat->file);
-    return false;
+    return complain(message, "%.150s: was removed, moved or replaced while it was written",
+                    heartbeat->file);
 }
 
 bool heartbeat_beat(struct heartbeat *heartbeat, double now, uint64_t finished, uint64_t computed,

@@ -2,6 +2,7 @@
  * again. */
 #include "refinement_run.h"
 
+#include "runner/base/message.h"
 #include "runner/plan/refine.h"
 
 #include <stdlib.h>
@@ -140,7 +141,7 @@ bool refinement_run(struct work *work, stance_message *message)
     bool complete = false, stopped = false, made = refinement_make(&refinement, work);
 
     if (!made) {
-        snprintf(message->text, sizeof message->text, "not enough memory to refine %llu cases",
+        complain(message, "not enough memory to refine %llu cases",
                  (unsigned long long)work->plan->rows);
     }
     bool good = parallel_agree(work->parallel, made, message->text, sizeof message->text) && made;

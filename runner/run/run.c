@@ -8,6 +8,7 @@
 #include "report.h"
 
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/base/units.h"
 #include "runner/plan/instruction_set.h"
@@ -26,16 +27,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-void run_fail(struct run *run, int code, const char *text)
+bool run_fail_io(struct run *run, const stance_message *message)
 {
-    run->failure.code = code;
-    snprintf(run->failure.text, sizeof run->failure.text, "%s", text);
-}
-
-void run_fail_io(struct run *run, const stance_message *message)
-{
-    snprintf(run->failure.text, sizeof run->failure.text, "stance run: %s", message->text);
-    run->failure.code = EXIT_IO;
+    return run_fail(run, EXIT_IO, "stance run: %s", message->text);
 }
 
 /* An error of the scenario, with its place in the text. */
@@ -44,9 +38,7 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
     char place[40] = "";
     if (error->line > 0)
         snprintf(place, sizeof place, ":%d:%d", error->line, error->column);
-    snprintf(run->failure.text, sizeof run->failure.text, "%.300s%s: %s", run->scenario->file,
-             place, error->message.text);
-    run->failure.code = EXIT_USAGE;
+    run_fail(run, EXIT_USAGE, "%.300s%s: %s", run->scenario->file, place, error->message.text);
 }
 
 /* ---- options ------------------------------------------------------------------------------ */
@@ -74,10 +66,8 @@ static void stage_options(struct run *run)
         run_read_options(o, run->argc, run->argv);
     o->help = help;
     deadline_limit(o->time_limit - (clock_seconds() - run->start));
-    if (!help && !instruction_set_check(&message)) {
-        snprintf(run->failure.text, sizeof run->failure.text, "stance run: %s", message.text);
-        run->failure.code = EXIT_USAGE;
-    }
+    if (!help && !instruction_set_check(&message))
+        run_fail(run, EXIT_USAGE, "stance run: %s", message.text);
 }
 
 /* ---- the scenario ------------------------------------------------------------------------- */
@@ -105,7 +95,6 @@ static void stage_scenario(struct run *run)
 {
     struct options *o = &run->options;
     uint64_t length = 0;
-    FILE *nowhere = fopen("/dev/null", "w");
 
     run->scenario = calloc(1, sizeof *run->scenario);
     if (run->parallel.rank == 0 && run->scenario) {
@@ -122,8 +111,7 @@ static void stage_scenario(struct run *run)
         if (!text)
             abort(); /* the others wait in the broadcast: MPI ends the job */
         parallel_broadcast(&run->parallel, text, length);
-        if (!run->scenario || !nowhere ||
-            !scenario_read(run->scenario, o->scenario, text, NULL, 0, nowhere)) {
+        if (!run->scenario || !scenario_read(run->scenario, o->scenario, text, NULL, 0, NULL)) {
             free(run->scenario);
             run->scenario = NULL;
             run_fail(run, EXIT_IO, "stance run: a rank cannot read the scenario that rank 0 reads");
@@ -135,13 +123,10 @@ static void stage_scenario(struct run *run)
         free(run->scenario);
         run->scenario = NULL;
     }
-    if (nowhere)
-        fclose(nowhere);
     if (run->scenario && o->single && o->single_case >= run->scenario->cases) {
-        snprintf(run->failure.text, sizeof run->failure.text,
+        run_fail(run, EXIT_USAGE,
                  "stance run: --only %" PRIu64 ": the scenario's cases are 0 ... %" PRIu64,
                  o->single_case, run->scenario->cases - 1);
-        run->failure.code = EXIT_USAGE;
     }
 }
 
@@ -228,9 +213,8 @@ static void look_into_file(struct run *run)
     if (run->failure.code != EXIT_DONE)
         return; /* it has been said why */
     if (euidaccess(run->file, W_OK) != 0) {
-        snprintf(message.text, sizeof message.text, "%.150s: cannot write there: %s", run->file,
+        run_fail(run, EXIT_IO, "stance run: %.150s: cannot write there: %s", run->file,
                  strerror(errno));
-        run_fail_io(run, &message);
         return;
     }
     if (!store_read_origin(run->file, &run->origin, &message)) {
@@ -242,8 +226,7 @@ static void look_into_file(struct run *run)
     if ((run->succeed &&
          !changed_scenario_check_sweep(run->file, &run->origin, run->scenario, &message)) ||
         !store_same_points(run->file, &run->origin, run->scenario, &message)) {
-        run_fail_io(run, &message);
-        run->failure.code = EXIT_USAGE;
+        run_fail(run, EXIT_USAGE, "stance run: %s", message.text);
         return;
     }
     if (!run->succeed)
@@ -262,21 +245,18 @@ static void claim_file(struct run *run)
     bool exists = lstat(run->file, &information) == 0;
 
     if (exists && !o->force && !o->resume) {
-        snprintf(run->failure.text, sizeof run->failure.text,
+        run_fail(run, EXIT_IO,
                  "stance run: %.400s exists; --force replaces it, --resume goes on with it",
                  run->file);
-        run->failure.code = EXIT_IO;
         return;
     }
     if (exists && !S_ISREG(information.st_mode) && !S_ISLNK(information.st_mode)) {
-        snprintf(message.text, sizeof message.text, "%.200s: not a regular file", run->file);
-        run_fail_io(run, &message);
+        run_fail(run, EXIT_IO, "stance run: %.200s: not a regular file", run->file);
         return;
     }
     if (!o->output && mkdir("results", 0777) != 0 && errno != EEXIST) {
-        snprintf(message.text, sizeof message.text, "cannot make the directory results: %s",
+        run_fail(run, EXIT_IO, "stance run: cannot make the directory results: %s",
                  strerror(errno));
-        run_fail_io(run, &message);
         return;
     }
     /* A link that is replaced is a file of its own; through others the file they name is written.
@@ -464,8 +444,7 @@ static void succeed(struct run *run, const char *hosts)
             fprintf(stderr, ", %" PRIu64 " did not verify", counts.damaged);
         fputc('\n', stderr);
     } else if (message.text[0]) {
-        run_fail_io(run, &message);
-        run->failure.code = counts.refused ? EXIT_USAGE : EXIT_IO;
+        run_fail(run, counts.refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", message.text);
     } else {
         stop_early(run, "stopped before the file could go on with another scenario");
     }
@@ -481,9 +460,8 @@ static void stage_create(struct run *run)
         succeed(run, hosts);
     } else if (run->parallel.rank == 0) {
         if (run->replace && unlink(run->file) != 0) {
-            snprintf(message.text, sizeof message.text, "cannot replace %.150s: %s", run->file,
+            run_fail(run, EXIT_IO, "stance run: cannot replace %.150s: %s", run->file,
                      strerror(errno));
-            run_fail_io(run, &message);
         } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &message)) {
             run_fail_io(run, &message);
         }
@@ -536,9 +514,9 @@ static void stage_timing(struct run *run)
 {
     stance_message message = {""};
     size_t ranks = (size_t)run->parallel.size;
-    int64_t computed = (int64_t)run->work.computed;
+    double computed = (double)run->work.computed;
     double *seconds = run->parallel.rank == 0 ? malloc(ranks * sizeof *seconds) : NULL;
-    int64_t *cases = run->parallel.rank == 0 ? malloc(ranks * sizeof *cases) : NULL;
+    double *cases = run->parallel.rank == 0 ? malloc(ranks * sizeof *cases) : NULL;
 
     if (run->parallel.rank == 0 && (!seconds || !cases))
         abort(); /* the others wait in the gather: MPI ends the job */
@@ -562,9 +540,8 @@ static void stage_close(struct run *run)
     } else if (run->parallel.rank == 0) {
         int descriptor = open(run->file, O_RDWR | O_CLOEXEC);
         if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0) {
-            snprintf(message.text, sizeof message.text, "%.150s: cannot bring it to the disk: %s",
-                     run->file, strerror(errno));
-            run_fail_io(run, &message);
+            run_fail(run, EXIT_IO, "stance run: %.150s: cannot bring it to the disk: %s", run->file,
+                     strerror(errno));
         }
     }
 }

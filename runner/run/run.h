@@ -6,6 +6,7 @@
 #include "work.h"
 
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/store/lock.h"
 
@@ -49,9 +50,11 @@ struct run {
 /* run_options.c. Prints what is wrong with them on standard error; false then. */
 bool run_read_options(struct options *o, int argc, char **argv);
 
-/* What ends the run, in a line. */
-void run_fail(struct run *run, int code, const char *text);
-void run_fail_io(struct run *run, const stance_message *message);
+/* What ends the run, in a line (run, code, format, ...). Returns false. */
+#define run_fail(run, exit_code, ...)                                                              \
+    (snprintf((run)->failure.text, sizeof(run)->failure.text, __VA_ARGS__),                        \
+     (run)->failure.code = (exit_code), as_false())
+bool run_fail_io(struct run *run, const stance_message *message);
 /* Whether a file, whose scenario's text is given, is of this scenario; fails where not. */
 bool run_same_scenario(struct run *run, const char *file, const char *text);
 /* Exit code of a look into a results file, in a process of its own; says what is wrong. */

@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "runner/base/command.h"
+#include "runner/base/numbers.h"
 #include "runner/base/units.h"
 
 #include <errno.h>
@@ -73,12 +74,6 @@ static void print_summary(const struct run *run, const struct sums *sums)
     fflush(stdout);
 }
 
-static int by_number(const void *a, const void *b)
-{
-    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-    return (x > y) - (x < y);
-}
-
 /* Collective: how many cases did not verify, and the first of them. */
 static void say_damaged(const struct run *run, uint64_t damaged)
 {
@@ -95,7 +90,7 @@ static void say_damaged(const struct run *run, uint64_t damaged)
         const uint64_t named = damaged < WORK_NAMED ? damaged : WORK_NAMED;
         char list[WORK_NAMED * 24] = "";
         size_t used = 0;
-        qsort(all, ranks * WORK_NAMED, sizeof *all, by_number);
+        numbers_unite(all, ranks * WORK_NAMED);
         for (uint64_t k = 0; k < named; k++) {
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%" PRIu64, k ? ", " : "",
                                      all[k]);

@@ -33,12 +33,10 @@ bool run_extend_check(struct run *run)
     const struct scenario *s = run->scenario;
     if (s->sample.given && s->sample.design.method != DOE_LHS)
         return true;
-    snprintf(run->failure.text, sizeof run->failure.text, "stance run: %.300s: --extend: %s",
-             s->file,
-             s->sample.given ? "points of method lhs depend on their number: begin a new file"
-                             : "the scenario has no sweep.sample");
-    run->failure.code = EXIT_USAGE;
-    return false;
+    return run_fail(run, EXIT_USAGE, "stance run: %.300s: --extend: %s", s->file,
+                    s->sample.given
+                        ? "points of method lhs depend on their number: begin a new file"
+                        : "the scenario has no sweep.sample");
 }
 
 /* ---- the old file --------------------------------------------------------------------------- */
@@ -68,18 +66,17 @@ static bool read_old_scenario(struct run *run, struct extension *e, const char *
 {
     const char *set = run->options.extend_set;
     struct scenario *larger = calloc(1, sizeof *larger);
-    FILE *nowhere = fopen("/dev/null", "w");
     bool good = false;
 
     e->scenario = calloc(1, sizeof *e->scenario);
-    if (!larger || !e->scenario || !nowhere) {
+    if (!larger || !e->scenario) {
         run_fail(run, EXIT_IO, "stance run: not enough memory");
-    } else if (!scenario_read(larger, run->scenario->file, text, &set, 1, nowhere)) {
+    } else if (!scenario_read(larger, run->scenario->file, text, &set, 1, NULL)) {
         /* Most likely another scenario, or one of another version. */
         run_same_scenario(run, e->file, text);
     } else {
         good = run_same_scenario(run, e->file, larger->text);
-        good = good && scenario_read(e->scenario, run->scenario->file, text, NULL, 0, nowhere);
+        good = good && scenario_read(e->scenario, run->scenario->file, text, NULL, 0, NULL);
         scenario_free(larger);
     }
     if (!good) {
@@ -87,8 +84,6 @@ static bool read_old_scenario(struct run *run, struct extension *e, const char *
         e->scenario = NULL;
     }
     free(larger);
-    if (nowhere)
-        fclose(nowhere);
     return good;
 }
 
@@ -110,11 +105,10 @@ static bool check_count(struct run *run, const struct extension *e)
     const uint64_t count = e->scenario->sample.design.count;
     if (count < run->options.extend_count)
         return true;
-    snprintf(run->failure.text, sizeof run->failure.text,
-             "stance run: --extend %" PRIu64 ": %.300s has sweep.sample.count %" PRIu64 " already",
-             run->options.extend_count, e->file, count);
-    run->failure.code = EXIT_USAGE;
-    return false;
+    return run_fail(run, EXIT_USAGE,
+                    "stance run: --extend %" PRIu64 ": %.300s has sweep.sample.count %" PRIu64
+                    " already",
+                    run->options.extend_count, e->file, count);
 }
 
 /* Cases of other scenarios (--force-scenario) are none of the new file's. */
@@ -123,11 +117,9 @@ static bool check_ancestors(struct run *run, const struct extension *e,
 {
     if (origin->ancestors == 0)
         return true;
-    snprintf(run->failure.text, sizeof run->failure.text,
-             "stance run: --extend: %.300s holds cases of several scenarios: begin a new file",
-             e->file);
-    run->failure.code = EXIT_USAGE;
-    return false;
+    return run_fail(
+        run, EXIT_USAGE,
+        "stance run: --extend: %.300s holds cases of several scenarios: begin a new file", e->file);
 }
 
 static bool look_into_old(struct run *run, struct extension *e)
@@ -135,30 +127,20 @@ static bool look_into_old(struct run *run, struct extension *e)
     struct store_origin origin;
     stance_message message = {""};
 
-    if (!lock_old(e, &message)) {
-        run_fail_io(run, &message);
-        return false;
-    }
+    if (!lock_old(e, &message))
+        return run_fail_io(run, &message);
     run->failure.code = run_check_file(e->file);
     if (run->failure.code != EXIT_DONE)
         return false; /* it has been said why */
-    if (!store_read_origin(e->file, &origin, &message)) {
-        run_fail_io(run, &message);
-        return false;
-    }
+    if (!store_read_origin(e->file, &origin, &message))
+        return run_fail_io(run, &message);
     bool good = read_old_scenario(run, e, origin.scenario) && check_count(run, e) &&
                 check_ancestors(run, e, &origin);
     if (good)
         run_warn_of_revision(e->file, origin.revision);
-    if (good && !store_same_points(e->file, &origin, run->scenario, &message)) {
-        run_fail_io(run, &message);
-        run->failure.code = EXIT_USAGE;
-        good = false;
-    }
-    if (good && !take_axes(run, e, &message)) {
-        run_fail_io(run, &message);
-        good = false;
-    }
+    if (good && !store_same_points(e->file, &origin, run->scenario, &message))
+        good = run_fail(run, EXIT_USAGE, "stance run: %s", message.text);
+    good = good && (take_axes(run, e, &message) || run_fail_io(run, &message));
     store_origin_free(&origin);
     return good;
 }

@@ -12,6 +12,7 @@
  */
 #include "work.h"
 
+#include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/instruction_set.h"
 #include "runner/ranks/crash.h"
@@ -125,7 +126,7 @@ static void break_off(struct job *job)
 
 static void out_of_memory(struct job *job, const char *what)
 {
-    snprintf(job->message->text, sizeof job->message->text, "not enough memory for %s", what);
+    complain(job->message, "not enough memory for %s", what);
     break_off(job);
 }
 

@@ -63,12 +63,6 @@ static bool make_values(struct scenario *s, struct scenario_axis *axis)
 
 /* ---- factors --------------------------------------------------------------------------------- */
 
-static bool out_of_memory(struct reader *r)
-{
-    problem_add(&r->problems, (struct mark){0}, "out of memory");
-    return false;
-}
-
 static char *join_words(const struct scenario_field *field)
 {
     size_t size = 1;
@@ -94,9 +88,8 @@ static bool read_row(struct axis_reader *a, const struct scenario_factor *f, con
         snprintf(wanted, sizeof wanted, "a list of %d values, one for each path", f->paths);
         if (node->kind != TREE_LIST)
             return field_mismatch(&a->r->problems, a->name, wanted, node);
-        problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name, wanted,
-                    node->count);
-        return false;
+        return problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name,
+                           wanted, node->count);
     }
     for (int k = 0; k < f->paths; k++) {
         const struct tree_node *item = node->item[k];
@@ -117,7 +110,7 @@ static bool read_listed(struct axis_reader *a, struct scenario_factor *f,
     f->points = values->count;
     f->value = calloc(f->points * (size_t)f->paths, sizeof *f->value);
     if (!f->value)
-        return out_of_memory(a->r);
+        return problem_no_memory(&a->r->problems);
     for (size_t i = 0; i < f->points; i++)
         good = read_row(a, f, NULL, values->item[i], rows, f->value + i * (size_t)f->paths) && good;
     return good;
@@ -131,18 +124,14 @@ static bool check_ends(struct axis_reader *a, const struct scenario_factor *f, b
 
     for (int k = 0; k < f->paths; k++) {
         differ = differ || from[k] != to[k];
-        if (f->log && a->axis->integer[f->first + k]) {
-            axis_complain(a, "spacing log is for numbers that need not be whole");
-            return false;
-        }
-        if (f->log && (from[k] <= 0 || to[k] <= 0)) {
-            axis_complain(a, "spacing log needs from and to above 0");
-            return false;
-        }
+        if (f->log && a->axis->integer[f->first + k])
+            return axis_complain(a, "spacing log is for numbers that need not be whole");
+        if (f->log && (from[k] <= 0 || to[k] <= 0))
+            return axis_complain(a, "spacing log needs from and to above 0");
     }
     if (rows ? !differ : !(from[0] < to[0])) {
-        axis_complain(a, rows ? "from and to are the same point" : "from must be less than to");
-        return false;
+        return axis_complain(a,
+                             rows ? "from and to are the same point" : "from must be less than to");
     }
     return true;
 }
@@ -154,22 +143,18 @@ static bool read_range(struct axis_reader *a, struct scenario_factor *f, bool ro
     char text[AXIS_NAME + 16];
     int word = 0;
 
-    for (int k = 0; k < f->paths; k++) {
-        if (a->axis->enumeration[f->first + k]) {
-            axis_complain(a, "a field of words needs values");
-            return false;
-        }
-    }
+    for (int k = 0; k < f->paths; k++)
+        if (a->axis->enumeration[f->first + k])
+            return axis_complain(a, "a field of words needs values");
     if (!from || !to) {
-        axis_complain(a, from ? "to is missing"
-                         : to ? "from is missing"
-                              : "give from and to, or values");
-        return false;
+        return axis_complain(a, from ? "to is missing"
+                                : to ? "from is missing"
+                                     : "give from and to, or values");
     }
     f->points = 2;
     f->value = calloc(2 * (size_t)f->paths, sizeof *f->value);
     if (!f->value)
-        return out_of_memory(a->r);
+        return problem_no_memory(&a->r->problems);
     bool good = read_row(a, f, "from", from, rows, f->value);
     good = read_row(a, f, "to", to, rows, f->value + f->paths) && good;
     snprintf(text, sizeof text, "%s.spacing", a->name);
@@ -198,15 +183,14 @@ static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
         struct scenario_meaning *meaning = &a->axis->meaning[k];
         axis_describe(a, k, meaning->unit, meaning->text);
         if (a->axis->enumeration[k] && !(meaning->words = join_words(a->swept[k].field)))
-            return out_of_memory(a->r);
+            return problem_no_memory(&a->r->problems);
     }
     const bool rows = tree_find(a->node, "paths") != NULL;
     const struct tree_node *values = tree_find(a->node, "values");
     for (size_t i = 0; values && i < sizeof range_keys / sizeof range_keys[0]; i++) {
         if (tree_find(a->node, range_keys[i])) {
-            problem_add(problems, a->node->mark, "%s: values and %s exclude each other", a->name,
-                        range_keys[i]);
-            return false;
+            return problem_add(problems, a->node->mark, "%s: values and %s exclude each other",
+                               a->name, range_keys[i]);
         }
     }
     return values ? read_listed(a, f, values, rows) : read_range(a, f, rows);
@@ -223,8 +207,8 @@ static bool read_setting(struct reader *r, const char *path, bool needed, double
 
     *value = field->fallback;
     if (!node && needed) {
-        problem_add(&r->problems, reader_seen(r, "sweep.sample")->key, "%s is missing", path);
-        return false;
+        return problem_add(&r->problems, reader_seen(r, "sweep.sample")->key, "%s is missing",
+                           path);
     }
     if (!node || field->type == FIELD_INTEGER)
         return !node || field_integer(&r->problems, field, path, node, value);
@@ -240,9 +224,8 @@ static bool check_only(struct reader *r, const char *path, enum doe_method metho
     const enum doe_method here = r->s->sample.design.method;
     if (!seen->node || here == method)
         return true;
-    problem_add(&r->problems, seen->key, "%s is used only with method %s (here: %s)", path,
-                doe_words[method], doe_words[here]);
-    return false;
+    return problem_add(&r->problems, seen->key, "%s is used only with method %s (here: %s)", path,
+                       doe_words[method], doe_words[here]);
 }
 
 static bool read_design(struct reader *r)
@@ -266,9 +249,8 @@ static bool read_design(struct reader *r)
     design->levels = design->method == DOE_MORRIS ? (int)levels : 0;
     design->seed = r->s->seed;
     if (design->levels % 2 != 0) {
-        problem_add(&r->problems, reader_seen(r, "sweep.sample.levels")->node->mark,
-                    "sweep.sample.levels: %d is not even", design->levels);
-        return false;
+        return problem_add(&r->problems, reader_seen(r, "sweep.sample.levels")->node->mark,
+                           "sweep.sample.levels: %d is not even", design->levels);
     }
     return true;
 }
@@ -280,8 +262,8 @@ static bool check_sphere(struct axis_reader *a, const struct scenario_factor *f)
     for (int k = 0; k < f->paths; k++)
         whole = whole || a->axis->integer[f->first + k];
     if (f->listed || f->log || whole) {
-        axis_complain(a, "method sphere needs linear ranges of numbers that need not be whole");
-        return false;
+        return axis_complain(a,
+                             "method sphere needs linear ranges of numbers that need not be whole");
     }
     return true;
 }
@@ -293,21 +275,19 @@ static bool read_factors(struct reader *r, struct scenario_axis *axis)
     bool good = true;
 
     if (!vary) {
-        problem_add(&r->problems, reader_seen(r, "sweep.sample")->key,
-                    "sweep.sample.vary is missing");
-        return false;
+        return problem_add(&r->problems, reader_seen(r, "sweep.sample")->key,
+                           "sweep.sample.vary is missing");
     }
     if (!field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary))
         return false;
     if (vary->count > DOE_MAX_FACTORS) {
-        problem_add(&r->problems, vary->mark, "sweep.sample.vary: more than %d factors",
-                    DOE_MAX_FACTORS);
-        return false;
+        return problem_add(&r->problems, vary->mark, "sweep.sample.vary: more than %d factors",
+                           DOE_MAX_FACTORS);
     }
     sample->factor = calloc(vary->count, sizeof *sample->factor);
     axis->meaning = calloc(SCENARIO_MAX_PATHS, sizeof *axis->meaning);
     if (!sample->factor || !axis->meaning)
-        return out_of_memory(r);
+        return problem_no_memory(&r->problems);
     for (size_t j = 0; j < vary->count; j++) {
         struct axis_reader a = {.r = r,
                                 .axis = axis,
@@ -331,23 +311,21 @@ static bool check_size(struct reader *r, const struct scenario_axis *axis)
     const double points = (double)design->count * (double)doe_block(design);
 
     if (design->factors > most) {
-        problem_add(&r->problems, reader_seen(r, "sweep.sample.vary")->key,
-                    "sweep.sample.vary: method %s has at most %zu factors, here are %zu",
-                    doe_words[design->method], most, design->factors);
-        return false;
+        return problem_add(&r->problems, reader_seen(r, "sweep.sample.vary")->key,
+                           "sweep.sample.vary: method %s has at most %zu factors, here are %zu",
+                           doe_words[design->method], most, design->factors);
     }
     if (points * axis->paths > MOST_NUMBERS) {
-        problem_add(&r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
-                    "sweep.sample.count: %.0f points of %d value%s each are more than the 2^25 "
-                    "numbers that can be kept in memory",
-                    points, axis->paths, axis->paths == 1 ? "" : "s");
-        return false;
+        return problem_add(
+            &r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
+            "sweep.sample.count: %.0f points of %d value%s each are more than the 2^25 "
+            "numbers that can be kept in memory",
+            points, axis->paths, axis->paths == 1 ? "" : "s");
     }
     if (points > MOST_CASES / (double)r->s->cases) {
-        problem_add(&r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
-                    "sweep.sample: its %.0f points make more than 2^53 cases with the grid",
-                    points);
-        return false;
+        return problem_add(&r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
+                           "sweep.sample: its %.0f points make more than 2^53 cases with the grid",
+                           points);
     }
     return true;
 }
@@ -382,7 +360,7 @@ void doe_read(struct reader *r)
     axis->count = (size_t)doe_points(&s->sample.design);
     if (!make_values(s, axis)) {
         r->axes_bad = true;
-        out_of_memory(r);
+        problem_no_memory(&r->problems);
         return;
     }
     s->cases *= axis->count;

@@ -82,9 +82,8 @@ bool field_mismatch(struct problems *problems, const char *name, const char *wan
                     const struct tree_node *node)
 {
     char what[2 * SHOWN_SIZE];
-    problem_add(problems, node->mark, "%s: expected %s, found %s", name, wanted,
-                found(what, sizeof what, node));
-    return false;
+    return problem_add(problems, node->mark, "%s: expected %s, found %s", name, wanted,
+                       found(what, sizeof what, node));
 }
 
 bool field_unknown(struct problems *problems, const char *name, const char *what, const char *word,
@@ -95,9 +94,9 @@ bool field_unknown(struct problems *problems, const char *name, const char *what
 
     if (near)
         snprintf(hint, sizeof hint, "; did you mean '%.96s'?", near);
-    problem_add(problems, mark, "%s%sunknown %s '%s'%s (known: %s)", name, name[0] ? ": " : "",
-                what, shown(wrong, word), hint, word_list(list, sizeof list, known, count));
-    return false;
+    return problem_add(problems, mark, "%s%sunknown %s '%s'%s (known: %s)", name,
+                       name[0] ? ": " : "", what, shown(wrong, word), hint,
+                       word_list(list, sizeof list, known, count));
 }
 
 bool field_admits(struct problems *problems, const struct scenario_field *field, const char *name,
@@ -107,10 +106,9 @@ bool field_admits(struct problems *problems, const struct scenario_field *field,
     if (isnan(value) || value < field->low || value > field->high ||
         (field->low_open && value == field->low) || (field->high_open && value == field->high)) {
         bool quantity = field->unit[0] && strcmp(field->unit, "1") != 0 && field->columns == 0;
-        problem_add(problems, mark, "%s: %s is out of range (%s%s%s)", name, shown(word, what),
-                    schema_range_text(field, range, sizeof range), quantity ? " " : "",
-                    quantity ? field->unit : "");
-        return false;
+        return problem_add(problems, mark, "%s: %s is out of range (%s%s%s)", name,
+                           shown(word, what), schema_range_text(field, range, sizeof range),
+                           quantity ? " " : "", quantity ? field->unit : "");
     }
     return true;
 }
@@ -192,9 +190,9 @@ bool field_seed(struct problems *problems, const char *name, const struct tree_n
         *value = (uint64_t)number;
     if (*value > INT64_MAX) {
         char word[SHOWN_SIZE];
-        problem_add(problems, node->mark, "%s: %s is out of range (0 ... 9223372036854775807)",
-                    name, shown(word, node->text));
-        return false;
+        return problem_add(problems, node->mark,
+                           "%s: %s is out of range (0 ... 9223372036854775807)", name,
+                           shown(word, node->text));
     }
     return true;
 }
@@ -223,10 +221,8 @@ bool field_list(struct problems *problems, const char *name, const char *wanted,
 {
     if (node->kind != TREE_LIST)
         return field_mismatch(problems, name, wanted, node);
-    if (node->count == 0) {
-        problem_add(problems, node->mark, "%s: the list is empty", name);
-        return false;
-    }
+    if (node->count == 0)
+        return problem_add(problems, node->mark, "%s: the list is empty", name);
     return true;
 }
 
@@ -274,14 +270,12 @@ bool field_text(struct problems *problems, const char *name, const struct tree_n
     }
     for (const unsigned char *s = (const unsigned char *)node->text; *s; s++) {
         if (*s < 0x20 || *s == 0x7f || (*s == 0xc2 && s[1] < 0xa0)) {
-            problem_add(problems, node->mark, "%s: more than a line, or control characters", name);
-            return false;
+            return problem_add(problems, node->mark, "%s: more than a line, or control characters",
+                               name);
         }
     }
-    if (strlen(node->text) >= size) {
-        problem_add(problems, node->mark, "%s: longer than %zu bytes", name, size - 1);
-        return false;
-    }
+    if (strlen(node->text) >= size)
+        return problem_add(problems, node->mark, "%s: longer than %zu bytes", name, size - 1);
     memcpy(text, node->text, strlen(node->text) + 1);
     return true;
 }
@@ -291,10 +285,10 @@ static bool stable_pole(struct problems *problems, const struct scenario_field *
 {
     char word[SHOWN_SIZE];
     if (re >= 0) {
-        problem_add(problems, node->mark,
-                    "%s: %s is not in the open left half plane: the loop would not be stable", name,
-                    shown(word, node->text));
-        return false;
+        return problem_add(
+            problems, node->mark,
+            "%s: %s is not in the open left half plane: the loop would not be stable", name,
+            shown(word, node->text));
     }
     return field_admits(problems, field, name, node->text, node->mark, re);
 }

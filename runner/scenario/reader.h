@@ -70,8 +70,11 @@ bool axis_read_end(struct axis_reader *a, const char *key, const struct tree_nod
                    double *value);
 /* sweep.c: unit and text of path k. */
 void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[160]);
-/* A problem of the mapping as a whole. */
-void axis_complain(struct axis_reader *a, const char *what);
+/* A problem of the mapping as a whole. Returns false. */
+static inline bool axis_complain(struct axis_reader *a, const char *what)
+{
+    return problem_add(&a->r->problems, a->node->mark, "%s: %s", a->name, what);
+}
 /* "sweep.grid[2]" or "sweep.sample". */
 const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME]);
 

@@ -8,6 +8,7 @@
 #include "reader.h"
 
 #include "runner/base/command.h"
+#include "runner/base/numbers.h"
 #include "runner/base/words.h"
 
 #include <errno.h>
@@ -313,9 +314,8 @@ static bool has_items(struct reader *r, const char *name, const struct tree_node
     if (node->kind != TREE_LIST)
         return field_mismatch(&r->problems, name, wanted, node);
     if (node->count != items) {
-        problem_add(&r->problems, node->mark, "%s: expected %s, found %zu", name, wanted,
-                    node->count);
-        return false;
+        return problem_add(&r->problems, node->mark, "%s: expected %s, found %zu", name, wanted,
+                           node->count);
     }
     return true;
 }
@@ -398,12 +398,6 @@ static void read_settle(struct reader *r)
     }
 }
 
-static int by_number(const void *left, const void *right)
-{
-    const uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-    return a < b ? -1 : a > b;
-}
-
 static void read_record_list(struct reader *r, const struct tree_node *node)
 {
     struct scenario *s = r->s;
@@ -417,18 +411,13 @@ static void read_record_list(struct reader *r, const struct tree_node *node)
     s->record_cases = RECORD_LIST;
     s->record_list = malloc(node->count * sizeof *s->record_list);
     if (!s->record_list) {
-        problem_add(&r->problems, (struct mark){0}, "out of memory");
+        problem_no_memory(&r->problems);
         return;
     }
     for (size_t i = 0; i < node->count; i++)
         if (field_integer(&r->problems, &index, "record.cases", node->item[i], &number))
             s->record_list[s->record_count++] = (uint64_t)number;
-    qsort(s->record_list, s->record_count, sizeof *s->record_list, by_number);
-    size_t unique = 0;
-    for (size_t i = 0; i < s->record_count; i++)
-        if (i == 0 || s->record_list[i] != s->record_list[unique - 1])
-            s->record_list[unique++] = s->record_list[i];
-    s->record_count = unique;
+    s->record_count = numbers_unite(s->record_list, s->record_count);
 }
 
 static void read_record(struct reader *r)
@@ -498,10 +487,9 @@ static bool read_version(struct reader *r)
         !number_parse(version->text, &number, &finite))
         return field_mismatch(&r->problems, "stance", "the version of the format, 1", version);
     if (number != 1) {
-        problem_add(&r->problems, version->mark,
-                    "stance: this program reads version 1 of the format, not %s",
-                    shown(word, version->text));
-        return false;
+        return problem_add(&r->problems, version->mark,
+                           "stance: this program reads version 1 of the format, not %s",
+                           shown(word, version->text));
     }
     return true;
 }
@@ -624,7 +612,7 @@ static void read_all(struct reader *r, const char *file, const char *text, const
         sort_keys(&r->schema, r->tree.root, "");
         s->text = tree_write(r->tree.root);
         if (!s->text)
-            problem_add(&r->problems, (struct mark){0}, "out of memory");
+            problem_no_memory(&r->problems);
     }
 }
 
@@ -657,7 +645,8 @@ bool scenario_read(struct scenario *s, const char *file, const char *text, const
 
     memset(s, 0, sizeof *s);
     if (!r) {
-        fprintf(errors, "%s: out of memory\n", file);
+        if (errors)
+            fprintf(errors, "%s: out of memory\n", file);
         return false;
     }
     r->s = s;
@@ -667,7 +656,8 @@ bool scenario_read(struct scenario *s, const char *file, const char *text, const
         read_all(r, file, text, sets, set_count);
     bool good = r->problems.count == 0;
     if (!good) {
-        problems_print(&r->problems, file, sets, errors);
+        if (errors)
+            problems_print(&r->problems, file, sets, errors);
         scenario_free(s);
     }
     tree_free(&r->tree);

@@ -172,7 +172,8 @@ struct scenario {
     size_t places;
 };
 
-/* One error or many on `errors` as "FILE:LINE:COLUMN: message"; false then, and *s is empty.
+/* One error or many on `errors` (NULL: nowhere) as "FILE:LINE:COLUMN: message"; false then, and *s
+ * is empty.
  * `sets`: PATH=VALUE strings of --set. Reads a file, or (text not NULL) that text under the name
  * `file`. */
 bool scenario_read(struct scenario *s, const char *file, const char *text, const char *const *sets,

@@ -10,11 +10,6 @@
 #define MOST_CASES 0x1p53   /* exact as a double, and within what HDF5 can address */
 #define MOST_LOG_POINTS 1e7 /* these are computed beforehand */
 
-void axis_complain(struct axis_reader *a, const char *what)
-{
-    problem_add(&a->r->problems, a->node->mark, "%s: %s", a->name, what);
-}
-
 const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME])
 {
     if (s->axis[axis].sample)
@@ -109,9 +104,8 @@ static bool read_path(struct axis_reader *a, const struct tree_node *node)
     if (!swept.field)
         return unknown_path(a, node);
     if (!swept.field->sweep) {
-        problem_add(&a->r->problems, node->mark, "%s: %s cannot be swept", a->name,
-                    shown(word, node->text));
-        return false;
+        return problem_add(&a->r->problems, node->mark, "%s: %s cannot be swept", a->name,
+                           shown(word, node->text));
     }
     if (beyond_end(a, node, &swept) || swept_before(a, node))
         return false;
@@ -139,22 +133,17 @@ static bool read_path(struct axis_reader *a, const struct tree_node *node)
 bool axis_read_paths(struct axis_reader *a)
 {
     const struct tree_node *path = tree_find(a->node, "path"), *paths = tree_find(a->node, "paths");
-    if (!path && !paths) {
-        axis_complain(a, "path is missing");
-        return false;
-    }
-    if (path && paths) {
-        axis_complain(a, "path and paths exclude each other");
-        return false;
-    }
+    if (!path && !paths)
+        return axis_complain(a, "path is missing");
+    if (path && paths)
+        return axis_complain(a, "path and paths exclude each other");
     if (path)
         return read_path(a, path);
     if (!field_list(&a->r->problems, a->name, "a list of paths", paths))
         return false;
     if (paths->count > SCENARIO_MAX_PATHS - (size_t)a->axis->paths) {
-        problem_add(&a->r->problems, paths->mark, "%s: more than %d paths", a->name,
-                    SCENARIO_MAX_PATHS);
-        return false;
+        return problem_add(&a->r->problems, paths->mark, "%s: more than %d paths", a->name,
+                           SCENARIO_MAX_PATHS);
     }
     bool good = true;
     for (size_t k = 0; k < paths->count; k++)
@@ -186,10 +175,8 @@ static bool read_point(struct axis_reader *a, const struct tree_node *node, size
 
     if (good && axis->word) {
         axis->word[at] = strdup(node->text);
-        if (!axis->word[at]) {
-            problem_add(&a->r->problems, (struct mark){0}, "out of memory");
-            return false;
-        }
+        if (!axis->word[at])
+            return problem_no_memory(&a->r->problems);
     }
     return good;
 }
@@ -208,9 +195,8 @@ static bool read_points(struct axis_reader *a, const struct tree_node *node, siz
         snprintf(wanted, sizeof wanted, "a list of %zu values, one for each path", paths);
         if (node->kind != TREE_LIST)
             return field_mismatch(&a->r->problems, a->name, wanted, node);
-        problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name, wanted,
-                    node->count);
-        return false;
+        return problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name,
+                           wanted, node->count);
     }
     for (size_t k = 0; k < paths; k++)
         good = read_point(a, node->item[k], point * paths + k, (int)k) && good;
@@ -225,9 +211,8 @@ static bool read_values(struct axis_reader *a, const struct tree_node *values, b
 
     for (size_t i = 0; i < sizeof range_keys / sizeof range_keys[0]; i++) {
         if (tree_find(a->node, range_keys[i])) {
-            problem_add(&a->r->problems, a->node->mark, "%s: values and %s exclude each other",
-                        a->name, range_keys[i]);
-            return false;
+            return problem_add(&a->r->problems, a->node->mark,
+                               "%s: values and %s exclude each other", a->name, range_keys[i]);
         }
     }
     if (!field_list(&a->r->problems, a->name, "a list of values", values))
@@ -236,10 +221,8 @@ static bool read_values(struct axis_reader *a, const struct tree_node *values, b
     size_t n = axis->count * (size_t)axis->paths;
     axis->value = calloc(n, sizeof *axis->value);
     axis->word = axis->words ? calloc(n, sizeof *axis->word) : NULL;
-    if (!axis->value || (axis->words && !axis->word)) {
-        problem_add(&a->r->problems, (struct mark){0}, "out of memory");
-        return false;
-    }
+    if (!axis->value || (axis->words && !axis->word))
+        return problem_no_memory(&a->r->problems);
     for (size_t i = 0; i < values->count; i++)
         good = read_points(a, values->item[i], i, rows) && good;
     return good;
@@ -250,10 +233,8 @@ bool axis_read_end(struct axis_reader *a, const char *key, const struct tree_nod
 {
     if (!axis_read_value(a, node, k, value))
         return false;
-    if (!isfinite(*value)) {
-        problem_add(&a->r->problems, node->mark, "%s: %s must be a number", a->name, key);
-        return false;
-    }
+    if (!isfinite(*value))
+        return problem_add(&a->r->problems, node->mark, "%s: %s must be a number", a->name, key);
     return true;
 }
 
@@ -266,19 +247,16 @@ static bool compute_log_points(struct axis_reader *a, struct mark mark)
 {
     struct scenario_axis *axis = a->axis;
     if (axis->from <= 0 || axis->to <= 0) {
-        problem_add(&a->r->problems, mark, "%s: spacing log needs from and to above 0", a->name);
-        return false;
+        return problem_add(&a->r->problems, mark, "%s: spacing log needs from and to above 0",
+                           a->name);
     }
     if ((double)axis->count > MOST_LOG_POINTS) {
-        problem_add(&a->r->problems, mark, "%s: spacing log has at most %.0f points", a->name,
-                    MOST_LOG_POINTS);
-        return false;
+        return problem_add(&a->r->problems, mark, "%s: spacing log has at most %.0f points",
+                           a->name, MOST_LOG_POINTS);
     }
     axis->value = malloc(axis->count * sizeof *axis->value);
-    if (!axis->value) {
-        problem_add(&a->r->problems, (struct mark){0}, "out of memory");
-        return false;
-    }
+    if (!axis->value)
+        return problem_no_memory(&a->r->problems);
     for (size_t i = 0; i < axis->count; i++) {
         axis->value[i] =
             i == 0 ? axis->from
@@ -323,21 +301,17 @@ static bool read_range(struct axis_reader *a)
     if (axis->enumeration[0]) {
         char what[160];
         snprintf(what, sizeof what, "%s takes words: list them as values", axis->path[0]);
-        axis_complain(a, what);
-        return false;
+        return axis_complain(a, what);
     }
     if (!tree_find(a->node, "from")) {
-        axis_complain(a,
-                      count || has_to ? "from is missing" : "give from, to and count, or values");
-        return false;
+        return axis_complain(a, count || has_to ? "from is missing"
+                                                : "give from, to and count, or values");
     }
     bool good = read_end(a, "from", &axis->from);
     axis->to = axis->from;
     good = (!has_to || read_end(a, "to", &axis->to)) && good;
-    if (!count) {
-        axis_complain(a, "count is missing");
-        return false;
-    }
+    if (!count)
+        return axis_complain(a, "count is missing");
     snprintf(name, sizeof name, "%s.count", a->name);
     good = field_integer(&r->problems, schema_find(&r->schema, "sweep.grid[].count"), name, count,
                          &number) &&
@@ -388,10 +362,8 @@ static bool read_axis(struct axis_reader *a)
     axis_describe(a, 0, axis->unit, axis->text);
     paths = tree_find(a->node, "paths");
     values = tree_find(a->node, "values");
-    if (paths && !values) {
-        axis_complain(a, "paths needs values, a list for each point");
-        return false;
-    }
+    if (paths && !values)
+        return axis_complain(a, "paths needs values, a list for each point");
     return values ? read_values(a, values, paths != NULL) : read_range(a);
 }
 

@@ -56,11 +56,6 @@ void tree_free(struct tree *tree)
     tree->root = NULL;
 }
 
-static void out_of_memory(struct problems *problems)
-{
-    problem_add(problems, (struct mark){0}, "out of memory");
-}
-
 static struct tree_node *new_node(struct tree *tree, enum tree_kind kind, struct mark mark)
 {
     struct tree_node *node = allocate(tree, sizeof *node);
@@ -144,21 +139,18 @@ static bool next(struct parse *parse)
     if (yaml_parser_parse(&parse->parser, &parse->event))
         return true;
     memset(&parse->event, 0, sizeof parse->event);
-    if (parse->parser.error == YAML_MEMORY_ERROR) {
-        out_of_memory(parse->problems);
-        return false;
-    }
+    if (parse->parser.error == YAML_MEMORY_ERROR)
+        return problem_no_memory(parse->problems);
     bool has_mark = parse->parser.problem_mark.index || parse->parser.problem_mark.line;
-    problem_add(parse->problems,
-                mark_of(parse, has_mark ? parse->parser.problem_mark : parse->parser.context_mark),
-                "not YAML: %s", parse->parser.problem ? parse->parser.problem : "malformed");
-    return false;
+    return problem_add(
+        parse->problems,
+        mark_of(parse, has_mark ? parse->parser.problem_mark : parse->parser.context_mark),
+        "not YAML: %s", parse->parser.problem ? parse->parser.problem : "malformed");
 }
 
 static bool too_deep(struct problems *problems, struct mark mark)
 {
-    problem_add(problems, mark, "nested deeper than %d levels", TREE_MAX_DEPTH);
-    return false;
+    return problem_add(problems, mark, "nested deeper than %d levels", TREE_MAX_DEPTH);
 }
 
 /* What an alias stands for, as a copy of its own. */
@@ -169,25 +161,20 @@ static bool copy_node(struct parse *parse, const struct tree_node *from, int dep
     if (depth > TREE_MAX_DEPTH)
         return too_deep(parse->problems, alias);
     if (++tree->copied > TREE_MAX_COPIED) {
-        problem_add(parse->problems, alias, "aliases expand to more than %d nodes",
-                    TREE_MAX_COPIED);
-        return false;
+        return problem_add(parse->problems, alias, "aliases expand to more than %d nodes",
+                           TREE_MAX_COPIED);
     }
     struct tree_node *node = new_node(tree, from->kind, from->mark);
-    if (!node) {
-        out_of_memory(parse->problems);
-        return false;
-    }
+    if (!node)
+        return problem_no_memory(parse->problems);
     node->quoted = from->quoted;
     node->text = from->text;
     for (size_t i = 0; i < from->count; i++) {
         struct tree_node *item;
         if (!copy_node(parse, from->item[i], depth + 1, alias, &item))
             return false;
-        if (!append(tree, node, from->kind == TREE_MAP ? &from->key[i] : NULL, item)) {
-            out_of_memory(parse->problems);
-            return false;
-        }
+        if (!append(tree, node, from->kind == TREE_MAP ? &from->key[i] : NULL, item))
+            return problem_no_memory(parse->problems);
     }
     *out = node;
     return true;
@@ -202,14 +189,13 @@ static bool read_alias(struct parse *parse, int depth, struct tree_node **out)
         if (strcmp(parse->anchor[i].name, name) != 0)
             continue;
         if (!parse->anchor[i].node) {
-            problem_add(parse->problems, mark, "the alias *%s stands inside what it names",
-                        shown(word, name));
-            return false;
+            return problem_add(parse->problems, mark, "the alias *%s stands inside what it names",
+                               shown(word, name));
         }
         return copy_node(parse, parse->anchor[i].node, depth, mark, out);
     }
-    problem_add(parse->problems, mark, "no anchor &%s stands before this alias", shown(word, name));
-    return false;
+    return problem_add(parse->problems, mark, "no anchor &%s stands before this alias",
+                       shown(word, name));
 }
 
 /* Notes the anchor of the event, if it has one; *index is then where. Tags are refused. */
@@ -219,25 +205,22 @@ static bool read_properties(struct parse *parse, const yaml_char_t *anchor, cons
     char word[SHOWN_SIZE];
     *index = SIZE_MAX;
     if (tag) {
-        problem_add(parse->problems, event_mark(parse),
-                    "the tag %s is not accepted: types follow from the keys",
-                    shown(word, (const char *)tag));
-        return false;
+        return problem_add(parse->problems, event_mark(parse),
+                           "the tag %s is not accepted: types follow from the keys",
+                           shown(word, (const char *)tag));
     }
     if (!anchor)
         return true;
     if (parse->anchors == TREE_MAX_ANCHORS) {
-        problem_add(parse->problems, event_mark(parse), "more than %d anchors", TREE_MAX_ANCHORS);
-        return false;
+        return problem_add(parse->problems, event_mark(parse), "more than %d anchors",
+                           TREE_MAX_ANCHORS);
     }
     *index = parse->anchors++;
     parse->anchor[*index].node = NULL;
     parse->anchor[*index].name =
         copy_text(parse->tree, (const char *)anchor, strlen((const char *)anchor));
-    if (!parse->anchor[*index].name) {
-        out_of_memory(parse->problems);
-        return false;
-    }
+    if (!parse->anchor[*index].name)
+        return problem_no_memory(parse->problems);
     return true;
 }
 
@@ -245,15 +228,11 @@ static bool read_text(struct parse *parse, const char **text)
 {
     const char *value = (const char *)parse->event.data.scalar.value;
     size_t length = parse->event.data.scalar.length;
-    if (strlen(value) != length) {
-        problem_add(parse->problems, event_mark(parse), "a zero byte stands in this text");
-        return false;
-    }
+    if (strlen(value) != length)
+        return problem_add(parse->problems, event_mark(parse), "a zero byte stands in this text");
     *text = copy_text(parse->tree, value, length);
-    if (!*text) {
-        out_of_memory(parse->problems);
-        return false;
-    }
+    if (!*text)
+        return problem_no_memory(parse->problems);
     return true;
 }
 
@@ -275,10 +254,8 @@ static bool read_list(struct parse *parse, int depth, struct tree_node *node)
             return true;
         if (!read_node(parse, depth + 1, &item))
             return false;
-        if (!append(parse->tree, node, NULL, item)) {
-            out_of_memory(parse->problems);
-            return false;
-        }
+        if (!append(parse->tree, node, NULL, item))
+            return problem_no_memory(parse->problems);
     }
 }
 
@@ -294,14 +271,11 @@ static bool read_map(struct parse *parse, int depth, struct tree_node *node)
         if (parse->event.type == YAML_MAPPING_END_EVENT)
             return true;
         key.mark = event_mark(parse);
-        if (parse->event.type != YAML_SCALAR_EVENT || parse->event.data.scalar.tag) {
-            problem_add(parse->problems, key.mark, "a key must be a plain word");
-            return false;
-        }
+        if (parse->event.type != YAML_SCALAR_EVENT || parse->event.data.scalar.tag)
+            return problem_add(parse->problems, key.mark, "a key must be a plain word");
         if (node->count == TREE_MAX_KEYS) {
-            problem_add(parse->problems, key.mark, "more than %d keys in one mapping",
-                        TREE_MAX_KEYS);
-            return false;
+            return problem_add(parse->problems, key.mark, "more than %d keys in one mapping",
+                               TREE_MAX_KEYS);
         }
         if (!read_text(parse, &key.name) || !next(parse) || !read_node(parse, depth + 1, &item))
             return false;
@@ -309,8 +283,7 @@ static bool read_map(struct parse *parse, int depth, struct tree_node *node)
             problem_add(parse->problems, key.mark, "duplicate key '%s' (first in line %d)",
                         shown(word, key.name), node->key[first].mark.line);
         } else if (!append(parse->tree, node, &key, item)) {
-            out_of_memory(parse->problems);
-            return false;
+            return problem_no_memory(parse->problems);
         }
     }
 }
@@ -331,10 +304,8 @@ static bool read_node(struct parse *parse, int depth, struct tree_node **out)
                           : event->type == YAML_SEQUENCE_START_EVENT ? TREE_LIST
                                                                      : TREE_MAP;
     struct tree_node *node = new_node(parse->tree, kind, mark);
-    if (!node) {
-        out_of_memory(parse->problems);
-        return false;
-    }
+    if (!node)
+        return problem_no_memory(parse->problems);
     if (kind == TREE_SCALAR) {
         good = read_properties(parse, event->data.scalar.anchor, event->data.scalar.tag, &anchor) &&
                read_scalar(parse, node);
@@ -364,19 +335,16 @@ static bool read_document(struct parse *parse, struct tree_node **root)
                 (*root)->text = "";
                 return true;
             }
-            out_of_memory(parse->problems);
-            return false;
+            return problem_no_memory(parse->problems);
         }
-        problem_add(parse->problems, (struct mark){parse->set, 0, 0},
-                    "nothing stands in this file");
-        return false;
+        return problem_add(parse->problems, (struct mark){parse->set, 0, 0},
+                           "nothing stands in this file");
     }
     if (!next(parse) || !read_node(parse, 1, root) || !next(parse) || !next(parse))
         return false;
     if (parse->event.type != YAML_STREAM_END_EVENT) {
-        problem_add(parse->problems, event_mark(parse),
-                    "a second document begins here; a scenario is one");
-        return false;
+        return problem_add(parse->problems, event_mark(parse),
+                           "a second document begins here; a scenario is one");
     }
     return true;
 }
@@ -387,8 +355,7 @@ static bool parse_text(struct tree *tree, const char *text, size_t length, int s
     struct parse *parse = calloc(1, sizeof *parse);
     if (!parse || !yaml_parser_initialize(&parse->parser)) {
         free(parse);
-        out_of_memory(problems);
-        return false;
+        return problem_no_memory(problems);
     }
     parse->tree = tree;
     parse->problems = problems;
@@ -463,7 +430,7 @@ static struct tree_node **descend(struct tree *tree, struct tree_node **place, c
     }
     struct tree_node *item = new_node(tree, TREE_SCALAR, mark);
     if (!item) {
-        out_of_memory(problems);
+        problem_no_memory(problems);
         return NULL;
     }
     item->text = "";
@@ -487,7 +454,7 @@ static struct tree_node **descend(struct tree *tree, struct tree_node **place, c
         if (key.name && append(tree, node, &key, item))
             return &node->item[node->count - 1];
     }
-    out_of_memory(problems);
+    problem_no_memory(problems);
     return NULL;
 }
 
@@ -505,21 +472,15 @@ bool tree_set(struct tree *tree, const char *path_and_value, int set, struct pro
 {
     struct mark mark = {set, 1, 1};
     const char *equals = strchr(path_and_value, '=');
-    if (!equals) {
-        problem_add(problems, mark, "a value must follow, as in PATH=VALUE");
-        return false;
-    }
+    if (!equals)
+        return problem_add(problems, mark, "a value must follow, as in PATH=VALUE");
     size_t length = strlen(equals + 1);
     struct tree_node *value = NULL;
-    if (strlen(path_and_value) > TREE_MAX_BYTES) {
-        problem_add(problems, mark, "longer than %d bytes", TREE_MAX_BYTES);
-        return false;
-    }
+    if (strlen(path_and_value) > TREE_MAX_BYTES)
+        return problem_add(problems, mark, "longer than %d bytes", TREE_MAX_BYTES);
     char *path = copy_text(tree, path_and_value, (size_t)(equals - path_and_value));
-    if (!path) {
-        out_of_memory(problems);
-        return false;
-    }
+    if (!path)
+        return problem_no_memory(problems);
     size_t before = problems->count;
     bool good = tree_check_text(equals + 1, length, problems);
     for (size_t i = before; i < problems->count; i++)
@@ -528,9 +489,8 @@ bool tree_set(struct tree *tree, const char *path_and_value, int set, struct pro
         return false;
     if (!path_is_good(path)) {
         char word[SHOWN_SIZE];
-        problem_add(problems, mark, "'%s' is not a path such as sweep.grid[0].count",
-                    shown(word, path));
-        return false;
+        return problem_add(problems, mark, "'%s' is not a path such as sweep.grid[0].count",
+                           shown(word, path));
     }
     if (!parse_text(tree, equals + 1, length, set, problems, &value))
         return false;
@@ -540,10 +500,8 @@ bool tree_set(struct tree *tree, const char *path_and_value, int set, struct pro
     size_t index;
     for (bool first = true; *at; first = false) {
         char *prefix = copy_text(tree, from, (size_t)(at - from));
-        if (!prefix || !tree_path_step(&at, first, name, &index)) {
-            out_of_memory(problems);
-            return false;
-        }
+        if (!prefix || !tree_path_step(&at, first, name, &index))
+            return problem_no_memory(problems);
         shown(so_far, first ? "the scenario" : prefix);
         place = descend(tree, place, name, index, so_far, mark, problems);
         if (!place)

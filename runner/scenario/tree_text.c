@@ -45,12 +45,12 @@ bool tree_check_text(const char *text, size_t length, struct problems *problems)
         uint32_t c = 0;
         size_t n = decode((const unsigned char *)text + i, length - i, &c);
         if (n == 0) {
-            problem_add(problems, mark, "not UTF-8 text (byte 0x%02x)", (unsigned char)text[i]);
-            return false;
+            return problem_add(problems, mark, "not UTF-8 text (byte 0x%02x)",
+                               (unsigned char)text[i]);
         }
         if (!printable(c) && !(i == 0 && c == 0xfeff)) {
-            problem_add(problems, mark, "not text: the control character U+%04X stands here", c);
-            return false;
+            return problem_add(problems, mark, "not text: the control character U+%04X stands here",
+                               c);
         }
         i += n;
         mark.column++;

@@ -1,6 +1,8 @@
 /* changed_scenario.c - see changed_scenario.h. */
 #include "changed_scenario.h"
 
+#include "runner/base/message.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <libgen.h>
@@ -124,9 +126,8 @@ size_t changed_scenario_count_differences(const char *before, const char *after)
 
 static bool refuse(stance_message *message, const char *file, const char *what)
 {
-    snprintf(message->text, sizeof message->text,
-             "%.90s: --force-scenario cannot change %s: begin a new file (-o)", file, what);
-    return false;
+    return complain(message, "%.90s: --force-scenario cannot change %s: begin a new file (-o)",
+                    file, what);
 }
 
 static bool same_axis(const struct scenario_axis *a, const struct scenario_axis *b)
@@ -221,12 +222,11 @@ bool changed_scenario_check_sweep(const char *file, const struct store_origin *o
                                   const struct scenario *scenario, stance_message *message)
 {
     struct scenario *old = calloc(1, sizeof *old);
-    FILE *nowhere = fopen("/dev/null", "w");
     bool good = false;
 
-    if (!old || !nowhere) {
-        snprintf(message->text, sizeof message->text, "not enough memory");
-    } else if (!scenario_read(old, file, origin->scenario, NULL, 0, nowhere)) {
+    if (!old) {
+        no_memory(message);
+    } else if (!scenario_read(old, file, origin->scenario, NULL, 0, NULL)) {
         refuse(message, file, "a scenario that this version cannot read");
     } else {
         good = (same_sample(old, scenario) ||
@@ -234,8 +234,6 @@ bool changed_scenario_check_sweep(const char *file, const struct store_origin *o
                (same_axes(old, scenario) || refuse(message, file, "the scene or the sweep"));
         scenario_free(old);
     }
-    if (nowhere)
-        fclose(nowhere);
     free(old);
     return good;
 }
@@ -253,9 +251,7 @@ struct making {
 
 static bool system_failed(const struct making *making, const char *what)
 {
-    snprintf(making->message->text, sizeof making->message->text, "%.150s: cannot %s: %s",
-             making->file, what, strerror(errno));
-    return false;
+    return complain(making->message, "%.150s: cannot %s: %s", making->file, what, strerror(errno));
 }
 
 /* Copies the rows that verify, some at a time. */
@@ -353,7 +349,7 @@ bool changed_scenario_make(const char *file, const struct store_origin *origin, 
         system_failed(&making, "prepare its successor");
     } else if (origin->ancestors >= STORE_MOST_ANCESTORS) {
         refuse(message, file, "a file of so many scenarios");
-    } else if (!scenario_read(old, file, origin->scenario, NULL, 0, nowhere)) {
+    } else if (!scenario_read(old, file, origin->scenario, NULL, 0, NULL)) {
         refuse(message, file, "a scenario that this version cannot read");
     } else {
         snprintf(making.made, sizeof making.made, "%s.next", making.real);
@@ -369,8 +365,6 @@ bool changed_scenario_make(const char *file, const struct store_origin *origin, 
         plan_free(&before);
         scenario_free(old);
     }
-    if (nowhere)
-        fclose(nowhere);
     free(old);
     return good;
 }

@@ -3,6 +3,7 @@
 #include "merge.h"
 
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 
 #include <errno.h>
@@ -94,7 +95,7 @@ static int write_file(const struct request *request, struct merge *m)
     unlink(made);
     bool good = merge_write(m, made, &usage, &message);
     if (good && rename(made, request->output) != 0) {
-        snprintf(message.text, sizeof message.text, "%.150s: %s", request->output, strerror(errno));
+        complain(&message, "%.150s: %s", request->output, strerror(errno));
         unlink(made);
         good = false;
     }

@@ -2,9 +2,11 @@
 #include "compare_values.h"
 
 #include "file_checksums.h"
-#include "store.h"
+#include "results_private.h"
+#include "store_private.h"
 
-#include <hdf5.h>
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -120,18 +122,9 @@ static struct compare_difference *add_difference(struct comparison *comparison, 
     return difference;
 }
 
-static bool no_memory(stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "stance compare: not enough memory");
-    return false;
-}
-
 static bool unreadable(const struct results *r, const char *name, stance_message *message)
 {
-    H5Eclear2(H5E_DEFAULT);
-    snprintf(message->text, sizeof message->text, "%.100s: damaged: cannot read %.80s", r->file,
-             name);
-    return false;
+    return complain(message, "%.100s: damaged: cannot read %.80s", r->file, name);
 }
 
 void compare_free(struct comparison *comparison)
@@ -163,7 +156,7 @@ static bool open_attribute(hid_t object, const char *name, hid_t *attribute, hid
     hid_t space = H5Aget_space(*attribute);
     hssize_t points = H5Sget_simple_extent_npoints(space);
     *count = points > 0 && points < BLOCK ? (size_t)points : 0;
-    H5Sclose(space);
+    hdf_close(space);
     return *attribute >= 0 && *type >= 0 && points >= 0 && points < BLOCK;
 }
 
@@ -181,7 +174,7 @@ static bool compare_attribute(struct comparison *comparison, const struct result
              attribute_name);
     for (int f = 0; f < 2 && good; f++) {
         good = (open_attribute(object[f], attribute_name, &attribute[f], &type[f], &count[f]) &&
-                values_read(attribute[f], -1, type[f], count[f], &values[f])) ||
+                values_read(attribute[f], 0, type[f], count[f], &values[f])) ||
                unreadable(r[f], name, message);
     }
     const struct compare_difference *added = NULL;
@@ -210,11 +203,9 @@ static bool compare_attribute(struct comparison *comparison, const struct result
             difference->of = count[0];
         }
     }
-    for (int f = 0; f < 2; f++) {
+    for (int f = 0; f < 2; f++)
         values_free(&values[f]);
-        H5Tclose(type[f]);
-        H5Aclose(attribute[f]);
-    }
+    hdf_close(type[0], type[1], attribute[0], attribute[1]);
     return good;
 }
 
@@ -262,7 +253,7 @@ static bool compare_attributes(struct comparison *comparison, const struct resul
 struct variable {
     const char *name;
     const struct results *const *r; /* [2] */
-    hid_t dataset[2], type[2], space[2];
+    hid_t dataset[2], type[2];
     int rank;
     hsize_t length[H5S_MAX_RANK];
     size_t elements;
@@ -270,29 +261,6 @@ struct variable {
     const struct compare_tolerance *tolerance; /* NULL: bit for bit */
     const uint64_t *list;                      /* cases of a trajectory; NULL: rows are the cases */
 };
-
-static bool is_answer(const char *name)
-{
-    static const char *const answers[] = {
-#define STORE_NAME(name, ...) #name,
-        STANCE_ANSWERS(STORE_NAME)
-#undef STORE_NAME
-            "final_state",
-        "checksum", "status", NULL};
-    return is_listed(name, answers);
-}
-
-static bool is_trajectory(const char *name)
-{
-    static const char *const tracks[] = {"trajectory/position",
-                                         "trajectory/velocity",
-                                         "trajectory/torque",
-                                         "trajectory/force",
-                                         "trajectory/gap",
-                                         "trajectory/checksum",
-                                         NULL};
-    return is_listed(name, tracks);
-}
 
 static bool is_pending(const struct results *r, uint64_t index)
 {
@@ -386,67 +354,35 @@ static bool compare_block(struct comparison *comparison, const struct variable *
     return true;
 }
 
-/* Selects rows [at, at + n) of the first dimension in both files. */
-static bool select_rows(const struct variable *v, hsize_t at, hsize_t n)
-{
-    hsize_t start[H5S_MAX_RANK] = {0}, count[H5S_MAX_RANK];
-    if (v->rank == 0)
-        return true;
-    memcpy(count, v->length, sizeof count);
-    start[0] = at;
-    count[0] = n;
-    return H5Sselect_hyperslab(v->space[0], H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
-           H5Sselect_hyperslab(v->space[1], H5S_SELECT_SET, start, NULL, count, NULL) >= 0;
-}
-
 static bool compare_values(struct comparison *comparison, const struct variable *v,
                            stance_message *message)
 {
-    hsize_t rows = v->rank > 0 ? v->length[0] : 1;
-    size_t per_row = v->elements / (size_t)rows, last = 0;
-    hsize_t step = per_row < BLOCK ? BLOCK / per_row : 1;
+    size_t last = 0;
     struct compare_difference *difference = NULL;
     bool good = true;
 
-    for (hsize_t at = 0; at < rows && good; at += step) {
-        hsize_t n = rows - at < step ? rows - at : step;
+    for (size_t at = 0; at < v->elements && good; at += BLOCK) {
+        const size_t n = v->elements - at < BLOCK ? v->elements - at : BLOCK;
         struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
-        good = select_rows(v, at, n) || no_memory(message);
         for (int f = 0; f < 2 && good; f++) {
-            good = values_read(v->dataset[f], v->space[f], v->type[f], (size_t)n * per_row,
-                               &values[f]) ||
+            good = values_read(v->dataset[f], at, v->type[f], n, &values[f]) ||
                    unreadable(v->r[f], v->name, message);
         }
         good = good &&
-               (compare_block(comparison, v, (size_t)at * per_row, values, &difference, &last) ||
-                no_memory(message));
+               (compare_block(comparison, v, at, values, &difference, &last) || no_memory(message));
         values_free(&values[0]);
         values_free(&values[1]);
     }
     return good;
 }
 
-/* Number of elements; 0 when a damaged header claims more than the file can hold. */
-static size_t count_elements(const struct variable *v)
-{
-    hsize_t size = 0, product = 1;
-    if (H5Fget_filesize((hid_t)v->r[0]->id, &size) < 0)
-        return 0;
-    for (int d = 0; d < v->rank; d++) {
-        if (v->length[d] == 0 || product > size / v->length[d])
-            return 0;
-        product *= v->length[d];
-    }
-    return (size_t)product;
-}
-
 /* How the elements belong to cases. `list` is what trajectories are over. */
 static void find_rows(struct variable *v, const uint64_t *list, size_t list_count)
 {
     uint64_t rows = 0;
-    if (is_answer(v->name)) {
+    if (store_is_column(v->name)) {
         rows = v->r[0]->cases;
-    } else if (is_trajectory(v->name) && v->rank > 0 && v->length[0] == list_count) {
+    } else if (store_is_track(v->name) && v->rank > 0 && v->length[0] == list_count) {
         rows = list_count;
         v->list = list;
     }
@@ -461,7 +397,7 @@ static const struct compare_tolerance *tolerance_of(const struct comparison *com
     const struct compare_tolerances *all = comparison->tolerances;
     const enum value_kind kind = value_kind_of(v->type[0]);
     const struct compare_tolerance *found = NULL;
-    if (!all || !(kind == VALUE_REAL || (kind == VALUE_INTEGER && is_answer(v->name))))
+    if (!all || !(kind == VALUE_REAL || (kind == VALUE_INTEGER && store_is_column(v->name))))
         return NULL;
     for (size_t i = 0; i < all->count; i++) {
         const struct compare_tolerance *tolerance = &all->tolerance[i];
@@ -479,8 +415,7 @@ static bool open_variable(struct variable *v, const hid_t object[2], const char 
     for (int f = 0; f < 2; f++) {
         v->dataset[f] = object[f];
         v->type[f] = H5Dget_type(object[f]);
-        v->space[f] = H5Dget_space(object[f]);
-        rank[f] = H5Sget_simple_extent_dims(v->space[f], length[f], NULL);
+        rank[f] = hdf_shape(object[f], length[f]);
         if (v->type[f] < 0 || rank[f] < 0)
             return false;
     }
@@ -501,13 +436,13 @@ static bool compare_variable(struct comparison *comparison, const struct results
                              const hid_t object[2], const char *name, const uint64_t *list,
                              size_t list_count, stance_message *message)
 {
-    struct variable v = {.name = name, .r = r, .type = {-1, -1}, .space = {-1, -1}};
+    struct variable v = {.name = name, .r = r, .type = {-1, -1}};
     const char *differs = NULL;
     bool good = open_variable(&v, object, &differs) || unreadable(r[0], name, message);
     if (good && differs) {
         good = add_difference(comparison, name, differs) || no_memory(message);
     } else if (good) {
-        v.elements = count_elements(&v);
+        v.elements = results_elements(r[0], v.rank, v.length);
         good = v.elements > 0 || unreadable(r[0], name, message);
         if (good) {
             find_rows(&v, list, list_count);
@@ -515,10 +450,7 @@ static bool compare_variable(struct comparison *comparison, const struct results
             good = compare_values(comparison, &v, message);
         }
     }
-    for (int f = 0; f < 2; f++) {
-        H5Sclose(v.space[f]);
-        H5Tclose(v.type[f]);
-    }
+    hdf_close(v.type[0], v.type[1]);
     return good;
 }
 
@@ -549,31 +481,22 @@ static bool compare_object(struct comparison *comparison, const struct results *
             (H5Iget_type(object[0]) != H5I_DATASET ||
              compare_variable(comparison, r, object, name, list, list_count, message));
     }
-    for (int f = 0; f < 2; f++)
-        if (object[f] >= 0)
-            H5Oclose(object[f]);
+    hdf_close(object[0], object[1]);
     return good;
 }
 
 /* The group that an object is in is missing in one of the files, which is said once. */
 static bool lacks_group(const struct results *const r[2], const char *name)
 {
-    char group[192];
     const char *slash = strrchr(name, '/');
-    if (!slash)
-        return false;
-    snprintf(group, sizeof group, "%.*s", (int)(slash - name), name);
-    return lacks_group(r, group) || H5Lexists((hid_t)r[0]->id, group, H5P_DEFAULT) <= 0 ||
-           H5Lexists((hid_t)r[1]->id, group, H5P_DEFAULT) <= 0;
+    char group[192];
+    snprintf(group, sizeof group, "%.*s", slash ? (int)(slash - name) : 0, name);
+    return slash && !(hdf_exists((hid_t)r[0]->id, group) && hdf_exists((hid_t)r[1]->id, group));
 }
 
 bool compare_has(const struct results *r, const char *name)
 {
-    const char *slash = strchr(name, '/');
-    char group[96];
-    snprintf(group, sizeof group, "%.*s", slash ? (int)(slash - name) : 0, name);
-    return name[0] && (!slash || H5Lexists((hid_t)r->id, group, H5P_DEFAULT) > 0) &&
-           H5Lexists((hid_t)r->id, name, H5P_DEFAULT) > 0;
+    return name[0] && hdf_exists((hid_t)r->id, name);
 }
 
 bool compare_results(struct comparison *comparison, const struct results *first,

@@ -31,68 +31,28 @@ static uint64_t bits_of(double number)
 
 void values_free(struct values *values)
 {
-    if (values->kind == VALUE_TEXT) {
-        for (size_t i = 0; values->data.text && i < values->count; i++)
-            free(values->data.text[i]);
-        free(values->data.text);
-    } else {
+    if (values->kind == VALUE_TEXT)
+        hdf_free_words(values->data.text, values->count);
+    else
         free(values->data.any);
-    }
     values->data.any = NULL;
 }
 
-/* Raw elements of a dataset (its selection `from`) or, from < 0, of an attribute. */
-static bool read_raw(hid_t object, hid_t from, hid_t type, size_t count, void *buffer)
-{
-    if (from < 0)
-        return H5Aread(object, type, buffer) >= 0;
-    hsize_t n = count;
-    hid_t memory = H5Screate_simple(1, &n, NULL);
-    bool good = memory >= 0 && H5Dread(object, type, memory, from, H5P_DEFAULT, buffer) >= 0;
-    H5Sclose(memory);
-    return good;
-}
-
-static bool read_texts(hid_t object, hid_t from, hid_t type, struct values *values)
-{
-    bool variable = H5Tis_variable_str(type) > 0, good = false;
-    size_t size = variable ? sizeof(char *) : H5Tget_size(type);
-    char *raw = size <= (1 << 22) ? calloc(values->count + 1, size + 1) : NULL;
-
-    values->data.text = calloc(values->count + 1, sizeof(char *));
-    if (raw && values->data.text && read_raw(object, from, type, values->count, raw)) {
-        good = true;
-        for (size_t i = 0; i < values->count; i++) {
-            char *found = raw + i * size;
-            if (variable) {
-                memcpy(&found, raw + i * size, sizeof found);
-                values->data.text[i] = strdup(found ? found : "");
-                H5free_memory(found);
-            } else {
-                values->data.text[i] = strndup(found, size);
-            }
-            good = good && values->data.text[i];
-        }
-    }
-    free(raw);
-    return good;
-}
-
-bool values_read(hid_t object, hid_t from, hid_t type, size_t count, struct values *values)
+bool values_read(hid_t object, hsize_t at, hid_t type, size_t count, struct values *values)
 {
     *values = (struct values){.kind = value_kind_of(type), .count = count};
     if (values->kind == VALUE_OTHER)
         return true;
-    bool good;
     if (values->kind == VALUE_TEXT) {
-        good = read_texts(object, from, type, values);
-    } else {
-        hid_t native = values->kind == VALUE_REAL      ? H5T_NATIVE_DOUBLE
-                       : values->kind == VALUE_INTEGER ? H5T_NATIVE_INT64
-                                                       : H5T_NATIVE_UINT64;
-        values->data.any = malloc(count * sizeof(double) + 1);
-        good = values->data.any && read_raw(object, from, native, count, values->data.any);
+        values->data.text = hdf_words(object, at, count);
+        return values->data.text != NULL;
     }
+    const hid_t native = values->kind == VALUE_REAL      ? H5T_NATIVE_DOUBLE
+                         : values->kind == VALUE_INTEGER ? H5T_NATIVE_INT64
+                                                         : H5T_NATIVE_UINT64;
+    values->data.any = malloc(count * sizeof(double) + 1);
+    const bool good =
+        values->data.any && hdf_move(object, native, at, count, HDF_READ, values->data.any);
     if (!good)
         values_free(values);
     return good;

@@ -4,8 +4,7 @@
 #define STANCE_STORE_COMPARE_VALUES_H
 
 #include "compare.h"
-
-#include <hdf5.h>
+#include "hdf.h"
 
 /* Elements of a variable or an attribute in memory. */
 enum value_kind { VALUE_REAL, VALUE_INTEGER, VALUE_NATURAL, VALUE_TEXT, VALUE_OTHER };
@@ -23,9 +22,9 @@ struct values {
 };
 
 enum value_kind value_kind_of(hid_t type);
-/* Reads `count` elements of a dataset (its selection `from`) or, from < 0, of an attribute. Those
- * of VALUE_OTHER are left. False: nothing is left allocated. */
-bool values_read(hid_t object, hid_t from, hid_t type, size_t count, struct values *values);
+/* Reads elements [at, at + count) of a dataset, or the `count` ones of an attribute. Those of
+ * VALUE_OTHER are left. False: nothing is left allocated. */
+bool values_read(hid_t object, hsize_t at, hid_t type, size_t count, struct values *values);
 void values_free(struct values *values);
 
 /* To the bit, but for NANs. Both are of the same kind. */

@@ -15,84 +15,52 @@
 
 /* ---- the checksum of a variable ----------------------------------------------------------- */
 
-/* Number of elements; 0 when a damaged header claims more than the file can hold. (Variables of
- * ours are contiguous.) */
-static size_t count_elements(hid_t dataset)
-{
-    hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset);
-    hid_t file = H5Iget_file_id(dataset);
-    hsize_t size = 0;
-    hssize_t points = space < 0 ? -1 : H5Sget_simple_extent_npoints(space);
-    const size_t width = type < 0 ? 0 : H5Tget_size(type);
-    bool good = file >= 0 && H5Fget_filesize(file, &size) >= 0 && points > 0 && width > 0 &&
-                (hsize_t)points <= size / width;
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Fclose(file);
-    return good ? (size_t)points : 0;
-}
-
 /* A long variable is read in pieces. */
-static bool add_numbers(hid_t dataset, hid_t type, size_t n, uint32_t *crc)
+static bool add_numbers(hid_t dataset, enum store_kind kind, size_t n, uint32_t *crc)
 {
     enum { PIECE = 1 << 16 };
-    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
-    hid_t space = H5Dget_space(dataset);
-    const int rank = H5Sget_simple_extent_dims(space, length, NULL);
     void *values = malloc((n < PIECE ? n : PIECE) * sizeof(double));
-    bool good = values && rank >= 0;
-
+    bool good = values != NULL;
     for (size_t at = 0; good && at < n; at += PIECE) {
-        const hsize_t count = n - at < PIECE ? n - at : PIECE;
-        hid_t memory = H5Screate_simple(1, &count, NULL);
-        good = memory >= 0 &&
-               (rank == 0 || (H5Sselect_none(space) >= 0 &&
-                              store_select_range(space, rank, length, 0, start, at, at + count))) &&
-               H5Dread(dataset, type, memory, space, H5P_DEFAULT, values) >= 0;
+        const size_t count = n - at < PIECE ? n - at : PIECE;
+        good = hdf_move(dataset, hdf_type(kind), at, count, HDF_READ, values);
         if (good)
             *crc = checksum_crc32c(*crc, values, count * sizeof(double));
-        H5Sclose(memory);
     }
     free(values);
-    H5Sclose(space);
     return good;
 }
 
-static bool add_words(hid_t dataset, hid_t type, size_t n, uint32_t *crc)
+static bool add_words(hid_t dataset, size_t n, uint32_t *crc)
 {
-    char **words = calloc(n, sizeof *words);
-    bool good = words && H5Tis_variable_str(type) > 0 &&
-                H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, words) >= 0;
-    for (size_t i = 0; words && i < n; i++) {
-        const char *word = words[i] ? words[i] : "";
-        *crc = checksum_crc32c(*crc, word, strlen(word) + 1);
-        H5free_memory(words[i]);
-    }
-    free(words);
-    return good;
+    char **words = hdf_words(dataset, 0, n);
+    for (size_t i = 0; words && i < n; i++)
+        *crc = checksum_crc32c(*crc, words[i], strlen(words[i]) + 1);
+    hdf_free_words(words, n);
+    return words != NULL;
 }
 
 static bool checksum_of(hid_t dataset, const char *name, uint32_t *crc)
 {
     hid_t type = H5Dget_type(dataset);
-    size_t n = count_elements(dataset);
+    size_t n = hdf_elements(dataset);
     bool good = false;
 
     *crc = checksum_crc32c(0, name, strlen(name) + 1);
     switch (n > 0 && type >= 0 ? H5Tget_class(type) : H5T_NO_CLASS) {
     case H5T_FLOAT:
-        good = add_numbers(dataset, store_memory_type(KIND_double), n, crc);
+        good = add_numbers(dataset, KIND_double, n, crc);
         break;
     case H5T_INTEGER:
-        good = add_numbers(dataset, store_memory_type(KIND_int64_t), n, crc);
+        good = add_numbers(dataset, KIND_int64_t, n, crc);
         break;
     case H5T_STRING:
-        good = add_words(dataset, type, n, crc);
+        good = add_words(dataset, n, crc);
         break;
     default:
         break;
     }
-    H5Tclose(type);
+    hdf_close(type);
     return good;
 }
 
@@ -105,58 +73,39 @@ struct walk {
     stance_message *message;
 };
 
-static bool is_row_variable(const char *group, const char *name)
-{
-    if (group[0] == '\0') {
-        for (int c = 0; c < COLUMNS; c++)
-            if (strcmp(name, store_columns[c].name) == 0)
-                return true;
-    }
-    if (strcmp(group, "trajectory") == 0) {
-        for (int v = 0; v < TRAJECTORIES; v++)
-            if (strcmp(name, store_trajectories[v]) == 0)
-                return true;
-        return strcmp(name, store_columns[COLUMN_CHECKSUM].name) == 0;
-    }
-    return false;
-}
-
 static bool put_checksum(hid_t dataset, const char *name)
 {
     uint32_t crc = 0;
     hsize_t one = 1;
     hid_t space = H5Screate_simple(1, &one, NULL);
-    hid_t attribute = H5Acreate2(dataset, SEAL_ATTRIBUTE, store_file_type(KIND_uint32_t), space,
+    hid_t attribute = H5Acreate2(dataset, SEAL_ATTRIBUTE, hdf_type(KIND_uint32_t), space,
                                  H5P_DEFAULT, H5P_DEFAULT);
     bool good = checksum_of(dataset, name, &crc) && attribute >= 0 &&
-                H5Awrite(attribute, store_memory_type(KIND_uint32_t), &crc) >= 0;
-    H5Aclose(attribute);
-    H5Sclose(space);
+                H5Awrite(attribute, hdf_type(KIND_uint32_t), &crc) >= 0;
+    hdf_close(attribute, space);
     return good;
 }
 
-static bool complain(const struct walk *walk, const char *variable, const char *what)
+static bool say_damaged(const struct walk *walk, const char *variable, const char *what)
 {
     char word[SHOWN_SIZE]; /* a damaged name may hold anything */
-    snprintf(walk->message->text, sizeof walk->message->text, "%.100s: damaged: %s%s%s %s",
-             walk->name, walk->group, walk->group[0] ? "/" : "", shown(word, variable), what);
-    return false;
+    return complain(walk->message, "%.100s: damaged: %s%s%s %s", walk->name, walk->group,
+                    walk->group[0] ? "/" : "", shown(word, variable), what);
 }
 
 static bool verify_checksum(const struct walk *walk, hid_t dataset, const char *variable)
 {
     uint32_t crc = 0, expected = 0;
     if (H5Aexists(dataset, SEAL_ATTRIBUTE) <= 0)
-        return !walk->strict || complain(walk, variable, "has no checksum");
+        return !walk->strict || say_damaged(walk, variable, "has no checksum");
     hid_t attribute = H5Aopen(dataset, SEAL_ATTRIBUTE, H5P_DEFAULT);
     hid_t space = H5Aget_space(attribute);
     bool good = H5Sget_simple_extent_npoints(space) == 1 &&
-                H5Aread(attribute, store_memory_type(KIND_uint32_t), &expected) >= 0;
-    H5Sclose(space);
-    H5Aclose(attribute);
+                H5Aread(attribute, hdf_type(KIND_uint32_t), &expected) >= 0;
+    hdf_close(space, attribute);
     if (!good || !checksum_of(dataset, variable, &crc))
-        return complain(walk, variable, "cannot be read");
-    return crc == expected || complain(walk, variable, "is not as its checksum says");
+        return say_damaged(walk, variable, "cannot be read");
+    return crc == expected || say_damaged(walk, variable, "is not as its checksum says");
 }
 
 /* Looks at one link of a group; a negative value ends the walk. */
@@ -164,16 +113,17 @@ static herr_t visit(hid_t group, const char *name, const H5L_info_t *info, void 
 {
     const struct walk *walk = context;
     (void)info;
-    if (is_row_variable(walk->group, name))
+    char path[128];
+    snprintf(path, sizeof path, "%s%s%s", walk->group, walk->group[0] ? "/" : "", name);
+    if (store_is_column(path) || store_is_track(path))
         return 0;
     hid_t object = H5Oopen(group, name, H5P_DEFAULT);
     bool good = object >= 0;
     if (!good && !walk->put)
-        complain(walk, name, "cannot be opened");
+        say_damaged(walk, name, "cannot be opened");
     if (good && H5Iget_type(object) == H5I_DATASET)
         good = walk->put ? put_checksum(object, name) : verify_checksum(walk, object, name);
-    if (object >= 0)
-        H5Oclose(object);
+    hdf_close(object);
     return good ? 0 : -1;
 }
 
@@ -185,8 +135,8 @@ static bool walk_group(hid_t file, struct walk *walk, const char *group)
     hid_t id = H5Gopen2(file, group[0] ? group : "/", H5P_DEFAULT);
     bool good = id >= 0 && H5Literate(id, H5_INDEX_NAME, H5_ITER_INC, NULL, visit, walk) >= 0;
     if (!good && !walk->put && walk->message->text[0] == '\0')
-        complain(walk, walk->group[0] ? "*" : "its variables", "cannot be listed");
-    H5Gclose(id);
+        say_damaged(walk, walk->group[0] ? "*" : "its variables", "cannot be listed");
+    hdf_close(id);
     return good;
 }
 
@@ -212,15 +162,14 @@ static herr_t touch(hid_t group, const char *name, const H5L_info_t *info, void 
     H5O_info_t all;
     hid_t object = H5Oopen(group, name, H5P_DEFAULT);
     bool good = object >= 0 && H5Oget_info2(object, &all, H5O_INFO_ALL) >= 0 &&
-                (H5Iget_type(object) != H5I_DATASET || count_elements(object) > 0) &&
+                (H5Iget_type(object) != H5I_DATASET || hdf_elements(object) > 0) &&
                 H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
     if (good && H5Iget_type(object) == H5I_DATASET) { /* netCDF's order */
         good =
             H5Aiterate2(object, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch_attribute, NULL) >= 0;
     }
-    if (object >= 0)
-        H5Oclose(object);
-    return good || complain(context, name, "cannot be opened") ? 0 : -1;
+    hdf_close(object);
+    return good || say_damaged(context, name, "cannot be opened") ? 0 : -1;
 }
 
 /* Everything can be opened, in the order of its making, too: what other readers go by. */
@@ -239,10 +188,10 @@ static bool verify_structure(hid_t file, struct walk *walk)
                (k > 0 || H5Aiterate2(id, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch_attribute,
                                      NULL) >= 0) &&
                H5Literate(id, H5_INDEX_CRT_ORDER, H5_ITER_INC, NULL, touch, walk) >= 0;
-        H5Gclose(id);
+        hdf_close(id);
     }
     if (!good && walk->message->text[0] == '\0')
-        complain(walk, walk->group[0] ? "*" : "its variables", "cannot be listed");
+        say_damaged(walk, walk->group[0] ? "*" : "its variables", "cannot be listed");
     return good;
 }
 
@@ -268,11 +217,11 @@ bool file_checksums_verify(int64_t file, const char *name, const char *scenario,
 
     message->text[0] = '\0';
     if (H5Aiterate2((hid_t)file, H5_INDEX_NAME, H5_ITER_INC, NULL, touch_attribute, NULL) < 0)
-        return complain(&walk, "its attributes", "cannot be read");
+        return say_damaged(&walk, "its attributes", "cannot be read");
     if (hash && hash[0]) {
         checksum_sha256(scenario, strlen(scenario), found);
         if (strcmp(found, hash) != 0)
-            return complain(&walk, "the scenario's text", "is not as its checksum says");
+            return say_damaged(&walk, "the scenario's text", "is not as its checksum says");
     }
     return walk_file((hid_t)file, &walk) && (!strict || verify_structure((hid_t)file, &walk));
 }

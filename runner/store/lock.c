@@ -2,6 +2,8 @@
  * descriptor of the same file is closed, nor hinder those that only ask. */
 #include "lock.h"
 
+#include "runner/base/message.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -13,13 +15,10 @@
 
 static bool failed(stance_message *message, const char *file, int error)
 {
-    if (error == EAGAIN || error == EACCES) {
-        snprintf(message->text, sizeof message->text, "%.180s: another process is writing it",
-                 file);
-    } else {
-        snprintf(message->text, sizeof message->text, "%.100s: cannot write there: %s", file,
-                 strerror(error));
-    }
+    if (error == EAGAIN || error == EACCES)
+        complain(message, "%.180s: another process is writing it", file);
+    else
+        complain(message, "%.100s: cannot write there: %s", file, strerror(error));
     return false;
 }
 

@@ -1,6 +1,8 @@
 /* merge.c - writes the merged file: designs, then rows, part after part. */
 #include "merge.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,12 +10,6 @@
 #include <unistd.h>
 
 static const double last_bits = 1e-9; /* relative difference of designs that are the same */
-
-static bool no_memory(stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "stance merge: not enough memory");
-    return false;
-}
 
 /* ---- a part, opened ----------------------------------------------------------------------- */
 
@@ -53,13 +49,12 @@ static struct opened *open_part(const struct merge_part *part, stance_message *m
     bool good = merge_read_part(part, &opened->scenario, message) &&
                 store_count(part->file, &counts, message);
     if (good && is_single(&opened->scenario, &counts)) {
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: holds one case of a sweep (run --only), not the sweep", part->file);
+        complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
+                 part->file);
         good = false;
     }
     if (good && !plan_make(&opened->plan, &opened->scenario, false, 0, false, &error)) {
-        snprintf(message->text, sizeof message->text, "%.60s: %.160s", part->file,
-                 error.message.text);
+        complain(message, "%.60s: %.160s", part->file, error.message.text);
         good = false;
     } else if (good) {
         opened->planned = true;
@@ -103,10 +98,8 @@ static bool check_axes(struct merge *m, const struct merge_part *part,
             continue;
         const double distance = axis_distance(axis, &m->scenario.axis[a + shift]);
         if (distance > last_bits) {
-            snprintf(message->text, sizeof message->text,
-                     "%.70s: its points along %.50s are not those of %.70s", part->file, axis->name,
-                     m->part[0].file);
-            return false;
+            return complain(message, "%.70s: its points along %.50s are not those of %.70s",
+                            part->file, axis->name, m->part[0].file);
         }
         m->designs_differ = m->designs_differ || distance > 0;
     }
@@ -164,9 +157,9 @@ static bool take_designs(struct merge *m, const struct merge_part *part,
         }
         const double distance = distance_between(&plan->design[at], design);
         if (plan->design_status[at] != opened->plan.design_status[d] || distance > last_bits) {
-            snprintf(message->text, sizeof message->text,
-                     "%.100s: its controller design differs from that of another part", part->file);
-            return false;
+            return complain(message,
+                            "%.100s: its controller design differs from that of another part",
+                            part->file);
         }
         m->designs_differ = m->designs_differ || distance > 0;
     }
@@ -182,7 +175,7 @@ static bool collect_designs(struct merge *m, struct plan *plan, bool *usage,
         struct opened *opened = open_part(&m->part[p], message);
         good = opened != NULL;
         if (opened && opened->plan.record_rows != plan->record_rows) {
-            snprintf(message->text, sizeof message->text,
+            complain(message,
                      "%.100s: its trajectories have another length than those of the whole",
                      m->part[p].file);
             *usage = true;
@@ -233,7 +226,7 @@ static bool copy_parts(struct merge *m, struct store *store, bool *usage, stance
         if (opened)
             close_part(opened);
         if (good && m->copied.conflicting > 0) {
-            snprintf(message->text, sizeof message->text,
+            complain(message,
                      "%.80s: %llu case%s from what another part has, the first is case %llu "
                      "of the whole",
                      m->part[p].file, (unsigned long long)m->copied.conflicting,

@@ -1,6 +1,8 @@
 /* merge_plan.c - how the scenarios of parts differ, and the scenario of them all. */
 #include "merge.h"
 
+#include "runner/base/message.h"
+#include "runner/base/numbers.h"
 #include "runner/scenario/field.h"
 #include "runner/scenario/tree.h"
 
@@ -8,12 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static bool no_memory(stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "stance merge: not enough memory");
-    return false;
-}
 
 /* ---- scenarios as trees ------------------------------------------------------------------- */
 
@@ -25,10 +21,8 @@ static bool read_tree(struct tree *tree, const struct merge_part *part, stance_m
         problems && part->origin.scenario &&
         tree_parse(tree, part->origin.scenario, strlen(part->origin.scenario), problems);
     free(problems);
-    if (!good) {
-        snprintf(message->text, sizeof message->text, "%.100s: its scenario cannot be read",
-                 part->file);
-    }
+    if (!good)
+        complain(message, "%.100s: its scenario cannot be read", part->file);
     return good;
 }
 
@@ -107,11 +101,11 @@ static bool misfit(const struct merge *m, const struct differences *found, size_
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%.38s", i ? ", " : "",
                                  found->path[i]);
     }
-    snprintf(message->text, sizeof message->text,
-             "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
-             "that can be swept",
-             m->part[part].file, m->part[0].file, list);
-    return false;
+    return complain(
+        message,
+        "%.32s: differs from %.32s in %.70s: parts may differ along one axis or in one value "
+        "that can be swept",
+        m->part[part].file, m->part[0].file, list);
 }
 
 /* A value that stands in every part and may become an axis. */
@@ -245,9 +239,8 @@ static bool collect_axis(struct merge *m, struct points *points, stance_message 
             memcpy(paths, axis->path, (size_t)path_count * sizeof *paths);
             snprintf(m->path, sizeof m->path, "%s", axis->name);
         } else if (!same_paths(axis, (const char(*)[96])paths, path_count)) {
-            snprintf(message->text, sizeof message->text,
-                     "%.80s: its axis %.40s is not that of %.80s", m->part[p].file, axis->name,
-                     m->part[0].file);
+            complain(message, "%.80s: its axis %.40s is not that of %.80s", m->part[p].file,
+                     axis->name, m->part[0].file);
             good = false;
         }
         m->part[p].points = axis->count;
@@ -412,12 +405,6 @@ struct recorded {
     size_t count, room;
 };
 
-static int by_row(const void *left, const void *right)
-{
-    const uint64_t a = *(const uint64_t *)left, b = *(const uint64_t *)right;
-    return (a > b) - (a < b);
-}
-
 static bool add_recorded(struct recorded *list, const struct merge *m, size_t p,
                          const struct scenario *s)
 {
@@ -444,8 +431,8 @@ static bool collect_recorded(const struct merge *m, bool all, struct recorded *l
     for (size_t p = 0; good && p < m->parts; p++) {
         good = merge_read_part(&m->part[p], s, message);
         if (good && (s->record_cases == RECORD_ALL) != all) {
-            snprintf(message->text, sizeof message->text,
-                     "%.60s: record.cases is `all` in some of the files only", m->part[p].file);
+            complain(message, "%.60s: record.cases is `all` in some of the files only",
+                     m->part[p].file);
             good = false;
         } else if (good) {
             good = add_recorded(list, m, p, s) || no_memory(message);
@@ -454,14 +441,7 @@ static bool collect_recorded(const struct merge *m, bool all, struct recorded *l
             scenario_free(s);
     }
     free(s);
-    if (good && list->count > 0) {
-        qsort(list->row, list->count, sizeof *list->row, by_row);
-        size_t unique = 1;
-        for (size_t i = 1; i < list->count; i++)
-            if (list->row[i] != list->row[unique - 1])
-                list->row[unique++] = list->row[i];
-        list->count = unique;
-    }
+    list->count = numbers_unite(list->row, list->count);
     return good;
 }
 
@@ -493,25 +473,31 @@ static bool set_recorded(struct merge *m, const struct scenario *first, struct t
     return good;
 }
 
-static bool read_merged(struct merge *m, const struct tree *tree, stance_message *message)
+/* From a text; the first error is the message. */
+static bool read_scenario(struct scenario *scenario, const char *file, const char *text,
+                          stance_message *message)
 {
-    char *text = tree_write(tree->root), *said = NULL;
+    char *said = NULL;
     size_t size = 0;
     FILE *errors = open_memstream(&said, &size);
-    bool good = text && errors;
-    if (!good) {
-        no_memory(message);
-    } else if (!scenario_read(&m->scenario, "the merged scenario", text, NULL, 0, errors)) {
-        fflush(errors);
-        snprintf(message->text, sizeof message->text, "%.*s", (int)strcspn(said, "\n"), said);
-        good = false;
-    }
+    if (!errors)
+        return no_memory(message);
+    const bool good = scenario_read(scenario, file, text, NULL, 0, errors);
+    fclose(errors);
+    if (!good)
+        complain(message, "%.*s", (int)strcspn(said, "\n"), said);
+    free(said);
+    return good;
+}
+
+static bool read_merged(struct merge *m, const struct tree *tree, stance_message *message)
+{
+    char *text = tree_write(tree->root);
+    bool good = text ? read_scenario(&m->scenario, "the merged scenario", text, message)
+                     : no_memory(message);
+    free(text);
     if (good && m->part[0].origin.title)
         snprintf(m->scenario.title, sizeof m->scenario.title, "%s", m->part[0].origin.title);
-    if (errors)
-        fclose(errors);
-    free(said);
-    free(text);
     /* Computed axes as the first file has them: they may differ in last bits between processors. */
     for (int a = 0; good && a < m->scenario.axes; a++) {
         good = (a == m->axis && m->kind != MERGE_EQUAL) ||
@@ -534,10 +520,8 @@ static bool make_scenario(struct merge *m, struct tree *trees, stance_message *m
                               place_points(m, &points, message));
     if (good && m->kind != MERGE_EQUAL && !set_axis(m, &points, &trees[0], problems)) {
         good = no_memory(message);
-        if (problems->count > 0) {
-            snprintf(message->text, sizeof message->text, "the merged axis: %.200s",
-                     problems->list[0].text);
-        }
+        if (problems->count > 0)
+            complain(message, "the merged axis: %.200s", problems->list[0].text);
     }
     good = good && merge_read_part(&m->part[0], first, message);
     if (good) {
@@ -558,16 +542,7 @@ static bool make_scenario(struct merge *m, struct tree *trees, stance_message *m
 bool merge_read_part(const struct merge_part *part, struct scenario *scenario,
                      stance_message *message)
 {
-    char *said = NULL;
-    size_t size = 0;
-    FILE *errors = open_memstream(&said, &size);
-    if (!errors)
-        return no_memory(message);
-    bool good = scenario_read(scenario, part->file, part->origin.scenario, NULL, 0, errors);
-    fclose(errors);
-    if (!good)
-        snprintf(message->text, sizeof message->text, "%.*s", (int)strcspn(said, "\n"), said);
-    free(said);
+    bool good = read_scenario(scenario, part->file, part->origin.scenario, message);
     for (int a = 0; good && a < scenario->axes; a++) {
         good = store_read_axis(part->file, &scenario->axis[a], message);
         if (!good)
@@ -582,10 +557,8 @@ static bool have_one_scenario(const struct merge *m, stance_message *message)
 {
     for (size_t p = 0; p < m->parts; p++) {
         if (m->part[p].origin.ancestors > 0) {
-            snprintf(message->text, sizeof message->text,
-                     "%.120s: was made from several scenarios: it cannot be merged",
-                     m->part[p].file);
-            return false;
+            return complain(message, "%.120s: was made from several scenarios: it cannot be merged",
+                            m->part[p].file);
         }
     }
     return true;

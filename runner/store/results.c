@@ -4,6 +4,7 @@
 #include "store.h"
 
 #include "runner/base/checksum.h"
+#include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 
 #include <errno.h>
@@ -13,7 +14,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum { FORMAT_VERSION = 1, MAX_SCENARIO_TEXT = 1 << 22 };
+enum { FORMAT_VERSION = 1 };
 
 const char *const results_kind_names[RESULTS_KIND_COUNT] = {
 #define OUTCOME_NAME(NAME, name, number, text) [RESULTS_##NAME] = #name,
@@ -23,116 +24,45 @@ const char *const results_kind_names[RESULTS_KIND_COUNT] = {
 
 /* ---- errors ------------------------------------------------------------------------------- */
 
-static herr_t innermost(unsigned n, const H5E_error2_t *error, void *reason)
-{
-    char *text = reason;
-    (void)n;
-    if (text[0] == '\0' && error->desc)
-        snprintf(text, 100, "%.*s", (int)strcspn(error->desc, "\n"), error->desc);
-    return 0;
-}
-
 bool results_failed(const struct results *r, const char *what, stance_message *message)
 {
-    char reason[100] = "";
-    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost, reason);
-    H5Eclear2(H5E_DEFAULT);
-    snprintf(message->text, sizeof message->text, "%.80s: cannot read %.40s%s%s", r->file, what,
-             reason[0] ? ": " : "", reason);
-    return false;
+    char what_failed[60];
+    snprintf(what_failed, sizeof what_failed, "read %.40s", what);
+    return store_failed(message, r->file, what_failed);
 }
 
 bool results_damaged(const struct results *r, const char *what, stance_message *message)
 {
-    snprintf(message->text, sizeof message->text, "%.100s: damaged: %.100s", r->file, what);
-    return false;
+    return complain(message, "%.100s: damaged: %.100s", r->file, what);
 }
 
 bool results_no_memory(const struct results *r, stance_message *message)
 {
-    snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
-    return false;
+    return complain(message, "%.100s: not enough memory", r->file);
 }
 
 /* ---- attributes --------------------------------------------------------------------------- */
 
-/* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
-char *results_attribute(hid_t object, const char *name)
-{
-    if (H5Aexists(object, name) <= 0)
-        return NULL;
-    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-    char *text = NULL;
-    if (type >= 0 && space >= 0 && H5Tget_class(type) == H5T_STRING &&
-        H5Sget_simple_extent_npoints(space) == 1) {
-        if (H5Tis_variable_str(type) > 0) {
-            char *found = NULL;
-            if (H5Aread(attribute, type, &found) >= 0 && found) {
-                text = strdup(found);
-                H5free_memory(found);
-            }
-        } else if (H5Tget_size(type) <= MAX_SCENARIO_TEXT) {
-            text = calloc(H5Tget_size(type) + 1, 1);
-            if (text && H5Aread(attribute, type, text) < 0) {
-                free(text);
-                text = NULL;
-            }
-        }
-    }
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Aclose(attribute);
-    return text;
-}
-
 void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t size)
 {
-    char *text = results_attribute(object, name);
+    char *text = hdf_text(object, name);
     snprintf(buffer, size, "%s", text ? text : "");
     results_clean(buffer);
     free(text);
 }
 
-int results_whole_attribute(hid_t object, const char *name, int fallback)
-{
-    if (H5Aexists(object, name) <= 0)
-        return fallback;
-    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), space = H5Aget_space(attribute);
-    int value = fallback;
-    if (H5Sget_simple_extent_npoints(space) != 1 || H5Aread(attribute, H5T_NATIVE_INT, &value) < 0)
-        value = fallback;
-    H5Sclose(space);
-    H5Aclose(attribute);
-    return value > 0 ? value : fallback;
-}
-
 /* ---- datasets ----------------------------------------------------------------------------- */
-
-/* Every link of a path such as "trajectory/time" exists. */
-bool results_exists(hid_t file, const char *path)
-{
-    char part[128];
-    for (const char *slash = strchr(path, '/'); slash; slash = strchr(slash + 1, '/')) {
-        snprintf(part, sizeof part, "%.*s", (int)(slash - path), path);
-        if (H5Lexists(file, part, H5P_DEFAULT) <= 0)
-            return false;
-    }
-    return H5Lexists(file, path, H5P_DEFAULT) > 0;
-}
 
 /* Opens a dataset and its shape; -1 when it does not exist or is none. */
 hid_t results_dataset(const struct results *r, const char *path, int *rank,
                       hsize_t length[H5S_MAX_RANK])
 {
-    if (!results_exists(r->id, path))
+    if (!hdf_exists(r->id, path))
         return -1;
     hid_t dataset = H5Dopen2(r->id, path, H5P_DEFAULT);
-    hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
-    *rank = space < 0 ? -1 : H5Sget_simple_extent_dims(space, length, NULL);
-    H5Sclose(space);
-    if (*rank < 0 && dataset >= 0) {
-        H5Dclose(dataset);
+    *rank = hdf_shape(dataset, length);
+    if (*rank < 0) {
+        hdf_close(dataset);
         dataset = -1;
     }
     return dataset;
@@ -144,7 +74,7 @@ H5T_class_t results_class(hid_t dataset)
     H5T_class_t class = type < 0 ? H5T_NO_CLASS : H5Tget_class(type);
     if (class != H5T_STRING && H5Tget_size(type) > sizeof(double))
         class = H5T_NO_CLASS;
-    H5Tclose(type);
+    hdf_close(type);
     return class;
 }
 
@@ -185,47 +115,18 @@ size_t results_numbers(const struct results *r, const char *path, double *values
     if (dataset < 0)
         return 0;
     size_t n = results_elements(r, rank, length);
-    if (n > room || !results_is_number(dataset) ||
-        (n && H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0))
+    if (n > room || !results_is_number(dataset) || (n && !hdf_read(dataset, KIND_double, values)))
         n = 0;
-    H5Dclose(dataset);
+    hdf_close(dataset);
     return n;
 }
 
-/* Strings of a one-dimensional dataset, each freed by the caller as is the array; NULL: no. */
-static char **read_strings(hid_t dataset, size_t n)
+/* Words of a dataset, fit to be shown. */
+static char **read_words(hid_t dataset, size_t n)
 {
-    hid_t type = H5Dget_type(dataset);
-    char **words = calloc(n, sizeof *words);
-    bool good = words && type >= 0 && H5Tget_class(type) == H5T_STRING;
-    if (good && H5Tis_variable_str(type) > 0) {
-        good = H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, words) >= 0;
-        for (size_t i = 0; i < n; i++) {
-            char *own = good && words[i] ? strdup(words[i]) : calloc(1, 1);
-            H5free_memory(words[i]);
-            words[i] = own;
-            good = good && own;
-        }
-    } else if (good) {
-        size_t size = H5Tget_size(type);
-        char *block = size < 4096 ? calloc(n, size) : NULL;
-        good = block && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, block) >= 0;
-        for (size_t i = 0; good && i < n; i++) {
-            words[i] = strndup(block + i * size, size);
-            good = words[i];
-        }
-        free(block);
-    }
-    H5Tclose(type);
+    char **words = hdf_words(dataset, 0, n);
     for (size_t i = 0; words && i < n; i++)
-        if (good)
-            results_clean(words[i]);
-        else
-            free(words[i]);
-    if (!good) {
-        free(words);
-        return NULL;
-    }
+        results_clean(words[i]);
     return words;
 }
 
@@ -237,15 +138,12 @@ size_t results_words(const struct results *r, const char *path, char word[][32],
     if (dataset < 0)
         return 0;
     size_t n = rank == 1 ? results_elements(r, rank, length) : 0;
-    char **words = n && n <= room ? read_strings(dataset, n) : NULL;
-    H5Dclose(dataset);
-    for (size_t i = 0; words && i < n; i++) {
+    char **words = n && n <= room ? read_words(dataset, n) : NULL;
+    hdf_close(dataset);
+    for (size_t i = 0; words && i < n; i++)
         snprintf(word[i], 32, "%s", words[i]);
-        free(words[i]);
-    }
-    n = words ? n : 0;
-    free(words);
-    return n;
+    hdf_free_words(words, n);
+    return words ? n : 0;
 }
 
 /* ---- the axes ----------------------------------------------------------------------------- */
@@ -257,13 +155,12 @@ static bool read_axis_values(const struct results *r, hid_t dataset, struct resu
     if (!axis->value)
         return results_no_memory(r, message);
     if (results_class(dataset) == H5T_STRING) {
-        axis->word = read_strings(dataset, axis->count);
+        axis->word = read_words(dataset, axis->count);
         for (size_t i = 0; i < axis->count; i++)
             axis->value[i] = (double)i;
         return axis->word || results_failed(r, axis->name, message);
     }
-    if (!results_is_number(dataset) ||
-        H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, axis->value) < 0)
+    if (!results_is_number(dataset) || !hdf_read(dataset, KIND_double, axis->value))
         return results_failed(r, axis->name, message);
     for (size_t i = 0; i < axis->count; i++)
         if (!isfinite(axis->value[i]))
@@ -291,13 +188,13 @@ static bool read_axis(struct results *r, const char *name, stance_message *messa
         axis->unit[0] = '\0';
     bool good = axis->count > 0 ? read_axis_values(r, dataset, axis, message)
                                 : results_damaged(r, "an axis has no values", message);
-    H5Dclose(dataset);
+    hdf_close(dataset);
     return good;
 }
 
 static bool read_axes(struct results *r, stance_message *message)
 {
-    char *names = results_attribute((hid_t)r->id, "axes"), *rest = NULL;
+    char *names = hdf_text((hid_t)r->id, "axes"), *rest = NULL;
     bool good = names != NULL;
 
     for (char *name = names ? strtok_r(names, ",", &rest) : NULL; good && name;
@@ -320,32 +217,41 @@ static bool read_axes(struct results *r, stance_message *message)
 
 /* ---- status, outcome, failure ------------------------------------------------------------- */
 
-/* A byte per case; *bytes stays NULL when the variable is not stored. */
-static bool read_bytes(const struct results *r, const char *name, uint8_t **bytes,
-                       stance_message *message)
+/* A number of that kind per case; *values stays NULL when the variable is not stored. */
+static bool read_cases(const struct results *r, const char *name, enum store_kind kind,
+                       void **values, stance_message *message)
 {
     hsize_t length[H5S_MAX_RANK];
     int rank;
-    *bytes = NULL;
-    if (!results_exists((hid_t)r->id, name))
+    *values = NULL;
+    if (!hdf_exists((hid_t)r->id, name))
         return true;
     hid_t dataset = results_dataset(r, name, &rank, length);
     if (dataset < 0)
         return results_failed(r, name, message);
+    const H5T_class_t class = results_class(dataset);
     bool good = false;
-    if (!has_case_shape(r, rank, length) || results_class(dataset) != H5T_INTEGER) {
+    if (!has_case_shape(r, rank, length) ||
+        (class != H5T_INTEGER && (class != H5T_FLOAT || kind != KIND_double)))
         results_damaged(r, "a variable is not as its axes say", message);
-    } else if (!(*bytes = malloc(r->cases))) {
+    else if (!(*values = malloc(r->cases * (kind == KIND_double ? sizeof(double) : 1))))
         results_no_memory(r, message);
-    } else {
-        good = H5Dread(dataset, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, *bytes) >= 0 ||
-               results_failed(r, name, message);
-    }
-    H5Dclose(dataset);
+    else
+        good = hdf_read(dataset, kind, *values) || results_failed(r, name, message);
+    hdf_close(dataset);
     if (!good) {
-        free(*bytes);
-        *bytes = NULL;
+        free(*values);
+        *values = NULL;
     }
+    return good;
+}
+
+static bool read_bytes(const struct results *r, const char *name, uint8_t **bytes,
+                       stance_message *message)
+{
+    void *values;
+    const bool good = read_cases(r, name, KIND_uint8_t, &values, message);
+    *bytes = values;
     return good;
 }
 
@@ -374,7 +280,7 @@ static void translate_failures(struct results *r)
 {
     uint8_t now[UINT8_MAX + 1] = {0};
     hid_t dataset = H5Dopen2((hid_t)r->id, "failure", H5P_DEFAULT);
-    char *words = results_attribute(dataset, "flag_meanings"), *rest = words;
+    char *words = hdf_text(dataset, "flag_meanings"), *rest = words;
     for (size_t k = 0; rest && k < sizeof now; k++) {
         const char *word = strsep(&rest, " ");
         for (size_t f = 0; f < STANCE_FAILURE_COUNT; f++)
@@ -383,7 +289,7 @@ static void translate_failures(struct results *r)
     for (uint64_t i = 0; words && i < r->cases; i++)
         r->failure[i] = now[r->failure[i]];
     free(words);
-    H5Dclose(dataset);
+    hdf_close(dataset);
 }
 
 static bool read_kinds(struct results *r, stance_message *message)
@@ -418,31 +324,12 @@ static bool read_kinds(struct results *r, stance_message *message)
 bool results_answer(const struct results *r, const char *name, double **values,
                     stance_message *message)
 {
-    hsize_t length[H5S_MAX_RANK];
-    int rank;
-    *values = NULL;
-    if (!results_exists((hid_t)r->id, name))
-        return true;
-    hid_t dataset = results_dataset(r, name, &rank, length);
-    if (dataset < 0)
-        return results_failed(r, name, message);
-    bool good = false;
-    if (!has_case_shape(r, rank, length) || !results_is_number(dataset)) {
-        results_damaged(r, "a variable is not as its axes say", message);
-    } else if (!(*values = malloc(r->cases * sizeof **values))) {
-        results_no_memory(r, message);
-    } else {
-        good = H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values) >= 0 ||
-               results_failed(r, name, message);
-    }
-    H5Dclose(dataset);
-    for (uint64_t i = 0; good && i < r->cases; i++)
+    void *numbers;
+    const bool good = read_cases(r, name, KIND_double, &numbers, message);
+    *values = numbers;
+    for (uint64_t i = 0; *values && i < r->cases; i++)
         if (r->kind[i] == RESULTS_PENDING || r->kind[i] == RESULTS_FAILED)
             (*values)[i] = NAN;
-    if (!good) {
-        free(*values);
-        *values = NULL;
-    }
     return good;
 }
 
@@ -466,88 +353,46 @@ bool results_timing(const struct results *r, double *longest, double *total, dou
 
 /* ---- opening ------------------------------------------------------------------------------ */
 
-static bool open_file(struct results *r, stance_message *message)
-{
-    struct stat information;
-    if (stat(r->file, &information) != 0) {
-        snprintf(message->text, sizeof message->text, "%.100s: %s", r->file, strerror(errno));
-        return false;
-    }
-    if (!S_ISREG(information.st_mode)) {
-        snprintf(message->text, sizeof message->text, "%.100s: %s", r->file,
-                 S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file");
-        return false;
-    }
-    FILE *readable = fopen(r->file, "rb");
-    if (!readable) {
-        snprintf(message->text, sizeof message->text, "%.100s: %s", r->file, strerror(errno));
-        return false;
-    }
-    fclose(readable);
-    /* Errors are told by our own messages, not by HDF5's on standard error. */
-    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
-    H5Pset_file_locking(access, false, true);
-    if (H5Fis_hdf5(r->file) <= 0) {
-        H5Pclose(access);
-        H5Eclear2(H5E_DEFAULT);
-        snprintf(message->text, sizeof message->text, "%.100s: not an HDF5 file", r->file);
-        return false;
-    }
-    r->id = H5Fopen(r->file, H5F_ACC_RDONLY, access);
-    H5Pclose(access);
-    return r->id >= 0 || results_failed(r, "the file", message);
-}
-
 static bool read_provenance(struct results *r, stance_message *message)
 {
     hid_t id = (hid_t)r->id;
-    int version = results_whole_attribute(id, "format_version", -1);
-    r->scenario = results_attribute(id, "scenario");
-    if (version < 0 || H5Aexists(id, "axes") <= 0 || !r->scenario) {
-        snprintf(message->text, sizeof message->text, "%.100s: not a results file of stance",
-                 r->file);
-        return false;
-    }
+    int version = hdf_whole(id, "format_version", -1);
+    r->scenario = hdf_text(id, "scenario");
+    if (version < 0 || H5Aexists(id, "axes") <= 0 || !r->scenario)
+        return complain(message, "%.100s: not a results file of stance", r->file);
     if (version != FORMAT_VERSION) {
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: has format version %d; this program reads version %d", r->file, version,
-                 FORMAT_VERSION);
-        return false;
+        return complain(message, "%.100s: has format version %d; this program reads version %d",
+                        r->file, version, FORMAT_VERSION);
     }
     results_copy_attribute(id, "title", r->title, sizeof r->title);
     results_copy_attribute(id, "program_version", r->version, sizeof r->version);
     results_copy_attribute(id, "git_revision", r->revision, sizeof r->revision);
     results_copy_attribute(id, "date", r->date, sizeof r->date);
     results_copy_attribute(id, "hosts", r->hosts, sizeof r->hosts);
-    r->ranks = results_whole_attribute(id, "ranks", 0);
+    r->ranks = hdf_whole(id, "ranks", 0);
     return true;
 }
 
 /* What the file says of itself is as its checksums say, where it has any. */
 static bool verify(const struct results *r, stance_message *message)
 {
-    char *hash = results_attribute((hid_t)r->id, "scenario_sha256");
+    char *hash = hdf_text((hid_t)r->id, "scenario_sha256");
     bool good = file_checksums_verify(r->id, r->file, r->scenario, hash, false, message);
-    H5Eclear2(H5E_DEFAULT);
     free(hash);
     return good;
 }
 
 static bool read_all(struct results *r, stance_message *message)
 {
-    return open_file(r, message) && read_provenance(r, message) && verify(r, message) &&
-           read_axes(r, message);
+    r->id = hdf_open_to_read(r->file, message);
+    return r->id >= 0 && read_provenance(r, message) && verify(r, message) && read_axes(r, message);
 }
 
 bool results_open(struct results *r, const char *file, stance_message *message)
 {
     *r = (struct results){.id = -1, .sample = -1};
-    if (strlen(file) >= sizeof r->file) {
-        snprintf(message->text, sizeof message->text, "%.60s...: %s", file, strerror(ENAMETOOLONG));
-        return false;
-    }
+    if (strlen(file) >= sizeof r->file)
+        return complain(message, "%.60s...: %s", file, strerror(ENAMETOOLONG));
     snprintf(r->file, sizeof r->file, "%s", file);
     const char *slash = strrchr(file, '/');
     snprintf(r->name, sizeof r->name, "%s", slash ? slash + 1 : file);
@@ -568,9 +413,7 @@ bool results_open(struct results *r, const char *file, stance_message *message)
 void results_close(struct results *r)
 {
     for (int a = 0; a < r->axes; a++) {
-        for (size_t i = 0; r->axis[a].word && i < r->axis[a].count; i++)
-            free(r->axis[a].word[i]);
-        free(r->axis[a].word);
+        hdf_free_words(r->axis[a].word, r->axis[a].count);
         free(r->axis[a].value);
     }
     results_free_sample(r);

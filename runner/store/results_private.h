@@ -5,12 +5,9 @@
 #ifndef STANCE_STORE_RESULTS_PRIVATE_H
 #define STANCE_STORE_RESULTS_PRIVATE_H
 
+#include "hdf.h"
 #include "results.h"
 
-#include <hdf5.h>
-
-/* Every link of a path such as "trajectory/time" exists. */
-bool results_exists(hid_t file, const char *path);
 /* Opens a dataset and its shape; -1 when it does not exist or is none. */
 hid_t results_dataset(const struct results *r, const char *path, int *rank,
                       hsize_t length[H5S_MAX_RANK]);
@@ -23,12 +20,6 @@ bool results_no_memory(const struct results *r, stance_message *message);
 bool results_is_number(hid_t dataset);
 H5T_class_t results_class(hid_t dataset);
 void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t size);
-/* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
-char *results_attribute(hid_t object, const char *name);
-
-/* A positive whole number, or where there is none the fallback. */
-int results_whole_attribute(hid_t object, const char *name, int fallback);
-
 /* What the axis `sample` varies, once the axes have been read; nothing where there is none. */
 bool results_read_sample(struct results *r, stance_message *message);
 void results_free_sample(struct results *r);

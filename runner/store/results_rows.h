@@ -17,10 +17,7 @@ bool results_column_open(const struct results *r, const char *name, struct resul
                          stance_message *message);
 void results_column_close(struct results_column *column);
 
-/* How many rows from `first` on can be read at once, at most `most` > 0: those that are one block
- * of the file. */
-size_t results_block(const struct results *r, uint64_t first, size_t most);
-/* Reads such a block, values[rows * width], whatever the status of the cases. */
+/* Reads rows from `first` on, values[rows * width], whatever the status of the cases. */
 bool results_column_read(const struct results *r, const struct results_column *column,
                          uint64_t first, size_t rows, double *values, stance_message *message);
 

@@ -11,7 +11,7 @@
 static bool read_words(const struct results *r, hid_t dataset, struct results_varied *v,
                        stance_message *message)
 {
-    char *words = results_attribute(dataset, "flag_meanings");
+    char *words = hdf_text(dataset, "flag_meanings");
     size_t n = 1;
     if (!words)
         return true;
@@ -32,8 +32,7 @@ static bool read_values(const struct results *r, hid_t dataset, struct results_v
     v->of.value = malloc(v->of.count * sizeof *v->of.value);
     if (!v->of.value)
         return results_no_memory(r, message);
-    if (!results_is_number(dataset) ||
-        H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, v->of.value) < 0)
+    if (!results_is_number(dataset) || !hdf_read(dataset, KIND_double, v->of.value))
         return results_failed(r, v->of.name, message);
     for (size_t i = 0; i < v->of.count; i++) { /* an absent limit is infinite */
         const double value = v->of.value[i];
@@ -64,7 +63,7 @@ static bool read_varied(struct results *r, const char *path, int factor, stance_
     bool good = rank == 1 && length[0] == v->of.count
                     ? read_words(r, dataset, v, message) && read_values(r, dataset, v, message)
                     : results_damaged(r, "a variable is not as its axes say", message);
-    H5Dclose(dataset);
+    hdf_close(dataset);
     return good;
 }
 
@@ -79,9 +78,11 @@ bool results_read_sample(struct results *r, stance_message *message)
     if (last < 0 || strcmp(r->axis[last].name, "sample") != 0)
         return true;
     hid_t dataset = results_dataset(r, "sample", &rank, length);
-    char *paths = dataset < 0 ? NULL : results_attribute(dataset, "paths"), *rest = paths;
+    if (dataset < 0)
+        return results_failed(r, "sample", message);
+    char *paths = hdf_text(dataset, "paths"), *rest = paths;
     results_copy_attribute(dataset, "method", r->method, sizeof r->method);
-    r->block = (size_t)results_whole_attribute(dataset, "block", 1);
+    r->block = (size_t)hdf_whole(dataset, "block", 1);
     char generator[64];
     results_copy_attribute(dataset, "generator", generator, sizeof generator);
     for (int m = 0; m < DOE_METHODS; m++) {
@@ -89,7 +90,7 @@ bool results_read_sample(struct results *r, stance_message *message)
             r->other_points || (strcmp(r->method, doe_words[m]) == 0 &&
                                 strcmp(generator, doe_generator((enum doe_method)m)) != 0);
     }
-    H5Dclose(dataset);
+    hdf_close(dataset);
     r->vary = calloc(MOST, sizeof *r->vary);
     if (!r->vary) {
         free(paths);
@@ -118,10 +119,9 @@ static bool read_single(const struct results *r, const struct scenario_axis *axi
     hsize_t length[H5S_MAX_RANK];
     int rank, words = 1;
     hid_t dataset = results_dataset(r, axis->path[k], &rank, length);
-    const bool good =
-        dataset >= 0 && rank == 1 && length[0] == 1 && results_is_number(dataset) &&
-        H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value) >= 0;
-    H5Dclose(dataset);
+    const bool good = dataset >= 0 && rank == 1 && length[0] == 1 && results_is_number(dataset) &&
+                      hdf_read(dataset, KIND_double, value);
+    hdf_close(dataset);
     for (const char *c = axis->meaning[k].words; c && *c; c++)
         words += *c == ' ';
     return good && !isnan(*value) && (!axis->meaning[k].words || (*value >= 0 && *value < words));
@@ -146,14 +146,7 @@ static void take_points(const struct results *r, struct scenario *s)
 
 bool results_scenario(const struct results *r, struct scenario *s)
 {
-    char *said = NULL;
-    size_t length = 0;
-    FILE *errors = open_memstream(&said, &length);
-    if (!errors)
-        return false;
-    bool good = scenario_read(s, r->file, r->scenario, NULL, 0, errors);
-    fclose(errors);
-    free(said);
+    const bool good = scenario_read(s, r->file, r->scenario, NULL, 0, NULL);
     if (good)
         take_points(r, s);
     return good;

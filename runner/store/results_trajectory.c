@@ -14,16 +14,16 @@ bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
     int rank;
     *list = NULL;
     *count = 0;
-    if (!results_exists((hid_t)r->id, "trajectory/case"))
+    if (!hdf_exists((hid_t)r->id, "trajectory/case"))
         return true;
     hid_t dataset = results_dataset(r, "trajectory/case", &rank, length);
     if (dataset < 0)
         return results_failed(r, "trajectory/case", message);
     size_t n = rank == 1 ? results_elements(r, rank, length) : 0;
     *list = n ? malloc(n * sizeof **list) : NULL;
-    bool good = *list && results_class(dataset) == H5T_INTEGER &&
-                H5Dread(dataset, H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, *list) >= 0;
-    H5Dclose(dataset);
+    bool good =
+        *list && results_class(dataset) == H5T_INTEGER && hdf_read(dataset, KIND_uint64_t, *list);
+    hdf_close(dataset);
     if (!good) {
         free(*list);
         *list = NULL;
@@ -38,31 +38,23 @@ bool results_recorded(const struct results *r, uint64_t **list, size_t *count,
 static bool read_track(const struct results *r, const char *path, size_t place, size_t rows,
                        size_t width, double **values, stance_message *message)
 {
-    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
+    hsize_t length[H5S_MAX_RANK];
     int rank;
-    if (width == 0 || !results_exists((hid_t)r->id, path))
+    if (width == 0 || !hdf_exists((hid_t)r->id, path))
         return true;
     hid_t dataset = results_dataset(r, path, &rank, length);
     if (dataset < 0)
         return results_failed(r, path, message);
     size_t n =
         rank >= 3 && length[1] == rows && place < length[0] ? results_elements(r, rank, length) : 0;
-    bool good = rows > 0 && n > 0 && n / length[0] == rows * width && results_is_number(dataset);
-    if (!good) {
-        H5Dclose(dataset);
-        return results_damaged(r, "a trajectory is not as its dimensions say", message);
-    }
-    hsize_t number = rows * width;
-    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &number, NULL);
-    start[0] = place;
-    length[0] = 1;
-    *values = malloc(rows * width * sizeof **values);
-    good = *values && H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, length, NULL) >= 0 &&
-           H5Dread(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, *values) >= 0;
-    H5Sclose(memory);
-    H5Sclose(space);
-    H5Dclose(dataset);
-    return good || results_failed(r, path, message);
+    const bool fits =
+        rows > 0 && n > 0 && n / length[0] == rows * width && results_is_number(dataset);
+    *values = fits ? malloc(rows * width * sizeof **values) : NULL;
+    const bool good = *values && hdf_move(dataset, hdf_type(KIND_double), place * rows * width,
+                                          rows * width, HDF_READ, *values);
+    hdf_close(dataset);
+    return !fits ? results_damaged(r, "a trajectory is not as its dimensions say", message)
+                 : good || results_failed(r, path, message);
 }
 
 static size_t count_instants(const struct results *r)
@@ -72,7 +64,7 @@ static size_t count_instants(const struct results *r)
     hid_t dataset = results_dataset(r, "trajectory/time", &rank, length);
     if (dataset < 0)
         return 0;
-    H5Dclose(dataset);
+    hdf_close(dataset);
     return rank == 1 ? results_elements(r, rank, length) : 0;
 }
 
@@ -111,7 +103,7 @@ static bool is_whole(const struct results *r, const struct results_trajectory *t
     for (size_t k = 0; k < sizeof part / sizeof part[0]; k++)
         if (part[k].values)
             crc = checksum_crc32c(crc, part[k].values, rows * part[k].width * sizeof(double));
-    return !results_exists((hid_t)r->id, "trajectory/checksum") ||
+    return !hdf_exists((hid_t)r->id, "trajectory/checksum") ||
            (store_trajectory_checksum(r->id, place, &expected) && crc == expected);
 }
 

@@ -8,6 +8,7 @@
 #include "store_private.h"
 
 #include "runner/base/checksum.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -36,6 +37,26 @@ const struct store_column store_columns[COLUMNS] = {
 
 const char *const store_trajectories[TRAJECTORIES] = {"position", "velocity", "torque", "force",
                                                       "gap"};
+
+bool store_is_column(const char *path)
+{
+    bool found = false;
+    for (int c = 0; c < COLUMNS; c++)
+        found = found || strcmp(path, store_columns[c].name) == 0;
+    return found;
+}
+
+bool store_is_track(const char *path)
+{
+    static const char group[] = "trajectory/";
+    if (strncmp(path, group, strlen(group)) != 0)
+        return false;
+    path += strlen(group);
+    bool found = strcmp(path, store_columns[COLUMN_CHECKSUM].name) == 0;
+    for (int v = 0; v < TRAJECTORIES; v++)
+        found = found || strcmp(path, store_trajectories[v]) == 0;
+    return found;
+}
 
 bool store_has_column(const struct scenario *scenario, int column)
 {
@@ -81,146 +102,41 @@ void store_design_columns(const struct scenario *scenario,
     const stance_scene *scene = scenario->scene;
     const int n = scene->coordinates, m = scene->actuators, p = 2 * scene->postures;
     const int set = scenario->base.capture ? p : 0, number = set > 0;
+    /* name, in struct resolved_design, unit, rows x columns, row length there, dimensions */
+#define IN(member) #member, offsetof(struct resolved_design, member)
+#define NUMBER(member, unit, text)                                                                 \
+    {                                                                                              \
+        IN(member), unit, number, 1, 1, 0, {0}, text                                               \
+    }
+#define VECTOR(name, member, unit, n, over, text)                                                  \
+    {                                                                                              \
+        name, offsetof(struct resolved_design, member), unit, 1, n, n, 1, {over}, text             \
+    }
+#define MATRIX(member, rows, first, second, text)                                                  \
+    {                                                                                              \
+        IN(member), NULL, rows, p, POSTURES, 2, {first, second}, text                              \
+    }
     const struct store_design_column all[DESIGN_COLUMNS] = {
-        {"gain",
-         NULL,
-         "gains of the linear law: torque = feedforward - gain * error",
-         offsetof(struct resolved_design, gain),
-         m,
-         p,
-         POSTURES,
-         2,
-         {DESIGN_ACTUATOR, DESIGN_POSTURE}},
-        {"equilibrium_position",
-         NULL,
-         "coordinates of the controller's equilibrium",
-         offsetof(struct resolved_design, equilibrium),
-         1,
-         n,
-         n,
-         1,
-         {DESIGN_COORDINATE}},
-        {"equilibrium_torque",
-         "N m",
-         "torques that hold the controller's equilibrium",
-         offsetof(struct resolved_design, torque),
-         1,
-         m,
-         m,
-         1,
-         {DESIGN_ACTUATOR}},
-        {"start_position",
-         NULL,
-         "coordinates of the initial equilibrium, foot at the origin",
-         offsetof(struct resolved_design, start),
-         1,
-         n,
-         n,
-         1,
-         {DESIGN_COORDINATE}},
-        {"captured",
-         NULL,
-         "confirmed set x' M x <= 1 of deviations from the target; cases stop in 0.8 of it",
-         offsetof(struct resolved_design, captured),
-         set,
-         p,
-         POSTURES,
-         2,
-         {DESIGN_POSTURE, DESIGN_POSTURE_OTHER}},
-        {"capture_time",
-         "s",
-         "time that a case must have left to be captured",
-         offsetof(struct resolved_design, capture_time),
-         number,
-         1,
-         1,
-         0,
-         {0}},
-        {"capture_boundary",
-         "1",
-         "simulations from the set's boundary, all stabilised",
-         offsetof(struct resolved_design, capture_boundary),
-         number,
-         1,
-         1,
-         0,
-         {0}},
-        {"capture_batches",
-         "1",
-         "sets that were tried so, the last with success",
-         offsetof(struct resolved_design, capture_batches),
-         number,
-         1,
-         1,
-         0,
-         {0}},
-        {"capture_share",
-         "1",
-         "less than this share of the boundary fails to stabilise, with 95 % confidence",
-         offsetof(struct resolved_design, capture_share),
-         number,
-         1,
-         1,
-         0,
-         {0}},
+        MATRIX(gain, m, DESIGN_ACTUATOR, DESIGN_POSTURE,
+               "gains of the linear law: torque = feedforward - gain * error"),
+        VECTOR("equilibrium_position", equilibrium, NULL, n, DESIGN_COORDINATE,
+               "coordinates of the controller's equilibrium"),
+        VECTOR("equilibrium_torque", torque, "N m", m, DESIGN_ACTUATOR,
+               "torques that hold the controller's equilibrium"),
+        VECTOR("start_position", start, NULL, n, DESIGN_COORDINATE,
+               "coordinates of the initial equilibrium, foot at the origin"),
+        MATRIX(captured, set, DESIGN_POSTURE, DESIGN_POSTURE_OTHER,
+               "confirmed set x' M x <= 1 of deviations from the target; cases stop in 0.8 of it"),
+        NUMBER(capture_time, "s", "time that a case must have left to be captured"),
+        NUMBER(capture_boundary, "1", "simulations from the set's boundary, all stabilised"),
+        NUMBER(capture_batches, "1", "sets that were tried so, the last with success"),
+        NUMBER(capture_share, "1",
+               "less than this share of the boundary fails to stabilise, with 95 % confidence"),
     };
     memcpy(columns, all, sizeof all);
 }
 
-hid_t store_file_type(enum store_kind kind)
-{
-    const hid_t types[] = {
-        [KIND_uint8_t] = H5T_STD_U8LE,   [KIND_uint32_t] = H5T_STD_U32LE,
-        [KIND_int32_t] = H5T_STD_I32LE,  [KIND_int64_t] = H5T_STD_I64LE,
-        [KIND_uint64_t] = H5T_STD_U64LE, [KIND_double] = H5T_IEEE_F64LE,
-    };
-    return types[kind];
-}
-
-hid_t store_memory_type(enum store_kind kind)
-{
-    return store_file_type(kind); /* see the assertion on byte order */
-}
-
-/* ---- errors ------------------------------------------------------------------------------- */
-
-/* What HDF5 said when a call failed: the next call, be it a close, wipes HDF5's own memory. The
- * system's words ("No space left on device") are worth more than HDF5's, the first more than the
- * later ones. */
-static struct {
-    char text[120];
-    bool system;
-} reason;
-
-static herr_t find_reason(unsigned n, const H5E_error2_t *error, void *unused)
-{
-    (void)n, (void)unused;
-    const char *system = error->desc ? strstr(error->desc, "error message = '") : NULL;
-    if (system && !reason.system) {
-        system += strlen("error message = '");
-        snprintf(reason.text, sizeof reason.text, "%.*s", (int)strcspn(system, "'"), system);
-        reason.system = true;
-    } else if (reason.text[0] == '\0' && error->desc) {
-        snprintf(reason.text, sizeof reason.text, "%.*s", (int)strcspn(error->desc, "\n"),
-                 error->desc);
-    }
-    return 0;
-}
-
-/* HDF5 calls this whenever one of its functions fails. */
-static herr_t remember_reason(hid_t stack, void *unused)
-{
-    return H5Ewalk2(stack, H5E_WALK_UPWARD, find_reason, unused);
-}
-
-bool store_failed(stance_message *message, const char *file, const char *what)
-{
-    snprintf(message->text, sizeof message->text, "%.80s: cannot %s: %s", file, what,
-             reason.text[0] ? reason.text : "unknown reason");
-    reason.text[0] = '\0';
-    reason.system = false;
-    return false;
-}
+/* ---- the library -------------------------------------------------------------------------- */
 
 void store_prepare(void)
 {
@@ -228,7 +144,7 @@ void store_prepare(void)
      * keeps them from being closed at exit: after a failed write both would write again. */
     H5dont_atexit();
     H5open();
-    H5Eset_auto2(H5E_DEFAULT, remember_reason, NULL);
+    hdf_remember();
 }
 
 void store_library(char *text, size_t size)
@@ -246,7 +162,7 @@ hid_t store_serial_access(void)
     if (H5Pset_sieve_buf_size(access, 0) < 0 ||
         H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) < 0 ||
         H5Pset_file_locking(access, false, true) < 0) {
-        H5Pclose(access);
+        hdf_close(access);
         return -1;
     }
     return access;
@@ -262,14 +178,14 @@ static hid_t open_for_ranks(const char *file, int ranks)
     hid_t id = -1;
 #if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
     if (ranks > 1 && H5Pset_fapl_mpio(access, MPI_COMM_WORLD, MPI_INFO_NULL) < 0) {
-        H5Pclose(access);
+        hdf_close(access);
         return -1;
     }
 #else
     (void)ranks;
 #endif
     id = H5Fopen(file, H5F_ACC_RDWR, access);
-    H5Pclose(access);
+    hdf_close(access);
     return id;
 }
 
@@ -283,25 +199,14 @@ static hid_t open_dataset(const struct store *store, const char *name)
         H5Pset_all_coll_metadata_ops(access, true);
 #endif
     dataset = H5Dopen2(store->id, name, access);
-    H5Pclose(access);
+    hdf_close(access);
     return dataset;
-}
-
-bool store_has_shape(hid_t dataset, int rank, const hsize_t *length)
-{
-    hsize_t found[H5S_MAX_RANK];
-    hid_t space = H5Dget_space(dataset);
-    bool same = space >= 0 && H5Sget_simple_extent_ndims(space) == rank &&
-                H5Sget_simple_extent_dims(space, found, NULL) == rank &&
-                memcmp(found, length, (size_t)rank * sizeof *length) == 0;
-    H5Sclose(space);
-    return same;
 }
 
 static bool open_columns(struct store *store, stance_message *message)
 {
     const struct scenario *s = store->plan->scenario;
-    hsize_t length[SCENARIO_MAX_AXES + 1];
+    hsize_t length[SCENARIO_MAX_AXES + 1], found[H5S_MAX_RANK];
     memcpy(length, store->length, sizeof store->length);
 
     for (int c = 0; c < COLUMNS; c++) {
@@ -309,14 +214,13 @@ static bool open_columns(struct store *store, stance_message *message)
         if (!store_has_column(s, c) && !history)
             continue;
         size_t width = store->width[c] = store_column_width(s, c);
+        const int rank = store->rank + (width > 1);
         store->column[c] = open_dataset(store, store_columns[c].name);
         length[store->rank] = width;
-        if (store->column[c] < 0 ||
-            !store_has_shape(store->column[c], store->rank + (width > 1), length)) {
-            snprintf(message->text, sizeof message->text,
-                     "%.100s: variable '%s' is not as this scenario needs it", store->file,
-                     store_columns[c].name);
-            return false;
+        if (store->column[c] < 0 || hdf_shape(store->column[c], found) != rank ||
+            memcmp(found, length, (size_t)rank * sizeof *length) != 0) {
+            return complain(message, "%.100s: variable '%s' is not as this scenario needs it",
+                            store->file, store_columns[c].name);
         }
     }
     return true;
@@ -328,7 +232,9 @@ static bool open_trajectories(struct store *store, stance_message *message)
     if (plan->record_rows == 0)
         return true;
     for (int v = 0; v < TRAJECTORIES; v++) {
-        if (store_trajectory_width(plan->scenario->scene, v) == 0)
+        store->trajectory_size[v] =
+            (size_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
+        if (store->trajectory_size[v] == 0)
             continue;
         char name[64];
         snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v]);
@@ -348,10 +254,8 @@ static bool open_store(struct store **result, hid_t id, const char *file, const 
     struct store *store = calloc(1, sizeof *store);
 
     *result = NULL;
-    if (!store) {
-        snprintf(message->text, sizeof message->text, "not enough memory");
-        return false;
-    }
+    if (!store)
+        return no_memory(message);
     snprintf(store->file, sizeof store->file, "%s", file);
     store->plan = plan;
     store->id = id;
@@ -379,9 +283,8 @@ bool store_open(struct store **result, const char *file, const struct plan *plan
 bool store_open_to_read(struct store **result, const char *file, const struct plan *plan,
                         stance_message *message)
 {
-    const hid_t access = store_serial_access(), id = H5Fopen(file, H5F_ACC_RDONLY, access);
-    H5Pclose(access);
-    return open_store(result, id, file, plan, 1, message);
+    const hid_t id = hdf_open_to_read(file, message);
+    return id >= 0 && open_store(result, id, file, plan, 1, message);
 }
 
 void store_abandon(struct store *store)
@@ -411,30 +314,30 @@ bool store_close(struct store *store, stance_message *message)
 
 /* Moves n rows of one column, from `slot` of the block on, between the block and the file. */
 static bool move_column(struct store *store, int c, struct store_block *block, size_t slot,
-                        hid_t space, size_t n, enum store_direction way, stance_message *message)
+                        hid_t space, size_t n, enum hdf_direction way, stance_message *message)
 {
-    hid_t type = store_memory_type(store_columns[c].kind);
+    const hid_t dataset = store->column[c], type = hdf_type(store_columns[c].kind);
     hsize_t elements = n * store->width[c];
     char *data = (char *)block->column[c] + slot * store->width[c] * store_columns[c].size;
-    hid_t memory = H5Screate_simple(1, &elements, NULL);
-    herr_t status = memory < 0 ? -1
-                    : way == STORE_WRITE
-                        ? H5Dwrite(store->column[c], type, memory, space, H5P_DEFAULT, data)
-                        : H5Dread(store->column[c], type, memory, space, H5P_DEFAULT, data);
-    bool good =
+    const hid_t memory = H5Screate_simple(1, &elements, NULL);
+    const herr_t status = memory < 0 ? -1
+                          : way == HDF_WRITE
+                              ? H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, data)
+                              : H5Dread(dataset, type, memory, space, H5P_DEFAULT, data);
+    const bool good =
         status >= 0 || store_failed(message, store->file,
-                                    way == STORE_WRITE ? "write the results" : "read the results");
-    H5Sclose(memory);
+                                    way == HDF_WRITE ? "write the results" : "read the results");
+    hdf_close(memory);
     return good;
 }
 
 /* All columns, in order: the checksum and then the status are the last ones. */
 bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
-                     const struct rows *rows, enum store_direction way, stance_message *message)
+                     const struct rows *rows, enum hdf_direction way, stance_message *message)
 {
     const size_t state = 2 * (size_t)store->plan->scenario->scene->coordinates;
-    hid_t narrow = store_select_rows(store->rank, store->length, 1, rows);
-    hid_t wide = store_select_rows(store->rank, store->length, state, rows);
+    hid_t narrow = hdf_select_rows(store->rank, store->length, 1, rows);
+    hid_t wide = hdf_select_rows(store->rank, store->length, state, rows);
     bool good = (narrow >= 0 && wide >= 0) ||
                 store_failed(message, store->file, "select rows of the results");
     for (int c = 0; good && c < COLUMNS; c++) {
@@ -443,8 +346,7 @@ bool store_move_rows(struct store *store, struct store_block *block, size_t slot
                                (size_t)rows->count, way, message);
         }
     }
-    H5Sclose(narrow);
-    H5Sclose(wide);
+    hdf_close(narrow, wide);
     return good;
 }
 
@@ -522,101 +424,73 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
 bool store_write(struct store *store, struct store_block *block, size_t slot,
                  const struct rows *rows, stance_message *message)
 {
-    return store_move_rows(store, block, slot, rows, STORE_WRITE, message);
+    return store_move_rows(store, block, slot, rows, HDF_WRITE, message);
 }
 
 /* ---- trajectories ------------------------------------------------------------------------- */
 
-static double *trajectory_data(const stance_trajectory *trajectory, int variable)
+bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_direction way,
+                           double *const data[TRAJECTORIES], uint32_t *crc, uint32_t *stored)
+{
+    bool good = true;
+    *crc = 0;
+    for (int v = 0; good && v < TRAJECTORIES; v++) {
+        const hsize_t n = store->trajectory_size[v];
+        if (n > 0) {
+            good = hdf_move(store->trajectory[v], H5T_IEEE_F64LE, place * n, n, way, data[v]);
+            *crc = checksum_crc32c(*crc, data[v], n * sizeof **data);
+        }
+    }
+    if (way == HDF_WRITE)
+        *stored = *crc;
+    return good && hdf_move(store->trajectory_checksum, H5T_STD_U32LE, place, 1, way, stored);
+}
+
+bool store_write_trajectory(struct store *store, uint64_t place,
+                            const stance_trajectory *trajectory, stance_message *message)
 {
     double *const data[TRAJECTORIES] = {
         [TRAJECTORY_POSITION] = trajectory->position, [TRAJECTORY_VELOCITY] = trajectory->velocity,
         [TRAJECTORY_TORQUE] = trajectory->torque,     [TRAJECTORY_FORCE] = trajectory->force,
         [TRAJECTORY_GAP] = trajectory->gap,
     };
-    return data[variable];
+    uint32_t crc, stored;
+    return store_move_trajectory(store, place, HDF_WRITE, data, &crc, &stored) ||
+           store_failed(message, store->file, "write a trajectory");
 }
 
-/* Moves one case's part, `elements` long, of a variable whose first dimension is the case. */
-bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
-                      enum store_direction way, void *data)
+bool store_trajectory_room(const struct store *store, double *data[TRAJECTORIES])
 {
-    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
-    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &elements, NULL);
-    bool good = space >= 0 && memory >= 0 && H5Sget_simple_extent_dims(space, length, NULL) >= 1;
-
-    start[0] = place;
-    length[0] = 1;
-    good = good && H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, length, NULL) >= 0;
-    if (good && way == STORE_WRITE)
-        good = H5Dwrite(dataset, store_memory_type(kind), memory, space, H5P_DEFAULT, data) >= 0;
-    else if (good)
-        good = H5Dread(dataset, store_memory_type(kind), memory, space, H5P_DEFAULT, data) >= 0;
-    H5Sclose(space);
-    H5Sclose(memory);
-    return good;
-}
-
-bool store_write_trajectory(struct store *store, uint64_t place,
-                            const stance_trajectory *trajectory, stance_message *message)
-{
-    uint32_t crc = 0;
-    bool good = true;
-    for (int v = 0; good && v < TRAJECTORIES; v++) {
-        if (store->trajectory[v] < 0)
-            continue;
-        size_t elements = (size_t)store->plan->record_rows *
-                          store_trajectory_width(store->plan->scenario->scene, v);
-        double *data = trajectory_data(trajectory, v);
-        crc = checksum_crc32c(crc, data, elements * sizeof *data);
-        good =
-            store_move_place(store->trajectory[v], KIND_double, place, elements, STORE_WRITE, data);
+    size_t size = 1;
+    for (int v = 0; v < TRAJECTORIES; v++)
+        size += store->trajectory_size[v];
+    double *all = malloc(size * sizeof *all);
+    for (int v = 0; all && v < TRAJECTORIES; v++) {
+        data[v] = all;
+        all += store->trajectory_size[v];
     }
-    good = good &&
-           store_move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, STORE_WRITE, &crc);
-    return good || store_failed(message, store->file, "write a trajectory");
+    return all != NULL;
 }
 
 static bool verify_trajectory(struct store *store, uint64_t place, bool *whole,
                               stance_message *message)
 {
-    const struct plan *plan = store->plan;
-    uint32_t crc = 0, expected = 0;
-    size_t widest = 1;
-    for (int v = 0; v < TRAJECTORIES; v++) {
-        size_t width = store_trajectory_width(plan->scenario->scene, v);
-        widest = width > widest ? width : widest;
-    }
-    double *data = malloc((size_t)plan->record_rows * widest * sizeof *data);
-    if (!data) {
-        snprintf(message->text, sizeof message->text, "not enough memory");
-        return false;
-    }
-    bool good = true;
-    for (int v = 0; good && v < TRAJECTORIES; v++) {
-        if (store->trajectory[v] >= 0) {
-            size_t elements =
-                (size_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
-            good = store_move_place(store->trajectory[v], KIND_double, place, elements, STORE_READ,
-                                    data);
-            crc = checksum_crc32c(crc, data, elements * sizeof *data);
-        }
-    }
-    free(data);
-    good = good && store_move_place(store->trajectory_checksum, KIND_uint32_t, place, 1, STORE_READ,
-                                    &expected);
-    *whole = crc == expected;
+    uint32_t crc, stored = 0;
+    double *data[TRAJECTORIES];
+    if (!store_trajectory_room(store, data))
+        return no_memory(message);
+    const bool good = store_move_trajectory(store, place, HDF_READ, data, &crc, &stored);
+    free(data[0]);
+    *whole = crc == stored;
     return good || store_failed(message, store->file, "read a trajectory");
 }
 
 bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
                   stance_message *message)
 {
-    if (!store->checked && !(store->checked = store_block_make(store, STORE_ROWS))) {
-        snprintf(message->text, sizeof message->text, "not enough memory");
-        return false;
-    }
-    if (!store_move_rows(store, store->checked, 0, rows, STORE_READ, message))
+    if (!store->checked && !(store->checked = store_block_make(store, STORE_ROWS)))
+        return no_memory(message);
+    if (!store_move_rows(store, store->checked, 0, rows, HDF_READ, message))
         return false;
     const uint8_t *status = store->checked->column[COLUMN_STATUS];
     const uint8_t *outcome = store->checked->column[STANCE_ANSWER_outcome];
@@ -636,64 +510,66 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
 
 /* ---- designs and timing ------------------------------------------------------------------- */
 
+bool store_move_design(const struct plan *plan, const struct store_design_column *column,
+                       hid_t dataset, enum hdf_direction way)
+{
+    const size_t rows = (size_t)column->rows, length = (size_t)column->columns;
+    double *data = malloc(plan->designs * rows * length * sizeof *data);
+    bool good = data && (way == HDF_WRITE || hdf_read(dataset, KIND_double, data));
+    for (size_t i = 0; good && i < plan->designs * rows; i++) {
+        double *design = (double *)(void *)((char *)&plan->design[i / rows] + column->offset) +
+                         i % rows * (size_t)column->stride;
+        const bool exists = plan->design_status[i / rows] == STANCE_DONE;
+        for (size_t k = 0; k < length; k++)
+            if (way == HDF_READ)
+                design[k] = data[i * length + k];
+            else
+                data[i * length + k] = exists ? design[k] : NAN;
+    }
+    good = good && (way == HDF_READ || hdf_write(dataset, KIND_double, data));
+    free(data);
+    return good;
+}
+
 bool store_read_designs(struct store *store, struct plan *plan, stance_message *message)
 {
     struct store_design_column columns[DESIGN_COLUMNS];
     bool good = true;
     store_design_columns(plan->scenario, columns);
     for (int k = 0; k < DESIGN_COLUMNS; k++) { /* all of them, even when this rank has failed */
-        size_t rows = (size_t)columns[k].rows, length = (size_t)columns[k].columns;
-        if (rows * length == 0)
+        if (columns[k].rows * columns[k].columns == 0)
             continue;
         char name[64];
         snprintf(name, sizeof name, "design/%s", columns[k].name);
-        double *data = malloc(plan->designs * rows * length * sizeof *data);
-        hid_t dataset = open_dataset(store, name);
-        good = data && dataset >= 0 &&
-               H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                       data) >= 0 &&
-               good;
-        for (size_t d = 0; good && d < plan->designs; d++) {
-            char *design = (char *)&plan->design[d] + columns[k].offset;
-            for (size_t r = 0; r < rows; r++) {
-                memcpy((double *)(void *)design + r * (size_t)columns[k].stride,
-                       data + (d * rows + r) * length, length * sizeof *data);
-            }
-        }
-        H5Dclose(dataset);
-        free(data);
+        const hid_t dataset = open_dataset(store, name);
+        good = store_move_design(plan, &columns[k], dataset, HDF_READ) && good;
+        hdf_close(dataset);
     }
-    hid_t dataset = open_dataset(store, "design/status");
-    good = good && H5Dread(dataset, store_memory_type(KIND_uint8_t), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                           plan->design_status) >= 0;
-    H5Dclose(dataset);
+    const hid_t dataset = open_dataset(store, "design/status");
+    good = good && hdf_read(dataset, KIND_uint8_t, plan->design_status);
+    hdf_close(dataset);
     return good || store_failed(message, store->file, "read the designs");
 }
 
-bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
+/* Adds to a variable of the group, which may have fewer places than there are ranks. */
+static bool add_times(const struct store *store, const char *name, int ranks, const double *more)
+{
+    const hid_t dataset = H5Dopen2(store->id, name, H5P_DEFAULT);
+    hsize_t length[H5S_MAX_RANK] = {0};
+    double *total = hdf_shape(dataset, length) == 1 ? calloc(length[0] + 1, sizeof *total) : NULL;
+    bool good = total && length[0] > 0 && hdf_read(dataset, KIND_double, total);
+    for (int rank = 0; good && rank < ranks; rank++)
+        total[(hsize_t)rank % length[0]] += more[rank];
+    good = good && hdf_write(dataset, KIND_double, total);
+    free(total);
+    hdf_close(dataset);
+    return good;
+}
+
+bool store_add_timing(struct store *store, int ranks, const double *wall_time, const double *cases,
                       stance_message *message)
 {
-    hid_t wall = H5Dopen2(store->id, "timing/wall_time", H5P_DEFAULT);
-    hid_t drawn = H5Dopen2(store->id, "timing/cases", H5P_DEFAULT), space = H5Dget_space(wall);
-    hssize_t length = H5Sget_simple_extent_npoints(space);
-    double *total = length > 0 ? calloc((size_t)length, sizeof *total) : NULL;
-    int64_t *sum = length > 0 ? calloc((size_t)length, sizeof *sum) : NULL;
-    bool good =
-        total && sum &&
-        H5Dread(wall, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, total) >= 0 &&
-        H5Dread(drawn, store_memory_type(KIND_int64_t), H5S_ALL, H5S_ALL, H5P_DEFAULT, sum) >= 0;
-    for (int rank = 0; good && rank < ranks; rank++) {
-        total[rank % length] += wall_time[rank];
-        sum[rank % length] += cases[rank];
-    }
-    good =
-        good &&
-        H5Dwrite(wall, store_memory_type(KIND_double), H5S_ALL, H5S_ALL, H5P_DEFAULT, total) >= 0 &&
-        H5Dwrite(drawn, store_memory_type(KIND_int64_t), H5S_ALL, H5S_ALL, H5P_DEFAULT, sum) >= 0;
-    free(total);
-    free(sum);
-    H5Sclose(space);
-    H5Dclose(wall);
-    H5Dclose(drawn);
-    return good || store_failed(message, store->file, "write the timing");
+    return (add_times(store, "timing/wall_time", ranks, wall_time) &&
+            add_times(store, "timing/cases", ranks, cases)) ||
+           store_failed(message, store->file, "write the timing");
 }

@@ -161,7 +161,7 @@ bool store_annotate(struct store *store, const char *name, const char *text,
 bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
                        stance_message *message);
 /* Adds to the timing group; for rank 0. wall_time[ranks], cases[ranks]. */
-bool store_add_timing(struct store *store, int ranks, const double *wall_time, const int64_t *cases,
+bool store_add_timing(struct store *store, int ranks, const double *wall_time, const double *cases,
                       stance_message *message);
 
 /* Rows of an open file (HDF5 identifier) whose answers are not as their checksums say become

@@ -1,14 +1,10 @@
 /* store_copy.c - rows, trajectories and times of one results file into another. */
 #include "store_make.h"
 
+#include "runner/base/message.h"
+
 #include <stdlib.h>
 #include <string.h>
-
-static bool no_memory(stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "not enough memory");
-    return false;
-}
 
 static bool is_finished(const struct store_block *block, size_t slot)
 {
@@ -43,36 +39,20 @@ static void take_row(const struct store_block *from, size_t slot, struct store_b
     ((uint32_t *)to->column[COLUMN_CHECKSUM])[to_slot] = store_row_checksum(to, to_slot);
 }
 
-/* The trajectory at one place of a file to a place of another, as it is, checksum included. */
+/* The trajectory at one place of a file, which verifies, to a place of another. */
 static bool copy_trajectory(struct store *from, uint64_t place, struct store *to, uint64_t to_place,
                             stance_message *message)
 {
-    const struct plan *plan = from->plan;
-    uint32_t checksum = 0;
-    bool good = true;
-    for (int v = 0; good && v < TRAJECTORIES; v++) {
-        const size_t elements =
-            (size_t)plan->record_rows * store_trajectory_width(plan->scenario->scene, v);
-        double *data = from->trajectory[v] < 0 ? NULL : malloc(elements * sizeof *data);
-        if (from->trajectory[v] < 0)
-            continue;
-        if (!data)
-            return no_memory(message);
-        good = (store_move_place(from->trajectory[v], KIND_double, place, elements, STORE_READ,
-                                 data) ||
-                store_failed(message, from->file, "read a trajectory")) &&
-               (store_move_place(to->trajectory[v], KIND_double, to_place, elements, STORE_WRITE,
-                                 data) ||
-                store_failed(message, to->file, "write a trajectory"));
-        free(data);
-    }
-    return good &&
-           (store_move_place(from->trajectory_checksum, KIND_uint32_t, place, 1, STORE_READ,
-                             &checksum) ||
-            store_failed(message, from->file, "read a trajectory")) &&
-           (store_move_place(to->trajectory_checksum, KIND_uint32_t, to_place, 1, STORE_WRITE,
-                             &checksum) ||
-            store_failed(message, to->file, "write a trajectory"));
+    double *data[TRAJECTORIES];
+    uint32_t crc, stored = 0;
+    if (!store_trajectory_room(from, data))
+        return no_memory(message);
+    const bool good = (store_move_trajectory(from, place, HDF_READ, data, &crc, &stored) ||
+                       store_failed(message, from->file, "read a trajectory")) &&
+                      (store_move_trajectory(to, to_place, HDF_WRITE, data, &crc, &stored) ||
+                       store_failed(message, to->file, "write a trajectory"));
+    free(data[0]);
+    return good;
 }
 
 /* Which of the rows read into both files' blocks are to be written. */
@@ -127,35 +107,32 @@ bool store_copy(struct store *from, const struct rows *rows, struct store *to,
     return count == 0 || store_write(to, to->checked, 0, &written, message);
 }
 
+/* The times of one file to as many places of the other, from `rank` on, as it has for them. */
+static bool copy_times(struct store *from, struct store *to, const char *name, int rank,
+                       size_t *count)
+{
+    const hid_t source = H5Dopen2(from->id, name, H5P_DEFAULT),
+                target = H5Dopen2(to->id, name, H5P_DEFAULT);
+    const size_t there = hdf_elements(source), room = hdf_elements(target);
+    const size_t left = room > (size_t)rank ? room - (size_t)rank : 0;
+    double *values = there > 0 ? calloc(there, sizeof *values) : NULL;
+    *count = there < left ? there : left;
+    const bool good =
+        values && hdf_read(source, KIND_double, values) &&
+        (*count == 0 || hdf_move(target, H5T_IEEE_F64LE, (hsize_t)rank, *count, HDF_WRITE, values));
+    free(values);
+    hdf_close(source, target);
+    return good;
+}
+
 bool store_copy_timing(struct store *from, struct store *to, int *rank, stance_message *message)
 {
-    static const char *const names[] = {"timing/wall_time", "timing/cases"};
-    hsize_t count = 0, start = (hsize_t)*rank;
-    bool good = true;
-    for (int k = 0; good && k < 2; k++) {
-        hid_t source = H5Dopen2(from->id, names[k], H5P_DEFAULT),
-              target = H5Dopen2(to->id, names[k], H5P_DEFAULT);
-        hid_t all = H5Dget_space(source), part = H5Dget_space(target);
-        const hssize_t there = H5Sget_simple_extent_npoints(all),
-                       room = H5Sget_simple_extent_npoints(part) - *rank;
-        /* Numbers of both kinds are eight bytes long. */
-        const hid_t type = store_memory_type(k == 0 ? KIND_double : KIND_int64_t);
-        double *values = there > 0 ? calloc((size_t)there, sizeof *values) : NULL;
-        count = there < room ? (hsize_t)there : room > 0 ? (hsize_t)room : 0;
-        hid_t memory = H5Screate_simple(1, &count, NULL);
-        good = values && H5Dread(source, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0 &&
-               (count == 0 ||
-                (H5Sselect_hyperslab(part, H5S_SELECT_SET, &start, NULL, &count, NULL) >= 0 &&
-                 H5Dwrite(target, type, memory, part, H5P_DEFAULT, values) >= 0));
-        free(values);
-        H5Sclose(memory);
-        H5Sclose(all);
-        H5Sclose(part);
-        H5Dclose(source);
-        H5Dclose(target);
-    }
+    size_t count;
+    if (!copy_times(from, to, "timing/wall_time", *rank, &count) ||
+        !copy_times(from, to, "timing/cases", *rank, &count))
+        return store_failed(message, to->file, "copy the times");
     *rank += (int)count;
-    return good || store_failed(message, to->file, "copy the times");
+    return true;
 }
 
 bool store_annotate(struct store *store, const char *name, const char *text,

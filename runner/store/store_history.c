@@ -17,31 +17,23 @@ static char **text_of(struct store_ancestor *ancestor, int k)
     return k == 0 ? &ancestor->scenario : k == 1 ? &ancestor->revision : &ancestor->date;
 }
 
-/* Words of a variable, each freed by the caller; their number must be `count`, unless that is 0. */
+/* Text k of every scenario; their number must be that of the others. */
 static bool read_texts(hid_t group, int k, struct store_origin *origin)
 {
-    hid_t dataset = H5Dopen2(group, text_names[k], H5P_DEFAULT);
-    hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
-    const hssize_t n = H5Sget_simple_extent_npoints(space);
-    bool good = n > 0 && n <= STORE_MOST_ANCESTORS && H5Tis_variable_str(type) > 0;
-    char *word[STORE_MOST_ANCESTORS] = {NULL};
+    const hid_t dataset = H5Dopen2(group, text_names[k], H5P_DEFAULT);
+    const size_t n = hdf_elements(dataset);
+    bool good = n > 0 && n <= STORE_MOST_ANCESTORS;
 
     if (good && !origin->ancestor) {
-        origin->ancestor = calloc((size_t)n, sizeof *origin->ancestor);
-        origin->ancestors = origin->ancestor ? (size_t)n : 0;
+        origin->ancestor = calloc(n, sizeof *origin->ancestor);
+        origin->ancestors = origin->ancestor ? n : 0;
     }
-    good = good && (size_t)n == origin->ancestors &&
-           H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, word) >= 0;
-    for (hssize_t i = 0; good && i < n; i++) {
-        char **text = text_of(&origin->ancestor[i], k);
-        *text = strdup(word[i] ? word[i] : "");
-        good = *text != NULL;
-    }
-    for (int i = 0; i < STORE_MOST_ANCESTORS; i++)
-        H5free_memory(word[i]);
-    H5Sclose(space);
-    H5Tclose(type);
-    H5Dclose(dataset);
+    char **words = good && n == origin->ancestors ? hdf_words(dataset, 0, n) : NULL;
+    for (size_t i = 0; words && i < n; i++)
+        *text_of(&origin->ancestor[i], k) = words[i];
+    good = words != NULL;
+    free(words);
+    hdf_close(dataset);
     return good;
 }
 
@@ -53,7 +45,7 @@ bool store_read_history(hid_t file, struct store_origin *origin)
     hid_t group = H5Gopen2(file, "history", H5P_DEFAULT);
     for (int k = 0; good && k < TEXTS; k++)
         good = read_texts(group, k, origin);
-    H5Gclose(group);
+    hdf_close(group);
     return good;
 }
 
@@ -67,13 +59,9 @@ static bool put_texts(hid_t group, int k, const struct store_origin *origin)
     for (size_t i = 0; i < origin->ancestors; i++)
         word[i] = *text_of(&origin->ancestor[i], k);
     word[origin->ancestors] = *text_of(&own, k);
-    hid_t type = H5Tcopy(H5T_C_S1);
-    bool good = H5Tset_size(type, H5T_VARIABLE) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0;
-    hid_t dataset = make_dataset(group, text_names[k], type, 1, &n);
-    good =
-        good && dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, word) >= 0;
-    H5Dclose(dataset);
-    H5Tclose(type);
+    const hid_t type = word_type(), dataset = make_dataset(group, text_names[k], type, 1, &n);
+    const bool good = dataset >= 0 && write_words(dataset, type, word);
+    hdf_close(dataset, type);
     return good;
 }
 
@@ -85,15 +73,15 @@ static bool put_numbers(hid_t file, const struct plan *plan)
     hsize_t length[SCENARIO_MAX_AXES];
     const int rank = store_dimensions(plan, length);
     const bool one = plan->single || s->axes == 0;
-    hid_t dataset = make_dataset(file, column->name, store_file_type(column->kind), rank, length);
+    hid_t dataset = make_dataset(file, column->name, hdf_type(column->kind), rank, length);
     bool good = dataset >= 0 &&
                 H5LTset_attribute_string(file, column->name, "long_name", column->text) >= 0;
     for (int d = 0; good && d < rank; d++) {
         hid_t scale = H5Dopen2(file, one ? "case" : s->axis[d].name, H5P_DEFAULT);
         good = scale >= 0 && H5DSattach_scale(dataset, scale, (unsigned)d) >= 0;
-        H5Dclose(scale);
+        hdf_close(scale);
     }
-    H5Dclose(dataset);
+    hdf_close(dataset);
     return good;
 }
 
@@ -102,14 +90,14 @@ bool store_add_history(const char *file, const struct plan *plan, const struct s
 {
     hid_t access = store_serial_access(), id = H5Fopen(file, H5F_ACC_RDWR, access);
     hid_t properties = H5Pcreate(H5P_GROUP_CREATE), group = -1;
-    H5Pclose(access);
+    hdf_close(access);
     if (H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0)
         group = H5Gcreate2(id, "history", H5P_DEFAULT, properties, H5P_DEFAULT);
-    H5Pclose(properties);
+    hdf_close(properties);
     bool good = group >= 0;
     for (int k = 0; good && k < TEXTS; k++)
         good = put_texts(group, k, origin);
-    H5Gclose(group);
+    hdf_close(group);
     good = good && file_checksums_put_group(id, "history") && put_numbers(id, plan);
     good = good || store_failed(message, file, "lay out its history");
     if (id >= 0 && H5Fclose(id) < 0 && good)

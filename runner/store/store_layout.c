@@ -65,8 +65,8 @@ static bool has_words(const struct scenario_axis *axis, int path)
 static hid_t axis_type(const struct scenario_axis *axis, int path)
 {
     return has_words(axis, path) ? word_type()
-           : axis->integer[path] ? H5Tcopy(store_file_type(KIND_int32_t))
-                                 : H5Tcopy(store_file_type(KIND_double));
+           : axis->integer[path] ? H5Tcopy(hdf_type(KIND_int32_t))
+                                 : H5Tcopy(hdf_type(KIND_double));
 }
 
 static bool write_axis_words(hid_t dataset, hid_t type, const struct axis_values *values, hsize_t n)
@@ -98,11 +98,11 @@ static bool put_path(struct layout *layout, const struct axis_values *values,
                  put_meaning(dataset, has_words(axis, 0) ? NULL : axis->unit, axis->text));
     if (over) {
         good = good && attach(dataset, &over, 1);
-        H5Dclose(dataset);
+        hdf_close(dataset);
     } else {
         good = good && make_scale(&layout->dimensions, dataset, name, n, dimension);
     }
-    H5Tclose(type);
+    hdf_close(type);
     return good;
 }
 
@@ -164,11 +164,11 @@ static bool put_sampled(struct layout *layout, const struct axis_values *values,
     const enum store_kind kind = meaning->words                ? KIND_uint8_t
                                  : axis->integer[values->path] ? KIND_int32_t
                                                                : KIND_double;
-    hid_t dataset = make_variable(layout->file, axis->path[values->path], store_file_type(kind),
-                                  &over, 1, meaning->words ? NULL : meaning->unit, meaning->text);
+    hid_t dataset = make_variable(layout->file, axis->path[values->path], hdf_type(kind), &over, 1,
+                                  meaning->words ? NULL : meaning->unit, meaning->text);
     bool good = dataset >= 0 && write_values(dataset, over->length, axis_value, values) &&
                 (!meaning->words || put_flags(dataset, meaning->words));
-    H5Dclose(dataset);
+    hdf_close(dataset);
     return good;
 }
 
@@ -279,12 +279,12 @@ static bool put_answers(struct layout *layout)
         int rank = layout->rank + (c == COLUMN_FINAL_STATE);
         char flags[400];
         const bool code = flags_of(c, flags, sizeof flags);
-        hid_t dataset = make_variable(layout->file, column->name, store_file_type(column->kind),
-                                      over, rank, code ? NULL : column->unit, column->text);
+        hid_t dataset = make_variable(layout->file, column->name, hdf_type(column->kind), over,
+                                      rank, code ? NULL : column->unit, column->text);
         bool good = dataset >= 0 &&
                     (!column->filled || put_fill(dataset, column->kind, column->fill)) &&
                     (!code || put_flags(dataset, flags)) && put_coordinates(layout, dataset);
-        H5Dclose(dataset);
+        hdf_close(dataset);
         if (!good)
             return false;
     }
@@ -313,27 +313,6 @@ static bool make_actuators(struct layout *layout, hid_t parent, struct dimension
 
 /* ---- the designs -------------------------------------------------------------------------- */
 
-static bool write_design_column(const struct layout *layout, hid_t dataset,
-                                const struct store_design_column *column)
-{
-    const struct plan *plan = layout->plan;
-    size_t rows = (size_t)column->rows, length = (size_t)column->columns;
-    double *data = malloc(plan->designs * rows * length * sizeof *data);
-    for (size_t d = 0; data && d < plan->designs; d++) {
-        const char *design = (const char *)&plan->design[d] + column->offset;
-        for (size_t i = 0; i < rows * length; i++) {
-            size_t from = i / length * (size_t)column->stride + i % length;
-            data[d * rows * length + i] = plan->design_status[d] == STANCE_DONE
-                                              ? ((const double *)(const void *)design)[from]
-                                              : NAN;
-        }
-    }
-    bool good =
-        data && H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
-    free(data);
-    return good;
-}
-
 static bool put_design_columns(struct layout *layout, hid_t group, const struct dimension **over,
                                int rank, const struct dimension inner[DESIGN_DIMENSIONS])
 {
@@ -345,11 +324,12 @@ static bool put_design_columns(struct layout *layout, hid_t group, const struct 
         for (int i = 0; i < columns[k].dimensions; i++)
             over[rank + i] = &inner[columns[k].over[i]];
         hid_t dataset =
-            make_variable(group, columns[k].name, store_file_type(KIND_double), over,
+            make_variable(group, columns[k].name, hdf_type(KIND_double), over,
                           rank + columns[k].dimensions, columns[k].unit, columns[k].text);
-        bool good = dataset >= 0 && write_design_column(layout, dataset, &columns[k]) &&
+        bool good = dataset >= 0 &&
+                    store_move_design(layout->plan, &columns[k], dataset, HDF_WRITE) &&
                     put_fill(dataset, KIND_double, NAN);
-        H5Dclose(dataset);
+        hdf_close(dataset);
         if (!good)
             return false;
     }
@@ -379,14 +359,13 @@ static bool put_designs(struct layout *layout)
     if (good) {
         char flags[40];
         flags_of(COLUMN_STATUS, flags, sizeof flags);
-        hid_t status = make_variable(group, "status", store_file_type(KIND_uint8_t), over, rank,
-                                     NULL, "whether the design exists");
+        hid_t status = make_variable(group, "status", hdf_type(KIND_uint8_t), over, rank, NULL,
+                                     "whether the design exists");
         good = status >= 0 && put_flags(status, flags) &&
-               H5Dwrite(status, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                        plan->design_status) >= 0;
-        H5Dclose(status);
+               hdf_write(status, KIND_uint8_t, plan->design_status);
+        hdf_close(status);
     }
-    H5Gclose(group);
+    hdf_close(group);
     return good;
 }
 
@@ -414,10 +393,10 @@ static bool put_trajectory(hid_t group, int variable, const struct dimension *co
         [TRAJECTORY_FORCE] = {"N", "contact force, mean since the instant before"},
         [TRAJECTORY_GAP] = {"m", "height of the contact point above the ground"},
     };
-    hid_t dataset = make_variable(group, store_trajectories[variable], store_file_type(KIND_double),
-                                  over, rank, meaning[variable].unit, meaning[variable].text);
+    hid_t dataset = make_variable(group, store_trajectories[variable], hdf_type(KIND_double), over,
+                                  rank, meaning[variable].unit, meaning[variable].text);
     bool good = dataset >= 0 && put_fill(dataset, KIND_double, NAN);
-    H5Dclose(dataset);
+    hdf_close(dataset);
     return good;
 }
 
@@ -453,12 +432,12 @@ static bool put_trajectories(struct layout *layout)
     if (good) {
         const struct dimension *over[] = {&number};
         const struct store_column *column = &store_columns[COLUMN_CHECKSUM];
-        hid_t dataset = make_variable(group, column->name, store_file_type(column->kind), over, 1,
+        hid_t dataset = make_variable(group, column->name, hdf_type(column->kind), over, 1,
                                       column->unit, "CRC-32C over the trajectory of the case");
         good = dataset >= 0;
-        H5Dclose(dataset);
+        hdf_close(dataset);
     }
-    H5Gclose(group);
+    hdf_close(group);
     return good;
 }
 
@@ -484,15 +463,13 @@ static bool put_timing(struct layout *layout)
         !make_scale(&layout->dimensions, make_dataset(group, "rank", H5T_IEEE_F32BE, 1, &n), label,
                     n, &rank))
         return false;
-    hid_t wall = make_variable(group, "wall_time", store_file_type(KIND_double), over, 1, "s",
+    hid_t wall = make_variable(group, "wall_time", hdf_type(KIND_double), over, 1, "s",
                                "wall time of computing");
-    hid_t cases = make_variable(group, "cases", store_file_type(KIND_int64_t), over, 1, "1",
-                                "cases computed");
+    hid_t cases =
+        make_variable(group, "cases", hdf_type(KIND_int64_t), over, 1, "1", "cases computed");
     bool good = wall >= 0 && cases >= 0 && write_values(wall, n, no_time, NULL) &&
                 write_values(cases, n, no_time, NULL);
-    H5Dclose(wall);
-    H5Dclose(cases);
-    H5Gclose(group);
+    hdf_close(wall, cases, group);
     return good;
 }
 
@@ -563,8 +540,7 @@ static hid_t create_file(const char *file)
         /* Lets long texts be attributes. */
         H5Pset_attr_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0)
         id = H5Fcreate(file, H5F_ACC_EXCL, properties, access);
-    H5Pclose(access);
-    H5Pclose(properties);
+    hdf_close(access, properties);
     return id;
 }
 

@@ -4,6 +4,7 @@
 #include "store_private.h"
 
 #include "runner/base/checksum.h"
+#include "runner/base/message.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -11,56 +12,19 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Files only: to open a pipe would wait for its writer. What the system says of a file that is not
- * there, HDF5 passes on. */
-static hid_t open_to_read(const char *file, stance_message *message)
-{
-    struct stat information;
-    if (stat(file, &information) == 0 && !S_ISREG(information.st_mode)) {
-        snprintf(message->text, sizeof message->text, "%.120s: %s", file,
-                 S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file");
-        return -1;
-    }
-    hid_t access = store_serial_access();
-    hid_t id = H5Fopen(file, H5F_ACC_RDONLY, access);
-    if (id < 0)
-        store_failed(message, file, "open");
-    H5Pclose(access);
-    return id;
-}
-
-/* A text attribute of fixed length, as this program writes them; NULL when there is none. */
-static char *read_text(hid_t object, const char *name)
-{
-    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = H5Aget_type(attribute);
-    size_t size = H5Tget_size(type);
-    char *text = NULL;
-    if (type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
-        text = calloc(size + 1, 1);
-        if (text && H5Aread(attribute, type, text) < 0) {
-            free(text);
-            text = NULL;
-        }
-    }
-    H5Tclose(type);
-    H5Aclose(attribute);
-    return text;
-}
-
 static bool not_resumable(const char *file, stance_message *message)
 {
-    snprintf(message->text, sizeof message->text,
-             "%.120s: not a results file that can be resumed; --force replaces it", file);
-    return false;
+    return complain(message, "%.120s: not a results file that can be resumed; --force replaces it",
+                    file);
 }
 
 bool store_check(const char *file, bool resume, stance_message *message)
 {
-    hid_t id = open_to_read(file, message);
+    hid_t id = hdf_open_to_read(file, message);
     if (id < 0)
         return false;
     /* The last attribute written says that the creation came to its end. */
-    char *hash = read_text(id, "scenario_sha256"), *scenario = read_text(id, "scenario");
+    char *hash = hdf_text(id, "scenario_sha256"), *scenario = hdf_text(id, "scenario");
     bool good = !resume || (hash && scenario) || not_resumable(file, message);
     good =
         good && file_checksums_verify(id, file, scenario, scenario ? hash : NULL, resume, message);
@@ -70,34 +34,22 @@ bool store_check(const char *file, bool resume, stance_message *message)
     return good;
 }
 
-/* Of the sample's points; NULL: the file has no sample, or does not say. */
-static char *read_generator(hid_t file)
-{
-    hid_t sample =
-        H5Lexists(file, "sample", H5P_DEFAULT) > 0 ? H5Dopen2(file, "sample", H5P_DEFAULT) : -1;
-    char *text =
-        sample >= 0 && H5Aexists(sample, "generator") > 0 ? read_text(sample, "generator") : NULL;
-    H5Dclose(sample);
-    return text;
-}
-
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message)
 {
     *origin = (struct store_origin){0};
-    hid_t id = open_to_read(file, message);
+    hid_t id = hdf_open_to_read(file, message);
     if (id < 0)
         return false;
-    char *revision = read_text(id, "git_revision"), *date = read_text(id, "date");
-    hid_t ranks = H5Aopen(id, "ranks", H5P_DEFAULT);
-    origin->scenario = read_text(id, "scenario");
-    origin->title = read_text(id, "title");
-    origin->hosts = read_text(id, "hosts");
-    origin->generator = read_generator(id);
+    char *revision = hdf_text(id, "git_revision"), *date = hdf_text(id, "date");
+    hid_t sample = hdf_exists(id, "sample") ? H5Dopen2(id, "sample", H5P_DEFAULT) : -1;
+    origin->scenario = hdf_text(id, "scenario");
+    origin->title = hdf_text(id, "title");
+    origin->hosts = hdf_text(id, "hosts");
+    origin->generator = sample >= 0 ? hdf_text(sample, "generator") : NULL;
+    origin->ranks = hdf_whole(id, "ranks", 0);
     snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
     snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
-    if (ranks < 0 || H5Aread(ranks, H5T_NATIVE_INT, &origin->ranks) < 0)
-        origin->ranks = 0;
-    H5Aclose(ranks);
+    hdf_close(sample);
     bool good = store_read_history(id, origin);
     H5Fclose(id);
     free(revision);
@@ -132,37 +84,37 @@ bool store_same_points(const char *file, const struct store_origin *origin,
     const char *made_by = origin->generator ? origin->generator : "";
     if (!scenario->sample.given || strcmp(made_by, doe_generator(method)) == 0)
         return true;
-    snprintf(message->text, sizeof message->text,
-             "%.100s: the points of its sample are those of another version, whose generator for "
-             "method %s was another: begin a new file",
-             file, doe_words[method]);
-    return false;
+    return complain(
+        message,
+        "%.100s: the points of its sample are those of another version, whose generator for "
+        "method %s was another: begin a new file",
+        file, doe_words[method]);
 }
 
 bool store_read_axis(const char *file, struct scenario_axis *axis, stance_message *message)
 {
     if (!axis->log && !axis->sample)
         return true;
-    hid_t id = open_to_read(file, message);
+    hid_t id = hdf_open_to_read(file, message);
+    if (id < 0)
+        return false;
     const size_t paths = (size_t)axis->paths;
-    const hsize_t length = axis->count;
+    hsize_t length[H5S_MAX_RANK];
     double *value = malloc(axis->count * sizeof *value);
-    bool good = value != NULL && id >= 0, fits = true;
+    bool good = value != NULL, fits = true;
     for (size_t k = 0; good && k < paths; k++) {
         hid_t dataset = H5Dopen2(id, axis->path[k], H5P_DEFAULT);
-        fits = dataset < 0 || store_has_shape(dataset, 1, &length);
-        good = fits && H5Dread(dataset, store_memory_type(KIND_double), H5S_ALL, H5S_ALL,
-                               H5P_DEFAULT, value) >= 0;
+        fits = dataset < 0 || (hdf_shape(dataset, length) == 1 && length[0] == axis->count);
+        good = fits && hdf_read(dataset, KIND_double, value);
         for (size_t i = 0; good && i < axis->count; i++)
             axis->value[i * paths + k] = value[i];
-        H5Dclose(dataset);
+        hdf_close(dataset);
     }
     free(value);
     H5Fclose(id);
     if (!fits) {
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: holds one case of a sweep (run --only), not the sweep", file);
-        return false;
+        return complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
+                        file);
     }
     return good || store_failed(message, file, "read an axis");
 }
@@ -172,27 +124,21 @@ static bool count_status(hid_t dataset, struct store_counts *counts)
 {
     enum { PIECE = 1 << 20 };
     uint8_t *status = malloc(PIECE);
-    hid_t space = H5Dget_space(dataset);
-    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
-    int rank = H5Sget_simple_extent_dims(space, length, NULL);
-    hssize_t total = H5Sget_simple_extent_npoints(space);
+    hsize_t length[H5S_MAX_RANK], total = 1;
+    const int rank = hdf_shape(dataset, length);
+    for (int d = 0; d < rank; d++)
+        total *= length[d];
     bool good = status && rank >= 1 && rank <= SCENARIO_MAX_AXES && total > 0;
 
-    counts->cases = good ? (uint64_t)total : 0;
-    for (uint64_t at = 0; good && at < counts->cases; at += PIECE) {
-        hsize_t n = counts->cases - at < PIECE ? counts->cases - at : PIECE;
-        hid_t memory = H5Screate_simple(1, &n, NULL);
-        good = H5Sselect_none(space) >= 0 &&
-               store_select_range(space, rank, length, 0, start, at, at + n) &&
-               H5Dread(dataset, store_memory_type(KIND_uint8_t), memory, space, H5P_DEFAULT,
-                       status) >= 0;
-        H5Sclose(memory);
-        for (hsize_t i = 0; good && i < n; i++) {
+    counts->cases = good ? total : 0;
+    for (uint64_t at = 0, n; good && at < counts->cases; at += n) {
+        n = counts->cases - at < PIECE ? counts->cases - at : PIECE;
+        good = hdf_move(dataset, H5T_STD_U8LE, at, n, HDF_READ, status);
+        for (uint64_t i = 0; good && i < n; i++) {
             counts->done += status[i] == STANCE_DONE;
             counts->failed += status[i] == STANCE_FAILED;
         }
     }
-    H5Sclose(space);
     free(status);
     return good;
 }
@@ -200,14 +146,14 @@ static bool count_status(hid_t dataset, struct store_counts *counts)
 bool store_count(const char *file, struct store_counts *counts, stance_message *message)
 {
     *counts = (struct store_counts){0};
-    hid_t id = open_to_read(file, message);
+    hid_t id = hdf_open_to_read(file, message);
     if (id < 0)
         return false;
     hid_t dataset = H5Dopen2(id, "status", H5P_DEFAULT);
     bool good = dataset >= 0 && count_status(dataset, counts);
     if (!good)
-        snprintf(message->text, sizeof message->text, "%.120s: not a results file of stance", file);
-    H5Dclose(dataset);
+        complain(message, "%.120s: not a results file of stance", file);
+    hdf_close(dataset);
     H5Fclose(id);
     return good;
 }
@@ -215,20 +161,6 @@ bool store_count(const char *file, struct store_counts *counts, stance_message *
 /* ---- rows that are not what their checksums say -------------------------------------------- */
 
 enum { VERIFIED_ROWS = 1 << 16 }; /* at a time */
-
-/* Elements [at, at + n) of a variable of any shape, in row-major order. */
-static bool read_range(hid_t dataset, hid_t type, hsize_t at, hsize_t n, void *values)
-{
-    hsize_t length[H5S_MAX_RANK], start[H5S_MAX_RANK] = {0};
-    hid_t space = H5Dget_space(dataset), memory = H5Screate_simple(1, &n, NULL);
-    const int rank = H5Sget_simple_extent_dims(space, length, NULL);
-    bool good = memory >= 0 && rank >= 1 && H5Sselect_none(space) >= 0 &&
-                store_select_range(space, rank, length, 0, start, at, at + n) &&
-                H5Dread(dataset, type, memory, space, H5P_DEFAULT, values) >= 0;
-    H5Sclose(memory);
-    H5Sclose(space);
-    return good;
-}
 
 /* The columns of a file that is only looked at. */
 struct columns {
@@ -251,7 +183,7 @@ static bool columns_open(struct columns *columns, hid_t file, uint64_t cases)
             continue;
         space = H5Dget_space(dataset);
         elements = H5Sget_simple_extent_npoints(space);
-        H5Sclose(space);
+        hdf_close(space);
         good = good && elements > 0 && (uint64_t)elements % cases == 0 &&
                (uint64_t)elements / cases <= SCENARIO_MAX_STATES;
         columns->width[c] = good ? (size_t)((uint64_t)elements / cases) : 1;
@@ -263,8 +195,7 @@ static bool columns_open(struct columns *columns, hid_t file, uint64_t cases)
 
 static void columns_close(struct columns *columns)
 {
-    for (int c = 0; c < COLUMNS; c++)
-        H5Dclose(columns->dataset[c]);
+    hdf_close_all(columns->dataset, COLUMNS);
 }
 
 /* Checksums of rows [at, at + n) as they follow from the answers, crc[n]. */
@@ -276,8 +207,8 @@ static bool work_out(const struct columns *columns, hsize_t at, hsize_t n, char 
         const size_t width = columns->width[c], size = width * store_columns[c].size;
         if (columns->dataset[c] < 0 || c == COLUMN_CHECKSUM)
             continue;
-        if (!read_range(columns->dataset[c], store_memory_type(store_columns[c].kind), at * width,
-                        n * width, values))
+        if (!hdf_move(columns->dataset[c], hdf_type(store_columns[c].kind), at * width, n * width,
+                      HDF_READ, values))
             return false;
         for (hsize_t i = 0; i < n; i++)
             crc[i] = checksum_crc32c(crc[i], values + i * size, size);
@@ -303,7 +234,7 @@ bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_
             marked = status[i] != STANCE_PENDING;
         if (!marked)
             continue;
-        good = read_range(checksum, store_memory_type(KIND_uint32_t), at, n, stored) &&
+        good = hdf_move(checksum, H5T_STD_U32LE, at, n, HDF_READ, stored) &&
                work_out(&columns, at, n, values, crc);
         for (uint64_t i = 0; good && i < n; i++) {
             if (status[at + i] != STANCE_PENDING &&
@@ -323,8 +254,7 @@ bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_
 bool store_trajectory_checksum(int64_t file, size_t place, uint32_t *crc)
 {
     hid_t dataset = H5Dopen2((hid_t)file, "trajectory/checksum", H5P_DEFAULT);
-    bool good =
-        dataset >= 0 && read_range(dataset, store_memory_type(KIND_uint32_t), place, 1, crc);
-    H5Dclose(dataset);
+    bool good = dataset >= 0 && hdf_move(dataset, H5T_STD_U32LE, place, 1, HDF_READ, crc);
+    hdf_close(dataset);
     return good;
 }

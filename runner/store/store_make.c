@@ -13,8 +13,7 @@ static bool put_attribute(hid_t object, const char *name, hid_t type, hid_t spac
 {
     hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
     bool good = attribute >= 0 && H5Awrite(attribute, type, value) >= 0;
-    H5Aclose(attribute);
-    H5Sclose(space);
+    hdf_close(attribute, space);
     return good;
 }
 
@@ -25,15 +24,14 @@ bool put_text(hid_t object, const char *name, const char *text)
     bool good = H5Tset_size(type, size) >= 0 && H5Tset_cset(type, H5T_CSET_UTF8) >= 0 &&
                 H5Tset_strpad(type, H5T_STR_NULLPAD) >= 0 &&
                 put_attribute(object, name, type, H5Screate(H5S_SCALAR), text);
-    H5Tclose(type);
+    hdf_close(type);
     return good;
 }
 
 bool put_number(hid_t object, const char *name, enum store_kind kind, const void *value)
 {
     hsize_t one = 1;
-    return put_attribute(object, name, store_file_type(kind), H5Screate_simple(1, &one, NULL),
-                         value);
+    return put_attribute(object, name, hdf_type(kind), H5Screate_simple(1, &one, NULL), value);
 }
 
 bool put_int(hid_t object, const char *name, int value)
@@ -57,7 +55,7 @@ bool put_flags(hid_t object, const char *words)
         n += *c == ' ';
     for (hsize_t i = 0; i < n; i++)
         values[i] = (uint8_t)i;
-    return put_attribute(object, "flag_values", store_file_type(KIND_uint8_t),
+    return put_attribute(object, "flag_values", hdf_type(KIND_uint8_t),
                          H5Screate_simple(1, &n, NULL), values) &&
            put_text(object, "flag_meanings", words);
 }
@@ -85,7 +83,7 @@ hid_t make_group(hid_t parent, const char *name)
             0 &&
         H5Pset_obj_track_times(properties, false) >= 0)
         group = H5Gcreate2(parent, name, H5P_DEFAULT, properties, H5P_DEFAULT);
-    H5Pclose(properties);
+    hdf_close(properties);
     return group;
 }
 
@@ -104,8 +102,7 @@ hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank, const h
             0 &&
         H5Pset_obj_track_times(properties, false) >= 0)
         dataset = H5Dcreate2(parent, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT);
-    H5Sclose(space);
-    H5Pclose(properties);
+    hdf_close(space, properties);
     return dataset;
 }
 
@@ -127,7 +124,7 @@ hid_t make_variable(hid_t parent, const char *name, hid_t type,
         length[d] = dimension[d]->length;
     hid_t dataset = make_dataset(parent, name, type, rank, length);
     if (dataset >= 0 && !(put_meaning(dataset, unit, text) && attach(dataset, dimension, rank))) {
-        H5Dclose(dataset);
+        hdf_close(dataset);
         return -1;
     }
     return dataset;
@@ -147,7 +144,7 @@ hid_t word_type(void)
 {
     hid_t type = H5Tcopy(H5T_C_S1);
     if (H5Tset_size(type, H5T_VARIABLE) < 0 || H5Tset_cset(type, H5T_CSET_UTF8) < 0) {
-        H5Tclose(type);
+        hdf_close(type);
         return -1;
     }
     return type;
@@ -165,25 +162,20 @@ bool make_words(int *dimensions, hid_t parent, const char *name, const char *con
     hid_t type = word_type(), dataset = make_dataset(parent, name, type, 1, &n);
     bool good = dataset >= 0 && write_words(dataset, type, words) &&
                 make_scale(dimensions, dataset, name, n, dimension);
-    H5Tclose(type);
+    hdf_close(type);
     return good;
 }
 
 bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context)
 {
     double *buffer = malloc((n < PIECE ? n : PIECE) * sizeof *buffer);
-    hid_t space = H5Screate_simple(1, &n, NULL);
-    bool good = buffer && space >= 0;
-    for (hsize_t at = 0; good && at < n; at += PIECE) {
-        hsize_t count = n - at < PIECE ? n - at : PIECE;
-        hid_t memory = H5Screate_simple(1, &count, NULL);
+    bool good = buffer != NULL;
+    for (hsize_t at = 0, count; good && at < n; at += count) {
+        count = n - at < PIECE ? n - at : PIECE;
         for (hsize_t i = 0; i < count; i++)
             buffer[i] = value(context, at + i);
-        good = H5Sselect_hyperslab(space, H5S_SELECT_SET, &at, NULL, &count, NULL) >= 0 &&
-               H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, buffer) >= 0;
-        H5Sclose(memory);
+        good = hdf_move(dataset, H5T_NATIVE_DOUBLE, at, count, HDF_WRITE, buffer);
     }
-    H5Sclose(space);
     free(buffer);
     return good;
 }
@@ -192,7 +184,7 @@ bool write_values(hid_t dataset, hsize_t n, value_function value, const void *co
 bool make_numbers(int *dimensions, hid_t parent, const char *name, enum store_kind kind, hsize_t n,
                   value_function value, const void *context, struct dimension *dimension)
 {
-    hid_t dataset = make_dataset(parent, name, store_file_type(kind), 1, &n);
+    hid_t dataset = make_dataset(parent, name, hdf_type(kind), 1, &n);
     return dataset >= 0 && write_values(dataset, n, value, context) &&
            make_scale(dimensions, dataset, name, n, dimension);
 }

@@ -1,28 +1,16 @@
-/* store_private.h - shared by store.c (rows), store_copy.c (rows of another file), store_select.c
- * (which elements those are), store_layout.c (creation), store_history.c (files of several
+/* store_private.h - shared by those who write results files: store.c (rows), store_copy.c (rows of
+ * another file), store_make.c and store_layout.c (creation), store_history.c (files of several
  * scenarios), store_space.c (room on the disk), store_look.c (questions) and file_checksums.c
- * (checksums); nothing else includes it, so that HDF5 stays between them. */
+ * (checksums). */
 #ifndef STANCE_STORE_STORE_PRIVATE_H
 #define STANCE_STORE_STORE_PRIVATE_H
 
+#include "hdf.h"
 #include "store.h"
 
 #include "runner/plan/plan.h"
 
-#include <hdf5.h>
 #include <hdf5_hl.h>
-
-/* Bytes in memory are bytes of the file, checksums included. */
-_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is little-endian");
-
-enum store_kind {
-    KIND_uint8_t,
-    KIND_uint32_t,
-    KIND_int32_t,
-    KIND_int64_t,
-    KIND_uint64_t,
-    KIND_double
-};
 
 /* The variables over the cases, in the order of the table, then those of our own. */
 enum {
@@ -54,6 +42,9 @@ enum {
 };
 extern const char *const store_trajectories[TRAJECTORIES];
 
+/* Whether a variable is over the cases; over those that are recorded, their checksum included. */
+bool store_is_column(const char *path);
+bool store_is_track(const char *path);
 /* Whether a scenario stores a column; elements per case (2 coordinates for the final state). */
 bool store_has_column(const struct scenario *scenario, int column);
 size_t store_column_width(const struct scenario *scenario, int column);
@@ -85,15 +76,20 @@ enum design_dimension {
 
 /* Columns of group `design`, in struct resolved_design: name, first element, width per design. */
 struct store_design_column {
-    const char *name, *unit, *text;
-    size_t offset;             /* in struct resolved_design */
+    const char *name;
+    size_t offset; /* in struct resolved_design */
+    const char *unit;
     int rows, columns, stride; /* of the matrix; its row length in memory; rows 0: left out */
     int dimensions;            /* 0: a number */
     enum design_dimension over[2];
+    const char *text;
 };
 enum { DESIGN_COLUMNS = 9 };
 void store_design_columns(const struct scenario *scenario,
                           struct store_design_column columns[DESIGN_COLUMNS]);
+/* Moves a column of all designs between the plan and its variable; NAN where there is none. */
+bool store_move_design(const struct plan *plan, const struct store_design_column *column,
+                       hid_t dataset, enum hdf_direction way);
 
 struct store {
     char file[1024];
@@ -104,6 +100,7 @@ struct store {
     size_t width[COLUMNS];          /* elements per case */
     struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
     hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
+    size_t trajectory_size[TRAJECTORIES]; /* elements per case; 0: not stored */
     hid_t trajectory_checksum;
     int rank; /* dimensions of the cases */
     hsize_t length[SCENARIO_MAX_AXES];
@@ -116,39 +113,21 @@ struct store_block {
     void *column[COLUMNS]; /* [rows][width]; NULL: not stored */
 };
 
-enum store_direction { STORE_READ, STORE_WRITE };
-
 /* Moves rows between the file and a block, from `slot` on: all columns in order, the checksum and
  * then the status last. */
 bool store_move_rows(struct store *store, struct store_block *block, size_t slot,
-                     const struct rows *rows, enum store_direction way, stance_message *message);
+                     const struct rows *rows, enum hdf_direction way, stance_message *message);
 /* What the checksum of a row of a block ought to be. */
 uint32_t store_row_checksum(const struct store_block *block, size_t slot);
-/* Moves one case's part, `elements` long, of a variable whose first dimension is the case. */
-bool store_move_place(hid_t dataset, enum store_kind kind, uint64_t place, hsize_t elements,
-                      enum store_direction way, void *data);
-
-/* The dataset has exactly this shape. */
-bool store_has_shape(hid_t dataset, int rank, const hsize_t *length);
-/* Adds to a selection the flat, row-major range [first, last) below dimension `level` of a grid: a
- * part of a row, whole rows, and a part of a row again, each a hyperslab at its level. start[] is
- * fixed above `level`. */
-bool store_select_range(hid_t space, int rank, const hsize_t *length, int level, hsize_t *start,
-                        hsize_t first, hsize_t last);
-
-/* File space of a variable over the cases, of `width` elements each, with some rows selected (one
- * at least); or -1. */
-hid_t store_select_rows(int dimensions, const hsize_t *lengths, size_t width,
-                        const struct rows *rows);
-
-hid_t store_file_type(enum store_kind kind);
-hid_t store_memory_type(enum store_kind kind);
+/* Moves the trajectory at a place between the file and data[], of trajectory_size each; its
+ * checksum as it follows from them, and as it is in the file. */
+bool store_move_trajectory(struct store *store, uint64_t place, enum hdf_direction way,
+                           double *const data[TRAJECTORIES], uint32_t *crc, uint32_t *stored);
+/* Room for one; freed by free(data[0]). false: no memory. */
+bool store_trajectory_room(const struct store *store, double *data[TRAJECTORIES]);
 
 /* File access for one process: no HDF5 locks (ours is another), no buffering of raw data, so that
  * writes reach the system in the order in which they are made. Close with H5Pclose. */
 hid_t store_serial_access(void);
-
-/* "FILE: what: reason", with the reason that HDF5 remembers. Returns false. */
-bool store_failed(stance_message *message, const char *file, const char *what);
 
 #endif

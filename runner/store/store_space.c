@@ -1,6 +1,7 @@
 /* store_space.c - room on the disk: whether there is enough, and that it stays there. */
 #include "store_private.h"
 
+#include "runner/base/message.h"
 #include "runner/base/units.h"
 
 #include <errno.h>
@@ -14,9 +15,7 @@
 
 bool store_system_failed(stance_message *message, const char *file, const char *what, int error)
 {
-    snprintf(message->text, sizeof message->text, "%.100s: cannot %s: %s", file, what,
-             strerror(error));
-    return false;
+    return complain(message, "%.100s: cannot %s: %s", file, what, strerror(error));
 }
 
 bool store_fits(const char *file, uint64_t size, stance_message *message)
@@ -34,18 +33,14 @@ bool store_fits(const char *file, uint64_t size, stance_message *message)
     text_of_bytes(needed, sizeof needed, (double)size);
     if (statvfs(directory, &system) == 0 && (uint64_t)system.f_bavail * system.f_frsize < size) {
         text_of_bytes(there, sizeof there, (double)system.f_bavail * (double)system.f_frsize);
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: needs about %s but only %s are free: %s", file, needed, there,
-                 strerror(ENOSPC));
-        return false;
+        return complain(message, "%.100s: needs about %s but only %s are free: %s", file, needed,
+                        there, strerror(ENOSPC));
     }
     if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
         limit.rlim_cur < size) {
         text_of_bytes(there, sizeof there, (double)limit.rlim_cur);
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: needs about %s but the limit on file sizes is %s: %s", file, needed,
-                 there, strerror(EFBIG));
-        return false;
+        return complain(message, "%.100s: needs about %s but the limit on file sizes is %s: %s",
+                        file, needed, there, strerror(EFBIG));
     }
     return true;
 }

@@ -31,18 +31,15 @@
  * nothing falling, the law as linear as it was taken for (REST_BENT: no limit, no other law):
  * looked at eight times an octave of time. What slid to rest has its force on the edge of the cone,
  * up to rounding: cones are wider by REST_EDGE.
- *
- * Small matrices in plain arithmetic, one lane at a time: rare, and the same bits everywhere.
  */
 #ifndef STANCE_CORE_LOOP_REST_H
 #define STANCE_CORE_LOOP_REST_H
 
-#include "bundle.h"
+#include "matrix.h"
 
 #define REST_ROUNDS 10
 #define REST_STILL 1e-8 /* m/s^2, rad/s^2: an acceleration that is none */
 #define REST_NEAR 1e-5  /* m, rad: half the width of the differences */
-#define REST_RANK 1e-9  /* of the largest: what is smaller is nothing */
 #define REST_HOLDS 4096 /* times settle.hold: how long it has to hold */
 #define REST_WHOLE 2048 /* s, at least */
 #define REST_GROWTH 1e9 /* of a disturbance in that time, SI units */
@@ -54,12 +51,7 @@
 #define REST_BENT 0.05  /* of what a law adds to the torques: how far from linear that may be */
 #define REST_ENDLESS 1e100
 
-enum {
-    REST_INPUTS = SCENE_ACTUATORS,
-    REST_STATES = 2 * SCENE_COORDINATES + 2 * REST_INPUTS, /* places, rates, integrals, torques */
-};
-
-typedef double rest_matrix[REST_STATES][REST_STATES];
+enum { REST_INPUTS = SCENE_ACTUATORS, REST_STATES = MATRIX_ROOM };
 
 /* The neighbourhood of a state of rest in one lane. */
 struct rest {
@@ -164,7 +156,7 @@ static int rest_add(double family[][SCENE_COORDINATES], int n, const double *v)
         }
     for (int i = 0; i < SCENE_COORDINATES; i++)
         after += rest[i] * rest[i];
-    if (!(after > REST_RANK * before) || n == SCENE_COORDINATES)
+    if (!(after > MATRIX_RANK * before) || n == SCENE_COORDINATES)
         return n;
     for (int i = 0; i < SCENE_COORDINATES; i++)
         family[n][i] = rest[i] / sqrt(after);
@@ -256,48 +248,6 @@ COLD void rest_linearise(struct rest *r, const lanes *torque)
     }
 }
 
-/* Solves M x = b by elimination with complete pivoting; unknowns that nothing determines are zero.
- */
-COLD void rest_solve(int n, rest_matrix M, double *b, double *x)
-{
-    int column[REST_STATES], rank = 0;
-    double largest = 0;
-    for (int i = 0; i < n; i++) {
-        column[i] = i, x[i] = 0;
-        for (int j = 0; j < n; j++)
-            largest = fmax(largest, fabs(M[i][j]));
-    }
-    for (; rank < n; rank++) {
-        int row = rank, best = rank;
-        for (int i = rank; i < n; i++)
-            for (int j = rank; j < n; j++)
-                if (fabs(M[i][column[j]]) > fabs(M[row][column[best]]))
-                    row = i, best = j;
-        if (!(fabs(M[row][column[best]]) > REST_RANK * largest))
-            break;
-        const int taken = column[best];
-        column[best] = column[rank], column[rank] = taken;
-        for (int j = 0; j < n; j++) {
-            const double swap = M[rank][j];
-            M[rank][j] = M[row][j], M[row][j] = swap;
-        }
-        const double swap = b[rank];
-        b[rank] = b[row], b[row] = swap;
-        for (int i = rank + 1; i < n; i++) {
-            const double factor = M[i][taken] / M[rank][taken];
-            for (int j = 0; j < n; j++)
-                M[i][j] -= factor * M[rank][j];
-            b[i] -= factor * b[rank];
-        }
-    }
-    for (int i = rank - 1; i >= 0; i--) {
-        x[column[i]] = b[i];
-        for (int j = i + 1; j < rank; j++)
-            x[column[i]] -= M[i][column[j]] * x[column[j]];
-        x[column[i]] /= M[i][column[i]];
-    }
-}
-
 /* One of Newton's iterations towards the equilibrium; *off: how far the accelerations (and rates of
  * the integrals) were from zero. */
 COLD void rest_approach(struct rest *r, double *off)
@@ -305,7 +255,7 @@ COLD void rest_approach(struct rest *r, double *off)
     const int d = r->ways;
     lanes torque[ACTUATORS], rate[ACTUATORS], still[SCENE_COORDINATES];
     double b[REST_STATES], x[REST_STATES], a[SCENE_COORDINATES];
-    rest_matrix M;
+    small_matrix M;
     for (int i = 0; i < SCENE_COORDINATES; i++)
         still[i] = lanes_of(0);
     rest_law(r, r->s, still, r->integral, torque, rate);
@@ -325,7 +275,7 @@ COLD void rest_approach(struct rest *r, double *off)
             for (int k = 0; k < REST_INPUTS && i < d; k++)
                 M[i][j] += r->B[i][k] * r->C[kind][k][from];
         }
-    rest_solve(d + REST_INPUTS, M, b, x);
+    matrix_solve(d + REST_INPUTS, M, b, x);
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         double move = 0;
         for (int k = 0; k < d; k++)
@@ -339,57 +289,13 @@ COLD void rest_approach(struct rest *r, double *off)
     between_project_position(r->set, r->mode.closed, r->s, &e);
 }
 
-COLD void rest_times(int n, rest_matrix A, rest_matrix B, rest_matrix out)
-{
-    rest_matrix product = {{0}};
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++)
-            for (int k = 0; k < n; k++)
-                product[i][j] += A[i][k] * B[k][j];
-    memcpy(out, product, sizeof product);
-}
-
-static double rest_largest(int n, rest_matrix A)
-{
-    double largest = 0;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++)
-            largest = fmax(largest, A[i][j] == A[i][j] ? fabs(A[i][j]) : INFINITY);
-    return largest;
-}
-
-/* A becomes exp(A T): Taylor's series of a part of it, squared. */
-COLD void rest_exponential(int n, rest_matrix A, double T)
-{
-    rest_matrix term, sum;
-    int squarings = 0;
-    double size = n * rest_largest(n, A) * T;
-    for (; size > 0.5 && squarings < 60; squarings++)
-        size *= 0.5, T *= 0.5;
-    memset(sum, 0, sizeof sum);
-    memset(term, 0, sizeof term);
-    for (int i = 0; i < n; i++)
-        sum[i][i] = term[i][i] = 1;
-    for (int order = 1; order <= 14; order++) { /* 0.5^15 / 15! = 2e-17 */
-        rest_times(n, term, A, term);
-        for (int i = 0; i < n; i++)
-            for (int j = 0; j < n; j++) {
-                term[i][j] *= T / order;
-                sum[i][j] += term[i][j];
-            }
-    }
-    for (int k = 0; k < squarings; k++)
-        rest_times(n, sum, sum, sum);
-    memcpy(A, sum, sizeof sum);
-}
-
 /* The map from one sample (or step) to the next, about the equilibrium; returns its size. */
-COLD int rest_map(const struct rest *r, bool samples, bool late, double T, rest_matrix M)
+COLD int rest_map(const struct rest *r, bool samples, bool late, double T, small_matrix M)
 {
     const int d = r->ways, n = 2 * d, m = REST_INPUTS;
-    rest_matrix F;
+    small_matrix F;
     memset(F, 0, sizeof F);
-    memset(M, 0, sizeof(rest_matrix));
+    memset(M, 0, sizeof(small_matrix));
     for (int i = 0; i < d; i++) {
         F[i][d + i] = 1;
         for (int j = 0; j < d; j++)
@@ -398,7 +304,7 @@ COLD int rest_map(const struct rest *r, bool samples, bool late, double T, rest_
             F[d + i][n + j] = r->B[i][j];
     }
     /* The law: rows of u and of I' by places, rates, integrals. */
-    rest_matrix law;
+    small_matrix law;
     memset(law, 0, sizeof law);
     for (int i = 0; i < m; i++)
         for (int j = 0; j < n + m; j++) {
@@ -418,10 +324,10 @@ COLD int rest_map(const struct rest *r, bool samples, bool late, double T, rest_
                 for (int k = 0; k < m && i < n; k++)
                     M[i][j] += F[i][n + k] * law[k][j];
             }
-        rest_exponential(n + m, M, T);
+        matrix_exponential(n + m, M, T);
         return n + m;
     }
-    rest_exponential(n + m, F, T);
+    matrix_exponential(n + m, F, T);
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n + m; j++) {
             M[i][j] = j < n ? F[i][j] : 0;
@@ -441,18 +347,18 @@ COLD int rest_map(const struct rest *r, bool samples, bool late, double T, rest_
 }
 
 /* Does no disturbance grow beyond bounds? `time`: that M takes, `whole`: that it has to hold. */
-COLD bool rest_bounded(int n, rest_matrix M, double time, double whole)
+COLD bool rest_bounded(int n, small_matrix M, double time, double whole)
 {
-    const double bound = REST_GROWTH * fmax(1, rest_largest(n, M));
+    const double bound = REST_GROWTH * fmax(1, matrix_largest(n, M));
     for (; time < whole; time *= 2) {
-        const double size = rest_largest(n, M);
+        const double size = matrix_largest(n, M);
         if (!(size <= REST_ENDLESS))
             return false;
         if (n * size < 0.5) /* it decays */
             return true;
-        rest_times(n, M, M, M);
+        matrix_times(n, M, M, M);
     }
-    return rest_largest(n, M) <= bound;
+    return matrix_largest(n, M) <= bound;
 }
 
 /* Do contacts that carry stand? A bounce that is over within a step of length h is none. */
@@ -533,7 +439,7 @@ COLD bool rest_allows(const struct rest *r, const double *x, bool *gone)
 /* Does the motion from (s, w) come to the equilibrium, or stay about it, for a time `whole`? M, of
  * a sample, is spoiled. */
 COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, const lanes *integral,
-                       int n, rest_matrix M, double whole)
+                       int n, small_matrix M, double whole)
 {
     const int d = r->ways;
     double x[REST_STATES] = {0}, time = r->T;
@@ -555,7 +461,7 @@ COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, con
     if (!rest_allows(r, x, &gone))
         return false;
     for (; time * REST_FINE < r->hold; time *= 2)
-        rest_times(n, M, M, M);
+        matrix_times(n, M, M, M);
     for (double t = 0; t < whole && !gone; time *= 2) {
         for (int k = 0; k < 8 && !gone; k++, t += time) {
             double next[REST_STATES] = {0};
@@ -566,7 +472,7 @@ COLD bool rest_arrives(const struct rest *r, const lanes *s, const lanes *w, con
             if (!rest_allows(r, x, &gone))
                 return false;
         }
-        rest_times(n, M, M, M);
+        matrix_times(n, M, M, M);
     }
     return true;
 }
@@ -650,7 +556,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     }
     if (r.ways == 0)
         return true;
-    rest_matrix M, power;
+    small_matrix M, power;
     const double whole = fmax(REST_HOLDS * r.hold, REST_WHOLE);
     const int n = rest_map(&r, every > 0, lane_get(&b->delayed, lane) > 0, r.T, M);
     memcpy(power, M, sizeof power);

@@ -6,8 +6,8 @@
  * which serves one request after the other. What a rank does not wait for in a run (other cases of
  * its lanes) it does not wait for here, and conversely: it computes nothing while it writes.
  */
-#ifndef STANCE_BENCH_SIMULATE_H
-#define STANCE_BENCH_SIMULATE_H
+#ifndef STANCE_TESTS_SIMULATE_H
+#define STANCE_TESTS_SIMULATE_H
 
 #include <stdbool.h>
 #include <stddef.h>

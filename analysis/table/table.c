@@ -1,0 +1,472 @@
+/* table.c - see table.h. */
+#include "table.h"
+
+#include <assert.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CELL = 512, MOST_SEEN = 64 };
+
+static const size_t HEAD = SIZE_MAX; /* for a row: the names or headings */
+
+/* ---- building ----------------------------------------------------------------------------- */
+
+/* Room for `need` items in an array that doubles. NULL: no memory, the array stays. */
+static void *grow(void *list, size_t *room, size_t need, size_t size)
+{
+    const size_t wanted = need > *room ? 2 * need : *room;
+    void *longer = wanted > *room ? realloc(list, wanted * size) : list;
+    *room = longer ? wanted : *room;
+    return longer;
+}
+
+static bool keep_text(struct table *t, struct table_value *value)
+{
+    const size_t size = strlen(value->text) + 1;
+    char *letter = grow(t->letter, &t->letter_rooms, t->letters + size, 1);
+    if (!letter)
+        return false;
+    t->letter = letter;
+    memcpy(letter + t->letters, value->text, size);
+    value->whole = t->letters;
+    t->letters += size;
+    return true;
+}
+
+void table_columns(struct table *t, const struct table_column *column, size_t count)
+{
+    struct table_column *longer =
+        t->failed ? NULL : realloc(t->column, (t->columns + count) * sizeof *longer);
+    t->failed = longer == NULL;
+    t->column = longer ? longer : t->column;
+    for (size_t k = 0; !t->failed && k < count; k++) {
+        struct table_column *own = &t->column[t->columns++];
+        *own = column[k];
+        own->name = own->name ? strdup(own->name) : NULL;
+        own->heading = own->heading ? strdup(own->heading) : NULL;
+        t->failed = (column[k].name && !own->name) || (column[k].heading && !own->heading);
+    }
+}
+
+void table_values(struct table *t, const struct table_value *value, size_t count)
+{
+    struct table_value *cell =
+        t->failed ? NULL : grow(t->cell, &t->rooms, t->cells + count, sizeof *cell);
+    t->failed = cell == NULL;
+    t->cell = cell ? cell : t->cell;
+    for (size_t k = 0; k < count; k++) {
+        struct table_value own = value[k];
+        t->failed = t->failed || (own.text && !keep_text(t, &own));
+        if (t->failed)
+            json_decref(own.tree);
+        else
+            cell[t->cells++] = own;
+    }
+}
+
+void table_facts(struct table *t, const struct table_fact *fact, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        if (!t->closed)
+            table_columns(t, &fact[k].column, 1);
+        table_values(t, &fact[k].value, 1);
+    }
+}
+
+void table_end_row(struct table *t)
+{
+    t->closed = true;
+    assert(t->failed || t->cells % t->columns == 0);
+}
+
+void table_axes(struct table *t, const struct results *r, const int *axis, int count,
+                const size_t *point)
+{
+    TABLE_FACTS(t, {{.group = "at"}, as_nothing(NULL)}); /* there, even if it is empty */
+    for (int k = 0; k < count; k++) {
+        const struct results_axis *along = &r->axis[axis[k]];
+        TABLE_FACTS(t, {{along->name, along->name, .width = 16, .group = "at"},
+                        as_place(along, point[axis[k]])});
+    }
+}
+
+size_t table_rows(const struct table *t)
+{
+    return t->columns ? t->cells / t->columns : 0;
+}
+
+void table_clear(struct table *t)
+{
+    for (size_t k = 0; k < t->cells; k++)
+        json_decref(t->cell[k].tree);
+    t->cells = t->letters = 0;
+    t->begun = true;
+}
+
+void table_free(struct table *t)
+{
+    table_clear(t);
+    for (size_t k = 0; k < t->columns; k++) {
+        free((char *)t->column[k].name);
+        free((char *)t->column[k].heading);
+    }
+    free(t->column);
+    free(t->cell);
+    free(t->letter);
+    *t = (struct table){0};
+}
+
+static const struct table_value *cell_at(const struct table *t, size_t row, size_t column)
+{
+    return &t->cell[row * t->columns + column];
+}
+
+static const char *cell_text(const struct table *t, const struct table_value *cell)
+{
+    return cell->text ? t->letter + cell->whole : NULL;
+}
+
+static struct table_value at_place(const struct table_value *value)
+{
+    const struct results_axis *axis = value->axis;
+    return axis->word ? as_text(axis->word[value->whole]) : as_number(axis->value[value->whole]);
+}
+
+/* What programs get: a word or a number of a point, the text itself. */
+static struct table_value plain(const struct table *t, const struct table_value *cell)
+{
+    struct table_value value = cell->kind == TABLE_PLACE ? at_place(cell) : *cell;
+    value.text = cell->kind == TABLE_TEXT ? cell_text(t, cell) : value.text;
+    return value;
+}
+
+/* ---- text --------------------------------------------------------------------------------- */
+
+/* False: there is nothing. */
+static bool print_value(const struct table *t, const struct table_column *column,
+                        const struct table_value *cell, char *text, size_t size)
+{
+    const double scale = column->percent ? 100 : 1;
+    const char *words = cell_text(t, cell);
+    text[0] = '\0';
+    if (words)
+        snprintf(text, size, "%s", words);
+    else if (cell->kind == TABLE_NUMBER && isfinite(cell->number))
+        snprintf(text, size, column->format ? column->format : "%.6g", scale * cell->number);
+    else if (cell->kind == TABLE_WHOLE && column->format)
+        snprintf(text, size, column->format, scale * (double)cell->whole);
+    else if (cell->kind == TABLE_WHOLE)
+        snprintf(text, size, "%" PRIu64, cell->whole);
+    else if (cell->kind == TABLE_PLACE)
+        results_value_text(cell->axis, cell->whole, false, text, size);
+    else
+        return false;
+    results_clean(text);
+    return true;
+}
+
+/* Letters of UTF-8. */
+static int letters(const char *text)
+{
+    int count = 0;
+    for (; *text; text++)
+        count += (*text & 0xc0) != 0x80;
+    return count;
+}
+
+/* The columns of a view. */
+struct seen {
+    size_t count, column[MOST_SEEN];
+    int width[MOST_SEEN]; /* letters; negative: to the left */
+    bool headed;          /* there is a heading */
+};
+
+/* The heading of the k-th column seen (row HEAD), or its cell with those that are joined to it.
+ * False: the column has none. */
+static bool seen_text(const struct table *t, const struct seen *seen, size_t row, size_t k,
+                      char text[CELL])
+{
+    const struct table_column *column = &t->column[seen->column[k]];
+    if (column->joined || (row == HEAD && !column->heading))
+        return false;
+    if (row == HEAD)
+        snprintf(text, CELL, "%s", column->heading);
+    else if (!print_value(t, column, cell_at(t, row, seen->column[k]), text, CELL))
+        snprintf(text, CELL, "%s", column->empty ? column->empty : "-");
+    while (row != HEAD && ++k < seen->count && t->column[seen->column[k]].joined) {
+        char more[CELL];
+        const size_t used = strlen(text);
+        column = &t->column[seen->column[k]];
+        if (print_value(t, column, cell_at(t, row, seen->column[k]), more, sizeof more))
+            snprintf(text + used, CELL - used, "%s%s", column->before ? column->before : "", more);
+    }
+    return true;
+}
+
+/* Row i of those shown, both ends among them. */
+static size_t spread(size_t i, size_t shown, size_t rows)
+{
+    return shown == rows || shown < 2 ? i : i * (rows - 1) / (shown - 1);
+}
+
+static void see(const struct table *t, const char *view, struct seen *seen, size_t shown)
+{
+    char text[CELL];
+    *seen = (struct seen){0};
+    for (size_t length; *view; view += length + (view[length] != '\0')) {
+        length = strcspn(view, " ");
+        const bool group = length > 0 && view[length - 1] == '/';
+        const size_t size = length - group;
+        for (size_t k = 0; k < t->columns && seen->count < MOST_SEEN; k++) {
+            const struct table_column *column = &t->column[k];
+            const char *word = group ? column->group : column->name;
+            if (column->name && word && strncmp(word, view, size) == 0 && !word[size])
+                seen->column[seen->count++] = k;
+        }
+    }
+    for (size_t k = 0; k < seen->count; k++) {
+        const int least = t->column[seen->column[k]].width;
+        int width = abs(least);
+        seen->headed = seen->headed || t->column[seen->column[k]].heading;
+        for (size_t i = 0; i < shown + 1; i++) {
+            const size_t row = i == shown ? HEAD : spread(i, shown, table_rows(t));
+            if (seen_text(t, seen, row, k, text) && letters(text) > width)
+                width = letters(text);
+        }
+        seen->width[k] = least < 0 ? -width : width;
+    }
+}
+
+/* A line whose blanks at the end are left out. */
+struct line {
+    FILE *out;
+    int blanks;
+};
+
+static void put(struct line *line, const char *text)
+{
+    for (; *text; text++) {
+        if (*text == ' ') {
+            line->blanks++;
+        } else {
+            fprintf(line->out, "%*s%c", line->blanks, "", *text);
+            line->blanks = 0;
+        }
+    }
+}
+
+/* row HEAD: the headings. */
+static void print_line(const struct table *t, const struct seen *seen, size_t row, FILE *out)
+{
+    struct line line = {out, 0};
+    char text[CELL];
+    for (size_t k = 0; k < seen->count; k++) {
+        const struct table_column *column = &t->column[seen->column[k]];
+        if (!seen_text(t, seen, row, k, text))
+            continue;
+        const int fill = abs(seen->width[k]) - letters(text);
+        put(&line, column->before ? column->before : k ? " " : "  ");
+        line.blanks += fill > 0 && seen->width[k] > 0 ? fill : 0;
+        put(&line, text);
+        line.blanks += fill > 0 && seen->width[k] < 0 ? fill : 0;
+    }
+    putc('\n', out);
+}
+
+bool table_write_text(const struct table *t, FILE *out, const char *view, size_t most)
+{
+    const size_t rows = table_rows(t), shown = most == 0 || rows < most ? rows : most;
+    struct seen seen;
+    see(t, view, &seen, shown);
+    if (seen.headed && !t->begun)
+        print_line(t, &seen, HEAD, out);
+    for (size_t i = 0; i < shown; i++)
+        print_line(t, &seen, spread(i, shown, rows), out);
+    if (shown < rows)
+        fprintf(out, "  (%zu of %zu rows; --csv and --json have them all)\n", shown, rows);
+    return !t->failed && !ferror(out);
+}
+
+/* ---- CSV ---------------------------------------------------------------------------------- */
+
+static void csv_text(FILE *out, const char *text)
+{
+    const bool quoted = strpbrk(text, ",\"\r\n") != NULL;
+    if (quoted)
+        putc('"', out);
+    for (; *text; text++) {
+        if (*text == '"')
+            putc('"', out);
+        putc(*text, out);
+    }
+    if (quoted)
+        putc('"', out);
+}
+
+/* As short as gives the same number again. */
+static void csv_number(FILE *out, double value)
+{
+    enum { SURE = 15, MOST = 17 }; /* digits that may be enough, that always are */
+    char text[40] = "";
+    for (int digits = SURE; digits <= MOST && !isnan(value); digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    fputs(text, out);
+}
+
+static void csv_value(const struct table_value *value, FILE *out)
+{
+    if (value->kind == TABLE_TEXT)
+        csv_text(out, value->text);
+    else if (value->kind == TABLE_NUMBER)
+        csv_number(out, value->number);
+    else if (value->kind == TABLE_WHOLE)
+        fprintf(out, "%" PRIu64, value->whole);
+}
+
+static void csv_row(const struct table *t, size_t row, FILE *out)
+{
+    bool inside = false;
+    for (size_t k = 0; k < t->columns; k++) {
+        if (!t->column[k].name || t->column[k].hidden & TABLE_NO_CSV)
+            continue;
+        if (inside)
+            putc(',', out);
+        inside = true;
+        const struct table_value value =
+            row == HEAD ? as_text(t->column[k].name) : plain(t, cell_at(t, row, k));
+        csv_value(&value, out);
+    }
+    fputs("\r\n", out);
+}
+
+bool table_write_csv(const struct table *t, FILE *out)
+{
+    if (!t->begun)
+        csv_row(t, HEAD, out);
+    for (size_t row = 0; row < table_rows(t); row++)
+        csv_row(t, row, out);
+    return !t->failed && !ferror(out);
+}
+
+/* ---- JSON --------------------------------------------------------------------------------- */
+
+static json_t *json_text(const char *text)
+{
+    json_t *string = json_string(text);
+    char *clean = string ? NULL : strdup(text);
+    if (clean) {
+        results_clean(clean);
+        string = json_string(clean);
+        free(clean);
+    }
+    return string;
+}
+
+/* NULL: no memory. */
+static json_t *json_of(const struct table_value *value)
+{
+    switch (value->kind) {
+    case TABLE_TEXT:
+        return json_text(value->text);
+    case TABLE_NUMBER:
+        return isfinite(value->number) ? json_real(value->number) : json_null();
+    case TABLE_WHOLE:
+        return json_integer((json_int_t)value->whole);
+    case TABLE_TREE:
+        return json_incref(value->tree);
+    default:
+        return json_null();
+    }
+}
+
+/* The object `group` of an object, made where it is not there. */
+static json_t *group_of(json_t *object, const char *group)
+{
+    json_t *inner = group ? json_object_get(object, group) : object;
+    if (!inner && json_object_set_new(object, group, json_object()) == 0)
+        inner = json_object_get(object, group);
+    return inner;
+}
+
+/* NULL: no memory. */
+static json_t *json_row(const struct table *t, size_t row)
+{
+    json_t *object = json_object();
+    bool good = object != NULL;
+    for (size_t k = 0; good && k < t->columns; k++) {
+        const struct table_column *column = &t->column[k];
+        const struct table_value value = plain(t, cell_at(t, row, k));
+        if (column->hidden & TABLE_NO_JSON)
+            continue;
+        json_t *inner = group_of(object, column->group);
+        good = inner && (!column->name ||
+                         json_object_set_new(inner, column->key ? column->key : column->name,
+                                             json_of(&value)) == 0);
+    }
+    if (!good)
+        json_decref(object);
+    return good ? object : NULL;
+}
+
+json_t *table_json(const struct table *t)
+{
+    json_t *list = json_array();
+    bool good = list && !t->failed;
+    for (size_t row = 0; good && row < table_rows(t); row++)
+        good = json_array_append_new(list, json_row(t, row)) == 0;
+    if (!good)
+        json_decref(list);
+    return good ? list : NULL;
+}
+
+json_t *table_json_by_name(const struct table *t)
+{
+    json_t *object = json_object();
+    bool good = object && !t->failed;
+    for (size_t row = 0; good && row < table_rows(t); row++)
+        good = json_object_set_new(object, cell_text(t, cell_at(t, row, 0)), json_row(t, row)) == 0;
+    if (!good)
+        json_decref(object);
+    return good ? object : NULL;
+}
+
+json_t *table_value_json(struct table_value value)
+{
+    const struct table_value place = value.kind == TABLE_PLACE ? at_place(&value) : value;
+    json_t *json = json_of(&place);
+    json_decref(value.tree);
+    return json;
+}
+
+json_t *table_texts(const char *first, const char *second)
+{
+    json_t *list = json_array();
+    table_append(list, as_text(first));
+    table_append(list, as_text(second));
+    return list;
+}
+
+json_t *table_object(const struct table_member *member, size_t count)
+{
+    json_t *object = json_object();
+    bool good = object != NULL;
+    for (size_t k = 0; k < count; k++)
+        good = json_object_set_new(object, member[k].key, table_value_json(member[k].value)) == 0 &&
+               good;
+    if (!good)
+        json_decref(object);
+    return good ? object : NULL;
+}
+
+bool table_write_json(json_t *root, FILE *out)
+{
+    const bool good = root && json_dumpf(root, out, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0;
+    json_decref(root);
+    putc('\n', out);
+    return good && !ferror(out);
+}

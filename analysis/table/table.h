@@ -1,0 +1,159 @@
+/* table.h - one writer of tables: text for people, comma-separated values and JSON for programs.
+ *
+ * A table is columns and rows of values, a row after the other. Programs get each column by its
+ * name. People get those that a view lists, in its order, each under its heading, as wide as its
+ * longest cell and at least as wide as the column says.
+ */
+#ifndef STANCE_TABLE_TABLE_H
+#define STANCE_TABLE_TABLE_H
+
+#include "runner/store/results.h"
+
+#include <jansson.h>
+#include <stdio.h>
+
+/* What a command is asked for, with --json, --csv or neither. */
+enum table_form { TABLE_AS_TEXT, TABLE_AS_CSV, TABLE_AS_JSON };
+static inline enum table_form table_form(size_t json, size_t csv)
+{
+    return json ? TABLE_AS_JSON : csv ? TABLE_AS_CSV : TABLE_AS_TEXT;
+}
+
+enum table_kind {
+    TABLE_NOTHING, /* text: the column's word for it; CSV: empty; JSON: null */
+    TABLE_TEXT,
+    TABLE_NUMBER, /* NAN and infinities: nothing, but in CSV "inf" or "-inf" */
+    TABLE_WHOLE,
+    TABLE_PLACE, /* a point of an axis: its word or its number */
+    TABLE_TREE,  /* of JSON, where alone it is seen */
+};
+
+/* Texts and axes are borrowed until the row is added, a tree is taken over. */
+struct table_value {
+    enum table_kind kind;
+    const char *text; /* of TABLE_NOTHING: for people, NULL: as the column says */
+    double number;
+    uint64_t whole; /* number of the point of a TABLE_PLACE */
+    const struct results_axis *axis;
+    json_t *tree;
+};
+
+static inline struct table_value as_nothing(const char *text)
+{
+    return (struct table_value){.kind = TABLE_NOTHING, .text = text};
+}
+/* NULL: nothing. */
+static inline struct table_value as_text(const char *text)
+{
+    return (struct table_value){.kind = text ? TABLE_TEXT : TABLE_NOTHING, .text = text};
+}
+static inline struct table_value as_number(double number)
+{
+    return (struct table_value){.kind = TABLE_NUMBER, .number = number};
+}
+static inline struct table_value as_whole(uint64_t whole)
+{
+    return (struct table_value){.kind = TABLE_WHOLE, .whole = whole};
+}
+static inline struct table_value as_place(const struct results_axis *axis, size_t i)
+{
+    return (struct table_value){.kind = TABLE_PLACE, .whole = i, .axis = axis};
+}
+/* NULL: nothing. */
+static inline struct table_value as_tree(json_t *tree)
+{
+    return (struct table_value){.kind = tree ? TABLE_TREE : TABLE_NOTHING, .tree = tree};
+}
+static inline struct table_value as_truth(bool truth)
+{
+    return as_tree(json_boolean(truth));
+}
+
+/* ---- tables ------------------------------------------------------------------------------- */
+
+/* Forms in which programs do not get a column. */
+enum { TABLE_NO_CSV = 1, TABLE_NO_JSON = 2, TABLE_VIEW_ONLY = TABLE_NO_CSV | TABLE_NO_JSON };
+
+struct table_column {
+    const char *name;    /* for programs */
+    const char *heading; /* for people; NULL: none, not even blanks in its place */
+    const char *format;  /* of numbers, as printf has it; NULL: "%.6g", or all digits */
+    int width;           /* letters at least; negative: to the left */
+    int hidden;          /* enum above */
+    bool percent;        /* people see numbers a hundredfold; the format says % */
+    bool joined;         /* people see it at the end of the cell before */
+    const char *before;  /* text before the cell; NULL: a blank, two at the beginning of a line */
+    const char *empty;   /* of nothing; NULL: "-" */
+    const char *group, *key; /* JSON: it stands in an object `group`; NULL: in the row; under the
+                              * name `key`; NULL: `name` */
+};
+
+struct table {
+    size_t columns, cells, rooms, letters, letter_rooms;
+    struct table_column *column; /* [columns], names and headings its own */
+    struct table_value *cell;    /* [cells]; of texts `whole` says where in `letter` they are */
+    char *letter;
+    bool failed; /* no memory */
+    bool closed; /* its columns are known */
+    bool begun;  /* its head has been written */
+};
+
+/* A fact of a row: what column it stands in, and its value. */
+struct table_fact {
+    struct table_column column;
+    struct table_value value;
+};
+
+/* {0} is a table without columns. Without memory nothing is added, and all writers return false.
+ * Columns are either added before the first row, whose values then follow in one call or several;
+ * or rows are made of facts, of which those of the first row make the columns, and those of the
+ * others are as many in the same order. */
+void table_columns(struct table *t, const struct table_column *column, size_t count);
+void table_values(struct table *t, const struct table_value *value, size_t count);
+void table_facts(struct table *t, const struct table_fact *fact, size_t count);
+void table_end_row(struct table *t); /* of facts */
+#define TABLE_LIST(type, ...)                                                                      \
+    (const struct type[]){__VA_ARGS__},                                                            \
+        sizeof((const struct type[]){__VA_ARGS__}) / sizeof(struct type)
+#define TABLE_COLUMNS(t, ...) table_columns(t, TABLE_LIST(table_column, __VA_ARGS__))
+#define TABLE_VALUES(t, ...) table_values(t, TABLE_LIST(table_value, __VA_ARGS__))
+#define TABLE_FACTS(t, ...) table_facts(t, TABLE_LIST(table_fact, __VA_ARGS__))
+/* The values of some axes at one point[] of all axes; programs find them in JSON's object `at`. */
+void table_axes(struct table *t, const struct results *r, const int *axis, int count,
+                const size_t *point);
+size_t table_rows(const struct table *t);
+/* Drops the rows; what is written next goes on, without a head. */
+void table_clear(struct table *t);
+void table_free(struct table *t);
+
+/* Each returns false when memory or the output fails. `view` names the columns that people see,
+ * in their order, blanks between them; "GROUP/" stands for all of a group. Of more than `most` rows
+ * that many are written, from the first to the last, and it is said so; 0: all are. */
+bool table_write_text(const struct table *t, FILE *out, const char *view, size_t most);
+bool table_write_csv(const struct table *t, FILE *out);
+/* A list of objects, or one object of objects by the text of the first column; NULL: no memory. */
+json_t *table_json(const struct table *t);
+json_t *table_json_by_name(const struct table *t);
+
+/* ---- JSON --------------------------------------------------------------------------------- */
+
+struct table_member {
+    const char *key;
+    struct table_value value;
+};
+/* An object; text that is no UTF-8 has '?' in its place. NULL: no memory. */
+json_t *table_object(const struct table_member *member, size_t count);
+#define TABLE_OBJECT(...) table_object(TABLE_LIST(table_member, __VA_ARGS__))
+/* New reference. */
+json_t *table_value_json(struct table_value value);
+/* A list of two. */
+json_t *table_texts(const char *first, const char *second);
+/* Adds to a list. */
+static inline void table_append(json_t *list, struct table_value value)
+{
+    json_array_append_new(list, table_value_json(value));
+}
+/* Writes it, with the end of a line, and releases it. */
+bool table_write_json(json_t *root, FILE *out);
+
+#endif

@@ -1,0 +1,159 @@
+/* design.h - control design: gains from a linearised scene, loops that sample, sets from which a
+ * loop is known to hold. The public header of an archive of its own, libstance_control.a.
+ *
+ * Conventions as in engine/stance.h.
+ */
+#ifndef STANCE_CONTROL_DESIGN_H
+#define STANCE_CONTROL_DESIGN_H
+
+#include "engine/stance.h"
+
+/* Singular values sv[n] (descending) of (B, AB, ..., A^(n-1)B), each column block scaled so that
+ * the rank does not depend on the unit of time; rank counts sv > tolerance * sv[0].
+ * A[n][n], B[n][m]. */
+stance_error stance_kalman(int n, int m, const double *A, const double *B, double *sv, int *rank);
+
+/* Robust pole assignment after Kautsky, Nichols and Van Dooren (1985, method 0), iterated until
+ * the eigenvectors no longer change: K[m][n] with eig(A - B K) = re + i im. Poles: n values,
+ * conjugate pairs complete, multiplicity at most rank B. sweeps (out, may be NULL): iterations;
+ * condition (out, may be NULL): 2-norm condition number of the eigenvectors. */
+stance_error stance_place(int n, int m, const double *A, const double *B, const double *re,
+                          const double *im, double *K, int *sweeps, double *condition,
+                          stance_message *message);
+
+/* Condition number (2-norm, SI units) of the matrix that takes torques to the accelerations of a
+ * pair of coordinates, without reactions; INFINITY where it is singular: there the decoupling law
+ * has no torques. position[coordinates]. */
+stance_error stance_pair_condition(const stance_scene *scene, const double *robot,
+                                   const double *position, int pair, double *condition);
+
+enum { STANCE_MAX_PAIRS = 10 };
+
+/* One pair over all postures, resolution^postures of them in -pi ... pi. */
+typedef struct stance_pair_report {
+    bool singular;          /* the determinant changes sign: singular on a surface of postures */
+    double ill_conditioned; /* share of the postures with a condition number above
+                             * STANCE_ILL_CONDITIONED */
+    double best;            /* smallest condition number */
+} stance_pair_report;
+stance_error stance_pair_survey(const stance_scene *scene, const double *robot, int resolution,
+                                int pairs, stance_pair_report *report);
+/* Pole assignment by Varga's Schur method (SLICOT SB01BD): K[m][n] with eig(A - B K) = re + i im.
+ * Poles: n values, conjugate pairs complete, of any multiplicity. What it minimises is the gain of
+ * each of its steps, not the sensitivity of the whole. */
+stance_error stance_place_schur(int n, int m, const double *A, const double *B, const double *re,
+                                const double *im, double *K, stance_message *message);
+
+typedef enum stance_placement { STANCE_ROBUST, STANCE_SCHUR } stance_placement;
+
+/* Pole assignment for a controller that samples every T seconds (T > 0) and holds: the eigenvalues
+ * of Ad(T) - Bd(T) K are exp(s T) of the poles s = re + i im (1/s). Pairs must turn less than half
+ * a turn in T. Of several equally robust gains, the one that continues stance_place's. sweeps,
+ * condition: as stance_place, 0 and NAN from STANCE_SCHUR; may be NULL. */
+stance_error stance_place_sampled(stance_placement how, int n, int m, const double *A,
+                                  const double *B, double T, const double *re, const double *im,
+                                  double *K, int *sweeps, double *condition,
+                                  stance_message *message);
+
+/* Linear quadratic regulator: the K[m][n] for which u = -K x minimises the integral of
+ * sum states[i] x_i^2 + sum torques[j] u_j^2 over all time. states[n] >= 0, torques[m] > 0.
+ * Errors: BAD_ARGUMENT (also: the weights do not see a mode that does not decay by itself),
+ * UNCONTROLLABLE (no input reaches such a mode), NUMERICAL. */
+stance_error stance_lqr(int n, int m, const double *A, const double *B, const double *states,
+                        const double *torques, double *K, stance_message *message);
+
+/* The same integral minimised over inputs that change only every T seconds (T > 0): plant and cost
+ * are discretised exactly, with the cross term that this brings. */
+stance_error stance_lqr_sampled(int n, int m, const double *A, const double *B, double T,
+                                const double *states, const double *torques, double *K,
+                                stance_message *message);
+
+/* Eigenvalues of A[n][n], sorted by real then imaginary part. */
+stance_error stance_eigenvalues(int n, const double *A, double *re, double *im);
+
+/* Exact discretisation under a zero-order hold: Ad[n][n], Bd[n][m]. */
+stance_error stance_discretise(int n, int m, const double *A, const double *B, double T, double *Ad,
+                               double *Bd);
+
+/* Eigenvalues z of the loop that samples every T seconds and holds, sorted as by
+ * stance_eigenvalues: of Ad(T) - Bd(T) K, n of them (delay 0), or with the torques of a sample
+ * acting one sample later (delay 1) of [Ad Bd; -K 0], n + m of them. */
+stance_error stance_sampled_loop(int n, int m, const double *A, const double *B, const double *K,
+                                 double T, int delay, double *re, double *im);
+
+/* Smallest sample time T* at which the sampled loop, with `delay` 0 or 1 samples, leaves the unit
+ * circle; 0 when the continuous loop is unstable, INFINITY when none is found up to `longest`
+ * seconds. */
+stance_error stance_critical_sample_time(int n, int m, const double *A, const double *B,
+                                         const double *K, int delay, double longest, double *T);
+
+/* P[n][n] of the Lyapunov function V = x' P x of a stable loop: for x' = F x with
+ * dV/dt = -sum weight[i] x_i^2, or (sampled) for x+ = F x with V(x+) - V(x) equal to that.
+ * weight[n] > 0. BAD_ARGUMENT when the loop is not stable. */
+stance_error stance_lyapunov(int n, const double *loop, bool sampled, const double *weight,
+                             double *P, stance_message *message);
+
+/* Largest sublevel set x' P x <= level inside the half spaces a_k' x <= d_k, a[count][n], d[count]:
+ * level = min d_k^2 / (a_k' P^-1 a_k), 0 where some d_k <= 0, INFINITY where nothing binds.
+ * binding: the k that does, or -1. alone[n]: how far x_i reaches when all else is 0;
+ * extent[n]: when all else is free. P symmetric, positive definite. */
+stance_error stance_sublevel(int n, const double *P, int count, const double *a, const double *d,
+                             double *level, int *binding, double *alone, double *extent);
+
+/* The widest ellipsoid x' P x <= 1 that the loop x' = F x (sampled: x+ = F x), once inside, never
+ * leaves and that lies within |a_k' x| <= d_k, a[count][n], 1 to 16 bounds, d > 0, INFINITY where a
+ * bound is none: the Lyapunov function is chosen for the volume. n <= 6. BAD_ARGUMENT when the loop
+ * is not stable or a bound leaves nothing. */
+stance_error stance_invariant_ellipsoid(int n, const double *loop, bool sampled, int count,
+                                        const double *a, const double *d, double *P,
+                                        stance_message *message);
+
+enum { STANCE_MAX_SHAPES = 16 };
+
+/* What stance_known_basin_estimate looks for. */
+typedef struct stance_known_basin_search {
+    const stance_scene *scene;
+    const stance_kernel *kernel;
+    /* Robot, ground, law, noise, step, rules and length of the simulations, seed. */
+    stance_case base;
+    int shapes; /* candidates for P, 1 ... STANCE_MAX_SHAPES; symmetric, positive definite */
+    double P[STANCE_MAX_SHAPES][4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
+    int64_t boundary, interior; /* simulations that confirm; interior may be 0 */
+    /* NULL, or asked about every millisecond: true, the search is given up (STOPPED). */
+    bool (*leave)(void *context);
+    void *context;
+} stance_known_basin_search;
+
+/* The set x' form x <= 1 from whose boundary every simulation ended `stabilised`. */
+typedef struct stance_known_basin {
+    bool exists;
+    double form[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
+    int shape;           /* which P */
+    double level;        /* form = P / level */
+    double time;         /* s: the longest that a simulation took to end */
+    int64_t boundary;    /* simulations that began on the boundary, all good ... */
+    int64_t interior;    /* ... and inside */
+    int64_t batches;     /* sets that were tried with so many; the last one was good */
+    double share;        /* of the boundary: less than this fails, with 95 % confidence */
+    int64_t simulations; /* in all, those of the search included */
+    double volume[STANCE_MAX_SHAPES]; /* logarithm of the volume that each P reached in the search,
+                                       * up to a constant; NAN where none */
+} stance_known_basin;
+
+/* Largest level c of x' P x, x = (posture - target, rates), for which simulations that begin on its
+ * boundary, evenly in the metric of P, with the support foot standing at rest and no contact inside
+ * the ground, all end as `stabilised`, in full. The shape with the largest volume is taken. 0
+ * failures of n say that less than stance_known_basin_share of the boundary fails, with 95 %
+ * confidence. *set with `exists` false: no set was found. BAD_ARGUMENT: base does not settle at a
+ * target on a foot, or its law is not the state's alone. STOPPED: given up; `simulations` counts
+ * those that had ended. */
+stance_error stance_known_basin_estimate(const stance_known_basin_search *search,
+                                         stance_known_basin *set);
+
+/* What no failure in `boundary` simulations of the last of `batches` sets, tried one after the
+ * other until one passed, says with 95 % confidence: less than this share of its boundary fails. 1
+ * - alpha^(1 / boundary), alpha = 0.05 * 6 / (pi batches)^2: summed over all sets that might be
+ * tried 0.05, so that it holds whenever the search ends. */
+double stance_known_basin_share(int64_t batches, int64_t boundary);
+
+#endif

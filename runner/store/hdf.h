@@ -1,0 +1,69 @@
+/* hdf.h - what this room asks of HDF5, every handle closed: types, files to read, texts, words,
+ * numbers, ranges of elements. -1, NULL, 0 or false: HDF5 remembers why, see store_failed.
+ */
+#ifndef STANCE_STORE_HDF_H
+#define STANCE_STORE_HDF_H
+
+#include "engine/stance.h"
+#include "runner/plan/rows.h"
+
+#include <hdf5.h>
+#include <stdbool.h>
+
+/* Bytes in memory are bytes of the file, checksums included. */
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the file is little-endian");
+
+enum store_kind {
+    KIND_uint8_t,
+    KIND_uint32_t,
+    KIND_int32_t,
+    KIND_int64_t,
+    KIND_uint64_t,
+    KIND_double
+};
+/* The type of a kind, in the file and in memory. */
+hid_t hdf_type(enum store_kind kind);
+
+/* Closes whatever is open of these spaces, types, attributes, datasets, groups, property lists. */
+#define hdf_close(...)                                                                             \
+    hdf_close_all((const hid_t[]){__VA_ARGS__}, sizeof((hid_t[]){__VA_ARGS__}) / sizeof(hid_t))
+void hdf_close_all(const hid_t *id, size_t count);
+
+/* From now on HDF5 prints nothing, but remembers why a call failed. */
+void hdf_remember(void);
+/* "FILE: cannot WHAT: reason", with the reason that HDF5 remembers. Returns false. */
+bool store_failed(stance_message *message, const char *file, const char *what);
+
+/* Files only: to open a pipe would wait for its writer. */
+hid_t hdf_open_to_read(const char *file, stance_message *message);
+/* Every link of a path such as "trajectory/time" exists. */
+bool hdf_exists(hid_t file, const char *path);
+
+/* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
+char *hdf_text(hid_t object, const char *name);
+/* A positive whole number, or where there is none the fallback. */
+int hdf_whole(hid_t object, const char *name, int fallback);
+
+/* Lengths of a dataset's dimensions; returns how many. */
+int hdf_shape(hid_t dataset, hsize_t length[H5S_MAX_RANK]);
+/* Number of elements; 0 when a damaged header claims more than the file can hold. (Variables of
+ * ours are contiguous.) */
+size_t hdf_elements(hid_t dataset);
+
+/* All elements of a dataset, numbers. */
+bool hdf_read(hid_t dataset, enum store_kind kind, void *data);
+bool hdf_write(hid_t dataset, enum store_kind kind, const void *data);
+/* Elements [at, at + n) of a dataset in row-major order; of an attribute all its n. */
+enum hdf_direction { HDF_READ, HDF_WRITE };
+bool hdf_move(hid_t object, hid_t type, hsize_t at, hsize_t n, enum hdf_direction way, void *data);
+/* The same of texts of fixed or variable length, each freed by the caller as is the array (by
+ * hdf_free_words). */
+char **hdf_words(hid_t object, hsize_t at, size_t n);
+void hdf_free_words(char **words, size_t n);
+
+/* File space of a variable over the cases, of `width` elements each, with some rows selected (one
+ * at least); or -1. */
+hid_t hdf_select_rows(int dimensions, const hsize_t *lengths, size_t width,
+                      const struct rows *rows);
+
+#endif
