@@ -18,8 +18,8 @@ STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-tree-slp-vectorize -fno
 # ---- libraries: found with pkg-config and mpicc; MPI=0 builds for one rank with serial HDF5 ------
 PKG_CONFIG ?= pkg-config
 PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
-                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev gnuplot-nox \
-                fonts-dejavu-core
+                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev libssl-dev \
+                gnuplot-nox fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin
 PACKAGES_LINT = clang-format clang-tidy cppcheck
 PACKAGES_FUZZ = clang libclang-rt-dev
@@ -40,7 +40,7 @@ LIBRARY_CFLAGS := $(shell $(PKG_CONFIG) --cflags $(HDF5_PACKAGE) yaml-0.1 jansso
 LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl 2>/dev/null)
 PROGRAM_CFLAGS  = $(MPI_CFLAGS) $(LIBRARY_CFLAGS)
 LIBS            = $(LIBRARIES) -lhdf5_hl $(MPI_LIBS) -lslicot -llapack -lblas \
-                  -lsundials_arkode -lsundials_nvecserial -lm
+                  -lsundials_arkode -lsundials_nvecserial -lcrypto -lm
 
 # `make V=1` shows whole commands.
 ifneq ($(V),1)
@@ -122,6 +122,10 @@ $(BUILD)/runner/%.o: runner/%.c Makefile
 $(BUILD)/analysis/%.o: analysis/%.c Makefile
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
+# Pictures' scripts, embedded in the objects of their names; those that all share in gnuplot.o.
+scripts := $(wildcard analysis/*/plot_*.gp)
+$(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(scripts:%.gp=$(b)/%.o): $(b)/%.o: %.gp) \
+    $(eval $(b)/analysis/draw/gnuplot.o: $(wildcard analysis/draw/*.gp)))
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/store/build_info.o: $(BUILD)/revision

@@ -300,15 +300,16 @@ typedef struct stance_case {
     double settle_hold;  /* s */
     double fall_height;  /* see stance_scene.fallen */
 
-    /* `captures`: a case ends as `stabilised`, evidence `inferred`, at the first step (sampling
+    /* `basin_known`: a case ends as `stabilised`, evidence `inferred`, at the first step (sampling
      * instant, where the law samples) at whose end the support foot alone carries and stands and
-     * x = (posture - near.target, rates) has x' captured x <= 1, unless less than capture_time is
-     * left. Has no effect unless `settle` and has_target hold, nor on laws that decouple, switch or
-     * act late, whose next torques do not follow from x. When such a case would have settled is not
-     * known: settle_time is NAN, and what is counted or summed ends with the simulation. */
-    bool captures;
-    double captured[2 * STANCE_MAX_POSTURE][2 * STANCE_MAX_POSTURE]; /* symmetric; units 1/x^2 */
-    double capture_time;                                             /* s, >= 0 */
+     * x = (posture - near.target, rates) has x' known_basin x <= 1, unless less than
+     * known_basin_time is left. Has no effect unless `settle` and has_target hold, nor on laws that
+     * decouple, switch or act late, whose next torques do not follow from x. When such a case would
+     * have settled is not known: settle_time is NAN, and what is counted or summed ends with the
+     * simulation. */
+    bool basin_known;
+    double known_basin[2 * STANCE_MAX_POSTURE][2 * STANCE_MAX_POSTURE]; /* symmetric; units 1/x^2 */
+    double known_basin_time;                                            /* s, >= 0 */
 
     uint64_t seed, grid_index, sample_index; /* key of the random numbers */
     stance_trajectory *trajectory;           /* NULL: not recorded */

@@ -61,7 +61,61 @@ const stance_law stance_law_damped = {
     .set = set};
 """
 
+PICTURE = """/* plot_ends.c - how many of the cases had ended by each time. */
+#include "analysis/draw/plot.h"
+
+#include <stdlib.h>
+
+GNUPLOT_SCRIPT(plot_ends_gp, "analysis/plot/plot_ends.gp");
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+bool plot_ends(const struct plot *plot, stance_message *message)
+{
+    const struct results *r = plot->r;
+    double *end;
+    struct gnuplot g;
+    if (!results_answer(r, "end_time", &end, message))
+        return false;
+    const bool good = end && plot_begin(plot, &g, plot_ends_gp, "How many have ended by each time", message);
+    if (good) {
+        qsort(end, r->cases, sizeof *end, by_value);
+        gnuplot_block(&g, "ends");
+        for (uint64_t i = 0; i < r->cases; i++)
+            GNUPLOT_ROW(&g, end[i], (double)(i + 1));
+        gnuplot_end_block(&g);
+        gnuplot_set(&g, "cases = %llu", (unsigned long long)r->cases);
+    }
+    free(end);
+    return !end || (good && plot_end(plot, &g, "ends", message));
+}
+"""
+
+PICTURE_SCRIPT = """# plot_ends.gp - how many cases had ended by each time.
+page_width = 600
+top = title_height(0)
+page_height = top + 360
+load 'page.gp'
+legend_x = 0
+legend_y = 0
+load 'panels.gp'
+eval panel(80, top, 480, 300)
+eval linear_tics('y', 0, 1.1*cases, 5, 1)
+set xlabel 'end_time (s)'
+plot $ends using 1:2 with steps lc rgb hue[1] notitle
+"""
+
 ADDITIONS = {
+    "picture": [
+        ("analysis/plot/plot_ends.c", None, PICTURE),
+        ("analysis/plot/plot_ends.gp", None, PICTURE_SCRIPT),
+        ("analysis/draw/plot.h", r"^#define PLOT_PICTURES\(X\) .*\\$",
+         "\n    X(ends, \"  any sweep           NAME-ends: how many cases have ended by each time\\n\") \\"),
+    ],
     "law": [
         ("engine/laws/damped.c", None, LAW),
         ("engine/stance.h", r"^#define STANCE_LAWS\(X\) X\(none\)", " X(damped)"),
@@ -71,8 +125,7 @@ ADDITIONS = {
          " \\\n    X(FLEW, flew, 5, \"left the ground for good\")"),
         ("engine/core/loop/judge.h", r"^    v\.fell = .*$",
          "\n    v.flew = live & mask_less(lanes_of(3), b->now.s[1]);"),
-        ("analysis/draw/plot_axis.c", r"^const char \*const plot_colours.*$",
-         "\n    [RESULTS_FLEW] = \"#123456\","),
+        ("analysis/draw/style.gp", r"^colour_fell = .*$", "\ncolour_flew = 0x123456"),
     ],
     "answer": [
         ("engine/stance.h", r"^    X\(peak_torque, .*\\$",

@@ -27,7 +27,7 @@ nm -g --defined-only build/libstance.a build/libstance_control.a 2>/dev/null | a
 rm -f /tmp/lint.$$
 
 cppcheck --quiet --std=c11 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability \
-    --suppress=missingIncludeSystem --suppress=unknownMacro --suppress=ctuuninitvar -DSTANCE_LANES=1 -D__x86_64__ -I. \
+    --suppress=missingIncludeSystem --suppress=unknownMacro --suppress=ctuuninitvar -DSTANCE_LANES=1 -DSTANCE_MPI -D__x86_64__ -I. \
     '-DSTANCE_SCENE_LANES="engine/scenes/biped_lanes.h"' -DSTANCE_SCENE=biped -DSTANCE_ISA=scalar \
     runner analysis engine/*.c engine/control engine/scenes || complain "cppcheck"
 

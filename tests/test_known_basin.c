@@ -219,10 +219,10 @@ static void stops_only_where_it_may(void **state)
 {
     (void)state;
     stance_case c = balance_case(-0.001, 0), other;
-    c.captures = true;
+    c.basin_known = true;
     for (int i = 0; i < N; i++)
-        c.captured[i][i] = 1; /* all within 1 rad, 1 rad/s */
-    c.capture_time = 1;
+        c.known_basin[i][i] = 1; /* all within 1 rad, 1 rad/s */
+    c.known_basin_time = 1;
     c.sample_every = 10;
     stance_result r = run_one(c);
     assert_int_equal(r.outcome, STANCE_STABILISED);
@@ -233,7 +233,7 @@ static void stops_only_where_it_may(void **state)
         other = c;
         switch (k) {
         case 0:
-            other.captures = false;
+            other.basin_known = false;
             break;
         case 1:
             other.settle = false;
@@ -245,7 +245,7 @@ static void stops_only_where_it_may(void **state)
             other.has_target = false;
             break;
         case 4: /* too little time is left */
-            other.steps = 1000, other.capture_time = 1.0;
+            other.steps = 1000, other.known_basin_time = 1.0;
             break;
         case 5:
             other.switches = true;
@@ -262,15 +262,15 @@ static void stops_only_where_it_may(void **state)
             break;
         default: /* the state is not near */
             for (int i = 0; i < N; i++)
-                other.captured[i][i] = 1e12;
+                other.known_basin[i][i] = 1e12;
         }
         r = run_one(other);
         assert_int_not_equal(r.evidence, STANCE_INFERRED);
-        other.captures = false;
+        other.basin_known = false;
         const stance_result without = run_one(other);
         assert_memory_equal(&r, &without, sizeof r);
     }
-    c.sample_every = 0, c.capture_time = 0;
+    c.sample_every = 0, c.known_basin_time = 0;
     assert_int_equal(run_one(c).steps, 1); /* a law that acts all the time */
 }
 
@@ -285,7 +285,7 @@ static void lanes_agree(void **state)
     assert_true(c && r);
     for (int i = 0; i < COUNT; i++) {
         assert_true(random_start(&plain, &random, 0.5, (uint64_t)i, &c[i]));
-        c[i].captures = i % 3 != 0;
+        c[i].basin_known = i % 3 != 0;
     }
     int inferred = 0;
     static const char *const methods[] = {"implicit", "midpoint", "capturing"};
@@ -323,7 +323,7 @@ static void labels(const struct world *w, const char *what, const char *method, 
                 n++, done++;
         kernel_of(method, NULL)->run(c, with, n);
         for (size_t i = 0; i < n; i++)
-            c[i].captures = false;
+            c[i].basin_known = false;
         kernel_of(method, NULL)->run(c, without, n);
         for (size_t i = 0; i < n; i++) {
             good += without[i].outcome == STANCE_STABILISED;

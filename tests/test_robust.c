@@ -17,7 +17,7 @@ static void expect_difference(const char *before, const char *after, const char 
     size_t size = 0;
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
-    changed_scenario_print_difference(to, before, after);
+    changed_scenario_differences(to, before, after);
     fclose(to);
     assert_string_equal(text, expected);
     free(text);
@@ -32,7 +32,7 @@ static void test_differences(void **state)
     expect_difference("", "a\n", "  + a\n");
     expect_difference("a\n", "", "  - a\n");
     expect_difference("a\nb", "a", "  - b\n");
-    assert_int_equal(changed_scenario_count_differences("a\nb\nc\n", "c\nb\n"), 3);
+    assert_int_equal(changed_scenario_differences(NULL, "a\nb\nc\n", "c\nb\n"), 3);
 }
 
 /* Of many differences the first ones are shown, of long lines the beginning. */
@@ -49,10 +49,10 @@ static void test_long_differences(void **state)
         sprintf(before + at, "a%05d\n", k);
         at += sprintf(after + at, "b%05d\n", k);
     }
-    assert_int_equal(changed_scenario_count_differences(before, after), 2 * LINES);
+    assert_int_equal(changed_scenario_differences(NULL, before, after), 2 * LINES);
     FILE *to = open_memstream(&text, &size);
     assert_non_null(to);
-    changed_scenario_print_difference(to, before, after);
+    changed_scenario_differences(to, before, after);
     fclose(to);
     for (const char *c = text; *c; c++)
         lines += *c == '\n';
@@ -63,7 +63,7 @@ static void test_long_differences(void **state)
     wide[WIDTH] = '\0';
     to = open_memstream(&text, &size);
     assert_non_null(to);
-    changed_scenario_print_difference(to, wide, "");
+    changed_scenario_differences(to, wide, "");
     fclose(to);
     assert_true(strlen(text) < 140);
     free(text);

@@ -178,9 +178,12 @@ static void every_key_is_read(void **state)
     assert_true(s.record_list[0] == 3 && s.record_list[1] == 5);
     assert_int_equal(s.answers, 1u << STANCE_ANSWER_outcome | 1u << STANCE_ANSWER_steps |
                                     1u << SCENARIO_FINAL_STATE | 1u << 31);
-    assert_int_equal(s.initial_line, 6);
-    assert_int_equal(s.initial_column, 1);
-    assert_int_equal(s.controller_line, 10);
+    int line = 0, column = 0;
+    assert_true(scenario_place(&s, "initial: a message", &line, &column));
+    assert_int_equal(line, 6);
+    assert_int_equal(column, 1);
+    assert_true(scenario_place(&s, "controller.unknown: a message", &line, &column));
+    assert_int_equal(line, 10);
     scenario_free(&s);
 }
 

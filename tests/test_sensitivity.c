@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "analysis/sensitivity/sensitivity.h"
-#include "analysis/table/csv.h"
 #include "runner/scenario/doe.h"
 
 #include <Random123/philox.h>
@@ -552,29 +551,6 @@ static void test_nothing(void **state)
     sensitivity_free(&s);
 }
 
-/* ---- comma-separated values --------------------------------------------------------------- */
-
-static void test_csv(void **state)
-{
-    char *text = NULL;
-    size_t size = 0;
-    FILE *file = open_memstream(&text, &size);
-    struct csv csv = {.file = file};
-    (void)state;
-    csv_row(&csv, (const char *const[]){"plain", "a,b", "he said \"so\"", "two\nlines", ""}, 5);
-    const double numbers[] = {0.1, 1.0 / 3, -2, 1e-300, INFINITY, NAN, 123456789012345678.0};
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
-        csv_number(&csv, numbers[i]);
-    csv_end_row(&csv);
-    csv_text(&csv, "last");
-    csv_end_row(&csv);
-    fclose(file);
-    assert_string_equal(text, "plain,\"a,b\",\"he said \"\"so\"\"\",\"two\nlines\",\r\n"
-                              "0.1,0.3333333333333333,-2,1e-300,inf,,1.2345678901234568e+17\r\n"
-                              "last\r\n");
-    free(text);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -585,7 +561,6 @@ int main(void)
         cmocka_unit_test(test_missing),
         cmocka_unit_test(test_listed),
         cmocka_unit_test(test_nothing),
-        cmocka_unit_test(test_csv),
         cmocka_unit_test(test_coverage),
         cmocka_unit_test(test_coverage_of_bins),
         cmocka_unit_test(test_coverage_of_effects),

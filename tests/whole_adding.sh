@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What adding a law, an outcome, an answer and a method takes: done in a copy of the tree, as the pages
+# What adding a law, an outcome, an answer, a method and a picture takes: done in a copy of the tree, as the pages
 # of the rooms say, it touches three files at most each, builds, and works.
 # Speaks TAP.
 set -u
@@ -68,5 +68,8 @@ import h5py
 highest = h5py.File('ball.h5')['highest'][...]
 assert abs(highest[1] - 2 - 16 / 2 / 9.81) < 1e-2 and 2.99 < highest[3] < 3.1, highest"
 check "the answer is drawn" ./stance plot ball.h5 --answer highest
+check "the picture is in the help" says "NAME-ends: how many cases have ended" ./stance plot -h
+check "the picture is drawn" says '^ball-ends.png$' ./stance plot ball.h5
+check "it shows its labels" grep -q '<text>How many have ended by each time</text>' ball-ends.svg
 check "the table has both" says "flew" ./stance table ball.h5
 echo "1..$count"

@@ -3,18 +3,13 @@
 
 #include "analysis/statistics/intervals.h"
 #include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static bool no_memory(const struct results *r, stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
-    return false;
-}
 
 /* ---- which axis is what ------------------------------------------------------------------- */
 
@@ -47,12 +42,11 @@ static bool choose_by(struct basin *b, stance_message *message)
     bool wanted[SCENARIO_MAX_AXES] = {false};
     for (size_t k = 0; k < b->choice.by_count; k++) {
         const int a = find_axis(r, b->choice.by[k]);
-        if (a < 0 || strcmp(r->axis[a].name, "sample") == 0) {
-            snprintf(message->text, sizeof message->text,
-                     "stance basin: --by takes an axis of the grid, and '%.60s' is none of %.90s",
-                     b->choice.by[k], r->file);
-            return false;
-        }
+        if (a < 0 || strcmp(r->axis[a].name, "sample") == 0)
+            return complain(
+                message,
+                "stance basin: --by takes an axis of the grid, and '%.60s' is none of %.90s",
+                b->choice.by[k], r->file);
         wanted[a] = true;
     }
     for (int a = 0; a < r->axes; a++)
@@ -78,10 +72,8 @@ static bool choose_sample(struct basin *b, stance_message *message)
                         : sample->method == DOE_SPHERE
                             ? "method sphere has no volume without a grid axis initial.offset.scale"
                             : NULL;
-    if (wrong) {
-        snprintf(message->text, sizeof message->text, "%.100s: %s", b->r->file, wrong);
-        return false;
-    }
+    if (wrong)
+        return complain(message, "%.100s: %s", b->r->file, wrong);
     b->starts = BASIN_SAMPLE;
     b->averaged = -1;
     b->start[b->start_axes++] = sample->axis;
@@ -111,13 +103,12 @@ static bool choose_axes(struct basin *b, stance_message *message)
     }
     if (b->sample.axis >= 0)
         return choose_sample(b, message);
-    if (b->start_axes == 0) {
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: no starts are varied (initial.offset.*, initial.state.*), so there is no "
-                 "basin to measure",
-                 r->file);
-        return false;
-    }
+    if (b->start_axes == 0)
+        return complain(
+            message,
+            "%.100s: no starts are varied (initial.offset.*, initial.state.*), so there is no "
+            "basin to measure",
+            r->file);
     return true;
 }
 
@@ -383,7 +374,7 @@ static bool make_rows(struct basin *b, stance_message *message)
     if (!b->row || !blocks || !points || !make_lattice(&lattice, b)) {
         free(blocks);
         free(points);
-        return no_memory(b->r, message);
+        return statistics_no_memory(b->r, message);
     }
     bool good = true;
     do {
@@ -401,7 +392,7 @@ static bool make_rows(struct basin *b, stance_message *message)
     free_lattice(&lattice);
     free(blocks);
     free(points);
-    return good || no_memory(b->r, message);
+    return good || statistics_no_memory(b->r, message);
 }
 
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,

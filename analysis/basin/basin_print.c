@@ -24,7 +24,8 @@ static void add_shape(struct table *t, const struct basin *b, const struct basin
          as_number(basin_boundary_entropy(&row->entropy))},
         {{"star", "", .width = 1, .hidden = TABLE_VIEW_ONLY, .before = "", .empty = ""},
          as_nothing(fractal ? "*" : NULL)},
-        {{"boxes", "boxes", .width = -8, .before = " of "}, as_whole(row->entropy.boxes)},
+        {{"boxes", "boxes", .width = 8, .left = true, .before = " of "},
+         as_whole(row->entropy.boxes)},
         {{"mixed_boxes", "mixed", .width = 8}, as_whole(row->entropy.mixed)},
         {{"alpha", "alpha", "%.3f", .width = 8}, as_number(exponent.alpha)},
         {{"alpha_error", "+- 1 sd", "%.3f", .width = 8}, as_number(exponent.error)},
@@ -51,7 +52,7 @@ static void add_distance(struct table *t, const struct basin *b, const struct ba
         table_append(ends, as_number(distance->high[d]));
         json_object_set_new(extent, name, ends);
         if (at)
-            json_object_set_new(at, name, table_value_json(as_number(distance->at[d])));
+            table_put(at, name, as_number(distance->at[d]));
     }
     TABLE_FACTS(
         t, {{"nearest", "nearest", "%.4f", .width = 9}, as_number(any ? distance->nearest : NAN)},
@@ -68,23 +69,25 @@ static void make_table(struct table *t, const struct basin *b)
         snprintf(remark, sizeof remark, "%" PRIu64 " failed, %" PRIu64 " pending", row->failed,
                  row->pending);
         table_axes(t, b->r, b->by, b->by_axes, row->point);
-        TABLE_FACTS(t, {{.name = "cases", .before = " of ", .width = -10}, as_whole(row->cases)},
-                    {{"inside", "cases", .width = 10}, as_whole(row->inside)},
-                    {{.name = "failed"}, as_whole(row->failed)},
-                    {{.name = "pending"}, as_whole(row->pending)},
-                    {{.name = "remark", .hidden = TABLE_VIEW_ONLY, .empty = ""},
-                     as_nothing(row->failed + row->pending > 0 ? remark : NULL)},
-                    {{"share", "share", "%.3f %%", .width = 9, .percent = true},
-                     as_number(row->volume / b->box)},
-                    {{"volume", "volume", "%.5g", .width = 11}, as_number(row->volume)},
-                    {{"reach", level, "%.2g", .width = 9}, as_number(row->reach)},
-                    {{"low", b->starts == BASIN_GRID ? "bounds" : "interval", "%.5g", .width = -25,
-                      .before = "   "},
-                     as_number(row->low)},
-                    {{.name = "high", .format = "%.5g", .joined = true, .before = " ... "},
-                     as_number(row->high)},
-                    {{.name = "cells", .hidden = TABLE_NO_CSV}, as_whole(row->cells)},
-                    {{.name = "crossed", .hidden = TABLE_NO_CSV}, as_whole(row->crossed)});
+        TABLE_FACTS(
+            t,
+            {{.name = "cases", .before = " of ", .width = 10, .left = true}, as_whole(row->cases)},
+            {{"inside", "cases", .width = 10}, as_whole(row->inside)},
+            {{.name = "failed"}, as_whole(row->failed)},
+            {{.name = "pending"}, as_whole(row->pending)},
+            {{.name = "remark", .hidden = TABLE_VIEW_ONLY, .empty = ""},
+             as_nothing(row->failed + row->pending > 0 ? remark : NULL)},
+            {{"share", "share", "%.3f %%", .width = 9, .percent = true},
+             as_number(row->volume / b->box)},
+            {{"volume", "volume", "%.5g", .width = 11}, as_number(row->volume)},
+            {{"reach", level, "%.2g", .width = 9}, as_number(row->reach)},
+            {{"low", b->starts == BASIN_GRID ? "bounds" : "interval", "%.5g", .width = 25,
+              .left = true, .before = "   "},
+             as_number(row->low)},
+            {{.name = "high", .format = "%.5g", .joined = true, .before = " ... "},
+             as_number(row->high)},
+            {{.name = "cells", .hidden = TABLE_NO_CSV}, as_whole(row->cells)},
+            {{.name = "crossed", .hidden = TABLE_NO_CSV}, as_whole(row->crossed)});
         add_shape(t, b, row);
         add_distance(t, b, row);
         table_end_row(t);
@@ -228,10 +231,12 @@ static void print_distance(const struct basin *b, const struct basin_distance *d
     for (int d = 0; d < b->start_axes; d++) {
         const struct results_axis *axis = &b->r->axis[b->start[d]];
         TABLE_FACTS(
-            &ends, {{.name = "axis", .before = "  along ", .width = -24}, as_text(axis->name)},
+            &ends,
+            {{.name = "axis", .before = "  along ", .width = 24, .left = true},
+             as_text(axis->name)},
             {{.name = "low", .width = 12}, as_number(distance->low[d])},
             {{.name = "high", .width = 12, .before = " ... "}, as_number(distance->high[d])},
-            {{.name = "unit", .width = -1}, as_text(axis->unit)});
+            {{.name = "unit", .left = true}, as_text(axis->unit)});
         table_end_row(&ends);
     }
     table_write_text(&ends, stdout, "axis low high unit", 0);
@@ -300,7 +305,7 @@ static bool print_json(const struct basin *b, const struct table *t)
                                              : basin_factor_names(&b->sample))},
                      {"parameters", as_tree(names(b, b->by, b->by_axes))},
                      {"averaged", as_tree(averaged)}, {"box", as_number(b->box)},
-                     {"unit", as_text(b->unit)}, {"rows", as_tree(table_json(t))}),
+                     {"unit", as_text(b->unit)}, {"rows", as_tree(table_json(t, false))}),
         stdout);
 }
 

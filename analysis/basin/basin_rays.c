@@ -1,6 +1,8 @@
 /* basin_rays.c - follows each ray from the smallest scale to where the outcome is lost. */
 #include "basin_rays.h"
 
+#include "analysis/statistics/statistics.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -93,8 +95,7 @@ bool basin_rays_make(struct basin_rays *rays, const struct results *r, enum resu
     if (!order || !rays->ray) {
         free(order);
         basin_rays_free(rays);
-        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
-        return false;
+        return statistics_no_memory(r, message);
     }
     for (size_t i = 0; i < count; i++)
         order[i] = i;

@@ -124,7 +124,7 @@ static bool print_json(const struct basin_rays *rays, const struct table *t)
     return table_write_json(TABLE_OBJECT({"outcome", as_text(results_kind_names[rays->of])},
                                          {"starts", as_tree(basin_factor_names(&rays->sample))},
                                          {"rays", as_whole(rays->sample.points)},
-                                         {"rows", as_tree(table_json(t))}),
+                                         {"rows", as_tree(table_json(t, false))}),
                             stdout);
 }
 

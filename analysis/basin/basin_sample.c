@@ -1,6 +1,8 @@
 /* basin_sample.c - reads the points of a sample of starts. */
 #include "basin_sample.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -62,8 +64,8 @@ bool basin_sample_make(struct basin_sample *sample, const struct results *r,
         scenario_free(s);
     } else {
         basin_sample_free(sample);
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: its scenario cannot be read, or memory does not suffice", r->file);
+        complain(message, "%.100s: its scenario cannot be read, or memory does not suffice",
+                 r->file);
     }
     free(s);
     return good;

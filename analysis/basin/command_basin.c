@@ -3,37 +3,19 @@
 #include "basin_print.h"
 
 #include "analysis/statistics/statistics.h"
+#include "analysis/table/report.h"
+#include "runner/base/message.h"
 
-#include "runner/base/command.h"
-#include "runner/base/sandbox.h"
-
-#include <errno.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 extern const struct command command_basin; /* below */
 
-enum { MOST_BY = SCENARIO_MAX_AXES, DEFAULT_SIDE = 5, MOST_SIDE = 1000 };
+enum { MOST_BY = SCENARIO_MAX_AXES, MOST_SIDE = 1000 };
 
 struct request {
-    const char *file, *of;
+    bool of_given, boundary;
     struct basin_choice choice;
-    enum table_form form;
-    bool boundary;
 };
-
-static bool find_outcome(const char *word, enum results_kind *of)
-{
-    for (int k = 0; k < RESULTS_OUTCOMES; k++) {
-        if (strcmp(word, results_kind_names[k]) == 0) {
-            *of = (enum results_kind)k;
-            return true;
-        }
-    }
-    return false;
-}
 
 /* Without --of: what the study is about. Where nothing was stabilised but something rested, that.
  */
@@ -46,155 +28,91 @@ static enum results_kind outcome_of(const struct results *r)
                : RESULTS_STABILISED;
 }
 
-static int printed(bool good)
+static int show_rays(const struct report *report, const struct results *r,
+                     struct basin_sample *sample, stance_message *message)
 {
-    if (!good)
-        fputs("stance basin: not enough memory, or the output could not be written\n", stderr);
+    const struct request *request = report->request;
+    struct basin_rays rays;
+    if (request->choice.by_count > 0) {
+        basin_sample_free(sample);
+        complain(message,
+                 "stance basin: --by has no meaning for rays: there is a row for every parameter");
+        return EXIT_USAGE;
+    }
+    if (!basin_rays_make(&rays, r, request->choice.of, sample, message))
+        return EXIT_IO;
+    const bool good = request->boundary ? basin_rays_print_boundary(&rays)
+                                        : basin_rays_print(&rays, report->form);
+    basin_rays_free(&rays);
     return good ? EXIT_DONE : EXIT_IO;
 }
 
-static int fail(const stance_message *message, bool usage)
+static int show_basin(const struct report *report, const struct results *r,
+                      struct basin_sample *sample, stance_message *message)
 {
-    fprintf(stderr, "%s\n", message->text);
-    return usage ? EXIT_USAGE : EXIT_IO;
-}
-
-static int show_rays(const struct request *request, const struct results *r,
-                     struct basin_sample *sample)
-{
-    struct basin_rays rays;
-    stance_message message = {""};
-    if (request->choice.by_count > 0) {
-        fputs("stance basin: --by has no meaning for rays: there is a row for every parameter\n",
-              stderr);
-        basin_sample_free(sample);
-        return EXIT_USAGE;
-    }
-    if (!basin_rays_make(&rays, r, request->choice.of, sample, &message))
-        return fail(&message, false);
-    const int code = printed(request->boundary ? basin_rays_print_boundary(&rays)
-                                               : basin_rays_print(&rays, request->form));
-    basin_rays_free(&rays);
-    return code;
-}
-
-static int show_basin(const struct request *request, const struct results *r,
-                      struct basin_sample *sample)
-{
+    const struct request *request = report->request;
     struct basin basin;
-    stance_message message = {""};
     bool usage = false;
-    int code = EXIT_USAGE;
 
-    if (!basin_make(&basin, r, &request->choice, sample, &usage, &message))
-        return fail(&message, usage);
-    if (request->boundary && basin.starts != BASIN_GRID) {
-        fprintf(stderr,
-                "stance basin: --boundary needs starts on a grid; those of %s are a sample\n",
-                request->file);
-    } else {
-        code = printed(request->boundary ? basin_print_boundary(&basin)
-                                         : basin_print(&basin, request->form));
-    }
+    if (!basin_make(&basin, r, &request->choice, sample, &usage, message))
+        return usage ? EXIT_USAGE : EXIT_IO;
+    usage = request->boundary && basin.starts != BASIN_GRID;
+    const bool good =
+        usage               ? complain(message,
+                                       "stance basin: --boundary needs starts on a grid; those of %.150s are a "
+                                                     "sample",
+                                       report->file)
+        : request->boundary ? basin_print_boundary(&basin)
+                            : basin_print(&basin, report->form);
     basin_free(&basin);
-    return code;
+    return good ? EXIT_DONE : usage ? EXIT_USAGE : EXIT_IO;
 }
 
-static int work(void *context)
+static int work(struct report *report, const struct results *r, stance_message *message)
 {
-    struct request *request = context;
-    struct results r;
+    struct request *request = report->request;
     struct basin_sample sample;
-    stance_message message = {""};
-    int code;
 
-    if (!results_open(&r, request->file, &message))
-        return fail(&message, false);
-    if (!request->of)
-        request->choice.of = outcome_of(&r);
-    if (memchr(r.kind, RESULTS_DONE, r.cases)) {
-        fprintf(stderr, "%s: holds no outcomes (record.answers left them out)\n", request->file);
-        results_close(&r);
+    if (!request->of_given)
+        request->choice.of = outcome_of(r);
+    if (memchr(r->kind, RESULTS_DONE, r->cases)) {
+        complain(message, "%.150s: holds no outcomes (record.answers left them out)", report->file);
         return EXIT_USAGE;
     }
-    if (!basin_sample_make(&sample, &r, &message))
-        code = fail(&message, false);
-    else
-        code = (basin_is_rays(&r, &sample) ? show_rays : show_basin)(request, &r, &sample);
-    results_close(&r);
-    return code;
-}
-
-/* A number after an option; false, with a message, when it is none between low and high. */
-static bool read_number(const char *option, const char *text, double low, double high,
-                        double *value)
-{
-    char *end;
-    errno = 0;
-    *value = strtod(text, &end);
-    if (end == text || *end || errno || !(*value >= low && *value <= high)) {
-        fprintf(stderr, "stance basin: %s takes a number from %g to %g, not '%.40s'\n", option, low,
-                high, text);
-        return false;
-    }
-    return true;
-}
-
-static bool read_choice(struct request *request, const char *level, const char *side)
-{
-    double number = DEFAULT_SIDE;
-    request->choice.level = 0.95;
-    if (request->of && !find_outcome(request->of, &request->choice.of)) {
-        fprintf(stderr,
-                "stance basin: --of takes an outcome, stabilised, rested, fell or undecided, not "
-                "'%.60s'\n",
-                request->of);
-        return false;
-    }
-    if ((level && !read_number("--level", level, 0.5, 0.999999, &request->choice.level)) ||
-        (side && !read_number("--box", side, 2, MOST_SIDE, &number)))
-        return false;
-    if (number != floor(number)) {
-        fprintf(stderr, "stance basin: --box takes a whole number of cases, not '%.40s'\n", side);
-        return false;
-    }
-    request->choice.side = (size_t)number;
-    return true;
+    if (!basin_sample_make(&sample, r, message))
+        return EXIT_IO;
+    return (basin_is_rays(r, &sample) ? show_rays : show_basin)(report, r, &sample, message);
 }
 
 static int run(int argc, char **argv)
 {
-    const char *by[MOST_BY], *file = NULL, *of = NULL, *level = NULL, *side = NULL;
-    size_t by_count = 0, given[3] = {0}, boundary = 0, json = 0, csv = 0, operands = 0;
-    bool help = false;
+    const char *by[MOST_BY], *of = NULL, *level = NULL, *side = NULL;
+    size_t given[3] = {0}, boundary = 0;
+    double cases = 5;
+    int code;
+    struct request request = {.choice = {.by = by, .level = 0.95}};
+    struct basin_choice *choice = &request.choice;
+    struct report report = {.command = &command_basin, .work = work, .request = &request};
     const struct option_spec specs[] = {
-        {"--by", true, by, MOST_BY, &by_count},    {"--of", true, &of, 1, &given[0]},
-        {"--level", true, &level, 1, &given[1]},   {"--box", true, &side, 1, &given[2]},
-        {"--boundary", false, NULL, 0, &boundary}, {"--json", false, NULL, 0, &json},
-        {"--csv", false, NULL, 0, &csv},
+        {"--by", true, by, MOST_BY, &choice->by_count}, {"--of", true, &of, 1, &given[0]},
+        {"--level", true, &level, 1, &given[1]},        {"--box", true, &side, 1, &given[2]},
+        {"--boundary", false, NULL, 0, &boundary},
     };
 
-    if (!command_options(&command_basin, argc, argv, specs, sizeof specs / sizeof specs[0], &file,
-                         1, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    if (operands == 0) {
-        fputs("stance basin: a results file is needed (stance basin -h explains)\n", stderr);
+    if (!report_options(&report, argc, argv, specs, sizeof specs / sizeof specs[0], &code))
+        return code;
+    if (boundary && report.form == TABLE_AS_JSON) {
+        fputs("stance basin: --boundary prints CSV, not JSON\n", stderr);
         return EXIT_USAGE;
     }
-    if ((json && csv) || (json && boundary)) {
-        fprintf(stderr, "stance basin: %s\n",
-                csv ? "--json or --csv, not both" : "--boundary prints CSV, not JSON");
+    if (!report_outcome(&report, of, &choice->of) ||
+        !report_number(&report, "--level", level, 0.5, 0.999999, false, &choice->level) ||
+        !report_number(&report, "--box", side, 2, MOST_SIDE, true, &cases))
         return EXIT_USAGE;
-    }
-    struct request request = {
-        .file = file, .of = of, .form = table_form(json, csv), .boundary = boundary > 0};
-    request.choice.by = by;
-    request.choice.by_count = by_count;
-    if (!read_choice(&request, level, side))
-        return EXIT_USAGE;
-    return sandbox(work, &request, file);
+    request.of_given = of != NULL;
+    request.boundary = boundary > 0;
+    choice->side = (size_t)cases;
+    return report_run(&report);
 }
 
 const struct command command_basin = {

@@ -10,17 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEFT = 96, SIZE = 520, HEIGHT = 440, LEGEND = 260, BOTTOM = 84, CURVES = 6 };
+GNUPLOT_SCRIPT(plot_rays_gp, "analysis/basin/plot_rays.gp");
 
-/* after Okabe and Ito (2008) */
-static const char *const colours[CURVES] = {"#0072b2", "#d55e00", "#009e73",
-                                            "#cc79a7", "#e69f00", "#56b4e9"};
+enum { CURVES = 6 };
 
 struct page {
     struct gnuplot g;
     const struct plot *plot;
     const struct basin_rays *rays;
-    double top;
     size_t curves; /* rows that are drawn, spread over all */
 };
 
@@ -88,52 +85,40 @@ static double ray_end(const struct basin_ray *ray)
     return ray->end == RAY_CROSSES ? basin_ray_middle(ray) : ray->end == RAY_OPEN ? ray->low : NAN;
 }
 
-static void put_end(FILE *data, const struct basin_sample *sample, size_t p, double scale)
+static void put_end(struct page *page, size_t p, double scale)
 {
-    gnuplot_number(data, scale * sample->factor[0].of->value[p]);
-    putc(' ', data);
-    gnuplot_number(data, scale * sample->factor[1].of->value[p]);
-    putc('\n', data);
+    const struct basin_sample *sample = &page->rays->sample;
+    GNUPLOT_ROW(&page->g, scale * sample->factor[0].of->value[p],
+                scale * sample->factor[1].of->value[p]);
 }
 
-/* The curve, its points, those rays that were not followed to an end, and the shortest ray. */
+/* The curve, those rays that were not followed to an end, and the shortest ray. */
 static bool put_curve(struct page *page, size_t curve, const struct direction *order)
 {
     const struct basin_sample *sample = &page->rays->sample;
     const struct basin_ray *ray = page->rays->ray + row_of(page, curve) * sample->points;
     struct basin_reach reach;
-    char line[32], open[32], first[32];
     if (!basin_rays_reach(page->rays, row_of(page, curve), &reach))
         return false;
-    FILE *data = gnuplot_data(&page->g, line);
+    gnuplot_block(&page->g, "curve%zu", curve + 1);
     for (size_t i = 0; i <= sample->points; i++) {
         const size_t p = order[i % sample->points].ray;
-        put_end(data, sample, p, ray_end(&ray[p]));
+        put_end(page, p, ray_end(&ray[p]));
     }
-    gnuplot_close_data(&page->g, data);
-    data = gnuplot_data(&page->g, open);
+    gnuplot_end_block(&page->g);
+    gnuplot_block(&page->g, "open%zu", curve + 1);
     for (size_t p = 0; p < sample->points; p++)
-        put_end(data, sample, p, ray[p].end == RAY_OPEN ? ray[p].low : NAN);
-    gnuplot_close_data(&page->g, data);
-    data = gnuplot_data(&page->g, first);
-    fputs("0 0\n", data);
-    put_end(data, sample, reach.first, reach.smallest);
-    gnuplot_close_data(&page->g, data);
-    fprintf(page->g.script,
-            "%s '%s' using 1:2 with lines lw 1.6 lc rgb '%s' notitle,"
-            " '%s' using 1:2 with points pt 7 ps 0.3 lc rgb '%s' notitle,"
-            " '%s' using 1:2 with points pt 6 ps 0.7 lc rgb '%s' notitle",
-            curve == 0 ? "plot" : ",", line, colours[curve], line, colours[curve], open,
-            colours[curve]);
-    if (reach.count[RAY_CROSSES] > 0) {
-        fprintf(page->g.script, ", '%s' using 1:2 with lines lw 1.6 dt 2 lc rgb '%s' notitle",
-                first, colours[curve]);
-    }
+        put_end(page, p, ray[p].end == RAY_OPEN ? ray[p].low : NAN);
+    gnuplot_end_block(&page->g);
+    gnuplot_block(&page->g, "first%zu", curve + 1);
+    GNUPLOT_ROW(&page->g, 0, 0);
+    put_end(page, reach.first, reach.count[RAY_CROSSES] > 0 ? reach.smallest : 0);
+    gnuplot_end_block(&page->g);
     return true;
 }
 
 /* Symmetric about the equilibrium, around all ends. */
-static void put_range(struct page *page, int k, char which)
+static void put_range(struct page *page, int k, const char *which)
 {
     const struct basin_sample *sample = &page->rays->sample;
     double most = 0;
@@ -144,9 +129,8 @@ static void put_range(struct page *page, int k, char which)
             most = end > most ? end : most; /* false for NAN */
         }
     }
-    most = most > 0 ? 1.08 * most : 1;
-    fprintf(page->g.script, "set %crange [%.10g:%.10g]\nset %ctics nomirror %.10g\n", which, -most,
-            most, which, plot_round_step(-most, most, 8));
+    plot_label_write(sample->factor[k].of, &page->g, which);
+    gnuplot_number(&page->g, most > 0 ? 1.08 * most : 1, "%s_most", which);
 }
 
 static bool put_plane(struct page *page, stance_message *message)
@@ -154,17 +138,12 @@ static bool put_plane(struct page *page, stance_message *message)
     struct direction *order = sort_directions(&page->rays->sample);
     if (!order)
         return no_memory(message);
-    gnuplot_panel(&page->g, LEFT, page->top, SIZE, HEIGHT);
-    put_range(page, 0, 'x');
-    put_range(page, 1, 'y');
-    fputs("set format x '%.10g'\nset format y '%.10g'\nset grid lt 1 lc rgb '#e6e6e6' lw 0.8\n",
-          page->g.script);
+    put_range(page, 0, "x");
+    put_range(page, 1, "y");
     bool good = true;
     for (size_t c = 0; good && c < page->curves; c++)
         good = put_curve(page, c, order) || no_memory(message);
     free(order);
-    fputs(", '-' using 1:2 with points pt 1 ps 1.6 lw 2 lc rgb 'black' notitle\n0 0\ne\n",
-          page->g.script);
     return good;
 }
 
@@ -183,94 +162,73 @@ static bool put_distribution(struct page *page, stance_message *message)
     double *end = malloc(points * sizeof *end);
     if (!end)
         return no_memory(message);
-    gnuplot_panel(&page->g, LEFT, page->top, SIZE, HEIGHT);
-    fputs("set xrange [0:*]\nset yrange [0:100]\nset xtics nomirror autofreq\nset ytics nomirror "
-          "20\nset format x '%.10g'\nset format y '%.10g'\nset grid lt 1 lc rgb '#e6e6e6' lw 0.8\n",
-          page->g.script);
+    plot_label_write(&rays->r->axis[rays->scale], &page->g, "x");
     for (size_t c = 0; c < page->curves; c++) {
         const struct basin_ray *ray = rays->ray + row_of(page, c) * points;
-        char name[32];
         size_t n = 0;
         for (size_t p = 0; p < points; p++)
             if (ray[p].end == RAY_CROSSES || ray[p].end == RAY_OUTSIDE)
                 end[n++] = ray[p].end == RAY_CROSSES ? basin_ray_middle(&ray[p]) : 0;
         qsort(end, n, sizeof *end, by_number);
-        FILE *data = gnuplot_data(&page->g, name);
-        fputs("0 0\n", data);
+        gnuplot_block(&page->g, "curve%zu", c + 1);
+        GNUPLOT_ROW(&page->g, 0, 0);
         for (size_t i = 0; i < n; i++)
-            fprintf(data, "%.10g %.10g\n", end[i], 100 * (double)(i + 1) / (double)points);
-        gnuplot_close_data(&page->g, data);
-        fprintf(page->g.script, "%s '%s' using 1:2 with steps lw 1.8 lc rgb '%s' notitle",
-                c == 0 ? "plot" : ",", name, colours[c]);
+            GNUPLOT_ROW(&page->g, end[i], 100 * (double)(i + 1) / (double)points);
+        gnuplot_end_block(&page->g);
     }
-    fputs("\n", page->g.script);
     free(end);
     return true;
 }
 
 /* ---- the page ----------------------------------------------------------------------------- */
 
-static void put_labels(struct page *page, bool plane)
+static void put_legend(struct page *page, bool plane)
 {
-    const struct basin_sample *sample = &page->rays->sample;
-    const double x = LEFT + SIZE + 20;
-    double y = page->top + 10;
-    char text[200];
-    if (plane) {
-        plot_axis_label(sample->factor[0].of, &page->g, LEFT + SIZE / 2.0, page->top + HEIGHT + 46,
-                        SIZE + 80, false);
-        plot_axis_label(sample->factor[1].of, &page->g, 16, page->top + HEIGHT / 2.0, HEIGHT, true);
-    } else {
-        plot_axis_label(&page->rays->r->axis[page->rays->scale], &page->g, LEFT + SIZE / 2.0,
-                        page->top + HEIGHT + 46, SIZE + 80, false);
-        gnuplot_label(&page->g, 24, page->top + HEIGHT / 2.0, "directions that have ended (%)",
-                      "center", 12, true);
+    static const char *const notes[] = {"cross: the equilibrium", "dashed: the ray that ends first",
+                                        "circles: followed no further"};
+    const struct basin_rays *rays = page->rays;
+    char text[400] = "", colour[32];
+    size_t used = 0;
+    for (int k = 0; k < rays->by_axes && used < sizeof text; k++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", k ? ", " : "",
+                                 rays->r->axis[rays->by[k]].name);
     }
-    for (int k = 0; k < page->rays->by_axes; k++, y += 20) {
-        gnuplot_label(&page->g, x, y, page->rays->r->axis[page->rays->by[k]].name, "left", 11,
-                      false);
-    }
-    for (size_t c = 0; c < page->curves; c++, y += 24) {
+    gnuplot_text(&page->g, text, "legend_head");
+    for (size_t c = 0; c < page->curves; c++) {
         label_of(page, row_of(page, c), text, sizeof text);
-        gnuplot_legend(&page->g, x, y, colours[c], text);
+        snprintf(colour, sizeof colour, "hue[%zu]", c + 1);
+        gnuplot_legend(&page->g, colour, text);
     }
-    if (plane) {
-        gnuplot_label(&page->g, x, y + 8, "cross: the equilibrium", "left", 11, false);
-        gnuplot_label(&page->g, x, y + 26, "dashed: the ray that ends first", "left", 11, false);
-        gnuplot_label(&page->g, x, y + 44, "circles: followed no further", "left", 11, false);
-    }
+    for (size_t k = 0; plane && k < sizeof notes / sizeof notes[0]; k++)
+        gnuplot_note(&page->g, notes[k]);
 }
 
 static bool draw(const struct plot *plot, const struct basin_rays *rays, stance_message *message)
 {
     struct page page = {.plot = plot, .rays = rays};
-    const struct results *r = plot->r;
-    const char *title = r->title[0] ? r->title : r->name;
     const bool plane = rays->sample.factors == 2;
-    const int width = LEFT + SIZE + LEGEND;
-    char what[160], stem[512];
+    char what[160];
 
     page.curves = rays->rows < CURVES ? rays->rows : CURVES;
     snprintf(what, sizeof what, "Where %zu rays from the equilibrium cease to be %s",
              rays->sample.points, results_kind_names[rays->of]);
-    page.top = gnuplot_title_height(width, title, what);
-    if (!gnuplot_begin(&page.g, width, (int)page.top + HEIGHT + BOTTOM, message))
+    if (!plot_begin(plot, &page.g, plot_rays_gp, what, message))
         return false;
-    gnuplot_title(&page.g, title, what);
-    put_labels(&page, plane);
-    gnuplot_decorate(&page.g);
+    put_legend(&page, plane);
+    gnuplot_set(&page.g, "plane = %d; curves = %zu", plane, page.curves);
     if (!(plane ? put_plane : put_distribution)(&page, message)) {
         gnuplot_abandon(&page.g);
         return false;
     }
-    snprintf(stem, sizeof stem, "%s-rays", plot->stem);
-    return gnuplot_end(&page.g, plot->directory, stem, message);
+    return plot_end(plot, &page.g, "rays", message);
 }
 
 bool plot_rays(const struct plot *plot, stance_message *message)
 {
     struct basin_sample sample;
     struct basin_rays rays;
+    if (plot->r->sample < 0)
+        return true;
     if (!basin_sample_make(&sample, plot->r, message))
         return false;
     if (!basin_is_rays(plot->r, &sample)) {

@@ -1,6 +1,8 @@
 /* accuracy.c - compares every method and step of a file with its most exact one. */
 #include "accuracy.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,12 +10,6 @@
 
 /* Below this the truth itself is in doubt: such errors are no part of a ladder. */
 static const double least_error = 1e-11;
-
-static bool fail(stance_message *message, const char *text)
-{
-    snprintf(message->text, sizeof message->text, "%s", text);
-    return false;
-}
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
@@ -32,12 +28,12 @@ static bool make_rows(struct accuracy *a, const struct scenario *s, const struct
                       stance_message *message)
 {
     if (s->axes < 1 || s->sample.given || !path_is(&s->axis[0], 0, "method.name"))
-        return fail(message, "the first axis does not vary method.name");
+        return complain(message, "the first axis does not vary method.name");
     a->rows = s->axis[0].count;
     a->truth = a->rows;
     a->row = calloc(a->rows, sizeof *a->row);
     if (!a->row)
-        return fail(message, "not enough memory");
+        return no_memory(message);
     const size_t n = cases_per_row(a, r);
     for (size_t k = 0; k < a->rows; k++) {
         struct accuracy_row *row = &a->row[k];
@@ -52,7 +48,7 @@ static bool make_rows(struct accuracy *a, const struct scenario *s, const struct
         if (a->truth == a->rows && strcmp(row->method->name, "event-driven") == 0)
             a->truth = k;
     }
-    return a->truth < a->rows || fail(message, "no row of event-driven to compare with");
+    return a->truth < a->rows || complain(message, "no row of event-driven to compare with");
 }
 
 /* ---- answers ------------------------------------------------------------------------------ */
@@ -271,10 +267,10 @@ static bool measure(struct accuracy *a, const struct scenario *s, const struct r
     const size_t n = cases_per_row(a, r);
 
     if (!plan_make(&plan, s, false, 0, false, &error))
-        return fail(message, error.message.text);
+        return complain(message, "%s", error.message.text);
     bool good = plan_compute_designs(&plan, &alone, &error);
     if (!good)
-        fail(message, error.message.text);
+        complain(message, "%s", error.message.text);
     for (size_t k = 0; good && k < a->rows; k++)
         good = measure_rows(&plan, k * n, n, budget, &a->row[k].cost, message);
     plan_free(&plan);
@@ -304,7 +300,7 @@ bool accuracy_make(struct accuracy *a, const struct results *r, double budget,
     *a = (struct accuracy){.rows = 0};
     if (!s || !results_scenario(r, s)) {
         free(s);
-        return fail(message, "this version cannot read the file's scenario");
+        return complain(message, "this version cannot read the file's scenario");
     }
     bool good = make_rows(a, s, r, message) && read_answers(a, r, message) &&
                 compare(a, r, message) && measure(a, s, r, budget, message);

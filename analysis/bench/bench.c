@@ -97,77 +97,86 @@ struct bench_spread bench_spread(double *values, int n)
 
 /* ---- CSV ---------------------------------------------------------------------------------- */
 
+const char *const bench_column_names[BENCH_COLUMN_COUNT] = {
+#define BENCH_COLUMN(NAME, name) #name,
+    BENCH_COLUMNS(BENCH_COLUMN)
+#undef BENCH_COLUMN
+};
+
+/* A line of fields, whatever is in them. */
+static void put_line(FILE *out, const char *const *field)
+{
+    for (int k = 0; k < BENCH_COLUMN_COUNT; k++) {
+        for (const char *text = field[k] ? field[k] : ""; *text; text++)
+            putc(*text == ',' || *text == '"' || (unsigned char)*text < ' ' ? ' ' : *text, out);
+        putc(k + 1 < BENCH_COLUMN_COUNT ? ',' : '\n', out);
+    }
+}
+
 void bench_csv_head(FILE *out)
 {
-    fputs("subject,scene,regime,method,isa,lanes,ranks,step_s,cases,repeats,quantity,unit,median,"
-          "lowest,highest,revision,compiler,flags,processor,machine,date\n",
-          out);
-}
-
-/* As a field of its own, whatever is in it. */
-static void put_text(FILE *out, const char *text)
-{
-    for (; *text; text++)
-        putc(*text == ',' || *text == '"' || (unsigned char)*text < ' ' ? ' ' : *text, out);
-}
-
-static void put_count(FILE *out, int count)
-{
-    if (count > 0)
-        fprintf(out, "%d", count);
-    putc(',', out);
+    put_line(out, bench_column_names);
 }
 
 /* What /proc/cpuinfo calls the processor, or else its architecture. */
-static void put_processor(FILE *out, const char *architecture)
+static void find_processor(char *name, size_t size)
 {
     FILE *list = fopen("/proc/cpuinfo", "r");
     char line[256];
     while (list && fgets(line, sizeof line, list)) {
-        char *colon = strchr(line, ':');
+        const char *colon = strchr(line, ':');
         if (strncmp(line, "model name", 10) == 0 && colon) {
             line[strcspn(line, "\n")] = '\0';
-            put_text(out, colon + 1 + (colon[1] == ' '));
-            architecture = "";
+            snprintf(name, size, "%s", colon + 1 + (colon[1] == ' '));
             break;
         }
     }
     if (list)
         fclose(list);
-    put_text(out, architecture);
 }
 
 void bench_csv_row(FILE *out, const struct bench_row *row)
 {
-    const char *const words[] = {row->subject, row->scene, row->regime, row->method, row->isa};
-    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
-        put_text(out, words[i] ? words[i] : "");
-        putc(',', out);
-    }
-    put_count(out, row->lanes);
-    put_count(out, row->ranks);
-    if (row->step > 0)
-        fprintf(out, "%g", row->step);
-    putc(',', out);
-    put_count(out, row->cases);
-    put_count(out, row->repeats);
-    fprintf(out, "%s,%s,%.6g,%.6g,%.6g,", row->quantity, row->unit, row->value.median,
-            row->value.lowest, row->value.highest);
-
     struct utsname machine = {.machine = "unknown", .nodename = "unknown"};
-    uname(&machine);
-    const char *const build[] = {build_revision(), build_compiler(), build_flags()};
-    for (size_t i = 0; i < sizeof build / sizeof build[0]; i++) {
-        put_text(out, build[i]);
-        putc(',', out);
-    }
-    put_processor(out, machine.machine);
-    putc(',', out);
-    put_text(out, machine.nodename);
+    char number[BENCH_HIGHEST + 1][32] = {{0}}, processor[256], date[16] = "";
+    const int counts[][2] = {{BENCH_LANES, row->lanes},
+                             {BENCH_RANKS, row->ranks},
+                             {BENCH_CASES, row->cases},
+                             {BENCH_REPEATS, row->repeats}};
     const time_t now = time(NULL);
     struct tm day;
-    char date[16] = "";
+    uname(&machine);
+    snprintf(processor, sizeof processor, "%s", machine.machine);
+    find_processor(processor, sizeof processor);
     if (gmtime_r(&now, &day))
         strftime(date, sizeof date, "%Y-%m-%d", &day);
-    fprintf(out, ",%s\n", date);
+    for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
+        if (counts[i][1] > 0)
+            snprintf(number[counts[i][0]], sizeof number[0], "%d", counts[i][1]);
+    if (row->step > 0)
+        snprintf(number[BENCH_STEP], sizeof number[0], "%g", row->step);
+    snprintf(number[BENCH_MEDIAN], sizeof number[0], "%.6g", row->value.median);
+    snprintf(number[BENCH_LOWEST], sizeof number[0], "%.6g", row->value.lowest);
+    snprintf(number[BENCH_HIGHEST], sizeof number[0], "%.6g", row->value.highest);
+    put_line(out, (const char *const[BENCH_COLUMN_COUNT]){row->subject,
+                                                          row->scene,
+                                                          row->regime,
+                                                          row->method,
+                                                          row->isa,
+                                                          number[BENCH_LANES],
+                                                          number[BENCH_RANKS],
+                                                          number[BENCH_STEP],
+                                                          number[BENCH_CASES],
+                                                          number[BENCH_REPEATS],
+                                                          row->quantity,
+                                                          row->unit,
+                                                          number[BENCH_MEDIAN],
+                                                          number[BENCH_LOWEST],
+                                                          number[BENCH_HIGHEST],
+                                                          build_revision(),
+                                                          build_compiler(),
+                                                          build_flags(),
+                                                          processor,
+                                                          machine.nodename,
+                                                          date});
 }

@@ -34,8 +34,40 @@ struct bench_row {
     const char *quantity, *unit;
     struct bench_spread value;
 };
-/* The names of the columns, and a line. Every line ends in what program, compiler, processor,
+/* The columns of the table of results. Every line ends in what program, compiler, processor,
  * machine and day it comes from. */
+#define BENCH_COLUMNS(X)                                                                           \
+    X(SUBJECT, subject)                                                                            \
+    X(SCENE, scene)                                                                                \
+    X(REGIME, regime)                                                                              \
+    X(METHOD, method)                                                                              \
+    X(ISA, isa)                                                                                    \
+    X(LANES, lanes)                                                                                \
+    X(RANKS, ranks)                                                                                \
+    X(STEP, step_s)                                                                                \
+    X(CASES, cases)                                                                                \
+    X(REPEATS, repeats)                                                                            \
+    X(QUANTITY, quantity)                                                                          \
+    X(UNIT, unit)                                                                                  \
+    X(MEDIAN, median)                                                                              \
+    X(LOWEST, lowest)                                                                              \
+    X(HIGHEST, highest)                                                                            \
+    X(REVISION, revision)                                                                          \
+    X(COMPILER, compiler)                                                                          \
+    X(FLAGS, flags)                                                                                \
+    X(PROCESSOR, processor)                                                                        \
+    X(MACHINE, machine)                                                                            \
+    X(DATE, date)
+
+enum bench_column {
+#define BENCH_COLUMN(NAME, name) BENCH_##NAME,
+    BENCH_COLUMNS(BENCH_COLUMN)
+#undef BENCH_COLUMN
+        BENCH_COLUMN_COUNT,
+};
+extern const char *const bench_column_names[BENCH_COLUMN_COUNT];
+
+/* The names, and a line. */
 void bench_csv_head(FILE *out);
 void bench_csv_row(FILE *out, const struct bench_row *row);
 

@@ -2,12 +2,8 @@
 #include "accuracy.h"
 #include "studies.h"
 
-#include "analysis/table/json.h"
-
 #include <inttypes.h>
-#include <jansson.h>
 #include <math.h>
-#include <stdio.h>
 
 extern const struct command command_accuracy; /* below */
 
@@ -15,42 +11,69 @@ static const double measuring_budget = 0.3; /* s per method and step */
 
 /* ---- text and JSON ------------------------------------------------------------------------ */
 
-static void print_row(const struct accuracy *a, size_t k)
+/* What a row's errors are: of the reference itself, or of what was not compared, there are none. */
+static void add_errors(struct table *t, const struct accuracy *a, size_t k)
 {
     const struct accuracy_row *row = &a->row[k];
-    char tolerance[16] = "-", failed[64] = "";
-    if (!isnan(row->tolerance))
-        snprintf(tolerance, sizeof tolerance, "%.0e", row->tolerance);
-    if (row->failed > 0) {
-        snprintf(failed, sizeof failed, "  gave up %" PRIu64 " of %" PRIu64 ": %s", row->failed,
-                 row->cases, stance_failure_name[row->failure]);
-    }
-    printf("  %-13s %8.1e %6s %10.3g %9.0f", row->method->name, row->step, tolerance,
-           row->cost.median, row->evaluations);
-    if (k == a->truth) {
-        printf("   reference%s\n", failed);
-    } else if (a->labels) {
-        const double share = row->compared > 0 ? (double)row->differ / (double)row->compared : NAN;
-        printf(" %7" PRIu64 " of %" PRIu64 " (%.3f %%), %" PRIu64 " inside%s\n", row->differ,
-               row->compared, 100 * share, row->inside, failed);
-    } else {
-        printf("  %9.2e %9.2e %8.0e %8.0e %8.0e %9.1e%s\n", row->position, row->velocity,
-               row->signorini, row->coulomb, row->dissipation, row->energy_gain, failed);
-    }
+    const bool compared = row->compared > 0 && k != a->truth;
+    const bool paths = compared && !a->labels, cells = compared && a->labels;
+    const struct table_value none = as_nothing(k == a->truth ? "reference" : NULL);
+    TABLE_FACTS(
+        t,
+        {{"position_error", "position", "%.2e", .before = "  ", .width = 9},
+         paths ? as_number(row->position) : none},
+        {{"velocity_error", "velocity", "%.2e", .width = 9},
+         as_number(paths ? row->velocity : NAN)},
+        {{"cells_unlike", "unlike", .width = 9}, cells ? as_whole(row->differ) : none},
+        {{"of", "cells", .hidden = TABLE_NO_JSON, .before = " of ", .left = true},
+         as_whole(row->compared)},
+        {{"share", "share", "%.3f %%", .hidden = TABLE_NO_JSON, .width = 8, .percent = true},
+         as_number(cells ? (double)row->differ / (double)row->compared : NAN)},
+        {{"cells_unlike_inside", "inside", .width = 6},
+         cells ? as_whole(row->inside) : as_nothing(NULL)});
 }
 
-static void print_text(const struct accuracy *a, const struct results *r)
+static void add_row(struct table *t, const struct accuracy *a, size_t k)
+{
+    const struct accuracy_row *row = &a->row[k];
+    char remark[96];
+    snprintf(remark, sizeof remark, "gave up %" PRIu64 " of %" PRIu64 ": %s", row->failed,
+             row->cases, stance_failure_name[row->failure]);
+    TABLE_FACTS(
+        t, {{"method", "method", .width = 13, .left = true}, as_text(row->method->name)},
+        {{"step", "step/s", "%.1e", .width = 8}, as_number(row->step)},
+        {{"tolerance", "toler.", "%.0e", .width = 6}, as_number(row->tolerance)},
+        {{.name = "reference"}, as_truth(k == a->truth)}, {{.name = "cases"}, as_whole(row->cases)},
+        {{.name = "failed"}, as_whole(row->failed)},
+        {{"microseconds_per_second", "us per s", "%.3g", .width = 10}, as_number(row->cost.median)},
+        {{.name = "microseconds_low"}, as_number(row->cost.low)},
+        {{.name = "microseconds_high"}, as_number(row->cost.high)},
+        {{"evaluations_per_second", "evals/s", "%.0f", .width = 9}, as_number(row->evaluations)},
+        {{.name = "events_per_second"}, as_number(row->events)});
+    add_errors(t, a, k);
+    TABLE_FACTS(
+        t, {{"signorini_residual", "Signor.", "%.0e", .width = 8}, as_number(row->signorini)},
+        {{"coulomb_residual", "Coulomb", "%.0e", .width = 8}, as_number(row->coulomb)},
+        {{"dissipation_residual", "dissip.", "%.0e", .width = 8}, as_number(row->dissipation)},
+        {{"energy_gain", "energy/J", "%.1e", .width = 9}, as_number(row->energy_gain)},
+        {{"remark", .hidden = TABLE_VIEW_ONLY, .before = "  ", .empty = ""},
+         as_nothing(row->failed > 0 ? remark : NULL)});
+    table_end_row(t);
+}
+
+static bool print_text(const struct accuracy *a, const struct results *r, const struct table *t)
 {
     printf("\n%s\n", r->title);
-    printf("  %-13s %8s %6s %10s %9s", "method", "step/s", "toler.", "us per s", "evals/s");
-    if (a->labels) {
-        printf("  cells unlike the reference (share of the grid), inside its domains\n");
-    } else {
-        printf("  %9s %9s %8s %8s %8s %9s\n", "position", "velocity", "Signor.", "Coulomb",
-               "dissip.", "energy/J");
-    }
-    for (size_t k = 0; k < a->rows; k++)
-        print_row(a, k);
+    const bool good = table_write_text(
+        t, stdout,
+        a->labels ? "method step tolerance microseconds_per_second evaluations_per_second "
+                    "cells_unlike of share cells_unlike_inside remark"
+                  : "method step tolerance microseconds_per_second evaluations_per_second "
+                    "position_error velocity_error signorini_residual coulomb_residual "
+                    "dissipation_residual energy_gain remark",
+        0);
+    if (a->labels)
+        puts("  (cells unlike the reference, share of the grid; inside: of its domains)");
     for (size_t k = 0; k < a->orders; k++) {
         const struct accuracy_order *order = &a->order[k];
         if (!isnan(order->position)) {
@@ -60,52 +83,25 @@ static void print_text(const struct accuracy *a, const struct results *r)
                 order->by_tolerance ? "tolerance" : "step", order->from, order->to, order->rows);
         }
     }
+    return good;
 }
 
-static json_t *row_json(const struct accuracy *a, size_t k)
+static json_t *study_json(const struct accuracy *a, const struct results *r, const struct table *t)
 {
-    const struct accuracy_row *row = &a->row[k];
-    const bool compared = row->compared > 0 && k != a->truth;
-    return json_pack(
-        "{s:s, s:o, s:o, s:b, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
-        "s:o, "
-        "s:o}",
-        "method", row->method->name, "step", results_json_number(row->step), "tolerance",
-        results_json_number(row->tolerance), "reference", k == a->truth, "cases",
-        (json_int_t)row->cases, "failed", (json_int_t)row->failed, "microseconds_per_second",
-        results_json_number(row->cost.median), "microseconds_low",
-        results_json_number(row->cost.low), "microseconds_high",
-        results_json_number(row->cost.high), "evaluations_per_second",
-        results_json_number(row->evaluations), "events_per_second",
-        results_json_number(row->events), "position_error",
-        compared && !a->labels ? results_json_number(row->position) : json_null(), "velocity_error",
-        compared && !a->labels ? results_json_number(row->velocity) : json_null(), "cells_unlike",
-        compared && a->labels ? json_integer((json_int_t)row->differ) : json_null(),
-        "cells_unlike_inside",
-        compared && a->labels ? json_integer((json_int_t)row->inside) : json_null(),
-        "signorini_residual", results_json_number(row->signorini), "coulomb_residual",
-        results_json_number(row->coulomb), "dissipation_residual",
-        results_json_number(row->dissipation), "energy_gain",
-        results_json_number(row->energy_gain));
-}
-
-static json_t *study_json(const struct accuracy *a, const struct results *r)
-{
-    json_t *rows = json_array(), *orders = json_array();
-    for (size_t k = 0; k < a->rows; k++)
-        json_array_append_new(rows, row_json(a, k));
+    json_t *orders = json_array();
     for (size_t k = 0; k < a->orders; k++) {
         const struct accuracy_order *order = &a->order[k];
         json_array_append_new(
-            orders, json_pack("{s:s, s:s, s:o, s:o, s:o, s:o, s:I}", "method", order->method->name,
-                              "of", order->by_tolerance ? "tolerance" : "step", "position",
-                              results_json_number(order->position), "velocity",
-                              results_json_number(order->velocity), "from",
-                              results_json_number(order->from), "to",
-                              results_json_number(order->to), "rows", (json_int_t)order->rows));
+            orders,
+            TABLE_OBJECT({"method", as_text(order->method->name)},
+                         {"of", as_text(order->by_tolerance ? "tolerance" : "step")},
+                         {"position", as_number(order->position)},
+                         {"velocity", as_number(order->velocity)}, {"from", as_number(order->from)},
+                         {"to", as_number(order->to)}, {"rows", as_whole(order->rows)}));
     }
-    return json_pack("{s:s, s:s, s:s, s:o, s:o}", "name", r->name, "title", r->title, "file",
-                     r->file, "rows", rows, "orders", orders);
+    return TABLE_OBJECT({"name", as_text(r->name)}, {"title", as_text(r->title)},
+                        {"file", as_text(r->file)}, {"rows", as_tree(table_json(t, false))},
+                        {"orders", as_tree(orders)});
 }
 
 /* ---- the command --------------------------------------------------------------------------- */
@@ -116,14 +112,16 @@ static bool study(const struct results *r, const char *directory, const char *st
     struct accuracy a;
     if (!accuracy_make(&a, r, measuring_budget, message))
         return false;
+    struct table t = {0};
     bool good = true;
-    if (object) {
-        *object = study_json(&a, r);
-    } else {
-        print_text(&a, r);
-        fflush(stdout);
-        good = accuracy_plot(&a, r, directory, stem, message);
-    }
+    for (size_t k = 0; k < a.rows; k++)
+        add_row(&t, &a, k);
+    if (object)
+        *object = study_json(&a, r, &t);
+    else
+        good = print_text(&a, r, &t) && fflush(stdout) == 0 &&
+               accuracy_plot(&a, r, directory, stem, message);
+    table_free(&t);
     accuracy_free(&a);
     return good;
 }

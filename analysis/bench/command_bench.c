@@ -6,10 +6,10 @@
  */
 #include "bench.h"
 
+#include "analysis/table/table.h"
 #include "runner/base/command.h"
 #include "runner/plan/instruction_set.h"
 
-#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,8 +24,8 @@ static const double wanted_time = 0.02; /* s, of one measurement */
 struct selection {
     const char *scene, *regime, *method;
     int repeats, cases; /* cases 0: as many as take wanted_time */
-    bool csv;
-    json_t *rows; /* NULL: text */
+    enum table_form form;
+    struct table rows;
 };
 
 /* One kernel in one workload. */
@@ -78,25 +78,44 @@ static void take_spread(struct measurement *m, const stance_result *results, int
         (struct bench_spread){second * time.median, second * time.lowest, second * time.highest};
 }
 
-static void report(const struct selection *what, const char *regime, const stance_case *c,
+static void add_row(struct table *t, const char *regime, const struct measurement *m,
+                    double scalar_ns)
+{
+    const stance_kernel *const k = m->kernel;
+    char remark[48];
+    snprintf(remark, sizeof remark, "%d of %d cases failed", m->failed, m->cases);
+    TABLE_FACTS(
+        t, {{"scene", "scene", .width = 6, .left = true, .before = ""}, as_text(k->scene->name)},
+        {{"regime", "regime", .width = 9, .left = true}, as_text(regime)},
+        {{"method", "method", .width = 12, .left = true}, as_text(k->method->name)},
+        {{"isa", "isa", .width = 7, .left = true}, as_text(k->isa)},
+        {{"lanes", "lanes", .width = 5}, as_whole((uint64_t)k->lanes)},
+        {{"ns_per_step", "ns / step", "%.1f", .before = "  ", .width = 9}, as_number(m->ns.median)},
+        {{"ns_min", "lowest", "%.1f", .before = "  ", .width = 9}, as_number(m->ns.lowest)},
+        {{"ns_max", "highest", "%.1f", .width = 9}, as_number(m->ns.highest)},
+        {{"ns_per_second", "ns / sim. s", "%.0f", .before = "  ", .width = 12},
+         as_number(m->per_second.median)},
+        {{"iterations_per_step", "iterations", "%.2f", .before = "  ", .width = 10},
+         as_number(m->iterations)},
+        {{"speedup_over_scalar", "x scalar", "%.2f", .width = 9},
+         as_number(scalar_ns / m->ns.median)},
+        {{.name = "failed"}, as_whole((uint64_t)m->failed)},
+        {{.name = "cases"}, as_whole((uint64_t)m->cases)}, {{.name = "steps"}, as_number(m->steps)},
+        {{"remark", .hidden = TABLE_VIEW_ONLY, .before = "  ", .empty = ""},
+         as_nothing(m->failed ? remark : NULL)});
+    table_end_row(t);
+}
+
+static void report(struct selection *what, const char *regime, const stance_case *c,
                    const struct measurement *m, double scalar_ns)
 {
     const stance_kernel *const k = m->kernel;
-    const char *const scene = k->scene->name;
-    if (what->rows) {
-        json_array_append_new(
-            what->rows,
-            json_pack("{s:s, s:s, s:s, s:s, s:i, s:f, s:f, s:f, s:f, s:f, s:o, s:i, s:i, s:f}",
-                      "scene", scene, "regime", regime, "method", k->method->name, "isa", k->isa,
-                      "lanes", k->lanes, "ns_per_step", m->ns.median, "ns_min", m->ns.lowest,
-                      "ns_max", m->ns.highest, "ns_per_second", m->per_second.median,
-                      "iterations_per_step", m->iterations, "speedup_over_scalar",
-                      isnan(scalar_ns) ? json_null() : json_real(scalar_ns / m->ns.median),
-                      "failed", m->failed, "cases", m->cases, "steps", m->steps));
-    } else if (what->csv) {
-        struct bench_row row = {"stance",        scene, regime,  k->method->name, k->isa,
-                                k->lanes,        1,     c->step, m->cases,        what->repeats,
-                                "time per step", "ns",  m->ns};
+    if (what->form != TABLE_AS_CSV) {
+        add_row(&what->rows, regime, m, scalar_ns);
+    } else {
+        struct bench_row row = {
+            "stance", k->scene->name, regime,        k->method->name, k->isa, k->lanes, 1,
+            c->step,  m->cases,       what->repeats, "time per step", "ns",   m->ns};
         bench_csv_row(stdout, &row);
         row.quantity = "time per simulated second";
         row.value = m->per_second;
@@ -106,15 +125,13 @@ static void report(const struct selection *what, const char *regime, const stanc
             row.value = (struct bench_spread){m->failed, m->failed, m->failed};
             bench_csv_row(stdout, &row);
         }
-    } else {
-        printf("%-6s %-9s %-12s %-7s %5d  %9.1f  %9.1f %9.1f  %12.0f  %10.2f ", scene, regime,
-               k->method->name, k->isa, k->lanes, m->ns.median, m->ns.lowest, m->ns.highest,
-               m->per_second.median, m->iterations);
-        if (isnan(scalar_ns))
-            printf("%9s", "-");
-        else
-            printf("%9.2f", scalar_ns / m->ns.median);
-        printf(m->failed ? "  %d of %d cases failed\n" : "\n", m->failed, m->cases);
+    }
+    if (what->form == TABLE_AS_TEXT) {
+        table_write_text(&what->rows, stdout,
+                         "scene regime method isa lanes ns_per_step ns_min ns_max ns_per_second "
+                         "iterations_per_step speedup_over_scalar remark",
+                         0);
+        table_clear(&what->rows);
     }
     fflush(stdout);
 }
@@ -151,8 +168,7 @@ static double one_lane(const struct measurement *m, int count)
     return NAN;
 }
 
-static bool bench_workload(const struct selection *what, const stance_scene *scene,
-                           const char *regime)
+static bool bench_workload(struct selection *what, const stance_scene *scene, const char *regime)
 {
     stance_case *cases = calloc(MOST_CASES, sizeof *cases);
     stance_result *results = calloc(MOST_CASES, sizeof *results);
@@ -182,16 +198,13 @@ static bool bench_workload(const struct selection *what, const stance_scene *sce
     return good;
 }
 
-static int bench(const struct selection *what)
+static int bench(struct selection *what)
 {
     bool any = false;
-    if (what->csv)
+    if (what->form == TABLE_AS_CSV)
         bench_csv_head(stdout);
-    else if (!what->rows)
-        printf("instruction set in use: %s\n"
-               "%-6s %-9s %-12s %-7s %5s  %9s  %9s %9s  %12s  %10s %9s\n",
-               instruction_set(), "scene", "regime", "method", "isa", "lanes", "ns / step",
-               "lowest", "highest", "ns / sim. s", "iterations", "x scalar");
+    else if (what->form == TABLE_AS_TEXT)
+        printf("instruction set in use: %s\n", instruction_set());
     for (const stance_scene *const *scene = stance_scenes(); *scene; scene++) {
         if (what->scene && strcmp(what->scene, (*scene)->name) != 0)
             continue;
@@ -259,14 +272,11 @@ static int run(int argc, char **argv)
         fprintf(stderr, "stance bench: unknown method '%s'\n", what.method);
         return EXIT_USAGE;
     }
-    what.csv = csv > 0;
-    what.rows = json ? json_array() : NULL;
-    const int code = bench(&what);
-    if (what.rows) {
-        json_dumpf(what.rows, stdout, JSON_INDENT(1));
-        putchar('\n');
-        json_decref(what.rows);
-    }
+    what.form = table_form(json, csv);
+    int code = bench(&what);
+    if (json && !table_write_json(table_json(&what.rows, false), stdout))
+        code = EXIT_IO;
+    table_free(&what.rows);
     return code;
 }
 

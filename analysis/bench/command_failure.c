@@ -2,12 +2,8 @@
 #include "failure.h"
 #include "studies.h"
 
-#include "analysis/table/json.h"
-
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 extern const struct command command_failure; /* below */
 
@@ -21,26 +17,29 @@ static void name_of(const struct failure_row *row, char text[40])
         snprintf(text, 40, "%s %.0e", row->method->name, row->tolerance);
 }
 
-static void print_shares(const struct failure *f)
+static bool print_shares(const struct failure *f)
 {
-    printf("  %-28s", "share of the cases, %");
-    for (size_t k = 0; k < f->rows; k++) {
-        char name[40];
-        name_of(&f->row[k], name);
-        printf(" %18s", name);
-    }
-    putchar('\n');
+    struct table t = {0};
     for (int v = 0; v < FAILURE_VERDICT_COUNT; v++) {
         uint64_t sum = 0;
         for (size_t k = 0; k < f->rows; k++)
             sum += f->row[k].count[v];
         if (sum == 0)
             continue;
-        printf("  %-28s", failure_styles[v].text);
-        for (size_t k = 0; k < f->rows; k++)
-            printf(" %18.2f", 100 * (double)f->row[k].count[v] / (double)f->cells);
-        putchar('\n');
+        TABLE_FACTS(
+            &t, {{"verdict", "share of the cases, %", .width = 28, .left = true, .group = "seen"},
+                 as_text(failure_styles[v].text)});
+        for (size_t k = 0; k < f->rows; k++) {
+            char name[40];
+            name_of(&f->row[k], name);
+            TABLE_FACTS(&t, {{name, name, "%.2f", .width = 18, .percent = true, .group = "seen"},
+                             as_number((double)f->row[k].count[v] / (double)f->cells)});
+        }
+        table_end_row(&t);
     }
+    const bool good = table_write_text(&t, stdout, "seen/", 0);
+    table_free(&t);
+    return good;
 }
 
 static void print_row(const struct failure *f, const struct failure_row *row)
@@ -69,15 +68,16 @@ static void print_row(const struct failure *f, const struct failure_row *row)
     }
 }
 
-static void print_text(const struct failure *f, const struct results *r)
+static bool print_text(const struct failure *f, const struct results *r)
 {
     printf("\n%s\n  %s (%zu values) x %s (%zu values)\n", r->title, r->axis[1].name,
            r->axis[1].count, r->axis[2].name, r->axis[2].count);
-    print_shares(f);
+    const bool good = print_shares(f);
     if (f->line.axis > 0)
         printf("  line of theory: %s\n", f->line.text);
     for (size_t k = 0; k < f->rows; k++)
         print_row(f, &f->row[k]);
+    return good;
 }
 
 /* ---- JSON --------------------------------------------------------------------------------- */
@@ -86,40 +86,37 @@ static json_t *axis_json(const struct results_axis *axis)
 {
     json_t *values = json_array();
     for (size_t i = 0; i < axis->count; i++)
-        json_array_append_new(values, results_json_value(axis, i));
-    return json_pack("{s:s, s:s, s:o}", "name", axis->name, "unit", axis->unit, "values", values);
+        table_append(values, as_place(axis, i));
+    return TABLE_OBJECT({"name", as_text(axis->name)}, {"unit", as_text(axis->unit)},
+                        {"values", as_tree(values)});
 }
 
 static json_t *row_json(const struct failure *f, size_t k)
 {
     const struct failure_row *row = &f->row[k];
     json_t *shares = json_object(), *reasons = json_object(), *map = json_array();
-    for (int v = 0; v < FAILURE_VERDICT_COUNT; v++) {
-        json_object_set_new(shares, failure_styles[v].name,
-                            json_integer((json_int_t)row->count[v]));
-    }
-    for (int v = 0; v < STANCE_FAILURE_COUNT; v++) {
-        if (row->reason[v] > 0) {
-            json_object_set_new(reasons, stance_failure_name[v],
-                                json_integer((json_int_t)row->reason[v]));
-        }
-    }
+    for (int v = 0; v < FAILURE_VERDICT_COUNT; v++)
+        table_put(shares, failure_styles[v].name, as_whole(row->count[v]));
+    for (int v = 0; v < STANCE_FAILURE_COUNT; v++)
+        if (row->reason[v] > 0)
+            table_put(reasons, stance_failure_name[v], as_whole(row->reason[v]));
     for (size_t i = 0; i < f->count[1]; i++) {
         json_t *line = json_array();
         for (size_t j = 0; j < f->count[2]; j++) {
-            const size_t index = k * f->cells + i * f->count[2] + j;
-            json_array_append_new(line, json_string(failure_styles[f->verdict[index]].name));
+            const uint8_t verdict = f->verdict[k * f->cells + i * f->count[2] + j];
+            table_append(line, as_text(failure_styles[verdict].name));
         }
         json_array_append_new(map, line);
     }
-    return json_pack(
-        "{s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "method", row->method->name,
-        "tolerance", results_json_number(row->tolerance), "cases", shares, "failed", reasons,
-        "energy_gain", results_json_number(row->energy_gain), "energy_share",
-        results_json_number(row->energy_share), "max_penetration",
-        results_json_number(row->penetration), "signorini_residual",
-        results_json_number(row->signorini), "coulomb_residual", results_json_number(row->coulomb),
-        "dissipation_residual", results_json_number(row->dissipation), "map", map);
+    return TABLE_OBJECT({"method", as_text(row->method->name)},
+                        {"tolerance", as_number(row->tolerance)}, {"cases", as_tree(shares)},
+                        {"failed", as_tree(reasons)}, {"energy_gain", as_number(row->energy_gain)},
+                        {"energy_share", as_number(row->energy_share)},
+                        {"max_penetration", as_number(row->penetration)},
+                        {"signorini_residual", as_number(row->signorini)},
+                        {"coulomb_residual", as_number(row->coulomb)},
+                        {"dissipation_residual", as_number(row->dissipation)},
+                        {"map", as_tree(map)});
 }
 
 static json_t *theory_json(const struct failure *f, const struct results *r)
@@ -128,10 +125,10 @@ static json_t *theory_json(const struct failure *f, const struct results *r)
         return json_null();
     json_t *values = json_array();
     for (size_t i = 0; i < f->count[f->line.axis]; i++)
-        json_array_append_new(values, results_json_number(f->line.value[i]));
-    return json_pack("{s:s, s:s, s:s, s:o}", "text", f->line.text, "along",
-                     r->axis[f->line.axis].name, "of", r->axis[3 - f->line.axis].name, "values",
-                     values);
+        table_append(values, as_number(f->line.value[i]));
+    return TABLE_OBJECT(
+        {"text", as_text(f->line.text)}, {"along", as_text(r->axis[f->line.axis].name)},
+        {"of", as_text(r->axis[3 - f->line.axis].name)}, {"values", as_tree(values)});
 }
 
 static json_t *study_json(const struct failure *f, const struct results *r)
@@ -141,8 +138,9 @@ static json_t *study_json(const struct failure *f, const struct results *r)
         json_array_append_new(axes, axis_json(&r->axis[a]));
     for (size_t k = 0; k < f->rows; k++)
         json_array_append_new(rows, row_json(f, k));
-    return json_pack("{s:s, s:s, s:s, s:o, s:o, s:o}", "name", r->name, "title", r->title, "file",
-                     r->file, "axes", axes, "theory", theory_json(f, r), "rows", rows);
+    return TABLE_OBJECT({"name", as_text(r->name)}, {"title", as_text(r->title)},
+                        {"file", as_text(r->file)}, {"axes", as_tree(axes)},
+                        {"theory", as_tree(theory_json(f, r))}, {"rows", as_tree(rows)});
 }
 
 /* ---- the command --------------------------------------------------------------------------- */
@@ -154,13 +152,11 @@ static bool study(const struct results *r, const char *directory, const char *st
     if (!failure_make(&f, r, message))
         return false;
     bool good = true;
-    if (object) {
+    if (object)
         *object = study_json(&f, r);
-    } else {
-        print_text(&f, r);
-        fflush(stdout);
-        good = failure_plot(&f, r, directory, stem, message);
-    }
+    else
+        good = print_text(&f, r) && fflush(stdout) == 0 &&
+               failure_plot(&f, r, directory, stem, message);
     failure_free(&f);
     return good;
 }

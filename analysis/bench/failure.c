@@ -1,6 +1,7 @@
 /* failure.c - judges every cell of the maps of a failure study. */
 #include "failure.h"
 
+#include "runner/base/message.h"
 #include "runner/plan/plan.h"
 
 #include <math.h>
@@ -22,12 +23,6 @@ struct answers {
     double *gain, *penetration, *signorini, *coulomb, *dissipation, *end_time, *final;
     size_t coordinates;
 };
-
-static bool fail(stance_message *message, const char *text)
-{
-    snprintf(message->text, sizeof message->text, "%s", text);
-    return false;
-}
 
 /* ---- reading ------------------------------------------------------------------------------ */
 
@@ -57,18 +52,16 @@ static bool answers_read(struct answers *x, const struct results *r, const stanc
     for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
         if (!results_answer(r, wanted[i].name, wanted[i].values, message))
             return false;
-        if (!*wanted[i].values) {
-            snprintf(message->text, sizeof message->text, "%s was not recorded", wanted[i].name);
-            return false;
-        }
+        if (!*wanted[i].values)
+            return complain(message, "%s was not recorded", wanted[i].name);
     }
     x->coordinates = (size_t)scene->coordinates;
     const size_t size = (size_t)r->cases * 2 * x->coordinates;
     x->final = malloc(size * sizeof *x->final);
     if (!x->final)
-        return fail(message, "not enough memory");
+        return no_memory(message);
     return results_numbers(r, "final_state", x->final, size) == size ||
-           fail(message, "final_state was not recorded");
+           complain(message, "final_state was not recorded");
 }
 
 static bool make_rows(struct failure *f, const struct scenario *s, const struct results *r,
@@ -76,7 +69,7 @@ static bool make_rows(struct failure *f, const struct scenario *s, const struct 
 {
     if (s->axes != 3 || s->sample.given || r->single ||
         strcmp(s->axis[0].path[0], "method.name") != 0)
-        return fail(message, "three axes are needed: method.name, then the two of the map");
+        return complain(message, "three axes are needed: method.name, then the two of the map");
     for (int a = 0; a < 3; a++)
         f->count[a] = s->axis[a].count;
     f->rows = f->count[0];
@@ -86,7 +79,7 @@ static bool make_rows(struct failure *f, const struct scenario *s, const struct 
     f->share = calloc(r->cases, sizeof *f->share);
     f->truth = calloc(f->cells, sizeof *f->truth);
     if (!f->row || !f->verdict || !f->share || !f->truth || f->rows > INT8_MAX)
-        return fail(message, "not enough memory");
+        return no_memory(message);
     for (size_t k = 0; k < f->rows; k++) {
         struct scenario_values values;
         scenario_case_values(s, k * f->cells, &values);
@@ -105,7 +98,7 @@ static bool start_energies(const struct scenario *s, uint64_t cases, double *ene
     struct plan plan;
     struct plan_error error = {0};
     if (!plan_make(&plan, s, false, 0, false, &error))
-        return fail(message, error.message.text);
+        return complain(message, "%s", error.message.text);
     const bool good = plan_compute_designs(&plan, &alone, &error);
     for (uint64_t i = 0; good && i < cases; i++) {
         stance_case c;
@@ -116,7 +109,7 @@ static bool start_energies(const struct scenario *s, uint64_t cases, double *ene
         energy[i] = fmax(energy[i], least_energy);
     }
     plan_free(&plan);
-    return good || fail(message, error.message.text);
+    return good || complain(message, "%s", error.message.text);
 }
 
 /* ---- the truth ---------------------------------------------------------------------------- */
@@ -273,7 +266,7 @@ bool failure_make(struct failure *f, const struct results *r, stance_message *me
     *f = (struct failure){.rows = 0};
     if (!s || !results_scenario(r, s)) {
         free(s);
-        return fail(message, "this version cannot read the file's scenario");
+        return complain(message, "this version cannot read the file's scenario");
     }
     const bool good = make_rows(f, s, r, message) && failure_theory(&f->line, s, message) &&
                       judge_all(f, s, r, message);

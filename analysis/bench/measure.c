@@ -1,6 +1,7 @@
 /* measure.c - repeats a group of cases and takes the median of its times. */
 #include "measure.h"
 
+#include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/instruction_set.h"
 
@@ -65,7 +66,7 @@ bool measure_rows(const struct plan *plan, uint64_t first, size_t count, double 
 
     *cost = (struct measure_cost){NAN, NAN, NAN, 0};
     if (!cases || !results) {
-        snprintf(message->text, sizeof message->text, "not enough memory");
+        complain(message, "not enough memory");
         free(cases);
         free(results);
         return false;

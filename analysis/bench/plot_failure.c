@@ -8,27 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    LEFT = 122,
-    RIGHT = 24,
-    PANEL_TITLE = 24,
-    GAP = 46,
-    AXIS = 76,
-    LINE = 22,
-    MOST_COLUMNS = 3,
-    NAMES = 264, /* of the table under the maps */
-    COLUMN = 152,
-    COLOUR_BAR = 40,
-};
+GNUPLOT_SCRIPT(plot_failure_gp, "analysis/bench/plot_failure.gp");
 
 static const double lowest_share = 1e-16, highest_share = 10;
-
-struct layout {
-    struct plot_axis across, up; /* axes 1 and 2 of the file */
-    int panels, columns, rows;
-    double width, height; /* of a panel, px */
-    int canvas_width;
-};
 
 /* Steps that divide a time evenly are a ladder but for rounding: such an axis counts as even when
  * no value is further than a third of a cell from where it is drawn. */
@@ -53,25 +35,6 @@ static void make_axis(struct plot_axis *along, const struct results_axis *axis)
     along->high = along->first + ((double)n - 0.5) * along->step;
 }
 
-static void arrange(struct layout *layout, const struct failure *f, const struct results *r)
-{
-    make_axis(&layout->across, &r->axis[1]);
-    make_axis(&layout->up, &r->axis[2]);
-    layout->panels = (int)f->rows;
-    layout->columns = layout->panels < MOST_COLUMNS ? layout->panels : MOST_COLUMNS;
-    layout->rows = (layout->panels + layout->columns - 1) / layout->columns;
-    layout->width = 300;
-    layout->height = 240;
-    const int maps = LEFT + (int)(layout->columns * (layout->width + GAP)) - GAP + RIGHT;
-    const int table = LEFT + NAMES + layout->panels * COLUMN + RIGHT;
-    layout->canvas_width = maps > table ? maps : table;
-}
-
-static double panels_height(const struct layout *layout)
-{
-    return layout->rows * (layout->height + PANEL_TITLE + 14) + AXIS;
-}
-
 static void row_name(const struct failure_row *row, char *text, size_t size)
 {
     if (isnan(row->tolerance))
@@ -80,125 +43,57 @@ static void row_name(const struct failure_row *row, char *text, size_t size)
         snprintf(text, size, "%s %.0e", row->method->name, row->tolerance);
 }
 
-static void panel_place(const struct layout *layout, int panel, double top, double *x, double *y)
-{
-    const int row = panel / layout->columns, column = panel % layout->columns;
-    *x = LEFT + column * (layout->width + GAP);
-    *y = top + row * (layout->height + PANEL_TITLE + 14) + PANEL_TITLE;
-}
-
-/* Is nothing below a panel? */
-static bool is_lowest(const struct layout *layout, int panel)
-{
-    return panel + layout->columns >= layout->panels;
-}
-
-/* Titles of the panels and labels of the axes, which stand left of and below all panels. */
-static void put_labels(struct gnuplot *g, const struct failure *f, const struct layout *layout,
-                       double top)
-{
-    char text[64];
-    double x, y;
-    for (int p = 0; p < layout->panels; p++) {
-        row_name(&f->row[p], text, sizeof text);
-        panel_place(layout, p, top, &x, &y);
-        gnuplot_label(g, x + layout->width / 2, y - 11, text, "center", 12, false);
-    }
-    const double height = panels_height(layout) - AXIS;
-    const double width = layout->columns * (layout->width + GAP) - GAP;
-    plot_axis_label(layout->across.axis, g, LEFT + width / 2, top + height + 40, width, false);
-    plot_axis_label(layout->up.axis, g, 18, top + height / 2, height, true);
-}
-
-static void begin_panel(struct gnuplot *g, const struct layout *layout, int panel, double top)
-{
-    double x, y;
-    panel_place(layout, panel, top, &x, &y);
-    gnuplot_panel(g, x, y, layout->width, layout->height);
-    plot_axis_tics(&layout->across, g->script, 'x', (int)(layout->width / 60),
-                   is_lowest(layout, panel));
-    plot_axis_tics(&layout->up, g->script, 'y', (int)(layout->height / 34),
-                   panel % layout->columns == 0);
-}
-
-/* Name of a file with the cells of a map, row by row from below: colours or (share) numbers. */
-static void put_cells(struct gnuplot *g, const struct failure *f, const struct layout *layout,
-                      int panel, bool share, char name[32])
-{
-    FILE *data = gnuplot_data(g, name);
-    const size_t nx = layout->across.axis->count, ny = layout->up.axis->count;
-    for (size_t j = 0; j < ny; j++) {
-        for (size_t i = 0; i < nx; i++) {
-            const size_t cell =
-                plot_axis_index(&layout->across, i) * ny + plot_axis_index(&layout->up, j);
-            const size_t index = (size_t)panel * f->cells + cell;
-            if (share) {
-                const double value =
-                    log10(fmin(fmax(f->share[index], lowest_share), highest_share));
-                const double shown = isnan(f->share[index]) ? NAN : value;
-                fwrite(&shown, sizeof shown, 1, data);
-                continue;
-            }
-            const unsigned colour =
-                (unsigned)strtoul(failure_styles[f->verdict[index]].colour + 1, NULL, 16);
-            putc((int)(colour >> 16 & 0xff), data);
-            putc((int)(colour >> 8 & 0xff), data);
-            putc((int)(colour & 0xff), data);
-        }
-    }
-    gnuplot_close_data(g, data);
-    fprintf(g->script, "'%s' binary array=(%zu,%zu) dx=%.17g dy=%.17g origin=(%.17g,%.17g)", name,
-            nx, ny, layout->across.step, layout->up.step,
-            layout->across.low + 0.5 * layout->across.step, layout->up.low + 0.5 * layout->up.step);
-}
-
 /* Place of a value that need not be one of the axis; NAN: it has none. */
 static double place_of(const struct plot_axis *along, double value)
 {
     return along->scale == PLOT_LOG ? log10(value) : along->scale == PLOT_LINEAR ? value : NAN;
 }
 
-/* The line of theory: white under black. */
-static bool has_line(const struct failure *f, const struct layout *layout)
-{
-    const struct plot_axis *other = f->line.axis == 1 ? &layout->up : &layout->across;
-    return f->line.axis > 0 && other->scale != PLOT_LIST;
-}
+/* What both pictures show: axes 1 and 2 of the file, the rows' names, and the line of theory. */
+struct maps {
+    const struct failure *f;
+    const struct results *r;
+    struct plot_axis across, up;
+};
 
-static void put_line(struct gnuplot *g, const struct failure *f, const struct layout *layout)
+static void put_line(struct gnuplot *g, const struct maps *maps)
 {
-    char name[32];
-    if (!has_line(f, layout))
-        return;
-    FILE *data = gnuplot_data(g, name);
-    const struct plot_axis *along = f->line.axis == 1 ? &layout->across : &layout->up;
-    const struct plot_axis *other = f->line.axis == 1 ? &layout->up : &layout->across;
-    for (size_t i = 0; i < along->axis->count; i++) {
+    const struct failure *f = maps->f;
+    const struct plot_axis *along = f->line.axis == 1 ? &maps->across : &maps->up;
+    const struct plot_axis *other = f->line.axis == 1 ? &maps->up : &maps->across;
+    const bool any = f->line.axis > 0 && other->scale != PLOT_LIST;
+    gnuplot_set(g, "theory = %d", any);
+    gnuplot_text(g, any ? f->line.text : "", "theory_text");
+    gnuplot_block(g, "theory");
+    for (size_t i = 0; any && i < along->axis->count; i++) {
         const double here = plot_axis_place(along, i), there = place_of(other, f->line.value[i]);
-        if (!isfinite(there)) {
-            fputs("\n", data); /* a gap */
-            continue;
-        }
-        gnuplot_number(data, f->line.axis == 1 ? here : there);
-        putc(' ', data);
-        gnuplot_number(data, f->line.axis == 1 ? there : here);
-        putc('\n', data);
+        GNUPLOT_ROW(g, f->line.axis == 1 ? here : there, f->line.axis == 1 ? there : here);
     }
-    gnuplot_close_data(g, data);
-    fprintf(g->script,
-            ", '%s' using 1:2 with lines lc rgb '#ffffff' lw 3.6 notitle"
-            ", '%s' using 1:2 with lines lc rgb '#000000' lw 1.6 notitle",
-            name, name);
+    if (!any)
+        GNUPLOT_ROW(g, NAN, NAN);
+    gnuplot_end_block(g);
 }
 
-/* A sample of the line with its name, at a place of the canvas. */
-static void put_line_legend(struct gnuplot *g, const struct failure *f, double x, double y)
+static bool begin_page(struct gnuplot *g, const struct maps *maps, const char *subtitle,
+                       const void *values, size_t size, stance_message *message)
 {
-    fprintf(g->script,
-            "set arrow from screen %.6f,%.6f to screen %.6f,%.6f nohead lw 1.6 lc rgb '#000000' "
-            "front\n",
-            x / g->width, 1 - y / g->height, (x + 15) / g->width, 1 - y / g->height);
-    gnuplot_label(g, x + 22, y, f->line.text, "left", 12, false);
+    const struct failure *f = maps->f;
+    const size_t ny = maps->up.axis->count;
+    struct plot_cells cells = {&maps->across, &maps->up, 0, {ny, 1}};
+    char text[64];
+    if (!gnuplot_begin(g, plot_failure_gp, maps->r->title, subtitle, message))
+        return false;
+    plot_axis_write(&maps->across, g, "x");
+    plot_axis_write(&maps->up, g, "y");
+    gnuplot_set(g, "panels = %zu\narray name[%zu]", f->rows, f->rows);
+    for (size_t k = 0; k < f->rows; k++) {
+        row_name(&f->row[k], text, sizeof text);
+        gnuplot_text(g, text, "name[%zu]", k + 1);
+        cells.first = k * f->cells;
+        plot_cells_write(g, &cells, values, size);
+    }
+    put_line(g, maps);
+    return true;
 }
 
 /* ---- verdicts ----------------------------------------------------------------------------- */
@@ -209,14 +104,6 @@ static bool occurs(const struct failure *f, enum failure_verdict verdict)
         if (f->row[k].count[verdict] > 0)
             return true;
     return false;
-}
-
-static int table_rows(const struct failure *f)
-{
-    int rows = 2; /* the heads, and the reasons */
-    for (enum failure_verdict v = 0; v < FAILURE_VERDICT_COUNT; v++)
-        rows += occurs(f, v);
-    return rows + (f->line.axis > 0);
 }
 
 /* "painleve 12 %, events 1 %": why cases gave up, the two most frequent reasons. */
@@ -241,19 +128,19 @@ static void reasons_text(const struct failure_row *row, uint64_t cells, char tex
     }
 }
 
-/* Verdicts against methods: shares of the cells. */
-static void put_table(struct gnuplot *g, const struct failure *f, double y)
+/* Verdicts against methods: shares of the cells; the reasons in two lines. */
+static void put_table(struct gnuplot *g, const struct failure *f)
 {
-    char text[64];
-    for (size_t k = 0; k < f->rows; k++) {
-        row_name(&f->row[k], text, sizeof text);
-        gnuplot_label(g, LEFT + NAMES + (double)k * COLUMN, y, text, "left", 11, false);
-    }
-    y += LINE;
+    char text[64], reasons[2][32];
+    int verdicts = 0;
+    gnuplot_set(g, "array verdict_colour[%d]\narray share[%zu]\narray reason[%zu]",
+                FAILURE_VERDICT_COUNT, FAILURE_VERDICT_COUNT * f->rows, 2 * f->rows);
     for (enum failure_verdict v = 0; v < FAILURE_VERDICT_COUNT; v++) {
+        snprintf(text, sizeof text, "0x%s", failure_styles[v].colour + 1);
+        gnuplot_set(g, "verdict_colour[%d] = %s", v + 1, text);
         if (!occurs(f, v))
             continue;
-        gnuplot_legend(g, LEFT, y, failure_styles[v].colour, failure_styles[v].text);
+        gnuplot_legend(g, text, failure_styles[v].text);
         for (size_t k = 0; k < f->rows; k++) {
             const double share = 100 * (double)f->row[k].count[v] / (double)f->cells;
             snprintf(text, sizeof text,
@@ -261,111 +148,67 @@ static void put_table(struct gnuplot *g, const struct failure *f, double y)
                      : share < 1 ? "%.2g %%"
                                  : "%.1f %%",
                      share);
-            gnuplot_label(g, LEFT + NAMES + (double)k * COLUMN, y, text, "left", 11, false);
+            gnuplot_text(g, text, "share[%zu]", (size_t)verdicts * f->rows + k + 1);
         }
-        y += LINE;
+        verdicts++;
     }
-    gnuplot_label(g, LEFT + 22, y, "reasons of failures", "left", 11, false);
     for (size_t k = 0; k < f->rows; k++) {
-        char reasons[2][32];
         reasons_text(&f->row[k], f->cells, reasons);
-        for (int line = 0; line < 2; line++) {
-            gnuplot_label(g, LEFT + NAMES + (double)k * COLUMN, y + 15 * line, reasons[line],
-                          "left", 10, false);
-        }
+        for (size_t line = 0; line < 2; line++)
+            gnuplot_text(g, reasons[line], "reason[%zu]", 2 * k + line + 1);
     }
-    if (f->line.axis > 0)
-        put_line_legend(g, f, LEFT, y + LINE + 14);
 }
 
-static bool draw_verdicts(const struct failure *f, const struct results *r,
-                          const struct layout *layout, const char *directory, const char *stem,
+static bool draw_verdicts(const struct maps *maps, const char *directory, const char *stem,
                           stance_message *message)
 {
+    const struct failure *f = maps->f;
     struct gnuplot g;
-    char subtitle[400], name[32];
-    const bool step =
-        strcmp(r->axis[1].name, "method.step") == 0 || strcmp(r->axis[2].name, "method.step") == 0;
+    char subtitle[400];
+    const bool step = strcmp(maps->across.axis->name, "method.step") == 0 ||
+                      strcmp(maps->up.axis->name, "method.step") == 0;
     snprintf(subtitle, sizeof subtitle,
              "%zu cases per map, each with the worst verdict that applies. Reference: "
              "event-driven%s; where that gave up, capturing. Inaccurate: a coordinate is off by "
              "more than %g m or rad at the end.",
              f->cells, step ? " at the smallest step" : "", FAILURE_POSITION);
-    const int top = gnuplot_title_height(layout->canvas_width, r->title, subtitle);
-    const double table = top + panels_height(layout) + 6;
-    if (!gnuplot_begin(&g, layout->canvas_width, (int)table + (table_rows(f) + 1) * LINE + 14,
-                       message))
+    if (!begin_page(&g, maps, subtitle, f->verdict, sizeof *f->verdict, message))
         return false;
-    gnuplot_title(&g, r->title, subtitle);
-    put_labels(&g, f, layout, top);
-    put_table(&g, f, table);
-    gnuplot_decorate(&g);
-    for (int p = 0; p < layout->panels; p++) {
-        begin_panel(&g, layout, p, top);
-        fputs("plot ", g.script);
-        put_cells(&g, f, layout, p, false, name);
-        fputs(" format='%uchar%uchar%uchar' using 1:2:3 with rgbimage notitle", g.script);
-        put_line(&g, f, layout);
-        fputc('\n', g.script);
-    }
+    gnuplot_set(&g, "energy = 0");
+    put_table(&g, f);
     return gnuplot_end(&g, directory, stem, message);
 }
 
 /* ---- energy -------------------------------------------------------------------------------- */
 
-static void put_palette(struct gnuplot *g, double y)
-{
-    /* After cividis (Nunez, Anderton, Renslow 2018): even steps for every reader. */
-    fprintf(g->script,
-            "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c',"
-            " 1 '#fee838')\n"
-            "set cbrange [%g:%g]\nset colorbox horizontal user origin screen %.6f, screen %.6f "
-            "size screen %.6f, screen %.6f\n"
-            "set cbtics (",
-            log10(lowest_share), log10(highest_share), (double)LEFT / g->width,
-            1 - (y + 14) / g->height, 420.0 / g->width, 14.0 / g->height);
-    for (int power = -16; power <= 0; power += 4)
-        fprintf(g->script, "%s'%g' %d", power > -16 ? ", " : "", pow(10, power), power);
-    fputs(") nomirror out scale 0.5\n", g->script);
-}
-
-static bool draw_energy(const struct failure *f, const struct results *r,
-                        const struct layout *layout, const char *directory, const char *stem,
+static bool draw_energy(const struct maps *maps, const char *directory, const char *stem,
                         stance_message *message)
 {
-    struct gnuplot g;
-    char name[32], path[300], text[64];
     static const char subtitle[] =
         "Energy that the method created: the largest rise above the energy at the start and the "
         "work done since, as a share of the energy at the start. Less than 1e-16 is drawn as "
         "1e-16.";
-    const int top = gnuplot_title_height(layout->canvas_width, r->title, subtitle);
-    const double bar = top + panels_height(layout) + 6;
-    if (!gnuplot_begin(&g, layout->canvas_width, (int)bar + COLOUR_BAR + 3 * LINE + 10, message))
+    const struct failure *f = maps->f;
+    struct gnuplot g;
+    char path[300], text[64];
+    double *power = malloc(f->rows * f->cells * sizeof *power);
+    if (!power) {
+        snprintf(message->text, sizeof message->text, "stance bench: not enough memory");
         return false;
-    gnuplot_title(&g, r->title, subtitle);
-    put_labels(&g, f, layout, top);
-    gnuplot_legend(&g, LEFT + 450, bar + 8, "#ffffff", "failed");
-    if (has_line(f, layout))
-        put_line_legend(&g, f, LEFT + 540, bar + 8);
-    gnuplot_label(&g, LEFT, bar + COLOUR_BAR + LINE, "largest share of a map:", "left", 11, false);
-    for (size_t k = 0; k < f->rows; k++) {
-        row_name(&f->row[k], text, sizeof text);
-        gnuplot_label(&g, LEFT + NAMES + (double)k * COLUMN, bar + COLOUR_BAR + LINE, text, "left",
-                      11, false);
-        snprintf(text, sizeof text, "%.2g", f->row[k].energy_share);
-        gnuplot_label(&g, LEFT + NAMES + (double)k * COLUMN, bar + COLOUR_BAR + 2 * LINE, text,
-                      "left", 11, false);
     }
-    gnuplot_decorate(&g);
-    put_palette(&g, bar);
-    for (int p = 0; p < layout->panels; p++) {
-        begin_panel(&g, layout, p, top);
-        fputs("plot ", g.script);
-        put_cells(&g, f, layout, p, true, name);
-        fputs(" format='%float64' with image notitle", g.script);
-        put_line(&g, f, layout);
-        fputs("\nunset colorbox\n", g.script); /* one for all */
+    for (size_t i = 0; i < f->rows * f->cells; i++) {
+        power[i] =
+            isnan(f->share[i]) ? NAN : log10(fmin(fmax(f->share[i], lowest_share), highest_share));
+    }
+    const bool good = begin_page(&g, maps, subtitle, power, sizeof *power, message);
+    free(power);
+    if (!good)
+        return false;
+    gnuplot_set(&g, "energy = 1; lowest = %#.10g; highest = %#.10g\narray largest[%zu]",
+                log10(lowest_share), log10(highest_share), f->rows);
+    for (size_t k = 0; k < f->rows; k++) {
+        snprintf(text, sizeof text, "%.2g", f->row[k].energy_share);
+        gnuplot_text(&g, text, "largest[%zu]", k + 1);
     }
     snprintf(path, sizeof path, "%s-energy", stem);
     return gnuplot_end(&g, directory, path, message);
@@ -374,8 +217,9 @@ static bool draw_energy(const struct failure *f, const struct results *r,
 bool failure_plot(const struct failure *f, const struct results *r, const char *directory,
                   const char *stem, stance_message *message)
 {
-    struct layout layout;
-    arrange(&layout, f, r);
-    return draw_verdicts(f, r, &layout, directory, stem, message) &&
-           draw_energy(f, r, &layout, directory, stem, message);
+    struct maps maps = {.f = f, .r = r};
+    make_axis(&maps.across, &r->axis[1]);
+    make_axis(&maps.up, &r->axis[2]);
+    return draw_verdicts(&maps, directory, stem, message) &&
+           draw_energy(&maps, directory, stem, message);
 }

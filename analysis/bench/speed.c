@@ -1,40 +1,14 @@
 /* speed.c - reads the table of the speed benchmarks. */
 #include "speed.h"
+#include "bench.h"
+
+#include "runner/base/message.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-enum column {
-    SUBJECT,
-    SCENE,
-    REGIME,
-    METHOD,
-    ISA,
-    LANES,
-    RANKS,
-    STEP,
-    CASES,
-    REPEATS,
-    QUANTITY,
-    UNIT,
-    MEDIAN,
-    LOWEST,
-    HIGHEST,
-    REVISION,
-    COMPILER,
-    FLAGS,
-    PROCESSOR,
-    MACHINE,
-    DATE,
-    COLUMNS
-};
-static const char *const names[COLUMNS] = {
-    "subject", "scene",    "regime",   "method",   "isa",       "lanes",   "ranks",
-    "step_s",  "cases",    "repeats",  "quantity", "unit",      "median",  "lowest",
-    "highest", "revision", "compiler", "flags",    "processor", "machine", "date"};
 
 enum { MOST_BYTES = 1 << 24 };
 
@@ -62,7 +36,7 @@ static char *read_text(const char *path, stance_message *message)
     if (text && fread(text, 1, size, file) == size) {
         text[size] = '\0';
     } else {
-        snprintf(message->text, sizeof message->text, "%.150s: %s", path,
+        complain(message, "%.150s: %s", path,
                  wrong   ? wrong
                  : !file ? strerror(errno)
                          : "cannot be read");
@@ -74,23 +48,23 @@ static char *read_text(const char *path, stance_message *message)
     return text;
 }
 
-/* Cuts a line at its commas; false when there are not COLUMNS fields. */
-static bool cut(char *line, char *field[COLUMNS])
+/* Cuts a line at its commas; false when there are not BENCH_COLUMN_COUNT fields. */
+static bool cut(char *line, char *field[BENCH_COLUMN_COUNT])
 {
     field[0] = line;
-    for (int n = 1; n < COLUMNS; n++) {
+    for (int n = 1; n < BENCH_COLUMN_COUNT; n++) {
         char *comma = strchr(field[n - 1], ',');
         if (!comma)
             return false;
         *comma = '\0';
         field[n] = comma + 1;
     }
-    return !strchr(field[COLUMNS - 1], ',');
+    return !strchr(field[BENCH_COLUMN_COUNT - 1], ',');
 }
 
 bool speed_read(const char *path, struct speed_table *table, stance_message *message)
 {
-    char *field[COLUMNS], *rest = NULL;
+    char *field[BENCH_COLUMN_COUNT], *rest = NULL;
     size_t lines = 1, number = 1;
 
     *table = (struct speed_table){0};
@@ -102,35 +76,34 @@ bool speed_read(const char *path, struct speed_table *table, stance_message *mes
     table->row = calloc(lines, sizeof *table->row);
     char *line = strtok_r(table->text, "\n", &rest);
     bool good = table->row && line && cut(line, field);
-    for (int i = 0; i < COLUMNS && good; i++)
-        good = strcmp(field[i], names[i]) == 0;
+    for (int i = 0; i < BENCH_COLUMN_COUNT && good; i++)
+        good = strcmp(field[i], bench_column_names[i]) == 0;
     while (good && (line = strtok_r(NULL, "\n", &rest)) != NULL) {
         number++;
         good = cut(line, field);
         if (good) {
             table->row[table->rows++] =
-                (struct speed_row){.subject = field[SUBJECT],
-                                   .scene = field[SCENE],
-                                   .regime = field[REGIME],
-                                   .method = field[METHOD],
-                                   .isa = field[ISA],
-                                   .quantity = field[QUANTITY],
-                                   .unit = field[UNIT],
-                                   .revision = field[REVISION],
-                                   .compiler = field[COMPILER],
-                                   .processor = field[PROCESSOR],
-                                   .date = field[DATE],
-                                   .lanes = (int)strtol(field[LANES], NULL, 10),
-                                   .ranks = (int)strtol(field[RANKS], NULL, 10),
-                                   .cases = (int)strtol(field[CASES], NULL, 10),
-                                   .median = strtod(field[MEDIAN], NULL),
-                                   .lowest = strtod(field[LOWEST], NULL),
-                                   .highest = strtod(field[HIGHEST], NULL)};
+                (struct speed_row){.subject = field[BENCH_SUBJECT],
+                                   .scene = field[BENCH_SCENE],
+                                   .regime = field[BENCH_REGIME],
+                                   .method = field[BENCH_METHOD],
+                                   .isa = field[BENCH_ISA],
+                                   .quantity = field[BENCH_QUANTITY],
+                                   .unit = field[BENCH_UNIT],
+                                   .revision = field[BENCH_REVISION],
+                                   .compiler = field[BENCH_COMPILER],
+                                   .processor = field[BENCH_PROCESSOR],
+                                   .date = field[BENCH_DATE],
+                                   .lanes = (int)strtol(field[BENCH_LANES], NULL, 10),
+                                   .ranks = (int)strtol(field[BENCH_RANKS], NULL, 10),
+                                   .cases = (int)strtol(field[BENCH_CASES], NULL, 10),
+                                   .median = strtod(field[BENCH_MEDIAN], NULL),
+                                   .lowest = strtod(field[BENCH_LOWEST], NULL),
+                                   .highest = strtod(field[BENCH_HIGHEST], NULL)};
         }
     }
     if (!good || table->rows == 0) {
-        snprintf(message->text, sizeof message->text,
-                 "%.150s:%zu: not a line of a table of benchmarks", path, number);
+        complain(message, "%.150s:%zu: not a line of a table of benchmarks", path, number);
         speed_free(table);
         return false;
     }

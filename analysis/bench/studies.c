@@ -126,11 +126,8 @@ static int all_studies(const struct request *request, char *const *path, size_t 
     for (size_t i = 0; i < count && code == EXIT_DONE; i++)
         code = one_study(request, path[i], all);
     if (request->json && code == EXIT_DONE) {
-        json_t *root = json_pack("{s:O}", "studies", all);
-        if (json_dumpf(root, stdout, JSON_INDENT(2)) != 0)
-            code = EXIT_IO;
-        putchar('\n');
-        json_decref(root);
+        const bool good = table_write_json(TABLE_OBJECT({"studies", as_tree(all)}), stdout);
+        return good ? EXIT_DONE : EXIT_IO;
     }
     json_decref(all);
     return code;

@@ -6,10 +6,8 @@
 #ifndef STANCE_BENCH_STUDIES_H
 #define STANCE_BENCH_STUDIES_H
 
+#include "analysis/table/table.h"
 #include "runner/base/command.h"
-#include "runner/store/results.h"
-
-#include <jansson.h>
 
 /* Evaluates one results file. With `object` NULL prints text and writes pictures into `directory`,
  * their names beginning with `stem`; else gives the same as JSON. false: one line in *message. */

@@ -70,12 +70,9 @@ static void print_difference(const struct results *r, const struct compare_diffe
 /* Coordinates of a case as {path: value}. */
 static json_t *json_point(const struct results *r, uint64_t index)
 {
-    json_t *at = json_object();
     size_t point[SCENARIO_MAX_AXES];
     results_point(r, index, point);
-    for (int a = 0; !r->single && a < r->axes; a++)
-        json_object_set_new(at, r->axis[a].name, table_value_json(as_place(&r->axis[a], point[a])));
-    return at;
+    return r->single ? json_object() : table_at(r, NULL, point);
 }
 
 static json_t *json_place(const struct results *r, const struct compare_difference *difference,
@@ -127,7 +124,7 @@ static bool print_for_programs(const struct results r[2], const struct compariso
             : table_write_json(TABLE_OBJECT({"files", as_tree(table_texts(r[0].file, r[1].file))},
                                             {"identical", as_truth(same)},
                                             {"equal", as_truth(comparison->beyond == 0)},
-                                            {"differences", as_tree(table_json(&t))}),
+                                            {"differences", as_tree(table_json(&t, false))}),
                                stdout);
     table_free(&t);
     return good;

@@ -3,6 +3,8 @@
  */
 #include "compare_labels.h"
 
+#include "runner/base/message.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,17 +120,12 @@ bool compare_labels(struct label_comparison *comparison, const struct results *f
                     const struct results *second, stance_message *message)
 {
     *comparison = (struct label_comparison){0};
-    if (!same_axes(first, second)) {
-        snprintf(message->text, sizeof message->text,
-                 "stance compare: %.90s and %.90s are not over the same axes", first->file,
-                 second->file);
-        return false;
-    }
+    if (!same_axes(first, second))
+        return complain(message, "stance compare: %.90s and %.90s are not over the same axes",
+                        first->file, second->file);
     uint32_t *distance = malloc(first->cases * sizeof *distance);
-    if (!distance) {
-        snprintf(message->text, sizeof message->text, "stance compare: not enough memory");
-        return false;
-    }
+    if (!distance)
+        return complain(message, "stance compare: not enough memory");
     const struct lattice lattice = find_lattice(first, second);
     find_distances(&lattice, distance);
     for (uint64_t i = 0; i < first->cases; i++) {

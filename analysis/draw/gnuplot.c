@@ -1,4 +1,4 @@
-/* gnuplot.c - writes gnuplot scripts and data, runs gnuplot, fetches the pictures. */
+/* gnuplot.c - hands data to gnuplot's scripts, runs gnuplot, fetches the pictures. */
 #include "gnuplot.h"
 
 #include "runner/store/results.h"
@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <spawn.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -16,8 +17,17 @@
 
 extern char **environ;
 
-static const double png_scale = 1.6; /* pixels of the PNG per pixel of the SVG */
-enum { TITLE_SIZE = 15, TEXT_SIZE = 12, MARGIN = 18 };
+GNUPLOT_SCRIPT(style_gp, "analysis/draw/style.gp");
+GNUPLOT_SCRIPT(page_gp, "analysis/draw/page.gp");
+GNUPLOT_SCRIPT(panels_gp, "analysis/draw/panels.gp");
+
+/* The picture is drawn twice from the same data. */
+static const char script[] = "load 'style.gp'\n"
+                             "load 'data.gp'\n"
+                             "drawing = 'svg'; load 'picture.gp'\n"
+                             "unset multiplot; unset output; reset\n"
+                             "drawing = 'png'; load 'picture.gp'\n"
+                             "unset multiplot; unset output\n";
 
 /* ---- directories --------------------------------------------------------------------------- */
 
@@ -43,22 +53,28 @@ static void scratch_path(const struct gnuplot *g, const char *name, char path[32
     snprintf(path, 320, "%s/%s", g->scratch, name);
 }
 
-/* The picture is over: its files go. */
+/* Removes the directory of a picture that is over, with what can be in it. */
+static void remove_picture(const char *directory)
+{
+    static const char *const names[] = {"script",    "style.gp",    "page.gp",
+                                        "panels.gp", "picture.gp",  "data.gp",
+                                        "errors",    "picture.svg", "picture.png"};
+    char path[1100];
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        snprintf(path, sizeof path, "%s/%s", directory, names[i]);
+        unlink(path);
+    }
+    int cells = 0;
+    do
+        snprintf(path, sizeof path, "%s/cells%d", directory, ++cells);
+    while (unlink(path) == 0);
+    rmdir(directory);
+}
+
 static void remove_scratch(const struct gnuplot *g)
 {
     fclose(g->sink);
-    static const char *const names[] = {"script", "errors", "picture.svg", "picture.png"};
-    char path[320], name[32];
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        scratch_path(g, names[i], path);
-        unlink(path);
-    }
-    for (int i = 0; i < g->files; i++) {
-        snprintf(name, sizeof name, "data%d", i);
-        scratch_path(g, name, path);
-        unlink(path);
-    }
-    rmdir(g->scratch);
+    remove_picture(g->scratch);
 }
 
 static void note_failure(struct gnuplot *g)
@@ -68,72 +84,19 @@ static void note_failure(struct gnuplot *g)
     g->failed = true;
 }
 
-bool gnuplot_begin(struct gnuplot *g, int width, int height, stance_message *message)
-{
-    const char *base = getenv("TMPDIR");
-    char path[320];
-
-    *g = (struct gnuplot){.width = width, .height = height};
-    snprintf(g->scratch, sizeof g->scratch, "%s/stance-plot-XXXXXX",
-             base && base[0] && strlen(base) < 200 ? base : "/tmp");
-    if (!mkdtemp(g->scratch)) {
-        snprintf(message->text, sizeof message->text, "%.150s: cannot make a directory: %s",
-                 g->scratch, strerror(errno));
-        return false;
-    }
-    scratch_path(g, "script", path);
-    g->sink = fopen("/dev/null", "wb");
-    g->script = g->sink ? fopen(path, "w") : NULL;
-    if (!g->script) {
-        snprintf(message->text, sizeof message->text, "%.150s: %s", path, strerror(errno));
-        if (g->sink)
-            fclose(g->sink);
-        rmdir(g->scratch);
-        return false;
-    }
-    fprintf(g->script,
-            "set encoding utf8\n"
-            "set terminal svg size %d,%d font 'DejaVu Sans,12' background '#ffffff' noenhanced\n"
-            "set output 'picture.svg'\n"
-            "load 'data0'\n"
-            "unset output\n"
-            "reset\n"
-            "set terminal pngcairo size %d,%d font 'DejaVu Sans,12' fontscale %g linewidth %g"
-            " pointscale %g background '#ffffff' noenhanced\n"
-            "set output 'picture.png'\n"
-            "load 'data0'\n"
-            "unset output\n",
-            width, height, (int)(width * png_scale), (int)(height * png_scale), png_scale,
-            png_scale, png_scale);
-    if (fclose(g->script) != 0)
-        note_failure(g);
-    /* What follows is the picture itself, drawn once for each kind of file. */
-    char name[32];
-    g->script = gnuplot_data(g, name);
-    fputs("set multiplot\n"
-          "set datafile missing 'NaN'\n"
-          "set border lw 0.8 lc '#404040'\n"
-          "set tics nomirror out scale 0.6 textcolor '#202020'\n"
-          "unset key\n",
-          g->script);
-    return true;
-}
-
-FILE *gnuplot_data(struct gnuplot *g, char name[32])
+static FILE *open_scratch(struct gnuplot *g, const char *name)
 {
     char path[320];
-    snprintf(name, 32, "data%d", g->files);
     scratch_path(g, name, path);
     FILE *file = fopen(path, "wb");
     if (!file) {
         note_failure(g);
         file = g->sink;
     }
-    g->files++;
     return file;
 }
 
-void gnuplot_close_data(struct gnuplot *g, FILE *file)
+void gnuplot_close_cells(struct gnuplot *g, FILE *file)
 {
     if (file == g->sink)
         return;
@@ -142,151 +105,149 @@ void gnuplot_close_data(struct gnuplot *g, FILE *file)
         note_failure(g);
 }
 
+static void put_script(struct gnuplot *g, const char *name, const char *text)
+{
+    FILE *file = open_scratch(g, name);
+    fputs(text, file);
+    gnuplot_close_cells(g, file);
+}
+
+/* Where scratch directories are made, and stay: see gnuplot.h. */
+static const char *kept_in(void)
+{
+    const char *directory = getenv("STANCE_SCRIPTS");
+    return directory && directory[0] ? directory : NULL;
+}
+
+bool gnuplot_begin(struct gnuplot *g, const char *picture, const char *title, const char *subtitle,
+                   stance_message *message)
+{
+    const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
+
+    *g = (struct gnuplot){0};
+    snprintf(g->scratch, sizeof g->scratch, "%s/stance-plot-XXXXXX",
+             base && base[0] && strlen(base) < 200 ? base : "/tmp");
+    g->sink = fopen("/dev/null", "wb");
+    if (!g->sink || !mkdtemp(g->scratch)) {
+        snprintf(message->text, sizeof message->text, "%.150s: cannot make a directory: %s",
+                 g->scratch, strerror(errno));
+        if (g->sink)
+            fclose(g->sink);
+        return false;
+    }
+    put_script(g, "script", script);
+    put_script(g, "style.gp", style_gp);
+    put_script(g, "page.gp", page_gp);
+    put_script(g, "panels.gp", panels_gp);
+    put_script(g, "picture.gp", picture);
+    g->data = open_scratch(g, "data.gp");
+    gnuplot_text(g, title, "title");
+    gnuplot_text(g, subtitle, "subtitle");
+    return true;
+}
+
 void gnuplot_abandon(struct gnuplot *g)
 {
-    gnuplot_close_data(g, g->script);
+    gnuplot_close_cells(g, g->data);
     remove_scratch(g);
 }
 
-/* ---- texts and numbers -------------------------------------------------------------------- */
+/* ---- data --------------------------------------------------------------------------------- */
 
-void gnuplot_number(FILE *out, double value)
+void gnuplot_set(struct gnuplot *g, const char *format, ...)
 {
-    if (isfinite(value))
-        fprintf(out, "%.10g", value);
-    else
-        fputs("NaN", out);
-}
-
-/* Columns up to the next blank. */
-static int word_columns(const char *text)
-{
-    int columns = 0;
-    for (; *text && *text != ' '; text++)
-        columns += ((unsigned char)*text & 0xc0) != 0x80;
-    return columns;
-}
-
-static void put(FILE *out, const char *text, size_t length)
-{
-    if (out)
-        fwrite(text, 1, length, out);
+    va_list arguments;
+    va_start(arguments, format);
+    vfprintf(g->data, format, arguments);
+    va_end(arguments);
+    putc('\n', g->data);
 }
 
 /* In single quotes gnuplot expands nothing; a quote itself is doubled. */
-int gnuplot_text(FILE *out, const char *text, int columns)
+void gnuplot_quote(FILE *out, const char *text)
 {
-    int lines = 1, column = 0;
-    put(out, "'", 1);
+    putc('\'', out);
     while (*text) {
         int length = results_letter(text);
-        bool blank = (unsigned char)*text <= ' ' || *text == 0x7f;
-        if (blank && columns > 0 && column > 0 && column + 1 + word_columns(text + 1) > columns) {
-            put(out, "'.\"\\n\".'", 8);
-            lines++;
-            column = 0;
-            text++;
-            continue;
-        }
-        if (blank)
-            put(out, " ", 1);
+        if ((unsigned char)*text <= ' ' || *text == 0x7f)
+            putc(' ', out);
         else if (length == 0)
-            put(out, "?", 1);
+            putc('?', out);
         else if (*text == '\'')
-            put(out, "''", 2);
+            fputs("''", out);
         else
-            put(out, text, (size_t)length);
+            fwrite(text, 1, (size_t)length, out);
         text += length > 0 ? length : 1;
-        column++;
     }
-    put(out, "'", 1);
-    return lines;
+    putc('\'', out);
 }
 
-/* ---- the canvas --------------------------------------------------------------------------- */
-
-static double screen_x(const struct gnuplot *g, double x)
+void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
 {
-    return x / g->width;
+    va_list arguments;
+    va_start(arguments, name);
+    vfprintf(g->data, name, arguments);
+    va_end(arguments);
+    fputs(" = ", g->data);
+    gnuplot_quote(g->data, text);
+    putc('\n', g->data);
 }
 
-static double screen_y(const struct gnuplot *g, double y)
+void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
 {
-    return 1 - y / g->height;
+    va_list arguments;
+    va_start(arguments, name);
+    vfprintf(g->data, name, arguments);
+    va_end(arguments);
+    if (isfinite(value))
+        fprintf(g->data, " = %#.17g\n", value); /* always real: gnuplot divides integers */
+    else
+        fputs(" = NaN\n", g->data);
 }
 
-void gnuplot_label(struct gnuplot *g, double x, double y, const char *text, const char *align,
-                   int size, bool turned)
+void gnuplot_row(struct gnuplot *g, const double *values, size_t count)
 {
-    if (text[0]) {
-        fputs("set label ", g->script);
-        gnuplot_text(g->script, text, 0);
-        fprintf(g->script, " at screen %.6f,%.6f %s font ',%d' textcolor '#202020' %s front\n",
-                screen_x(g, x), screen_y(g, y), align, size, turned ? "rotate by 90" : "norotate");
+    for (size_t i = 0; i < count; i++) {
+        fputs(i ? " " : "", g->data);
+        if (isfinite(values[i]))
+            fprintf(g->data, "%.16g", values[i]);
+        else
+            fputs("NaN", g->data);
     }
+    putc('\n', g->data);
 }
 
-/* Letters per line: DejaVu Sans takes 0.69 of its size per letter on the average. */
-static int columns_of(int width, int size)
+void gnuplot_block(struct gnuplot *g, const char *name, ...)
 {
-    return (int)((width - 2 * MARGIN) / (0.69 * size));
+    va_list arguments;
+    va_start(arguments, name);
+    putc('$', g->data);
+    vfprintf(g->data, name, arguments);
+    va_end(arguments);
+    fputs(" << EOD\n", g->data);
 }
 
-static int height_of(int lines, int size)
+void gnuplot_end_block(struct gnuplot *g)
 {
-    return lines * (size * 5 / 4 + 3);
+    fputs("EOD\n", g->data);
 }
 
-int gnuplot_title_height(int width, const char *title, const char *subtitle)
+FILE *gnuplot_cells(struct gnuplot *g)
 {
-    int first = gnuplot_text(NULL, title, columns_of(width, TITLE_SIZE));
-    int second = gnuplot_text(NULL, subtitle, columns_of(width, TEXT_SIZE));
-    return MARGIN + height_of(first, TITLE_SIZE) + height_of(second, TEXT_SIZE) + 10;
+    char name[32];
+    snprintf(name, sizeof name, "cells%d", ++g->files);
+    return open_scratch(g, name);
 }
 
-static int put_lines(struct gnuplot *g, const char *text, int size, int y, const char *colour)
+void gnuplot_legend(struct gnuplot *g, const char *colour, const char *text)
 {
-    fputs("set label ", g->script);
-    int lines = gnuplot_text(g->script, text, columns_of(g->width, size));
-    fprintf(g->script, " at screen %.6f,%.6f left font ',%d' textcolor '%s' front\n",
-            screen_x(g, MARGIN), screen_y(g, y + 0.6 * size), size, colour);
-    return y + height_of(lines, size);
+    gnuplot_set(g, "legends = legends + 1; legend_colour[legends] = %s", colour);
+    gnuplot_text(g, text, "legend_text[legends]");
 }
 
-void gnuplot_title(struct gnuplot *g, const char *title, const char *subtitle)
+void gnuplot_note(struct gnuplot *g, const char *text)
 {
-    int y = put_lines(g, title, TITLE_SIZE, MARGIN, "#101010");
-    put_lines(g, subtitle, TEXT_SIZE, y + 2, "#505050");
-}
-
-void gnuplot_legend(struct gnuplot *g, double x, double y, const char *colour, const char *text)
-{
-    fprintf(g->script,
-            "set object rectangle from screen %.6f,%.6f to screen %.6f,%.6f fillcolor rgb '%s'"
-            " fillstyle solid border lc '#606060' lw 0.5 front\n",
-            screen_x(g, x), screen_y(g, y + 7), screen_x(g, x + 14), screen_y(g, y - 7), colour);
-    gnuplot_label(g, x + 22, y, text, "left", TEXT_SIZE, false);
-}
-
-void gnuplot_decorate(struct gnuplot *g)
-{
-    fputs("set lmargin at screen 0; set rmargin at screen 1; set bmargin at screen 0;"
-          " set tmargin at screen 1\n"
-          "unset border; unset tics; unset xlabel; unset ylabel\n"
-          "plot [0:1][0:1] 2 notitle\n" /* nothing of it is seen but what was set before */
-          "unset label; unset object\n"
-          "set border 31 lw 0.8 lc '#404040'\n"
-          "set xtics nomirror out scale 0.6; set ytics nomirror out scale 0.6\n",
-          g->script);
-}
-
-void gnuplot_panel(struct gnuplot *g, double left, double top, double width, double height)
-{
-    fprintf(g->script,
-            "set lmargin at screen %.6f; set rmargin at screen %.6f;"
-            " set tmargin at screen %.6f; set bmargin at screen %.6f\n",
-            screen_x(g, left), screen_x(g, left + width), screen_y(g, top),
-            screen_y(g, top + height));
+    gnuplot_text(g, text, "notes = notes + 1; note[notes]");
 }
 
 /* ---- running ------------------------------------------------------------------------------ */
@@ -472,14 +433,23 @@ static bool fetch(const struct gnuplot *g, const char *directory, const char *st
     return good;
 }
 
+/* Leaves the scratch directory where it is, under the picture's name; a former one goes. */
+static bool keep_scratch(const struct gnuplot *g, const char *stem, stance_message *message)
+{
+    char path[1024];
+    join_path(kept_in(), stem, path, sizeof path);
+    fclose(g->sink);
+    remove_picture(path);
+    return rename(g->scratch, path) == 0 || not_written(path, message);
+}
+
 bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
                  stance_message *message)
 {
     char complaint[120];
     bool good = false;
 
-    fputs("unset multiplot\n", g->script);
-    gnuplot_close_data(g, g->script);
+    gnuplot_close_cells(g, g->data);
     if (g->failed) {
         snprintf(message->text, sizeof message->text, "%.100s: cannot be written: %s", g->scratch,
                  strerror(g->error));
@@ -499,6 +469,9 @@ bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
             good = fetch(g, directory, stem, message);
         }
     }
-    remove_scratch(g);
+    if (good && kept_in())
+        good = keep_scratch(g, stem, message);
+    else
+        remove_scratch(g);
     return good;
 }

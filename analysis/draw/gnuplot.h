@@ -1,9 +1,11 @@
 /* gnuplot.h - a picture, drawn by gnuplot as SVG and PNG.
  *
- * A picture is a canvas of width x height pixels (of the SVG; the PNG is finer) with title, legend
- * and panels at places given in pixels from its upper left corner. The script and its data live in
- * a scratch directory in which gnuplot runs, so that no path of the user's enters a script; the
- * finished files are then copied to where they belong. No text is interpreted: see gnuplot_text.
+ * What a picture looks like stands in a script NAME.gp beside the NAME.c that hands it the data,
+ * and what pictures share in style.gp, page.gp and panels.gp here; all are embedded in the program.
+ * In a scratch directory gnuplot loads style.gp, the data (variables, data blocks) and the script,
+ * so that no path of the user's enters a script; the finished files are copied to where they
+ * belong. No text is interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps
+ * scripts and data in DIR/STEM, where `gnuplot script` draws the picture anew.
  */
 #ifndef STANCE_DRAW_GNUPLOT_H
 #define STANCE_DRAW_GNUPLOT_H
@@ -12,12 +14,17 @@
 
 #include <stdio.h>
 
+/* Embeds a file of the tree as the constant string `symbol`; the Makefile has objects made anew
+ * when the .gp of their name changes. */
+#define GNUPLOT_SCRIPT(symbol, path)                                                               \
+    __asm__(".pushsection .rodata\n" #symbol ":\n.incbin \"" path "\"\n.byte 0\n.popsection\n");   \
+    extern const char symbol[] __attribute__((visibility("hidden")))
+
 struct gnuplot {
     char scratch[256]; /* directory */
-    FILE *script;      /* commands are appended here */
-    FILE *sink;        /* takes data whose file cannot be made */
-    int width, height; /* px */
-    int files;         /* data files so far */
+    FILE *data;        /* variables and data blocks are appended here */
+    FILE *sink;        /* takes what has no file */
+    int files;         /* of cells so far */
     bool failed;       /* a write failed */
     int error;         /* errno of that */
 };
@@ -26,8 +33,10 @@ struct gnuplot {
  * nothing can be written there. */
 bool gnuplot_directory(const char *directory);
 
-/* Begins a picture. False: no scratch directory; nothing is left behind. */
-bool gnuplot_begin(struct gnuplot *g, int width, int height, stance_message *message);
+/* Begins a picture that the script `picture` draws, with `title` and `subtitle`. False: no scratch
+ * directory; nothing is left behind. */
+bool gnuplot_begin(struct gnuplot *g, const char *picture, const char *title, const char *subtitle,
+                   stance_message *message);
 /* Runs gnuplot, writes DIRECTORY/STEM.svg and .png and prints both paths. Ends the picture in any
  * case. False: a write failed, gnuplot is missing or complains; the files are as they were. */
 bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
@@ -35,32 +44,32 @@ bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
 /* Ends a picture without drawing it. */
 void gnuplot_abandon(struct gnuplot *g);
 
-/* Opens a new data file, to be closed with gnuplot_close_data; its name in the script goes to
- * `name`. Never NULL: when it cannot be made, writes go nowhere and gnuplot_end reports it. */
-FILE *gnuplot_data(struct gnuplot *g, char name[32]);
-void gnuplot_close_data(struct gnuplot *g, FILE *file);
-/* A number, for data files and scripts; NAN is a gap. */
-void gnuplot_number(FILE *out, double value);
+/* ---- what the script is given; failures are kept for gnuplot_end ---------------------------- */
 
-/* Writes `text` as a string literal: nothing in it is expanded, substituted or formatted, bytes
- * that are not UTF-8 become '?', and it is broken into lines at blanks where it is longer than
- * `columns` (0: never). Returns the number of lines; `out` NULL: only that. */
-int gnuplot_text(FILE *out, const char *text, int columns);
+/* A line, as printf makes it; free texts only through gnuplot_text. */
+void gnuplot_set(struct gnuplot *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* NAME = 'text' and NAME = value (NAN: NaN); the name as printf makes it. */
+void gnuplot_text(struct gnuplot *g, const char *text, const char *name, ...)
+    __attribute__((format(printf, 3, 4)));
+void gnuplot_number(struct gnuplot *g, double value, const char *name, ...)
+    __attribute__((format(printf, 3, 4)));
+/* $NAME << EOD; rows of numbers follow, NAN for a gap, then gnuplot_end_block. */
+void gnuplot_block(struct gnuplot *g, const char *name, ...) __attribute__((format(printf, 2, 3)));
+void gnuplot_row(struct gnuplot *g, const double *values, size_t count);
+#define GNUPLOT_ROW(g, ...)                                                                        \
+    gnuplot_row((g), (const double[]){__VA_ARGS__},                                                \
+                sizeof((const double[]){__VA_ARGS__}) / sizeof(double))
+void gnuplot_end_block(struct gnuplot *g);
+/* The next binary file: cells1, cells2 ... Never NULL. */
+FILE *gnuplot_cells(struct gnuplot *g);
+void gnuplot_close_cells(struct gnuplot *g, FILE *file);
 
-/* ---- parts of the canvas, all in pixels --------------------------------------------------- */
+/* An entry of the legend (a colour as gnuplot's expression), and a line under all of them. */
+void gnuplot_legend(struct gnuplot *g, const char *colour, const char *text);
+void gnuplot_note(struct gnuplot *g, const char *text);
 
-/* Title and a smaller line under it, both wrapped to the width of the canvas. */
-void gnuplot_title(struct gnuplot *g, const char *title, const char *subtitle);
-/* The height that they take on a canvas of that width. */
-int gnuplot_title_height(int width, const char *title, const char *subtitle);
-/* A line of text; align is "left", "center" or "right"; turned: bottom to top. */
-void gnuplot_label(struct gnuplot *g, double x, double y, const char *text, const char *align,
-                   int size, bool turned);
-/* A filled rectangle with a text right of it, as legends have. */
-void gnuplot_legend(struct gnuplot *g, double x, double y, const char *colour, const char *text);
-/* Draws title, labels and legends given so far, under everything that follows. */
-void gnuplot_decorate(struct gnuplot *g);
-/* Where the axes of the next plot stand. */
-void gnuplot_panel(struct gnuplot *g, double left, double top, double width, double height);
+/* Writes `text` as a string literal: nothing in it is expanded, substituted or formatted, control
+ * characters become blanks, bytes that are not UTF-8 '?'. */
+void gnuplot_quote(FILE *out, const char *text);
 
 #endif

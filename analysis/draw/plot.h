@@ -1,9 +1,10 @@
-/* plot.h - the pictures of `stance plot` and what they share: colours and the scales of axes. */
+/* plot.h - the pictures of `stance plot` and what they share: the scales of axes. */
 #ifndef STANCE_DRAW_PLOT_H
 #define STANCE_DRAW_PLOT_H
 
 #include "gnuplot.h"
 
+#include "runner/base/command.h"
 #include "runner/store/results.h"
 
 /* What is drawn and where the files go: DIRECTORY/STEM-<picture>.svg and .png. */
@@ -12,12 +13,11 @@ struct plot {
     const char *directory, *stem;
 };
 
-/* Colour of a kind of case, "#rrggbb"; after Okabe and Ito (2008), so that readers who do not tell
- * red from green tell these apart: blue hues stand for standing, orange for falling. */
-extern const char *const plot_colours[RESULTS_KIND_COUNT];
-#define PLOT_ACCENT "#0072b2"
-#define PLOT_SECOND "#d55e00"
-#define PLOT_GREY "#8a8a8a"
+/* Begins a picture of the file, under its title; ends it as STEM-picture. */
+bool plot_begin(const struct plot *plot, struct gnuplot *g, const char *script,
+                const char *subtitle, stance_message *message);
+bool plot_end(const struct plot *plot, struct gnuplot *g, const char *picture,
+              stance_message *message);
 
 /* ---- axes --------------------------------------------------------------------------------- */
 
@@ -43,22 +43,32 @@ void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *ax
 double plot_axis_place(const struct plot_axis *along, size_t i);
 /* Value that cell k shows. */
 size_t plot_axis_index(const struct plot_axis *along, size_t k);
-/* Range and labelled tics, at most `tics` of them; `which` is 'x' or 'y'; labels false: bare. */
-void plot_axis_tics(const struct plot_axis *along, FILE *script, char which, int tics, bool labels);
-/* Long name, and under it path and unit, cut to `length` pixels, centred at (x, y). */
-void plot_axis_label(const struct results_axis *axis, struct gnuplot *g, double x, double y,
-                     double length, bool turned);
-/* A round number such that at most `tics` multiples lie between low and high. */
-double plot_round_step(double low, double high, int tics);
-/* "set ytics ..." of round numbers for a panel of that height, in pixels. */
-void plot_value_tics(FILE *script, double low, double high, double height);
+/* Tells the script of the axis `which`, x say: x_text, x_path (with its unit), x_scale, x_low,
+ * x_high, x_step, x_count, and of a list x_words of its words x_word[] at x_at[]. */
+void plot_axis_write(const struct plot_axis *along, struct gnuplot *g, const char *which);
+/* x_text and x_path alone. */
+void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which);
+/* A text that becomes the label of a tic, where a per cent sign would begin a format. */
+void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
+    __attribute__((format(printf, 3, 4)));
 
-/* ---- legends ------------------------------------------------------------------------------ */
+/* A map over two axes: cell (i, j) shows value first + i stride[0] + j stride[1] of an array. */
+struct plot_cells {
+    const struct plot_axis *across, *up;
+    size_t first, stride[2];
+};
+/* Writes them, `size` bytes each, row by row from below, for the script's @cells. gnuplot takes no
+ * image of one column or row: such a one is written twice, to be drawn half as wide. */
+void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const void *values,
+                      size_t size);
+
+/* ---- outcomes ----------------------------------------------------------------------------- */
 
 /* Adds to a subtitle how many cases have failed, where some have. */
 void plot_failed_text(const struct results *r, char *text, size_t size);
-/* One entry per kind of case that occurs, with its share of all cases; returns the height. */
-double plot_kind_legend(const struct plot *plot, struct gnuplot *g, double x, double y);
+/* kind_colour[1 + enum results_kind]; with `legend` an entry for each kind that occurs, with its
+ * share of all cases. */
+void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend);
 
 /* ---- answers ------------------------------------------------------------------------------ */
 
@@ -69,9 +79,7 @@ struct plot_answer {
 };
 
 /* The table's entry of a name; false when it is none, or no number. */
-bool plot_answer_find(const char *name, struct plot_answer *answer);
-/* "a, b, c": the names that plot_answer_find knows. */
-void plot_answer_list(char *text, size_t size);
+bool plot_answer_find(const struct command *command, const char *name, struct plot_answer *answer);
 /* The numbers, NAN for other cases, and their range; values[cases] are freed by the caller. False,
  * with a message, also when there are none. */
 bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,
@@ -84,16 +92,30 @@ void plot_answer_title(const struct plot_answer *answer, char *text, size_t size
 /* Each prints the paths that it writes. What cannot be drawn for good reason is said on standard
  * error; false is for failures, with one line in *message. */
 
-/* STEM-map and STEM-settle_time, of sweeps over two or more axes. */
-bool plot_maps(const struct plot *plot, stance_message *message);
-/* STEM-curve of sweeps over one axis, and of those whose first axis is not an offset: the share of
- * stabilised cases against it. */
-bool plot_curve(const struct plot *plot, stance_message *message);
-/* STEM-sample of a file with a sample: its points and what became of them, and shares against each
- * path that it varies. */
-bool plot_sample(const struct plot *plot, stance_message *message);
-/* STEM-rays of files of rays (basin_rays.h); of others nothing. */
-bool plot_rays(const struct plot *plot, stance_message *message);
+/* X(name, help): what `stance plot` draws of sweeps. plot_NAME draws nothing of a file that does
+ * not call for it. */
+#define PLOT_PICTURES(X)                                                                           \
+    X(sample,                                                                                      \
+      "  sweep.sample        NAME-sample: its points over the first two factors, coloured by\n"    \
+      "                      outcome, and the share of good ends against each path varied\n")      \
+    X(rays,                                                                                        \
+      "  ... of rays         NAME-rays: where rays from the equilibrium lose the outcome, over\n"  \
+      "                      two factors as a curve around it, over more the share of\n"           \
+      "                      directions by scale\n")                                               \
+    X(maps,                                                                                        \
+      "  two axes or more    NAME-map: the outcome of every case over the last two axes of\n"      \
+      "                      numbers, one panel per point of the others; NAME-settle_time: when\n" \
+      "                      it settled; not of samples\n")                                        \
+    X(line, "  one axis            NAME-curve: outcome, times and friction used along it\n")       \
+    X(shares,                                                                                      \
+      "  a first axis that   NAME-curve: the shares of stabilised and rested cases against it,\n"  \
+      "  is not an offset    with 95 % bands of a sample; of starts on a grid the basin's\n"       \
+      "                      volume, between what is inside and what is not outside (stance\n"     \
+      "                      basin -h)\n")
+#define PLOT_PICTURE(name, help) bool plot_##name(const struct plot *plot, stance_message *message);
+PLOT_PICTURES(PLOT_PICTURE)
+#undef PLOT_PICTURE
+
 /* STEM-NAME of an answer: a map of sweeps over two axes or more, a curve of those over one. */
 bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
                      stance_message *message);

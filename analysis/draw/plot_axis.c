@@ -1,16 +1,11 @@
-/* plot_axis.c - scales, tics and labels of axes; the colours and legends of outcomes. */
+/* plot_axis.c - scales of axes, and what scripts are told of axes and outcomes. */
 #include "plot.h"
 
 #include "analysis/statistics/statistics.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
-
-const char *const plot_colours[RESULTS_KIND_COUNT] = {
-    [RESULTS_STABILISED] = "#0072b2", [RESULTS_RESTED] = "#56b4e9", [RESULTS_FELL] = "#e69f00",
-    [RESULTS_UNDECIDED] = "#cc79a7",  [RESULTS_DONE] = "#009e73",   [RESULTS_FAILED] = "#000000",
-    [RESULTS_PENDING] = "#e4e4e4",
-};
 
 /* ---- scales ------------------------------------------------------------------------------- */
 
@@ -105,121 +100,59 @@ size_t plot_axis_index(const struct plot_axis *along, size_t k)
     return along->falling ? along->axis->count - 1 - k : k;
 }
 
-/* ---- tics --------------------------------------------------------------------------------- */
+/* ---- what scripts are told ---------------------------------------------------------------- */
 
-double plot_round_step(double low, double high, int tics)
+/* The words of a list, where they are many so many of them that no picture has room for more. */
+static void put_words(const struct plot_axis *along, struct gnuplot *g, const char *which)
 {
-    static const double mantissas[] = {1, 2, 5, 10};
-    double least = (high - low) / (tics > 1 ? tics : 1);
-    if (!(least > 0) || !isfinite(least))
-        return 1;
-    double power = pow(10, floor(log10(least)));
-    for (size_t i = 0; i < sizeof mantissas / sizeof mantissas[0]; i++)
-        if (mantissas[i] * power >= least * (1 - 1e-9))
-            return mantissas[i] * power;
-    return 10 * power;
+    enum { MOST = 64 };
+    const size_t every = along->axis->count / MOST + 1;
+    const size_t words = (along->axis->count + every - 1) / every;
+    gnuplot_set(g, "%s_words = %zu\narray %s_word[%zu]\narray %s_at[%zu]", which, words, which,
+                words, which, words);
+    for (size_t k = 0; k < words; k++) {
+        char text[64];
+        results_value_text(along->axis, k * every, false, text, sizeof text);
+        gnuplot_set(g, "%s_at[%zu] = %zu", which, k + 1, k * every);
+        plot_tic_text(g, text, "%s_word[%zu]", which, k + 1);
+    }
 }
 
-void plot_value_tics(FILE *script, double low, double high, double height)
+void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
 {
-    int tics = height < 160 ? 4 : (int)(height / 36);
-    fprintf(script, "set ytics nomirror %.10g\n", plot_round_step(low, high, tics));
-}
-
-/* One tic with its text; a per cent sign would begin a format. */
-static void put_tic(FILE *script, const char *text, double place, bool *first, bool labels)
-{
-    char escaped[160];
+    char escaped[160], whole[64];
     size_t n = 0;
-    for (; labels && *text && n + 3 < sizeof escaped; text++) {
+    for (; *text && n + 3 < sizeof escaped; text++) {
         escaped[n++] = *text;
         if (*text == '%')
             escaped[n++] = '%';
     }
     escaped[n] = '\0';
-    fputs(*first ? "" : ", ", script);
-    gnuplot_text(script, escaped, 0);
-    fprintf(script, " %.17g", place);
-    *first = false;
+    va_list arguments;
+    va_start(arguments, name);
+    vsnprintf(whole, sizeof whole, name, arguments);
+    va_end(arguments);
+    gnuplot_text(g, escaped, "%s", whole);
 }
 
-static void list_tics(const struct plot_axis *along, FILE *script, int tics, bool labels)
+void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which)
 {
-    size_t every = (along->axis->count + (size_t)tics - 1) / (size_t)tics;
-    bool first = true;
-    char text[64];
-    for (size_t i = 0; i < along->axis->count; i += every) {
-        results_value_text(along->axis, i, false, text, sizeof text);
-        put_tic(script, text, (double)i, &first, labels);
-    }
-}
-
-static void log_tics(const struct plot_axis *along, FILE *script, int tics, bool labels)
-{
-    static const double mantissas[] = {1, 2, 5};
-    double decades = along->high - along->low;
-    int per_decade = decades * 3 <= tics ? 3 : 1;
-    int every = (int)ceil(decades / tics);
-    bool first = true;
-    char text[32];
-    for (int power = (int)floor(along->low); power <= (int)ceil(along->high); power++) {
-        for (int m = 0; m < per_decade; m++) {
-            double place = power + log10(mantissas[m]);
-            if (place >= along->low && place <= along->high && (every <= 1 || power % every == 0)) {
-                snprintf(text, sizeof text, "%g", mantissas[m] * pow(10, power));
-                put_tic(script, text, place, &first, labels);
-            }
-        }
-    }
-    if (first) { /* a short axis between two of them */
-        snprintf(text, sizeof text, "%.3g", pow(10, 0.5 * (along->low + along->high)));
-        put_tic(script, text, 0.5 * (along->low + along->high), &first, labels);
-    }
-}
-
-void plot_axis_tics(const struct plot_axis *along, FILE *script, char which, int tics, bool labels)
-{
-    fprintf(script, "set %crange [%.17g:%.17g]\n", which, along->low, along->high);
-    if (along->scale == PLOT_LINEAR) {
-        fprintf(script, "set %ctics %.10g\nset format %c '%s'\n", which,
-                plot_round_step(along->low, along->high, tics), which, labels ? "%.10g" : "");
-        return;
-    }
-    fprintf(script, "set %ctics (", which);
-    if (along->scale == PLOT_LOG)
-        log_tics(along, script, tics, labels);
-    else
-        list_tics(along, script, tics, labels);
-    fputs(")\n", script);
-}
-
-/* ---- labels ------------------------------------------------------------------------------- */
-
-/* Cuts a text to so many columns, with dots where something is lost. */
-static void cut(char *text, size_t columns)
-{
-    if (strlen(text) > columns && columns > 3) {
-        size_t end = columns - 3;
-        while (end > 0 && ((unsigned char)text[end] & 0xc0) == 0x80)
-            end--; /* not within a letter */
-        memcpy(text + end, "...", sizeof "...");
-    }
-}
-
-void plot_axis_label(const struct results_axis *axis, struct gnuplot *g, double x, double y,
-                     double length, bool turned)
-{
-    char text[RESULTS_TEXT + 8], path[sizeof axis->name + sizeof axis->unit + 4];
-    size_t columns = (size_t)(length / 6.9);
-
-    snprintf(text, sizeof text, "%s", axis->text);
+    char path[sizeof axis->name + sizeof axis->unit + 4];
     snprintf(path, sizeof path, axis->unit[0] ? "%s (%s)" : "%s", axis->name, axis->unit);
-    cut(text, columns);
-    cut(path, columns);
-    double dx = turned ? 17 : 0, dy = turned ? 0 : 17;
-    gnuplot_label(g, x, y, text[0] ? text : path, "center", 11, turned);
-    if (text[0])
-        gnuplot_label(g, x + dx, y + dy, path, "center", 11, turned);
+    gnuplot_text(g, axis->text, "%s_text", which);
+    gnuplot_text(g, path, "%s_path", which);
+}
+
+void plot_axis_write(const struct plot_axis *along, struct gnuplot *g, const char *which)
+{
+    static const char *const scales[] = {
+        [PLOT_LINEAR] = "linear", [PLOT_LOG] = "log", [PLOT_LIST] = "list"};
+    plot_label_write(along->axis, g, which);
+    gnuplot_text(g, scales[along->scale], "%s_scale", which);
+    gnuplot_set(g, "%s_low = %#.17g\n%s_high = %#.17g\n%s_step = %#.17g\n%s_count = %zu", which,
+                along->low, which, along->high, which, along->step, which, along->axis->count);
+    if (along->scale == PLOT_LIST)
+        put_words(along, g, which);
 }
 
 void plot_failed_text(const struct results *r, char *text, size_t size)
@@ -233,20 +166,55 @@ void plot_failed_text(const struct results *r, char *text, size_t size)
     }
 }
 
-double plot_kind_legend(const struct plot *plot, struct gnuplot *g, double x, double y)
+void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend)
 {
     struct statistics_counts counts;
-    double top = y;
-    char text[64];
-    statistics_count(plot->r, -1, 0, &counts);
+    char text[64], colour[64];
+    statistics_count(r, -1, 0, &counts);
+    gnuplot_set(g, "array kind_colour[%d]", RESULTS_KIND_COUNT);
     for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
-        if (counts.kind[k] > 0) {
-            double share = 100 * (double)counts.kind[k] / (double)plot->r->cases;
+        snprintf(colour, sizeof colour, "colour_%s", results_kind_names[k]);
+        gnuplot_set(g, "kind_colour[%d] = %s", k + 1, colour);
+        if (legend && counts.kind[k] > 0) {
+            double share = 100 * (double)counts.kind[k] / (double)r->cases;
             snprintf(text, sizeof text, share < 0.05 ? "%s  %.2g %%" : "%s  %.1f %%",
                      results_kind_names[k], share);
-            gnuplot_legend(g, x, y, plot_colours[k], text);
-            y += 24;
+            gnuplot_legend(g, colour, text);
         }
     }
-    return y - top;
+}
+
+void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const void *values,
+                      size_t size)
+{
+    const struct plot_axis *const across = cells->across, *const up = cells->up;
+    const size_t nx = across->axis->count, ny = up->axis->count;
+    const size_t twice_x = nx == 1 ? 2 : 1, twice_y = ny == 1 ? 2 : 1;
+    FILE *file = gnuplot_cells(g);
+    for (size_t j = 0; j < ny * twice_y; j++) {
+        for (size_t i = 0; i < nx * twice_x; i++) {
+            const size_t index = cells->first +
+                                 plot_axis_index(across, i / twice_x) * cells->stride[0] +
+                                 plot_axis_index(up, j / twice_y) * cells->stride[1];
+            fwrite((const char *)values + index * size, size, 1, file);
+        }
+    }
+    gnuplot_close_cells(g, file);
+}
+
+/* ---- pages -------------------------------------------------------------------------------- */
+
+bool plot_begin(const struct plot *plot, struct gnuplot *g, const char *script,
+                const char *subtitle, stance_message *message)
+{
+    const struct results *r = plot->r;
+    return gnuplot_begin(g, script, r->title[0] ? r->title : r->name, subtitle, message);
+}
+
+bool plot_end(const struct plot *plot, struct gnuplot *g, const char *picture,
+              stance_message *message)
+{
+    char stem[512];
+    snprintf(stem, sizeof stem, "%s-%s", plot->stem, picture);
+    return gnuplot_end(g, plot->directory, stem, message);
 }

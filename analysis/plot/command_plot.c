@@ -88,6 +88,12 @@ static int draw_case(const struct plot *plot, uint64_t index, bool given)
 
 /* ---- a sweep ------------------------------------------------------------------------------ */
 
+static bool (*const pictures[])(const struct plot *, stance_message *) = {
+#define PICTURE(name, help) plot_##name,
+    PLOT_PICTURES(PICTURE)
+#undef PICTURE
+};
+
 static int draw_sweep(const struct plot *plot)
 {
     const struct results *r = plot->r;
@@ -95,13 +101,10 @@ static int draw_sweep(const struct plot *plot)
     size_t count;
     stance_message message = {""};
 
-    const bool sampled = r->sample >= 0, line = r->axes == 1 && !sampled;
-    const bool parameter = r->axes > 1 && !r->axis[0].offset;
-    bool good = sampled ? plot_sample(plot, &message) && plot_rays(plot, &message)
-                : !line ? plot_maps(plot, &message)
-                        : true;
-    good = good && (!(line || parameter) || plot_curve(plot, &message)) &&
-           results_recorded(r, &list, &count, &message);
+    bool good = true;
+    for (size_t k = 0; good && k < sizeof pictures / sizeof pictures[0]; k++)
+        good = pictures[k](plot, &message);
+    good = good && results_recorded(r, &list, &count, &message);
     if (!good) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_IO;
@@ -147,25 +150,11 @@ static int draw_sensitivity(const struct plot *plot, const struct plot_answer *a
 /* What --answer and --of ask for; false with a message when there is no such. */
 static bool choose_answer(const char *name, const char *of, struct plot_answer *answer)
 {
-    char list[600];
-    if (!plot_answer_find(name, answer)) {
-        plot_answer_list(list, sizeof list);
-        fprintf(stderr, "stance plot: --answer takes one of %s, not '%.60s'\n", list, name);
+    if (!plot_answer_find(&command_plot, name, answer))
         return false;
-    }
-    for (int k = 0; of && k < RESULTS_OUTCOMES; k++) {
-        if (strcmp(of, results_kind_names[k]) == 0) {
-            answer->of = (enum results_kind)k;
-            return true;
-        }
-    }
-    if (of) {
-        fprintf(stderr,
-                "stance plot: --of takes an outcome, stabilised, rested, fell or undecided, not "
-                "'%.60s'\n",
-                of);
-    }
-    return !of;
+    if (of)
+        answer->of = command_word(&command_plot, "--of", of, results_kind_names, RESULTS_OUTCOMES);
+    return !of || answer->of < RESULTS_OUTCOMES;
 }
 
 static int draw_answer(const struct plot *plot, const char *name, const char *of)
@@ -271,28 +260,21 @@ const struct command command_plot = {
     "Draws with gnuplot what the file calls for, into DIR (made when missing; default: where the\n"
     "file is), and prints the path of every file written.\n"
     "\n"
-    "  sweep.sample        NAME-sample: its points over the first two factors, coloured by "
-    "outcome,\n"
-    "                      and the share of good ends against each path varied; no maps;\n"
-    "                      NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
-    "  ... of rays         NAME-rays: where rays from the equilibrium lose the outcome, over two\n"
-    "                      factors as a curve around it, over more the share of directions by "
-    "scale\n"
-    "  two axes or more    NAME-map: the outcome of every case over the last two axes of numbers,\n"
-    "                      one panel per point of the others; NAME-settle_time: when it settled\n"
-    "  one axis            NAME-curve: outcome, times and friction used along it\n"
-    "  a first axis that   NAME-curve: the shares of stabilised and rested cases against it, with\n"
-    "  is not an offset    of a sample with 95 % bands; of starts on a grid the basin's volume, "
-    "between "
-    "what is\n"
-    "                      inside and what is not outside (stance basin -h)\n"
-    "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and -strip:\n"
-    "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
-    "\n"
-    "  -o DIR         where the pictures go\n"
-    "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
-    "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another number) of "
-    "every\n"
-    "                 case, as a map or along the one axis; sampled factors: NAME-A-sensitivity\n"
-    "  --of OUTCOME   only of the cases that were stabilised, rested, fell or stayed undecided\n",
+#define HELP(name, help) help
+    PLOT_PICTURES(HELP)
+#undef HELP
+        "  sampled factors     NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
+        "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and "
+        "-strip:\n"
+        "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
+        "\n"
+        "  -o DIR         where the pictures go\n"
+        "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
+        "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another "
+        "number) of "
+        "every\n"
+        "                 case, as a map or along the one axis; sampled factors: "
+        "NAME-A-sensitivity\n"
+        "  --of OUTCOME   only of the cases that were stabilised, rested, fell or stayed "
+        "undecided\n",
 };

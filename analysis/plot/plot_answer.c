@@ -7,29 +7,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool plot_answer_find(const char *name, struct plot_answer *answer)
+bool plot_answer_find(const struct command *command, const char *name, struct plot_answer *answer)
 {
-    for (int k = 0; k < STANCE_ANSWER_COUNT; k++) {
-        const stance_answer *const a = &stance_answers[k];
-        if (strcmp(a->name, name) == 0 && !a->word) { /* codes: a map of outcomes is drawn anyway */
-            *answer = (struct plot_answer){a->name, strcmp(a->unit, "1") == 0 ? "" : a->unit,
-                                           a->text, RESULTS_KIND_COUNT};
-            return true;
-        }
-    }
-    return false;
-}
-
-void plot_answer_list(char *text, size_t size)
-{
-    size_t used = 0;
-    text[0] = '\0';
-    for (int k = 0; k < STANCE_ANSWER_COUNT && used < size; k++) {
-        if (!stance_answers[k].word) {
-            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
-                                     stance_answers[k].name);
-        }
-    }
+    const char *known[STANCE_ANSWER_COUNT];
+    const stance_answer *of[STANCE_ANSWER_COUNT];
+    size_t count = 0;
+    for (int k = 0; k < STANCE_ANSWER_COUNT; k++)
+        if (!stance_answers[k].word) /* codes: a map of outcomes is drawn anyway */
+            of[count] = &stance_answers[k], known[count++] = stance_answers[k].name;
+    const size_t k = command_word(command, "--answer", name, known, count);
+    if (k < count)
+        *answer =
+            (struct plot_answer){of[k]->name, strcmp(of[k]->unit, "1") == 0 ? "" : of[k]->unit,
+                                 of[k]->text, RESULTS_KIND_COUNT};
+    return k < count;
 }
 
 bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,

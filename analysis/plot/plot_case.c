@@ -8,43 +8,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    LEFT = 96,
-    PLOT_WIDTH = 700,
-    RIGHT = 170,
-    BOTTOM = 56,
-    HEADING = 24, /* above each panel */
-    MOST_ROWS = 4000,
-};
+GNUPLOT_SCRIPT(plot_case_gp, "analysis/plot/plot_case.gp");
 
-const char *const plot_contact_colours[STANCE_MAX_CONTACTS] = {PLOT_ACCENT, PLOT_SECOND};
+enum { MOST_ROWS = 4000, MOST_LINES = 4 * STANCE_MAX_COORDINATES };
 
 /* ---- data --------------------------------------------------------------------------------- */
 
 /* Writes time and `width` columns. More rows than pixels become two per group: the least and the
  * largest of every column, so that no peak is lost. */
 static void put_track(struct gnuplot *g, const struct results_trajectory *t, const double *values,
-                      size_t width, char name[32])
+                      size_t width)
 {
     size_t group = t->rows > MOST_ROWS ? (t->rows + MOST_ROWS / 2 - 1) / (MOST_ROWS / 2) : 1;
-    FILE *data = gnuplot_data(g, name);
+    double row[1 + 2 * STANCE_MAX_CONTACTS + STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS];
+
+    gnuplot_block(g, "track");
     for (size_t first = 0; first < t->rows; first += group) {
         size_t end = first + group < t->rows ? first + group : t->rows;
         for (int extreme = 0; extreme < (group > 1 ? 2 : 1); extreme++) {
-            gnuplot_number(data, t->time[extreme ? end - 1 : first]);
+            row[0] = t->time[extreme ? end - 1 : first];
             for (size_t c = 0; c < width; c++) {
                 double value = values[first * width + c];
                 for (size_t k = first + 1; k < end; k++) {
                     double other = values[k * width + c];
                     value = extreme ? fmax(value, other) : fmin(value, other);
                 }
-                putc(' ', data);
-                gnuplot_number(data, value);
+                row[1 + c] = value;
             }
-            putc('\n', data);
+            gnuplot_row(g, row, 1 + width);
         }
     }
-    gnuplot_close_data(g, data);
+    gnuplot_end_block(g);
 }
 
 /* What of some columns fits the frame. */
@@ -118,8 +112,7 @@ static struct range range_of(const struct results_trajectory *t, const double *v
 struct page {
     struct gnuplot g;
     const struct plot_case *c;
-    double top, height; /* of the next panel */
-    int panels, drawn;
+    int panels, lines, ramps; /* so far */
 };
 
 /* Value i of the first path of an axis, for people. */
@@ -188,89 +181,92 @@ static void describe(const struct plot_case *c, char *text, size_t size)
         snprintf(text + used, size - used, ", fallen at %.4g s", c->fall_time);
 }
 
-bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *what, int width,
-                     int below, double *top, stance_message *message)
+bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *script,
+                     const char *what, stance_message *message)
 {
-    const struct results *r = c->plot->r;
-    const char *title = r->title[0] ? r->title : r->name;
     char subtitle[1024], about[800];
-
     describe(c, about, sizeof about);
     snprintf(subtitle, sizeof subtitle, "%s; %s", what, about);
-    *top = gnuplot_title_height(width, title, subtitle);
-    if (!gnuplot_begin(g, width, (int)*top + below, message))
-        return false;
-    gnuplot_title(g, title, subtitle);
-    return true;
+    return plot_begin(c->plot, g, script, subtitle, message);
 }
 
-bool plot_case_end(const struct plot_case *c, struct gnuplot *g, const char *picture,
-                   stance_message *message)
+/* A page of panels, all of columns of `values` against time. */
+static bool begin_page(struct page *page, const char *what, const double *values, size_t width,
+                       int panels, int height, stance_message *message)
 {
-    char stem[512];
-    snprintf(stem, sizeof stem, "%s-%s", c->plot->stem, picture);
-    return gnuplot_end(g, c->plot->directory, stem, message);
-}
-
-static bool begin_page(struct page *page, const char *what, int panels, double height,
-                       stance_message *message)
-{
-    page->panels = panels;
-    page->drawn = 0;
-    page->height = height;
-    int below = panels * (int)(height + HEADING) + BOTTOM;
-    if (!plot_case_begin(page->c, &page->g, what, LEFT + PLOT_WIDTH + RIGHT, below, &page->top,
-                         message))
-        return false;
-    gnuplot_label(&page->g, LEFT + PLOT_WIDTH / 2.0, page->top + below - 14, "time (s)", "center",
-                  12, false);
-    return true;
-}
-
-/* Heading and axis label of panel k; before gnuplot_decorate. */
-static void head(struct page *page, int k, const char *heading, const char *label)
-{
-    double y = page->top + k * (page->height + HEADING);
-    gnuplot_label(&page->g, LEFT, y + HEADING - 9, heading, "left", 11, false);
-    gnuplot_label(&page->g, 22, y + HEADING + page->height / 2, label, "center", 12, true);
-}
-
-static void legend_at(struct page *page, int panel, int entry, const char *colour, const char *text)
-{
-    gnuplot_legend(&page->g, LEFT + PLOT_WIDTH + 14,
-                   page->top + panel * (page->height + HEADING) + HEADING + 8 + entry * 22, colour,
-                   text);
-}
-
-/* Axes of the next panel; a plot command follows. */
-static void begin_panel(struct page *page, const struct range *range)
-{
+    static const char *const arrays[] = {
+        "heading",      "label",       "low",         "high",         "track_panel", "track_column",
+        "track_factor", "track_width", "track_dash",  "track_colour", "ramp_panel",  "ramp_start",
+        "ramp_rate",    "ramp_end",    "ramp_colour", "ramp_dash"};
     const struct results_trajectory *t = page->c->t;
-    double end = t->rows > 1 ? t->time[t->rows - 1] : t->time[0] + 1;
-    bool last = page->drawn == page->panels - 1;
-    gnuplot_panel(&page->g, LEFT, page->top + page->drawn * (page->height + HEADING) + HEADING,
-                  PLOT_WIDTH, page->height);
-    fprintf(
-        page->g.script,
-        "set xrange [%.10g:%.10g]\nset xtics %.10g\nset format x '%s'\n"
-        "set yrange [%.10g:%.10g]\nset format y '%%.10g'\nset grid lt 1 lc rgb '#e6e6e6' lw 0.8\n",
-        t->time[0], end, plot_round_step(t->time[0], end, 10), last ? "%.10g" : "", range->low,
-        range->high);
-    plot_value_tics(page->g.script, range->low, range->high, page->height);
-    page->drawn++;
+    struct gnuplot *g = &page->g;
+    if (!plot_case_begin(page->c, g, plot_case_gp, what, message))
+        return false;
+    gnuplot_set(g, "panels = %d; height = %d", panels, height);
+    for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
+        gnuplot_set(g, "array %s[%d]", arrays[k], MOST_LINES);
+    gnuplot_set(g, "from = %#.17g; to = %#.17g", t->time[0],
+                t->rows > 1 ? t->time[t->rows - 1] : t->time[0] + 1);
+    put_track(g, t, values, width);
+    return true;
 }
 
-/* A level line of the panel; numbered so that it can be taken away. */
-static void level(struct page *page, int number, double y, const char *style)
+/* The next panel: its range is that of all its lines and ramps. */
+static void put_panel(struct page *page, const char *heading, const char *label,
+                      struct range *range)
 {
-    fprintf(page->g.script,
-            "set arrow %d from graph 0, first %.10g to graph 1, first %.10g nohead %s\n", number, y,
-            y, style);
+    const int p = ++page->panels;
+    widen(range);
+    gnuplot_text(&page->g, heading, "heading[%d]", p);
+    gnuplot_text(&page->g, label, "label[%d]", p);
+    gnuplot_set(&page->g, "low[%d] = %#.17g; high[%d] = %#.17g", p, range->low, p, range->high);
 }
 
-static void clear_levels(struct page *page)
+/* A column of the track in the last panel, `factor` times. */
+static void put_line(struct page *page, size_t column, double factor, size_t hue, bool dotted)
 {
-    fputs("unset arrow\n", page->g.script);
+    const int k = ++page->lines;
+    gnuplot_set(&page->g,
+                "track_panel[%d] = %d; track_column[%d] = %zu; track_factor[%d] = %#.17g; "
+                "track_colour[%d] = hue[%zu]; track_dash[%d] = %d; track_width[%d] = %g",
+                k, page->panels, k, column + 2, k, factor, k, hue + 1, k, dotted ? 3 : 1, k,
+                dotted ? 1 : 1.7);
+}
+
+/* What something aims at, or a limit: start + rate * time until `end`. */
+struct ramp {
+    double start, rate, end;
+};
+
+static void put_ramp(struct page *page, const struct ramp *ramp, const char *colour, bool dashed)
+{
+    const int k = ++page->ramps;
+    gnuplot_set(&page->g,
+                "ramp_panel[%d] = %d; ramp_start[%d] = %#.17g; ramp_rate[%d] = %#.17g; "
+                "ramp_end[%d] = %#.17g; ramp_colour[%d] = %s; ramp_dash[%d] = %d",
+                k, page->panels, k, ramp->start, k, ramp->rate, k, ramp->end, k, colour, k,
+                dashed ? 2 : 1);
+}
+
+static void put_level(struct page *page, double level, const char *colour, bool dashed)
+{
+    put_ramp(page, &(struct ramp){level, 0, 0}, colour, dashed);
+}
+
+static bool end_page(struct page *page, const char *picture, stance_message *message)
+{
+    gnuplot_set(&page->g, "tracks = %d; ramps = %d", page->lines, page->ramps);
+    return plot_end(page->c->plot, &page->g, picture, message);
+}
+
+/* An entry of the legend for each contact or actuator. */
+static void put_names(struct page *page, const char (*names)[32], size_t count)
+{
+    char colour[32];
+    for (size_t k = 0; k < count; k++) {
+        snprintf(colour, sizeof colour, "hue[%zu]", k + 1);
+        gnuplot_legend(&page->g, colour, names[k]);
+    }
 }
 
 /* ---- coordinates -------------------------------------------------------------------------- */
@@ -292,12 +288,8 @@ static double target_of(const struct plot_case *c, size_t i)
     return NAN;
 }
 
-/* Where a decoupling law wants coordinate i: at `start` first, moving at `rate` until `end`. */
-struct setpoint {
-    double start, rate, end;
-};
-
-static bool setpoint_of(const struct plot_case *c, size_t i, struct setpoint *setpoint)
+/* Where a decoupling law wants coordinate i. */
+static bool setpoint_of(const struct plot_case *c, size_t i, struct ramp *setpoint)
 {
     const struct scenario_values *v = &c->values;
     const char *const law = "decoupling";
@@ -315,72 +307,41 @@ static bool setpoint_of(const struct plot_case *c, size_t i, struct setpoint *se
     return isfinite(setpoint->start);
 }
 
-/* The entry of the dashed lines in the legend, where there are such. */
-static void legend_targets(struct page *page, const char *text)
-{
-    double y = 1 - (page->top + HEADING + 8) / page->g.height, x = LEFT + PLOT_WIDTH + 14;
-    fprintf(page->g.script,
-            "set arrow from screen %.6f,%.6f to screen %.6f,%.6f nohead dt 2 lw 1.6"
-            " lc rgb '%s'\n",
-            x / page->g.width, y, (x + 32) / page->g.width, y, PLOT_SECOND);
-    gnuplot_label(&page->g, x + 40, page->top + HEADING + 8, text, "left", 12, false);
-}
-
-/* One coordinate against time, with what the controller wants of it. */
-static void put_coordinate(struct page *page, const char *name, size_t i)
-{
-    const struct results_trajectory *t = page->c->t;
-    struct range range = range_of(t, t->position, t->coordinates, i, t->coordinates, false);
-    double target = target_of(page->c, i);
-    struct setpoint setpoint;
-    bool led = setpoint_of(page->c, i, &setpoint);
-    if (isfinite(target)) {
-        include(&range, target);
-        level(page, 1, target, "dt 2 lw 1.6 lc rgb '" PLOT_SECOND "'");
-    }
-    if (led) {
-        include(&range, setpoint.start);
-        include(&range, setpoint.start + setpoint.rate * setpoint.end);
-    }
-    widen(&range);
-    begin_panel(page, &range);
-    fprintf(page->g.script, "plot '%s' using 1:%zu with lines lw 1.8 lc rgb '%s' notitle", name,
-            i + 2, PLOT_ACCENT);
-    if (led) {
-        fprintf(page->g.script,
-                ", %.10g + %.10g*(x < %.10g ? x : %.10g) with lines dt 2 lw 1.6 lc rgb '%s'"
-                " notitle",
-                setpoint.start, setpoint.rate, setpoint.end, setpoint.end, PLOT_SECOND);
-    }
-    fputc('\n', page->g.script);
-    clear_levels(page);
-}
-
 static bool draw_coordinates(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
     struct page page = {.c = c};
-    struct setpoint setpoint;
-    char name[32], text[300];
     bool targets = false, led = false;
 
-    if (!begin_page(&page, "Coordinates", (int)t->coordinates, 100, message))
+    if (!begin_page(&page, "Coordinates", t->position, t->coordinates, (int)t->coordinates, 100,
+                    message))
         return false;
     for (size_t i = 0; i < t->coordinates; i++) {
         const stance_quantity *q = quantity(c, i);
+        struct range range = range_of(t, t->position, t->coordinates, i, t->coordinates, false);
+        const double target = target_of(c, i);
+        struct ramp setpoint;
+        char text[300];
+        const bool leads = setpoint_of(c, i, &setpoint);
+        if (isfinite(target))
+            include(&range, target);
+        if (leads) {
+            include(&range, setpoint.start);
+            include(&range, setpoint.start + setpoint.rate * setpoint.end);
+        }
         snprintf(text, sizeof text, q->unit[0] ? "%s (%s)" : "%s", t->coordinate[i], q->unit);
-        head(&page, (int)i, q->text, text);
-        targets = targets || isfinite(target_of(c, i));
-        led = led || setpoint_of(c, i, &setpoint);
+        put_panel(&page, q->text, text, &range);
+        put_line(&page, i, 1, 0, false);
+        if (isfinite(target))
+            put_level(&page, target, "hue[2]", true);
+        if (leads)
+            put_ramp(&page, &setpoint, "hue[2]", true);
+        targets = targets || isfinite(target);
+        led = led || leads;
     }
     if (targets || led)
-        legend_targets(&page, targets ? "equilibrium" : "set-point");
-    gnuplot_decorate(&page.g);
-    clear_levels(&page);
-    put_track(&page.g, t, t->position, t->coordinates, name);
-    for (size_t i = 0; i < t->coordinates; i++)
-        put_coordinate(&page, name, i);
-    return plot_case_end(c, &page.g, "coordinates", message);
+        gnuplot_note(&page.g, targets ? "dashed: equilibrium" : "dashed: set-point");
+    return end_page(&page, "coordinates", message);
 }
 
 /* ---- forces ------------------------------------------------------------------------------- */
@@ -396,69 +357,40 @@ static void heading_of(const struct results_trajectory *t, const char *what,
     }
 }
 
-/* Lines of both contacts; tangential forces with the edges of their friction cones. */
-static void put_forces(struct page *page, const char *name, int component)
-{
-    const struct results_trajectory *t = page->c->t;
-    double friction = page->c->readable ? page->c->values.friction : NAN;
-    const char *separator = "plot ";
-    for (size_t k = 0; component == 1 && isfinite(friction) && k < t->contacts; k++) {
-        for (int sign = -1; sign <= 1; sign += 2) {
-            fprintf(page->g.script,
-                    "%s'%s' using 1:(%.10g*$%zu) with lines dt 3 lw 1 lc rgb '%s'"
-                    " notitle",
-                    separator, name, sign * friction, 2 * k + 2,
-                    plot_contact_colours[k % STANCE_MAX_CONTACTS]);
-            separator = ", ";
-        }
-    }
-    for (size_t k = 0; k < t->contacts; k++) {
-        fprintf(page->g.script, "%s'%s' using 1:%zu with lines lw 1.6 lc rgb '%s' notitle",
-                separator, name, 2 * k + (size_t)component + 2,
-                plot_contact_colours[k % STANCE_MAX_CONTACTS]);
-        separator = ", ";
-    }
-    fputc('\n', page->g.script);
-}
-
+/* Normal and tangential forces, the latter with the edges of the friction cones. */
 static bool draw_forces(const struct plot_case *c, stance_message *message)
 {
-    const struct results_trajectory *t = c->t;
-    struct page page = {.c = c};
-    struct range range[2];
-    char name[32], text[300], what[80];
     static const char *const components[] = {"Normal force, out of the ground",
                                              "Tangential force, along +x"};
+    const struct results_trajectory *t = c->t;
+    struct page page = {.c = c};
+    char text[300], what[80];
 
-    if (!begin_page(&page, "Forces of the ground on the contacts", 2, 220, message))
+    if (!begin_page(&page, "Forces of the ground on the contacts", t->force, 2 * t->contacts, 2,
+                    220, message))
         return false;
     for (int k = 0; k < 2; k++) {
-        range[k] = range_of(t, t->force, 2 * t->contacts, (size_t)k, 2, true);
+        struct range range = range_of(t, t->force, 2 * t->contacts, (size_t)k, 2, true);
         snprintf(what, sizeof what, "%s", components[k]);
         if (t->rows > 1) {
             snprintf(what, sizeof what, "%s (means over %.4g s)", components[k],
                      t->time[1] - t->time[0]);
         }
-        heading_of(t, what, &range[k], "N", text, sizeof text);
-        head(&page, k, text, k ? "tangential force (N)" : "normal force (N)");
-        widen(&range[k]);
+        heading_of(t, what, &range, "N", text, sizeof text);
+        put_panel(&page, text, k ? "tangential force (N)" : "normal force (N)", &range);
+        for (size_t i = 0; i < t->contacts; i++) {
+            for (int sign = -1; k == 1 && c->readable && sign <= 1; sign += 2)
+                put_line(&page, 2 * i, sign * c->values.friction, i, true);
+            put_line(&page, 2 * i + (size_t)k, 1, i, false);
+        }
     }
-    for (size_t k = 0; k < t->contacts; k++)
-        legend_at(&page, 0, (int)k, plot_contact_colours[k % STANCE_MAX_CONTACTS], t->contact[k]);
+    put_names(&page, t->contact, t->contacts);
     if (c->readable) {
-        gnuplot_label(&page.g, LEFT + PLOT_WIDTH + 14, page.top + page.height + 2 * HEADING + 8,
-                      "dotted: limit of", "left", 11, false);
         snprintf(text, sizeof text, "friction %.4g", c->values.friction);
-        gnuplot_label(&page.g, LEFT + PLOT_WIDTH + 14, page.top + page.height + 2 * HEADING + 24,
-                      text, "left", 11, false);
+        gnuplot_note(&page.g, "dotted: limit of");
+        gnuplot_note(&page.g, text);
     }
-    gnuplot_decorate(&page.g);
-    put_track(&page.g, t, t->force, 2 * t->contacts, name);
-    for (int k = 0; k < 2; k++) {
-        begin_panel(&page, &range[k]);
-        put_forces(&page, name, k);
-    }
-    return plot_case_end(c, &page.g, "forces", message);
+    return end_page(&page, "forces", message);
 }
 
 /* ---- torques and gaps --------------------------------------------------------------------- */
@@ -466,42 +398,33 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
 static bool draw_torques(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
-    const char *const colours[STANCE_MAX_ACTUATORS] = {PLOT_ACCENT, PLOT_SECOND};
     struct page page = {.c = c};
     struct range range = range_of(t, t->torque, t->actuators, 0, 1, true);
-    double limit = c->readable ? c->values.torque_limit : INFINITY;
-    char name[32], text[300];
-    bool limited = isfinite(limit) && limit < 4 * fmax(fabs(range.low), fabs(range.high));
+    const double limit = c->readable ? c->values.torque_limit : INFINITY;
+    const bool limited = isfinite(limit) && limit < 4 * fmax(fabs(range.low), fabs(range.high));
+    char text[300];
 
-    if (!begin_page(&page, "Torques of the actuators", 1, 260, message))
+    if (!begin_page(&page, "Torques of the actuators", t->torque, t->actuators, 1, 260, message))
         return false;
     heading_of(t, "Torque applied in the step that ends at each instant", &range, "N m", text,
                sizeof text);
-    head(&page, 0, text, "torque (N m)");
-    for (size_t k = 0; k < t->actuators; k++)
-        legend_at(&page, 0, (int)k, colours[k % STANCE_MAX_ACTUATORS], t->actuator[k]);
-    if (isfinite(limit)) {
-        snprintf(text, sizeof text, "%slimit %.4g N m", limited ? "dashed: " : "", limit);
-        gnuplot_label(&page.g, LEFT + PLOT_WIDTH + 14,
-                      page.top + HEADING + 8 + 22 * (double)t->actuators, text, "left", 11, false);
-    }
-    gnuplot_decorate(&page.g);
     if (limited) {
         include(&range, limit);
         include(&range, -limit);
-        level(&page, 1, limit, "dt 2 lw 1.4 lc rgb '#606060'");
-        level(&page, 2, -limit, "dt 2 lw 1.4 lc rgb '#606060'");
     }
-    widen(&range);
-    put_track(&page.g, t, t->torque, t->actuators, name);
-    begin_panel(&page, &range);
-    for (size_t k = 0; k < t->actuators; k++) {
-        fprintf(page.g.script, "%s'%s' using 1:%zu with lines lw 1.5 lc rgb '%s' notitle",
-                k ? ", " : "plot ", name, k + 2, colours[k % STANCE_MAX_ACTUATORS]);
+    put_panel(&page, text, "torque (N m)", &range);
+    for (size_t k = 0; k < t->actuators; k++)
+        put_line(&page, k, 1, k, false);
+    if (limited) {
+        put_level(&page, limit, "0x606060", true);
+        put_level(&page, -limit, "0x606060", true);
     }
-    fputc('\n', page.g.script);
-    clear_levels(&page);
-    return plot_case_end(c, &page.g, "torques", message);
+    put_names(&page, t->actuator, t->actuators);
+    if (isfinite(limit)) {
+        snprintf(text, sizeof text, "%slimit %.4g N m", limited ? "dashed: " : "", limit);
+        gnuplot_note(&page.g, text);
+    }
+    return end_page(&page, "torques", message);
 }
 
 static bool draw_gaps(const struct plot_case *c, stance_message *message)
@@ -509,26 +432,17 @@ static bool draw_gaps(const struct plot_case *c, stance_message *message)
     const struct results_trajectory *t = c->t;
     struct page page = {.c = c};
     struct range range = range_of(t, t->gap, t->contacts, 0, 1, false);
-    char name[32];
 
-    if (!begin_page(&page, "Heights of the contact points above the ground", 1, 260, message))
+    if (!begin_page(&page, "Heights of the contact points above the ground", t->gap, t->contacts, 1,
+                    260, message))
         return false;
-    head(&page, 0, "", "gap (m)");
-    for (size_t k = 0; k < t->contacts; k++)
-        legend_at(&page, 0, (int)k, plot_contact_colours[k % STANCE_MAX_CONTACTS], t->contact[k]);
-    gnuplot_decorate(&page.g);
     include(&range, 0);
-    widen(&range);
-    level(&page, 1, 0, "lw 1.4 lc rgb '#606060'");
-    put_track(&page.g, t, t->gap, t->contacts, name);
-    begin_panel(&page, &range);
-    for (size_t k = 0; k < t->contacts; k++) {
-        fprintf(page.g.script, "%s'%s' using 1:%zu with lines lw 1.6 lc rgb '%s' notitle",
-                k ? ", " : "plot ", name, k + 2, plot_contact_colours[k % STANCE_MAX_CONTACTS]);
-    }
-    fputc('\n', page.g.script);
-    clear_levels(&page);
-    return plot_case_end(c, &page.g, "gaps", message);
+    put_panel(&page, "", "gap (m)", &range);
+    for (size_t k = 0; k < t->contacts; k++)
+        put_line(&page, k, 1, k, false);
+    put_level(&page, 0, "0x606060", false);
+    put_names(&page, t->contact, t->contacts);
+    return end_page(&page, "gaps", message);
 }
 
 /* ---- all of them -------------------------------------------------------------------------- */

@@ -15,15 +15,9 @@ struct plot_case {
     double equilibrium[STANCE_MAX_COORDINATES]; /* of the controller; NAN: none, or not known */
 };
 
-/* Colour of each contact. */
-extern const char *const plot_contact_colours[STANCE_MAX_CONTACTS];
-
-/* Begins a page of that width with its title, `below` pixels high under it; *top is where they
- * begin. Ends it as STEM-picture. */
-bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *what, int width,
-                     int below, double *top, stance_message *message);
-bool plot_case_end(const struct plot_case *c, struct gnuplot *g, const char *picture,
-                   stance_message *message);
+/* Begins a picture of the case; plot_end ends it. */
+bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *script,
+                     const char *what, stance_message *message);
 
 /* STEM-strip: stick figures at even intervals. */
 bool plot_strip(const struct plot_case *c, stance_message *message);

@@ -13,17 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+GNUPLOT_SCRIPT(plot_sample_gp, "analysis/plot/plot_sample.gp");
+
 enum {
-    LEFT = 96,
-    SCATTER_WIDTH = 520,
-    SCATTER_HEIGHT = 380,
-    LEGEND = 220,
-    PANEL_WIDTH = 200,
-    PANEL_HEIGHT = 150,
-    COLUMNS = 3,
-    ACROSS = 270, /* px from a panel to the next */
-    DOWN = 232,
-    LABELS = 60, /* px under a panel */
     BINS = 8,
     TICS = 5, /* most values that have one each */
     MOST_PANELS = 18,
@@ -37,7 +29,6 @@ struct page {
     int x, y;    /* paths of the scatter, y -1: there is but one factor */
     int scale;   /* the axis over initial.offset.scale, or -1 */
     bool shares; /* points stand for several cases */
-    double top;
 };
 
 static bool no_memory(stance_message *message)
@@ -107,39 +98,41 @@ static void find_range(const struct page *page, int k, double *low, double *high
     *high += margin;
 }
 
-/* Words, and numbers that are few, have a tic each. */
-static bool put_range(struct page *page, int k, char which, int tics, stance_message *message)
+/* Tells the script of path k as an axis: words, and numbers that are few, are a list. */
+static bool put_axis(struct page *page, int k, const char *which, stance_message *message)
 {
     const struct results_varied *v = &page->plot->r->vary[k];
-    FILE *script = page->g.script;
+    struct gnuplot *g = &page->g;
     struct doe_bins bins;
     double low, high;
+    size_t words = 0;
 
     if (!doe_bins_make(&bins, page->plot->r, k, TICS, message))
         return false;
+    const bool listed = bins.listed && !(page->scale >= 0 && is_offset(v));
     find_range(page, k, &low, &high);
     if (v->word) {
         low = ceil(low) - 0.5;
         high = floor(high) + 0.5;
     }
-    fprintf(script, "set %crange [%.10g:%.10g]\n", which, low, high);
-    if (!bins.listed || (page->scale >= 0 && is_offset(v))) {
-        fprintf(script, "set %ctics %.10g\nset format %c '%%.10g'\n", which,
-                plot_round_step(low, high, tics), which);
+    plot_label_write(&v->of, g, which);
+    gnuplot_text(g, listed ? "list" : "linear", "%s_scale", which);
+    gnuplot_set(g, "%s_low = %#.17g; %s_high = %#.17g; %s_wordy = %d", which, low, which, high,
+                which, v->word != NULL);
+    if (!listed)
         return true;
+    gnuplot_set(g, "array %s_word[%zu]\narray %s_at[%zu]", which, bins.count + 1, which,
+                bins.count + 1);
+    for (size_t b = 0; b < bins.count; b++) {
+        const double centre = bins.bin[b].centre;
+        char text[40];
+        if (!isfinite(centre))
+            continue;
+        results_number_text(centre, 0, text, sizeof text);
+        gnuplot_set(g, "%s_at[%zu] = %#.17g", which, ++words, centre);
+        plot_tic_text(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", which, words);
     }
-    fprintf(script, "set %ctics (", which);
-    for (size_t b = 0, first = 1; b < bins.count; b++) {
-        if (isfinite(bins.bin[b].centre)) {
-            char text[40];
-            results_number_text(bins.bin[b].centre, 0, text, sizeof text);
-            fputs(first ? "" : ", ", script);
-            gnuplot_text(script, v->word ? v->word[(int)bins.bin[b].centre] : text, 0);
-            fprintf(script, " %.10g", bins.bin[b].centre);
-            first = 0;
-        }
-    }
-    fputs(")\n", script);
+    gnuplot_set(g, "%s_words = %zu", which, words);
     return true;
 }
 
@@ -166,7 +159,7 @@ static bool have_divisor(uint64_t a, uint64_t b)
 }
 
 /* Every case, or every n-th where there are too many. */
-static void put_cases(struct page *page, const char *name, FILE *data)
+static void put_cases(struct page *page)
 {
     const struct results *r = page->plot->r;
     uint64_t every = (r->cases + MOST_DRAWN - 1) / MOST_DRAWN;
@@ -177,19 +170,12 @@ static void put_cases(struct page *page, const char *name, FILE *data)
         size_t point[SCENARIO_MAX_AXES];
         results_point(r, i, point);
         const double scale = page->scale < 0 ? 1 : r->axis[page->scale].value[point[page->scale]];
-        gnuplot_number(data, place_at(page, page->x, point[r->sample], scale));
-        putc(' ', data);
-        gnuplot_number(data, place_at(page, page->y, point[r->sample], scale));
-        fprintf(data, " %ld\n", strtol(plot_colours[r->kind[i]] + 1, NULL, 16));
+        GNUPLOT_ROW(&page->g, place_at(page, page->x, point[r->sample], scale),
+                    place_at(page, page->y, point[r->sample], scale), r->kind[i]);
     }
-    fprintf(page->g.script,
-            "plot '%s' using 1:2:3 with points pt 7 ps %g lc rgb variable notitle\n", name,
-            r->cases > 4000  ? 0.25
-            : r->cases > 400 ? 0.45
-                             : 0.8);
 }
 
-static bool put_shares(struct page *page, const char *name, FILE *data, stance_message *message)
+static bool put_shares(struct page *page, stance_message *message)
 {
     const struct results *r = page->plot->r;
     const size_t n = r->axis[r->sample].count, every = (n + MOST_DRAWN - 1) / MOST_DRAWN;
@@ -198,173 +184,96 @@ static bool put_shares(struct page *page, const char *name, FILE *data, stance_m
         return no_memory(message);
     statistics_count_axis(r, r->sample, counts);
     for (size_t i = 0; i < n; i += every) {
-        gnuplot_number(data, place_at(page, page->x, i, 1));
-        putc(' ', data);
-        gnuplot_number(data, place_at(page, page->y, i, 1));
-        putc(' ', data);
-        gnuplot_number(data, counts[i].done ? 100 * (double)counts[i].kind[page->judged] /
-                                                  (double)counts[i].done
-                                            : NAN);
-        putc('\n', data);
+        GNUPLOT_ROW(&page->g, place_at(page, page->x, i, 1), place_at(page, page->y, i, 1),
+                    counts[i].done
+                        ? 100 * (double)counts[i].kind[page->judged] / (double)counts[i].done
+                        : NAN);
     }
     free(counts);
-    const double x = LEFT + SCATTER_WIDTH + 20, y = page->top + 40;
-    /* After cividis (Nunez, Anderton, Renslow 2018): even steps for every reader. */
-    fprintf(page->g.script,
-            "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c',"
-            " 1 '#fee838')\nset cbrange [0:100]\nset cbtics 20 nomirror out scale 0\n"
-            "set cblabel '%s (%%)' offset 0.5,0\n"
-            "set colorbox user origin screen %.6f, screen %.6f size screen %.6f, screen %.6f\n"
-            "plot '%s' using 1:2:3 with points pt 7 ps %g lc palette notitle\nunset colorbox\n",
-            results_kind_names[page->judged], x / page->g.width, 1 - (y + 180) / page->g.height,
-            18.0 / page->g.width, 180.0 / page->g.height, name,
-            n > 4000  ? 0.25
-            : n > 400 ? 0.5
-                      : 0.9);
     return true;
 }
 
 static bool put_scatter(struct page *page, stance_message *message)
 {
-    char name[32];
-    gnuplot_panel(&page->g, LEFT, page->top, SCATTER_WIDTH, SCATTER_HEIGHT);
-    bool good = put_range(page, page->x, 'x', 7, message) &&
-                (page->y < 0 || put_range(page, page->y, 'y', 7, message));
-    if (page->y < 0)
-        fputs("set yrange [0:1]\nunset ytics\n", page->g.script);
-    fputs("unset grid\n", page->g.script);
-    FILE *data = gnuplot_data(&page->g, name);
-    if (good && page->shares)
-        good = put_shares(page, name, data, message);
-    else if (good)
-        put_cases(page, name, data);
-    gnuplot_close_data(&page->g, data);
+    const struct results *r = page->plot->r;
+    if (!put_axis(page, page->x, "x", message) ||
+        (page->y >= 0 && !put_axis(page, page->y, "y", message)))
+        return false;
+    gnuplot_set(&page->g, "plane = %d; shares = %d; points = %llu; judged_colour = colour_%s",
+                page->y >= 0, page->shares,
+                (unsigned long long)(page->shares ? r->axis[r->sample].count : r->cases),
+                results_kind_names[page->judged]);
+    gnuplot_text(&page->g, results_kind_names[page->judged], "judged");
+    plot_kinds_write(r, &page->g, !page->shares);
+    gnuplot_block(&page->g, "scatter");
+    bool good = true;
+    if (page->shares)
+        good = put_shares(page, message);
+    else
+        put_cases(page);
+    gnuplot_end_block(&page->g);
     return good;
 }
 
 /* ---- shares ------------------------------------------------------------------------------- */
 
-static void panel_place(const struct page *page, int k, double *x, double *y)
-{
-    const int row = k / COLUMNS, column = k % COLUMNS;
-    *x = LEFT - 20 + column * ACROSS;
-    *y = page->top + SCATTER_HEIGHT + LABELS + 40 + row * DOWN;
-}
-
-/* Share of the kind judged by in each bin, with its interval, against the bin's median. */
-static bool put_panel(struct page *page, int k, double most, stance_message *message)
+/* Share of the kind judged by in each bin, with its interval, against the bin's median; the highest
+ * interval widens *most, the end of the axis of shares in per cent. */
+static bool put_panel(struct page *page, int k, double *most, stance_message *message)
 {
     struct doe_bins bins;
-    char name[32];
-    double x, y;
+    char which[32];
+    bool any = false;
 
-    if (!doe_bins_make(&bins, page->plot->r, k, BINS, message))
+    snprintf(which, sizeof which, "x%d", k + 1);
+    if (!doe_bins_make(&bins, page->plot->r, k, BINS, message) ||
+        !put_axis(page, k, which, message))
         return false;
-    panel_place(page, k, &x, &y);
-    FILE *data = gnuplot_data(&page->g, name);
+    gnuplot_block(&page->g, "bins%d", k + 1);
     for (size_t b = 0; b < bins.count; b++) {
         const struct statistics_counts *c = &bins.bin[b].counts;
         const struct interval *interval = &bins.bin[b].of_kind[page->judged];
         if (c->done == 0 || !isfinite(bins.bin[b].centre))
             continue;
-        fprintf(data, "%.17g %.17g %.17g %.17g\n", bins.bin[b].centre,
-                100 * (double)c->kind[page->judged] / (double)c->done, 100 * interval->low,
-                100 * interval->high);
+        GNUPLOT_ROW(&page->g, bins.bin[b].centre,
+                    100 * (double)c->kind[page->judged] / (double)c->done, 100 * interval->low,
+                    100 * interval->high);
+        *most = fmax(*most, 104 * interval->high);
+        any = true;
     }
-    fputs("nan nan nan nan\n", data); /* a panel without bins is empty, not an error */
-    gnuplot_close_data(&page->g, data);
-    gnuplot_panel(&page->g, x, y, PANEL_WIDTH, PANEL_HEIGHT);
-    if (!put_range(page, k, 'x', 4, message))
-        return false;
-    fprintf(page->g.script, "set xtics font '%s'\n", /* words are long, panels are not */
-            page->plot->r->vary[k].word ? ",8" : "");
-    fprintf(page->g.script,
-            "set yrange [0:%.10g]\nset format y '%%.10g'\n"
-            "set grid lt 1 lc rgb '#e6e6e6' lw 0.8\n",
-            most);
-    plot_value_tics(page->g.script, 0, most, PANEL_HEIGHT);
-    fprintf(page->g.script,
-            "plot '%s' using 1:2:3:4 with yerrorbars lc rgb '%s' pt 7 ps 0.6 lw 1.4 notitle\n",
-            name, plot_colours[page->judged]);
-    return true;
-}
-
-/* The end of the axis of shares, in per cent: the highest interval of all panels. */
-static bool find_most(struct page *page, int panels, double *most, stance_message *message)
-{
-    *most = 1;
-    for (int k = 0; k < panels; k++) {
-        struct doe_bins bins;
-        if (!doe_bins_make(&bins, page->plot->r, k, BINS, message))
-            return false;
-        for (size_t b = 0; b < bins.count; b++) {
-            const struct statistics_counts *c = &bins.bin[b].counts;
-            *most = c->done > 0 ? fmax(*most, 104 * bins.bin[b].of_kind[page->judged].high) : *most;
-        }
-    }
-    *most = fmin(*most, 100);
+    if (!any) /* a panel without bins is empty, not an error */
+        GNUPLOT_ROW(&page->g, NAN, NAN, NAN, NAN);
+    gnuplot_end_block(&page->g);
     return true;
 }
 
 /* ---- the page ----------------------------------------------------------------------------- */
 
-static void label_page(struct page *page, int panels)
-{
-    const struct results *r = page->plot->r;
-    struct gnuplot *g = &page->g;
-    char text[160];
-    double x, y;
-
-    plot_axis_label(&r->vary[page->x].of, g, LEFT + SCATTER_WIDTH / 2.0,
-                    page->top + SCATTER_HEIGHT + 46, SCATTER_WIDTH + 60, false);
-    if (page->y >= 0) {
-        plot_axis_label(&r->vary[page->y].of, g, 22, page->top + SCATTER_HEIGHT / 2.0,
-                        SCATTER_HEIGHT, true);
-    }
-    if (!page->shares)
-        plot_kind_legend(page->plot, g, LEFT + SCATTER_WIDTH + 20, page->top + 10);
-    snprintf(text, sizeof text, "%s (%%), bars: 95 %% interval", results_kind_names[page->judged]);
-    panel_place(page, 0, &x, &y);
-    gnuplot_label(g, x - 60, y - 18, text, "left", 11, false);
-    for (int k = 0; k < panels; k++) {
-        panel_place(page, k, &x, &y);
-        snprintf(text, sizeof text, r->vary[k].of.unit[0] ? "%s (%s)" : "%s", r->vary[k].of.name,
-                 r->vary[k].of.unit);
-        gnuplot_label(g, x + PANEL_WIDTH / 2.0, y + PANEL_HEIGHT + 42, text, "center", 10, false);
-    }
-}
-
 bool plot_sample(const struct plot *plot, stance_message *message)
 {
     const struct results *r = plot->r;
     struct page page = {.plot = plot, .judged = choose_judged(r)};
-    const char *title = r->title[0] ? r->title : r->name;
     const int panels = r->varied < MOST_PANELS ? r->varied : MOST_PANELS;
-    const int width = LEFT + SCATTER_WIDTH + LEGEND, rows = (panels + COLUMNS - 1) / COLUMNS;
-    char what[256], stem[512];
-    double most;
+    char what[256];
+    double most = 1;
 
+    if (r->sample < 0)
+        return true;
     choose_scatter(&page);
     snprintf(what, sizeof what, "%llu cases at %zu points of a design, %s",
              (unsigned long long)r->cases, r->axis[r->sample].count, r->method);
     plot_failed_text(r, what, sizeof what);
-    page.top = gnuplot_title_height(width, title, what);
-    if (!find_most(&page, panels, &most, message) ||
-        !gnuplot_begin(&page.g, width, (int)page.top + SCATTER_HEIGHT + LABELS + 40 + rows * DOWN,
-                       message))
+    if (!plot_begin(plot, &page.g, plot_sample_gp, what, message))
         return false;
-    gnuplot_title(&page.g, title, what);
-    label_page(&page, panels);
-    gnuplot_decorate(&page.g);
     bool good = put_scatter(&page, message);
     for (int k = 0; good && k < panels; k++)
-        good = put_panel(&page, k, most, message);
+        good = put_panel(&page, k, &most, message);
     if (!good) {
         gnuplot_abandon(&page.g);
         return false;
     }
+    gnuplot_set(&page.g, "panels = %d; most = %#.10g", panels, fmin(most, 100));
     if (panels < r->varied)
         fprintf(stderr, "%s: the picture shows %d of the %d paths\n", r->file, panels, r->varied);
-    snprintf(stem, sizeof stem, "%s-sample", plot->stem);
-    return gnuplot_end(&page.g, plot->directory, stem, message);
+    return plot_end(plot, &page.g, "sample", message);
 }

@@ -2,21 +2,18 @@
 #include "sensitivity_study.h"
 
 #include "analysis/draw/plot.h"
-#include "runner/base/command.h"
-#include "runner/base/sandbox.h"
+#include "analysis/table/report.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 extern const struct command command_sensitivity; /* below */
 
-enum { MOST_BY = SCENARIO_MAX_AXES, LEAST_RESAMPLES = 100, MOST_RESAMPLES = 100000 };
+enum { MOST_BY = SCENARIO_MAX_AXES };
 
 struct asked {
-    const char *file, *directory; /* directory NULL: no picture */
-    enum table_form form;
+    const char *directory; /* NULL: no picture */
     struct sensitivity_request request;
 };
 
@@ -32,26 +29,11 @@ static bool bad_use(const char *text, const char *word)
 static bool read_answer(const char *name, struct sensitivity_request *request)
 {
     struct plot_answer answer;
-    char list[600];
-    if (!plot_answer_find(name, &answer)) {
-        plot_answer_list(list, sizeof list);
-        fprintf(stderr, "stance sensitivity: --answer takes one of %s, not '%.60s'\n", list, name);
+    if (!plot_answer_find(&command_sensitivity, name, &answer))
         return false;
-    }
     request->answer = answer.name;
     request->unit = answer.unit;
     return true;
-}
-
-static bool read_outcome(const char *of, struct sensitivity_request *request)
-{
-    for (int k = 0; k < RESULTS_OUTCOMES; k++) {
-        if (strcmp(of, results_kind_names[k]) == 0) {
-            request->of = (enum results_kind)k;
-            return true;
-        }
-    }
-    return bad_use("--of takes an outcome, stabilised, rested, fell or undecided, not", of);
 }
 
 static bool read_failed(const char *word, struct sensitivity_request *request)
@@ -59,25 +41,6 @@ static bool read_failed(const char *word, struct sensitivity_request *request)
     request->fallen = strcmp(word, "fallen") == 0;
     return request->fallen || strcmp(word, "drop") == 0 ||
            bad_use("--failed takes drop or fallen, not", word);
-}
-
-static bool read_resamples(const char *text, struct sensitivity_request *request)
-{
-    char *end;
-    errno = 0;
-    const long n = strtol(text, &end, 10);
-    request->bootstrap.resamples = (size_t)n;
-    return (end != text && !*end && errno == 0 && n >= LEAST_RESAMPLES && n <= MOST_RESAMPLES) ||
-           bad_use("--resamples takes a whole number from 100 to 100000, not", text);
-}
-
-static bool read_level(const char *text, struct sensitivity_request *request)
-{
-    char *end;
-    request->bootstrap.level = strtod(text, &end);
-    return (end != text && !*end && request->bootstrap.level >= 0.5 &&
-            request->bootstrap.level <= 0.999) ||
-           bad_use("--level takes a number from 0.5 to 0.999, not", text);
 }
 
 static bool read_seed(const char *text, struct sensitivity_request *request)
@@ -92,41 +55,27 @@ static bool read_seed(const char *text, struct sensitivity_request *request)
 
 /* ---- the work ----------------------------------------------------------------------------- */
 
-static bool report(const struct asked *asked, const struct sensitivity_study *study,
-                   stance_message *message)
+static bool show(const struct report *report, const struct sensitivity_study *study,
+                 stance_message *message)
 {
+    const struct asked *asked = report->request;
+    const char *answer = study->request.answer;
     char stem[400];
-    bool good = sensitivity_print(study, asked->form);
-    if (!good) {
-        snprintf(message->text, sizeof message->text,
-                 "stance sensitivity: the result could not be written");
-    } else if (asked->directory) {
-        const char *answer = study->request.answer;
-        snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", study->r->name, answer ? "-" : "",
-                 answer ? answer : "");
-        good = sensitivity_picture(study, asked->directory, stem, message);
-    }
-    return good;
+    snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", study->r->name, answer ? "-" : "",
+             answer ? answer : "");
+    return sensitivity_print(study, report->form) &&
+           (!asked->directory || sensitivity_picture(study, asked->directory, stem, message));
 }
 
-static int work(void *context)
+static int work(struct report *report, const struct results *r, stance_message *message)
 {
-    const struct asked *asked = context;
-    struct results r;
+    const struct asked *asked = report->request;
     struct sensitivity_study study;
-    stance_message message = {""};
-    int code = EXIT_IO;
-
-    if (results_open(&r, asked->file, &message)) {
-        code = sensitivity_study_make(&study, &r, &asked->request, &message);
-        if (code == EXIT_DONE) {
-            code = report(asked, &study, &message) ? EXIT_DONE : EXIT_IO;
-            sensitivity_study_free(&study);
-        }
-        results_close(&r);
+    int code = sensitivity_study_make(&study, r, &asked->request, message);
+    if (code == EXIT_DONE) {
+        code = show(report, &study, message) ? EXIT_DONE : EXIT_IO;
+        sensitivity_study_free(&study);
     }
-    if (code != EXIT_DONE)
-        fprintf(stderr, "%s\n", message.text);
     return code;
 }
 
@@ -134,31 +83,27 @@ static int run(int argc, char **argv)
 {
     const char *answer = NULL, *of = NULL, *resamples = NULL, *level = NULL, *seed = NULL;
     const char *failed = "drop", *by[MOST_BY];
-    size_t given[7] = {0}, json = 0, csv = 0, operands = 0;
-    bool help = false;
+    size_t given[7] = {0};
+    int code;
     struct asked asked = {
         .request = {
             .unit = "", .of = RESULTS_KIND_COUNT, .by = by, .bootstrap = SENSITIVITY_BOOTSTRAP}};
+    struct sensitivity_request *request = &asked.request;
+    double drawn = (double)request->bootstrap.resamples;
+    struct report report = {.command = &command_sensitivity, .work = work, .request = &asked};
     const struct option_spec specs[] = {
         {"--answer", true, &answer, 1, &given[0]},
         {"--of", true, &of, 1, &given[1]},
-        {"--by", true, by, MOST_BY, &asked.request.by_count},
+        {"--by", true, by, MOST_BY, &request->by_count},
         {"--resamples", true, &resamples, 1, &given[2]},
         {"--level", true, &level, 1, &given[3]},
         {"--seed", true, &seed, 1, &given[4]},
         {"--failed", true, &failed, 1, &given[5]},
         {"-o", true, &asked.directory, 1, &given[6]},
-        {"--json", false, NULL, 0, &json},
-        {"--csv", false, NULL, 0, &csv},
     };
-    if (!command_options(&command_sensitivity, argc, argv, specs, sizeof specs / sizeof specs[0],
-                         &asked.file, 1, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    const char *wrong = operands == 0 ? "a results file is needed"
-                        : json && csv ? "--json or --csv, not both"
-                        : given[6] && (json || csv)
+    if (!report_options(&report, argc, argv, specs, sizeof specs / sizeof specs[0], &code))
+        return code;
+    const char *wrong = given[6] && report.form != TABLE_AS_TEXT
                             ? "-o belongs to the text: --json and --csv print nothing else"
                         : answer && strcmp(failed, "fallen") == 0
                             ? "--failed fallen has no meaning with --answer: a failed case has none"
@@ -167,15 +112,14 @@ static int run(int argc, char **argv)
         fprintf(stderr, "stance sensitivity: %s (stance sensitivity -h explains)\n", wrong);
         return EXIT_USAGE;
     }
-    struct sensitivity_request *request = &asked.request;
-    if (!((!answer || read_answer(answer, request)) && (!of || read_outcome(of, request)) &&
-          read_failed(failed, request) && (!resamples || read_resamples(resamples, request)) &&
-          (!level || read_level(level, request)) && (!seed || read_seed(seed, request))))
+    if (!((!answer || read_answer(answer, request)) && report_outcome(&report, of, &request->of) &&
+          read_failed(failed, request) &&
+          report_number(&report, "--resamples", resamples, 100, 100000, true, &drawn) &&
+          report_number(&report, "--level", level, 0.5, 0.999, false, &request->bootstrap.level) &&
+          (!seed || read_seed(seed, request))))
         return EXIT_USAGE;
-    if (asked.directory && !gnuplot_directory(asked.directory))
-        return EXIT_IO;
-    asked.form = table_form(json, csv);
-    return sandbox(work, &asked, asked.file);
+    request->bootstrap.resamples = (size_t)drawn;
+    return asked.directory && !gnuplot_directory(asked.directory) ? EXIT_IO : report_run(&report);
 }
 
 const struct command command_sensitivity = {

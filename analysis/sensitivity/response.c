@@ -3,6 +3,7 @@
 
 #include "analysis/statistics/statistics.h"
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -105,8 +106,7 @@ static int read_answers(const struct results *r, const char *name, double **answ
                    ? EXIT_DONE
                    : EXIT_IO;
     if (code == EXIT_DONE && !*answers) {
-        snprintf(message->text, sizeof message->text, "%.150s: does not store %.60s", r->file,
-                 name);
+        complain(message, "%.150s: does not store %.60s", r->file, name);
         code = EXIT_USAGE;
     }
     for (uint64_t i = 0; code == EXIT_DONE && which && i < r->cases; i++)
@@ -130,7 +130,7 @@ int response_make(struct response *response, const struct results *r,
     *response = (struct response){.points = r->axis[r->sample].count};
     memcpy(response->kept, kept, (size_t)r->sample * sizeof *kept);
     if (choice->of != RESULTS_KIND_COUNT && !has_outcomes(r)) {
-        snprintf(message->text, sizeof message->text, "%.200s: does not store outcomes", r->file);
+        complain(message, "%.200s: does not store outcomes", r->file);
         return EXIT_USAGE;
     }
     int code = choice->answer ? read_answers(r, choice->answer, &answers, message) : EXIT_DONE;
@@ -141,7 +141,7 @@ int response_make(struct response *response, const struct results *r,
     if (numbers) {
         take_means(response, r, choice, answers, numbers);
     } else {
-        snprintf(message->text, sizeof message->text, "%.200s: not enough memory", r->file);
+        statistics_no_memory(r, message);
         response_free(response);
         code = EXIT_IO;
     }

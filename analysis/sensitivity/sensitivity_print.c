@@ -76,7 +76,7 @@ static void add_factors(struct table *t, const struct sensitivity_study *study,
             table_axes(t, study->r, kept, count, table->response->point);
         sensitivity_factor_text(study, j, name, sizeof name);
         TABLE_FACTS(t, {{"factor", .key = "path"}, as_text(sensitivity_factor_path(study, j, 0))},
-                    {{"label", "factor", .hidden = TABLE_VIEW_ONLY, .width = -1}, as_text(name)},
+                    {{"label", "factor", .hidden = TABLE_VIEW_ONLY, .left = true}, as_text(name)},
                     {{"paths", .hidden = TABLE_NO_CSV}, as_tree(paths_json(study, j))});
         for (int m = 0; m < SENSITIVITY_MEASURE_COUNT; m++)
             if (table->s.measure[m])
@@ -265,18 +265,6 @@ static json_t *value_json(const struct sensitivity_value *v)
                         {"high", as_number(v->high)});
 }
 
-static json_t *at_json(const struct sensitivity_study *study, const struct sensitivity_table *table)
-{
-    json_t *at = json_object();
-    for (int a = 0; a < study->r->axes; a++) {
-        const struct results_axis *axis = &study->r->axis[a];
-        if (study->response.kept[a])
-            json_object_set_new(at, axis->name,
-                                table_value_json(as_place(axis, table->response->point[a])));
-    }
-    return at;
-}
-
 static json_t *pairs_json(const struct sensitivity_study *study,
                           const struct sensitivity_table *table)
 {
@@ -301,13 +289,14 @@ static json_t *table_of(const struct sensitivity_study *study,
     struct table factors = {0};
     add_factors(&factors, study, table, TABLE_AS_JSON);
     json_t *object = TABLE_OBJECT(
-        {"at", as_tree(at_json(study, table))}, {"cases", as_whole(response->cases)},
-        {"failed", as_whole(response->failed)}, {"pending", as_whole(response->pending)},
-        {"blocks", as_whole(table->blocks)}, {"used", as_whole(table->s.blocks)},
-        {"incomplete", as_whole(table->waiting)},
+        {"at", as_tree(table_at(study->r, study->response.kept, response->point))},
+        {"cases", as_whole(response->cases)}, {"failed", as_whole(response->failed)},
+        {"pending", as_whole(response->pending)}, {"blocks", as_whole(table->blocks)},
+        {"used", as_whole(table->s.blocks)}, {"incomplete", as_whole(table->waiting)},
         {is_morris(study) ? "lost_effects" : "lost", as_whole(table->lost)},
         {"mean", as_number(table->s.mean)}, {"deviation", as_number(table->s.deviation)},
-        {"factors", as_tree(table_json(&factors))}, {"policies_differ", as_truth(table->moved)});
+        {"factors", as_tree(table_json(&factors, false))},
+        {"policies_differ", as_truth(table->moved)});
     if (table->s.measure[SENSITIVITY_FIRST])
         json_object_set_new(object, "first_sum", value_json(&table->s.first_sum));
     if (table->s.second)

@@ -1,8 +1,10 @@
 /* sensitivity_study.c - from a results file to sensitivity indices. */
 #include "sensitivity_study.h"
 
+#include "analysis/statistics/statistics.h"
 #include "analysis/summary/summary.h"
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 #include "runner/base/words.h"
 
 #include <math.h>
@@ -79,7 +81,7 @@ void sensitivity_table_text(const struct sensitivity_study *study, size_t table,
 
 static int refuse(stance_message *message, const struct results *r, const char *text)
 {
-    snprintf(message->text, sizeof message->text, "%.110s: %s", r->file, text);
+    complain(message, "%.110s: %s", r->file, text);
     return EXIT_USAGE;
 }
 
@@ -101,8 +103,7 @@ static int choose_axes(const struct results *r, const struct sensitivity_request
         }
         if (a == grid) {
             const char *near = nearest_word(request->by[b], names, (size_t)grid);
-            snprintf(message->text, sizeof message->text,
-                     "stance sensitivity: --by %.50s: not a grid axis of %.50s%s%.50s%s",
+            complain(message, "stance sensitivity: --by %.50s: not a grid axis of %.50s%s%.50s%s",
                      request->by[b], r->file, near ? "; did you mean '" : "", near ? near : "",
                      near ? "'?" : "");
             return EXIT_USAGE;
@@ -136,16 +137,14 @@ static int read_design(struct sensitivity_study *study, stance_message *message)
     struct scenario *s = calloc(1, sizeof *s);
     if (!s || !results_scenario(r, s)) {
         free(s);
-        snprintf(message->text, sizeof message->text,
-                 "%.150s: its scenario cannot be read by this version", r->file);
+        complain(message, "%.150s: its scenario cannot be read by this version", r->file);
         return EXIT_IO;
     }
     study->scenario = s;
     study->design = &s->sample.design;
     if (!s->sample.given || s->axes != r->axes ||
         doe_points(study->design) != r->axis[r->sample].count) {
-        snprintf(message->text, sizeof message->text,
-                 "%.150s: damaged: its samples are not those of its scenario", r->file);
+        complain(message, "%.150s: damaged: its samples are not those of its scenario", r->file);
         return EXIT_IO;
     }
     if (r->other_points) {
@@ -272,9 +271,9 @@ static void count_blocks(const struct sensitivity_study *study, struct sensitivi
     }
 }
 
-static int no_memory(const struct results *r, stance_message *message)
+static int lacks_memory(const struct results *r, stance_message *message)
 {
-    snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+    statistics_no_memory(r, message);
     return EXIT_IO;
 }
 
@@ -296,7 +295,7 @@ static int make_others(struct sensitivity_study *study, const double *u, stance_
             compare(&study->table[t], &s);
             sensitivity_free(&s);
         } else {
-            code = no_memory(study->r, message);
+            code = lacks_memory(study->r, message);
         }
     }
     response_free(&other);
@@ -310,7 +309,7 @@ static int make_tables(struct sensitivity_study *study, stance_message *message)
     const bool blind = study->design->method == DOE_SALTELLI; /* where its points are, is known */
     double *u = blind ? NULL : make_points(study);
     study->table = calloc(tables, sizeof *study->table);
-    int code = (u || blind) && study->table ? EXIT_DONE : no_memory(study->r, message);
+    int code = (u || blind) && study->table ? EXIT_DONE : lacks_memory(study->r, message);
 
     for (size_t t = 0; code == EXIT_DONE && t < tables; t++) {
         struct sensitivity_table *table = &study->table[t];
@@ -319,7 +318,7 @@ static int make_tables(struct sensitivity_study *study, stance_message *message)
         drop_waiting(study, &study->response.table[t]);
         count_blocks(study, table);
         if (!analyse(study, table->response->y, u, &study->request.bootstrap, &table->s))
-            code = no_memory(study->r, message);
+            code = lacks_memory(study->r, message);
     }
     if (code == EXIT_DONE && failed > 0 && !study->request.answer)
         code = make_others(study, u, message);
@@ -372,7 +371,7 @@ int sensitivity_study_make(struct sensitivity_study *study, const struct results
     if (code == EXIT_DONE)
         code = make_tables(study, message);
     if (code == EXIT_DONE && !make_order(study))
-        code = no_memory(r, message);
+        code = lacks_memory(r, message);
     if (code != EXIT_DONE)
         sensitivity_study_free(study);
     return code;

@@ -60,8 +60,7 @@ bool doe_bins_make(struct doe_bins *bins, const struct results *r, int k, size_t
         free(place);
         free(counts);
         free(part);
-        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
-        return false;
+        return statistics_no_memory(r, message);
     }
     statistics_count_axis(r, r->sample, counts);
     for (size_t i = 0; i < n; i++)
@@ -92,6 +91,6 @@ bool doe_bins_make(struct doe_bins *bins, const struct results *r, int k, size_t
     free(counts);
     free(part);
     if (!good)
-        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        statistics_no_memory(r, message);
     return good;
 }

@@ -1,6 +1,8 @@
 /* statistics.c - counts, Wilson intervals, quantiles and extents. */
 #include "statistics.h"
 
+#include "runner/base/message.h"
+
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
@@ -219,7 +221,7 @@ bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
     bool good = results_answer(r, "evidence", &evidence, message) &&
                 results_answer(r, "end_time", &end, message);
     if (good && which && !(flag = calloc(r->cases, sizeof *flag))) {
-        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        statistics_no_memory(r, message);
         good = false;
     }
     for (uint64_t i = 0; good && evidence && i < r->cases; i++) {
@@ -233,4 +235,9 @@ bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
     if (which)
         *which = flag;
     return good;
+}
+
+bool statistics_no_memory(const struct results *r, stance_message *message)
+{
+    return complain(message, "%.100s: not enough memory", r->file);
 }

@@ -7,6 +7,9 @@
 
 #include "runner/store/results.h"
 
+/* Says of the file that there is not enough memory. Returns false. */
+bool statistics_no_memory(const struct results *r, stance_message *message);
+
 /* Wilson's score interval for a share p of n > 0 independent draws, at z standard deviations; p n
  * need not be whole. Cases of a grid are no draws.
  * E. B. Wilson (1927), Probable inference, the law of succession, and statistical inference. */

@@ -1,6 +1,8 @@
 /* summary.c - collects what `stance summary` prints. */
 #include "summary.h"
 
+#include "analysis/statistics/statistics.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,6 +28,18 @@ const char *summary_failure_text(int failure)
 {
     return failure > 0 && failure < STANCE_FAILURE_COUNT ? stance_failure_text[failure]
                                                          : "the file does not say why";
+}
+
+const char *summary_judged_word(const struct summary *summary)
+{
+    return summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised";
+}
+
+size_t summary_final_state(const struct results *r, char name[][32], double *state)
+{
+    const size_t n = results_words(r, "state", name, SCENARIO_MAX_STATES);
+    const bool done = r->kind[0] != RESULTS_PENDING && r->kind[0] != RESULTS_FAILED;
+    return done && results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) == n ? n : 0;
 }
 
 /* ---- the answers -------------------------------------------------------------------------- */
@@ -56,20 +70,29 @@ static bool collect_numbers(struct summary *summary, const struct results *r,
     return true;
 }
 
-static bool collect_count(struct summary_count *count, const struct results *r, const char *name,
-                          stance_message *message)
+static bool collect_counts(struct summary *summary, const struct results *r,
+                           stance_message *message)
 {
-    double *values;
-    if (!results_answer(r, name, &values, message))
-        return false;
-    for (uint64_t i = 0; values && i < r->cases; i++) {
-        if (values[i] > 0) { /* false for NAN, too */
-            count->sum += values[i];
-            count->cases++;
+    static const struct summary_count wanted[SUMMARY_COUNT_COUNT] = {
+#define SUMMARY_COUNT(name, cases, text) {#name, cases, text, false, 0, 0},
+        SUMMARY_COUNTS(SUMMARY_COUNT)
+#undef SUMMARY_COUNT
+    };
+    for (int k = 0; k < SUMMARY_COUNT_COUNT; k++) {
+        struct summary_count *count = &summary->count[k];
+        double *values;
+        *count = wanted[k];
+        if (!results_answer(r, count->name, &values, message))
+            return false;
+        for (uint64_t i = 0; values && i < r->cases; i++) {
+            if (values[i] > 0) { /* false for NAN, too */
+                count->sum += values[i];
+                count->cases++;
+            }
         }
+        count->stored = values != NULL;
+        free(values);
     }
-    count->stored = values != NULL;
-    free(values);
     return true;
 }
 
@@ -87,10 +110,8 @@ static bool collect_pair(struct summary *summary, const struct results *r, stanc
 {
     size_t pairs = r->axis[summary->pair[0]].count * r->axis[summary->pair[1]].count;
     summary->pair_counts = malloc(pairs * sizeof *summary->pair_counts);
-    if (!summary->pair_counts) {
-        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
-        return false;
-    }
+    if (!summary->pair_counts)
+        return statistics_no_memory(r, message);
     statistics_count_pair(r, summary->pair[0], summary->pair[1], summary->pair_counts);
     return true;
 }
@@ -104,10 +125,8 @@ static bool collect_bins(struct summary *summary, const struct results *r, stanc
     if (r->sample < 0)
         return true;
     summary->bins = calloc((size_t)r->varied, sizeof *summary->bins);
-    if (!summary->bins) {
-        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
-        return false;
-    }
+    if (!summary->bins)
+        return statistics_no_memory(r, message);
     for (int k = 0; good && k < r->varied; k++)
         good = doe_bins_make(&summary->bins[k], r, k, BINS, message);
     return good;
@@ -130,8 +149,7 @@ static bool collect_rays(struct summary *summary, const struct results *r, stanc
     summary->rays = calloc(1, sizeof *summary->rays);
     if (!end || !summary->rays) {
         free(end);
-        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
-        return false;
+        return statistics_no_memory(r, message);
     }
     for (size_t i = 0; i < points; i++) {
         size_t point[SCENARIO_MAX_AXES] = {0};
@@ -189,8 +207,7 @@ static bool collect_axes(struct summary *summary, const struct results *r, stanc
         if (!counts || !summary->interval[a] ||
             !intervals_find(r, summary->judged, a, NULL, axis->count, summary->interval[a])) {
             free(counts);
-            snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
-            return false;
+            return statistics_no_memory(r, message);
         }
         summary->by_value[a] = counts;
         statistics_count_axis(r, a, counts);
@@ -217,7 +234,7 @@ static bool collect_intervals(struct summary *summary, const struct results *r,
             good = intervals_find(r, (enum results_kind)kind, -1, NULL, 1, &summary->of_kind[kind]);
     }
     if (!good)
-        snprintf(message->text, sizeof message->text, "%.100s: not enough memory", r->file);
+        statistics_no_memory(r, message);
     return good;
 }
 
@@ -237,14 +254,7 @@ bool summary_make(struct summary *summary, const struct results *r, stance_messa
     statistics_count(r, -1, 0, &summary->counts);
     collect_failures(summary, r);
     bool good = collect_intervals(summary, r, message) && collect_numbers(summary, r, message) &&
-                collect_count(&summary->steps, r, "steps", message) &&
-                collect_count(&summary->iterations, r, "iterations", message) &&
-                collect_count(&summary->evaluations, r, "evaluations", message) &&
-                collect_count(&summary->events, r, "events", message) &&
-                collect_count(&summary->ambiguous, r, "ambiguous_steps", message) &&
-                collect_count(&summary->subdivided, r, "subdivided_steps", message) &&
-                collect_count(&summary->degraded, r, "degraded_samples", message) &&
-                collect_count(&summary->evidence, r, "evidence", message) &&
+                collect_counts(summary, r, message) &&
                 statistics_inferred(r, &summary->inferred, NULL, message) &&
                 collect_axes(summary, r, message) && collect_bins(summary, r, message) &&
                 collect_rays(summary, r, message) && ancestry_read(r, &summary->ancestry, message);

@@ -3,6 +3,7 @@
 #define STANCE_SUMMARY_SUMMARY_H
 
 #include "analysis/statistics/doe_bins.h"
+#include "analysis/table/table.h"
 #include "runner/store/ancestry.h"
 
 /* The answers that are summarised: name, kind of the cases looked at (RESULTS_KIND_COUNT: all that
@@ -41,8 +42,29 @@ struct summary_numbers {
     struct statistics_numbers numbers;
 };
 
+/* Counts per case that make up the cost: name, name in JSON of the cases that have any, text. Those
+ * that are signs of trouble come last and are told even if there are none. */
+#define SUMMARY_COUNTS(X)                                                                          \
+    X(steps, NULL, NULL)                                                                           \
+    X(iterations, NULL, NULL)                                                                      \
+    X(evaluations, NULL, NULL)                                                                     \
+    X(events, "events_cases", "events, changes of contact mode")                                   \
+    X(degraded_samples, "degraded_cases",                                                          \
+      "samples at which decoupling could not do what it promises")                                 \
+    X(subdivided_steps, "subdivided_cases", "steps that had to be subdivided")                     \
+    X(ambiguous_steps, "ambiguous_cases", "steps with several contact solutions")                  \
+    X(evidence, NULL, NULL) /* 1 simulated, 2 inferred */
+
+enum {
+#define SUMMARY_COUNT(name, cases, text) SUMMARY_##name,
+    SUMMARY_COUNTS(SUMMARY_COUNT)
+#undef SUMMARY_COUNT
+        SUMMARY_COUNT_COUNT,
+};
+
 /* A count per case: its sum over the cases that are done, and how many cases have any. */
 struct summary_count {
+    const char *name, *cases_name, *text;
     bool stored;
     double sum;
     uint64_t cases;
@@ -74,9 +96,8 @@ struct summary {
     enum results_kind judged;
     uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
     struct summary_numbers numbers[SUMMARY_NUMBER_COUNT];
-    struct summary_count steps, iterations, evaluations, events, ambiguous, subdivided, degraded;
-    struct summary_count evidence; /* 1 simulated, 2 inferred */
-    uint64_t inferred;             /* from neighbours, in a refined map */
+    struct summary_count count[SUMMARY_COUNT_COUNT];
+    uint64_t inferred; /* from neighbours, in a refined map */
     bool timed;
     double longest, total, timed_cases; /* s, s, 1 */
     size_t ranks;
@@ -125,13 +146,24 @@ double summary_share(const struct summary *summary, const struct statistics_coun
 const char *summary_failure_name(int failure);
 const char *summary_failure_text(int failure);
 
-/* Prints the counts as CSV: of all cases, then of every value of every parameter. */
-void summary_print_csv(const struct summary *summary, const struct results *r);
-/* What a sample varies, a line for each path; how the shares depend on it. */
-void summary_print_varied(const struct results *r, int width);
-void summary_print_sample(const struct summary *summary, const struct results *r);
+/* "Stabilised" or "Rested": what the cases are judged by. */
+const char *summary_judged_word(const struct summary *summary);
 
-/* Prints it as JSON; false when memory or the output fails. */
+/* Tables, freed by the caller: the outcomes; what they are at every value of a parameter (with CSV
+ * of all, after those of all cases); parts of what path k of a sample varies; the numbers. */
+void summary_outcomes(struct table *t, const struct summary *summary);
+void summary_values(struct table *t, const struct summary *summary, const struct results *r,
+                    int axis, enum table_form form);
+void summary_parts(struct table *t, const struct summary *summary, const struct results *r, int k);
+struct table_value summary_sampled(const struct results_varied *v, double value);
+void summary_answers(struct table *t, const struct summary *summary, enum table_form form);
+
+/* The state in which a file of one case ends: name[], state[]; how many, 0 if that is not known. */
+size_t summary_final_state(const struct results *r, char name[][32], double *state);
+
+/* Print it; false when memory or the output fails. */
+bool summary_print_text(const struct summary *summary, const struct results *r);
 bool summary_print_json(const struct summary *summary, const struct results *r);
+bool summary_print_csv(const struct summary *summary, const struct results *r);
 
 #endif

@@ -1,9 +1,8 @@
 /* command_table.c - `stance table FILE`: every case as a row of CSV, a block of rows at a time. */
-#include "table.h"
+#include "report.h"
 
 #include "analysis/statistics/statistics.h"
-#include "runner/base/command.h"
-#include "runner/base/sandbox.h"
+#include "runner/base/message.h"
 #include "runner/base/words.h"
 #include "runner/store/results_rows.h"
 #include "runner/store/store.h"
@@ -43,12 +42,6 @@ struct listing {
 };
 
 /* ---- what there is ------------------------------------------------------------------------ */
-
-static bool no_memory(stance_message *message)
-{
-    snprintf(message->text, sizeof message->text, "stance table: not enough memory");
-    return false;
-}
 
 /* The answers that are stored, or those that are asked for. */
 static bool open_columns(struct listing *t, const char *const *names, size_t count,
@@ -225,77 +218,50 @@ static bool put_rows(struct listing *t, stance_message *message)
 /* ---- the command -------------------------------------------------------------------------- */
 
 struct request {
-    const char *file, *of;
+    const char *of;
     const char **answer;
     size_t answers;
 };
 
-static int work(void *context)
+static int work(struct report *report, const struct results *r, stance_message *message)
 {
-    const struct request *request = context;
-    struct results r;
-    stance_message message = {""};
+    const struct request *request = report->request;
     struct listing *t = calloc(1, sizeof *t);
-    if (!t) {
-        fputs("stance table: not enough memory\n", stderr);
-        return EXIT_IO;
-    }
-    if (!results_open(&r, request->file, &message)) {
-        fprintf(stderr, "%s\n", message.text);
-        free(t);
-        return EXIT_IO;
-    }
-    t->r = &r;
-    t->of = request->of;
     uint64_t ignored;
-    bool good = find_parameters(t, &message) &&
-                statistics_inferred(&r, &ignored, &t->inferred, &message) &&
-                open_columns(t, request->answers ? request->answer : answers,
-                             request->answers ? request->answers : ANSWERS, &message);
-    if (good) {
+    if (!t)
+        return EXIT_IO;
+    t->r = r;
+    t->of = request->of;
+    const bool good = find_parameters(t, message) &&
+                      statistics_inferred(r, &ignored, &t->inferred, message) &&
+                      open_columns(t, request->answers ? request->answer : answers,
+                                   request->answers ? request->answers : ANSWERS, message);
+    if (good)
         add_columns(t);
-        good = put_rows(t, &message);
-    }
-    if (!good)
-        fprintf(stderr, "%s\n", message.text);
+    const bool written = good && put_rows(t, message);
     close_listing(t);
     free(t);
-    results_close(&r);
-    return good ? EXIT_DONE : EXIT_IO;
-}
-
-static bool known(const char *word, const char *const *list, size_t count, const char *option)
-{
-    for (size_t k = 0; k < count; k++)
-        if (strcmp(word, list[k]) == 0)
-            return true;
-    const char *near = nearest_word(word, list, count);
-    fprintf(stderr, "stance table: %s: there is no '%.60s'%s%s%s\n", option, word,
-            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
-    return false;
+    return written ? EXIT_DONE : EXIT_IO;
 }
 
 static int run(int argc, char **argv)
 {
-    const char *file = NULL, *of = NULL, *answer[MOST_COLUMNS];
-    size_t given[2] = {0}, operands = 0;
-    bool help = false;
-    const struct option_spec specs[] = {{"--of", true, &of, 1, &given[0]},
-                                        {"--answer", true, answer, MOST_COLUMNS, &given[1]}};
+    const char *answer[MOST_COLUMNS];
+    struct request request = {.answer = answer};
+    struct report report = {
+        .command = &command_table, .work = work, .request = &request, .one_form = true};
+    size_t given = 0;
+    const struct option_spec specs[] = {{"--of", true, &request.of, 1, &given},
+                                        {"--answer", true, answer, MOST_COLUMNS, &request.answers}};
+    int code;
 
-    if (!command_options(&command_table, argc, argv, specs, 2, &file, 1, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    if (operands == 0) {
-        fputs("stance table: a results file is needed (stance table -h explains)\n", stderr);
-        return EXIT_USAGE;
-    }
-    bool good = !of || known(of, results_kind_names, RESULTS_KIND_COUNT, "--of");
-    for (size_t k = 0; good && k < given[1]; k++)
-        good = known(answer[k], answers, ANSWERS, "--answer");
-    struct request request = {file, of, answer, given[1]};
-    return good ? sandbox(work, &request, file) : EXIT_USAGE;
+    if (!report_options(&report, argc, argv, specs, 2, &code))
+        return code;
+    bool good = !request.of || command_word(&command_table, "--of", request.of, results_kind_names,
+                                            RESULTS_KIND_COUNT) < RESULTS_KIND_COUNT;
+    for (size_t k = 0; good && k < request.answers; k++)
+        good = command_word(&command_table, "--answer", answer[k], answers, ANSWERS) < ANSWERS;
+    return good ? report_run(&report) : EXIT_USAGE;
 }
 
 const struct command command_table = {

@@ -138,7 +138,9 @@ static struct table_value at_place(const struct table_value *value)
 static struct table_value plain(const struct table *t, const struct table_value *cell)
 {
     struct table_value value = cell->kind == TABLE_PLACE ? at_place(cell) : *cell;
-    value.text = cell->kind == TABLE_TEXT ? cell_text(t, cell) : value.text;
+    if (cell->kind == TABLE_TEXT)
+        value.text = t->letter + cell->whole;
+    assert(value.kind != TABLE_TEXT || value.text);
     return value;
 }
 
@@ -179,7 +181,7 @@ static int letters(const char *text)
 /* The columns of a view. */
 struct seen {
     size_t count, column[MOST_SEEN];
-    int width[MOST_SEEN]; /* letters; negative: to the left */
+    int width[MOST_SEEN]; /* letters */
     bool headed;          /* there is a heading */
 };
 
@@ -227,15 +229,14 @@ static void see(const struct table *t, const char *view, struct seen *seen, size
         }
     }
     for (size_t k = 0; k < seen->count; k++) {
-        const int least = t->column[seen->column[k]].width;
-        int width = abs(least);
+        int width = t->column[seen->column[k]].width;
         seen->headed = seen->headed || t->column[seen->column[k]].heading;
         for (size_t i = 0; i < shown + 1; i++) {
             const size_t row = i == shown ? HEAD : spread(i, shown, table_rows(t));
             if (seen_text(t, seen, row, k, text) && letters(text) > width)
                 width = letters(text);
         }
-        seen->width[k] = least < 0 ? -width : width;
+        seen->width[k] = width;
     }
 }
 
@@ -266,11 +267,11 @@ static void print_line(const struct table *t, const struct seen *seen, size_t ro
         const struct table_column *column = &t->column[seen->column[k]];
         if (!seen_text(t, seen, row, k, text))
             continue;
-        const int fill = abs(seen->width[k]) - letters(text);
+        const int fill = seen->width[k] - letters(text);
         put(&line, column->before ? column->before : k ? " " : "  ");
-        line.blanks += fill > 0 && seen->width[k] > 0 ? fill : 0;
+        line.blanks += column->left ? 0 : fill;
         put(&line, text);
-        line.blanks += fill > 0 && seen->width[k] < 0 ? fill : 0;
+        line.blanks += column->left ? fill : 0;
     }
     putc('\n', out);
 }
@@ -413,26 +414,18 @@ static json_t *json_row(const struct table *t, size_t row)
     return good ? object : NULL;
 }
 
-json_t *table_json(const struct table *t)
+json_t *table_json(const struct table *t, bool by_name)
 {
-    json_t *list = json_array();
-    bool good = list && !t->failed;
-    for (size_t row = 0; good && row < table_rows(t); row++)
-        good = json_array_append_new(list, json_row(t, row)) == 0;
+    json_t *root = by_name ? json_object() : json_array();
+    bool good = root && !t->failed;
+    for (size_t row = 0; good && row < table_rows(t); row++) {
+        json_t *object = json_row(t, row);
+        good = (by_name ? json_object_set_new(root, cell_text(t, cell_at(t, row, 0)), object)
+                        : json_array_append_new(root, object)) == 0;
+    }
     if (!good)
-        json_decref(list);
-    return good ? list : NULL;
-}
-
-json_t *table_json_by_name(const struct table *t)
-{
-    json_t *object = json_object();
-    bool good = object && !t->failed;
-    for (size_t row = 0; good && row < table_rows(t); row++)
-        good = json_object_set_new(object, cell_text(t, cell_at(t, row, 0)), json_row(t, row)) == 0;
-    if (!good)
-        json_decref(object);
-    return good ? object : NULL;
+        json_decref(root);
+    return good ? root : NULL;
 }
 
 json_t *table_value_json(struct table_value value)
@@ -449,6 +442,15 @@ json_t *table_texts(const char *first, const char *second)
     table_append(list, as_text(first));
     table_append(list, as_text(second));
     return list;
+}
+
+json_t *table_at(const struct results *r, const bool *which, const size_t *point)
+{
+    json_t *at = json_object();
+    for (int a = 0; a < r->axes; a++)
+        if (!which || which[a])
+            table_put(at, r->axis[a].name, as_place(&r->axis[a], point[a]));
+    return at;
 }
 
 json_t *table_object(const struct table_member *member, size_t count)

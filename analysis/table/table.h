@@ -78,7 +78,8 @@ struct table_column {
     const char *name;    /* for programs */
     const char *heading; /* for people; NULL: none, not even blanks in its place */
     const char *format;  /* of numbers, as printf has it; NULL: "%.6g", or all digits */
-    int width;           /* letters at least; negative: to the left */
+    int width;           /* letters at least */
+    bool left;           /* aligned to the left */
     int hidden;          /* enum above */
     bool percent;        /* people see numbers a hundredfold; the format says % */
     bool joined;         /* people see it at the end of the cell before */
@@ -131,9 +132,8 @@ void table_free(struct table *t);
  * that many are written, from the first to the last, and it is said so; 0: all are. */
 bool table_write_text(const struct table *t, FILE *out, const char *view, size_t most);
 bool table_write_csv(const struct table *t, FILE *out);
-/* A list of objects, or one object of objects by the text of the first column; NULL: no memory. */
-json_t *table_json(const struct table *t);
-json_t *table_json_by_name(const struct table *t);
+/* A list of objects, or one object of them by the text of the first column; NULL: no memory. */
+json_t *table_json(const struct table *t, bool by_name);
 
 /* ---- JSON --------------------------------------------------------------------------------- */
 
@@ -148,7 +148,13 @@ json_t *table_object(const struct table_member *member, size_t count);
 json_t *table_value_json(struct table_value value);
 /* A list of two. */
 json_t *table_texts(const char *first, const char *second);
-/* Adds to a list. */
+/* {path: value} of the axes at one point[]; which[axes] of them, NULL: all. */
+json_t *table_at(const struct results *r, const bool *which, const size_t *point);
+/* Adds to an object, to a list. */
+static inline void table_put(json_t *object, const char *key, struct table_value value)
+{
+    json_object_set_new(object, key, table_value_json(value));
+}
 static inline void table_append(json_t *list, struct table_value value)
 {
     json_array_append_new(list, table_value_json(value));

@@ -1,4 +1,4 @@
-/* capture.c - how far from its target a linear law brings the robot back: the largest ellipsoid
+/* known_basin.c - how far from its target a linear law brings the robot back: the largest ellipsoid
  * that simulations from its boundary confirm.
  *
  * The basin of attraction of an equilibrium has no holes: it can be deformed into all of space
@@ -94,7 +94,7 @@ static bool begin(const struct search *s, uint64_t point, double radius, bool in
         c->velocity[scene->posture[k]] = x[postures + k];
     }
     scene->stand(c->robot, s->support, c->position, c->velocity);
-    c->captures = false;
+    c->basin_known = false;
     c->trajectory = NULL;
     c->grid_index = UINT64_MAX - point; /* noise that no case of a sweep has */
     c->sample_index = s->batch + 1;

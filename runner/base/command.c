@@ -1,5 +1,6 @@
 /* command.c - options of the commands. */
 #include "command.h"
+#include "problem.h"
 #include "words.h"
 
 #include <stdio.h>
@@ -116,4 +117,42 @@ bool command_options(const struct command *command, int argc, char **argv,
         }
     }
     return true;
+}
+
+int command_usage(const struct command *command, const char *text)
+{
+    fprintf(stderr, "stance %s: %s (stance %s -h explains)\n", command->name, text, command->name);
+    return EXIT_USAGE;
+}
+
+int command_begin(const struct command *command, int argc, char **argv,
+                  const struct option_spec *specs, size_t spec_count, const char *needed,
+                  const char **operand, size_t least, size_t most, size_t *operands)
+{
+    bool help;
+    char text[120];
+    if (!command_options(command, argc, argv, specs, spec_count, operand, most, operands, &help))
+        return EXIT_USAGE;
+    snprintf(text, sizeof text, "%s must be given", needed);
+    return help ? EXIT_DONE : *operands < least ? command_usage(command, text) : COMMAND_GOES_ON;
+}
+
+size_t command_word(const struct command *command, const char *option, const char *word,
+                    const char *const *known, size_t count)
+{
+    enum { MANY = 8 };
+    size_t k = 0;
+    while (k < count && strcmp(word, known[k]) != 0)
+        k++;
+    if (k < count)
+        return k;
+    char list[600];
+    const char *near = nearest_word(word, known, count);
+    if (near && count > MANY)
+        snprintf(list, sizeof list, "%s (did you mean that?)", near);
+    else
+        word_list(list, sizeof list, known, count);
+    fprintf(stderr, "stance %s: %s takes %s%s, not '%.60s'\n", command->name, option,
+            near && count > MANY ? "" : "one of ", list, word);
+    return count;
 }

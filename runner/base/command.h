@@ -37,5 +37,19 @@ struct option_spec {
 bool command_options(const struct command *command, int argc, char **argv,
                      const struct option_spec *specs, size_t spec_count, const char **operand,
                      size_t max_operands, size_t *operands, bool *help);
+/* The same for a command that needs from `least` to `most` operands, `needed` ("a results file").
+ * Returns COMMAND_GOES_ON, or the code to leave with: help was printed, or bad use told. */
+enum { COMMAND_GOES_ON = -1 };
+int command_begin(const struct command *command, int argc, char **argv,
+                  const struct option_spec *specs, size_t spec_count, const char *needed,
+                  const char **operand, size_t least, size_t most, size_t *operands);
+
+/* Prints "stance NAME: TEXT (stance NAME -h explains)" to standard error. Returns EXIT_USAGE. */
+int command_usage(const struct command *command, const char *text);
+
+/* One of known[count]: its index, or `count` with a line on standard error that names them, or the
+ * nearest one where there are many. */
+size_t command_word(const struct command *command, const char *option, const char *word,
+                    const char *const *known, size_t count);
 
 #endif

@@ -90,12 +90,13 @@ const char *shown(char buffer[SHOWN_SIZE], const char *text)
     return buffer;
 }
 
-const char *word_list(char *buffer, size_t size, const char *const *words, size_t count)
+const char *words_join(char *buffer, size_t size, const char *separator, const char *const *words,
+                       size_t count)
 {
     size_t used = 0;
     buffer[0] = '\0';
     for (size_t i = 0; i < count && used < size; i++) {
-        int n = snprintf(buffer + used, size - used, "%s%s", i ? ", " : "", words[i]);
+        int n = snprintf(buffer + used, size - used, "%s%s", i ? separator : "", words[i]);
         used += n > 0 ? (size_t)n : 0;
     }
     return buffer;

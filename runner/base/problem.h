@@ -55,7 +55,14 @@ void problems_print(struct problems *problems, const char *file, const char *con
  * shown as '?'. Returns `buffer`. */
 const char *shown(char buffer[SHOWN_SIZE], const char *text);
 
-/* "a, b, c" of `count` words; cut at `size`. Returns `buffer`. */
-const char *word_list(char *buffer, size_t size, const char *const *words, size_t count);
+/* `count` words with a separator between them; cut at `size`. Returns `buffer`. */
+const char *words_join(char *buffer, size_t size, const char *separator, const char *const *words,
+                       size_t count);
+/* "a, b, c". */
+static inline const char *word_list(char *buffer, size_t size, const char *const *words,
+                                    size_t count)
+{
+    return words_join(buffer, size, ", ", words, count);
+}
 
 #endif

@@ -1,11 +1,16 @@
-/* words.h - the nearest known word to a misspelt one. */
+/* words.h - the nearest known word to a misspelt one; letters. */
 #ifndef STANCE_BASE_WORDS_H
 #define STANCE_BASE_WORDS_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 /* The known word nearest to `word` (Damerau-Levenshtein, at most 2 edits or a third of its
  * length), or NULL. */
 const char *nearest_word(const char *word, const char *const *known, size_t count);
+
+/* Decodes one letter of UTF-8 of at most `left` bytes; returns its length, 0 when it is malformed.
+ */
+size_t utf8_letter(const char *text, size_t left, uint32_t *character);
 
 #endif

@@ -45,9 +45,9 @@ static int report_at(const struct scenario *s, const char *text)
     const bool controller = scenario_law(&s->base)->designed &&
                             ((s->base.design_point.given && values.state_given) ||
                              resolve_equilibrium(s->scene, &values, model, &ignored, &message));
-    int line = controller ? s->controller_line : s->initial_line;
-    int column = controller ? s->controller_column : s->initial_column;
-    scenario_place(s, text, &line, &column);
+    int line = 1, column = 1;
+    if (!scenario_place(s, text, &line, &column))
+        scenario_place(s, controller ? "controller:" : "initial:", &line, &column);
     fprintf(stderr, "%s:%d:%d: %s\n", s->file, line, column, text);
     return EXIT_USAGE;
 }
@@ -94,21 +94,14 @@ static int run(int argc, char **argv)
 {
     const char *sets[MAX_SETS], *file = NULL;
     size_t set_count = 0, json = 0, operands = 0;
-    bool help = false;
     const struct option_spec specs[] = {
         {"--set", true, sets, MAX_SETS, &set_count},
         {"--json", false, NULL, 0, &json},
     };
-
-    if (!command_options(&command_design, argc, argv, specs, sizeof specs / sizeof specs[0], &file,
-                         1, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    if (operands == 0) {
-        fputs("stance design: a scenario is needed (stance design -h explains)\n", stderr);
-        return EXIT_USAGE;
-    }
+    int code =
+        command_begin(&command_design, argc, argv, specs, 2, "a scenario", &file, 1, 1, &operands);
+    if (code != COMMAND_GOES_ON)
+        return code;
     if (!instruction_set_usable("design"))
         return EXIT_USAGE;
     struct scenario *s = malloc(sizeof *s);
@@ -116,7 +109,7 @@ static int run(int argc, char **argv)
         fprintf(stderr, "stance design: %s\n", strerror(ENOMEM));
         return EXIT_IO;
     }
-    int code = EXIT_USAGE;
+    code = EXIT_USAGE;
     if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
         code = design(s, json > 0);
         scenario_free(s);

@@ -33,32 +33,14 @@ static size_t smaller(size_t a, size_t b)
 
 /* ---- making ------------------------------------------------------------------------------- */
 
-/* Largest value of a double field over the sweep. */
-static double largest_value(const struct scenario *s, size_t offset)
-{
-    double largest;
-    memcpy(&largest, (const char *)&s->base + offset, sizeof largest);
-    for (int a = 0; a < s->axes; a++) {
-        for (int k = 0; k < s->axis[a].paths; k++) {
-            if (s->axis[a].offset[k] != offset)
-                continue;
-            const struct scenario_axis *axis = &s->axis[a];
-            largest = fmax(axis->from, axis->to); /* a range, of any number of points */
-            for (size_t i = 0; axis->value && i < axis->count; i++) {
-                const double value = scenario_axis_value(axis, i, k);
-                largest = i == 0 ? value : fmax(largest, value);
-            }
-        }
-    }
-    return largest;
-}
-
 /* false: more instants than can be. */
 static bool plan_trajectories(struct plan *plan, bool trace, struct plan_error *error)
 {
     const struct scenario *s = plan->scenario;
-    double stop = largest_value(s, offsetof(struct scenario_values, stop_time));
+    double shortest, stop;
     struct scenario_values values;
+
+    scenario_extent(s, offsetof(struct scenario_values, stop_time), &shortest, &stop);
 
     if (plan->single) {
         scenario_case_values(s, plan->single_case, &values);
@@ -104,19 +86,15 @@ static bool method_runs(const struct scenario *s, int method, struct plan_error 
 static bool methods_run(struct plan *plan, struct plan_error *error)
 {
     const struct scenario *s = plan->scenario;
-    for (int a = 0; a < s->axes; a++) {
-        const struct scenario_axis *axis = &s->axis[a];
-        for (int k = 0; k < axis->paths; k++) {
-            if (axis->offset[k] != offsetof(struct scenario_values, method))
-                continue;
-            plan->methods_swept = true;
-            for (size_t i = 0; i < axis->count; i++) {
-                if (!method_runs(s, (int)scenario_axis_value(axis, i, k), error)) {
-                    error->line = axis->line;
-                    error->column = axis->column;
-                    return false;
-                }
-            }
+    int k;
+    const struct scenario_axis *axis =
+        scenario_axis_of(s, offsetof(struct scenario_values, method), &k);
+    plan->methods_swept = axis != NULL;
+    for (size_t i = 0; axis && i < axis->count; i++) {
+        if (!method_runs(s, (int)scenario_axis_value(axis, i, k), error)) {
+            error->line = axis->line;
+            error->column = axis->column;
+            return false;
         }
     }
     return plan->methods_swept || method_runs(s, s->base.method, error);
@@ -186,8 +164,7 @@ size_t plan_design(const struct plan *plan, uint64_t index)
     return design;
 }
 
-/* The first case that uses a design. */
-static uint64_t design_case(const struct plan *plan, size_t design)
+uint64_t plan_design_case(const struct plan *plan, size_t design)
 {
     const struct scenario *s = plan->scenario;
     uint64_t index = 0, stride = 1;
@@ -227,6 +204,15 @@ uint64_t plan_recorded_case(const struct plan *plan, uint64_t place)
 
 /* ---- designs ------------------------------------------------------------------------------ */
 
+/* At the key that the message begins with, or else at another. */
+static void place_error(const struct scenario *s, const char *otherwise, const char *message,
+                        struct plan_error *error)
+{
+    error->line = error->column = 1;
+    if (!scenario_place(s, message, &error->line, &error->column))
+        scenario_place(s, otherwise, &error->line, &error->column);
+}
+
 /* Whose fault it is that a design does not exist: the initial equilibrium's, or the law's. */
 static void blame_design(const struct plan *plan, size_t design, struct plan_error *error)
 {
@@ -235,13 +221,11 @@ static void blame_design(const struct plan *plan, size_t design, struct plan_err
     struct resolved_design result;
     stance_message ignored;
 
-    scenario_case_values(s, design_case(plan, design), &values);
+    scenario_case_values(s, plan_design_case(plan, design), &values);
     resolve_design(s->scene, &values, &result, &error->message);
     values.law = 0;
     bool law = resolve_design(s->scene, &values, &result, &ignored);
-    error->line = law ? s->controller_line : s->initial_line;
-    error->column = law ? s->controller_column : s->initial_column;
-    scenario_place(s, error->message.text, &error->line, &error->column);
+    place_error(s, law ? "controller:" : "initial:", error->message.text, error);
 }
 
 /* This rank's block of the designs. */
@@ -337,7 +321,7 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
         }
         if (plan->patience > 0 && computed > 0 && clock_seconds() - start > plan->patience)
             break;
-        scenario_case_values(s, design_case(plan, d), &values);
+        scenario_case_values(s, plan_design_case(plan, d), &values);
         bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
         plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
         computed++;
@@ -374,7 +358,7 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
         stance_message why = {""}; /* there need not be a set */
         if (plan->design_status[d] != STANCE_DONE || plan->design[d].capture_time != 0)
             continue; /* none, or known from another file */
-        scenario_case_values(s, design_case(plan, d), &values);
+        scenario_case_values(s, plan_design_case(plan, d), &values);
         good = known_basin_estimate(s->scene, &values, &plan->design[d], s->seed, stop, context,
                                     NULL, &why);
         if (!good)
@@ -428,9 +412,7 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
                      &message) &&
         (s->cases > 1 || resolve_pair(s->scene, &resolved, &message)))
         return true;
-    error->line = s->initial_line;
-    error->column = s->initial_column;
-    scenario_place(s, message.text, &error->line, &error->column);
+    place_error(s, "initial:", message.text, error);
     if (s->cases == 1)
         error->message = message;
     else
@@ -452,7 +434,8 @@ bool plan_check_cases(const struct plan *plan, struct plan_error *error)
             return false;
     /* Of few designs that are known the cases above may miss most. */
     for (size_t d = 0; plan->pending > 0 && d < plan->designs; d++)
-        if (plan->design_status[d] == STANCE_DONE && !check_case(plan, design_case(plan, d), error))
+        if (plan->design_status[d] == STANCE_DONE &&
+            !check_case(plan, plan_design_case(plan, d), error))
             return false;
     return true;
 }
@@ -542,7 +525,7 @@ double plan_capture_cost(const struct plan *plan, double budget)
             continue;
         if (is_late(&until))
             return NAN;
-        scenario_case_values(s, design_case(plan, d), &values);
+        scenario_case_values(s, plan_design_case(plan, d), &values);
         if (!known_basin_prepare(s->scene, &values, &plan->design[d], s->seed, &search, &ignored))
             continue;
         memcpy(search.P[0], search.P[search.shapes / 2], sizeof search.P[0]);

@@ -52,9 +52,11 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
                uint64_t single_case, bool trace, struct plan_error *error);
 void plan_free(struct plan *plan);
 
-/* Flat index of the case in a row of the file; design that a case uses. */
+/* Flat index of the case in a row of the file; design that a case uses, and the first case that
+ * uses a design. */
 uint64_t plan_case(const struct plan *plan, uint64_t row);
 size_t plan_design(const struct plan *plan, uint64_t index);
+uint64_t plan_design_case(const struct plan *plan, size_t design);
 /* Place of a row among the recorded cases; false when it is not recorded. And the reverse. */
 bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place);
 uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);

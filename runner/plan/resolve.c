@@ -284,11 +284,11 @@ static void feed_back(const stance_scene *scene, const struct scenario_values *v
 static void capture(const stance_scene *scene, const struct resolved_design *design,
                     stance_case *out)
 {
-    out->captures = true;
-    out->capture_time = design->capture_time;
+    out->basin_known = true;
+    out->known_basin_time = design->capture_time;
     for (int i = 0; i < 2 * scene->postures; i++)
         for (int j = 0; j < 2 * scene->postures; j++)
-            out->captured[i][j] = design->captured[i][j] / KNOWN_BASIN_SAFETY;
+            out->known_basin[i][j] = design->captured[i][j] / KNOWN_BASIN_SAFETY;
 }
 
 bool resolve_law(const stance_scene *scene, const struct scenario_values *values,

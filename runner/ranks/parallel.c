@@ -15,13 +15,13 @@
 
 #ifdef STANCE_MPI
 #include <mpi.h>
+#else
+#include "no_mpi.h"
 #endif
 
 struct parallel_shared {
     int64_t *counter; /* [COUNTERS], then [ranks] numbers of theirs; on rank 0, else none */
-#ifdef STANCE_MPI
-    MPI_Win window; /* when there are several ranks */
-#endif
+    MPI_Win window;   /* when there are several ranks */
 };
 
 struct parallel parallel_alone(void)
@@ -36,38 +36,7 @@ void parallel_host(char *name, size_t size)
     name[size - 1] = '\0';
 }
 
-/* ---- counters of one rank ----------------------------------------------------------------- */
-
-static bool share_alone(struct parallel *parallel)
-{
-    struct parallel_shared *shared = calloc(1, sizeof *shared);
-    int64_t *counter = calloc(COUNTERS + 1, sizeof *counter);
-    if (!shared || !counter) {
-        free(shared);
-        free(counter);
-        return false;
-    }
-    shared->counter = counter;
-    parallel->shared = shared;
-    return true;
-}
-
-static void unshare_alone(struct parallel *parallel)
-{
-    free(parallel->shared->counter);
-    free(parallel->shared);
-    parallel->shared = NULL;
-}
-
-static int64_t add_alone(const struct parallel *parallel, enum parallel_counter counter,
-                         int64_t value)
-{
-    int64_t before = parallel->shared->counter[counter];
-    parallel->shared->counter[counter] += value;
-    return before;
-}
-
-#ifdef STANCE_MPI
+/* ---- MPI ---------------------------------------------------------------------------------- */
 
 /* MPI counts in int: longer messages go in pieces. */
 enum { PIECE = 1 << 28 };
@@ -75,10 +44,12 @@ enum { PIECE = 1 << 28 };
 /* Launchers tell a process its rank in one of these. */
 static bool was_launched(void)
 {
+#ifdef STANCE_MPI
     static const char *const variable[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
     for (size_t i = 0; i < sizeof variable / sizeof variable[0]; i++)
         if (getenv(variable[i]))
             return true;
+#endif
     return false;
 }
 
@@ -105,7 +76,11 @@ bool parallel_misses_launcher(bool *first)
 {
     const char *tasks = getenv("SLURM_STEP_NUM_TASKS"), *task = getenv("SLURM_PROCID");
     *first = !task || strcmp(task, "0") == 0;
+#ifdef STANCE_MPI
     return tasks && atoi(tasks) > 1 && !was_launched();
+#else
+    return (void)tasks, false; /* each is a run of its own */
+#endif
 }
 
 /* A rank whose launcher dies while MPI starts waits in MPI_Init for ever (in PMIx, Open MPI 4):
@@ -238,14 +213,18 @@ bool parallel_agree(const struct parallel *parallel, bool good, char *text, size
 
 bool parallel_share(struct parallel *parallel)
 {
-    if (parallel->size == 1)
-        return share_alone(parallel);
     struct parallel_shared *shared = calloc(1, sizeof *shared);
     char none[1] = "";
-    if (!parallel_agree(parallel, shared != NULL, none, sizeof none) || !shared) {
+    if (shared && parallel->size == 1)
+        shared->counter = calloc(COUNTERS + 1, sizeof *shared->counter);
+    const bool made = shared && (parallel->size > 1 || shared->counter);
+    if (!parallel_agree(parallel, made, none, sizeof none) || !made) {
         free(shared);
         return false;
     }
+    parallel->shared = shared;
+    if (parallel->size == 1)
+        return true;
     const MPI_Aint numbers = COUNTERS + (MPI_Aint)parallel->size;
     MPI_Aint size = parallel->rank == 0 ? numbers * (MPI_Aint)sizeof(int64_t) : 0;
     MPI_Win_allocate(size, sizeof(int64_t), MPI_INFO_NULL, MPI_COMM_WORLD, &shared->counter,
@@ -256,7 +235,6 @@ bool parallel_share(struct parallel *parallel)
         MPI_Win_sync(shared->window);
     }
     MPI_Barrier(MPI_COMM_WORLD);
-    parallel->shared = shared;
     return true;
 }
 
@@ -265,11 +243,11 @@ void parallel_unshare(struct parallel *parallel)
     if (!parallel->shared)
         return;
     if (parallel->size == 1) {
-        unshare_alone(parallel);
-        return;
+        free(parallel->shared->counter);
+    } else {
+        MPI_Win_unlock_all(parallel->shared->window);
+        MPI_Win_free(&parallel->shared->window);
     }
-    MPI_Win_unlock_all(parallel->shared->window);
-    MPI_Win_free(&parallel->shared->window);
     free(parallel->shared);
     parallel->shared = NULL;
 }
@@ -281,8 +259,11 @@ void parallel_unshare(struct parallel *parallel)
 int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
 {
     int64_t before = 0;
-    if (parallel->size == 1)
-        return add_alone(parallel, counter, value);
+    if (parallel->size == 1) {
+        before = parallel->shared->counter[counter];
+        parallel->shared->counter[counter] += value;
+        return before;
+    }
     MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)counter, MPI_SUM,
                      parallel->shared->window);
     MPI_Win_flush(0, parallel->shared->window);
@@ -338,101 +319,6 @@ void parallel_library(char *text, size_t size)
     name[strcspn(name, ",\n")] = '\0';
     snprintf(text, size, "%s", name);
 }
-
-#else
-
-bool parallel_misses_launcher(bool *first)
-{
-    *first = true;
-    return false;
-}
-
-struct parallel parallel_start(void)
-{
-    return parallel_alone();
-}
-
-void parallel_finish(struct parallel *parallel)
-{
-    parallel_unshare(parallel);
-}
-
-void parallel_broadcast(const struct parallel *parallel, void *data, size_t size)
-{
-    (void)parallel, (void)data, (void)size;
-}
-
-void parallel_gather(const struct parallel *parallel, const void *data, size_t size, void *all)
-{
-    (void)parallel;
-    if (all)
-        memcpy(all, data, size);
-}
-
-void parallel_gather_block(const struct parallel *parallel, void *array, size_t element,
-                           size_t first, size_t count)
-{
-    (void)parallel, (void)array, (void)element, (void)first, (void)count;
-}
-
-void parallel_sum(const struct parallel *parallel, uint64_t *number, int n)
-{
-    (void)parallel, (void)number, (void)n;
-}
-
-void parallel_largest(const struct parallel *parallel, uint8_t *byte, size_t n)
-{
-    (void)parallel, (void)byte, (void)n;
-}
-
-static void barrier(const struct parallel *parallel)
-{
-    (void)parallel;
-}
-
-bool parallel_agree(const struct parallel *parallel, bool good, char *text, size_t size)
-{
-    (void)parallel, (void)text, (void)size;
-    return good;
-}
-
-bool parallel_share(struct parallel *parallel)
-{
-    return share_alone(parallel);
-}
-
-void parallel_unshare(struct parallel *parallel)
-{
-    if (parallel->shared)
-        unshare_alone(parallel);
-}
-
-int64_t parallel_add(const struct parallel *parallel, enum parallel_counter counter, int64_t value)
-{
-    return add_alone(parallel, counter, value);
-}
-
-void parallel_beat(const struct parallel *parallel, int64_t number)
-{
-    parallel->shared->counter[COUNTERS] = number;
-}
-
-void parallel_beats(const struct parallel *parallel, int64_t *number)
-{
-    number[0] = parallel->shared->counter[COUNTERS];
-}
-
-void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context)
-{
-    (void)parallel, (void)wait, (void)context;
-}
-
-void parallel_library(char *text, size_t size)
-{
-    snprintf(text, size, "no MPI");
-}
-
-#endif
 
 void parallel_restart(const struct parallel *parallel)
 {

@@ -45,8 +45,7 @@ static int run_check(int argc, char **argv)
     const char **sets = malloc((size_t)argc * sizeof *sets), *file;
     struct scenario *s = calloc(1, sizeof *s);
     size_t set_count = 0, json = 0, operands;
-    bool help;
-    int code = EXIT_USAGE;
+    int code = EXIT_IO;
     const struct option_spec specs[] = {
         {"--set", true, sets, (size_t)argc, &set_count},
         {"--json", false, NULL, 0, &json},
@@ -54,20 +53,15 @@ static int run_check(int argc, char **argv)
 
     if (!sets || !s) {
         fprintf(stderr, "stance check: not enough memory\n");
-        code = EXIT_IO;
-    } else if (command_options(&command_check, argc, argv, specs, 2, &file, 1, &operands, &help)) {
-        if (help) {
-            code = EXIT_DONE;
-        } else if (operands != 1) {
-            fprintf(stderr, "stance check: a scenario file must be given (stance check -h "
-                            "explains)\n");
-        } else if (!instruction_set_usable("check")) {
+    } else if ((code = command_begin(&command_check, argc, argv, specs, 2, "a scenario file", &file,
+                                     1, 1, &operands)) == COMMAND_GOES_ON) {
+        if (!instruction_set_usable("check")) {
             code = EXIT_USAGE;
         } else if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
             code = check(s, json > 0);
             scenario_free(s);
-        } else if (access(file, R_OK) != 0) {
-            code = EXIT_IO;
+        } else {
+            code = access(file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
         }
     }
     free(s);

@@ -185,21 +185,14 @@ static int run_status(int argc, char **argv)
 {
     const char *file;
     size_t json = 0, watch = 0, operands;
-    bool help;
     const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
                                         {"--watch", false, NULL, 0, &watch}};
-
-    if (!command_options(&command_status, argc, argv, specs, 2, &file, 1, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    if (operands != 1) {
-        fprintf(stderr, "stance status: a results file must be given (stance status -h "
-                        "explains)\n");
-        return EXIT_USAGE;
-    }
+    int code = command_begin(&command_status, argc, argv, specs, 2, "a results file", &file, 1, 1,
+                             &operands);
+    if (code != COMMAND_GOES_ON)
+        return code;
     struct request request = {file, json > 0, watch > 0};
-    int code = sandbox(say, &request, file);
+    code = sandbox(say, &request, file);
     while (code == STILL_RUNNING) {
         sleep(WATCH_INTERVAL);
         code = sandbox(say, &request, file);

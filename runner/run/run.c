@@ -27,9 +27,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-bool run_fail_io(struct run *run, const stance_message *message)
+bool run_fail_io(struct run *run)
 {
-    return run_fail(run, EXIT_IO, "stance run: %s", message->text);
+    return run_fail(run, EXIT_IO, "stance run: %s", run->message.text);
 }
 
 /* An error of the scenario, with its place in the text. */
@@ -46,7 +46,6 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
 static void stage_options(struct run *run)
 {
     struct options *o = &run->options;
-    stance_message message;
     bool good = false;
 
     o->sets = malloc((size_t)run->argc * sizeof *o->sets);
@@ -66,8 +65,8 @@ static void stage_options(struct run *run)
         run_read_options(o, run->argc, run->argv);
     o->help = help;
     deadline_limit(o->time_limit - (clock_seconds() - run->start));
-    if (!help && !instruction_set_check(&message))
-        run_fail(run, EXIT_USAGE, "stance run: %s", message.text);
+    if (!help && !instruction_set_check(&run->message))
+        run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
 }
 
 /* ---- the scenario ------------------------------------------------------------------------- */
@@ -160,7 +159,7 @@ bool run_same_scenario(struct run *run, const char *file, const char *old)
         run->succeed = strcmp(old, new) != 0;
         return true;
     }
-    const size_t lines = changed_scenario_count_differences(old, new);
+    const size_t lines = changed_scenario_differences(NULL, old, new);
     FILE *to = open_memstream(&text, &size);
     if (to) {
         fprintf(to,
@@ -168,7 +167,7 @@ bool run_same_scenario(struct run *run, const char *file, const char *old)
                 "text differ%s:\n",
                 file, file == run->file ? " (--force-scenario goes on with this one)" : "", lines,
                 lines == 1 ? "" : "s", lines == 1 ? "s" : "");
-        changed_scenario_print_difference(to, old, new);
+        changed_scenario_differences(to, old, new);
         if (fclose(to) == 0)
             fputs(text, stderr);
         free(text);
@@ -207,8 +206,6 @@ void run_warn_of_revision(const char *file, const char *revision)
 /* An existing file that is to be gone on with. */
 static void look_into_file(struct run *run)
 {
-    stance_message message = {""};
-
     run->failure.code = run_check_file(run->file);
     if (run->failure.code != EXIT_DONE)
         return; /* it has been said why */
@@ -217,30 +214,29 @@ static void look_into_file(struct run *run)
                  strerror(errno));
         return;
     }
-    if (!store_read_origin(run->file, &run->origin, &message)) {
-        run_fail_io(run, &message);
+    if (!store_read_origin(run->file, &run->origin, &run->message)) {
+        run_fail_io(run);
         return;
     }
     if (!run_same_scenario(run, run->file, run->origin.scenario))
         return;
     if ((run->succeed &&
-         !changed_scenario_check_sweep(run->file, &run->origin, run->scenario, &message)) ||
-        !store_same_points(run->file, &run->origin, run->scenario, &message)) {
-        run_fail(run, EXIT_USAGE, "stance run: %s", message.text);
+         !changed_scenario_check_sweep(run->file, &run->origin, run->scenario, &run->message)) ||
+        !store_same_points(run->file, &run->origin, run->scenario, &run->message)) {
+        run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
         return;
     }
     if (!run->succeed)
         run_warn_of_revision(run->file, run->origin.revision);
     for (int a = 0; a < run->scenario->axes; a++)
-        if (!store_read_axis(run->file, &run->scenario->axis[a], &message))
-            run_fail_io(run, &message);
+        if (!store_read_axis(run->file, &run->scenario->axis[a], &run->message))
+            run_fail_io(run);
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
 static void claim_file(struct run *run)
 {
     const struct options *o = &run->options;
-    stance_message message = {""};
     struct stat information;
     bool exists = lstat(run->file, &information) == 0;
 
@@ -261,8 +257,8 @@ static void claim_file(struct run *run)
     }
     /* A link that is replaced is a file of its own; through others the file they name is written.
      */
-    if (!(o->force ? lock_take : lock_take_through)(&run->lock, run->file, &message)) {
-        run_fail_io(run, &message);
+    if (!(o->force ? lock_take : lock_take_through)(&run->lock, run->file, &run->message)) {
+        run_fail_io(run);
         return;
     }
     if (!heartbeat_begin(&run->heartbeat, &run->lock, &run->parallel, "starting")) {
@@ -305,19 +301,18 @@ static void share_axes(struct run *run)
 static bool out_of_time(void *context)
 {
     struct run *run = context;
-    stance_message message = {""};
     const double now = clock_seconds();
     bool stop = work_stop_asked() || now - run->start > run->options.time_limit;
 
     if (run->parallel.rank == 0 && run->heartbeat.lock)
-        stop = !heartbeat_beat(&run->heartbeat, now, 0, 0, 0, &message) || stop;
+        stop = !heartbeat_beat(&run->heartbeat, now, 0, 0, 0, &run->message) || stop;
     if (stop || run->parallel.rank == 0 || now >= run->look_at) {
         run->look_at = now + schedule_look_interval(run->parallel.size);
         stop = parallel_add(&run->parallel, COUNTER_STOP, stop) != 0 || stop;
         parallel_beat(&run->parallel, ++run->work.beats);
     }
-    if (message.text[0])
-        run_fail_io(run, &message);
+    if (run->message.text[0])
+        run_fail_io(run);
     return stop;
 }
 
@@ -350,16 +345,15 @@ static void stop_early(struct run *run, const char *what)
 static bool take_designs(struct run *run)
 {
     struct plan *plan = &run->plan;
-    stance_message message = {""};
     bool good = true;
 
     if (run->options.extend_count == 0 || run->options.dry_run)
         return true;
     if (run->extension)
-        good = run_extend_designs(run, &message);
+        good = run_extend_designs(run, &run->message);
     parallel_broadcast(&run->parallel, &good, sizeof good);
     if (!good && run->parallel.rank == 0)
-        run_fail_io(run, &message);
+        run_fail_io(run);
     parallel_broadcast(&run->parallel, plan->design, plan->designs * sizeof *plan->design);
     parallel_broadcast(&run->parallel, plan->design_status, plan->designs);
     return good;
@@ -391,13 +385,11 @@ static void stage_designs(struct run *run)
 /* Sets in which cases are captured, where the scenario asks for them. */
 static void stage_captures(struct run *run)
 {
-    stance_message message = {""};
-
     if (run->resume ||
-        plan_estimate_captures(&run->plan, &run->parallel, out_of_time, run, &message))
+        plan_estimate_captures(&run->plan, &run->parallel, out_of_time, run, &run->message))
         return;
-    if (message.text[0])
-        run_fail_io(run, &message);
+    if (run->message.text[0])
+        run_fail_io(run);
     else
         stop_early(run, "stopped while captured sets were estimated: nothing is stored");
 }
@@ -432,10 +424,8 @@ static char *collect_hosts(const struct parallel *parallel)
 static void succeed(struct run *run, const char *hosts)
 {
     struct changed_scenario_counts counts;
-    stance_message message = {""};
-
     if (changed_scenario_make(run->file, &run->origin, &run->plan, run->parallel.size, hosts,
-                              &counts, &message)) {
+                              &counts, &run->message)) {
         fprintf(stderr,
                 "stance run: %.200s goes on with another scenario; %" PRIu64 " of its %" PRIu64
                 " cases are done and stay as they are",
@@ -443,8 +433,8 @@ static void succeed(struct run *run, const char *hosts)
         if (counts.damaged > 0)
             fprintf(stderr, ", %" PRIu64 " did not verify", counts.damaged);
         fputc('\n', stderr);
-    } else if (message.text[0]) {
-        run_fail(run, counts.refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", message.text);
+    } else if (run->message.text[0]) {
+        run_fail(run, counts.refused ? EXIT_USAGE : EXIT_IO, "stance run: %s", run->message.text);
     } else {
         stop_early(run, "stopped before the file could go on with another scenario");
     }
@@ -452,7 +442,6 @@ static void succeed(struct run *run, const char *hosts)
 
 static void stage_create(struct run *run)
 {
-    stance_message message = {""};
     if (run->resume && !run->succeed)
         return;
     char *hosts = collect_hosts(&run->parallel);
@@ -462,8 +451,8 @@ static void stage_create(struct run *run)
         if (run->replace && unlink(run->file) != 0) {
             run_fail(run, EXIT_IO, "stance run: cannot replace %.150s: %s", run->file,
                      strerror(errno));
-        } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &message)) {
-            run_fail_io(run, &message);
+        } else if (!store_create(run->file, &run->plan, run->parallel.size, hosts, &run->message)) {
+            run_fail_io(run);
         }
     }
     free(hosts);
@@ -472,26 +461,23 @@ static void stage_create(struct run *run)
 
 static void stage_open(struct run *run)
 {
-    stance_message message = {""};
     if (run->parallel.rank == 0)
         heartbeat_guard(&run->heartbeat, run->file);
-    if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &message) ||
-        !store_read_designs(run->store, &run->plan, &message))
-        run_fail_io(run, &message);
+    if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &run->message) ||
+        !store_read_designs(run->store, &run->plan, &run->message))
+        run_fail_io(run);
 }
 
 /* Rows of the old file. */
 static void stage_extend(struct run *run)
 {
-    stance_message message = {""};
-    if (run->extension && !run_extend_copy(run, &message))
-        run_fail_io(run, &message);
+    if (run->extension && !run_extend_copy(run, &run->message))
+        run_fail_io(run);
     run_extend_close(run);
 }
 
 static void stage_compute(struct run *run)
 {
-    stance_message message = {""};
     run->work = (struct work){
         .plan = &run->plan,
         .parallel = &run->parallel,
@@ -504,15 +490,14 @@ static void stage_compute(struct run *run)
         .time_limit = run->options.time_limit,
     };
     const bool refined = run->scenario->refine.given && !run->plan.single;
-    if (refined ? !refinement_run(&run->work, &message)
-                : !work_run(&run->work, NULL, NULL, &message))
-        run_fail_io(run, &message);
+    if (refined ? !refinement_run(&run->work, &run->message)
+                : !work_run(&run->work, NULL, NULL, &run->message))
+        run_fail_io(run);
 }
 
 /* Rank 0 stores how long each rank computed. */
 static void stage_timing(struct run *run)
 {
-    stance_message message = {""};
     size_t ranks = (size_t)run->parallel.size;
     double computed = (double)run->work.computed;
     double *seconds = run->parallel.rank == 0 ? malloc(ranks * sizeof *seconds) : NULL;
@@ -523,20 +508,19 @@ static void stage_timing(struct run *run)
     parallel_gather(&run->parallel, &run->work.seconds, sizeof *seconds, seconds);
     parallel_gather(&run->parallel, &computed, sizeof computed, cases);
     if (run->parallel.rank == 0 &&
-        !store_add_timing(run->store, run->parallel.size, seconds, cases, &message))
-        run_fail_io(run, &message);
+        !store_add_timing(run->store, run->parallel.size, seconds, cases, &run->message))
+        run_fail_io(run);
     free(seconds);
     free(cases);
 }
 
 static void stage_close(struct run *run)
 {
-    stance_message message = {""};
     struct store *store = run->store;
 
     run->store = NULL;
-    if (!store_close(store, &message)) {
-        run_fail_io(run, &message);
+    if (!store_close(store, &run->message)) {
+        run_fail_io(run);
     } else if (run->parallel.rank == 0) {
         int descriptor = open(run->file, O_RDWR | O_CLOEXEC);
         if (descriptor < 0 || fsync(descriptor) != 0 || close(descriptor) != 0) {

@@ -43,6 +43,7 @@ struct run {
     struct plan plan;
     struct store *store;
     struct work work;
+    stance_message message; /* what others say of a failure */
     struct failure failure; /* of this rank */
     double start, look_at;  /* of clock_seconds(): the beginning, the next look at the counters */
 };
@@ -54,7 +55,8 @@ bool run_read_options(struct options *o, int argc, char **argv);
 #define run_fail(run, exit_code, ...)                                                              \
     (snprintf((run)->failure.text, sizeof(run)->failure.text, __VA_ARGS__),                        \
      (run)->failure.code = (exit_code), as_false())
-bool run_fail_io(struct run *run, const stance_message *message);
+/* With run->message. */
+bool run_fail_io(struct run *run);
 /* Whether a file, whose scenario's text is given, is of this scenario; fails where not. */
 bool run_same_scenario(struct run *run, const char *file, const char *text);
 /* Exit code of a look into a results file, in a process of its own; says what is wrong. */

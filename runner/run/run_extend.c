@@ -52,12 +52,7 @@ static bool is_same_file(const char *a, const char *b)
 static bool lock_old(struct extension *e, stance_message *message)
 {
     char directory[sizeof e->file];
-    snprintf(directory, sizeof directory, "%s", e->file);
-    char *slash = strrchr(directory, '/');
-    if (!slash)
-        snprintf(directory, sizeof directory, ".");
-    else
-        slash[slash == directory] = '\0';
+    store_directory(e->file, directory, sizeof directory);
     return access(directory, W_OK) != 0 || lock_take_through(&e->lock, e->file, message);
 }
 
@@ -125,22 +120,21 @@ static bool check_ancestors(struct run *run, const struct extension *e,
 static bool look_into_old(struct run *run, struct extension *e)
 {
     struct store_origin origin;
-    stance_message message = {""};
 
-    if (!lock_old(e, &message))
-        return run_fail_io(run, &message);
+    if (!lock_old(e, &run->message))
+        return run_fail_io(run);
     run->failure.code = run_check_file(e->file);
     if (run->failure.code != EXIT_DONE)
         return false; /* it has been said why */
-    if (!store_read_origin(e->file, &origin, &message))
-        return run_fail_io(run, &message);
+    if (!store_read_origin(e->file, &origin, &run->message))
+        return run_fail_io(run);
     bool good = read_old_scenario(run, e, origin.scenario) && check_count(run, e) &&
                 check_ancestors(run, e, &origin);
     if (good)
         run_warn_of_revision(e->file, origin.revision);
-    if (good && !store_same_points(e->file, &origin, run->scenario, &message))
-        good = run_fail(run, EXIT_USAGE, "stance run: %s", message.text);
-    good = good && (take_axes(run, e, &message) || run_fail_io(run, &message));
+    if (good && !store_same_points(e->file, &origin, run->scenario, &run->message))
+        good = run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
+    good = good && (take_axes(run, e, &run->message) || run_fail_io(run));
     store_origin_free(&origin);
     return good;
 }

@@ -8,33 +8,21 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Seconds from "90", "90s", "55m", "1h30m", "2d"; negative when it is none of these. */
 static double parse_duration(const char *text)
 {
     double total = 0;
     while (*text) {
+        static const char letters[] = "smhd";
+        static const double seconds[] = {1, 60, 3600, 86400};
         char *end;
-        double value = strtod(text, &end), unit = 1;
-        if (end == text || !(value >= 0) || !isfinite(value))
+        const double value = strtod(text, &end);
+        const char *letter = *end ? strchr(letters, *end) : letters;
+        if (end == text || !(value >= 0) || !isfinite(value) || !letter)
             return -1;
-        switch (*end) {
-        case 'd':
-            unit = 86400;
-            break;
-        case 'h':
-            unit = 3600;
-            break;
-        case 'm':
-            unit = 60;
-            break;
-        case 's':
-        case '\0':
-            break;
-        default:
-            return -1;
-        }
-        total += value * unit;
+        total += value * seconds[letter - letters];
         text = *end ? end + 1 : end;
     }
     return total;

@@ -490,16 +490,6 @@ static bool next_case(void *context, const stance_case **input, stance_result **
 
 /* ---- counters, progress, stops -------------------------------------------------------------- */
 
-static void duration(char *text, size_t size, double seconds)
-{
-    if (!(seconds < 360000)) {
-        snprintf(text, size, "%.0f h", seconds / 3600);
-    } else {
-        int s = (int)(seconds + 0.5);
-        snprintf(text, size, "%d:%02d:%02d", s / 3600, s / 60 % 60, s % 60);
-    }
-}
-
 static void show_progress(struct job *job, double now)
 {
     struct work *work = job->work;
@@ -511,7 +501,7 @@ static void show_progress(struct job *job, double now)
     uint64_t kept = (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
     double rate = (double)(finished - kept) / (now - progress->start);
     if (rate > 0)
-        duration(left, sizeof left, (double)(job->schedule.rows.count - finished) / rate);
+        text_of_seconds(left, sizeof left, (double)(job->schedule.rows.count - finished) / rate);
     if (work->round > 0)
         snprintf(round, sizeof round, "round %d: ", work->round);
     fprintf(stderr, "%s%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left%s",

@@ -10,16 +10,13 @@ static int run_describe(int argc, char **argv)
     size_t schema = 0, operands;
     const struct option_spec options[] = {{"--schema", false, NULL, 0, &schema}};
     const char *path = NULL;
-    bool help;
+    const int code =
+        command_begin(&command_describe, argc, argv, options, 1, "", &path, 0, 1, &operands);
 
-    if (!command_options(&command_describe, argc, argv, options, 1, &path, 1, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    if (schema && operands) {
-        fputs("stance describe: --schema takes no PATH\n", stderr);
-        return EXIT_USAGE;
-    }
+    if (code != COMMAND_GOES_ON)
+        return code;
+    if (schema && operands)
+        return command_usage(&command_describe, "--schema takes no PATH");
     if (scenario_describe(operands ? path : NULL, schema > 0, stdout, stderr))
         return EXIT_DONE;
     return operands ? EXIT_USAGE : EXIT_IO;

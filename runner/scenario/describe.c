@@ -36,51 +36,48 @@ static void print_wrapped(FILE *out, const char *text, int indent)
 
 static const char *default_text(const struct scenario_field *field, char *buffer, size_t size)
 {
-    if (field->fallback_text) {
+    const bool known = !isnan(field->fallback);
+    buffer[0] = '\0';
+    if (field->fallback_text)
         snprintf(buffer, size, ", default: %s", field->fallback_text);
-    } else if (field->required) {
+    else if (field->required)
         snprintf(buffer, size, ", required");
-    } else if (isnan(field->fallback) || field->offset == NO_OFFSET) {
-        bool plain = field->type == FIELD_NUMBER || field->type == FIELD_INTEGER;
-        buffer[0] = '\0';
-        if (plain && !isnan(field->fallback))
-            snprintf(buffer, size, ", default %.9g", field->fallback);
-    } else if (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER) {
-        snprintf(buffer, size, ", default %.9g", field->fallback);
-    } else {
-        buffer[0] = '\0';
-    }
-    if (!field->fallback_text && !field->required && !isnan(field->fallback) && field->words &&
-        (field->type == FIELD_WORD || field->type == FIELD_CASES))
+    else if (known && (field->type == FIELD_WORD || field->type == FIELD_CASES))
         snprintf(buffer, size, ", default %s", field->words[(size_t)field->fallback]);
+    else if (known && (field->type == FIELD_NUMBER || field->type == FIELD_INTEGER))
+        snprintf(buffer, size, ", default %.9g", field->fallback);
     return buffer;
 }
 
 static const char *kind_text(const struct scenario_field *field, char *buffer, size_t size)
 {
+    static const struct {
+        const char *before, *after; /* of the words, where there are any */
+    } text[] = {
+        [FIELD_MAP] = {"mapping", ""},
+        [FIELD_TEXT] = {"text", ""},
+        [FIELD_NUMBER] = {"number", ", or "},
+        [FIELD_INTEGER] = {"whole number", ", or "},
+        [FIELD_WORD] = {"one of: ", ""},
+        [FIELD_WORDS] = {"list of: ", ""},
+        [FIELD_MAP_OR_WORD] = {"mapping, or ", ""},
+        [FIELD_CASES] = {"one of: ", "; or a list of cases"},
+        [FIELD_AXES] = {"list of mappings", ""},
+        [FIELD_FACTORS] = {"list of mappings", ""},
+        [FIELD_ENDS] = {"number, or list of numbers", ""},
+        [FIELD_PATH] = {"path", ""},
+        [FIELD_VALUES] = {"list of numbers, words or lists of these", ""},
+    };
     char range[96], words[400] = "";
     const char *unit = strcmp(field->unit, "1") != 0 && field->columns == 0 ? field->unit : "";
 
     word_list(words, sizeof words, field->words, field->word_count);
     schema_range_text(field, range, sizeof range);
     switch (field->type) {
-    case FIELD_MAP:
-        snprintf(buffer, size, "mapping");
-        break;
-    case FIELD_TEXT:
-        snprintf(buffer, size, "text");
-        break;
     case FIELD_NUMBER:
     case FIELD_INTEGER:
-        snprintf(buffer, size, "%s, %s%s%s%s%s",
-                 field->type == FIELD_NUMBER ? "number" : "whole number", range, unit[0] ? " " : "",
-                 unit, field->words ? ", or " : "", words);
-        break;
-    case FIELD_WORD:
-        snprintf(buffer, size, "one of: %s", words);
-        break;
-    case FIELD_WORDS:
-        snprintf(buffer, size, "list of: %s", words);
+        snprintf(buffer, size, "%s, %s%s%s%s%s", text[field->type].before, range,
+                 unit[0] ? " " : "", unit, field->words ? text[field->type].after : "", words);
         break;
     case FIELD_POLES:
     case FIELD_NUMBERS:
@@ -90,49 +87,21 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         snprintf(buffer, size, "%zu lists of %zu numbers, %s", field->items, field->columns,
                  field->unit);
         break;
-    case FIELD_MAP_OR_WORD:
-        snprintf(buffer, size, "mapping, or %s", words);
-        break;
-    case FIELD_CASES:
-        snprintf(buffer, size, "one of: %s; or a list of cases", words);
-        break;
-    case FIELD_AXES:
-    case FIELD_FACTORS:
-        snprintf(buffer, size, "list of mappings");
-        break;
-    case FIELD_ENDS:
-        snprintf(buffer, size, "number, or list of numbers");
-        break;
-    case FIELD_PATH:
-        snprintf(buffer, size, "path");
-        break;
     case FIELD_PATHS:
         snprintf(buffer, size, "list of at most %d paths", SCENARIO_MAX_PATHS);
         break;
-    case FIELD_VALUES:
-        snprintf(buffer, size, "list of numbers, words or lists of these");
-        break;
+    default:
+        snprintf(buffer, size, "%s%s%s", text[field->type].before, words, text[field->type].after);
     }
     return buffer;
 }
 
 static const char *use_text(const struct scenario_field *field, char *buffer, size_t size)
 {
-    static const char *const text[] = {
-        [USE_ALWAYS] = "",
-        [USE_CONTROL] = "Only with a controller.kind other than none.",
-        [USE_FAR] = "Only with a controller.far other than none.",
-        [USE_FEEDBACK] = "Only with controller.kind state-feedback.",
-        [USE_PLACE] = "Only with controller.kind state-feedback, design place or place-schur.",
-        [USE_LQR] = "Only with controller.kind state-feedback and controller.design lqr.",
-        [USE_MODEL] = "Only with controller.kind state-feedback, any design but gains.",
-        [USE_GAINS] = "Only with controller.kind state-feedback and controller.design gains.",
-        [USE_EQUILIBRIUM] = "Only where the run starts from an equilibrium.",
-        [USE_STATE] = "Only where the run starts from a state.",
-        [USE_SETTLE] = "Not with stop.settle off.",
-    };
-    if (field->use != USE_LAW)
-        return text[field->use];
+    if (field->use != USE_LAW) {
+        snprintf(buffer, size, "Only with %s.", schema_use_text[field->use]);
+        return buffer;
+    }
     const stance_law *const law = stance_laws()[field->law];
     snprintf(buffer, size, "Only with controller.kind %s%s%s.", law->name,
              law->acts_far ? ", or controller.far " : "", law->acts_far ? law->name : "");

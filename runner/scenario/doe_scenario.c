@@ -63,43 +63,6 @@ static bool make_values(struct scenario *s, struct scenario_axis *axis)
 
 /* ---- factors --------------------------------------------------------------------------------- */
 
-static char *join_words(const struct scenario_field *field)
-{
-    size_t size = 1;
-    for (size_t i = 0; i < field->word_count; i++)
-        size += strlen(field->words[i]) + 1;
-    char *text = calloc(size, 1), *end = text;
-    for (size_t i = 0; text && i < field->word_count; i++)
-        end += sprintf(end, "%s%s", i ? " " : "", field->words[i]);
-    return text;
-}
-
-/* The values of one point for each path of the factor, from a list where there are `rows`. */
-static bool read_row(struct axis_reader *a, const struct scenario_factor *f, const char *key,
-                     const struct tree_node *node, bool rows, double *value)
-{
-    bool good = true;
-    if (!rows) {
-        return key ? axis_read_end(a, key, node, f->first, value)
-                   : axis_read_value(a, node, f->first, value);
-    }
-    if (node->kind != TREE_LIST || node->count != (size_t)f->paths) {
-        char wanted[80];
-        snprintf(wanted, sizeof wanted, "a list of %d values, one for each path", f->paths);
-        if (node->kind != TREE_LIST)
-            return field_mismatch(&a->r->problems, a->name, wanted, node);
-        return problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name,
-                           wanted, node->count);
-    }
-    for (int k = 0; k < f->paths; k++) {
-        const struct tree_node *item = node->item[k];
-        good = (key ? axis_read_end(a, key, item, f->first + k, value + k)
-                    : axis_read_value(a, item, f->first + k, value + k)) &&
-               good;
-    }
-    return good;
-}
-
 static bool read_listed(struct axis_reader *a, struct scenario_factor *f,
                         const struct tree_node *values, bool rows)
 {
@@ -112,7 +75,9 @@ static bool read_listed(struct axis_reader *a, struct scenario_factor *f,
     if (!f->value)
         return problem_no_memory(&a->r->problems);
     for (size_t i = 0; i < f->points; i++)
-        good = read_row(a, f, NULL, values->item[i], rows, f->value + i * (size_t)f->paths) && good;
+        good = axis_read_row(a, NULL, values->item[i], f->first, rows,
+                             f->value + i * (size_t)f->paths) &&
+               good;
     return good;
 }
 
@@ -138,10 +103,7 @@ static bool check_ends(struct axis_reader *a, const struct scenario_factor *f, b
 
 static bool read_range(struct axis_reader *a, struct scenario_factor *f, bool rows)
 {
-    const struct tree_node *from = tree_find(a->node, "from"), *to = tree_find(a->node, "to"),
-                           *spacing = tree_find(a->node, "spacing");
-    char text[AXIS_NAME + 16];
-    int word = 0;
+    const struct tree_node *from = tree_find(a->node, "from"), *to = tree_find(a->node, "to");
 
     for (int k = 0; k < f->paths; k++)
         if (a->axis->enumeration[f->first + k])
@@ -155,66 +117,42 @@ static bool read_range(struct axis_reader *a, struct scenario_factor *f, bool ro
     f->value = calloc(2 * (size_t)f->paths, sizeof *f->value);
     if (!f->value)
         return problem_no_memory(&a->r->problems);
-    bool good = read_row(a, f, "from", from, rows, f->value);
-    good = read_row(a, f, "to", to, rows, f->value + f->paths) && good;
-    snprintf(text, sizeof text, "%s.spacing", a->name);
-    good = (!spacing ||
-            field_word(&a->r->problems, schema_find(&a->r->schema, "sweep.sample.vary[].spacing"),
-                       text, spacing, &word)) &&
-           good;
-    f->log = word != 0;
+    bool good = axis_read_row(a, "from", from, f->first, rows, f->value);
+    good = axis_read_row(a, "to", to, f->first, rows, f->value + f->paths) && good;
+    good = axis_read_spacing(a, "sweep.sample.vary[].spacing", &f->log) && good;
     return good && check_ends(a, f, rows);
 }
 
 static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
 {
-    static const char *const range_keys[] = {"from", "to", "spacing"};
-    struct problems *problems = &a->r->problems;
-    const size_t before = problems->count + problems->lost;
-
-    if (a->node->kind != TREE_MAP)
-        return field_mismatch(problems, a->name, "a mapping with path, from, to", a->node);
-    reader_check_keys(a->r, a->node, "sweep.sample.vary[]", a->name);
     f->first = a->axis->paths;
-    if (problems->count + problems->lost > before || !axis_read_paths(a))
+    if (!axis_begin(a, "sweep.sample.vary[]", "a mapping with path, from, to"))
         return false;
     f->paths = a->axis->paths - f->first;
     for (int k = f->first; k < a->axis->paths; k++) {
         struct scenario_meaning *meaning = &a->axis->meaning[k];
         axis_describe(a, k, meaning->unit, meaning->text);
-        if (a->axis->enumeration[k] && !(meaning->words = join_words(a->swept[k].field)))
+        const struct scenario_field *field = a->swept[k].field;
+        char words[400];
+        if (a->axis->enumeration[k] &&
+            !(meaning->words =
+                  strdup(words_join(words, sizeof words, " ", field->words, field->word_count))))
             return problem_no_memory(&a->r->problems);
     }
     const bool rows = tree_find(a->node, "paths") != NULL;
     const struct tree_node *values = tree_find(a->node, "values");
-    for (size_t i = 0; values && i < sizeof range_keys / sizeof range_keys[0]; i++) {
-        if (tree_find(a->node, range_keys[i])) {
-            return problem_add(problems, a->node->mark, "%s: values and %s exclude each other",
-                               a->name, range_keys[i]);
-        }
-    }
-    return values ? read_listed(a, f, values, rows) : read_range(a, f, rows);
+    return axis_check_alone(a) &&
+           (values ? read_listed(a, f, values, rows) : read_range(a, f, rows));
 }
 
 /* ---- the design ------------------------------------------------------------------------------ */
 
-/* A whole number or a word of sweep.sample; its default where it is not given. */
-static bool read_setting(struct reader *r, const char *path, bool needed, double *value)
+static bool read_needed(struct reader *r, const char *path, double *value)
 {
-    const struct scenario_field *field = schema_find(&r->schema, path);
-    const struct tree_node *node = reader_seen(r, path)->node;
-    int place = 0;
-
-    *value = field->fallback;
-    if (!node && needed) {
-        return problem_add(&r->problems, reader_seen(r, "sweep.sample")->key, "%s is missing",
-                           path);
-    }
-    if (!node || field->type == FIELD_INTEGER)
-        return !node || field_integer(&r->problems, field, path, node, value);
-    const bool good = field_word(&r->problems, field, path, node, &place);
-    *value = place;
-    return good;
+    return (reader_seen(r, path)->node ||
+            problem_add(&r->problems, reader_seen(r, "sweep.sample")->key, "%s is missing",
+                        path)) &&
+           reader_value(r, path, value);
 }
 
 /* A key that one method alone has. */
@@ -233,10 +171,10 @@ static bool read_design(struct reader *r)
     struct doe *design = &r->s->sample.design;
     double method, count, second, levels;
 
-    bool good = read_setting(r, "sweep.sample.method", true, &method);
-    bool rest = read_setting(r, "sweep.sample.count", true, &count);
-    rest = read_setting(r, "sweep.sample.second_order", false, &second) && rest;
-    rest = read_setting(r, "sweep.sample.levels", false, &levels) && rest;
+    bool good = read_needed(r, "sweep.sample.method", &method);
+    bool rest = read_needed(r, "sweep.sample.count", &count);
+    rest = reader_value(r, "sweep.sample.second_order", &second) && rest;
+    rest = reader_value(r, "sweep.sample.levels", &levels) && rest;
     if (!good)
         return false;
     design->method = (enum doe_method)method;

@@ -216,6 +216,19 @@ bool field_word(struct problems *problems, const struct scenario_field *field, c
                          field->word_count);
 }
 
+bool field_value(struct problems *problems, const struct scenario_field *field, const char *name,
+                 const struct tree_node *node, double *value)
+{
+    int place = 0;
+    if (field->type == FIELD_INTEGER)
+        return field_integer(problems, field, name, node, value);
+    if (field->type != FIELD_WORD)
+        return field_number(problems, field, name, node, value);
+    const bool good = field_word(problems, field, name, node, &place);
+    *value = place;
+    return good;
+}
+
 bool field_list(struct problems *problems, const char *name, const char *wanted,
                 const struct tree_node *node)
 {
@@ -239,9 +252,8 @@ bool field_words(struct problems *problems, const struct scenario_field *field, 
         if (!field_word(problems, field, name, node->item[i], &place)) {
             good = false;
         } else if (bits >> place & 1) {
-            problem_add(problems, node->item[i]->mark, "%s: '%s' is listed twice", name,
-                        field->words[place]);
-            good = false;
+            good = problem_add(problems, node->item[i]->mark, "%s: '%s' is listed twice", name,
+                               field->words[place]);
         } else {
             bits |= (uint32_t)1 << place;
         }

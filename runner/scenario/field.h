@@ -31,6 +31,10 @@ bool field_seed(struct problems *problems, const char *name, const struct tree_n
 bool field_word(struct problems *problems, const struct scenario_field *field, const char *name,
                 const struct tree_node *node, int *place);
 
+/* Whichever of these three the field is. */
+bool field_value(struct problems *problems, const struct scenario_field *field, const char *name,
+                 const struct tree_node *node, double *value);
+
 /* A list of different words as a bit mask. */
 bool field_words(struct problems *problems, const struct scenario_field *field, const char *name,
                  const struct tree_node *node, uint32_t *mask);

@@ -37,6 +37,9 @@ struct reader {
  * that the scene lacks something that is not given. */
 struct seen *reader_seen(struct reader *r, const char *path);
 
+/* The number or word of a field, its default where it is not given. False: a problem. */
+bool reader_value(struct reader *r, const char *path, double *value);
+
 static inline bool reader_given(const struct seen *seen)
 {
     return seen->node || seen->swept;
@@ -61,13 +64,17 @@ struct axis_reader {
     char name[AXIS_NAME];         /* sweep.grid[0], sweep.sample.vary[0] */
 };
 
-/* sweep.c: the path or paths of the mapping, behind those that the axis has. False: a problem. */
-bool axis_read_paths(struct axis_reader *a);
-/* sweep.c: a value of path k. False: a problem. */
-bool axis_read_value(struct axis_reader *a, const struct tree_node *node, int k, double *value);
-/* sweep.c: one of from and to of a range of path k, a finite number. False: a problem. */
-bool axis_read_end(struct axis_reader *a, const char *key, const struct tree_node *node, int k,
-                   double *value);
+/* sweep.c: the mapping itself, its keys those of the schema below `path`, and its path or paths,
+ * behind those that the axis has. False: a problem. */
+bool axis_begin(struct axis_reader *a, const char *path, const char *wanted);
+/* sweep.c: `values`, where it stands, stands alone. */
+bool axis_check_alone(struct axis_reader *a);
+/* sweep.c: values of the paths from `first` on of one point; of several (`rows`) a list. `key`, not
+ * NULL: an end of a range, whose numbers are finite. False: a problem. */
+bool axis_read_row(struct axis_reader *a, const char *key, const struct tree_node *node, int first,
+                   bool rows, double *value);
+/* sweep.c: whether `spacing` is log. False: a problem. */
+bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log);
 /* sweep.c: unit and text of path k. */
 void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[160]);
 /* A problem of the mapping as a whole. Returns false. */

@@ -100,10 +100,8 @@ static bool read_tree(struct reader *r, const char *file, const char *given)
     const char *text = given ? given : own;
     bool good = text != NULL;
 
-    if (good && length > TREE_MAX_BYTES) {
-        problem_add(&r->problems, (struct mark){0}, "larger than 1 MiB");
-        good = false;
-    }
+    if (good && length > TREE_MAX_BYTES)
+        good = problem_add(&r->problems, (struct mark){0}, "larger than 1 MiB");
     good = good && tree_check_text(text, length, &r->problems) &&
            tree_parse(&r->tree, text, length, &r->problems);
     free(own);
@@ -116,6 +114,15 @@ struct seen *reader_seen(struct reader *r, const char *path)
 {
     const struct scenario_field *field = schema_find(&r->schema, path);
     return field ? &r->seen[field - r->schema.field] : &r->nothing;
+}
+
+bool reader_value(struct reader *r, const char *path, double *value)
+{
+    const struct scenario_field *field = schema_find(&r->schema, path);
+    const struct tree_node *node = reader_seen(r, path)->node;
+
+    *value = field->fallback;
+    return !node || field_value(&r->problems, field, path, node, value);
 }
 
 /* A key that is unknown here but stands elsewhere in the format, or NULL. */
@@ -189,29 +196,81 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
 {
     char *place = (char *)&r->s->base + field->offset;
     double number = 0;
-    int word = 0;
     uint32_t mask = 0;
-    bool good;
-
-    switch (field->type) {
-    case FIELD_NUMBER:
-        good = field_number(&r->problems, field, field->path, node, &number);
-        memcpy(place, &number, good ? sizeof number : 0);
-        return good;
-    case FIELD_INTEGER:
-        good = field_integer(&r->problems, field, field->path, node, &number);
-        word = good ? (int)number : 0; /* what is out of range need not fit */
-        break;
-    case FIELD_WORD:
-        good = field_word(&r->problems, field, field->path, node, &word);
-        break;
-    default:
-        good = field_words(&r->problems, field, field->path, node, &mask);
-        word = (int)mask;
-        break;
+    bool good = field->type == FIELD_WORDS
+                    ? field_words(&r->problems, field, field->path, node, &mask)
+                    : field_value(&r->problems, field, field->path, node, &number);
+    if (good && field->type == FIELD_NUMBER) {
+        memcpy(place, &number, sizeof number);
+    } else if (good) {
+        const int word = field->type == FIELD_WORDS ? (int)mask : (int)number;
+        memcpy(place, &word, sizeof word);
     }
-    memcpy(place, &word, good ? sizeof word : 0);
     return good;
+}
+
+static bool check_conjugates(struct reader *r, const struct tree_node *node)
+{
+    const struct scenario_values *base = &r->s->base;
+    bool taken[SCENARIO_MAX_POLES] = {false}, good = true;
+    char word[SHOWN_SIZE];
+
+    for (size_t i = 0; i < node->count; i++) {
+        bool paired = taken[i] || base->pole_im[i] == 0;
+        for (size_t k = i + 1; k < node->count && !paired; k++) {
+            paired = !taken[k] && base->pole_re[k] == base->pole_re[i] &&
+                     base->pole_im[k] == -base->pole_im[i];
+            taken[k] = taken[k] || paired;
+        }
+        good = good && paired;
+        if (!paired) {
+            problem_add(&r->problems, node->item[i]->mark,
+                        "controller.poles[%zu]: %s lacks its conjugate", i,
+                        shown(word, node->item[i]->text));
+        }
+    }
+    return good;
+}
+
+static bool has_items(struct reader *r, const char *name, const struct tree_node *node,
+                      size_t items, const char *what)
+{
+    char wanted[64];
+    snprintf(wanted, sizeof wanted, "%zu %s", items, what);
+    if (node->kind != TREE_LIST)
+        return field_mismatch(&r->problems, name, wanted, node);
+    return node->count == items ||
+           problem_add(&r->problems, node->mark, "%s: expected %s, found %zu", name, wanted,
+                       node->count);
+}
+
+/* A list of fixed length: numbers, poles, rows of numbers. Its items have a row of their own. */
+static bool read_items(struct reader *r, const struct scenario_field *field,
+                       const struct tree_node *node)
+{
+    const bool matrix = field->type == FIELD_MATRIX, poles = field->type == FIELD_POLES;
+    char path[PATH_SIZE], name[PATH_SIZE];
+
+    snprintf(path, sizeof path, "%s%s", field->path, matrix ? "[][]" : "[]");
+    const struct scenario_field *item = schema_find(&r->schema, path);
+    double *number = (double *)(void *)((char *)&r->s->base + item->offset);
+    bool good = has_items(r, field->path, node, field->items,
+                          matrix  ? "rows"
+                          : poles ? "poles"
+                                  : "numbers");
+    for (size_t i = 0; good && i < field->items; i++) {
+        const struct tree_node *row = node->item[i];
+        snprintf(name, sizeof name, "%s[%zu]", field->path, i);
+        good = poles ? field_pole(&r->problems, item, name, row, &number[i], &r->s->base.pole_im[i])
+               : !matrix ? field_number(&r->problems, item, name, row, &number[i])
+                         : has_items(r, name, row, item->columns, "numbers");
+        for (size_t k = 0; good && matrix && k < item->columns; k++) {
+            snprintf(name, sizeof name, "%s[%zu][%zu]", field->path, i, k);
+            good = field_number(&r->problems, item, name, row->item[k],
+                                &number[i * item->columns + k]);
+        }
+    }
+    return good && (!poles || check_conjugates(r, node));
 }
 
 static void read_value(struct reader *r, const struct scenario_field *field,
@@ -223,13 +282,21 @@ static void read_value(struct reader *r, const struct scenario_field *field,
     seen->key = key->mark;
     if (field->by_scene && !r->schema.scene)
         return;
-    if (field->type == FIELD_MAP || (field->type == FIELD_MAP_OR_WORD && node->kind == TREE_MAP)) {
-        if (node->kind != TREE_MAP) {
-            seen->bad = true;
-            field_mismatch(&r->problems, field->path, "a mapping", node);
-        } else {
-            read_map(r, node, field->path);
-        }
+    const bool map = field->type == FIELD_MAP || field->type == FIELD_MAP_OR_WORD;
+    if (map && node->kind == TREE_MAP) {
+        read_map(r, node, field->path);
+    } else if (field->type == FIELD_MAP_OR_WORD && node->kind == TREE_SCALAR &&
+               strcmp(node->text, field->words[0]) == 0) {
+        r->s->base.settle = 0; /* stop.settle is the only one */
+    } else if (map) {
+        seen->bad = true;
+        field_mismatch(&r->problems, field->path,
+                       field->type == FIELD_MAP ? "a mapping"
+                                                : "off, or a mapping with angle, rate, hold",
+                       node);
+    } else if (field->type == FIELD_POLES || field->type == FIELD_NUMBERS ||
+               field->type == FIELD_MATRIX) {
+        seen->bad = !read_items(r, field, node);
     } else if (field->offset != NO_OFFSET) {
         seen->bad = !read_bound(r, field, node);
     }
@@ -252,21 +319,18 @@ static void set_defaults(struct reader *r)
 {
     struct scenario_values *base = &r->s->base;
 
-    for (int i = 0; i < STANCE_MAX_ROBOT; i++)
-        base->model[i] = NAN;
-    for (int i = 0; i < STANCE_MAX_POSTURE; i++)
-        base->equilibrium.posture[i] = base->design_point.posture[i] = NAN;
-    for (int i = 0; i < SCENARIO_MAX_POLES; i++)
-        base->state_weights[i] = 1;
-    for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
-        base->torque_weights[i] = 1;
     for (size_t i = 0; i < r->schema.count; i++) {
         const struct scenario_field *field = &r->schema.field[i];
-        if (field->offset == NO_OFFSET || strchr(field->path, '['))
-            continue;
         char *place = (char *)base + field->offset;
+        if (field->offset == NO_OFFSET)
+            continue;
         if (field->type == FIELD_NUMBER) {
-            memcpy(place, &field->fallback, sizeof field->fallback);
+            const size_t items =
+                (field->items ? field->items : 1) * (field->columns ? field->columns : 1);
+            for (size_t k = 0; k < items && !(strchr(field->path, '[') && isnan(field->fallback));
+                 k++)
+                memcpy(place + k * sizeof field->fallback, &field->fallback,
+                       sizeof field->fallback);
         } else if (field->type == FIELD_WORD) {
             int word = isnan(field->fallback) ? 0 : (int)field->fallback;
             memcpy(place, &word, sizeof word);
@@ -283,120 +347,6 @@ static void set_defaults(struct reader *r)
 }
 
 /* ---- values that are bound by hand ----------------------------------------------------------- */
-
-static void check_conjugates(struct reader *r, const struct tree_node *node)
-{
-    const struct scenario_values *base = &r->s->base;
-    bool taken[SCENARIO_MAX_POLES] = {false};
-    char word[SHOWN_SIZE];
-
-    for (size_t i = 0; i < node->count; i++) {
-        bool paired = taken[i] || base->pole_im[i] == 0;
-        for (size_t k = i + 1; k < node->count && !paired; k++) {
-            paired = !taken[k] && base->pole_re[k] == base->pole_re[i] &&
-                     base->pole_im[k] == -base->pole_im[i];
-            taken[k] = taken[k] || paired;
-        }
-        if (!paired) {
-            problem_add(&r->problems, node->item[i]->mark,
-                        "controller.poles[%zu]: %s lacks its conjugate", i,
-                        shown(word, node->item[i]->text));
-            reader_seen(r, "controller.poles")->bad = true;
-        }
-    }
-}
-
-static bool has_items(struct reader *r, const char *name, const struct tree_node *node,
-                      size_t items, const char *what)
-{
-    char wanted[64];
-    snprintf(wanted, sizeof wanted, "%zu %s", items, what);
-    if (node->kind != TREE_LIST)
-        return field_mismatch(&r->problems, name, wanted, node);
-    if (node->count != items) {
-        return problem_add(&r->problems, node->mark, "%s: expected %s, found %zu", name, wanted,
-                           node->count);
-    }
-    return true;
-}
-
-static void read_poles(struct reader *r)
-{
-    struct seen *seen = reader_seen(r, "controller.poles");
-    const struct scenario_field *field = schema_find(&r->schema, "controller.poles[]");
-    char name[PATH_SIZE];
-
-    if (!seen->node || !field)
-        return;
-    seen->bad = !has_items(r, "controller.poles", seen->node, field->items, "poles");
-    for (size_t i = 0; i < field->items && !seen->bad; i++) {
-        snprintf(name, sizeof name, "controller.poles[%zu]", i);
-        if (!field_pole(&r->problems, field, name, seen->node->item[i], &r->s->base.pole_re[i],
-                        &r->s->base.pole_im[i]))
-            seen->bad = true;
-    }
-    if (!seen->bad)
-        check_conjugates(r, seen->node);
-}
-
-static void read_gains(struct reader *r)
-{
-    struct seen *seen = reader_seen(r, "controller.gains");
-    const struct scenario_field *field = schema_find(&r->schema, "controller.gains[][]");
-    char name[PATH_SIZE];
-
-    if (!seen->node || !field)
-        return;
-    seen->bad = !has_items(r, "controller.gains", seen->node, field->items, "rows");
-    for (size_t i = 0; i < field->items && !seen->bad; i++) {
-        const struct tree_node *row = seen->node->item[i];
-        snprintf(name, sizeof name, "controller.gains[%zu]", i);
-        seen->bad = !has_items(r, name, row, field->columns, "numbers");
-        for (size_t k = 0; k < field->columns && !seen->bad; k++) {
-            snprintf(name, sizeof name, "controller.gains[%zu][%zu]", i, k);
-            seen->bad = !field_number(&r->problems, field, name, row->item[k],
-                                      &r->s->base.gains[i * field->columns + k]);
-        }
-    }
-}
-
-static void read_weights(struct reader *r, const char *path, double *weight)
-{
-    struct seen *seen = reader_seen(r, path);
-    char name[PATH_SIZE];
-
-    snprintf(name, sizeof name, "%s[]", path);
-    const struct scenario_field *field = schema_find(&r->schema, name);
-    if (!seen->node || !field)
-        return;
-    seen->bad = !has_items(r, path, seen->node, field->items, "numbers");
-    for (size_t i = 0; i < field->items && !seen->bad; i++) {
-        snprintf(name, sizeof name, "%s[%zu]", path, i);
-        seen->bad = !field_number(&r->problems, field, name, seen->node->item[i], &weight[i]);
-    }
-}
-
-static void read_settle(struct reader *r)
-{
-    struct seen *seen = reader_seen(r, "stop.settle");
-    char word[SHOWN_SIZE];
-
-    if (!seen->node || seen->node->kind == TREE_MAP)
-        return;
-    if (seen->node->kind == TREE_SCALAR && strcmp(seen->node->text, "off") == 0) {
-        r->s->base.settle = 0;
-        return;
-    }
-    seen->bad = true;
-    if (seen->node->kind == TREE_SCALAR && seen->node->text[0]) {
-        problem_add(&r->problems, seen->node->mark,
-                    "stop.settle: expected off, or a mapping with angle, rate, hold; found '%s'",
-                    shown(word, seen->node->text));
-    } else {
-        field_mismatch(&r->problems, "stop.settle", "off, or a mapping with angle, rate, hold",
-                       seen->node);
-    }
-}
 
 static void read_record_list(struct reader *r, const struct tree_node *node)
 {
@@ -458,11 +408,6 @@ static void read_by_hand(struct reader *r)
         field_text(&r->problems, "title", title, r->s->title, sizeof r->s->title);
     if (seed)
         field_seed(&r->problems, "seed", seed, &r->s->seed);
-    read_poles(r);
-    read_gains(r);
-    read_weights(r, "controller.weights.states", r->s->base.state_weights);
-    read_weights(r, "controller.weights.torques", r->s->base.torque_weights);
-    read_settle(r);
     r->axes_bad = !r->s->scene;
     if (grid && r->s->scene)
         sweep_read(r, grid);
@@ -510,12 +455,6 @@ static void read_scene(struct reader *r)
             schema_build(&r->schema, NULL);
         }
     }
-}
-
-static struct mark place_of(struct reader *r, const char *path)
-{
-    const struct seen *seen = reader_seen(r, path);
-    return seen->node && seen->key.set == 0 ? seen->key : (struct mark){0, 1, 1};
 }
 
 /* Remembers where keys stand. Without memory later errors point at the mapping instead. */
@@ -602,11 +541,6 @@ static void read_all(struct reader *r, const char *file, const char *text, const
     read_map(r, r->tree.root, "");
     read_by_hand(r);
     scenario_cross_check(r);
-    struct mark initial = place_of(r, "initial"), controller = place_of(r, "controller");
-    s->initial_line = initial.line;
-    s->initial_column = initial.column;
-    s->controller_line = controller.line;
-    s->controller_column = controller.column;
     note_places(r);
     if (r->problems.count == 0) {
         sort_keys(&r->schema, r->tree.root, "");

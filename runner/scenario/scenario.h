@@ -167,7 +167,6 @@ struct scenario {
 
     char *text; /* resolved scenario: after --set, as YAML; what the file stores and hashes */
     /* Where fields stand, for errors found later (design, initial state). */
-    int initial_line, initial_column, controller_line, controller_column;
     struct scenario_place *place; /* of every key that is given */
     size_t places;
 };
@@ -181,11 +180,15 @@ bool scenario_read(struct scenario *s, const char *file, const char *text, const
 void scenario_free(struct scenario *s);
 
 /* Where the key stands that a message begins with ("controller.poles: ..."), or the nearest mapping
- * around it. False: it does not begin with a key that is given. */
+ * around it. False: it does not begin with a key that is given; line and column stay. */
 bool scenario_place(const struct scenario *s, const char *text, int *line, int *column);
 
 /* Value k of point `i` of an axis (k < paths); for words the enumeration's number. */
 double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);
+/* The axis that varies the field at an offset, which is its path *k; NULL: none does. */
+const struct scenario_axis *scenario_axis_of(const struct scenario *s, size_t offset, int *k);
+/* Least and largest value that a number takes, base or swept. */
+void scenario_extent(const struct scenario *s, size_t offset, double *least, double *largest);
 /* Text of that value, for messages and pictures; of an infinite one "none". */
 void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer,
                         size_t size);

@@ -45,22 +45,14 @@ static bool is_excused(const struct seen *seen)
 static bool takes_word(const struct reader *r, size_t offset, int word)
 {
     const struct scenario *s = r->s;
-    bool swept = false;
-    int base;
+    int base, k;
+    const struct scenario_axis *axis = scenario_axis_of(s, offset, &k);
 
-    for (int a = 0; a < s->axes; a++) {
-        const struct scenario_axis *axis = &s->axis[a];
-        for (int k = 0; k < axis->paths; k++) {
-            if (axis->offset[k] != offset || !axis->value)
-                continue;
-            swept = true;
-            for (size_t i = 0; i < axis->count; i++)
-                if ((int)scenario_axis_value(axis, i, k) == word)
-                    return true;
-        }
-    }
+    for (size_t i = 0; axis && axis->value && i < axis->count; i++)
+        if ((int)scenario_axis_value(axis, i, k) == word)
+            return true;
     memcpy(&base, (const char *)&s->base + offset, sizeof base);
-    return !swept && base == word;
+    return !(axis && axis->value) && base == word;
 }
 
 static struct situation find_situation(struct reader *r)
@@ -98,9 +90,9 @@ static const char *law_word(const struct reader *r)
     return schema_find(&r->schema, "controller.kind")->words[r->s->base.law];
 }
 
-/* The same for what depends on controller.design. */
-static const char *design_obstacle(const struct reader *r, const struct situation *is,
-                                   enum field_use use, const char **instead)
+/* Whether no controller.design is of the use; then *instead is one that there is. */
+static bool design_misfits(const struct reader *r, const struct situation *is, enum field_use use,
+                           const char **instead)
 {
     const struct scenario_field *design = schema_find(&r->schema, "controller.design");
     const bool fits = use == USE_PLACE   ? is->places
@@ -108,18 +100,12 @@ static const char *design_obstacle(const struct reader *r, const struct situatio
                       : use == USE_MODEL ? is->models
                                          : is->gives_gains;
     if (!is->design_known || fits)
-        return NULL;
+        return false;
     *instead = "others";
-    for (size_t i = 0; design && i < design->word_count; i++) {
-        if (takes_word(r, offsetof(struct scenario_values, design), (int)i)) {
+    for (size_t i = design ? design->word_count : 0; i-- > 0;)
+        if (takes_word(r, offsetof(struct scenario_values, design), (int)i))
             *instead = design->words[i];
-            break;
-        }
-    }
-    return use == USE_PLACE   ? "controller.design place or place-schur"
-           : use == USE_LQR   ? "controller.design lqr"
-           : use == USE_MODEL ? "a controller.design other than gains"
-                              : "controller.design gains";
+    return true;
 }
 
 /* Why a field must not be given or swept, as what would be needed and what there is instead; NULL:
@@ -127,40 +113,45 @@ static const char *design_obstacle(const struct reader *r, const struct situatio
 static const char *obstacle(const struct reader *r, const struct situation *is,
                             const struct scenario_field *field, const char **instead)
 {
-    const enum field_use use = field->use;
-    const bool feedback = is->law->designed;
+    const stance_law *const none = stance_laws()[0], *const own = stance_laws()[field->law];
+    const bool other = is->law_known && !is->law->designed;
+    bool misfits = false;
     *instead = law_word(r);
-    switch (use) {
+    switch (field->use) {
     case USE_CONTROL:
-        return is->law_known && is->law == stance_laws()[0] ? "a controller.kind" : NULL;
+        misfits = is->law_known && is->law == none;
+        break;
     case USE_LAW:
-        return is->law_known && is->law != stance_laws()[field->law] &&
-                       is->far != stance_laws()[field->law]
-                   ? r->schema.kind_of[field->law]
-                   : NULL;
+        return is->law_known && is->law != own && is->far != own ? r->schema.kind_of[field->law]
+                                                                 : NULL;
     case USE_FAR:
-        return is->law_known && is->far == stance_laws()[0] ? "a controller.far" : NULL;
+        misfits = is->law_known && is->far == none;
+        break;
     case USE_FEEDBACK:
-        return is->law_known && !feedback ? "controller.kind state-feedback" : NULL;
+        misfits = other;
+        break;
     case USE_PLACE:
     case USE_LQR:
     case USE_MODEL:
     case USE_GAINS:
-        if (is->law_known && !feedback)
-            return "controller.kind state-feedback";
-        return design_obstacle(r, is, use, instead);
+        if (other)
+            return schema_use_text[USE_FEEDBACK];
+        misfits = design_misfits(r, is, field->use, instead);
+        break;
     case USE_EQUILIBRIUM:
-        *instead = "initial.state";
-        return is->start_known && !is->from_equilibrium ? "initial.equilibrium" : NULL;
     case USE_STATE:
-        *instead = "initial.equilibrium";
-        return is->start_known && !is->from_state ? "initial.state" : NULL;
+        *instead = schema_use_text[field->use == USE_STATE ? USE_EQUILIBRIUM : USE_STATE];
+        misfits =
+            is->start_known && !(field->use == USE_STATE ? is->from_state : is->from_equilibrium);
+        break;
     case USE_SETTLE:
         *instead = "off";
-        return !is->settles ? "a stop.settle other than off" : NULL;
+        misfits = !is->settles;
+        break;
     default:
-        return NULL;
+        break;
     }
+    return misfits ? schema_use_text[field->use] : NULL;
 }
 
 /* ---- keys that have no meaning here ---------------------------------------------------------- */
@@ -358,31 +349,6 @@ static void check_controller(struct reader *r, const struct situation *is)
 
 /* ---- numbers that must fit each other -------------------------------------------------------- */
 
-/* Least and largest value that a number takes, base or swept. */
-static void extent(const struct reader *r, size_t offset, double *least, double *largest)
-{
-    const struct scenario *s = r->s;
-
-    memcpy(least, (const char *)&s->base + offset, sizeof *least);
-    *largest = *least;
-    for (int a = 0; a < s->axes; a++) {
-        const struct scenario_axis *axis = &s->axis[a];
-        for (int k = 0; k < axis->paths; k++) {
-            if (axis->offset[k] != offset || axis->count == 0)
-                continue;
-            *least = INFINITY;
-            *largest = -INFINITY;
-            /* Ranges are monotonic: their ends will do. */
-            size_t stride = axis->value && !axis->log ? 1 : axis->count - 1;
-            for (size_t i = 0; i < axis->count; i += stride ? stride : 1) {
-                double value = scenario_axis_value(axis, i, k);
-                *least = fmin(*least, value);
-                *largest = fmax(*largest, value);
-            }
-        }
-    }
-}
-
 static bool samples_in_design(const struct reader *r, const struct situation *is)
 {
     return is->law_known && is->law->designed && is->models &&
@@ -403,10 +369,10 @@ static void check_sampling(struct reader *r, const struct situation *is)
 
     if (!is->law_known || is->law == stance_laws()[0] || r->axes_bad || time->bad || time->excused)
         return;
-    extent(r, offsetof(struct scenario_values, sample_time), &shortest, &longest);
+    scenario_extent(r->s, offsetof(struct scenario_values, sample_time), &shortest, &longest);
     if (shortest > 0)
         return;
-    extent(r, offsetof(struct scenario_values, noise), &quiet, &loud);
+    scenario_extent(r->s, offsetof(struct scenario_values, noise), &quiet, &loud);
     if (loud > 0 && !reader_seen(r, "controller.noise")->bad) {
         problem_add(&r->problems, where(r, "controller.noise"),
                     "controller.noise needs controller.sample_time > 0: it is new at each sample");
@@ -468,7 +434,7 @@ static void check_far(struct reader *r, const struct situation *is)
         reader_seen(r, "controller.far")->bad || reader_seen(r, "controller.sample_time")->bad ||
         reader_seen(r, "controller.sample_time")->excused)
         return;
-    extent(r, offsetof(struct scenario_values, sample_time), &shortest, &longest);
+    scenario_extent(r->s, offsetof(struct scenario_values, sample_time), &shortest, &longest);
     if (shortest <= 0) {
         problem_add(&r->problems, where(r, "controller.far"),
                     "controller.far needs controller.sample_time > 0: which law acts is decided at "
@@ -525,8 +491,8 @@ static void check_steps(struct reader *r)
     if (r->axes_bad || !reader_given(reader_seen(r, "stop.time")) ||
         reader_seen(r, "stop.time")->bad || reader_seen(r, "method.step")->bad)
         return;
-    extent(r, offsetof(struct scenario_values, stop_time), &least_time, &time);
-    extent(r, offsetof(struct scenario_values, step), &step, &largest_step);
+    scenario_extent(r->s, offsetof(struct scenario_values, stop_time), &least_time, &time);
+    scenario_extent(r->s, offsetof(struct scenario_values, step), &step, &largest_step);
     if (time / step > MOST_STEPS) {
         problem_add(&r->problems, where(r, "stop.time"),
                     "stop.time: more than %.0e steps of method.step", MOST_STEPS);

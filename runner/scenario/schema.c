@@ -60,6 +60,8 @@ struct row {
 
 #define VALUE(member) .offset = offsetof(struct scenario_values, member)
 #define BY_HAND .offset = NO_OFFSET
+#define RANGE(least, largest) .low = (least), .high = (largest)
+#define ABOVE(bound, largest) RANGE(bound, largest), .low_open = true
 
 /* Loose bounds that keep nonsense out where physics gives none. */
 #define LARGE 1e9
@@ -67,225 +69,191 @@ struct row {
 /* One member a line would make the table hard to read. */
 /* clang-format off */
 static const struct row rows[] = {
-    {0, {.path = "stance", .type = FIELD_INTEGER, .required = true, BY_HAND, .low = 1, .high = 1,
+    {0, {.path = "stance", .type = FIELD_INTEGER, .required = true, BY_HAND, RANGE(1, 1),
          .fallback = NAN, .text = "version of this format"}},
     {0, {.path = "title", .type = FIELD_TEXT, BY_HAND, .fallback_text = "the file's name",
          .text = "what the study is about, in a line"}},
     {FAMILY_SCENES, {.path = "scene", .type = FIELD_WORD, .required = true, BY_HAND,
-                     .fallback = NAN, .text = "what is simulated"}},
+         .fallback = NAN, .text = "what is simulated"}},
 
     {0, {.path = "robot", .type = FIELD_MAP, .by_scene = true, BY_HAND,
          .text = "the body that is simulated"}},
     {FAMILY_ROBOT, {.path = "robot.*", .type = FIELD_NUMBER, .by_scene = true, .design = true,
-                    .sweep = true, VALUE(robot)}},
+         .sweep = true, VALUE(robot)}},
 
     {0, {.path = "ground", .type = FIELD_MAP, BY_HAND, .text = "the ground, a half plane z <= 0"}},
     {0, {.path = "ground.friction", .type = FIELD_NUMBER, .sweep = true, VALUE(friction),
-         .unit = "1", .fallback = 0.8, .low = 0, .high = 10,
-         .text = "Coulomb coefficient of friction"}},
+         .unit = "1", .fallback = 0.8, RANGE(0, 10), .text = "Coulomb coefficient of friction"}},
     {0, {.path = "ground.restitution", .type = FIELD_NUMBER, .sweep = true, VALUE(restitution),
-         .unit = "1", .fallback = 0, .low = 0, .high = 1,
-         .text = "Newton's coefficient of restitution",
+         .unit = "1", .fallback = 0, RANGE(0, 1), .text = "Newton's coefficient of restitution",
          .more = "Together with friction it can create energy in impacts; 0 never does."}},
     {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(prefer), .fallback = 0,
-         WORDS(prefer_words),
-         .text = "which motion, where several obey the contact laws",
-         .more = "The one that leaves the least kinetic energy, or the most; contacts that stand go "
-                 "on standing while they can. Such steps are counted as ambiguous_steps. Swept over "
-                 "both, each case is followed down both branches."}},
+         WORDS(prefer_words), .text = "which motion, where several obey the contact laws",
+         .more = "The one that leaves the least kinetic energy, or the most; contacts that stand "
+                 "go on standing while they can. Such steps are counted as ambiguous_steps. Swept "
+                 "over both, each case is followed down both branches."}},
     {FAMILY_CONTACTS, {.path = "ground.contacts", .type = FIELD_WORDS, .by_scene = true,
-                       VALUE(contacts), .fallback_text = "all of the scene's",
-                       .text = "points that may touch the ground"}},
+         VALUE(contacts), .fallback_text = "all of the scene's",
+         .text = "points that may touch the ground"}},
 
     {0, {.path = "initial", .type = FIELD_MAP, .required = true, BY_HAND,
          .text = "how a run begins: from an equilibrium or from a given state"}},
-    {0, {.path = "initial.equilibrium", .type = FIELD_MAP, .by_scene = true,
-         .use = USE_EQUILIBRIUM, BY_HAND,
-         .text = "the position of rest that the run begins at",
-         .more = "Give all but one of the angles; the last follows. Excludes initial.state.",
-         .need = NEED_EQUILIBRIUM}},
+    {0, {.path = "initial.equilibrium", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
+         BY_HAND, .text = "the position of rest that the run begins at",
+         .more = "Give all but one of the angles; the last follows. Excludes initial.state."}},
     {FAMILY_POSTURE, {.path = "initial.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
-                      .use = USE_EQUILIBRIUM, .design = true, .sweep = true,
-                      VALUE(equilibrium.posture), .fallback_text = "follows from the others",
-                      .text = "equilibrium: %s", .need = NEED_EQUILIBRIUM}},
+         .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.posture),
+         .fallback_text = "follows from the others", .text = "equilibrium: %s"}},
     {0, {.path = "initial.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
          .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.lower),
          .fallback = 0, WORDS(branch_words),
-         .text = "which of the two solutions: hip above or below the foot",
-         .need = NEED_EQUILIBRIUM}},
+         .text = "which of the two solutions: hip above or below the foot"}},
     {FAMILY_FOOT, {.path = "initial.support_foot", .type = FIELD_INTEGER, .by_scene = true,
-                   .design = true, .sweep = true, VALUE(support_foot), .unit = "1",
-                   .fallback_text = "1 with an equilibrium, else none",
-                   .text = "number of the foot that the robot stands on",
-                   .more = "With an equilibrium this foot stands at rest at the origin: offsets of "
-                           "angles and their rates apply first, the translation follows from the "
-                           "foot, offsets of the translation come last.",
-         .need = NEED_EQUILIBRIUM}},
+         .design = true, .sweep = true, VALUE(support_foot), .unit = "1",
+         .fallback_text = "1 with an equilibrium, else none",
+         .text = "number of the foot that the robot stands on",
+         .more = "With an equilibrium this foot stands at rest at the origin: offsets of angles "
+                 "and their rates apply first, the translation follows from the foot, offsets of "
+                 "the translation come last."}},
     {0, {.path = "initial.offset", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
-         BY_HAND, .text = "how far from the equilibrium the run begins", .need = NEED_EQUILIBRIUM}},
+         BY_HAND, .text = "how far from the equilibrium the run begins"}},
     {FAMILY_OFFSET, {.path = "initial.offset.*", .type = FIELD_NUMBER, .by_scene = true,
-                     .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset),
-                     .text = "initial offset: %s", .need = NEED_EQUILIBRIUM}},
+         .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset), .text = "initial offset: %s"}},
     {0, {.path = "initial.offset.scale", .type = FIELD_NUMBER, .by_scene = true,
          .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset_scale), .unit = "1", .fallback = 1,
-         .low = -1e6, .high = 1e6, .text = "factor of all other offsets",
+         RANGE(-1e6, 1e6), .text = "factor of all other offsets",
          .more = "Swept beside directions (sweep.sample.method sphere) it goes along rays from the "
-                 "equilibrium.",
-         .need = NEED_EQUILIBRIUM}},
+                 "equilibrium."}},
     {0, {.path = "initial.state", .type = FIELD_MAP, .by_scene = true, .use = USE_STATE, BY_HAND,
          .text = "the whole initial state by hand", .more = "Excludes initial.equilibrium."}},
     {FAMILY_STATE, {.path = "initial.state.*", .type = FIELD_NUMBER, .by_scene = true,
-                    .use = USE_STATE, .sweep = true, VALUE(state), .text = "initial %s"}},
+         .use = USE_STATE, .sweep = true, VALUE(state), .text = "initial %s"}},
 
-    {0, {.path = "controller", .type = FIELD_MAP, BY_HAND,
-         .text = "what drives the actuators"}},
+    {0, {.path = "controller", .type = FIELD_MAP, BY_HAND, .text = "what drives the actuators"}},
     {FAMILY_KINDS, {.path = "controller.kind", .type = FIELD_WORD, .design = true, VALUE(law),
-                    .fallback = 0, .text = "control law"}},
+         .fallback = 0, .text = "control law"}},
     {0, {.path = "controller.design", .type = FIELD_WORD, .use = USE_FEEDBACK, .design = true,
          .sweep = true, VALUE(design), .fallback = 0, WORDS(design_words),
          .text = "where the gains come from",
          .more = "place: robust pole placement. place-schur: the same poles by SLICOT's Schur "
-                 "method. lqr: linear quadratic regulator. gains: they are given.",
-         .need = NEED_ACTUATORS}},
+                 "method. lqr: linear quadratic regulator. gains: they are given."}},
     {0, {.path = "controller.design_time", .type = FIELD_WORD, .use = USE_MODEL, .design = true,
          .sweep = true, VALUE(design_time), .fallback = 0, WORDS(design_time_words),
          .text = "model that the gains are designed for",
          .more = "sampled: the robot sampled every controller.sample_time with torques held in "
                  "between; a pole s becomes exp(s T), the cost of lqr stays the integral over all "
-                 "time. Each sample time of a sweep is then a design of its own.",
-         .need = NEED_ACTUATORS}},
+                 "time. Each sample time of a sweep is then a design of its own."}},
     {FAMILY_POLES, {.path = "controller.poles", .type = FIELD_POLES, .by_scene = true,
-                    .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",
-                    .text = "poles of the closed loop, in the open left half plane",
-                    .more = "Real, or complex as -3+1.5i with -3-1.5i beside it; with place none "
-                            "may stand there more often than there are actuators.",
-         .need = NEED_ACTUATORS}},
+         .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",
+         .text = "poles of the closed loop, in the open left half plane",
+         .more = "Real, or complex as -3+1.5i with -3-1.5i beside it; with place none may stand "
+                 "there more often than there are actuators."}},
     {FAMILY_POLES, {.path = "controller.poles[]", .type = FIELD_NUMBER, .by_scene = true,
-                    .use = USE_PLACE, .design = true, .sweep = true, VALUE(pole_re),
-                    .unit = "1/s", .fallback = NAN, .low = -1e6, .high = 0, .high_open = true,
-                    .text = "pole of the closed loop", .more = "Only a real pole can be swept.",
-         .need = NEED_ACTUATORS}},
+         .use = USE_PLACE, .design = true, .sweep = true, VALUE(pole_re), .unit = "1/s",
+         .fallback = NAN, RANGE(-1e6, 0), .high_open = true, .text = "pole of the closed loop",
+         .more = "Only a real pole can be swept."}},
     {FAMILY_MATRIX, {.path = "controller.gains", .type = FIELD_MATRIX, .by_scene = true,
-                     .use = USE_GAINS, .required = true, .design = true, BY_HAND,
-                     .unit = "N m/rad, N m s/rad",
-                     .text = "gains: a row for each actuator; angles, then rates",
-         .need = NEED_ACTUATORS}},
+         .use = USE_GAINS, .required = true, .design = true, BY_HAND, .unit = "N m/rad, N m s/rad",
+         .text = "gains: a row for each actuator; angles, then rates"}},
     {FAMILY_MATRIX, {.path = "controller.gains[][]", .type = FIELD_NUMBER, .by_scene = true,
-                     .use = USE_GAINS, .design = true, .sweep = true, VALUE(gains),
-                     .unit = "N m/rad, N m s/rad", .fallback = NAN, .low = -LARGE, .high = LARGE,
-                     .text = "gain of an actuator on an angle or a rate", .need = NEED_ACTUATORS}},
+         .use = USE_GAINS, .design = true, .sweep = true, VALUE(gains),
+         .unit = "N m/rad, N m s/rad", .fallback = NAN, RANGE(-LARGE, LARGE),
+         .text = "gain of an actuator on an angle or a rate"}},
     {0, {.path = "controller.weights", .type = FIELD_MAP, .by_scene = true, .use = USE_LQR, BY_HAND,
-         .text = "what the regulator minimises: weights times squares, integrated over time",
-         .need = NEED_ACTUATORS}},
+         .text = "what the regulator minimises: weights times squares, integrated over time"}},
     {FAMILY_POLES, {.path = "controller.weights.states", .type = FIELD_NUMBERS, .by_scene = true,
-                    .use = USE_LQR, .design = true, BY_HAND, .unit = "1/rad^2, s^2/rad^2",
-                    .fallback_text = "1 each", .text = "weights of the angles, then of the rates",
-         .need = NEED_ACTUATORS}},
+         .use = USE_LQR, .design = true, BY_HAND, .unit = "1/rad^2, s^2/rad^2",
+         .fallback_text = "1 each", .text = "weights of the angles, then of the rates"}},
     {FAMILY_POLES, {.path = "controller.weights.states[]", .type = FIELD_NUMBER, .by_scene = true,
-                    .use = USE_LQR, .design = true, .sweep = true, VALUE(state_weights),
-                    .unit = "1/rad^2, s^2/rad^2", .fallback = 1, .low = 0, .high = LARGE,
-                    .text = "weight of an angle or a rate", .need = NEED_ACTUATORS}},
+         .use = USE_LQR, .design = true, .sweep = true, VALUE(state_weights),
+         .unit = "1/rad^2, s^2/rad^2", .fallback = 1, RANGE(0, LARGE),
+         .text = "weight of an angle or a rate"}},
     {FAMILY_ACTUATORS, {.path = "controller.weights.torques", .type = FIELD_NUMBERS,
-                        .by_scene = true, .use = USE_LQR, .design = true, BY_HAND,
-                        .unit = "1/(N m)^2", .fallback_text = "1 each",
-                        .text = "weights of the torques", .need = NEED_ACTUATORS}},
+         .by_scene = true, .use = USE_LQR, .design = true, BY_HAND, .unit = "1/(N m)^2",
+         .fallback_text = "1 each", .text = "weights of the torques"}},
     {FAMILY_ACTUATORS, {.path = "controller.weights.torques[]", .type = FIELD_NUMBER,
-                        .by_scene = true, .use = USE_LQR, .design = true, .sweep = true,
-                        VALUE(torque_weights), .unit = "1/(N m)^2", .fallback = 1, .low = 0,
-                        .high = LARGE, .low_open = true, .text = "weight of a torque",
-         .need = NEED_ACTUATORS}},
+         .by_scene = true, .use = USE_LQR, .design = true, .sweep = true, VALUE(torque_weights),
+         .unit = "1/(N m)^2", .fallback = 1, ABOVE(0, LARGE), .text = "weight of a torque"}},
     {0, {.path = "controller.model", .type = FIELD_MAP, .by_scene = true, .use = USE_FEEDBACK,
-         BY_HAND, .text = "the robot that the design believes in", .need = NEED_ACTUATORS}},
+         BY_HAND, .text = "the robot that the design believes in"}},
     {FAMILY_ROBOT, {.path = "controller.model.*", .type = FIELD_NUMBER, .by_scene = true,
-                    .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model),
-                    .fallback_text = "as the robot", .text = "model of the design: %s",
-         .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.equilibrium", .type = FIELD_MAP, .by_scene = true,
-         .use = USE_FEEDBACK, BY_HAND, .fallback_text = "initial.equilibrium",
-         .text = "the equilibrium that the controller is designed at", .need = NEED_ACTUATORS}},
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model),
+         .fallback_text = "as the robot", .text = "model of the design: %s"}},
+    {0, {.path = "controller.equilibrium", .type = FIELD_MAP, .by_scene = true, .use = USE_FEEDBACK,
+         BY_HAND, .fallback_text = "initial.equilibrium",
+         .text = "the equilibrium that the controller is designed at"}},
     {FAMILY_POSTURE, {.path = "controller.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
-                      .use = USE_FEEDBACK, .design = true, .sweep = true,
-                      VALUE(design_point.posture), .fallback_text = "follows from the others",
-                      .text = "equilibrium of the controller: %s", .need = NEED_ACTUATORS}},
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.posture),
+         .fallback_text = "follows from the others", .text = "equilibrium of the controller: %s"}},
     {0, {.path = "controller.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
          .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.lower),
          .fallback = 0, WORDS(branch_words),
-         .text = "which of the two solutions: hip above or below the foot",
-         .need = NEED_ACTUATORS}},
+         .text = "which of the two solutions: hip above or below the foot"}},
     {FAMILY_FAR, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
-         .fallback = 0,
-         .text = "law that acts outside an ellipsoid about the target",
+         .fallback = 0, .text = "law that acts outside an ellipsoid about the target",
          .more = "state-feedback acts inside it, where sum((angle/near.angle)^2) + "
-                 "sum((rate/near.rate)^2) <= 1 for the deviations from the target. Decided at "
-                 "each sample: needs sample_time > 0.",
-         .need = NEED_ACTUATORS}},
+                 "sum((rate/near.rate)^2) <= 1 for the deviations from the target. Decided at each "
+                 "sample: needs sample_time > 0."}},
     {0, {.path = "controller.near", .type = FIELD_MAP, .use = USE_FAR, BY_HAND,
-         .text = "the ellipsoid inside which state-feedback acts", .need = NEED_ACTUATORS}},
+         .text = "the ellipsoid inside which state-feedback acts"}},
     {0, {.path = "controller.near.angle", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
-         .sweep = true, VALUE(near_angle), .unit = "rad", .fallback = NAN, .low = 0, .high = LARGE,
-         .low_open = true, .text = "its semi-axis in each angle", .need = NEED_ACTUATORS}},
+         .sweep = true, VALUE(near_angle), .unit = "rad", .fallback = NAN, ABOVE(0, LARGE),
+         .text = "its semi-axis in each angle"}},
     {0, {.path = "controller.near.rate", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
-         .sweep = true, VALUE(near_rate), .unit = "rad/s", .fallback = NAN, .low = 0,
-         .high = LARGE, .low_open = true, .text = "its semi-axis in each rate",
-         .need = NEED_ACTUATORS}},
-    {FAMILY_PARAMETERS, {.path = "controller.*", .type = FIELD_NUMBER, .use = USE_LAW, .sweep = true,
-                         .need = NEED_ACTUATORS}},
+         .sweep = true, VALUE(near_rate), .unit = "rad/s", .fallback = NAN, ABOVE(0, LARGE),
+         .text = "its semi-axis in each rate"}},
+    {FAMILY_PARAMETERS, {.path = "controller.*", .type = FIELD_NUMBER, .use = USE_LAW,
+         .sweep = true}},
     {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
-         VALUE(sample_time), .unit = "s", .fallback = 0, .low = 0, .high = LARGE,
+         VALUE(sample_time), .unit = "s", .fallback = 0, RANGE(0, LARGE),
          .text = "time between samples of the controller",
-         .more = "Torques are held in between; 0: it acts continuously, inside the step (decoupling "
-                 "with implicit and midpoint: once a step).",
-         .need = NEED_ACTUATORS}},
+         .more = "Torques are held in between; 0: it acts continuously, inside the step "
+                 "(decoupling with implicit and midpoint: once a step)."}},
     {0, {.path = "controller.delay", .type = FIELD_INTEGER, .use = USE_CONTROL, .sweep = true,
-         VALUE(delay), .unit = "1", .fallback = 0, .low = 0, .high = 1,
+         VALUE(delay), .unit = "1", .fallback = 0, RANGE(0, 1),
          .text = "whole samples between measuring and acting",
          .more = "1: the torques of a sample act from the next one on, until then those that "
                  "state-feedback has at its target (none with hold and decoupling). Gains do not "
-                 "take it into account. Needs sample_time > 0.",
-         .need = NEED_ACTUATORS}},
-    {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL,
-         .sweep = true, VALUE(torque_limit), .unit = "N m", .fallback = INFINITY,
-         .fallback_text = "none", .low = 0, .high = LARGE, .low_open = true, WORDS(schema_none),
-         .text = "largest torque of each actuator", .need = NEED_ACTUATORS}},
+                 "take it into account. Needs sample_time > 0."}},
+    {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(torque_limit), .unit = "N m", .fallback = INFINITY, .fallback_text = "none",
+         ABOVE(0, LARGE), WORDS(schema_none), .text = "largest torque of each actuator"}},
     {0, {.path = "controller.noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
-         VALUE(noise), .unit = "N m", .fallback = 0, .low = 0, .high = LARGE,
+         VALUE(noise), .unit = "N m", .fallback = 0, RANGE(0, LARGE),
          .text = "half-width of uniform noise on the torques",
-         .more = "White, new at each sample, added before the limit; needs sample_time > 0.",
-         .need = NEED_ACTUATORS}},
+         .more = "White, new at each sample, added before the limit; needs sample_time > 0."}},
 
     {0, {.path = "method", .type = FIELD_MAP, BY_HAND, .text = "how time is stepped"}},
     {FAMILY_METHODS, {.path = "method.name", .type = FIELD_WORD, .sweep = true, VALUE(method),
-                      .text = "time stepping method"}},
+         .text = "time stepping method"}},
     {0, {.path = "method.step", .type = FIELD_NUMBER, .sweep = true, VALUE(step), .unit = "s",
-         .fallback = 0.001, .low = 0, .high = 0.1, .low_open = true, .text = "time step",
+         .fallback = 0.001, ABOVE(0, 0.1), .text = "time step",
          .more = "An upper bound: a sample interval is cut into equal steps no longer than this."}},
     {FAMILY_TOLERANCE, {.path = "method.tolerance", .type = FIELD_NUMBER, .sweep = true,
-                        VALUE(tolerance), .unit = "m, rad", .fallback = NAN,
-                        .fallback_text = "the method's own", .low = 0, .high = 1, .low_open = true,
-                        .text = "admitted error of a step"}},
+         VALUE(tolerance), .unit = "m, rad", .fallback = NAN, .fallback_text = "the method's own",
+         ABOVE(0, 1), .text = "admitted error of a step"}},
 
     {0, {.path = "stop", .type = FIELD_MAP, .required = true, BY_HAND,
          .text = "when a run ends and what it counts as"}},
     {0, {.path = "stop.time", .type = FIELD_NUMBER, .required = true, .sweep = true,
-         VALUE(stop_time), .unit = "s", .fallback = NAN, .low = 0, .high = LARGE, .low_open = true,
+         VALUE(stop_time), .unit = "s", .fallback = NAN, ABOVE(0, LARGE),
          .text = "longest duration of a run"}},
     {0, {.path = "stop.settle", .type = FIELD_MAP_OR_WORD, BY_HAND, WORDS(settle_words),
          .text = "when a run counts as stabilised or at rest",
-         .more = "off: a run lasts its whole time, unless the robot falls, and is judged at its end."}},
+         .more = "off: a run lasts its whole time, unless the robot falls, and is judged at its "
+                 "end."}},
     {0, {.path = "stop.settle.angle", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
-         VALUE(settle_angle), .unit = "rad", .fallback = 0.05, .low = 0, .high = LARGE,
-         .low_open = true, .text = "largest deviation of an angle that counts as settled",
-         .need = NEED_POSTURE}},
+         VALUE(settle_angle), .unit = "rad", .fallback = 0.05, ABOVE(0, LARGE),
+         .text = "largest deviation of an angle that counts as settled"}},
     {0, {.path = "stop.settle.rate", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
-         VALUE(settle_rate), .unit = "rad/s", .fallback = 0.5, .low = 0, .high = LARGE,
-         .low_open = true, .text = "largest rate that counts as settled, in m/s for the translation"}},
+         VALUE(settle_rate), .unit = "rad/s", .fallback = 0.5, ABOVE(0, LARGE),
+         .text = "largest rate that counts as settled, in m/s for the translation"}},
     {0, {.path = "stop.settle.hold", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
-         VALUE(settle_hold), .unit = "s", .fallback = 0.5, .low = 0, .high = LARGE,
+         VALUE(settle_hold), .unit = "s", .fallback = 0.5, RANGE(0, LARGE),
          .text = "how long it must stay settled"}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
-         .unit = "1", .fallback = 0.2, .low = 0, .high = 1,
-         .text = "height of the hip, in leg lengths, below which the robot has fallen",
-         .need = NEED_HEIGHT}},
+         .unit = "1", .fallback = 0.2, RANGE(0, 1),
+         .text = "height of the hip, in leg lengths, below which the robot has fallen"}},
 
     {0, {.path = "stop.capture", .type = FIELD_WORD, VALUE(capture), .fallback = 0,
          WORDS(capture_words),
@@ -296,8 +264,7 @@ static const struct row rows[] = {
                  "support foot alone, at rest, ends as stabilised with evidence inferred. Its "
                  "settle_time is then missing, and largest values and sums end where the run does. "
                  "Only for state-feedback without far or delay, with stop.settle; each point of an "
-                 "axis other than initial.offset and initial.state is then a design of its own.",
-         .need = NEED_ACTUATORS}},
+                 "axis other than initial.offset and initial.state is then a design of its own."}},
 
     {0, {.path = "sweep", .type = FIELD_MAP, BY_HAND, .text = "what varies between cases"}},
     {0, {.path = "sweep.grid", .type = FIELD_AXES, BY_HAND,
@@ -310,11 +277,11 @@ static const struct row rows[] = {
     {0, {.path = "sweep.grid[].paths", .type = FIELD_PATHS, BY_HAND, .high = SCENARIO_MAX_PATHS,
          .text = "fields that vary together along the axis"}},
     {0, {.path = "sweep.grid[].from", .type = FIELD_NUMBER, BY_HAND, .fallback = NAN,
-         .low = -INFINITY, .high = INFINITY, .text = "value at the first point"}},
+         RANGE(-INFINITY, INFINITY), .text = "value at the first point"}},
     {0, {.path = "sweep.grid[].to", .type = FIELD_NUMBER, BY_HAND, .fallback = NAN,
-         .low = -INFINITY, .high = INFINITY, .text = "value at the last point"}},
-    {0, {.path = "sweep.grid[].count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN, .low = 1,
-         .high = 1e9, .text = "number of points"}},
+         RANGE(-INFINITY, INFINITY), .text = "value at the last point"}},
+    {0, {.path = "sweep.grid[].count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN,
+         RANGE(1, 1e9), .text = "number of points"}},
     {0, {.path = "sweep.grid[].spacing", .type = FIELD_WORD, BY_HAND, .fallback = 0,
          WORDS(spacing_words), .text = "equal differences or equal ratios between points"}},
     {0, {.path = "sweep.grid[].values", .type = FIELD_VALUES, BY_HAND,
@@ -324,28 +291,28 @@ static const struct row rows[] = {
          .more = "A further dimension, sample, after the grid's. Points follow from seed and their "
                  "number alone, whatever count is (but for lhs): stance run --extend adds some."}},
     {0, {.path = "sweep.sample.method", .type = FIELD_WORD, BY_HAND, .fallback = NAN,
-         .words = doe_words, .word_count = DOE_METHODS,
-         .text = "how points are chosen",
+         .words = doe_words, .word_count = DOE_METHODS, .text = "how points are chosen",
          .more = "random: independent. lhs: Latin hypercube, each of count strata of each factor "
                  "holds one point. sobol: Sobol' sequence, shifted digitally; best with a power of "
                  "two. saltelli: blocks of factors + 2 points for Sobol' indices. morris: "
                  "trajectories of factors + 1 points for elementary effects. sphere: directions, "
                  "uniform on the ellipsoid inscribed in the box of the ranges."}},
-    {0, {.path = "sweep.sample.count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN, .low = 1,
-         .high = 1 << DOE_MAX_BITS,
+    {0, {.path = "sweep.sample.count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN,
+         RANGE(1, 1 << DOE_MAX_BITS),
          .text = "number of points; of blocks with saltelli, of trajectories with morris"}},
     {0, {.path = "sweep.sample.second_order", .type = FIELD_WORD, BY_HAND, .fallback = 0,
-         WORDS(truth_words), .text = "whether saltelli's blocks have what second-order indices need",
+         WORDS(truth_words),
+         .text = "whether saltelli's blocks have what second-order indices need",
          .more = "2 factors + 2 points in each. Only with method saltelli."}},
-    {0, {.path = "sweep.sample.levels", .type = FIELD_INTEGER, BY_HAND, .fallback = 4, .low = 2,
-         .high = 1000, .text = "levels of each factor, an even number",
-         .more = "A step of a trajectory is levels / (2 (levels - 1)) of the range. Only with method "
-                 "morris."}},
+    {0, {.path = "sweep.sample.levels", .type = FIELD_INTEGER, BY_HAND, .fallback = 4,
+         RANGE(2, 1000), .text = "levels of each factor, an even number",
+         .more = "A step of a trajectory is levels / (2 (levels - 1)) of the range. Only with "
+                 "method morris."}},
     {0, {.path = "sweep.sample.vary", .type = FIELD_FACTORS, BY_HAND,
          .text = "the factors: what varies, and within which bounds",
-         .more = "A factor is {path, from, to, spacing}, {path, values: [...]}, or of several fields "
-                 "that move together {paths: [...], from: [...], to: [...]} or {paths: [...], "
-                 "values: [[...], ...]}."}},
+         .more = "A factor is {path, from, to, spacing}, {path, values: [...]}, or of several "
+                 "fields that move together {paths: [...], from: [...], to: [...]} or {paths: "
+                 "[...], values: [[...], ...]}."}},
     {0, {.path = "sweep.sample.vary[].path", .type = FIELD_PATH, BY_HAND,
          .text = "the field that the factor varies", .more = "Whatever may be swept."}},
     {0, {.path = "sweep.sample.vary[].paths", .type = FIELD_PATHS, BY_HAND,
@@ -360,32 +327,35 @@ static const struct row rows[] = {
     {0, {.path = "sweep.sample.vary[].values", .type = FIELD_VALUES, BY_HAND,
          .text = "equally likely values: numbers or words, with paths a list for each"}},
     {0, {.path = "sweep.refine", .type = FIELD_MAP, BY_HAND,
-         .text = "map the outcomes adaptively: simulate a coarse lattice, then only where they differ",
-         .more = "Along axes of numbers with more than start points; others are taken in full, each "
-                 "combination a map of its own. Cases that are not simulated take the outcome of "
-                 "their cell, with evidence inferred and no other answers. The same for any number "
-                 "of ranks."}},
-    {0, {.path = "sweep.refine.start", .type = FIELD_INTEGER, BY_HAND, .fallback = 32, .low = 2,
-         .high = 1e9, .text = "most cells of the coarse lattice along an axis",
-         .more = "Its stride is the smallest power of two that leaves no more; each level halves it."}},
-    {0, {.path = "sweep.refine.margin", .type = FIELD_INTEGER, BY_HAND, .fallback = 1, .low = 0,
-         .high = 1e9, .text = "cells around one of several outcomes that are refined with it"}},
-    {0, {.path = "sweep.refine.probes", .type = FIELD_NUMBER, BY_HAND, .unit = "1", .fallback = 0.01,
-         .low = 0, .high = 1, .text = "share of all cases that is simulated in search of islands",
+         .text = "map the outcomes adaptively: simulate a coarse lattice, then only where they "
+                 "differ",
+         .more = "Along axes of numbers with more than start points; others are taken in full, "
+                 "each combination a map of its own. Cases that are not simulated take the outcome "
+                 "of their cell, with evidence inferred and no other answers. The same for any "
+                 "number of ranks."}},
+    {0, {.path = "sweep.refine.start", .type = FIELD_INTEGER, BY_HAND, .fallback = 32,
+         RANGE(2, 1e9), .text = "most cells of the coarse lattice along an axis",
+         .more = "Its stride is the smallest power of two that leaves no more; each level halves "
+                 "it."}},
+    {0, {.path = "sweep.refine.margin", .type = FIELD_INTEGER, BY_HAND, .fallback = 1,
+         RANGE(0, 1e9), .text = "cells around one of several outcomes that are refined with it"}},
+    {0, {.path = "sweep.refine.probes", .type = FIELD_NUMBER, BY_HAND, .unit = "1",
+         .fallback = 0.01, RANGE(0, 1),
+         .text = "share of all cases that is simulated in search of islands",
          .more = "Chosen by seed. An island of k cases between the points of the lattice stays "
                  "unseen with probability (1 - probes)^k."}},
 
     {0, {.path = "record", .type = FIELD_MAP, BY_HAND,
          .text = "what is stored besides the parameters"}},
     {0, {.path = "record.every", .type = FIELD_NUMBER, BY_HAND, .unit = "s", .fallback = 0.01,
-         .low = 0, .high = LARGE, .low_open = true, .text = "time between rows of a trajectory"}},
+         ABOVE(0, LARGE), .text = "time between rows of a trajectory"}},
     {0, {.path = "record.cases", .type = FIELD_CASES, BY_HAND, .fallback = 0, WORDS(record_words),
          .text = "cases whose trajectories are stored",
          .more = "A list counts them from 0, the last axis fastest."}},
     {0, {.path = "record.answers", .type = FIELD_WORDS, BY_HAND, WORDS(answer_words),
          .fallback_text = "all", .text = "answers that are stored"}},
 
-    {0, {.path = "seed", .type = FIELD_INTEGER, BY_HAND, .fallback = 1, .low = 0, .high = 0x1p63,
+    {0, {.path = "seed", .type = FIELD_INTEGER, BY_HAND, .fallback = 1, RANGE(0, 0x1p63),
          .text = "seed of the random numbers, up to 9223372036854775807"}},
 };
 /* clang-format on */
@@ -555,25 +525,32 @@ static bool add_single(struct schema *schema, const struct row *row)
     return true;
 }
 
-static bool scene_has(const stance_scene *scene, enum field_need need)
+/* Whether a scene has what the rows of a path are about: a controller where something acts. */
+static bool scene_has(const stance_scene *scene, const char *path)
 {
-    switch (need) {
-    case NEED_EQUILIBRIUM:
-        return scene->equilibrium && scene->stand;
-    case NEED_ACTUATORS:
-        return scene->actuators > 0;
-    case NEED_POSTURE:
-        return scene->postures > 0;
-    case NEED_HEIGHT:
-        return scene->fallen != NULL;
-    default:
-        return true;
-    }
+    const bool acts = scene->actuators > 0, stands = scene->equilibrium && scene->stand;
+    const struct {
+        const char *begins;
+        bool has;
+    } needs[] = {
+        {"controller.kind", true},
+        {"controller.", acts},
+        {"stop.capture", acts},
+        {"initial.equilibrium", stands},
+        {"initial.support_foot", stands},
+        {"initial.offset", stands},
+        {"stop.settle.angle", scene->postures > 0},
+        {"stop.fall_height", scene->fallen != NULL},
+    };
+    for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
+        if (strncmp(path, needs[i].begins, strlen(needs[i].begins)) == 0)
+            return needs[i].has;
+    return true;
 }
 
 static bool add_row(struct schema *schema, const struct row *row)
 {
-    if (schema->scene && !scene_has(schema->scene, row->field.need))
+    if (schema->scene && !scene_has(schema->scene, row->field.path))
         return true;
     if (row->field.by_scene && !schema->scene) {
         /* The key is known all the same; what stands below it is not looked at. */

@@ -46,22 +46,15 @@ enum field_use {
     USE_SETTLE,      /* stop.settle is not off */
 };
 
-/* What a scene must have, or it lacks the row. */
-enum field_need {
-    NEED_NOTHING,
-    NEED_EQUILIBRIUM, /* positions of rest, and a way to stand there */
-    NEED_ACTUATORS,
-    NEED_POSTURE, /* angles that a controller brings to a target */
-    NEED_HEIGHT,  /* something that falls */
-};
+/* What a use asks for: "controller.design lqr". NULL: nothing, or (USE_LAW) a law. */
+extern const char *const schema_use_text[];
 
 /* One row, written out for a scene. */
 struct scenario_field {
     char path[96];
     enum field_type type;
     enum field_use use;
-    int law; /* of USE_LAW: index into stance_laws() */
-    enum field_need need;
+    int law;                   /* of USE_LAW: index into stance_laws() */
     bool required;             /* must stand in the file where `use` allows it, unless swept */
     bool design;               /* what the design depends on, see resolve.h */
     bool sweep;                /* may vary along an axis */

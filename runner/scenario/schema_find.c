@@ -7,6 +7,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *const schema_use_text[] = {
+    [USE_CONTROL] = "a controller.kind other than none",
+    [USE_FEEDBACK] = "controller.kind state-feedback",
+    [USE_FAR] = "a controller.far other than none",
+    [USE_PLACE] = "controller.design place or place-schur",
+    [USE_LQR] = "controller.design lqr",
+    [USE_MODEL] = "a controller.design other than gains",
+    [USE_GAINS] = "controller.design gains",
+    [USE_EQUILIBRIUM] = "initial.equilibrium",
+    [USE_STATE] = "initial.state",
+    [USE_SETTLE] = "a stop.settle other than off",
+};
+
 const struct scenario_field *schema_find(const struct schema *schema, const char *path)
 {
     for (size_t i = 0; i < schema->count; i++)

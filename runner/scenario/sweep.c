@@ -130,7 +130,7 @@ static bool read_path(struct axis_reader *a, const struct tree_node *node)
     return true;
 }
 
-bool axis_read_paths(struct axis_reader *a)
+static bool read_paths(struct axis_reader *a)
 {
     const struct tree_node *path = tree_find(a->node, "path"), *paths = tree_find(a->node, "paths");
     if (!path && !paths)
@@ -153,68 +153,67 @@ bool axis_read_paths(struct axis_reader *a)
 
 /* ---- points ---------------------------------------------------------------------------------- */
 
-bool axis_read_value(struct axis_reader *a, const struct tree_node *node, int k, double *value)
+static bool read_one(struct axis_reader *a, const char *key, const struct tree_node *node, int k,
+                     double *value)
 {
-    const struct scenario_field *field = a->swept[k].field;
-    const char *path = a->axis->path[k];
-
-    if (field->type == FIELD_WORD) {
-        int place = 0;
-        bool good = field_word(&a->r->problems, field, path, node, &place);
-        *value = place;
-        return good;
-    }
-    return field->type == FIELD_INTEGER ? field_integer(&a->r->problems, field, path, node, value)
-                                        : field_number(&a->r->problems, field, path, node, value);
+    if (!field_value(&a->r->problems, a->swept[k].field, a->axis->path[k], node, value))
+        return false;
+    return !key || isfinite(*value) ||
+           problem_add(&a->r->problems, node->mark, "%s: %s must be a number", a->name, key);
 }
 
-static bool read_point(struct axis_reader *a, const struct tree_node *node, size_t at, int k)
+bool axis_read_row(struct axis_reader *a, const char *key, const struct tree_node *node, int first,
+                   bool rows, double *value)
 {
-    struct scenario_axis *axis = a->axis;
-    bool good = axis_read_value(a, node, k, &axis->value[at]);
-
-    if (good && axis->word) {
-        axis->word[at] = strdup(node->text);
-        if (!axis->word[at])
-            return problem_no_memory(&a->r->problems);
-    }
-    return good;
-}
-
-/* A point of several paths is a list with a value for each. */
-static bool read_points(struct axis_reader *a, const struct tree_node *node, size_t point,
-                        bool rows)
-{
-    const size_t paths = (size_t)a->axis->paths;
+    const size_t paths = (size_t)(a->axis->paths - first);
+    char wanted[80];
     bool good = true;
 
     if (!rows)
-        return read_point(a, node, point, 0);
-    if (node->kind != TREE_LIST || node->count != paths) {
-        char wanted[80];
-        snprintf(wanted, sizeof wanted, "a list of %zu values, one for each path", paths);
-        if (node->kind != TREE_LIST)
-            return field_mismatch(&a->r->problems, a->name, wanted, node);
+        return read_one(a, key, node, first, value);
+    snprintf(wanted, sizeof wanted, "a list of %zu values, one for each path", paths);
+    if (node->kind != TREE_LIST)
+        return field_mismatch(&a->r->problems, a->name, wanted, node);
+    if (node->count != paths) {
         return problem_add(&a->r->problems, node->mark, "%s: expected %s, found %zu", a->name,
                            wanted, node->count);
     }
     for (size_t k = 0; k < paths; k++)
-        good = read_point(a, node->item[k], point * paths + k, (int)k) && good;
+        good = read_one(a, key, node->item[k], first + (int)k, &value[k]) && good;
     return good;
 }
 
-static bool read_values(struct axis_reader *a, const struct tree_node *values, bool rows)
+static bool read_point(struct axis_reader *a, const struct tree_node *node, size_t point, bool rows)
+{
+    struct scenario_axis *axis = a->axis;
+    const size_t paths = (size_t)axis->paths;
+    bool good = axis_read_row(a, NULL, node, 0, rows, &axis->value[point * paths]);
+
+    for (size_t k = 0; good && axis->word && k < paths; k++) {
+        const char *word = rows ? node->item[k]->text : node->text;
+        good = (axis->word[point * paths + k] = strdup(word)) != NULL ||
+               problem_no_memory(&a->r->problems);
+    }
+    return good;
+}
+
+bool axis_check_alone(struct axis_reader *a)
 {
     static const char *const range_keys[] = {"from", "to", "count", "spacing"};
-    struct scenario_axis *axis = a->axis;
-    bool good = true;
-
     for (size_t i = 0; i < sizeof range_keys / sizeof range_keys[0]; i++) {
-        if (tree_find(a->node, range_keys[i])) {
+        if (tree_find(a->node, "values") && tree_find(a->node, range_keys[i])) {
             return problem_add(&a->r->problems, a->node->mark,
                                "%s: values and %s exclude each other", a->name, range_keys[i]);
         }
     }
+    return true;
+}
+
+static bool read_values(struct axis_reader *a, const struct tree_node *values, bool rows)
+{
+    struct scenario_axis *axis = a->axis;
+    bool good = true;
+
     if (!field_list(&a->r->problems, a->name, "a list of values", values))
         return false;
     axis->count = values->count;
@@ -224,23 +223,21 @@ static bool read_values(struct axis_reader *a, const struct tree_node *values, b
     if (!axis->value || (axis->words && !axis->word))
         return problem_no_memory(&a->r->problems);
     for (size_t i = 0; i < values->count; i++)
-        good = read_points(a, values->item[i], i, rows) && good;
+        good = read_point(a, values->item[i], i, rows) && good;
     return good;
 }
 
-bool axis_read_end(struct axis_reader *a, const char *key, const struct tree_node *node, int k,
-                   double *value)
+bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log)
 {
-    if (!axis_read_value(a, node, k, value))
-        return false;
-    if (!isfinite(*value))
-        return problem_add(&a->r->problems, node->mark, "%s: %s must be a number", a->name, key);
-    return true;
-}
+    const struct tree_node *spacing = tree_find(a->node, "spacing");
+    char name[AXIS_NAME + 16];
+    int word = 0;
 
-static bool read_end(struct axis_reader *a, const char *key, double *value)
-{
-    return axis_read_end(a, key, tree_find(a->node, key), 0, value);
+    snprintf(name, sizeof name, "%s.spacing", a->name);
+    const bool good = !spacing || field_word(&a->r->problems, schema_find(&a->r->schema, path),
+                                             name, spacing, &word);
+    *log = word != 0;
+    return good;
 }
 
 static bool compute_log_points(struct axis_reader *a, struct mark mark)
@@ -289,44 +286,34 @@ static bool check_range(struct axis_reader *a, bool has_to)
 
 static bool read_range(struct axis_reader *a)
 {
-    struct reader *r = a->r;
     struct scenario_axis *axis = a->axis;
-    const struct tree_node *count = tree_find(a->node, "count"),
-                           *spacing = tree_find(a->node, "spacing");
-    bool has_to = tree_find(a->node, "to") != NULL;
-    char name[AXIS_NAME + 16];
+    const struct tree_node *from = tree_find(a->node, "from"), *to = tree_find(a->node, "to"),
+                           *count = tree_find(a->node, "count");
+    char text[160];
     double number = 0;
-    int log_spacing = 0;
 
     if (axis->enumeration[0]) {
-        char what[160];
-        snprintf(what, sizeof what, "%s takes words: list them as values", axis->path[0]);
-        return axis_complain(a, what);
+        snprintf(text, sizeof text, "%s takes words: list them as values", axis->path[0]);
+        return axis_complain(a, text);
     }
-    if (!tree_find(a->node, "from")) {
-        return axis_complain(a, count || has_to ? "from is missing"
-                                                : "give from, to and count, or values");
-    }
-    bool good = read_end(a, "from", &axis->from);
+    if (!from)
+        return axis_complain(a, count || to ? "from is missing"
+                                            : "give from, to and count, or values");
+    bool good = read_one(a, "from", from, 0, &axis->from);
     axis->to = axis->from;
-    good = (!has_to || read_end(a, "to", &axis->to)) && good;
+    good = (!to || read_one(a, "to", to, 0, &axis->to)) && good;
     if (!count)
         return axis_complain(a, "count is missing");
-    snprintf(name, sizeof name, "%s.count", a->name);
-    good = field_integer(&r->problems, schema_find(&r->schema, "sweep.grid[].count"), name, count,
-                         &number) &&
+    snprintf(text, sizeof text, "%s.count", a->name);
+    good = field_integer(&a->r->problems, schema_find(&a->r->schema, "sweep.grid[].count"), text,
+                         count, &number) &&
            good;
-    snprintf(name, sizeof name, "%s.spacing", a->name);
-    if (spacing) {
-        good = field_word(&r->problems, schema_find(&r->schema, "sweep.grid[].spacing"), name,
-                          spacing, &log_spacing) &&
-               good;
-    }
+    good = axis_read_spacing(a, "sweep.grid[].spacing", &axis->log) && good;
     if (!good)
         return false;
     axis->count = (size_t)number;
-    axis->log = log_spacing != 0;
-    return check_range(a, has_to) && (!axis->log || compute_log_points(a, spacing->mark));
+    return check_range(a, to != NULL) &&
+           (!axis->log || compute_log_points(a, tree_find(a->node, "spacing")->mark));
 }
 
 /* ---- axes ------------------------------------------------------------------------------------ */
@@ -342,21 +329,24 @@ void axis_describe(const struct axis_reader *a, int k, char unit[24], char text[
     snprintf(text, 160, "%s", field->text);
 }
 
+bool axis_begin(struct axis_reader *a, const char *path, const char *wanted)
+{
+    struct problems *problems = &a->r->problems;
+    const size_t before = problems->count + problems->lost;
+    if (a->node->kind != TREE_MAP)
+        return field_mismatch(problems, a->name, wanted, a->node);
+    reader_check_keys(a->r, a->node, path, a->name);
+    return problems->count + problems->lost == before && read_paths(a);
+}
+
 static bool read_axis(struct axis_reader *a)
 {
     struct scenario_axis *axis = a->axis;
     const struct tree_node *paths, *values;
-    size_t problems = a->r->problems.count + a->r->problems.lost;
 
-    if (a->node->kind != TREE_MAP) {
-        return field_mismatch(&a->r->problems, a->name, "a mapping with path, from, to, count",
-                              a->node);
-    }
     axis->line = a->node->mark.line;
     axis->column = a->node->mark.column;
-    reader_check_keys(a->r, a->node, "sweep.grid[]", a->name);
-    bool keys_good = problems == a->r->problems.count + a->r->problems.lost;
-    if (!keys_good || !axis_read_paths(a))
+    if (!axis_begin(a, "sweep.grid[]", "a mapping with path, from, to, count"))
         return false;
     snprintf(axis->name, sizeof axis->name, "%s", axis->path[0]);
     axis_describe(a, 0, axis->unit, axis->text);
@@ -364,7 +354,7 @@ static bool read_axis(struct axis_reader *a)
     values = tree_find(a->node, "values");
     if (paths && !values)
         return axis_complain(a, "paths needs values, a list for each point");
-    return values ? read_values(a, values, paths != NULL) : read_range(a);
+    return axis_check_alone(a) && (values ? read_values(a, values, paths != NULL) : read_range(a));
 }
 
 void sweep_read(struct reader *r, const struct tree_node *grid)
@@ -404,18 +394,6 @@ void sweep_read(struct reader *r, const struct tree_node *grid)
 
 /* ---- refinement ------------------------------------------------------------------------------ */
 
-/* A number of sweep.refine, its default where it is not given. False: a problem. */
-static bool refine_number(struct reader *r, const char *path, double *value)
-{
-    const struct scenario_field *field = schema_find(&r->schema, path);
-    const struct tree_node *node = reader_seen(r, path)->node;
-
-    *value = field->fallback;
-    return !node ||
-           (field->type == FIELD_INTEGER ? field_integer(&r->problems, field, path, node, value)
-                                         : field_number(&r->problems, field, path, node, value));
-}
-
 /* What is stored must leave room for cases that are not simulated. */
 static void check_refined_record(struct reader *r)
 {
@@ -441,9 +419,9 @@ void sweep_read_refine(struct reader *r)
 
     if (!seen->node || seen->bad)
         return;
-    bool good = refine_number(r, "sweep.refine.start", &start);
-    good = refine_number(r, "sweep.refine.margin", &margin) && good;
-    good = refine_number(r, "sweep.refine.probes", &probes) && good;
+    bool good = reader_value(r, "sweep.refine.start", &start);
+    good = reader_value(r, "sweep.refine.margin", &margin) && good;
+    good = reader_value(r, "sweep.refine.probes", &probes) && good;
     if (!reader_seen(r, "sweep.grid")->node) {
         problem_add(&r->problems, seen->key, "sweep.refine needs sweep.grid: axes to refine");
         return;
@@ -492,6 +470,35 @@ double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k)
     if (i + 1 == axis->count)
         return axis->to;
     return axis->from + (double)i * (axis->to - axis->from) / (double)(axis->count - 1);
+}
+
+const struct scenario_axis *scenario_axis_of(const struct scenario *s, size_t offset, int *k)
+{
+    for (int a = 0; a < s->axes; a++)
+        for (*k = 0; *k < s->axis[a].paths; ++*k)
+            if (s->axis[a].offset[*k] == offset)
+                return &s->axis[a];
+    return NULL;
+}
+
+void scenario_extent(const struct scenario *s, size_t offset, double *least, double *largest)
+{
+    int k;
+    const struct scenario_axis *axis = scenario_axis_of(s, offset, &k);
+
+    memcpy(least, (const char *)&s->base + offset, sizeof *least);
+    *largest = *least;
+    if (!axis || axis->count == 0)
+        return;
+    /* Ranges are monotonic: their ends will do. */
+    const size_t stride = (axis->value && !axis->log) || axis->count < 2 ? 1 : axis->count - 1;
+    *least = INFINITY;
+    *largest = -INFINITY;
+    for (size_t i = 0; i < axis->count; i += stride) {
+        const double value = scenario_axis_value(axis, i, k);
+        *least = fmin(*least, value);
+        *largest = fmax(*largest, value);
+    }
 }
 
 void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer,

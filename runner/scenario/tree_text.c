@@ -1,35 +1,13 @@
 /* tree_text.c - the characters of a tree: which a text may hold, and how nodes are written back. */
 #include "tree.h"
 
+#include "runner/base/words.h"
+
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- characters
- * ------------------------------------------------------------------------------------ */
-
-/* Decodes one character of UTF-8; returns its length, 0 when it is malformed. */
-static size_t decode(const unsigned char *s, size_t left, uint32_t *character)
-{
-    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-    size_t length = s[0] < 0x80             ? 1
-                    : (s[0] & 0xe0) == 0xc0 ? 2
-                    : (s[0] & 0xf0) == 0xe0 ? 3
-                    : (s[0] & 0xf8) == 0xf0 ? 4
-                                            : 0;
-    if (length == 0 || length > left)
-        return 0;
-    uint32_t c = length == 1 ? s[0] : s[0] & (0x7fu >> length);
-    for (size_t i = 1; i < length; i++) {
-        if ((s[i] & 0xc0) != 0x80)
-            return 0;
-        c = c << 6 | (s[i] & 0x3fu);
-    }
-    if (c < least[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff))
-        return 0;
-    *character = c;
-    return length;
-}
+/* ---- characters ------------------------------------------------------------------------------ */
 
 /* What YAML lets stand in a text as it is. */
 static bool printable(uint32_t c)
@@ -43,7 +21,7 @@ bool tree_check_text(const char *text, size_t length, struct problems *problems)
     struct mark mark = {0, 1, 1};
     for (size_t i = 0; i < length;) {
         uint32_t c = 0;
-        size_t n = decode((const unsigned char *)text + i, length - i, &c);
+        size_t n = utf8_letter(text + i, length - i, &c);
         if (n == 0) {
             return problem_add(problems, mark, "not UTF-8 text (byte 0x%02x)",
                                (unsigned char)text[i]);
@@ -102,7 +80,7 @@ static bool safe_plain(const char *text)
 static void write_scalar(struct writer *w, const struct tree_node *node)
 {
     size_t left = strlen(node->text);
-    const unsigned char *s = (const unsigned char *)node->text;
+    const char *s = node->text;
     char escape[16];
 
     if (!node->quoted && safe_plain(node->text)) {
@@ -112,14 +90,14 @@ static void write_scalar(struct writer *w, const struct tree_node *node)
     put(w, "\"");
     while (left > 0) {
         uint32_t c = 0xfffd;
-        size_t n = decode(s, left, &c);
+        size_t n = utf8_letter(s, left, &c);
         n = n ? n : 1;
         if (c == '"' || c == '\\')
             snprintf(escape, sizeof escape, "\\%c", (char)c);
         else if (c < 0x20 || !printable(c) || c == 0x85 || c == 0xa0 || c == 0x2028 || c == 0x2029)
             snprintf(escape, sizeof escape, "\\U%08X", c);
         else
-            snprintf(escape, sizeof escape, "%.*s", (int)n, (const char *)s);
+            snprintf(escape, sizeof escape, "%.*s", (int)n, s);
         put(w, escape);
         s += n;
         left -= n;

@@ -46,14 +46,20 @@ static bool same(const struct line *a, const struct line *b)
     return a->length == b->length && memcmp(a->text, b->text, a->length) == 0;
 }
 
-/* Calls show for every line of one text only, in order; as few as can be, unless there are so many
- * that between the first and the last difference all count as different. */
-static void walk_differences(const char *before, const char *after,
-                             void (*show)(void *context, char sign, const struct line *line),
-                             void *context)
+static void show(FILE *to, size_t number, char sign, const struct line *line)
+{
+    const bool cut = line->length > SHOWN_COLUMNS;
+    if (to && number < MOST_SHOWN)
+        fprintf(to, "  %c %.*s%s\n", sign, cut ? SHOWN_COLUMNS : (int)line->length, line->text,
+                cut ? "..." : "");
+}
+
+/* As few lines as can be, unless there are so many that between the first and the last difference
+ * all count as different. */
+size_t changed_scenario_differences(FILE *to, const char *before, const char *after)
 {
     struct lines old = split(before), new = split(after);
-    size_t begin = 0, n = old.count, m = new.count;
+    size_t begin = 0, n = old.count, m = new.count, differing = 0;
     while (begin < n && begin < m && same(&old.line[begin], &new.line[begin]))
         begin++;
     while (n > begin && m > begin && same(&old.line[n - 1], &new.line[m - 1])) {
@@ -81,45 +87,17 @@ static void walk_differences(const char *before, const char *after,
             j++;
         } else if (i < a && (j == b || !common ||
                              common[(i + 1) * (b + 1) + j] >= common[i * (b + 1) + j + 1])) {
-            show(context, '-', &x[i++]);
+            show(to, differing++, '-', &x[i++]);
         } else {
-            show(context, '+', &y[j++]);
+            show(to, differing++, '+', &y[j++]);
         }
     }
     free(common);
     free(old.line);
     free(new.line);
-}
-
-struct listing {
-    FILE *to; /* NULL: they are counted only */
-    size_t lines;
-};
-
-static void list_line(void *context, char sign, const struct line *line)
-{
-    struct listing *listing = context;
-    if (listing->to && listing->lines < MOST_SHOWN) {
-        const bool cut = line->length > SHOWN_COLUMNS;
-        fprintf(listing->to, "  %c %.*s%s\n", sign, cut ? SHOWN_COLUMNS : (int)line->length,
-                line->text, cut ? "..." : "");
-    }
-    listing->lines++;
-}
-
-void changed_scenario_print_difference(FILE *to, const char *before, const char *after)
-{
-    struct listing listing = {.to = to};
-    walk_differences(before, after, list_line, &listing);
-    if (listing.lines > MOST_SHOWN)
-        fprintf(to, "  ... and %zu more\n", listing.lines - MOST_SHOWN);
-}
-
-size_t changed_scenario_count_differences(const char *before, const char *after)
-{
-    struct listing listing = {.to = NULL};
-    walk_differences(before, after, list_line, &listing);
-    return listing.lines;
+    if (to && differing > MOST_SHOWN)
+        fprintf(to, "  ... and %zu more\n", differing - MOST_SHOWN);
+    return differing;
 }
 
 /* ---- what may change ------------------------------------------------------------------------ */
@@ -172,13 +150,10 @@ static bool same_bits(const void *a, const void *b, size_t size)
 static bool same_designs(const struct scenario *a, const struct scenario *b)
 {
     struct scenario_values x, y;
-    bool sampled = a->base.design_time == DESIGN_SAMPLED;
-    for (int k = 0; k < a->axes; k++) {
-        for (int p = 0; p < a->axis[k].paths; p++) {
-            const size_t offset = a->axis[k].offset[p];
-            sampled = sampled || offset == offsetof(struct scenario_values, design_time);
-        }
-    }
+    int k;
+    const bool sampled =
+        a->base.design_time == DESIGN_SAMPLED ||
+        scenario_axis_of(a, offsetof(struct scenario_values, design_time), &k) != NULL;
     memcpy(&x, &a->base, sizeof x);
     memcpy(&y, &b->base, sizeof y);
     resolve_keep_design_inputs(&x, sampled);
@@ -341,11 +316,10 @@ bool changed_scenario_make(const char *file, const struct store_origin *origin, 
     struct scenario *old = calloc(1, sizeof *old);
     struct plan before = {0};
     struct plan_error error = {0};
-    FILE *nowhere = fopen("/dev/null", "w");
     bool good = false;
 
     *counts = (struct changed_scenario_counts){0};
-    if (!old || !nowhere || !realpath(file, making.real)) {
+    if (!old || !realpath(file, making.real)) {
         system_failed(&making, "prepare its successor");
     } else if (origin->ancestors >= STORE_MOST_ANCESTORS) {
         refuse(message, file, "a file of so many scenarios");

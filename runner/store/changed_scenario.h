@@ -15,11 +15,9 @@
 
 #include "runner/plan/plan.h"
 
-/* Prints the lines in which two texts differ, the first ones of many, as "  - old" and "  + new".
- */
-void changed_scenario_print_difference(FILE *to, const char *before, const char *after);
-/* Number of lines that are in one of the texts only. */
-size_t changed_scenario_count_differences(const char *before, const char *after);
+/* Prints the lines that are in one of two texts only, the first ones of many, as "  - old" and
+ * "  + new" (`to` NULL: nothing), and returns how many there are. */
+size_t changed_scenario_differences(FILE *to, const char *before, const char *after);
 
 /* Whether a scenario, whose axes are still its own and not the file's, has the axes and the sample
  * of a file's: false with the reason in *message. */

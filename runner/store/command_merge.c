@@ -134,12 +134,6 @@ static int work(void *context)
 
 static int start(struct request *request)
 {
-    if (request->count < 2) {
-        fputs("stance merge: a file to write and two or more to read are needed (stance merge -h "
-              "explains)\n",
-              stderr);
-        return EXIT_USAGE;
-    }
     if (strlen(request->output) >= 1024) {
         fprintf(stderr, "stance merge: %.60s...: %s\n", request->output, strerror(ENAMETOOLONG));
         return EXIT_USAGE;
@@ -163,20 +157,17 @@ static int run(int argc, char **argv)
 {
     const char **operand = calloc((size_t)argc, sizeof *operand);
     size_t force = 0, operands = 0;
-    bool help = false;
     const struct option_spec specs[] = {{"--force", false, NULL, 0, &force}};
-    int code = EXIT_DONE;
 
     if (!operand) {
         fputs("stance merge: not enough memory\n", stderr);
         return EXIT_IO;
     }
-    if (!command_options(&command_merge, argc, argv, specs, 1, operand, (size_t)argc, &operands,
-                         &help)) {
-        code = EXIT_USAGE;
-    } else if (!help) {
-        struct request request = {operands > 0 ? operand[0] : "", operand + 1,
-                                  operands > 0 ? operands - 1 : 0, force > 0};
+    int code = command_begin(&command_merge, argc, argv, specs, 1,
+                             "a file to write and two or more to read", operand, 3, (size_t)argc,
+                             &operands);
+    if (code == COMMAND_GOES_ON) {
+        struct request request = {operand[0], operand + 1, operands - 1, force > 0};
         code = start(&request);
     }
     free(operand);

@@ -18,23 +18,16 @@ enum { BLOCK = 1 << 18 }; /* elements read at a time */
 
 struct names {
     char **name;
-    size_t count, room;
+    size_t count;
     bool failed;
 };
 
 static void names_add(struct names *names, const char *name)
 {
-    if (names->count == names->room) {
-        size_t room = names->room ? 2 * names->room : 64;
-        char **larger = realloc(names->name, room * sizeof *larger);
-        if (!larger) {
-            names->failed = true;
-            return;
-        }
+    char **larger = realloc(names->name, (names->count + 1) * sizeof *larger);
+    if (larger)
         names->name = larger;
-        names->room = room;
-    }
-    char *own = strdup(name);
+    char *own = larger ? strdup(name) : NULL;
     names->failed = names->failed || !own;
     if (own)
         names->name[names->count++] = own;
@@ -105,15 +98,12 @@ static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *in
 static struct compare_difference *add_difference(struct comparison *comparison, const char *name,
                                                  const char *reason)
 {
-    if (comparison->count == comparison->room) {
-        size_t room = comparison->room ? 2 * comparison->room : 16;
-        struct compare_difference *larger = realloc(comparison->difference, room * sizeof *larger);
-        if (!larger)
-            return NULL;
-        comparison->difference = larger;
-        comparison->room = room;
-    }
-    struct compare_difference *difference = &comparison->difference[comparison->count++];
+    struct compare_difference *difference =
+        realloc(comparison->difference, (comparison->count + 1) * sizeof *difference);
+    if (!difference)
+        return NULL;
+    comparison->difference = difference;
+    difference += comparison->count++;
     *difference = (struct compare_difference){.differing = 0};
     snprintf(difference->name, sizeof difference->name, "%s", name);
     results_clean(difference->name);
@@ -131,120 +121,6 @@ void compare_free(struct comparison *comparison)
 {
     free(comparison->difference);
     *comparison = (struct comparison){0};
-}
-
-/* ---- attributes --------------------------------------------------------------------------- */
-
-/* Two texts: shows them from a little before the first letter that differs. */
-static void show_texts(struct compare_place *place, const char *a, const char *b)
-{
-    size_t same = 0;
-    while (a[same] && a[same] == b[same])
-        same++;
-    size_t from = same > 20 ? same - 20 : 0;
-    while (from > 0 && ((unsigned char)a[from] & 0xc0) == 0x80) /* within a letter */
-        from--;
-    values_quote(from ? "..." : "", a + from, place->value[0]);
-    values_quote(from ? "..." : "", b + from, place->value[1]);
-}
-
-static bool open_attribute(hid_t object, const char *name, hid_t *attribute, hid_t *type,
-                           size_t *count)
-{
-    *attribute = H5Aopen(object, name, H5P_DEFAULT);
-    *type = H5Aget_type(*attribute);
-    hid_t space = H5Aget_space(*attribute);
-    hssize_t points = H5Sget_simple_extent_npoints(space);
-    *count = points > 0 && points < BLOCK ? (size_t)points : 0;
-    hdf_close(space);
-    return *attribute >= 0 && *type >= 0 && points >= 0 && points < BLOCK;
-}
-
-static bool compare_attribute(struct comparison *comparison, const struct results *const r[2],
-                              const hid_t object[2], const char *owner, const char *attribute_name,
-                              stance_message *message)
-{
-    hid_t attribute[2] = {-1, -1}, type[2] = {-1, -1};
-    struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
-    size_t count[2] = {0};
-    char name[192];
-    bool good = true;
-
-    snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
-             attribute_name);
-    for (int f = 0; f < 2 && good; f++) {
-        good = (open_attribute(object[f], attribute_name, &attribute[f], &type[f], &count[f]) &&
-                values_read(attribute[f], 0, type[f], count[f], &values[f])) ||
-               unreadable(r[f], name, message);
-    }
-    const struct compare_difference *added = NULL;
-    if (good && (count[0] != count[1] || values[0].kind != values[1].kind)) {
-        added = add_difference(comparison, name, "types");
-        good = added || no_memory(message);
-    }
-    struct compare_difference *difference = NULL;
-    for (size_t i = 0; good && !added && i < count[0]; i++) {
-        if (values_same(&values[0], &values[1], i))
-            continue;
-        difference = difference ? difference : add_difference(comparison, name, "values");
-        good = difference || no_memory(message);
-        if (good && difference->shown < COMPARE_SHOWN) {
-            struct compare_place *place = &difference->place[difference->shown++];
-            place->index = i;
-            if (values[0].kind == VALUE_TEXT) {
-                show_texts(place, values[0].data.text[i], values[1].data.text[i]);
-            } else {
-                values_text(&values[0], i, place->value[0]);
-                values_text(&values[1], i, place->value[1]);
-            }
-        }
-        if (good) {
-            comparison->beyond += difference->differing++ == 0;
-            difference->of = count[0];
-        }
-    }
-    for (int f = 0; f < 2; f++)
-        values_free(&values[f]);
-    hdf_close(type[0], type[1], attribute[0], attribute[1]);
-    return good;
-}
-
-/* All attributes of an object that both files have; `owner` "" is the file itself. */
-static bool compare_attributes(struct comparison *comparison, const struct results *const r[2],
-                               const hid_t object[2], const char *owner, stance_message *message)
-{
-    static const char *const provenance[] = {
-        "program_version", "git_revision", "compiler", "library_versions",
-        "instruction_set", "ranks",        "hosts",    "date",
-        "merged_from",     "merge_note",   NULL};
-    struct names names = {0};
-    bool good = true;
-    char name[192];
-
-    for (int f = 0; f < 2 && good; f++) {
-        good =
-            H5Aiterate2(object[f], H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &names) >= 0 ||
-            unreadable(r[f], "attributes", message);
-    }
-    good = good && (!names.failed || no_memory(message));
-    names_unite(&names);
-    for (size_t i = 0; good && i < names.count; i++) {
-        if (!owner[0] && is_listed(names.name[i], provenance))
-            continue;
-        bool has[2] = {H5Aexists(object[0], names.name[i]) > 0,
-                       H5Aexists(object[1], names.name[i]) > 0};
-        if (has[0] && has[1]) {
-            good = compare_attribute(comparison, r, object, owner, names.name[i], message);
-        } else {
-            snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
-                     names.name[i]);
-            good = add_difference(comparison, name,
-                                  has[0] ? "only in the first file" : "only in the second file") ||
-                   no_memory(message);
-        }
-    }
-    names_free(&names);
-    return good;
 }
 
 /* ---- variables ---------------------------------------------------------------------------- */
@@ -277,14 +153,31 @@ static bool counts(const struct variable *v, size_t i)
     return !is_pending(v->r[0], index) && !is_pending(v->r[1], index);
 }
 
+/* Two texts: shows them from a little before the first letter that differs. */
+static void show_texts(struct compare_place *place, const char *a, const char *b)
+{
+    size_t same = 0;
+    while (a[same] && a[same] == b[same])
+        same++;
+    size_t from = same > 20 ? same - 20 : 0;
+    while (from > 0 && ((unsigned char)a[from] & 0xc0) == 0x80) /* within a letter */
+        from--;
+    values_quote(from ? "..." : "", a + from, place->value[0]);
+    values_quote(from ? "..." : "", b + from, place->value[1]);
+}
+
 static struct compare_place place_of(const struct variable *v, size_t i, size_t within,
                                      const struct values values[2])
 {
     struct compare_place place = {.component = v->width ? i % v->width : 0};
     const uint64_t row = v->width ? i / v->width : i;
     place.index = v->list ? v->list[row] : v->width && v->r[0]->single ? v->r[0]->index : row;
-    values_text(&values[0], within, place.value[0]);
-    values_text(&values[1], within, place.value[1]);
+    if (values[0].kind == VALUE_TEXT) {
+        show_texts(&place, values[0].data.text[within], values[1].data.text[within]);
+    } else {
+        values_text(&values[0], within, place.value[0]);
+        values_text(&values[1], within, place.value[1]);
+    }
     return place;
 }
 
@@ -451,6 +344,88 @@ static bool compare_variable(struct comparison *comparison, const struct results
         }
     }
     hdf_close(v.type[0], v.type[1]);
+    return good;
+}
+
+/* ---- attributes --------------------------------------------------------------------------- */
+
+static bool open_attribute(hid_t object, const char *name, hid_t *attribute, hid_t *type,
+                           size_t *count)
+{
+    *attribute = H5Aopen(object, name, H5P_DEFAULT);
+    *type = H5Aget_type(*attribute);
+    hid_t space = H5Aget_space(*attribute);
+    hssize_t points = H5Sget_simple_extent_npoints(space);
+    *count = points > 0 && points < BLOCK ? (size_t)points : 0;
+    hdf_close(space);
+    return *attribute >= 0 && *type >= 0 && points >= 0 && points < BLOCK;
+}
+
+static bool compare_attribute(struct comparison *comparison, const struct results *const r[2],
+                              const hid_t object[2], const char *owner, const char *attribute_name,
+                              stance_message *message)
+{
+    hid_t attribute[2] = {-1, -1}, type[2] = {-1, -1};
+    struct values values[2] = {{.kind = VALUE_OTHER}, {.kind = VALUE_OTHER}};
+    size_t count[2] = {0}, last = 0;
+    char name[192];
+    struct variable v = {.name = name, .r = r};
+    struct compare_difference *difference = NULL;
+    bool good = true;
+
+    snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
+             attribute_name);
+    for (int f = 0; f < 2 && good; f++) {
+        good = (open_attribute(object[f], attribute_name, &attribute[f], &type[f], &count[f]) &&
+                values_read(attribute[f], 0, type[f], count[f], &values[f])) ||
+               unreadable(r[f], name, message);
+    }
+    v.elements = count[0];
+    good = good && ((count[0] != count[1] || values[0].kind != values[1].kind
+                         ? add_difference(comparison, name, "types") != NULL
+                         : compare_block(comparison, &v, 0, values, &difference, &last)) ||
+                    no_memory(message));
+    for (int f = 0; f < 2; f++)
+        values_free(&values[f]);
+    hdf_close(type[0], type[1], attribute[0], attribute[1]);
+    return good;
+}
+
+/* All attributes of an object that both files have; `owner` "" is the file itself. */
+static bool compare_attributes(struct comparison *comparison, const struct results *const r[2],
+                               const hid_t object[2], const char *owner, stance_message *message)
+{
+    static const char *const provenance[] = {
+        "program_version", "git_revision", "compiler", "library_versions",
+        "instruction_set", "ranks",        "hosts",    "date",
+        "merged_from",     "merge_note",   NULL};
+    struct names names = {0};
+    bool good = true;
+    char name[192];
+
+    for (int f = 0; f < 2 && good; f++) {
+        good =
+            H5Aiterate2(object[f], H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, &names) >= 0 ||
+            unreadable(r[f], "attributes", message);
+    }
+    good = good && (!names.failed || no_memory(message));
+    names_unite(&names);
+    for (size_t i = 0; good && i < names.count; i++) {
+        if (!owner[0] && is_listed(names.name[i], provenance))
+            continue;
+        bool has[2] = {H5Aexists(object[0], names.name[i]) > 0,
+                       H5Aexists(object[1], names.name[i]) > 0};
+        if (has[0] && has[1]) {
+            good = compare_attribute(comparison, r, object, owner, names.name[i], message);
+        } else {
+            snprintf(name, sizeof name, "attribute %.80s%s%.80s", owner, owner[0] ? ":" : "",
+                     names.name[i]);
+            good = add_difference(comparison, name,
+                                  has[0] ? "only in the first file" : "only in the second file") ||
+                   no_memory(message);
+        }
+    }
+    names_free(&names);
     return good;
 }
 

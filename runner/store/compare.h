@@ -46,8 +46,8 @@ struct compare_difference {
 struct comparison {
     const struct compare_tolerances *tolerances; /* NULL: bit for bit */
     size_t beyond;                               /* entries that are not within tolerances */
-    size_t count, room;
-    struct compare_difference *difference;
+    size_t count;
+    struct compare_difference *difference; /* [count] */
 };
 
 /* `tolerances` may be NULL. False when a file cannot be read or memory fails; the comparison is

@@ -4,7 +4,7 @@
  * neither an answer nor a trajectory nor a time has a checksum.
  */
 #include "file_checksums.h"
-#include "store_private.h"
+#include "store_make.h"
 
 #include "runner/base/checksum.h"
 #include "runner/base/problem.h"
@@ -76,14 +76,8 @@ struct walk {
 static bool put_checksum(hid_t dataset, const char *name)
 {
     uint32_t crc = 0;
-    hsize_t one = 1;
-    hid_t space = H5Screate_simple(1, &one, NULL);
-    hid_t attribute = H5Acreate2(dataset, SEAL_ATTRIBUTE, hdf_type(KIND_uint32_t), space,
-                                 H5P_DEFAULT, H5P_DEFAULT);
-    bool good = checksum_of(dataset, name, &crc) && attribute >= 0 &&
-                H5Awrite(attribute, hdf_type(KIND_uint32_t), &crc) >= 0;
-    hdf_close(attribute, space);
-    return good;
+    return checksum_of(dataset, name, &crc) &&
+           put_number(dataset, SEAL_ATTRIBUTE, KIND_uint32_t, &crc);
 }
 
 static bool say_damaged(const struct walk *walk, const char *variable, const char *what)
@@ -98,12 +92,8 @@ static bool verify_checksum(const struct walk *walk, hid_t dataset, const char *
     uint32_t crc = 0, expected = 0;
     if (H5Aexists(dataset, SEAL_ATTRIBUTE) <= 0)
         return !walk->strict || say_damaged(walk, variable, "has no checksum");
-    hid_t attribute = H5Aopen(dataset, SEAL_ATTRIBUTE, H5P_DEFAULT);
-    hid_t space = H5Aget_space(attribute);
-    bool good = H5Sget_simple_extent_npoints(space) == 1 &&
-                H5Aread(attribute, hdf_type(KIND_uint32_t), &expected) >= 0;
-    hdf_close(space, attribute);
-    if (!good || !checksum_of(dataset, variable, &crc))
+    if (!hdf_number(dataset, SEAL_ATTRIBUTE, hdf_type(KIND_uint32_t), &expected) ||
+        !checksum_of(dataset, variable, &crc))
         return say_damaged(walk, variable, "cannot be read");
     return crc == expected || say_damaged(walk, variable, "is not as its checksum says");
 }

@@ -82,12 +82,10 @@ hid_t hdf_open_to_read(const char *file, stance_message *message)
     hid_t id = -1;
 
     hdf_remember();
-    if (stat(file, &information) != 0)
+    if (stat(file, &information) != 0 || (S_ISREG(information.st_mode) && access(file, R_OK) != 0))
         wrong = strerror(errno);
     else if (!S_ISREG(information.st_mode))
         wrong = S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file";
-    else if (access(file, R_OK) != 0)
-        wrong = strerror(errno);
     else if (H5Fis_hdf5(file) <= 0)
         wrong = "not an HDF5 file";
     if (wrong) {
@@ -138,14 +136,18 @@ char *hdf_text(hid_t object, const char *name)
     return text;
 }
 
-int hdf_whole(hid_t object, const char *name, int fallback)
+bool hdf_number(hid_t object, const char *name, hid_t type, void *value)
 {
     hid_t attribute = open_attribute(object, name);
-    int value = 0;
-    if (attribute >= 0 && H5Aread(attribute, H5T_NATIVE_INT, &value) < 0)
-        value = 0;
+    const bool good = attribute >= 0 && H5Aread(attribute, type, value) >= 0;
     hdf_close(attribute);
-    return value > 0 ? value : fallback;
+    return good;
+}
+
+int hdf_whole(hid_t object, const char *name, int fallback)
+{
+    int value;
+    return hdf_number(object, name, H5T_NATIVE_INT, &value) && value > 0 ? value : fallback;
 }
 
 /* ---- elements ----------------------------------------------------------------------------- */

@@ -41,6 +41,8 @@ bool hdf_exists(hid_t file, const char *path);
 
 /* A text attribute of fixed or variable length, freed by the caller; NULL when there is none. */
 char *hdf_text(hid_t object, const char *name);
+/* An attribute that is one number. */
+bool hdf_number(hid_t object, const char *name, hid_t type, void *value);
 /* A positive whole number, or where there is none the fallback. */
 int hdf_whole(hid_t object, const char *name, int fallback);
 

@@ -49,13 +49,11 @@ static struct opened *open_part(const struct merge_part *part, stance_message *m
     bool good = merge_read_part(part, &opened->scenario, message) &&
                 store_count(part->file, &counts, message);
     if (good && is_single(&opened->scenario, &counts)) {
-        complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
-                 part->file);
-        good = false;
+        good = complain(message, "%.100s: holds one case of a sweep (run --only), not the sweep",
+                        part->file);
     }
     if (good && !plan_make(&opened->plan, &opened->scenario, false, 0, false, &error)) {
-        complain(message, "%.60s: %.160s", part->file, error.message.text);
-        good = false;
+        good = complain(message, "%.60s: %.160s", part->file, error.message.text);
     } else if (good) {
         opened->planned = true;
         good = store_open_to_read(&opened->store, part->file, &opened->plan, message) &&
@@ -108,22 +106,6 @@ static bool check_axes(struct merge *m, const struct merge_part *part,
 
 /* ---- designs ------------------------------------------------------------------------------ */
 
-/* A row of a plan that has design `design`: the first point of the axes that it does not depend
- * on. */
-static uint64_t row_with_design(const struct plan *plan, size_t design)
-{
-    const struct scenario *s = plan->scenario;
-    uint64_t row = 0, stride = 1;
-    for (int a = s->axes - 1; a >= 0; a--) {
-        if (s->axis[a].design) {
-            row += design % s->axis[a].count * stride;
-            design /= s->axis[a].count;
-        }
-        stride *= s->axis[a].count;
-    }
-    return row;
-}
-
 /* How far two designs are apart, relative to their largest number; captured sets, which are
  * estimates, left out. Designs made on different processors differ in last bits. */
 static double distance_between(const struct resolved_design *a, const struct resolved_design *b)
@@ -148,7 +130,7 @@ static bool take_designs(struct merge *m, const struct merge_part *part,
 {
     for (size_t d = 0; d < opened->plan.designs; d++) {
         const struct resolved_design *design = &opened->plan.design[d];
-        const size_t at = plan_design(plan, merge_row(m, part, row_with_design(&opened->plan, d)));
+        const size_t at = plan_design(plan, merge_row(m, part, plan_design_case(&opened->plan, d)));
         if (!taken[at]) {
             taken[at] = true;
             plan->design[at] = *design;

@@ -239,9 +239,8 @@ static bool collect_axis(struct merge *m, struct points *points, stance_message 
             memcpy(paths, axis->path, (size_t)path_count * sizeof *paths);
             snprintf(m->path, sizeof m->path, "%s", axis->name);
         } else if (!same_paths(axis, (const char(*)[96])paths, path_count)) {
-            complain(message, "%.80s: its axis %.40s is not that of %.80s", m->part[p].file,
-                     axis->name, m->part[0].file);
-            good = false;
+            good = complain(message, "%.80s: its axis %.40s is not that of %.80s", m->part[p].file,
+                            axis->name, m->part[0].file);
         }
         m->part[p].points = axis->count;
         for (size_t i = 0; good && i < axis->count; i++) {
@@ -402,20 +401,16 @@ static bool set_axis(const struct merge *m, const struct points *points, struct 
 /* Cases that are recorded, by their numbers in the merged file. */
 struct recorded {
     uint64_t *row;
-    size_t count, room;
+    size_t count;
 };
 
 static bool add_recorded(struct recorded *list, const struct merge *m, size_t p,
                          const struct scenario *s)
 {
-    if (list->count + s->record_count > list->room) {
-        const size_t room = 2 * (list->count + s->record_count);
-        uint64_t *larger = realloc(list->row, room * sizeof *larger);
-        if (!larger)
-            return false;
-        list->row = larger;
-        list->room = room;
-    }
+    uint64_t *larger = realloc(list->row, (list->count + s->record_count + 1) * sizeof *larger);
+    if (!larger)
+        return false;
+    list->row = larger;
     for (size_t i = 0; i < s->record_count; i++)
         list->row[list->count++] = merge_row(m, &m->part[p], s->record_list[i]);
     return true;
@@ -431,17 +426,15 @@ static bool collect_recorded(const struct merge *m, bool all, struct recorded *l
     for (size_t p = 0; good && p < m->parts; p++) {
         good = merge_read_part(&m->part[p], s, message);
         if (good && (s->record_cases == RECORD_ALL) != all) {
-            complain(message, "%.60s: record.cases is `all` in some of the files only",
-                     m->part[p].file);
-            good = false;
+            good = complain(message, "%.60s: record.cases is `all` in some of the files only",
+                            m->part[p].file);
         } else if (good) {
             good = add_recorded(list, m, p, s) || no_memory(message);
         }
-        if (s)
-            scenario_free(s);
+        scenario_free(s);
     }
     free(s);
-    list->count = numbers_unite(list->row, list->count);
+    list->count = list->row ? numbers_unite(list->row, list->count) : 0;
     return good;
 }
 
@@ -454,13 +447,13 @@ static bool set_recorded(struct merge *m, const struct scenario *first, struct t
     char *text = NULL;
     size_t size = 0;
     bool good = collect_recorded(m, first->record_cases == RECORD_ALL, &list, message);
-    const bool same = list.count == first->record_count &&
-                      (list.count == 0 ||
-                       memcmp(list.row, first->record_list, list.count * sizeof *list.row) == 0);
+    const bool same =
+        list.count == first->record_count &&
+        (!list.row || memcmp(list.row, first->record_list, list.count * sizeof *list.row) == 0);
     FILE *out = good && !same ? open_memstream(&text, &size) : NULL;
     if (out) {
         fputs("record.cases=", out);
-        for (size_t i = 0; i < list.count; i++)
+        for (size_t i = 0; list.row && i < list.count; i++)
             fprintf(out, "%s%llu", i ? ", " : "[", (unsigned long long)list.row[i]);
         fputs("]", out);
         fclose(out);

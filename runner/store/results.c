@@ -168,24 +168,29 @@ static bool read_axis_values(const struct results *r, hid_t dataset, struct resu
     return true;
 }
 
+void results_describe(hid_t dataset, const char *name, struct results_axis *axis)
+{
+    snprintf(axis->name, sizeof axis->name, "%s", name);
+    results_clean(axis->name);
+    results_copy_attribute(dataset, "units", axis->unit, sizeof axis->unit);
+    results_copy_attribute(dataset, "long_name", axis->text, sizeof axis->text);
+    if (strcmp(axis->unit, "1") == 0)
+        axis->unit[0] = '\0';
+}
+
 static bool read_axis(struct results *r, const char *name, stance_message *message)
 {
     struct results_axis *axis = &r->axis[r->axes];
     hsize_t length[H5S_MAX_RANK];
     int rank;
 
-    snprintf(axis->name, sizeof axis->name, "%s", name);
     hid_t dataset = results_dataset(r, name, &rank, length);
     if (dataset < 0)
         return results_failed(r, name, message);
     r->axes++;
     axis->count = rank == 1 ? results_elements(r, rank, length) : 0;
     axis->offset = strncmp(name, "initial.offset.", strlen("initial.offset.")) == 0;
-    results_clean(axis->name);
-    results_copy_attribute(dataset, "units", axis->unit, sizeof axis->unit);
-    results_copy_attribute(dataset, "long_name", axis->text, sizeof axis->text);
-    if (strcmp(axis->unit, "1") == 0)
-        axis->unit[0] = '\0';
+    results_describe(dataset, name, axis);
     bool good = axis->count > 0 ? read_axis_values(r, dataset, axis, message)
                                 : results_damaged(r, "an axis has no values", message);
     hdf_close(dataset);

@@ -17,6 +17,8 @@ size_t results_elements(const struct results *r, int rank, const hsize_t *length
 bool results_failed(const struct results *r, const char *what, stance_message *message);
 bool results_damaged(const struct results *r, const char *what, stance_message *message);
 bool results_no_memory(const struct results *r, stance_message *message);
+/* Name, unit and text of what an axis or a sampled variable holds. */
+void results_describe(hid_t dataset, const char *name, struct results_axis *axis);
 bool results_is_number(hid_t dataset);
 H5T_class_t results_class(hid_t dataset);
 void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t size);

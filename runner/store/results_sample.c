@@ -54,12 +54,7 @@ static bool read_varied(struct results *r, const char *path, int factor, stance_
     r->varied++;
     v->factor = factor;
     v->of.count = r->axis[r->sample].count;
-    snprintf(v->of.name, sizeof v->of.name, "%s", path);
-    results_clean(v->of.name);
-    results_copy_attribute(dataset, "units", v->of.unit, sizeof v->of.unit);
-    results_copy_attribute(dataset, "long_name", v->of.text, sizeof v->of.text);
-    if (strcmp(v->of.unit, "1") == 0)
-        v->of.unit[0] = '\0';
+    results_describe(dataset, path, &v->of);
     bool good = rank == 1 && length[0] == v->of.count
                     ? read_words(r, dataset, v, message) && read_values(r, dataset, v, message)
                     : results_damaged(r, "a variable is not as its axes say", message);

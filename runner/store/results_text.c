@@ -1,6 +1,8 @@
 /* results_text.c - the words for what a results file holds: cases, values, its scenario. */
 #include "results.h"
 
+#include "runner/base/words.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,20 +15,8 @@ enum { DIGITS = 6, MOST_DIGITS = 17 };
 
 int results_letter(const char *text)
 {
-    const unsigned char *c = (const unsigned char *)text;
-    int length = c[0] < 0x80                    ? 1
-                 : c[0] >= 0xc2 && c[0] < 0xe0  ? 2
-                 : (c[0] & 0xf0) == 0xe0        ? 3
-                 : c[0] >= 0xf0 && c[0] <= 0xf4 ? 4
-                                                : 0;
-    for (int i = 1; i < length; i++)
-        if ((c[i] & 0xc0) != 0x80)
-            return 0;
-    /* Overlong forms, surrogates and what lies beyond Unicode. */
-    if ((c[0] == 0xe0 && c[1] < 0xa0) || (c[0] == 0xed && c[1] > 0x9f) ||
-        (c[0] == 0xf0 && c[1] < 0x90) || (c[0] == 0xf4 && c[1] > 0x8f))
-        return 0;
-    return length;
+    uint32_t character;
+    return (int)utf8_letter(text, strnlen(text, 4), &character);
 }
 
 void results_clean(char *text)

@@ -35,8 +35,13 @@ const struct store_column store_columns[COLUMNS] = {
                        "whether the case was computed"},
 };
 
-const char *const store_trajectories[TRAJECTORIES] = {"position", "velocity", "torque", "force",
-                                                      "gap"};
+const struct store_trajectory store_trajectories[TRAJECTORIES] = {
+    [TRAJECTORY_POSITION] = {"position", NULL, "coordinates, in m and rad"},
+    [TRAJECTORY_VELOCITY] = {"velocity", NULL, "rates of the coordinates, in m/s and rad/s"},
+    [TRAJECTORY_TORQUE] = {"torque", "N m", "torque applied in the step that ends there"},
+    [TRAJECTORY_FORCE] = {"force", "N", "contact force, mean since the instant before"},
+    [TRAJECTORY_GAP] = {"gap", "m", "height of the contact point above the ground"},
+};
 
 bool store_is_column(const char *path)
 {
@@ -54,7 +59,7 @@ bool store_is_track(const char *path)
     path += strlen(group);
     bool found = strcmp(path, store_columns[COLUMN_CHECKSUM].name) == 0;
     for (int v = 0; v < TRAJECTORIES; v++)
-        found = found || strcmp(path, store_trajectories[v]) == 0;
+        found = found || strcmp(path, store_trajectories[v].name) == 0;
     return found;
 }
 
@@ -237,7 +242,7 @@ static bool open_trajectories(struct store *store, stance_message *message)
         if (store->trajectory_size[v] == 0)
             continue;
         char name[64];
-        snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v]);
+        snprintf(name, sizeof name, "trajectory/%s", store_trajectories[v].name);
         store->trajectory[v] = open_dataset(store, name);
         if (store->trajectory[v] < 0)
             return store_failed(message, store->file, "open the trajectories");

@@ -60,6 +60,9 @@ void store_prepare(void);
 /* Name and version of the HDF5 library. */
 void store_library(char *text, size_t size);
 
+/* The directory that a file is in. */
+void store_directory(const char *file, char *directory, size_t size);
+
 /* Bytes that the file of a plan takes, near enough to say whether it fits. */
 uint64_t store_size(const struct plan *plan, int ranks);
 

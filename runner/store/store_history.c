@@ -69,32 +69,32 @@ static bool put_texts(hid_t group, int k, const struct store_origin *origin)
 static bool put_numbers(hid_t file, const struct plan *plan)
 {
     const struct store_column *column = &store_columns[COLUMN_SCENARIO_NUMBER];
-    const struct scenario *s = plan->scenario;
+    const struct variable variable = {column->name, column->kind, NULL, column->text,
+                                      .flags = NULL};
+    struct dimension axis[SCENARIO_MAX_AXES];
+    const struct dimension *over[SCENARIO_MAX_AXES];
     hsize_t length[SCENARIO_MAX_AXES];
     const int rank = store_dimensions(plan, length);
-    const bool one = plan->single || s->axes == 0;
-    hid_t dataset = make_dataset(file, column->name, hdf_type(column->kind), rank, length);
-    bool good = dataset >= 0 &&
-                H5LTset_attribute_string(file, column->name, "long_name", column->text) >= 0;
-    for (int d = 0; good && d < rank; d++) {
-        hid_t scale = H5Dopen2(file, one ? "case" : s->axis[d].name, H5P_DEFAULT);
-        good = scale >= 0 && H5DSattach_scale(dataset, scale, (unsigned)d) >= 0;
-        hdf_close(scale);
+    const bool one = plan->single || plan->scenario->axes == 0;
+    for (int d = 0; d < rank; d++) {
+        const char *name = one ? "case" : plan->scenario->axis[d].name;
+        axis[d] = (struct dimension){H5Dopen2(file, name, H5P_DEFAULT), length[d]};
+        over[d] = &axis[d];
     }
+    const hid_t dataset = make_variable(file, &variable, over, rank);
+    for (int d = 0; d < rank; d++)
+        hdf_close(axis[d].id);
     hdf_close(dataset);
-    return good;
+    return dataset >= 0;
 }
 
 bool store_add_history(const char *file, const struct plan *plan, const struct store_origin *origin,
                        stance_message *message)
 {
-    hid_t access = store_serial_access(), id = H5Fopen(file, H5F_ACC_RDWR, access);
-    hid_t properties = H5Pcreate(H5P_GROUP_CREATE), group = -1;
-    hdf_close(access);
-    if (H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0)
-        group = H5Gcreate2(id, "history", H5P_DEFAULT, properties, H5P_DEFAULT);
-    hdf_close(properties);
+    const hid_t access = store_serial_access(), id = H5Fopen(file, H5F_ACC_RDWR, access);
+    const hid_t group = make_group(id, "history");
     bool good = group >= 0;
+    hdf_close(access);
     for (int k = 0; good && k < TEXTS; k++)
         good = put_texts(group, k, origin);
     hdf_close(group);

@@ -10,6 +10,7 @@
 
 #include "runner/base/checksum.h"
 #include "runner/base/command.h"
+#include "runner/base/problem.h"
 #include "runner/plan/instruction_set.h"
 
 #include <errno.h>
@@ -139,9 +140,10 @@ static bool make_sample(struct layout *layout, const struct scenario_axis *axis,
     char *paths = sampled_paths(layout->plan->scenario, ',', ';');
     bool good =
         paths &&
-        make_numbers(&layout->dimensions, layout->file, axis->name, KIND_int64_t, axis->count,
-                     own_number, NULL, dimension) &&
-        put_meaning(dimension->id, axis->unit, axis->text) &&
+        make_numbers(
+            &layout->dimensions, layout->file,
+            &(struct variable){axis->name, KIND_int64_t, axis->unit, axis->text, .flags = NULL},
+            axis->count, own_number, NULL, dimension) &&
         put_text(dimension->id, "method", doe_words[design->method]) &&
         (!generator[0] || put_text(dimension->id, "generator", generator)) &&
         put_number(dimension->id, "count", KIND_uint64_t, &design->count) &&
@@ -164,10 +166,10 @@ static bool put_sampled(struct layout *layout, const struct axis_values *values,
     const enum store_kind kind = meaning->words                ? KIND_uint8_t
                                  : axis->integer[values->path] ? KIND_int32_t
                                                                : KIND_double;
-    hid_t dataset = make_variable(layout->file, axis->path[values->path], hdf_type(kind), &over, 1,
-                                  meaning->words ? NULL : meaning->unit, meaning->text);
-    bool good = dataset >= 0 && write_values(dataset, over->length, axis_value, values) &&
-                (!meaning->words || put_flags(dataset, meaning->words));
+    const struct variable variable = {axis->path[values->path], kind, meaning->unit, meaning->text,
+                                      .flags = meaning->words};
+    hid_t dataset = make_variable(layout->file, &variable, &over, 1);
+    bool good = dataset >= 0 && write_values(dataset, over->length, axis_value, values);
     hdf_close(dataset);
     return good;
 }
@@ -186,6 +188,9 @@ static bool put_coordinates(const struct layout *layout, hid_t dataset)
 
 /* ---- all axes ----------------------------------------------------------------------------- */
 
+static const struct variable case_variable = {
+    "case", KIND_int64_t, "1", "flat index of the case, row-major over the axes", .flags = NULL};
+
 static double case_value(const void *context, uint64_t i)
 {
     return (double)plan_case(context, i);
@@ -199,9 +204,8 @@ static bool put_axes(struct layout *layout)
 
     if (plan->single || s->axes == 0) {
         one = &layout->axis[0];
-        if (!make_numbers(&layout->dimensions, layout->file, "case", KIND_int64_t, 1, case_value,
-                          plan, one) ||
-            !put_meaning(one->id, "1", "flat index of the case, row-major over the axes"))
+        if (!make_numbers(&layout->dimensions, layout->file, &case_variable, 1, case_value, plan,
+                          one))
             return false;
     }
     for (int a = 0; a < s->axes; a++) {
@@ -226,20 +230,16 @@ static bool put_axes(struct layout *layout)
 
 /* ---- the answers -------------------------------------------------------------------------- */
 
-/* The words of a variable that is a code, in one text; false: it is none. */
-static bool flags_of(int column, char *text, size_t size)
+/* The words of a variable that is a code, in one text; NULL: it is none. */
+static const char *flags_of(int column, char text[400])
 {
     static const char *const status[] = {"pending", "done", "failed"};
-    const bool answer = column < STANCE_ANSWER_COUNT;
-    const char *const *const word = column == COLUMN_STATUS ? status
-                                    : answer                ? stance_answers[column].word
-                                                            : NULL;
-    const int words = column == COLUMN_STATUS ? 3 : answer ? stance_answers[column].words : 0;
-    size_t used = 0;
-    text[0] = '\0';
-    for (int i = 0; i < words && used < size; i++)
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? " " : "", word[i]);
-    return words > 0;
+    if (column == COLUMN_STATUS)
+        return words_join(text, 400, " ", status, 3);
+    if (column >= STANCE_ANSWER_COUNT || stance_answers[column].words == 0)
+        return NULL;
+    return words_join(text, 400, " ", stance_answers[column].word,
+                      (size_t)stance_answers[column].words);
 }
 
 /* Names of the state: the coordinates, then "v" and the coordinates, of the body or the posture. */
@@ -276,14 +276,13 @@ static bool put_answers(struct layout *layout)
         const struct store_column *column = &store_columns[c];
         if (!store_has_column(s, c))
             continue;
-        int rank = layout->rank + (c == COLUMN_FINAL_STATE);
         char flags[400];
-        const bool code = flags_of(c, flags, sizeof flags);
-        hid_t dataset = make_variable(layout->file, column->name, hdf_type(column->kind), over,
-                                      rank, code ? NULL : column->unit, column->text);
-        bool good = dataset >= 0 &&
-                    (!column->filled || put_fill(dataset, column->kind, column->fill)) &&
-                    (!code || put_flags(dataset, flags)) && put_coordinates(layout, dataset);
+        const struct variable variable = {column->name,      column->kind,   column->unit,
+                                          column->text,      column->filled, column->fill,
+                                          flags_of(c, flags)};
+        hid_t dataset =
+            make_variable(layout->file, &variable, over, layout->rank + (c == COLUMN_FINAL_STATE));
+        bool good = dataset >= 0 && put_coordinates(layout, dataset);
         hdf_close(dataset);
         if (!good)
             return false;
@@ -323,12 +322,11 @@ static bool put_design_columns(struct layout *layout, hid_t group, const struct 
             continue;
         for (int i = 0; i < columns[k].dimensions; i++)
             over[rank + i] = &inner[columns[k].over[i]];
-        hid_t dataset =
-            make_variable(group, columns[k].name, hdf_type(KIND_double), over,
-                          rank + columns[k].dimensions, columns[k].unit, columns[k].text);
-        bool good = dataset >= 0 &&
-                    store_move_design(layout->plan, &columns[k], dataset, HDF_WRITE) &&
-                    put_fill(dataset, KIND_double, NAN);
+        const struct variable variable = {
+            columns[k].name, KIND_double, columns[k].unit, columns[k].text, true, NAN, NULL};
+        hid_t dataset = make_variable(group, &variable, over, rank + columns[k].dimensions);
+        bool good =
+            dataset >= 0 && store_move_design(layout->plan, &columns[k], dataset, HDF_WRITE);
         hdf_close(dataset);
         if (!good)
             return false;
@@ -357,12 +355,11 @@ static bool put_designs(struct layout *layout)
                                                       &inner[DESIGN_POSTURE_OTHER])) &&
                 put_design_columns(layout, group, over, rank, inner);
     if (good) {
-        char flags[40];
-        flags_of(COLUMN_STATUS, flags, sizeof flags);
-        hid_t status = make_variable(group, "status", hdf_type(KIND_uint8_t), over, rank, NULL,
-                                     "whether the design exists");
-        good = status >= 0 && put_flags(status, flags) &&
-               hdf_write(status, KIND_uint8_t, plan->design_status);
+        char flags[400];
+        const struct variable variable = {"status", KIND_uint8_t, NULL, "whether the design exists",
+                                          .flags = flags_of(COLUMN_STATUS, flags)};
+        hid_t status = make_variable(group, &variable, over, rank);
+        good = status >= 0 && hdf_write(status, KIND_uint8_t, plan->design_status);
         hdf_close(status);
     }
     hdf_close(group);
@@ -382,22 +379,12 @@ static double recorded_time(const void *context, uint64_t i)
     return (double)i * plan->record_interval;
 }
 
-static bool put_trajectory(hid_t group, int variable, const struct dimension *const *over, int rank)
+static bool put_variable(hid_t group, const struct variable *variable,
+                         const struct dimension *const *over, int rank)
 {
-    static const struct {
-        const char *unit, *text;
-    } meaning[TRAJECTORIES] = {
-        [TRAJECTORY_POSITION] = {NULL, "coordinates, in m and rad"},
-        [TRAJECTORY_VELOCITY] = {NULL, "rates of the coordinates, in m/s and rad/s"},
-        [TRAJECTORY_TORQUE] = {"N m", "torque applied in the step that ends there"},
-        [TRAJECTORY_FORCE] = {"N", "contact force, mean since the instant before"},
-        [TRAJECTORY_GAP] = {"m", "height of the contact point above the ground"},
-    };
-    hid_t dataset = make_variable(group, store_trajectories[variable], hdf_type(KIND_double), over,
-                                  rank, meaning[variable].unit, meaning[variable].text);
-    bool good = dataset >= 0 && put_fill(dataset, KIND_double, NAN);
+    const hid_t dataset = make_variable(group, variable, over, rank);
     hdf_close(dataset);
-    return good;
+    return dataset >= 0;
 }
 
 static bool put_trajectories(struct layout *layout)
@@ -405,18 +392,19 @@ static bool put_trajectories(struct layout *layout)
     const struct plan *plan = layout->plan;
     const stance_scene *scene = plan->scenario->scene;
     static const char *const components[] = {"normal", "tangential"};
+    static const struct variable instant = {"time", KIND_double, "s",
+                                            "instant; the step that ends nearest to it is stored",
+                                            .flags = NULL};
     struct dimension number, time, coordinate, actuator, contact, component;
 
     if (plan->record_rows == 0)
         return true;
     hid_t group = make_group(layout->file, "trajectory");
     bool good = group >= 0 &&
-                make_numbers(&layout->dimensions, group, "case", KIND_int64_t, plan->record_cases,
+                make_numbers(&layout->dimensions, group, &case_variable, plan->record_cases,
                              recorded_case, plan, &number) &&
-                put_meaning(number.id, "1", "flat index of the case, row-major over the axes") &&
-                make_numbers(&layout->dimensions, group, "time", KIND_double,
-                             (hsize_t)plan->record_rows, recorded_time, plan, &time) &&
-                put_meaning(time.id, "s", "instant; the step that ends nearest to it is stored") &&
+                make_numbers(&layout->dimensions, group, &instant, (hsize_t)plan->record_rows,
+                             recorded_time, plan, &time) &&
                 make_coordinates(layout, group, &coordinate) &&
                 make_actuators(layout, group, &actuator) &&
                 make_words(&layout->dimensions, group, "contact", scene->contact_name,
@@ -426,16 +414,19 @@ static bool put_trajectories(struct layout *layout)
                                                   &contact};
     for (int v = 0; good && v < TRAJECTORIES; v++) {
         const struct dimension *over[] = {&number, &time, last[v], &component};
+        const struct store_trajectory *t = &store_trajectories[v];
+        const struct variable variable = {t->name, KIND_double, t->unit, t->text, true, NAN, NULL};
         good = store_trajectory_width(scene, v) == 0 ||
-               put_trajectory(group, v, over, v == TRAJECTORY_FORCE ? 4 : 3);
+               put_variable(group, &variable, over, v == TRAJECTORY_FORCE ? 4 : 3);
     }
     if (good) {
         const struct dimension *over[] = {&number};
         const struct store_column *column = &store_columns[COLUMN_CHECKSUM];
-        hid_t dataset = make_variable(group, column->name, hdf_type(column->kind), over, 1,
-                                      column->unit, "CRC-32C over the trajectory of the case");
-        good = dataset >= 0;
-        hdf_close(dataset);
+        good = put_variable(group,
+                            &(struct variable){column->name, column->kind, column->unit,
+                                               "CRC-32C over the trajectory of the case",
+                                               .flags = NULL},
+                            over, 1);
     }
     hdf_close(group);
     return good;
@@ -463,10 +454,12 @@ static bool put_timing(struct layout *layout)
         !make_scale(&layout->dimensions, make_dataset(group, "rank", H5T_IEEE_F32BE, 1, &n), label,
                     n, &rank))
         return false;
-    hid_t wall = make_variable(group, "wall_time", hdf_type(KIND_double), over, 1, "s",
-                               "wall time of computing");
-    hid_t cases =
-        make_variable(group, "cases", hdf_type(KIND_int64_t), over, 1, "1", "cases computed");
+    static const struct variable wall_time = {"wall_time", KIND_double, "s",
+                                              "wall time of computing", .flags = NULL},
+                                 computed = {"cases", KIND_int64_t, "1", "cases computed",
+                                             .flags = NULL};
+    hid_t wall = make_variable(group, &wall_time, over, 1),
+          cases = make_variable(group, &computed, over, 1);
     bool good = wall >= 0 && cases >= 0 && write_values(wall, n, no_time, NULL) &&
                 write_values(cases, n, no_time, NULL);
     hdf_close(wall, cases, group);

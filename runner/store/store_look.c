@@ -3,14 +3,11 @@
 #include "file_checksums.h"
 #include "store_private.h"
 
-#include "runner/base/checksum.h"
 #include "runner/base/message.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static bool not_resumable(const char *file, stance_message *message)
 {
@@ -160,94 +157,68 @@ bool store_count(const char *file, struct store_counts *counts, stance_message *
 
 /* ---- rows that are not what their checksums say -------------------------------------------- */
 
-enum { VERIFIED_ROWS = 1 << 16 }; /* at a time */
+enum { VERIFIED_ROWS = 1 << 12 }; /* at a time */
 
-/* The columns of a file that is only looked at. */
-struct columns {
-    hid_t dataset[COLUMNS]; /* -1: not stored */
-    size_t width[COLUMNS];  /* elements per case */
-    size_t largest;         /* bytes per case of the widest */
-};
-
-static bool columns_open(struct columns *columns, hid_t file, uint64_t cases)
+/* Opens the columns of a file that is only looked at, whatever its scenario. */
+static bool open_columns(struct store *store, hid_t file, uint64_t cases)
 {
     bool good = true;
-    *columns = (struct columns){.largest = 1};
     for (int c = 0; c < COLUMNS; c++) {
-        const char *name = store_columns[c].name;
-        const bool stored = H5Lexists(file, name, H5P_DEFAULT) > 0;
-        hid_t dataset = stored ? H5Dopen2(file, name, H5P_DEFAULT) : -1, space = -1;
-        hssize_t elements = 0;
-        columns->dataset[c] = dataset;
-        if (!stored)
+        store->column[c] = hdf_exists(file, store_columns[c].name)
+                               ? H5Dopen2(file, store_columns[c].name, H5P_DEFAULT)
+                               : -1;
+        if (store->column[c] < 0)
             continue;
-        space = H5Dget_space(dataset);
-        elements = H5Sget_simple_extent_npoints(space);
+        const hid_t space = H5Dget_space(store->column[c]);
+        const hssize_t elements = H5Sget_simple_extent_npoints(space);
         hdf_close(space);
         good = good && elements > 0 && (uint64_t)elements % cases == 0 &&
                (uint64_t)elements / cases <= SCENARIO_MAX_STATES;
-        columns->width[c] = good ? (size_t)((uint64_t)elements / cases) : 1;
-        const size_t size = columns->width[c] * store_columns[c].size;
-        columns->largest = size > columns->largest ? size : columns->largest;
+        store->width[c] = good ? (size_t)((uint64_t)elements / cases) : 1;
     }
     return good;
 }
 
-static void columns_close(struct columns *columns)
+static bool read_rows(const struct store *store, struct store_block *block, uint64_t at, size_t n)
 {
-    hdf_close_all(columns->dataset, COLUMNS);
-}
-
-/* Checksums of rows [at, at + n) as they follow from the answers, crc[n]. */
-static bool work_out(const struct columns *columns, hsize_t at, hsize_t n, char *values,
-                     uint32_t *crc)
-{
-    memset(crc, 0, n * sizeof *crc);
-    for (int c = 0; c < COLUMNS; c++) {
-        const size_t width = columns->width[c], size = width * store_columns[c].size;
-        if (columns->dataset[c] < 0 || c == COLUMN_CHECKSUM)
-            continue;
-        if (!hdf_move(columns->dataset[c], hdf_type(store_columns[c].kind), at * width, n * width,
-                      HDF_READ, values))
-            return false;
-        for (hsize_t i = 0; i < n; i++)
-            crc[i] = checksum_crc32c(crc[i], values + i * size, size);
+    bool good = true;
+    for (int c = 0; good && c < COLUMNS; c++) {
+        const size_t width = store->width[c];
+        good = store->column[c] < 0 || hdf_move(store->column[c], hdf_type(store_columns[c].kind),
+                                                at * width, n * width, HDF_READ, block->column[c]);
     }
-    return true;
+    return good;
 }
 
 bool store_distrust(int64_t file, uint8_t *status, uint64_t cases, struct store_damage *damage)
 {
-    struct columns columns;
-    bool good = columns_open(&columns, (hid_t)file, cases);
-    char *values = malloc(VERIFIED_ROWS * columns.largest);
-    uint32_t *crc = malloc(VERIFIED_ROWS * sizeof *crc);
-    uint32_t *stored = malloc(VERIFIED_ROWS * sizeof *stored);
-    const hid_t checksum = columns.dataset[COLUMN_CHECKSUM];
+    struct store store = {.id = (hid_t)file};
+    bool good = open_columns(&store, store.id, cases);
+    struct store_block *block =
+        good ? store_block_make(&store, cases < VERIFIED_ROWS ? (size_t)cases : VERIFIED_ROWS)
+             : NULL;
 
     *damage = (struct store_damage){0};
-    good = good && values && crc && stored;
-    for (uint64_t at = 0, n; good && checksum >= 0 && at < cases; at += n) {
+    good = block != NULL;
+    for (uint64_t at = 0, n; good && store.column[COLUMN_CHECKSUM] >= 0 && at < cases; at += n) {
         n = cases - at < VERIFIED_ROWS ? cases - at : VERIFIED_ROWS;
         bool marked = false;
         for (uint64_t i = at; i < at + n && !marked; i++)
             marked = status[i] != STANCE_PENDING;
         if (!marked)
             continue;
-        good = hdf_move(checksum, H5T_STD_U32LE, at, n, HDF_READ, stored) &&
-               work_out(&columns, at, n, values, crc);
-        for (uint64_t i = 0; good && i < n; i++) {
+        good = read_rows(&store, block, at, n);
+        const uint32_t *stored = good ? block->column[COLUMN_CHECKSUM] : NULL;
+        for (uint64_t i = 0; stored && i < n; i++) {
             if (status[at + i] != STANCE_PENDING &&
-                (crc[i] != stored[i] || status[at + i] > STANCE_FAILED)) {
+                (store_row_checksum(block, i) != stored[i] || status[at + i] > STANCE_FAILED)) {
                 damage->first = damage->cases++ == 0 ? at + i : damage->first;
                 status[at + i] = STANCE_PENDING;
             }
         }
     }
-    columns_close(&columns);
-    free(values);
-    free(crc);
-    free(stored);
+    store_block_free(block);
+    hdf_close_all(store.column, COLUMNS);
     return good;
 }
 

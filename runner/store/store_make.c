@@ -46,7 +46,6 @@ bool put_meaning(hid_t object, const char *unit, const char *text)
            (!text || !text[0] || put_text(object, "long_name", text));
 }
 
-/* CF's flags: the values 0 ... n - 1 and a word for each. */
 bool put_flags(hid_t object, const char *words)
 {
     uint8_t values[32];
@@ -60,8 +59,7 @@ bool put_flags(hid_t object, const char *words)
            put_text(object, "flag_meanings", words);
 }
 
-/* `_FillValue` in the variable's own type. */
-bool put_fill(hid_t object, enum store_kind kind, double fill)
+static bool put_fill(hid_t object, enum store_kind kind, double fill)
 {
     uint8_t flag = 0;
     int64_t count = 0;
@@ -114,16 +112,17 @@ bool attach(hid_t dataset, const struct dimension *const *dimension, int rank)
     return true;
 }
 
-/* A variable over dimensions; -1 on failure. */
-hid_t make_variable(hid_t parent, const char *name, hid_t type,
-                    const struct dimension *const *dimension, int rank, const char *unit,
-                    const char *text)
+hid_t make_variable(hid_t parent, const struct variable *v,
+                    const struct dimension *const *dimension, int rank)
 {
     hsize_t length[SCENARIO_MAX_AXES + 2];
     for (int d = 0; d < rank; d++)
         length[d] = dimension[d]->length;
-    hid_t dataset = make_dataset(parent, name, type, rank, length);
-    if (dataset >= 0 && !(put_meaning(dataset, unit, text) && attach(dataset, dimension, rank))) {
+    hid_t dataset = make_dataset(parent, v->name, hdf_type(v->kind), rank, length);
+    if (dataset >= 0 &&
+        !(put_meaning(dataset, v->flags ? NULL : v->unit, v->text) &&
+          attach(dataset, dimension, rank) && (!v->filled || put_fill(dataset, v->kind, v->fill)) &&
+          (!v->flags || put_flags(dataset, v->flags)))) {
         hdf_close(dataset);
         return -1;
     }
@@ -181,10 +180,11 @@ bool write_values(hid_t dataset, hsize_t n, value_function value, const void *co
 }
 
 /* A dimension whose points are numbers. */
-bool make_numbers(int *dimensions, hid_t parent, const char *name, enum store_kind kind, hsize_t n,
+bool make_numbers(int *dimensions, hid_t parent, const struct variable *v, hsize_t n,
                   value_function value, const void *context, struct dimension *dimension)
 {
-    hid_t dataset = make_dataset(parent, name, hdf_type(kind), 1, &n);
+    hid_t dataset = make_dataset(parent, v->name, hdf_type(v->kind), 1, &n);
     return dataset >= 0 && write_values(dataset, n, value, context) &&
-           make_scale(dimensions, dataset, name, n, dimension);
+           make_scale(dimensions, dataset, v->name, n, dimension) &&
+           put_meaning(dataset, v->unit, v->text);
 }

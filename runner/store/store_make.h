@@ -1,5 +1,5 @@
 /* store_make.h - pieces that results files are made of: attributes, variables, dimensions, as
- * netCDF-4 has them. For store_layout.c alone. -1 or false: HDF5 remembers why.
+ * netCDF-4 has them. -1 or false: HDF5 remembers why.
  */
 #ifndef STANCE_STORE_STORE_MAKE_H
 #define STANCE_STORE_STORE_MAKE_H
@@ -18,10 +18,8 @@ bool put_number(hid_t object, const char *name, enum store_kind kind, const void
 bool put_int(hid_t object, const char *name, int value);
 /* `units` and `long_name`, where not NULL. */
 bool put_meaning(hid_t object, const char *unit, const char *text);
-/* CF's flags: the values 0 ... n - 1 and a word for each; n <= 32. */
+/* CF's flags: the values 0 ... n - 1 and a word for each, separated by blanks; n <= 32. */
 bool put_flags(hid_t object, const char *words);
-/* `_FillValue` in the variable's own type. */
-bool put_fill(hid_t object, enum store_kind kind, double fill);
 
 /* ---- groups, variables, dimensions --------------------------------------------------------- */
 
@@ -29,10 +27,17 @@ hid_t make_group(hid_t parent, const char *name);
 /* A variable of `rank` lengths; 0: a number. */
 hid_t make_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *length);
 bool attach(hid_t dataset, const struct dimension *const *dimension, int rank);
-/* A variable over dimensions. */
-hid_t make_variable(hid_t parent, const char *name, hid_t type,
-                    const struct dimension *const *dimension, int rank, const char *unit,
-                    const char *text);
+/* A variable over dimensions, and what it says of itself. */
+struct variable {
+    const char *name;
+    enum store_kind kind;
+    const char *unit, *text; /* may be NULL */
+    bool filled;
+    double fill;       /* where `filled`: `_FillValue`, in the variable's own type */
+    const char *flags; /* see put_flags; NULL: none */
+};
+hid_t make_variable(hid_t parent, const struct variable *variable,
+                    const struct dimension *const *dimension, int rank);
 /* Turns a one-dimensional dataset into a dimension. `label` is what netCDF looks at; `dimensions`
  * counts those of the file. */
 bool make_scale(int *dimensions, hid_t dataset, const char *label, hsize_t length,
@@ -48,7 +53,7 @@ bool make_words(int *dimensions, hid_t parent, const char *name, const char *con
 typedef double (*value_function)(const void *context, uint64_t i);
 bool write_values(hid_t dataset, hsize_t n, value_function value, const void *context);
 /* A dimension whose points are numbers. */
-bool make_numbers(int *dimensions, hid_t parent, const char *name, enum store_kind kind, hsize_t n,
+bool make_numbers(int *dimensions, hid_t parent, const struct variable *variable, hsize_t n,
                   value_function value, const void *context, struct dimension *dimension);
 
 #endif

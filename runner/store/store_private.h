@@ -40,7 +40,9 @@ enum {
     TRAJECTORY_GAP,
     TRAJECTORIES
 };
-extern const char *const store_trajectories[TRAJECTORIES];
+extern const struct store_trajectory {
+    const char *name, *unit, *text;
+} store_trajectories[TRAJECTORIES];
 
 /* Whether a variable is over the cases; over those that are recorded, their checksum included. */
 bool store_is_column(const char *path);

@@ -18,18 +18,23 @@ bool store_system_failed(stance_message *message, const char *file, const char *
     return complain(message, "%.100s: cannot %s: %s", file, what, strerror(error));
 }
 
+void store_directory(const char *file, char *directory, size_t size)
+{
+    snprintf(directory, size, "%s", file);
+    char *slash = strrchr(directory, '/');
+    if (!slash)
+        snprintf(directory, size, ".");
+    else
+        slash[slash == directory] = '\0';
+}
+
 bool store_fits(const char *file, uint64_t size, stance_message *message)
 {
     struct statvfs system;
     struct rlimit limit;
     char directory[1024], needed[32], there[32];
 
-    snprintf(directory, sizeof directory, "%s", file);
-    char *slash = strrchr(directory, '/');
-    if (!slash)
-        snprintf(directory, sizeof directory, ".");
-    else
-        slash[slash == directory] = '\0';
+    store_directory(file, directory, sizeof directory);
     text_of_bytes(needed, sizeof needed, (double)size);
     if (statvfs(directory, &system) == 0 && (uint64_t)system.f_bavail * system.f_frsize < size) {
         text_of_bytes(there, sizeof there, (double)system.f_bavail * (double)system.f_frsize);

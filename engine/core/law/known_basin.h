@@ -4,7 +4,7 @@
  * x = (posture - target, rates) lies in the set when x' M x <= 1. That x is the whole state takes a
  * law without memory and a support foot that stands: then the place and the velocity of everything
  * else follow from x, up to a shift along the ground. What the set rests on is the business of
- * whoever gives M (engine/control/capture.c estimates it by simulation).
+ * whoever gives M (engine/control/known_basin.c estimates it by simulation).
  */
 #ifndef STANCE_CORE_LAW_KNOWN_BASIN_H
 #define STANCE_CORE_LAW_KNOWN_BASIN_H
@@ -25,32 +25,32 @@ struct known_basin {
 /* Only laws whose torques at an instant follow from the state at it alone. */
 static bool known_basin_applies(const stance_case *c)
 {
-    return c->captures && c->settle && c->has_target && c->support >= 0 && c->delay == 0 &&
+    return c->basin_known && c->settle && c->has_target && c->support >= 0 && c->delay == 0 &&
            !c->decouples && !c->switches && SCENE_POSTURE > 0;
 }
 
-static void known_basin_load(struct known_basin *capture, int lane, const stance_case *c)
+static void known_basin_load(struct known_basin *basin, int lane, const stance_case *c)
 {
     const bool on = known_basin_applies(c);
-    lane_set(&capture->on, lane, on);
-    lane_set(&capture->last, lane, (double)c->steps - ceil(c->capture_time / c->step));
+    lane_set(&basin->on, lane, on);
+    lane_set(&basin->last, lane, (double)c->steps - ceil(c->known_basin_time / c->step));
     for (int i = 0; i < 2 * SCENE_POSTURE; i++)
         for (int j = 0; j <= i; j++)
-            lane_set(&capture->form[i][j], lane,
-                     on ? (i == j ? 1 : 2) * c->captured[i][j] : INFINITY);
+            lane_set(&basin->form[i][j], lane,
+                     on ? (i == j ? 1 : 2) * c->known_basin[i][j] : INFINITY);
 }
 
 /* Lanes in the set. */
-static inline mask known_basin_contains(const struct known_basin *capture, const lanes *deviation,
+static inline mask known_basin_contains(const struct known_basin *basin, const lanes *deviation,
                                         const lanes *rate)
 {
     lanes x[KNOWN_BASIN_STATES], sum = lanes_of(0);
     for (int i = 0; i < SCENE_POSTURE; i++)
         x[i] = deviation[i], x[SCENE_POSTURE + i] = rate[i];
     for (int i = 0; i < 2 * SCENE_POSTURE; i++) {
-        lanes row = capture->form[i][i] * x[i];
+        lanes row = basin->form[i][i] * x[i];
         for (int j = 0; j < i; j++)
-            row += capture->form[i][j] * x[j];
+            row += basin->form[i][j] * x[j];
         sum += row * x[i];
     }
     return mask_less_equal(sum, lanes_of(1));

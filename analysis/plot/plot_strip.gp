@@ -1,0 +1,54 @@
+# plot_strip.gp - stick figures from left to right and row by row, at even intervals of time. Both directions
+# have the same scale. In the plane of $segments and $points the figures stand `spacing` apart.
+per_row = 7
+side = 24
+legend_height = 36
+times_height = 30
+
+page_width = 1120
+top = title_height(0)
+columns = count < per_row ? count : per_row
+rows = (count + per_row - 1)/per_row
+# A lonely figure is not to fill a wall.
+scale = (page_width - 2*side)/(columns*spacing)
+scale = scale < 320/(high - low) ? scale : 320/(high - low)
+height = scale*(high - low)
+panel_top(row) = top + legend_height + (row - 1)*(height + times_height)
+page_height = int(panel_top(rows + 1) + 8)
+load 'page.gp'
+
+group_colour(k) = k < contacts ? hue[k+1] : 0x303030
+left = side
+do for [k=0:contacts] {
+    name = k < contacts ? contact_name[k+1] : 'body'
+    eval box(left, top + 10, group_colour(k))
+    set label name at screen X(left + 22), Y(top + 10) left font ',12' front
+    left = left + 50 + 8*strlen(name)
+}
+bar = round_step(0, spacing, 3)
+set arrow from screen X(left),Y(top + 10) to screen X(left + bar*scale),Y(top + 10) heads size screen 0.004,90 lw 1.4 \
+    lc rgb '#404040'
+set label sprintf('%g m', bar).(travels ? '; each figure is centred: it travels' : '') \
+    at screen X(left + bar*scale + 8), Y(top + 10) left font ',12' front
+do for [i=1:count] {
+    set label sprintf('%.3g s', time[i]) at screen X(side + scale*spacing*((i - 1) % per_row + 0.5)), \
+        Y(panel_top((i - 1)/per_row + 2) - times_height + 10) center font ',12' front
+}
+legend_x = 0
+legend_y = 0
+load 'panels.gp'
+
+unset border
+unset xtics
+unset ytics
+set yrange [low:high]
+do for [row=1:rows] {
+    first = (row - 1)*per_row
+    last = count < row*per_row ? count : row*per_row
+    eval panel(side, panel_top(row), scale*spacing*(last - first), height)
+    set xrange [first*spacing:last*spacing]
+    plot 0 with lines lw 2 lc rgb '#a0a0a0' notitle, \
+        for [k=contacts:0:-1] $segments using 1:($3 == k ? $2 : NaN) with lines lw 2.6 lc rgb group_colour(k) notitle, \
+        for [k=contacts:0:-1] $points using 1:($3 == k ? $2 : NaN) with points pt 7 ps (k < contacts ? 0.75 : 0.9) \
+            lc rgb group_colour(k) notitle
+}

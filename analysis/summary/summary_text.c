@@ -1,0 +1,501 @@
+/* summary_text.c - the summary for people. */
+#include "summary.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum { TABLE_ROWS = 20, CHANGES_SHOWN = 10, WRAP = 100, PAIR_COLUMNS = 6 };
+
+/* ---- what the study was ------------------------------------------------------------- */
+
+static void print_head(const struct results *r)
+{
+    printf("%s\n%s: ", r->title[0] ? r->title : r->name, r->file);
+    if (r->single)
+        printf("case %" PRIu64, r->index);
+    else
+        printf("%" PRIu64 " case%s", r->cases, r->cases == 1 ? "" : "s");
+    printf(", stance %s (%s), %s, %d rank%s\n", r->version, r->revision, r->date, r->ranks,
+           r->ranks == 1 ? "" : "s");
+}
+
+static void print_varied(const struct results *r, int width)
+{
+    char first[128], last[128];
+    for (int k = 0; k < r->varied; k++) {
+        const struct results_varied *v = &r->vary[k];
+        size_t low = 0, high = 0;
+        for (size_t i = 1; i < v->of.count; i++) {
+            low = v->of.value[i] < v->of.value[low] ? i : low;
+            high = v->of.value[i] > v->of.value[high] ? i : high;
+        }
+        results_varied_text(v, low, false, first, sizeof first);
+        results_varied_text(v, high, true, last, sizeof last);
+        printf("    %-*s  %s ... %s%s%s\n", width, v->of.name, first, last,
+               v->of.text[0] ? "; " : "", v->of.text);
+    }
+}
+
+static void print_axes(const struct results *r)
+{
+    char first[128], last[128];
+    int width = 0;
+    for (int a = 0; a < r->axes; a++) {
+        int length = (int)strlen(r->axis[a].name);
+        width = length > width ? length : width;
+    }
+    for (int k = 0; k < r->varied; k++) {
+        int length = (int)strlen(r->vary[k].of.name) + 2;
+        width = length > width ? length : width;
+    }
+    puts("\nVaried");
+    for (int a = 0; a < r->axes; a++) {
+        const struct results_axis *axis = &r->axis[a];
+        if (a == r->sample) {
+            printf("  %-*s  %zu points, %s\n", width, axis->name, axis->count, r->method);
+            print_varied(r, width > 2 ? width - 2 : width);
+            continue;
+        }
+        results_value_text(axis, 0, false, first, sizeof first);
+        results_value_text(axis, axis->count - 1, true, last, sizeof last);
+        printf("  %-*s  %s ... %s, %zu value%s%s%s\n", width, axis->name, first, last, axis->count,
+               axis->count == 1 ? "" : "s", axis->text[0] ? "; " : "", axis->text);
+    }
+}
+
+/* One paragraph per group of fields: "robot: leg_length 0.535 m, ...", wrapped. */
+static void print_fields(const struct summary *summary)
+{
+    char group[96] = "", word[300];
+    int column = 0;
+    if (summary->fields > 0)
+        fputs("\nFixed", stdout);
+    for (size_t i = 0; i < summary->fields; i++) {
+        const struct summary_field *field = &summary->field[i];
+        size_t length = strcspn(field->path, ".");
+        const char *name = field->path[length] ? field->path + length + 1 : field->path;
+        bool same = strncmp(group, field->path, length) == 0 && group[length] == '\0';
+        snprintf(word, sizeof word, "%s %s%s%s", name, field->text, field->unit[0] ? " " : "",
+                 field->unit);
+        if (!same) {
+            snprintf(group, sizeof group, "%.*s", (int)length, field->path);
+            column = printf("\n  %-11s", group);
+        } else if (column + 2 + (int)strlen(word) > WRAP) {
+            printf(",\n  %-11s", "");
+            column = 13;
+        } else {
+            column += printf(", ");
+        }
+        column += printf("%s", word);
+    }
+    if (summary->fields > 0)
+        putchar('\n');
+}
+
+/* ---- outcomes ----------------------------------------------------------------------- */
+
+static bool print_outcomes(const struct summary *summary, const struct results *r)
+{
+    const struct statistics_counts *counts = &summary->counts;
+    struct table t = {0};
+    bool good = true;
+    printf("\nOutcomes of the %" PRIu64 " case%s done%s\n", counts->done,
+           counts->done == 1 ? "" : "s", r->sample < 0 ? "" : ", with 95 % intervals");
+    if (summary_has_outcomes(summary)) {
+        summary_outcomes(&t, summary);
+        good = table_write_text(&t, stdout, "outcome count share low high", 0);
+        table_free(&t);
+    }
+    if (!summary_has_outcomes(summary)) {
+        puts("  not stored in this file");
+    } else if (r->sample >= 0 && r->cases > r->axis[r->sample].count) {
+        puts("  (intervals, here and below: of the sample alone, whose points count however many "
+             "cases\n"
+             "  each has)");
+    } else if (r->sample < 0 && counts->done > 1) {
+        printf("  (of the grid; one case is %.2g %%)\n", 100 / (double)counts->done);
+    }
+    if (summary->inferred > 0) {
+        printf("  of these %14" PRIu64
+               "  %7.3f %%   not simulated: inferred from neighbours that agree\n",
+               summary->inferred, 100 * (double)summary->inferred / (double)counts->done);
+    }
+    if (counts->kind[RESULTS_PENDING] > 0)
+        printf("  %-11s%12" PRIu64 "  not computed yet\n", "pending",
+               counts->kind[RESULTS_PENDING]);
+    for (int f = 0; f < SUMMARY_FAILURES; f++) {
+        if (summary->failures[f] > 0) {
+            printf("  %-11s%12" PRIu64 "  %s: %s\n", "failed", summary->failures[f],
+                   summary_failure_name(f), summary_failure_text(f));
+        }
+    }
+    return good;
+}
+
+/* ---- extents ------------------------------------------------------------------------ */
+
+static const char *end_note(bool open, bool unknown)
+{
+    return open ? " (end of the axis)" : unknown ? " (next case pending or failed)" : "";
+}
+
+/* What became of the case from which an extent would be measured. */
+static const char *start_text(enum results_kind kind)
+{
+    return kind == RESULTS_PENDING  ? "is not computed yet"
+           : kind == RESULTS_FAILED ? "failed"
+                                    : "is not stabilised";
+}
+
+static void print_extents(const struct summary *summary, const struct results *r)
+{
+    bool first = true;
+    char at[128];
+    for (int a = 0; a < r->axes; a++) {
+        const struct statistics_extent *extent = &summary->extent[a];
+        const struct results_axis *axis = &r->axis[a];
+        if (!summary->has_extent[a])
+            continue;
+        if (first) {
+            puts("\nExtent of the stabilised set through the equilibrium");
+            first = false;
+        }
+        printf("  %s", axis->name);
+        if (extent->any) {
+            printf("  %.6g%s ... %.6g%s %s", extent->low,
+                   end_note(extent->low_open, extent->low_unknown), extent->high,
+                   end_note(extent->high_open, extent->high_unknown), axis->unit);
+        } else {
+            results_value_text(axis, extent->point[a], true, at, sizeof at);
+            printf("  %s: the case nearest to the equilibrium (%s) %s",
+                   extent->low_unknown ? "unknown" : "none", at, start_text(extent->kind));
+        }
+        bool also = false;
+        for (int b = 0; b < r->axes; b++) {
+            if (b != a && r->axis[b].offset) {
+                results_value_text(&r->axis[b], extent->point[b], true, at, sizeof at);
+                printf("%s%s = %s", also ? ", " : ", at ", r->axis[b].name, at);
+                also = true;
+            }
+        }
+        putchar('\n');
+    }
+}
+
+/* ---- parameters --------------------------------------------------------------------- */
+
+/* The share is the same at every value. */
+static bool is_even(const struct summary *summary, const struct results *r, int axis)
+{
+    const struct statistics_counts *counts = summary->by_value[axis];
+    for (size_t i = 0; i < r->axis[axis].count; i++) {
+        /* false for NAN, too */
+        if (!(summary_share(summary, &counts[i]) == summary_share(summary, &counts[0])))
+            return false;
+    }
+    return true;
+}
+
+/* "name (unit): long name" */
+static void print_against(const struct summary *summary, const struct results_axis *along)
+{
+    printf("\n%s against %s%s%s%s%s%s\n", summary_judged_word(summary), along->name,
+           along->unit[0] ? " (" : "", along->unit, along->unit[0] ? ")" : "",
+           along->text[0] ? ": " : "", along->text);
+}
+
+static bool print_parameter(const struct summary *summary, const struct results *r, int axis)
+{
+    const struct results_axis *along = &r->axis[axis];
+    const struct statistics_counts *counts = summary->by_value[axis];
+    char from[128], to[128];
+    struct table t = {0};
+    bool extents = false;
+
+    for (int a = 0; summary->parameters == 1 && r->sample < 0 && a < r->axes; a++)
+        extents = extents || (r->axis[a].offset && r->axis[a].count > 1);
+    if (!extents && along->count > 1 && is_even(summary, r, axis)) {
+        printf("\n%s against %s: %.3f %% at each of its %zu values\n", summary_judged_word(summary),
+               along->name, 100 * summary_share(summary, &counts[0]), along->count);
+        return true;
+    }
+    print_against(summary, along);
+    summary_values(&t, summary, r, axis, TABLE_AS_TEXT);
+    const bool good = table_write_text(&t, stdout, "value done share low high extent/", TABLE_ROWS);
+    table_free(&t);
+    if (extents) {
+        puts("  (the last columns: extent of the stabilised set through the equilibrium; * where "
+             "it reaches\n  the end of the axis, ? where the next case is pending or failed)");
+    }
+    const size_t i = summary->steepest[axis];
+    if (along->count > 1 && fabs(summary_share(summary, &counts[i + 1]) -
+                                 summary_share(summary, &counts[i])) > 0) { /* false for NAN */
+        results_value_text(along, i, true, from, sizeof from);
+        results_value_text(along, i + 1, true, to, sizeof to);
+        printf("  changes most between %s (%.3f %%) and %s (%.3f %%)\n", from,
+               100 * summary_share(summary, &counts[i]), to,
+               100 * summary_share(summary, &counts[i + 1]));
+    }
+    return good;
+}
+
+/* The shares of two parameters at once: a column for each value of the one with fewer. */
+static bool print_pairs(const struct summary *summary, const struct results *r)
+{
+    const int across = r->axis[summary->pair[0]].count < r->axis[summary->pair[1]].count ? 0 : 1;
+    const struct results_axis *down = &r->axis[summary->pair[1 - across]],
+                              *columns = &r->axis[summary->pair[across]];
+    struct table t = {0};
+    char text[128];
+
+    if (columns->count > PAIR_COLUMNS || columns->count < 2 || down->count < 2)
+        return true;
+    printf("\n%s (%%) against %s and, across, %s\n", summary_judged_word(summary), down->name,
+           columns->name);
+    for (size_t i = 0; i < down->count; i++) {
+        TABLE_FACTS(&t, {{"value", "", .width = 14, .group = "seen"}, as_place(down, i)});
+        for (size_t j = 0; j < columns->count; j++) {
+            const size_t place = across ? i * columns->count + j : j * down->count + i;
+            results_value_text(columns, j, false, text, sizeof text);
+            TABLE_FACTS(&t, {{"share", text, "%.3f", .width = 11, .percent = true, .group = "seen"},
+                             as_number(summary_share(summary, &summary->pair_counts[place]))});
+        }
+        table_end_row(&t);
+    }
+    const bool good = table_write_text(&t, stdout, "seen/", TABLE_ROWS);
+    table_free(&t);
+    return good;
+}
+
+/* Where the outcome changes along the only axis. */
+static void print_changes(const struct results *r)
+{
+    char from[128], to[128];
+    size_t changes = 0;
+    for (size_t i = 0; i + 1 < r->cases; i++) {
+        if (r->kind[i] == r->kind[i + 1])
+            continue;
+        if (changes == 0)
+            puts("\nThe outcome changes");
+        if (changes++ < CHANGES_SHOWN) {
+            results_value_text(&r->axis[0], i, true, from, sizeof from);
+            results_value_text(&r->axis[0], i + 1, true, to, sizeof to);
+            printf("  between %s (%s) and %s (%s)\n", from, results_kind_names[r->kind[i]], to,
+                   results_kind_names[r->kind[i + 1]]);
+        }
+    }
+    if (changes > CHANGES_SHOWN)
+        printf("  and at %zu more places\n", changes - CHANGES_SHOWN);
+}
+
+/* ---- numbers ------------------------------------------------------------------------ */
+
+static bool print_numbers(const struct summary *summary)
+{
+    struct table t = {0};
+    summary_answers(&t, summary, TABLE_AS_TEXT);
+    if (table_rows(&t) > 0)
+        putchar('\n');
+    const bool good =
+        table_write_text(&t, stdout, "label smallest median q90 q99 largest count of", 0);
+    table_free(&t);
+    return good;
+}
+
+/* The largest of all cases, in a line. */
+static void print_residuals(const struct summary *summary)
+{
+    static const char *const names[] = {"Signorini", "Coulomb", "dissipation", "energy gained"};
+    const char *separator = "\nLargest residuals: ";
+    for (int k = SUMMARY_FIRST_RESIDUAL; k < SUMMARY_NUMBER_COUNT; k++) {
+        const struct summary_numbers *row = &summary->numbers[k];
+        if (row->stored && row->numbers.n > 0) {
+            printf("%s%s %.3g%s%s", separator, names[k - SUMMARY_FIRST_RESIDUAL], row->numbers.high,
+                   row->unit[0] ? " " : "", row->unit);
+            separator = ", ";
+        }
+    }
+    if (separator[0] == ',')
+        putchar('\n');
+}
+
+static void print_cost(const struct summary *summary)
+{
+    const struct summary_count *count = summary->count, *evidence = &count[SUMMARY_evidence];
+    const double steps = count[SUMMARY_steps].sum, iterations = count[SUMMARY_iterations].sum,
+                 evaluations = count[SUMMARY_evaluations].sum;
+    puts("\nCost");
+    if (count[SUMMARY_steps].stored) {
+        printf("  %.6g time steps", steps);
+        if (iterations > 0 && steps > 0)
+            printf(", %.4g Newton iterations per step", iterations / steps);
+        if (count[SUMMARY_evaluations].stored && steps > 0 && evaluations != iterations)
+            printf(", %.4g evaluations per step", evaluations / steps);
+        putchar('\n');
+    }
+    for (int k = 0; k < SUMMARY_COUNT_COUNT; k++) {
+        const bool told = k < SUMMARY_subdivided_steps ? count[k].sum > 0 : count[k].stored;
+        if (count[k].text && told) {
+            printf("  %s: %.6g, in %" PRIu64 " of the cases\n", count[k].text, count[k].sum,
+                   count[k].cases);
+        }
+    }
+    const double captured = evidence->sum - (double)evidence->cases - (double)summary->inferred;
+    if (captured > 0)
+        printf("  ended early in the captured set (evidence: inferred): %.6g cases\n", captured);
+    if (summary->timed) {
+        printf("  %.4g s of computing on %zu rank%s (%.4g s together): %.4g cases/s\n",
+               summary->longest, summary->ranks, summary->ranks == 1 ? "" : "s", summary->total,
+               summary->timed_cases / summary->longest);
+    } else {
+        puts("  no times are recorded");
+    }
+}
+
+/* ---- a single case ------------------------------------------------------------------ */
+
+static const struct {
+    const char *name, *text;
+} case_times[] = {
+    {"end_time", "ended at"}, {"settle_time", "settled at"}, {"fall_time", "fell at"}};
+enum { CASE_TIMES = sizeof case_times / sizeof case_times[0] };
+
+static void print_case(const struct summary *summary, const struct results *r)
+{
+    char name[SCENARIO_MAX_STATES][32];
+    double state[SCENARIO_MAX_STATES], time;
+    int kind = r->kind[0];
+
+    printf("\nOutcome: %s\n",
+           kind == RESULTS_PENDING ? "not computed yet" : results_kind_names[kind]);
+    if (kind == RESULTS_FAILED) {
+        int failure = r->failure ? r->failure[0] : 0;
+        printf("  %s: %s\n", summary_failure_name(failure), summary_failure_text(failure));
+    }
+    if (kind == RESULTS_PENDING || kind == RESULTS_FAILED)
+        return;
+    for (int k = 0; k < CASE_TIMES; k++)
+        if (results_numbers(r, case_times[k].name, &time, 1) == 1 && !isnan(time))
+            printf("  %-12s %.6g s\n", case_times[k].text, time);
+    const size_t n = summary_final_state(r, name, state);
+    for (size_t i = 0; i < n; i++) {
+        printf("%s%s %.6g",
+               i == 0       ? "  final state  "
+               : i == n / 2 ? ",\n               "
+                            : ", ",
+               name[i], state[i]);
+    }
+    if (n > 0)
+        putchar('\n');
+    puts("\nNumbers");
+    for (int k = 0; k < SUMMARY_FIRST_RESIDUAL; k++) {
+        const struct summary_numbers *row = &summary->numbers[k];
+        if (k != SUMMARY_settle_time && k != SUMMARY_fall_time &&
+            results_numbers(r, row->name, &time, 1) == 1 && !isnan(time))
+            printf("  %-18s %.6g%s%s\n", row->name, time, row->unit[0] ? " " : "", row->unit);
+    }
+}
+
+/* Of a run that went on with another scenario. */
+static void print_ancestry(const struct ancestry *ancestry)
+{
+    if (ancestry->scenarios == 1)
+        return;
+    printf("\nMade from %zu scenarios; what is said below of their keys is of the last one\n",
+           ancestry->scenarios);
+    for (size_t k = 0; k < ancestry->scenarios; k++)
+        printf("  since %-22s%12" PRIu64 " cases done\n", ancestry->date[k], ancestry->done[k]);
+}
+
+/* ---- samples ------------------------------------------------------------------------ */
+
+static void print_rays(const struct summary *summary, const struct results *r)
+{
+    const struct summary_rays *rays = summary->rays;
+    const struct results_axis *axis = &r->axis[summary->ray_axis];
+    const struct statistics_numbers *n = &rays->numbers;
+    char text[128];
+
+    printf("\nWhere the stabilised set through the equilibrium ends along %s\n", axis->name);
+    if (n->n > 0) {
+        printf("  smallest %.6g, median %.6g, largest %.6g %s%sof %zu points", n->low, n->median,
+               n->high, axis->unit, axis->unit[0] ? " " : "", n->n);
+        if (rays->open > 0) {
+            printf(", of which %zu reach%s the end of the axis", rays->open,
+                   rays->open == 1 ? "es" : "");
+        }
+        printf("\n  the smallest at point %zu:", rays->nearest);
+        for (int k = 0; k < r->varied; k++) {
+            double value = summary_nearest(rays, r, k);
+            struct results_varied one = r->vary[k];
+            one.of.value = &value;
+            results_varied_text(&one, 0, true, text, sizeof text);
+            printf("%s %s = %s", k ? "," : "", one.of.name, text);
+        }
+        putchar('\n');
+    }
+    if (rays->none > 0) {
+        printf(
+            "  none at %zu points, where the case nearest to the equilibrium is not stabilised\n",
+            rays->none);
+    }
+    if (rays->unknown > 0)
+        printf("  unknown at %zu points, where cases are pending or failed\n", rays->unknown);
+}
+
+static bool print_sample(const struct summary *summary, const struct results *r)
+{
+    struct table t = {0};
+    if (summary->rays)
+        print_rays(summary, r);
+    if (!summary->bins)
+        return true;
+    printf("\n%s against what the sample varies, in parts of equally many points\n",
+           summary_judged_word(summary));
+    for (int k = 0; k < r->varied; k++)
+        summary_parts(&t, summary, r, k);
+    const bool good = table_write_text(&t, stdout, "path values done share low high", 0);
+    table_free(&t);
+    if (r->axes > 1)
+        puts("  (intervals: cases of a point are not independent; what scatters are points)");
+    return good;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+/* What came out, case by case of a sweep; false: no memory. */
+static bool print_sweep(const struct summary *summary, const struct results *r)
+{
+    const bool outcomes = summary_has_outcomes(summary);
+    bool good = print_outcomes(summary, r);
+    if (outcomes)
+        print_extents(summary, r);
+    for (int a = 0; a < r->axes && outcomes; a++)
+        if (summary->by_value[a])
+            good = print_parameter(summary, r, a) && good;
+    if (summary->pair_counts && outcomes)
+        good = print_pairs(summary, r) && good;
+    if (outcomes)
+        good = print_sample(summary, r) && good;
+    if (r->axes == 1 && r->sample < 0)
+        print_changes(r);
+    return print_numbers(summary) && good;
+}
+
+bool summary_print_text(const struct summary *summary, const struct results *r)
+{
+    bool good = true;
+    print_head(r);
+    print_ancestry(&summary->ancestry);
+    if (!r->single)
+        print_axes(r);
+    print_fields(summary);
+    if (r->single)
+        print_case(summary, r);
+    else
+        good = print_sweep(summary, r);
+    print_residuals(summary);
+    print_cost(summary);
+    return good && !ferror(stdout);
+}

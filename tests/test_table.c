@@ -1,0 +1,294 @@
+/* The writer of tables: what people see and what programs get, of numbers that are none, of text
+ * that means harm, and without memory. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/table/table.h"
+
+/* An allocation that no machine can meet fails here, too, instead of ending the program. */
+const char *__asan_default_options(void);
+const char *__asan_default_options(void)
+{
+    return "allocator_may_return_null=1";
+}
+
+/* What was written. */
+static char *text;
+static size_t size;
+
+static FILE *begin(void)
+{
+    free(text);
+    text = NULL;
+    return open_memstream(&text, &size);
+}
+
+static void wrote(FILE *out, const char *wanted)
+{
+    fclose(out);
+    assert_string_equal(text, wanted);
+    free(text);
+    text = NULL;
+}
+
+static void assert_seen(const struct table *t, const char *view, size_t most, const char *wanted)
+{
+    FILE *out = begin();
+    assert_true(table_write_text(t, out, view, most));
+    wrote(out, wanted);
+}
+
+static void assert_csv(const struct table *t, const char *wanted)
+{
+    FILE *out = begin();
+    assert_true(table_write_csv(t, out));
+    wrote(out, wanted);
+}
+
+/* Takes the tree over. */
+static void assert_json(json_t *root, const char *wanted)
+{
+    assert_non_null(root);
+    char *dumped = json_dumps(root, JSON_COMPACT);
+    assert_string_equal(dumped, wanted);
+    free(dumped);
+    json_decref(root);
+}
+
+static void add_row(struct table *t, const char *name, double share, double low, double high,
+                    uint64_t count, const char *note)
+{
+    TABLE_FACTS(
+        t, {{"name", "name", .width = 6, .left = true}, as_text(name)},
+        {{"count", "n", .width = 3}, as_whole(count)},
+        {{"share", "share", "%.1f %%", .width = 8, .percent = true}, as_number(share)},
+        {{"low", "interval", "(%.2f", .before = "   ", .left = true, .empty = ""}, as_number(low)},
+        {{"high", .format = "%.2f)", .joined = true, .before = " ... "}, as_number(high)},
+        {{"note", .hidden = TABLE_VIEW_ONLY, .empty = ""}, as_nothing(note)});
+    table_end_row(t);
+}
+
+static const char view[] = "name count share low high note";
+
+static void test_alignment(void **state)
+{
+    struct table t = {0};
+    (void)state;
+    add_row(&t, "a", 0.125, 0.1, 0.2, 7, NULL);
+    add_row(&t, "much longer", 1, NAN, NAN, 123456, "so");
+    assert_int_equal(table_rows(&t), 2);
+    assert_seen(&t, view, 0,
+                "  name             n    share   interval\n"
+                "  a                7   12.5 %   (0.10 ... 0.20)\n"
+                "  much longer 123456  100.0 %                   so\n");
+    /* Another view: other columns in another order, no wider than they need. */
+    assert_seen(&t, "count name", 0, "       n name\n       7 a\n  123456 much longer\n");
+    assert_seen(&t, "unknown", 0, "\n\n");
+    table_free(&t);
+}
+
+static void test_letters(void **state)
+{
+    struct table t = {0};
+    (void)state;
+    add_row(&t, "\xc3\xa4\xc3\xb6", 0.5, NAN, NAN, 1, NULL); /* two letters, four bytes */
+    assert_seen(&t, "name count", 0, "  name     n\n  \xc3\xa4\xc3\xb6       1\n");
+    table_free(&t);
+}
+
+static void test_nothing(void **state)
+{
+    struct table t = {0};
+    const double numbers[] = {NAN, INFINITY, -INFINITY, 0.1, 1.0 / 3, 123456789012345678.0, 1e-300};
+    (void)state;
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        TABLE_FACTS(&t, {{.name = "x", .heading = "x"}, as_number(numbers[i])},
+                    {{"y", "y", .empty = "none"}, i ? as_text("") : as_nothing(NULL)},
+                    {{.name = "z", .heading = "z"}, as_nothing(i ? NULL : "unknown")},
+                    {{"w", .hidden = TABLE_NO_CSV}, as_truth(i == 0)});
+        table_end_row(&t);
+    }
+    assert_seen(&t, "x y z", 3,
+                "       x    y       z\n"
+                "       - none unknown\n"
+                "     0.1            -\n"
+                "  1e-300            -\n"
+                "  (3 of 7 rows; --csv and --json have them all)\n");
+    assert_csv(&t, "x,y,z\r\n,,\r\ninf,,\r\n-inf,,\r\n0.1,,\r\n0.3333333333333333,,\r\n"
+                   "1.2345678901234568e+17,,\r\n1e-300,,\r\n");
+    json_t *list = table_json(&t, false);
+    assert_true(json_is_null(json_object_get(json_array_get(list, 1), "x")));
+    assert_true(json_is_null(json_object_get(json_array_get(list, 0), "y")));
+    assert_true(json_is_true(json_object_get(json_array_get(list, 0), "w")));
+    assert_true(json_real_value(json_object_get(json_array_get(list, 4), "x")) == 1.0 / 3);
+    json_decref(list);
+    table_free(&t);
+}
+
+static void test_quotes(void **state)
+{
+    struct table t = {0};
+    (void)state;
+    TABLE_COLUMNS(&t, {.name = "plain"}, {.name = "a,b"}, {.name = "c"});
+    TABLE_VALUES(&t, as_text("he said \"so\""), as_text("two\nlines"));
+    TABLE_VALUES(&t, as_text("a,b"));
+    TABLE_VALUES(&t, as_whole(UINT64_MAX), as_text(""), as_text("last"));
+    assert_csv(&t, "plain,\"a,b\",c\r\n\"he said \"\"so\"\"\",\"two\nlines\",\"a,b\"\r\n"
+                   "18446744073709551615,,last\r\n");
+    table_clear(&t); /* goes on without a head */
+    TABLE_VALUES(&t, as_text("x"), as_text("y"), as_text("z"));
+    assert_csv(&t, "x,y,z\r\n");
+    table_free(&t);
+}
+
+/* Text from a file: what is no letter, what moves the cursor, what ends a string. */
+static void test_hostile(void **state)
+{
+    static const char bad[] = "\xff\x1b[2J\n%s%n\"\\";
+    struct table t = {0};
+    (void)state;
+    TABLE_FACTS(&t, {{.name = "x", .heading = "x"}, as_text(bad)},
+                {{.name = "y", .heading = "y"}, as_number(1)});
+    table_end_row(&t);
+    assert_seen(&t, "x y", 0, "             x y\n  ? [2J %s%n\"\\ 1\n");
+    assert_csv(&t, "x,y\r\n\"\xff\x1b[2J\n%s%n\"\"\\\",1\r\n");
+    /* Where it is no UTF-8 it is cleaned, else JSON escapes it. */
+    assert_json(table_json(&t, false), "[{\"x\":\"? [2J %s%n\\\"\\\\\",\"y\":1.0}]");
+    assert_json(TABLE_OBJECT({"x", as_text("\x1b\n")}), "{\"x\":\"\\u001B\\n\"}");
+    table_free(&t);
+
+    /* Far too long a text is cut, for people alone. */
+    struct table longer = {0};
+    char *letters = malloc(100000);
+    assert_non_null(letters);
+    memset(letters, 'x', 99999);
+    letters[99999] = '\0';
+    TABLE_FACTS(&longer, {{.name = "x", .heading = "x"}, as_text(letters)},
+                {{"y", .joined = true, .before = " and "}, as_text(letters)});
+    table_end_row(&longer);
+    FILE *out = begin();
+    assert_true(table_write_text(&longer, out, "x y", 0));
+    fclose(out);
+    assert_true(size < 2000);
+    out = begin();
+    assert_true(table_write_csv(&longer, out));
+    fclose(out);
+    assert_int_equal(size, 5 + 2 * 99999 + 1 + 2);
+    free(letters);
+    table_free(&longer);
+}
+
+/* ---- JSON --------------------------------------------------------------------------------- */
+
+static void test_json(void **state)
+{
+    double values[] = {0.25, 0.5};
+    char *words[] = {"one", "two"};
+    struct results r = {.axes = 2,
+                        .axis = {{.name = "ground.friction", .count = 2, .value = values},
+                                 {.name = "method.name", .count = 2, .word = words}}};
+    const size_t point[SCENARIO_MAX_AXES] = {1, 1};
+    struct table t = {0}, none = {0};
+    (void)state;
+    table_axes(&t, &r, (const int[]){0, 1}, 2, point);
+    TABLE_FACTS(&t, {{"first_low", .group = "first", .key = "low"}, as_number(0.5)},
+                {{"csv", .hidden = TABLE_NO_JSON}, as_whole(1)},
+                {{"tree", .hidden = TABLE_NO_CSV}, as_tree(json_pack("[i,i]", 1, 2))});
+    table_end_row(&t);
+    assert_json(table_json(&t, false), "[{\"at\":{\"ground.friction\":0.5,\"method.name\":\"two\"},"
+                                       "\"first\":{\"low\":0.5},\"tree\":[1,2]}]");
+    assert_json(table_json(&t, false), "[{\"at\":{\"ground.friction\":0.5,\"method.name\":\"two\"},"
+                                       "\"first\":{\"low\":0.5},\"tree\":[1,2]}]"); /* once more */
+    assert_csv(&t, "ground.friction,method.name,first_low,csv\r\n0.5,two,0.5,1\r\n");
+    assert_seen(&t, "at/", 0,
+                "   ground.friction      method.name\n               0.5              two\n");
+    table_free(&t);
+
+    TABLE_FACTS(&t, {{"name", .hidden = TABLE_NO_JSON}, as_text("k")},
+                {{.name = "n"}, as_whole(2)});
+    table_end_row(&t);
+    assert_json(table_json(&t, true), "{\"k\":{\"n\":2}}");
+    table_free(&t);
+
+    table_axes(&none, &r, NULL, 0, point); /* there, even if it is empty */
+    table_end_row(&none);
+    assert_json(table_json(&none, false), "[{\"at\":{}}]");
+    table_free(&none);
+}
+
+/* ---- failures ----------------------------------------------------------------------------- */
+
+static void *no_room(size_t bytes)
+{
+    (void)bytes;
+    return NULL;
+}
+
+static void test_no_memory(void **state)
+{
+    struct table t = {0};
+    json_t *tree = json_array();
+    (void)state;
+    add_row(&t, "a", 1, 2, 3, 4, "note");
+    t.letters = SIZE_MAX / 8; /* the next text asks for more than there can be */
+    TABLE_VALUES(&t, as_text("b"));
+    assert_true(t.failed);
+    t.letters = 0;
+    TABLE_VALUES(&t, as_tree(json_incref(tree))); /* is released */
+    assert_int_equal(tree->refcount, 1);
+    TABLE_COLUMNS(&t, {.name = "more"});
+    FILE *out = begin();
+    assert_false(table_write_text(&t, out, view, 0));
+    assert_false(table_write_csv(&t, out));
+    fclose(out);
+    assert_null(table_json(&t, false));
+    assert_null(table_json(&t, true));
+    json_decref(tree);
+    table_free(&t);
+
+    add_row(&t, "a", 1, 2, 3, 4, "note");
+    json_set_alloc_funcs(no_room, free);
+    assert_null(table_json(&t, false));
+    assert_null(table_json(&t, true));
+    assert_null(TABLE_OBJECT({"a", as_text("b")}));
+    out = begin();
+    assert_false(table_write_json(TABLE_OBJECT({"a", as_whole(1)}), out));
+    fclose(out);
+    json_set_alloc_funcs(malloc, free);
+    table_free(&t);
+}
+
+static void test_no_output(void **state)
+{
+    struct table t = {0};
+    (void)state;
+    add_row(&t, "a", 1, 2, 3, 4, NULL);
+    FILE *full = fopen("/dev/full", "w");
+    assert_non_null(full);
+    setvbuf(full, NULL, _IONBF, 0);
+    assert_false(table_write_text(&t, full, view, 0));
+    assert_false(table_write_csv(&t, full));
+    assert_false(table_write_json(table_json(&t, false), full));
+    fclose(full);
+    table_free(&t);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_alignment), cmocka_unit_test(test_letters),
+        cmocka_unit_test(test_nothing),   cmocka_unit_test(test_quotes),
+        cmocka_unit_test(test_hostile),   cmocka_unit_test(test_json),
+        cmocka_unit_test(test_no_memory), cmocka_unit_test(test_no_output),
+    };
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    free(text);
+    return failed;
+}

@@ -1,0 +1,5 @@
+#!/usr/bin/env bash
+# Pictures of every kind show what the results files hold: see pictures.py. Speaks TAP.
+set -u
+. "$(dirname "$0")/scratch.sh"
+"$python" "$tests/pictures.py" "$stance" "$shipped"
