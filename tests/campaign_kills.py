@@ -58,8 +58,10 @@ def wait_for_end(process, ranks):
     try:
         process.wait(PATIENCE)
     except subprocess.TimeoutExpired as late:
+        left = children(process.pid)
         os.killpg(process.pid, signal.SIGKILL)
-        raise Bad(f"the launcher does not end within {PATIENCE} s of a kill") from late
+        raise Bad(f"the launcher does not end within {PATIENCE} s of a kill; of {len(ranks)} ranks "
+                  f"{len(left)} are there") from late
     until = time.monotonic() + PATIENCE
     while any(os.path.exists(f"/proc/{rank}") for rank in ranks):
         if time.monotonic() > until:
@@ -80,7 +82,10 @@ def run_and_kill(scenario, file, times, rng):
         time.sleep(when)
         alive = children(process.pid)
         struck = kill(process, mode, rng)
-        wait_for_end(process, alive)
+        try:
+            wait_for_end(process, alive)
+        except Bad as bad:
+            raise Bad(f"{mode} of {ranks} after {when:.3f} s: {bad}") from bad
         said.seek(0)
         errors = said.read().decode(errors="replace")
     if not struck and process.returncode not in (0, 1):

@@ -186,6 +186,7 @@ def lines():
     assert p.legend() == shares(data) and len(p.legend()) == 2
     strip = sorted(p.panels[0].areas, key=lambda a: min(x for x, _ in a[1]))
     assert [c for c, _ in strip] == [COLOURS["rested"], COLOURS["undecided"]]
+    assert not p.panels[0].words(1), "a strip of outcomes has no scale"
     values = data["ground.restitution"][...]
     for k, name in enumerate(["settle_time", "end_time", "friction_used"]):
         panel, wanted = p.panels[k + 1], data[name][...]

@@ -1,23 +1,62 @@
 #!/usr/bin/env bash
-# The rooms of the program in their order: a file may include what stands in its own room or in one
-# that comes before it here. Prints every arrow that runs back up; exit code 1 if there is one.
+# The rooms of the program: a file may include what stands in its own room and in those that its room may
+# use, and from the top, by "room/file.h". Prints every include that does not; exit code 1 if there is one.
 cd "$(dirname "$0")/.."
-rooms="
-engine
-engine/core/lanes engine/core/contact engine/core/law engine/core/implicit engine/core/mode engine/core/loop
-engine/scenes engine/laws engine/methods engine/control
-runner/base runner/ranks runner/scenario runner/plan runner/store runner/run
-analysis/statistics analysis/table analysis/draw
-analysis/summary analysis/basin analysis/sensitivity analysis/compare analysis/plot analysis/bench
-runner"
-git ls-files -co --exclude-standard 'engine/*.[ch]' 'runner/*.[ch]' 'analysis/*.[ch]' | xargs -r grep -H '^#include "' /dev/null |
-    awk -F: -v rooms="$rooms" '
-    BEGIN { n = split(rooms, name, /[ \n]+/); for (i = 1; i <= n; i++) if (name[i] != "") order[name[i]] = i }
-    function room(path) { sub(/\/[^\/]*$/, "", path); return path }
-    {
-        split($2, word, "\""); to = index(word[2], "/") ? room(word[2]) : room($1)
-        from = room($1)
-        if (!(from in order) || !(to in order)) { print "no such room: " $1 " -> " word[2]; bad = 1 }
-        else if (order[to] > order[from]) { print "runs back up: " $1 " -> " word[2]; bad = 1 }
+runner='engine engine/control runner/base runner/ranks runner/scenario runner/plan runner/store runner/run'
+numbers="engine $runner analysis/statistics analysis/table"
+rooms="engine:
+engine/core/lanes: engine
+engine/core/contact: engine engine/core/lanes
+engine/core/law: engine engine/core/lanes engine/core/contact
+engine/core/implicit: engine engine/core/lanes engine/core/contact engine/core/law
+engine/core/mode: engine engine/core/lanes engine/core/contact engine/core/law engine/core/implicit
+engine/core/loop: engine engine/core/lanes engine/core/contact engine/core/law engine/core/implicit engine/core/mode
+engine/scenes: engine engine/core/lanes
+engine/laws: engine
+engine/methods: engine engine/core/implicit engine/core/mode engine/core/loop
+engine/control: engine
+runner/base: engine
+runner/ranks: engine runner/base
+runner/scenario: engine runner/base
+runner/plan: engine engine/control runner/base runner/ranks runner/scenario
+runner/store: engine runner/base runner/ranks runner/scenario runner/plan
+runner/run: engine runner/base runner/ranks runner/scenario runner/plan runner/store
+analysis/statistics: $runner
+analysis/table: $runner analysis/statistics
+analysis/draw: $numbers
+analysis/summary: $numbers analysis/draw
+analysis/basin: $numbers analysis/draw
+analysis/sensitivity: $numbers analysis/draw analysis/summary
+analysis/compare: $numbers analysis/draw
+analysis/plot: $numbers analysis/draw analysis/summary analysis/basin analysis/sensitivity
+analysis/bench: $numbers analysis/draw analysis/summary analysis/basin analysis/sensitivity analysis/plot
+runner: $runner"
+git ls-files -co --exclude-standard 'engine/*.[ch]' 'runner/*.[ch]' 'analysis/*.[ch]' |
+    xargs -r grep -HE '^[[:space:]]*#[[:space:]]*include' /dev/null |
+    awk -v rooms="$rooms" '
+    BEGIN {
+        n = split(rooms, row, "\n")
+        for (i = 1; i <= n; i++) {
+            split(row[i], part, ":")
+            known[part[1]] = 1
+            m = split(part[2], use, " ")
+            for (k = 1; k <= m; k++) may[part[1], use[k]] = 1
+        }
     }
-    END { exit bad }'
+    function room(path) { sub(/\/[^\/]*$/, "", path); return path }
+    function bad(text) { print text ": " file " includes " name; wrong = 1 }
+    {
+        file = name = $0
+        sub(/:.*/, "", file)
+        sub(/^[^:]*:[[:space:]]*#[[:space:]]*include[[:space:]]*/, "", name)
+        ours = name ~ /^"/ || name ~ /^<(engine|runner|analysis)\//
+        if (name !~ /^["<]/ && name != "STANCE_SCENE_LANES") bad("not a name")
+        if (!ours) next
+        path = substr(name, 2)
+        sub(/[">].*/, "", path)
+        from = room(file)
+        to = index(path, "/") ? room(path) : from
+        if (!(from in known) || !(to in known)) bad("no such room")
+        else if (from != to && !((from, to) in may)) bad("may not")
+    }
+    END { exit wrong }'

@@ -129,8 +129,8 @@ bool gnuplot_begin(struct gnuplot *g, const char *picture, const char *title, co
              base && base[0] && strlen(base) < 200 ? base : "/tmp");
     g->sink = fopen("/dev/null", "wb");
     if (!g->sink || !mkdtemp(g->scratch)) {
-        snprintf(message->text, sizeof message->text, "%.150s: cannot make a directory: %s",
-                 g->scratch, strerror(errno));
+        snprintf(message->text, sizeof message->text, "%.150s: cannot make a directory%s: %s",
+                 g->scratch, kept_in() ? " (STANCE_SCRIPTS)" : "", strerror(errno));
         if (g->sink)
             fclose(g->sink);
         return false;

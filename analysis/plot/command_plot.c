@@ -269,6 +269,7 @@ const struct command command_plot = {
         "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
         "\n"
         "  -o DIR         where the pictures go\n"
+        "  STANCE_SCRIPTS=DIR in the environment keeps each picture's gnuplot script and data\n"
         "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
         "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another "
         "number) of "

@@ -386,8 +386,8 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
     }
     put_names(&page, t->contact, t->contacts);
     if (c->readable) {
-        snprintf(text, sizeof text, "friction %.4g", c->values.friction);
-        gnuplot_note(&page.g, "dotted: limit of");
+        snprintf(text, sizeof text, "limit of friction %.4g", c->values.friction);
+        gnuplot_note(&page.g, "tangential, dotted:");
         gnuplot_note(&page.g, text);
     }
     return end_page(&page, "forces", message);

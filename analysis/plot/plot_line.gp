@@ -25,7 +25,7 @@ load 'panels.gp'
 eval panel(left, top, width, strip)
 eval axis_tics('x', 10, panels == 0)
 set yrange [0:1]
-set ytics ()
+set ytics (-1) # none in sight
 plot $runs using (0.5*($1+$2)):(0.5):1:2:(0):(1):(kind_colour[$3+1]) \
     with boxxyerror fillstyle solid noborder lc rgb variable notitle
 eval grid

@@ -51,8 +51,9 @@ static int open_and_work(void *context)
     if (message.text[0])
         fprintf(stderr, "%s\n", message.text);
     else if (code == EXIT_IO)
-        fprintf(stderr, "stance %s: not enough memory, or the output could not be written\n",
-                report->command->name);
+        fprintf(stderr, "stance %s: %s\n", report->command->name,
+                fflush(stdout) != 0 || ferror(stdout) ? "the output could not be written"
+                                                      : "not enough memory");
     return code;
 }
 

@@ -14,9 +14,11 @@
 #include "known_basin.h"
 
 #include "runner/base/message.h"
+#include "runner/scenario/schema.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define DEEPEST_START 1e-9 /* m: penetration of an initial state that counts as rounding */
@@ -158,19 +160,22 @@ static void clear_design(struct resolved_design *design)
         design->start[i] = design->equilibrium[i] = NAN;
 }
 
-void resolve_keep_design_inputs(struct scenario_values *values, bool sampled)
+bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_values *values,
+                                bool sampled)
 {
-#define LEAVE_OUT(field) memset(&values->field, 0, sizeof values->field)
-    LEAVE_OUT(friction), LEAVE_OUT(restitution), LEAVE_OUT(contacts);
-    LEAVE_OUT(prefer);
-    LEAVE_OUT(offset), LEAVE_OUT(offset_scale), LEAVE_OUT(state);
-    LEAVE_OUT(law_value), LEAVE_OUT(far), LEAVE_OUT(near_angle), LEAVE_OUT(near_rate);
-    LEAVE_OUT(delay), LEAVE_OUT(torque_limit), LEAVE_OUT(noise);
-    LEAVE_OUT(method), LEAVE_OUT(step), LEAVE_OUT(tolerance);
-    LEAVE_OUT(stop_time), LEAVE_OUT(settle), LEAVE_OUT(settle_angle), LEAVE_OUT(settle_rate);
-    LEAVE_OUT(settle_hold), LEAVE_OUT(fall_height);
-#undef LEAVE_OUT
-    values->sample_time = sampled ? values->sample_time : 0;
+    struct schema *schema = malloc(sizeof *schema);
+    const bool good = schema && schema_build(schema, scene);
+    const double sample_time = values->sample_time;
+    for (size_t k = 0; good && k < schema->count; k++) {
+        const struct scenario_field *field = &schema->field[k];
+        if (field->offset != NO_OFFSET && !field->design)
+            memset((char *)values + field->offset, 0,
+                   field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int));
+    }
+    free(schema);
+    values->settle = 0;
+    values->sample_time = sampled ? sample_time : 0;
+    return good;
 }
 
 bool resolve_design(const stance_scene *scene, const struct scenario_values *values,

@@ -33,10 +33,10 @@ struct resolved_design {
 bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
                     struct resolved_design *design, stance_message *message);
 
-/* Sets to 0 what no design of these values depends on. New fields of the struct count as inputs
- * until they are named here. Of controller.sample_time only a design for the sampled model depends.
- */
-void resolve_keep_design_inputs(struct scenario_values *values, bool sampled);
+/* Sets to 0 what no design of these values depends on, by the schema's rows. On
+ * controller.sample_time only a design for the sampled model depends. False: no memory. */
+bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_values *values,
+                                bool sampled);
 
 /* The robot that the design believes in, model[STANCE_MAX_ROBOT], and the equilibrium it is made
  * at: the controller's, or for laws without one the initial one. false: `message` says why there is

@@ -1,7 +1,7 @@
 /* schedule.h - which rows a rank computes next: chunks of the guided schedule, in stretches.
  *
  * No clock, no messages: the number of each chunk comes from a counter that the ranks share, or
- * from a simulated one (bench schedule).
+ * from a simulated one (tests/bench_schedule.c).
  */
 #ifndef STANCE_PLAN_SCHEDULE_H
 #define STANCE_PLAN_SCHEDULE_H

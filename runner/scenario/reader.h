@@ -1,5 +1,5 @@
 /* reader.h - the state of reading a scenario, shared by scenario.c, scenario_check.c, sweep.c and
- * sample.c. */
+ * doe_scenario.c. */
 #ifndef STANCE_SCENARIO_READER_H
 #define STANCE_SCENARIO_READER_H
 
@@ -85,7 +85,7 @@ static inline bool axis_complain(struct axis_reader *a, const char *what)
 /* "sweep.grid[2]" or "sweep.sample". */
 const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME]);
 
-/* sample.c: the last axis from sweep.sample, after the others. */
+/* doe_scenario.c: the last axis from sweep.sample, after the others. */
 void doe_read(struct reader *r);
 void doe_free(struct scenario_sample *sample);
 

@@ -321,9 +321,9 @@ static void set_defaults(struct reader *r)
 
     for (size_t i = 0; i < r->schema.count; i++) {
         const struct scenario_field *field = &r->schema.field[i];
-        char *place = (char *)base + field->offset;
         if (field->offset == NO_OFFSET)
             continue;
+        char *place = (char *)base + field->offset;
         if (field->type == FIELD_NUMBER) {
             const size_t items =
                 (field->items ? field->items : 1) * (field->columns ? field->columns : 1);

@@ -156,9 +156,8 @@ static bool same_designs(const struct scenario *a, const struct scenario *b)
         scenario_axis_of(a, offsetof(struct scenario_values, design_time), &k) != NULL;
     memcpy(&x, &a->base, sizeof x);
     memcpy(&y, &b->base, sizeof y);
-    resolve_keep_design_inputs(&x, sampled);
-    resolve_keep_design_inputs(&y, sampled);
-    return same_bits(&x, &y, sizeof x);
+    return resolve_keep_design_inputs(a->scene, &x, sampled) &&
+           resolve_keep_design_inputs(b->scene, &y, sampled) && same_bits(&x, &y, sizeof x);
 }
 
 static bool same_cases(const struct scenario *a, const struct scenario *b)
