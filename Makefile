@@ -210,7 +210,7 @@ $(BUILD)/tests/bench_schedule $(BUILD)/tests/test_schedule: test_objects = $(BUI
 
 # What Open MPI wants in a container, as root, on few cores. PMIx keeps its data in the memory of each
 # process (hash): in shared memory (ds21) a mutex that a killed rank holds is never given back, and
-# mpirun waits for it for ever when it ends.
+# mpirun waits for it for ever when it ends (as it does now and then for a mutex of its own).
 MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 PMIX_MCA_gds=hash \
                   OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
 TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(abspath $(PROGRAM)) \
