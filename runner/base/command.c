@@ -146,13 +146,14 @@ size_t command_word(const struct command *command, const char *option, const cha
         k++;
     if (k < count)
         return k;
+    const char *near = count > MANY ? nearest_word(word, known, count) : NULL;
     char list[600];
-    const char *near = nearest_word(word, known, count);
-    if (near && count > MANY)
-        snprintf(list, sizeof list, "%s (did you mean that?)", near);
-    else
-        word_list(list, sizeof list, known, count);
-    fprintf(stderr, "stance %s: %s takes %s%s, not '%.60s'\n", command->name, option,
-            near && count > MANY ? "" : "one of ", list, word);
+    if (near) {
+        fprintf(stderr, "stance %s: %s: there is no '%.60s'; did you mean '%s'?\n", command->name,
+                option, word, near);
+    } else {
+        fprintf(stderr, "stance %s: %s takes one of %s, not '%.60s'\n", command->name, option,
+                word_list(list, sizeof list, known, count), word);
+    }
     return count;
 }

@@ -84,7 +84,7 @@ static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *in
 {
     /* What ties dimensions together holds addresses within the file; checksums say what the values
      * say. */
-    static const char *const structure[] = {"DIMENSION_LIST", "REFERENCE_LIST", SEAL_ATTRIBUTE,
+    static const char *const structure[] = {"DIMENSION_LIST", "REFERENCE_LIST", CHECKSUM_ATTRIBUTE,
                                             NULL};
     (void)object, (void)info;
     if (!is_listed(name, structure))

@@ -77,7 +77,7 @@ static bool put_checksum(hid_t dataset, const char *name)
 {
     uint32_t crc = 0;
     return checksum_of(dataset, name, &crc) &&
-           put_number(dataset, SEAL_ATTRIBUTE, KIND_uint32_t, &crc);
+           put_number(dataset, CHECKSUM_ATTRIBUTE, KIND_uint32_t, &crc);
 }
 
 static bool say_damaged(const struct walk *walk, const char *variable, const char *what)
@@ -90,9 +90,9 @@ static bool say_damaged(const struct walk *walk, const char *variable, const cha
 static bool verify_checksum(const struct walk *walk, hid_t dataset, const char *variable)
 {
     uint32_t crc = 0, expected = 0;
-    if (H5Aexists(dataset, SEAL_ATTRIBUTE) <= 0)
+    if (H5Aexists(dataset, CHECKSUM_ATTRIBUTE) <= 0)
         return !walk->strict || say_damaged(walk, variable, "has no checksum");
-    if (!hdf_number(dataset, SEAL_ATTRIBUTE, hdf_type(KIND_uint32_t), &expected) ||
+    if (!hdf_number(dataset, CHECKSUM_ATTRIBUTE, hdf_type(KIND_uint32_t), &expected) ||
         !checksum_of(dataset, variable, &crc))
         return say_damaged(walk, variable, "cannot be read");
     return crc == expected || say_damaged(walk, variable, "is not as its checksum says");

@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define SEAL_ATTRIBUTE "checksum"
+#define CHECKSUM_ATTRIBUTE "checksum"
 
 /* Gives every such variable its attribute. `file`: HDF5 identifier of a file open for writing, all
  * of whose variables exist. */
