@@ -51,6 +51,8 @@ ALLFLAGS = -I. $(STRICT) $(WARNINGS) $(SANITIZE)
 
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
 SCENES  = ball block rod biped
+# Of mechanisms: the structure is read at run time, in one lane. Others are compiled on demand.
+RUNTIME = runtime
 METHODS = implicit midpoint capturing lagrange
 SCALAR_METHODS = event_driven
 MACHINE := $(shell uname -m)
@@ -66,9 +68,12 @@ isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2 -mfma
 isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma
 # Methods that take one case at a time run on every processor.
 scalar_method_flags = -DSTANCE_LANES=1
+# Loops over contacts are unrolled before gcc knows which of them a set leaves out.
+kernel_warnings = -Wno-maybe-uninitialized
 
-kernels        := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i))))
-scalar_kernels := $(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
+kernels        := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i)))) \
+                  $(foreach m,$(METHODS),$(RUNTIME)-$(m)-scalar)
+scalar_kernels := $(foreach s,$(SCENES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
 kernel_objects := $(patsubst %,$(BUILD)/kernel/%.o,$(kernels) $(scalar_kernels))
 engine_sources := $(wildcard engine/*.c engine/core/lanes/*.c engine/laws/*.c engine/scenes/*.c)
 engine_objects := $(engine_sources:%.c=$(BUILD)/%.o) $(kernel_objects)
@@ -105,12 +110,13 @@ $(BUILD)/%.a:
 define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
-	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES)),$(1)),-DSTANCE_DESCRIBE_METHOD) \
+	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(kernel_warnings) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES)),$(1)),-DSTANCE_DESCRIBE_METHOD) \
 	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
 $(eval $(call kernel_rule,$(s),$(m),$(i),$(isa_flags_$(i)))))))
-$(foreach s,$(SCENES),$(foreach m,$(SCALAR_METHODS),\
+$(foreach m,$(METHODS),$(eval $(call kernel_rule,$(RUNTIME),$(m),scalar,$(isa_flags_scalar))))
+$(foreach s,$(SCENES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),\
 $(eval $(call kernel_rule,$(s),$(m),scalar,$(scalar_method_flags)))))
 
 $(BUILD)/engine/%.o: engine/%.c Makefile
@@ -129,6 +135,14 @@ $(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(scripts:%.gp=$(b)/%.o): $(b)/%.o: %.
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/store/build_info.o: $(BUILD)/revision
+# Kernels that are compiled on demand: the sources that the program carries, and how it compiles them.
+carried = $(sort $(wildcard engine/*.h engine/core/*/*.h engine/scenes/*_lanes.h engine/scenes/tree_*.h)) $(METHODS:%=engine/methods/%.c)
+$(BUILD)/runner/objects/sources.o: EXTRA = -DSTANCE_SOURCES='$(foreach f,$(carried),SOURCE("$(f)"))'
+$(BUILD)/runner/objects/sources.o: $(carried)
+$(BUILD)/runner/objects/compiler.o: EXTRA = \
+    -DSTANCE_OBJECT_FLAGS='"$(filter-out -g%,$(KERNEL_CFLAGS)) $(STRICT)"' \
+    -DSTANCE_OBJECT_ISAS='$(foreach i,$(ISAS),ISA($(i),$(isa_flags_$(i))))'
+$(BUILD)/runner/objects/sources.o $(BUILD)/runner/objects/compiler.o: $(BUILD)/kernels
 # The table of kernels is made anew when the list of what it holds changes.
 $(BUILD)/engine/kernels.o: EXTRA = $(kernel_lists)
 $(BUILD)/engine/kernels.o: $(BUILD)/kernels
@@ -142,6 +156,9 @@ $(BUILD)/revision: FORCE
 # ---- tests ---------------------------------------------------------------------------------------
 test_sources  := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
+
+# What whole-program tests call.
+other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers
 
 $(BUILD)/tests/%: tests/%.c $(shared_objects) $(archives)
 	@mkdir -p $(@D)
@@ -168,7 +185,7 @@ doubting_objects = $(doubting:%=$(BUILD)/tests/doubting-%.o)
 define doubting_rule
 $(BUILD)/tests/doubting-$(1)-$(2).o: engine/methods/$(2).c Makefile
 	@mkdir -p $$(@D)
-	$$(call QUIET,cc,$$@)$$(CC) -O1 $$(ALLFLAGS) $(isa_flags_scalar) -DSTANCE_DOUBT -DSTANCE_SCENE=$(1) -DSTANCE_ISA=doubting \
+	$$(call QUIET,cc,$$@)$$(CC) -O1 $$(ALLFLAGS) $$(kernel_warnings) $(isa_flags_scalar) -DSTANCE_DOUBT -DSTANCE_SCENE=$(1) -DSTANCE_ISA=doubting \
 	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(eval $(call doubting_rule,$(s),$(m)))))
@@ -176,10 +193,15 @@ $(BUILD)/tests/test_lanes: $(doubting_objects)
 $(BUILD)/tests/test_lanes: test_objects = $(doubting_objects)
 $(BUILD)/tests/test_lanes: EXTRA = -DSTANCE_DOUBTING_LIST='$(foreach k,$(doubting),KERNEL($(subst -,$(comma),$(k))))'
 
+# What the engine says of mechanisms, for the independent program tests/mechanism_oracle.py.
+$(BUILD)/tests/mechanism_numbers: tests/mechanism_numbers.c $(BUILD)/libstance.a
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $(filter %.c %.a,$^) $(LDFLAGS) $(LIBS)
+
 # Hashes of what the kernels compute, by a program of the engine alone that other machines run too.
 $(BUILD)/tests/golden: tests/golden.c $(BUILD)/libstance.a
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $^ $(LDFLAGS) $(GOLDEN_LIBS)
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $(filter %.c %.a,$^) $(LDFLAGS) $(GOLDEN_LIBS)
 golden: $(BUILD)/tests/golden
 GOLDEN_LIBS = $(LIBS)
 
@@ -224,10 +246,10 @@ test-neon: packages-neon
 
 test: packages-test
 	$(MAKE) check
-check: $(PROGRAM) $(test_programs) $(BUILD)/tests/bench_schedule golden fuzz-programs
+check: $(PROGRAM) $(test_programs) $(other_programs) fuzz-programs
 	@$(TEST_ENVIRONMENT) bash tests/run.sh
 test-long: packages-test
-	$(MAKE) $(PROGRAM) $(test_programs) $(BUILD)/tests/bench_schedule golden fuzz-programs
+	$(MAKE) $(PROGRAM) $(test_programs) $(other_programs) fuzz-programs
 	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
 # Numbers that depend on the neighbours: HUNT_CASES of each kind for every method of the biped, a core

@@ -15,6 +15,7 @@
 #define STANCE_SCALAR_KERNEL_LIST
 #endif
 
+extern const stance_scene stance_scene_runtime;
 #define METHOD(method) extern const stance_method stance_method_##method;
 STANCE_METHOD_LIST
 #undef METHOD
@@ -75,11 +76,15 @@ static bool isa_runs(const char *isa)
 const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_method *method,
                                         const char *isa)
 {
+    const bool described =
+        scene->mechanism; /* then the structure is read at run time, for any isa */
+    if (described)
+        scene = &stance_scene_runtime;
     for (int i = KERNELS - 1; i >= 0; i--) {
         const stance_kernel *const k = kernels[i];
         if (k->scene != scene || k->method != method || !isa_runs(k->isa))
             continue;
-        if (!isa || strcmp(isa, k->isa) == 0)
+        if (!isa || strcmp(isa, k->isa) == 0 || described)
             return k;
     }
     for (int i = 0; scalar_kernels[i]; i++)

@@ -6,6 +6,14 @@
 extern const stance_scene stance_scene_biped, stance_scene_ball, stance_scene_block,
     stance_scene_rod;
 
+void stance_robot_fallback(const stance_scene *scene, double *robot)
+{
+    memset(robot, 0, sizeof(double[STANCE_MAX_ROBOT]));
+    for (int i = 0; i < scene->robot_count; i++)
+        robot[i] = scene->robot[i].fallback;
+    robot[STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY;
+}
+
 const stance_scene *const *stance_scenes(void)
 {
     static const stance_scene *const scenes[] = {&stance_scene_biped, &stance_scene_ball,

@@ -13,12 +13,17 @@
 #include <stdint.h>
 
 enum {
-    STANCE_MAX_COORDINATES = 5,
-    STANCE_MAX_CONTACTS = 2,
-    STANCE_MAX_ACTUATORS = 2,
-    STANCE_MAX_POSTURE = 3, /* coordinates that a posture law acts on */
-    STANCE_MAX_ROBOT = 8,   /* parameters of a scene's body */
-    STANCE_MAX_POINTS = 24, /* points of a stick figure */
+    STANCE_MAX_COORDINATES = 9,
+    STANCE_MAX_CONTACTS = 12,
+    STANCE_MAX_ACTUATORS = 6,
+    STANCE_MAX_POSTURE = 8, /* coordinates that a posture law acts on */
+    STANCE_MAX_ROBOT = 96,  /* parameters of a scene's body; the last two are the world's: */
+    STANCE_MAX_ANGLES = 7,  /* bodies of a mechanism that turn */
+    STANCE_MAX_NAMED = 8,   /* points of a mechanism that have a name */
+    STANCE_MAX_PUSHES = 4,
+    STANCE_ROBOT_GRAVITY = STANCE_MAX_ROBOT - 2, /* m/s^2 */
+    STANCE_ROBOT_SLOPE = STANCE_MAX_ROBOT - 1,   /* rad, of the ground; positive: +x is downhill */
+    STANCE_MAX_POINTS = 192,                     /* points of a stick figure */
 };
 
 #define STANCE_GRAVITY 9.81 /* m/s^2 */
@@ -58,19 +63,28 @@ typedef struct stance_quantity {
     double low, high; /* admitted range, both ends included */
 } stance_quantity;
 
-/* A position of rest on one contact, with the actuator torques that hold it. */
+/* A position of rest, with what holds it there. */
 typedef struct stance_equilibrium {
-    int support; /* index of the contact that carries the robot */
+    uint32_t supports; /* bit c: contact c carries, and sticks to the ground */
     double position[STANCE_MAX_COORDINATES];
-    double torque[STANCE_MAX_ACTUATORS]; /* N m */
+    double torque[STANCE_MAX_ACTUATORS];  /* N m, N */
+    double force[STANCE_MAX_CONTACTS][2]; /* N, normal and tangential; 0: not a support */
+    double friction;                      /* the coefficient that it takes */
+    int undetermined; /* coordinates that no condition fixed: chosen for the least torques */
+    /* Coordinates that describe all motions with the supports sticking: those of a linearisation.
+     * All of the posture where it can move freely. */
+    int freedoms, freedom[STANCE_MAX_POSTURE];
+    double condition; /* number of that description; 1: the best there is */
 } stance_equilibrium;
 
-/* What fixes a member of the family of equilibria: two numbers of (theta, q1, q2); NAN where not
- * given. `lower` picks the arcsine branch with the hip below the foot. */
+/* Which equilibrium: the contacts that carry, and what is known of the posture. */
 typedef struct stance_equilibrium_choice {
-    int support; /* contact index, 0-based */
-    double posture[STANCE_MAX_POSTURE];
-    bool lower;
+    uint32_t supports;                  /* 0: none, for what hangs on the world */
+    double posture[STANCE_MAX_POSTURE]; /* NAN where not given */
+    /* Of several equilibria, from 0: where coordinates are undetermined those with lower torques
+     * come first, then those whose bodies are nearest to where they are with all angles 0 (largest
+     * sum of cosines), then the highest. The biped: 0, 1 with the hip above and below the foot. */
+    int branch;
 } stance_equilibrium_choice;
 
 struct stance_case;
@@ -85,52 +99,79 @@ typedef struct stance_workload {
     void (*begin)(const double even[2], struct stance_case *c);
 } stance_workload;
 
-typedef struct stance_scene {
+struct stance_mechanism;
+struct stance_tree;
+
+typedef struct stance_scene stance_scene;
+struct stance_scene {
     const char *name, *text;
+    const struct stance_mechanism *mechanism; /* of one that is described, see mechanism.h ... */
+    const struct stance_tree *tree;           /* ... and its structure, see tree.h */
     int coordinates, contacts, actuators, postures, robot_count;
     const stance_quantity *robot; /* [robot_count] */
     const stance_quantity
-        *coordinate;                  /* [coordinates] name, unit, text; ranges of initial values */
-    const char *const *contact_name;  /* [contacts] */
+        *coordinate;                 /* [coordinates] name, unit, text; ranges of initial values */
+    const char *const *contact_name; /* [contacts] */
+    /* [contacts] The contact whose tangential impulse holds it, too: its own index, the first end
+     * of a sole for both ends, -1 for a stop, which has none. NULL: each its own. */
+    const int *grip;
     const char *const *actuator_name; /* [actuators] */
     const int *posture;               /* [postures] indices into the coordinates */
     const int *actuated;              /* [actuators] the coordinate that each drives */
-    /* Gap of each contact above the ground, m. position[coordinates], gap[contacts]. */
-    void (*gaps)(const double *robot, const double *position, double *gap);
-    /* Position (x, z) and velocity of a contact point. */
-    void (*contact_point)(const double *robot, const double *position, const double *velocity,
-                          int contact, double point[2], double speed[2]);
-    /* Replaces the translation so that contact `support` stands at rest at the origin. */
-    void (*stand)(const double *robot, int support, double *position, double *velocity);
+    /* Gap of each contact above the ground, normal to it, m; a joint's stop: rad or m.
+     * position[coordinates], gap[contacts]. */
+    void (*gaps)(const stance_scene *scene, const double *robot, const double *position,
+                 double *gap);
+    /* Position (x, z) of a contact point, and its velocity along the ground and normal to it. */
+    void (*contact_point)(const stance_scene *scene, const double *robot, const double *position,
+                          const double *velocity, int contact, double point[2], double speed[2]);
+    /* Replaces the translation so that the contacts `supports`, a bit each, stand on the ground,
+     * the first of them at rest, at the origin where all touch. Nothing, where nothing moves the
+     * robot as a whole. */
+    void (*stand)(const stance_scene *scene, const double *robot, uint32_t supports,
+                  double *position, double *velocity);
     /* Stick figure: a polyline of `n` points (x, z); returns n <= STANCE_MAX_POINTS. */
-    int (*figure)(const double *robot, const double *position, double points[][2]);
+    int (*figure)(const stance_scene *scene, const double *robot, const double *position,
+                  double points[][2]);
     /* Has it fallen: the hip is lower than fall_height leg lengths, or the trunk's end touches the
-     * ground. NULL where nothing falls. */
-    bool (*fallen)(const double *robot, const double *position, double fall_height);
+     * ground; a mechanism, by its own points and angles alone. NULL where nothing falls. */
+    bool (*fallen)(const stance_scene *scene, const double *robot, const double *position,
+                   double fall_height);
     /* Kinetic and potential energy, J. */
-    double (*energy)(const double *robot, const double *position, const double *velocity);
+    double (*energy)(const stance_scene *scene, const double *robot, const double *position,
+                     const double *velocity);
     /* Inertia matrix A[n][n] in these coordinates, n = coordinates. */
-    void (*inertia)(const double *robot, const double *position, double *A);
-    /* NULL where a scene has none. */
-    stance_error (*equilibrium)(const double *robot, const stance_equilibrium_choice *choice,
-                                stance_equilibrium *result, stance_message *message);
-    /* Pinned at the support contact: d/dt (dp, dp') = A (dp, dp') + B dtorque, p the posture;
-     * A[2p][2p], B[2p][actuators], exact derivatives. NULL where a scene has none. */
-    stance_error (*linearise)(const double *robot, const stance_equilibrium *equilibrium, double *A,
-                              double *B);
-    /* Force of the ground on the support contact, pinned there: force[2] = (normal, tangential) at
-     * rest, N; its exact first derivatives by_state[2][2p] by (dp, dp'), N/rad and N s/rad, and
-     * by_torque[2][actuators], N/(N m). Errors as `linearise`. NULL where a scene has none. */
-    stance_error (*contact_force)(const double *robot, const stance_equilibrium *equilibrium,
-                                  double *force, double *by_state, double *by_torque);
+    void (*inertia)(const stance_scene *scene, const double *robot, const double *position,
+                    double *A);
+    /* NO_EQUILIBRIUM, BAD_ARGUMENT: `message` says why. With OK it holds a remark, or nothing. NULL
+     * where a scene has none. */
+    stance_error (*equilibrium)(const stance_scene *scene, const double *robot,
+                                const stance_equilibrium_choice *choice, stance_equilibrium *result,
+                                stance_message *message);
+    /* With the supports sticking: d/dt x = A x + B dtorque, x = (dp, dp'), p the equilibrium's
+     * freedoms; A[2p][2p], B[2p][actuators], exact derivatives. `equilibrium`: as the function
+     * above gives it. Errors: BAD_ARGUMENT. NULL where a scene has none. */
+    stance_error (*linearise)(const stance_scene *scene, const double *robot,
+                              const stance_equilibrium *equilibrium, double *A, double *B);
+    /* Forces of the ground on the supports, in the order of their bits, sticking there:
+     * force[supports][2] = (normal, tangential) at rest, N; exact first derivatives
+     * by_state[supports][2][2p] by x, N/rad and N s/rad, and by_torque[supports][2][actuators],
+     * N/(N m); where they are not determined, those of least norm. A sole's tangential force is its
+     * first end's. Errors as `linearise`. NULL where a scene has none. */
+    stance_error (*contact_force)(const stance_scene *scene, const double *robot,
+                                  const stance_equilibrium *equilibrium, double *force,
+                                  double *by_state, double *by_torque);
     const stance_workload *workload; /* a list */
-} stance_scene;
+};
 
 #define STANCE_ILL_CONDITIONED 1e4 /* condition number from which on a decoupling law is damped */
 
 /* The pairs of coordinates that two actuators can control, in order: (0, 1), (0, 2), ... False:
  * there is no such pair, or the scene has not two actuators. */
 bool stance_pair(const stance_scene *scene, int index, int *first, int *second);
+
+/* The robot that a scene has by default, and the world's numbers. robot[STANCE_MAX_ROBOT]. */
+void stance_robot_fallback(const stance_scene *scene, double *robot);
 
 /* The scenes there are, NULL-terminated; and one by name, or NULL. */
 const stance_scene *const *stance_scenes(void);
@@ -260,8 +301,35 @@ const stance_law *const *stance_laws(void);
 /* One by name, or NULL. */
 const stance_law *stance_law_find(const char *name);
 
+/* What kernels take of a mechanism (engine/tree.c has the meanings and makes them), arrays by
+ * angles, contacts and so on in the order of its tables. */
+typedef struct stance_tree_numbers {
+    double mass;         /* kg */
+    double gravity[2];   /* minus gravity, m/s^2, in the ground's axes */
+    double slope[3];     /* angle, sine, cosine */
+    double lift[2];      /* gravity as a rail feels it, which may have an armature */
+    double rail[2];      /* its direction */
+    double reference[2]; /* m, of the root's frame: what x and z are of */
+    double curvature[3]; /* for Newton's stop rule */
+    double moment[STANCE_MAX_ANGLES][2];     /* kg m, first */
+    double inertia[STANCE_MAX_ANGLES];       /* kg m^2, second, about the joint, rotors included */
+    double joint[STANCE_MAX_ANGLES][2];      /* m, in the frame above */
+    double rotor[STANCE_MAX_ANGLES + 1];     /* kg m^2, kg */
+    double spring[STANCE_MAX_ANGLES + 1][3]; /* stiffness, damping, where it rests */
+    double end[STANCE_MAX_CONTACTS][3]; /* m: place in its frame, radius; of a stop: the limit */
+    double point[STANCE_MAX_NAMED][2];  /* m: points that may fall, in their frames ... */
+    double lowest[STANCE_MAX_NAMED];    /* ... and how far */
+    double turn[STANCE_MAX_ANGLES];     /* rad, that bodies may turn */
+    double push[STANCE_MAX_PUSHES][6];  /* m: place in its frame; N, or N s where it is at an
+                                         * instant,  in the ground's axes; s: from, to */
+} stance_tree_numbers;
+
 typedef struct stance_case {
     double robot[STANCE_MAX_ROBOT];
+    /* Of a mechanism, in place of robot: */
+    stance_tree_numbers body;
+    const struct stance_tree *tree; /* the same in all cases of a stream, as ... */
+    const stance_scene *scene;
     double friction;    /* Coulomb coefficient, >= 0 */
     double restitution; /* Newton's, 0 ... 1 */
     /* Where several motions obey the contact laws: false, the one that leaves the least kinetic
@@ -335,6 +403,8 @@ typedef struct stance_case {
     X(iterations, int64_t, SUM, each, "1", "Newton iterations over all steps")                     \
     X(ambiguous_steps, int64_t, STEPS, rare, "1",                                                  \
       "steps whose contact problem had several solutions")                                         \
+    X(unranked_steps, int64_t, STEPS, rare, "1",                                                   \
+      "steps with too many contacts to tell whether other solutions are preferred")                \
     X(subdivided_steps, int64_t, STEPS, rare, "1",                                                 \
       "steps that converged only after being subdivided")                                          \
     X(degraded_samples, int64_t, STEPS, rare, "1",                                                 \
@@ -430,6 +500,15 @@ typedef struct stance_kernel {
     /* The same for n cases at hand: cases[i] -> results[i]. */
     void (*run)(const stance_case *cases, stance_result *results, size_t n);
 } stance_kernel;
+
+/* What a kernel that is compiled on demand exports, under the name stance_kernel_object. */
+typedef struct stance_object {
+    size_t case_size, result_size; /* of the structs that it was compiled with */
+    const stance_scene **scene;    /* to be set before it runs */
+    int lanes;
+    bool (*stream)(const stance_feed *feed); /* as of stance_kernel */
+    void (*run)(const stance_case *cases, stance_result *results, size_t n);
+} stance_object;
 
 /* The methods there are, NULL-terminated; and one by name, or NULL. */
 const stance_method *const *stance_methods(void);

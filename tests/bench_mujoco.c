@@ -169,11 +169,11 @@ static void look(const mjData *data, const stance_scene *scene, const stance_cas
                  double previous[2], struct watch *watch)
 {
     double gap[STANCE_MAX_CONTACTS];
-    scene->gaps(c->robot, data->qpos, gap);
+    scene->gaps(scene, c->robot, data->qpos, gap);
     watch->contacts += data->ncon;
     for (int foot = 0; foot < scene->contacts; foot++) {
         double point[2], speed[2];
-        scene->contact_point(c->robot, data->qpos, data->qvel, foot, point, speed);
+        scene->contact_point(scene, c->robot, data->qpos, data->qvel, foot, point, speed);
         watch->penetration = fmax(watch->penetration, -gap[foot]);
         if (gap[foot] <= 0 && data->time > watch->from)
             watch->creep += fabs(point[0] - previous[foot]);

@@ -19,12 +19,9 @@ static inline double uniform(uint64_t *state, double low, double high)
     return low + (high - low) * (double)(z >> 11) * 0x1p-53;
 }
 
-/* The robot of a scene by default. */
-static inline void default_robot(const stance_scene *scene, stance_case *c)
+static inline const stance_scene *biped(void)
 {
-    memset(c->robot, 0, sizeof c->robot);
-    for (int i = 0; i < scene->robot_count; i++)
-        c->robot[i] = scene->robot[i].fallback;
+    return stance_scene_find("biped");
 }
 
 /* A case of the default robot without controller, 1 ms, one second, both feet, friction 0.8. */
@@ -32,7 +29,7 @@ static inline stance_case plain_case(void)
 {
     stance_case c;
     memset(&c, 0, sizeof c);
-    default_robot(stance_scene_find("biped"), &c);
+    stance_robot_fallback(biped(), c.robot);
     c.friction = 0.8;
     c.contacts = 3;
     c.torque_limit = INFINITY;
@@ -42,6 +39,18 @@ static inline stance_case plain_case(void)
     c.settle_angle = 0.05, c.settle_rate = 0.5, c.settle_hold = 0.5;
     c.fall_height = 0.2;
     return c;
+}
+
+/* The gains K[2][6] of the biped as a case holds them, and back. */
+static inline void put_gain(stance_case *c, const double *K)
+{
+    for (int i = 0; i < 12; i++)
+        c->near.gain[i / 6][i % 6] = K[i];
+}
+static inline void get_gain(const stance_case *c, double *K)
+{
+    for (int i = 0; i < 12; i++)
+        K[i] = c->near.gain[i / 6][i % 6];
 }
 
 /* The legs' servo: holds the joint angles that the case starts with. */
@@ -75,7 +84,7 @@ static inline void random_case(uint64_t *seed, int i, double h, stance_case *c)
     for (int k = 0; k < 2; k++)
         c->velocity[k] = uniform(seed, -3, 3);
     double gap[2];
-    stance_scene_find("biped")->gaps(c->robot, c->position, gap);
+    biped()->gaps(biped(), c->robot, c->position, gap);
     c->position[1] += 1e-13 - fmin(gap[0], gap[1]) + (i % 2 ? 0 : uniform(seed, 0, 0.2));
     const double stiffness = uniform(seed, 0, 200);
     hold_legs(c, stiffness, stiffness / 20);
@@ -90,18 +99,18 @@ static inline void random_case(uint64_t *seed, int i, double h, stance_case *c)
  * number in them comes from libm or LAPACK. */
 static inline void golden_case(uint64_t *seed, int i, stance_case *c)
 {
-    static const double gain[2][6] = {{318.97, 308.17, -43.08, 83.55, 71.79, -7.38},
-                                      {-277.81, -257.34, 35.56, -73.42, -61.87, 6.96}};
+    static const double gain[] = {318.97,  308.17,  -43.08, 83.55,  71.79,  -7.38,
+                                  -277.81, -257.34, 35.56,  -73.42, -61.87, 6.96};
     random_case(seed, i, i % 7 ? 1e-3 : 1e-2, c);
     c->seed = 42, c->grid_index = (uint64_t)i;
     if (i % 3 == 0) {
-        memcpy(c->near.gain, gain, sizeof gain);
+        put_gain(c, gain);
         c->near.target[0] = -0.41, c->near.target[1] = 0.570127, c->near.target[2] = 0.82;
         c->near.feedforward[0] = -7.53135, c->near.feedforward[1] = 3.76567;
         c->position[2] = uniform(seed, -0.5, -0.36);
         c->position[3] = 0.570127, c->position[4] = 0.82;
         c->velocity[2] = c->velocity[3] = c->velocity[4] = 0;
-        stance_scene_find("biped")->stand(c->robot, 0, c->position, c->velocity);
+        biped()->stand(biped(), c->robot, 1, c->position, c->velocity);
         c->has_target = c->settle = true;
         c->support = 0;
         c->contacts = i % 2 ? 1 : 3;
@@ -119,13 +128,13 @@ static inline void scene_case(const stance_scene *scene, uint64_t *seed, stance_
 {
     double gap[STANCE_MAX_CONTACTS], least = INFINITY;
     *c = plain_case();
-    default_robot(scene, c);
+    stance_robot_fallback(scene, c->robot);
     c->contacts = (1u << scene->contacts) - 1;
     for (int i = 0; i < scene->coordinates; i++) {
         c->position[i] = uniform(seed, -1, 1);
         c->velocity[i] = uniform(seed, -3, 3);
     }
-    scene->gaps(c->robot, c->position, gap);
+    scene->gaps(scene, c->robot, c->position, gap);
     for (int k = 0; k < scene->contacts; k++)
         least = fmin(least, gap[k]);
     c->position[1] += uniform(seed, 1e-13, 0.2) - least;

@@ -1,6 +1,7 @@
 /* fuzz_mutate.c - changes to scenarios for libFuzzer: of lines with their indentation, of words in
  * them, of whole branches, and --set strings; the words come from the table of keys itself.
  */
+#include "runner/scenario/mechanism.h"
 #include "runner/scenario/schema.h"
 
 #include <stdio.h>
@@ -31,7 +32,7 @@ static void begin_chance(unsigned seed)
 
 /* ---- words -------------------------------------------------------------------------------- */
 
-static struct schema *schemas; /* one for each scene */
+static struct schema *schemas; /* one for each scene, and that of mechanisms of BODY and such */
 static size_t schema_count;
 
 static void build_schemas(void)
@@ -39,11 +40,13 @@ static void build_schemas(void)
     const stance_scene *const *scenes = stance_scenes();
     while (scenes[schema_count])
         schema_count++;
-    schemas = calloc(schema_count, sizeof *schemas);
-    if (!schemas)
+    const stance_scene *const any = mechanism_pattern();
+    schemas = calloc(schema_count + 1, sizeof *schemas);
+    if (!schemas || !any)
         abort();
-    for (size_t i = 0; i < schema_count; i++)
-        schema_build(&schemas[i], scenes[i]);
+    for (size_t i = 0; i <= schema_count; i++)
+        schema_build(&schemas[i], i < schema_count ? scenes[i] : any);
+    schema_count++;
 }
 
 static const struct scenario_field *any_field(void)
@@ -120,6 +123,10 @@ static const char *const values[] = {
     "0.999999",
     "1.000001",
     "saltelli",
+    "BODY",
+    "ROOT",
+    "[none, 0]",
+    "{joint: hinge, parent: ROOT, mass: 1, centre: [0, 1]}",
 };
 
 /* A path with an index for each "[]"; mostly small ones. */

@@ -56,13 +56,13 @@ static inline void hunt_biped(uint64_t *seed, bool extreme, stance_case *c)
                              spread(seed, extreme ? 1e-6 : 1e-3, extreme ? 30 : 3) *
                              (i < 2 ? length / time : 1 / time);
     double gap[2];
-    scene->gaps(c->robot, c->position, gap);
+    scene->gaps(scene, c->robot, c->position, gap);
     c->position[1] -= fmin(gap[0], gap[1]);
     if (kind < 0.5)
-        scene->stand(c->robot, gap[0] < gap[1] ? 0 : 1, c->position, c->velocity);
+        scene->stand(scene, c->robot, 1u << (gap[0] < gap[1] ? 0 : 1), c->position, c->velocity);
     else
         c->position[1] += length * (kind < 0.6 ? 0 : spread(seed, 1e-6, 1e-1));
-    scene->gaps(c->robot, c->position, gap);
+    scene->gaps(scene, c->robot, c->position, gap);
     c->position[1] -= fmin(fmin(gap[0], gap[1]), 0);
     c->step = extreme ? time * spread(seed, 1e-5, 0.3) : spread(seed, 1e-4, 2e-2);
     hunt_law(seed, extreme, length * STANCE_GRAVITY * (2 * c->robot[2] + c->robot[3] + c->robot[4]),

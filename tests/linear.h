@@ -85,10 +85,10 @@ static inline void assert_eigenvalues(int n, const double *matrix, const double 
 static inline stance_equilibrium equilibrium_of(const double *robot, int support, double theta,
                                                 double q1, double q2, bool lower)
 {
-    const stance_equilibrium_choice choice = {support, {theta, q1, q2}, lower};
+    const stance_equilibrium_choice choice = {1u << support, {theta, q1, q2}, lower};
     stance_equilibrium e;
     stance_message message = {""};
-    if (stance_scene_find("biped")->equilibrium(robot, &choice, &e, &message) != STANCE_OK)
+    if (biped()->equilibrium(biped(), robot, &choice, &e, &message) != STANCE_OK)
         fail_msg("%s", message.text);
     return e;
 }

@@ -335,6 +335,24 @@ def strip():
     assert abs(max(high) / metre - (position[at[:7], 1]).max()) < 0.6
 
 
+def mechanisms():
+    """Stops are no feet, forces no torques; the ground slopes; what touches nothing is drawn, too."""
+    run("gait", "mechanisms/compass_gait.yaml")
+    stance("plot", "gait.h5")
+    p = Picture("gait-strip.svg")
+    assert p.legend() == {"foot1": HUES[0], "foot2": HUES[1], "body": "303030"}
+    ground = [np.subtract(q[2][1], q[2][0]) for q in p.page.lines if q[0] == "a0a0a0" and len(q[2]) == 2]
+    assert len(ground) >= 14, ground
+    close([y - math.tan(0.05235987755982988) * x for x, y in ground], np.zeros(len(ground)), 0.5)
+    assert len(p.page.marks(HUES[1])) == 14
+    for name, label in (("cart_pole", "force (N)"), ("acrobot", "torque (N m)")):
+        stance("run", f"{SCENARIOS}/mechanisms/{name}.yaml", "--only", "3000", "--trace", "--quiet", "-o", f"{name}.h5")
+        drawn = stance("plot", f"{name}.h5")
+        assert "forces" not in drawn and "gaps" not in drawn
+        says(Picture(f"{name}-torques.svg"), label)
+        assert Picture(f"{name}-strip.svg").legend() == {"body": "303030"}
+
+
 def sensitivities():
     run("what", "what_decides.yaml", "sweep.grid[0].count=3", "sweep.grid[1].count=3", "sweep.sample.count=16")
     stance("plot", "what.h5")
@@ -489,7 +507,7 @@ def speeds():
     assert [t for _, t in panel.words(0)] == ["256²", "512²", "1024²"]
 
 
-for check in (maps, answers, curve_of_shares, lines, tics, samples, rays, case, strip, sensitivities, morris, accuracy, failures,
+for check in (maps, answers, curve_of_shares, lines, tics, samples, rays, case, strip, mechanisms, sensitivities, morris, accuracy, failures,
               speeds):
     count += 1
     try:

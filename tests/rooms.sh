@@ -2,7 +2,7 @@
 # The rooms of the program: a file may include what stands in its own room and in those that its room may
 # use, and from the top, by "room/file.h". Prints every include that does not; exit code 1 if there is one.
 cd "$(dirname "$0")/.."
-runner='engine engine/control runner/base runner/ranks runner/scenario runner/plan runner/store runner/run'
+runner='engine engine/control runner/base runner/ranks runner/objects runner/scenario runner/plan runner/store runner/run'
 numbers="engine $runner analysis/statistics analysis/table"
 rooms="engine:
 engine/core/lanes: engine
@@ -17,8 +17,9 @@ engine/methods: engine engine/core/implicit engine/core/mode engine/core/loop
 engine/control: engine
 runner/base: engine
 runner/ranks: engine runner/base
+runner/objects: engine runner/base runner/ranks
 runner/scenario: engine runner/base
-runner/plan: engine engine/control runner/base runner/ranks runner/scenario
+runner/plan: engine engine/control runner/base runner/ranks runner/objects runner/scenario
 runner/store: engine runner/base runner/ranks runner/scenario runner/plan
 runner/run: engine runner/base runner/ranks runner/scenario runner/plan runner/store
 analysis/statistics: $runner

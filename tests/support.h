@@ -31,22 +31,23 @@ static inline const stance_kernel *kernel_of(const char *method, const char *isa
 static inline stance_case balance_case(double theta, double vtheta)
 {
     static const double re[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6}, im[6] = {0};
-    const stance_equilibrium_choice choice = {0, {-0.41, NAN, 0.82}, false};
+    const stance_equilibrium_choice choice = {1, {-0.41, NAN, 0.82}, 0};
     const stance_scene *scene = stance_scene_find("biped");
     stance_equilibrium equilibrium;
     stance_message message;
-    double A[36], B[12];
+    double A[36], B[12], K[12];
     stance_case c = plain_case();
-    if (scene->equilibrium(c.robot, &choice, &equilibrium, &message) != STANCE_OK ||
-        scene->linearise(c.robot, &equilibrium, A, B) != STANCE_OK ||
-        stance_place(6, 2, A, B, re, im, &c.near.gain[0][0], NULL, NULL, &message) != STANCE_OK)
+    if (scene->equilibrium(scene, c.robot, &choice, &equilibrium, &message) != STANCE_OK ||
+        scene->linearise(scene, c.robot, &equilibrium, A, B) != STANCE_OK ||
+        stance_place(6, 2, A, B, re, im, K, NULL, NULL, &message) != STANCE_OK)
         fail_msg("no balance controller");
+    put_gain(&c, K);
     memcpy(c.position, equilibrium.position, sizeof c.position);
     memcpy(c.near.feedforward, equilibrium.torque, sizeof c.near.feedforward);
-    memcpy(c.near.target, equilibrium.position + 2, sizeof c.near.target);
+    memcpy(c.near.target, equilibrium.position + 2, sizeof(double[3]));
     c.position[2] += theta;
     c.velocity[2] = vtheta;
-    scene->stand(c.robot, 0, c.position, c.velocity);
+    scene->stand(scene, c.robot, 1, c.position, c.velocity);
     c.contacts = 1;
     c.torque_limit = 10;
     c.sample_every = 1;

@@ -192,6 +192,7 @@ static void solve(const struct problem *p, int contacts, bool stood, bool most, 
     double D[2][2][2][2], uf[2][2], out[2][2], shift[2];
     const double before[2][2] = {{1, 0}, {1, 0}};
     const bool active[2] = {true, contacts == 2};
+    struct contact_verdict verdict;
     for (int c = 0; c < 2; c++) {
         shift[c] = p->e[c];
         for (int a = 0; a < 2; a++) {
@@ -205,7 +206,8 @@ static void solve(const struct problem *p, int contacts, bool stood, bool most, 
                                       .shift = shift,
                                       .before = stood ? before : NULL};
     solve_contacts(&rule, (const double(*)[2][2][2])D, (const double(*)[2])uf,
-                   contacts == 2 ? 3 : 1, active, out, ambiguous, unsolved);
+                   contacts == 2 ? 3 : 1, active, out, &verdict);
+    *ambiguous = verdict.ambiguous, *unsolved = verdict.unsolved;
     for (int i = 0; i < 2 * contacts; i++)
         r[i] = out[i / 2][i % 2];
 }

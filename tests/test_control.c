@@ -59,12 +59,12 @@ static void compare_case(const json_t *record)
     matrix_of(record, "eigenvalues", 6, 2, w);
     const stance_equilibrium e = equilibrium_of(robot, support, given[0], given[1], given[2],
                                                 json_is_true(json_object_get(record, "lower")));
-    assert_int_equal(e.support, support);
+    assert_int_equal(e.supports, 1u << support);
     for (int i = 0; i < 5; i++)
         assert_near(e.position[i], position[i], 1e-12, name);
     assert_matrix(2, e.torque, torque, 1e-12, name);
 
-    assert_int_equal(stance_scene_find("biped")->linearise(robot, &e, A, B), STANCE_OK);
+    assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
     assert_matrix(36, A, wanted_A, 1e-12, name);
     assert_matrix(12, B, wanted_B, 1e-12, name);
     for (int i = 0; i < 6; i++) {
@@ -108,9 +108,9 @@ static void published_figures(void **state)
     assert_near(e.position[3], 0.570127, 5e-7, "q1");
     assert_near(e.torque[0], -7.53135, 5e-6, "torque 1");
     assert_near(e.torque[1], 3.76567, 5e-6, "torque 2");
-    stance_scene_find("biped")->gaps(DEFAULT_ROBOT, e.position, gaps);
+    biped()->gaps(biped(), DEFAULT_ROBOT, e.position, gaps);
     assert_near(gaps[1], 0.0375, 5e-5, "gap of the free foot");
-    assert_int_equal(stance_scene_find("biped")->linearise(DEFAULT_ROBOT, &e, A, B), STANCE_OK);
+    assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
     assert_eigenvalues(6, A, open_re, open_im, 1e-6, "open loop");
     assert_int_equal(stance_place(6, 2, A, B, PAPER_POLES, zero, K, NULL, NULL, NULL), STANCE_OK);
     for (int i = 0; i < 12; i++)
@@ -137,23 +137,23 @@ static void equilibria_balance(void **state)
                                  uniform(&seed, 0.5, 3), uniform(&seed, 0.5, 3),
                                  uniform(&seed, 0.5, 6)};
         stance_equilibrium_choice choice = {
-            i % 2,
+            1u << i % 2,
             {uniform(&seed, -2, 2), uniform(&seed, -2, 2), uniform(&seed, -2, 2)},
             i / 2 % 2};
         choice.posture[i / 4 % 3] = NAN;
         stance_equilibrium e;
         double points[STANCE_MAX_POINTS][2];
-        if (scene->equilibrium(robot, &choice, &e, NULL) != STANCE_OK)
+        if (scene->equilibrium(scene, robot, &choice, &e, NULL) != STANCE_OK)
             continue;
         found++;
-        assert_int_equal(scene->figure(robot, e.position, points), 5);
+        assert_int_equal(scene->figure(scene, robot, e.position, points), 5);
         const double *feet[2] = {points[0], points[2]}, *trunk = points[4], *hip = points[1];
         const double moment =
             robot[2] * (feet[0][0] + feet[1][0]) + robot[3] * trunk[0] + robot[4] * hip[0];
         assert_near(moment, 0, 1e-13 * 12, "moment about the foot");
-        assert_near(feet[choice.support][0], 0, 1e-15, "foot");
         const double *q = e.position;
-        const int s = choice.support, f = 1 - s;
+        const int s = i % 2, f = 1 - s;
+        assert_near(feet[s][0], 0, 1e-15, "foot");
         assert_near(e.torque[0] + e.torque[1], robot[1] * robot[3] * STANCE_GRAVITY * sin(q[2]),
                     1e-12 * 300, "(20)");
         assert_near(e.torque[s],
@@ -165,7 +165,7 @@ static void equilibria_balance(void **state)
         /* The branch: of the solved-for leg, or of the support leg where theta was sought. */
         const int unknown = i / 4 % 3;
         const double phi = q[2] + q[unknown == 0 ? 3 + s : 2 + unknown];
-        assert_true(choice.lower ? cos(phi) <= 1e-12 : cos(phi) >= -1e-12);
+        assert_true(choice.branch ? cos(phi) <= 1e-12 : cos(phi) >= -1e-12);
     }
     assert_true(found > 800);
 }
@@ -182,9 +182,9 @@ static void standing_is_exact(void **state)
             q[k] = uniform(&seed, -4, 4);
             v[k] = uniform(&seed, -4, 4);
         }
-        scene->stand(robot, i % 2, q, v);
-        scene->gaps(robot, q, gap);
-        scene->contact_point(robot, q, v, i % 2, at, speed);
+        scene->stand(scene, robot, 1u << (i % 2), q, v);
+        scene->gaps(scene, robot, q, gap);
+        scene->contact_point(scene, robot, q, v, i % 2, at, speed);
         assert_true(gap[i % 2] >= 0 && gap[i % 2] <= 1e-15 * (robot[0] + robot[1]));
         assert_true(gap[i % 2] == at[1]);
         assert_near(at[0], 0, 1e-15 * (robot[0] + robot[1]), "x of the foot");
@@ -193,8 +193,8 @@ static void standing_is_exact(void **state)
     }
     /* Feet level with the trunk: the height is zero but for rounding. */
     double q[5] = {0, 0, M_PI / 2, 0, 0}, v[5] = {0}, gap[2];
-    scene->stand(DEFAULT_ROBOT, 0, q, v);
-    scene->gaps(DEFAULT_ROBOT, q, gap);
+    scene->stand(scene, DEFAULT_ROBOT, 1, q, v);
+    scene->gaps(scene, DEFAULT_ROBOT, q, gap);
     assert_true(gap[0] >= 0 && gap[0] < 1e-15);
 }
 
@@ -214,15 +214,15 @@ static void energy_of_point_masses(void **state)
             before[k] = q[k] - h * v[k];
             after[k] = q[k] + h * v[k];
         }
-        scene->figure(robot, before, points[0]);
-        scene->figure(robot, q, points[1]);
-        scene->figure(robot, after, points[2]);
+        scene->figure(scene, robot, before, points[0]);
+        scene->figure(scene, robot, q, points[1]);
+        scene->figure(scene, robot, after, points[2]);
         for (int p = 0; p < 5; p++) {
             const double vx = (points[2][p][0] - points[0][p][0]) / (2 * h);
             const double vz = (points[2][p][1] - points[0][p][1]) / (2 * h);
             energy += mass[p] * ((vx * vx + vz * vz) / 2 + STANCE_GRAVITY * points[1][p][1]);
         }
-        assert_near(scene->energy(robot, q, v), energy, 1e-7, "energy");
+        assert_near(scene->energy(scene, robot, q, v), energy, 1e-7, "energy");
     }
 }
 
@@ -238,56 +238,60 @@ static void equilibrium_messages(void **state)
         const char *text;
     } wrong[] = {
         {heavy_trunk,
-         {0, {1.2, NAN, -2.7}, false},
+         {1, {1.2, NAN, -2.7}, 0},
          STANCE_NO_EQUILIBRIUM,
          "no equilibrium: the support leg would need sin(theta + q1) = -1.23455"},
         {DEFAULT_ROBOT,
-         {0, {-0.41, 0.82, NAN}, false},
+         {1, {-0.41, 0.82, NAN}, 0},
          STANCE_NO_EQUILIBRIUM,
          "no equilibrium: the free leg would need sin(theta + q2) = 1.59444"},
         {DEFAULT_ROBOT,
-         {1, {-0.41, NAN, 0.82}, true},
+         {2, {-0.41, NAN, 0.82}, 1},
          STANCE_NO_EQUILIBRIUM,
          "no equilibrium: the free leg would need sin(theta + q1) = 1.59444"},
         {DEFAULT_ROBOT,
-         {0, {NAN, NAN, NAN}, false},
+         {1, {NAN, NAN, NAN}, 0},
          STANCE_BAD_ARGUMENT,
          "an equilibrium needs exactly two of theta, q1, q2; none is given"},
         {DEFAULT_ROBOT,
-         {0, {-0.41, NAN, NAN}, false},
+         {1, {-0.41, NAN, NAN}, 0},
          STANCE_BAD_ARGUMENT,
          "an equilibrium needs exactly two of theta, q1, q2; only one is given"},
         {DEFAULT_ROBOT,
-         {0, {-0.41, 0.57, 0.82}, false},
+         {1, {-0.41, 0.57, 0.82}, 0},
          STANCE_BAD_ARGUMENT,
          "an equilibrium needs exactly two of theta, q1, q2; all three are given"},
         {DEFAULT_ROBOT,
-         {2, {-0.41, NAN, 0.82}, false},
+         {4, {-0.41, NAN, 0.82}, 0},
          STANCE_BAD_ARGUMENT,
-         "no such foot to stand on: foot 3"},
+         "an equilibrium stands on one of two feet"},
         {DEFAULT_ROBOT,
-         {0, {-0.41, NAN, INFINITY}, false},
+         {1, {-0.41, NAN, 0.82}, 2},
+         STANCE_BAD_ARGUMENT,
+         "an equilibrium has the branches 0 and 1"},
+        {DEFAULT_ROBOT,
+         {1, {-0.41, NAN, INFINITY}, 0},
          STANCE_BAD_ARGUMENT,
          "an equilibrium's angles must lie within +-1000 rad"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
         stance_equilibrium e;
         stance_message message = {""};
-        assert_int_equal(scene->equilibrium(wrong[i].robot, &wrong[i].choice, &e, &message),
+        assert_int_equal(scene->equilibrium(scene, wrong[i].robot, &wrong[i].choice, &e, &message),
                          wrong[i].error);
         assert_text(message.text, wrong[i].text);
-        assert_int_equal(scene->equilibrium(wrong[i].robot, &wrong[i].choice, &e, NULL),
+        assert_int_equal(scene->equilibrium(scene, wrong[i].robot, &wrong[i].choice, &e, NULL),
                          wrong[i].error);
     }
     /* Support leg turned round, free leg in line with the trunk: where mt lt = (M - m) l + m l any
      * pitch balances, elsewhere there is one. */
     const double even[5] = {0.5, 1.5, 1, 1, 1};
-    const stance_equilibrium_choice any = {0, {NAN, M_PI, 0}, false};
+    const stance_equilibrium_choice any = {1, {NAN, M_PI, 0}, 0};
     stance_equilibrium e;
     stance_message message = {""};
-    assert_int_equal(scene->equilibrium(even, &any, &e, &message), STANCE_OK);
+    assert_int_equal(scene->equilibrium(scene, even, &any, &e, &message), STANCE_OK);
     const double neutral[5] = {0.5, 2, 1, 1, 1};
-    assert_int_equal(scene->equilibrium(neutral, &any, &e, &message), STANCE_NO_EQUILIBRIUM);
+    assert_int_equal(scene->equilibrium(scene, neutral, &any, &e, &message), STANCE_NO_EQUILIBRIUM);
     assert_text(message.text, "no single equilibrium: with these q1 and q2 the centre of mass is "
                               "at the foot and every theta balances");
 }
@@ -370,7 +374,7 @@ static void repeated_and_reordered(void **state)
     const double twice[6] = {-3, -3.3, -3, -3.9, -4.2, -4.2}, none[6] = {0};
     const double reversed[6] = {-3.9, -4.6, -3, -4.2, -3.3, -3.6};
     double A[36], B[12], K[12], other[12], loop[36];
-    assert_int_equal(stance_scene_find("biped")->linearise(DEFAULT_ROBOT, &e, A, B), STANCE_OK);
+    assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
     assert_int_equal(stance_place(6, 2, A, B, twice, none, K, NULL, NULL, NULL), STANCE_OK);
     closed_loop(6, 2, A, B, K, loop);
     assert_eigenvalues(6, loop, twice, none, 1e-4, "double poles");
@@ -514,7 +518,7 @@ static void kalman_rank(void **state)
     const double chain[9] = {0, 1, 0, 0, 0, 1, 0, 0, 0}, last[3] = {0, 0, 1}, first[3] = {1, 0, 0};
     double A[36], B[12], sv[6], slow[6];
     int rank;
-    assert_int_equal(stance_scene_find("biped")->linearise(DEFAULT_ROBOT, &e, A, B), STANCE_OK);
+    assert_int_equal(biped()->linearise(biped(), DEFAULT_ROBOT, &e, A, B), STANCE_OK);
     assert_int_equal(stance_kalman(6, 2, A, B, sv, &rank), STANCE_OK);
     assert_int_equal(rank, 6);
     for (int i = 0; i < 36; i++) /* milliseconds */

@@ -37,7 +37,7 @@ static stance_case pair_case(int pair, const double *posture, bool stands, doubl
     memcpy(&c.position[2], posture, 3 * sizeof *posture);
     memcpy(c.velocity, rates, sizeof rates);
     if (stands)
-        scene->stand(c.robot, 0, c.position, c.velocity);
+        scene->stand(scene, c.robot, 1, c.position, c.velocity);
     assert_true(stance_pair(scene, pair, &controlled[0], &controlled[1]));
     for (int i = 0; i < 2; i++)
         c.servo[i] = (stance_servo){.coordinate = controlled[i],
@@ -155,11 +155,12 @@ static void inertia_is_energy(void **state)
         double q[5], v[5], A[25], zero[5] = {0}, sum = 0;
         for (int i = 0; i < 5; i++)
             q[i] = uniform(&seed, -3, 3), v[i] = uniform(&seed, -3, 3);
-        scene->inertia(c.robot, q, A);
+        scene->inertia(scene, c.robot, q, A);
         for (int i = 0; i < 5; i++)
             for (int j = 0; j < 5; j++)
                 sum += 0.5 * v[i] * A[5 * i + j] * v[j];
-        const double kinetic = scene->energy(c.robot, q, v) - scene->energy(c.robot, q, zero);
+        const double kinetic =
+            scene->energy(scene, c.robot, q, v) - scene->energy(scene, c.robot, q, zero);
         assert_true(fabs(sum - kinetic) < 1e-11 * (1 + kinetic));
     }
 }
@@ -226,11 +227,11 @@ static void delay_shortens(void **state)
     (void)state;
     const stance_scene *scene = stance_scene_find("biped");
     stance_case c = balance_case(1e-6, 0);
-    const stance_equilibrium_choice choice = {0, {-0.41, NAN, 0.82}, false};
+    const stance_equilibrium_choice choice = {1, {-0.41, NAN, 0.82}, 0};
     stance_equilibrium equilibrium;
     double A[36], B[12], Ad[36], Bd[12], loop[64], re[8], im[8], low = 1e-3, high = 0.3;
-    assert_int_equal(scene->equilibrium(c.robot, &choice, &equilibrium, NULL), STANCE_OK);
-    assert_int_equal(scene->linearise(c.robot, &equilibrium, A, B), STANCE_OK);
+    assert_int_equal(scene->equilibrium(scene, c.robot, &choice, &equilibrium, NULL), STANCE_OK);
+    assert_int_equal(scene->linearise(scene, c.robot, &equilibrium, A, B), STANCE_OK);
     for (int round = 0; round < 50; round++) {
         const double T = 0.5 * (low + high);
         double radius = 0;

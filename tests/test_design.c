@@ -38,8 +38,7 @@ static void for_each_record(void (*check)(const struct sample *s))
         s.T = number_of(&s, "sample_time");
         s.equilibrium = equilibrium_of(s.robot, (int)number_of(&s, "support"), given[0], given[1],
                                        given[2], false);
-        assert_int_equal(stance_scene_find("biped")->linearise(s.robot, &s.equilibrium, s.A, s.B),
-                         STANCE_OK);
+        assert_int_equal(biped()->linearise(biped(), s.robot, &s.equilibrium, s.A, s.B), STANCE_OK);
         check(&s);
     }
     json_decref(root);
@@ -301,7 +300,7 @@ static void uncontrollable_equilibrium(void **state)
     int rank;
     stance_message message;
     const stance_equilibrium e = equilibrium_of(robot, 0, NAN, level, level, false);
-    assert_int_equal(stance_scene_find("biped")->linearise(robot, &e, A, B), STANCE_OK);
+    assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
     assert_int_equal(stance_kalman(N, M, A, B, sv, &rank), STANCE_OK);
     assert_int_equal(rank, 4);
     const double rate = sqrt(9.81 * cos(M_PI / 6) / 1.75);
@@ -437,9 +436,9 @@ static void sublevel_sets(void **state)
 static void check_force(const struct sample *s)
 {
     double force[2], by_state[2 * N], by_torque[2 * M], wanted[2 * N];
-    assert_int_equal(stance_scene_find("biped")->contact_force(s->robot, &s->equilibrium, force,
-                                                               by_state, by_torque),
-                     STANCE_OK);
+    assert_int_equal(
+        biped()->contact_force(biped(), s->robot, &s->equilibrium, force, by_state, by_torque),
+        STANCE_OK);
     matrix_of(s->record, "force", 2, 1, wanted);
     assert_near(force[0], wanted[0], 1e-12 * wanted[0], s->name);
     assert_near(wanted[1], 0, 1e-9, s->name);
@@ -464,7 +463,7 @@ static void check_levels(const struct sample *s)
     const double limit = number_of(s, "torque_limit"), friction = number_of(s, "friction");
     matrix_of(s->record, "gain", M, N, K);
     matrix_of(s->record, "lyapunov", N, N, P);
-    stance_scene_find("biped")->contact_force(s->robot, &s->equilibrium, force, by, by_torque);
+    biped()->contact_force(biped(), s->robot, &s->equilibrium, force, by, by_torque);
     for (int j = 0; j < N; j++) {
         double loop[2];
         for (int c = 0; c < 2; c++)
@@ -514,7 +513,8 @@ static void force_in_simulation(void **state)
         const stance_equilibrium e = equilibrium_of(c.robot, 0, -0.41, NAN, 0.82, false);
         double force[2], by_state[2 * N], by_torque[2 * M];
         double position[2][5], velocity[2][5], torque[2][2], gap[2][2], found[2][2][2];
-        assert_int_equal(scene->contact_force(c.robot, &e, force, by_state, by_torque), STANCE_OK);
+        assert_int_equal(scene->contact_force(scene, c.robot, &e, force, by_state, by_torque),
+                         STANCE_OK);
         memcpy(c.position, e.position, sizeof c.position);
         for (int i = 0; i < 3; i++) {
             const double off = uniform(&seed, -1e-3, 1e-3);
@@ -528,7 +528,7 @@ static void force_in_simulation(void **state)
             for (int j = 0; j < 2; j++)
                 force[j] += by_torque[j * M + i] * off;
         }
-        scene->stand(c.robot, 0, c.position, c.velocity);
+        scene->stand(scene, c.robot, 1, c.position, c.velocity);
         c.contacts = 1;
         c.step = 1e-6;
         c.sample_every = 1;

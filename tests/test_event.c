@@ -30,8 +30,7 @@ static stance_case event_case(const char *name, double step, double time)
                      .settle_rate = 0.5,
                      .settle_hold = 0.5,
                      .fall_height = -1e9};
-    for (int i = 0; i < scene->robot_count; i++)
-        c.robot[i] = scene->robot[i].fallback;
+    stance_robot_fallback(scene, c.robot);
     return c;
 }
 
@@ -94,7 +93,7 @@ static stance_case random_event_case(uint64_t *seed, int i)
     for (int k = 0; k < 2; k++)
         c.velocity[k] = uniform(seed, -3, 3);
     double gap[2];
-    stance_scene_find("biped")->gaps(c.robot, c.position, gap);
+    biped()->gaps(biped(), c.robot, c.position, gap);
     c.position[1] += 1e-13 - fmin(gap[0], gap[1]) + (i % 2 ? 0 : uniform(seed, 0, 0.2));
     const double stiffness = uniform(seed, 0, 200);
     hold_legs(&c, stiffness, stiffness / 20);
@@ -219,8 +218,8 @@ static void flight_conserves(void **state)
         for (int k = 0; k < 3; k++)
             worst = fmax(worst, fabs(after[k] - before[k]) / (weight + fabs(before[k])));
         if (passive) {
-            const double e0 = biped->energy(c.robot, c.position, c.velocity);
-            const double e1 = biped->energy(c.robot, r.position, r.velocity);
+            const double e0 = biped->energy(biped, c.robot, c.position, c.velocity);
+            const double e1 = biped->energy(biped, c.robot, r.position, r.velocity);
             worst = fmax(worst, fabs(e1 - e0) / (1 + fabs(e0)));
         } else {
             worst = fmax(worst, r.energy_gain / (weight + fabs(before[2])));

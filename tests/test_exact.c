@@ -31,7 +31,7 @@ static double end_difference(const stance_result *a, const stance_result *b)
 static double least_gap(const stance_case *c)
 {
     double gap[2];
-    stance_scene_find("biped")->gaps(c->robot, c->position, gap);
+    biped()->gaps(biped(), c->robot, c->position, gap);
     return fmin(gap[0], gap[1]);
 }
 
@@ -171,7 +171,7 @@ static stance_case sliding_and_landing(uint64_t *seed)
     c.position[4] = spread - leaning;
     for (int i = 2; i < 5; i++)
         c.velocity[i] = uniform(seed, -2, 2);
-    scene->stand(c.robot, 0, c.position, c.velocity);
+    scene->stand(scene, c.robot, 1, c.position, c.velocity);
     c.velocity[0] += uniform(seed, -1, 1); /* the first foot slides, the other does what it does */
     c.position[1] -= least_gap(&c);
     c.steps = 5;

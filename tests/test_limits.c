@@ -160,27 +160,26 @@ static stance_case sampled_case(const struct balance *b, double *critical)
 {
     static const double pole[6] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6}, im[6] = {0};
     const stance_scene *scene = stance_scene_find("biped");
-    const stance_equilibrium_choice choice = {0, {b->theta, NAN, b->q2}, false};
+    const stance_equilibrium_choice choice = {1, {b->theta, NAN, b->q2}, 0};
     stance_equilibrium equilibrium;
     stance_message message;
-    double A[36], B[12], re[6];
+    double A[36], B[12], K[12], re[6];
     stance_case c = plain_case();
     c.robot[0] = b->leg, c.robot[1] = b->trunk;
     c.robot[2] = b->foot_mass, c.robot[3] = b->trunk_mass, c.robot[4] = b->hip_mass;
     for (int i = 0; i < 6; i++)
         re[i] = b->speed * pole[i];
-    if (scene->equilibrium(c.robot, &choice, &equilibrium, &message) != STANCE_OK)
+    if (scene->equilibrium(scene, c.robot, &choice, &equilibrium, &message) != STANCE_OK)
         fail_msg("no equilibrium: %s", message.text);
-    assert_int_equal(scene->linearise(c.robot, &equilibrium, A, B), STANCE_OK);
-    assert_int_equal(stance_place(6, 2, A, B, re, im, &c.near.gain[0][0], NULL, NULL, &message),
-                     STANCE_OK);
-    assert_int_equal(stance_critical_sample_time(6, 2, A, B, &c.near.gain[0][0], 0, 2, critical),
-                     STANCE_OK);
+    assert_int_equal(scene->linearise(scene, c.robot, &equilibrium, A, B), STANCE_OK);
+    assert_int_equal(stance_place(6, 2, A, B, re, im, K, NULL, NULL, &message), STANCE_OK);
+    assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, 0, 2, critical), STANCE_OK);
+    put_gain(&c, K);
     memcpy(c.position, equilibrium.position, sizeof c.position);
     memcpy(c.near.feedforward, equilibrium.torque, sizeof c.near.feedforward);
-    memcpy(c.near.target, equilibrium.position + 2, sizeof c.near.target);
+    memcpy(c.near.target, equilibrium.position + 2, sizeof(double[3]));
     c.position[2] += 1e-6;
-    scene->stand(c.robot, 0, c.position, c.velocity);
+    scene->stand(scene, c.robot, 1, c.position, c.velocity);
     c.contacts = 1;
     c.support = 0;
     c.has_target = true;
@@ -317,7 +316,7 @@ static void wild_start(uint64_t *random, stance_case *c)
         memset(c->position, 0, sizeof c->position);
         for (int i = 2; i < 5; i++)
             c->position[i] = uniform(random, -3, 3);
-        scene->gaps(c->robot, c->position, gap);
+        scene->gaps(scene, c->robot, c->position, gap);
         const double lowest =
             fmin(c->contacts & 1 ? gap[0] : INFINITY, c->contacts & 2 ? gap[1] : INFINITY);
         c->position[1] = (chance(random, 0.5) ? 0 : uniform(random, 0, 1)) - lowest;
@@ -358,7 +357,8 @@ static double kinetic(const stance_case *c, const double *position, const double
 {
     static const double rest[STANCE_MAX_COORDINATES];
     const stance_scene *scene = stance_scene_find("biped");
-    return scene->energy(c->robot, position, velocity) - scene->energy(c->robot, position, rest);
+    return scene->energy(scene, c->robot, position, velocity) -
+           scene->energy(scene, c->robot, position, rest);
 }
 
 /* Energy at the start above the lowest that there is: a foot on the ground, all else below it. */
@@ -367,7 +367,7 @@ static double start_energy(const stance_case *c, double stored)
     const double leg = c->robot[0], trunk = c->robot[1];
     const double lowest = STANCE_GRAVITY * (c->robot[2] * (c->contacts == 3 ? 0 : 2 * leg) +
                                             c->robot[3] * (leg + trunk) + c->robot[4] * leg);
-    return stance_scene_find("biped")->energy(c->robot, c->position, c->velocity) + lowest + stored;
+    return biped()->energy(biped(), c->robot, c->position, c->velocity) + lowest + stored;
 }
 
 static bool is_finite(const stance_result *r)
@@ -384,8 +384,8 @@ static bool is_finite(const stance_result *r)
 static void check_single_step(const stance_case *c, const stance_result *r)
 {
     const stance_scene *scene = stance_scene_find("biped");
-    const double before = scene->energy(c->robot, c->position, c->velocity);
-    const double after = scene->energy(c->robot, r->position, r->velocity);
+    const double before = scene->energy(scene, c->robot, c->position, c->velocity);
+    const double after = scene->energy(scene, c->robot, r->position, r->velocity);
     if (r->energy_gain <= 0 || r->steps != 1 || r->subdivided_steps > 0)
         return;
     const double work = after - before - r->energy_gain;

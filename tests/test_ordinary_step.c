@@ -43,25 +43,34 @@ static void direct_is_exact(void **state)
                 sliding[c] = floor(uniform(&seed, -1, 2)); /* -1, 0, 1 */
             }
             const double *const goes_on = slides ? sliding : NULL;
-            const struct contact_rule rule = {.friction = friction, .sliding = goes_on};
+            const struct contact_rule rule = {
+                .friction = friction, .prefer = 1, .sliding = goes_on};
+            const contact_set touching = contacts == 1 ? 1 : 3;
+            const mask active[2] = {true, contacts == 2};
+            const double(*const op)[2][2][2] = (const double(*)[2][2][2])D;
+            const double(*const free)[2] = (const double(*)[2])uf;
             const bool sure =
-                contacts == 1 ? direct_one((const double(*)[2])D[0][0], (const double(*)[2])D[0][0],
-                                           uf[0], friction, goes_on, r[0])
-                              : direct_two((const double(*)[2][2][2])D, (const double(*)[2])uf,
-                                           &rule, 1e-11, true, r);
+                contacts == 1
+                    ? direct_one((const double(*)[2])D[0][0], uf[0], friction, goes_on, r[0])
+                    : direct_unique(friction, op, touching, active) &&
+                          direct_modes(&rule, op, free, touching, active, 1e-11, true, r);
             if (!sure)
                 continue;
-            contact_choice best;
-            contact_solve(&(contact_problem){(const double(*)[2][2][2])D, (const double(*)[2])uf,
-                                             goes_on, NULL, friction, 1, 1e-11, contacts, false},
-                          &best);
+            struct lane_problem problem;
+            struct lane_choice best;
+            double found[2][2] = {{0}};
+            lane_gather(&rule, op, free, touching, 0, &problem);
+            lane_choose_none(&best);
+            lane_enumerate(&problem, &best);
+            for (int row = 0; row < problem.rows; row++)
+                found[problem.contact[row]][problem.axis[row]] = best.r[row];
             certain++;
             assert_true(best.violation <= 1e-8);
             for (int c = 0; c < contacts; c++) {
                 modes[r[c][0] <= 0 ? 0 : fabs(r[c][1]) < friction * r[c][0] * (1 - 1e-9) ? 1 : 2]++;
                 for (int a = 0; a < 2; a++) {
-                    const double scale = 1 + fabs(best.r[c][0]) + fabs(best.r[c][1]);
-                    worst = fmax(worst, fabs(r[c][a] - best.r[c][a]) / scale);
+                    const double scale = 1 + fabs(found[c][0]) + fabs(found[c][1]);
+                    worst = fmax(worst, fabs(r[c][a] - found[c][a]) / scale);
                 }
             }
             assert_false(best.ambiguous);
@@ -94,7 +103,7 @@ static void random_motion(uint64_t *seed, int i, double h, struct bundle *b)
     for (int k = 2; k < 5; k++)
         c.velocity[k] = uniform(seed, -2, 2);
     if (c.contacts)
-        scene->stand(c.robot, 0, c.position, c.velocity);
+        scene->stand(scene, c.robot, 1, c.position, c.velocity);
     static const stance_feed feed;
     static stance_case kept;
     static stance_result result;

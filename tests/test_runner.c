@@ -215,7 +215,8 @@ static void test_designs(void **state)
     for (int d = 0; d < 4; d++)
         assert_int_equal(plan->design_status[d], d % 2 ? STANCE_FAILED : STANCE_DONE);
     /* Two robots, two different gains. */
-    assert_true(plan->design[0].gain[0][0] != plan->design[2].gain[0][0]);
+    const struct resolved_design first = plan_design_at(plan, 0), other = plan_design_at(plan, 2);
+    assert_true(first.gain[0][0] != other.gain[0][0]);
 }
 
 static void test_recorded(void **state)
@@ -271,7 +272,9 @@ static void test_impatient(void **state)
     assert_int_equal(plan.pending, 0);
     assert_memory_equal(plan.design_status, f->plan.design_status, 4);
     for (int d = 0; d < 4; d += 2)
-        assert_memory_equal(&plan.design[d], &f->plan.design[d], sizeof *plan.design);
+        assert_memory_equal(&plan.design[d * plan.design_size],
+                            &f->plan.design[d * plan.design_size],
+                            plan.design_size * sizeof *plan.design);
     plan_free(&plan);
 }
 
@@ -407,8 +410,10 @@ static void test_designs_stored(void **state)
     assert_true(store_close(store, &message));
     assert_memory_equal(copy.design_status, f->plan.design_status, 4);
     for (int d = 0; d < 4; d += 2)
-        assert_memory_equal(&copy.design[d], &f->plan.design[d], sizeof copy.design[d]);
-    assert_true(isnan(copy.design[1].gain[0][0]));
+        assert_memory_equal(&copy.design[d * copy.design_size],
+                            &f->plan.design[d * copy.design_size],
+                            copy.design_size * sizeof *copy.design);
+    assert_true(isnan(plan_design_at(&copy, 1).gain[0][0]));
     plan_free(&copy);
 }
 

@@ -39,9 +39,11 @@ static stance_case known_case(const stance_scene *scene, const json_t *entry,
                      .settle_hold = 0.5,
                      .fall_height = -1e9};
     const json_t *robot = json_object_get(entry, "robot");
+    stance_robot_fallback(scene, c.robot);
     for (int i = 0; i < scene->robot_count; i++) {
         const json_t *value = json_object_get(robot, scene->robot[i].name);
-        c.robot[i] = value ? json_number_value(value) : scene->robot[i].fallback;
+        if (value)
+            c.robot[i] = json_number_value(value);
     }
     c.friction = number(entry, "friction");
     c.restitution = number(entry, "restitution");
@@ -181,8 +183,7 @@ static stance_case scene_case_of(const char *name, double step, double time)
                      .step = step,
                      .steps = (int64_t)lround(time / step),
                      .tolerance = 1e-9};
-    for (int i = 0; i < scene->robot_count; i++)
-        c.robot[i] = scene->robot[i].fallback;
+    stance_robot_fallback(scene, c.robot);
     return c;
 }
 
@@ -239,8 +240,10 @@ static void endless_bounces(void **state)
         c.position[1] = 1.1;
         const stance_scene *ball = stance_scene_find("ball");
         const stance_result r = run_one("ball", bounds[i].method, &c);
-        const double before = ball->energy(c.robot, c.position, c.velocity) - 0.1 * STANCE_GRAVITY;
-        const double after = ball->energy(c.robot, r.position, r.velocity) - 0.1 * STANCE_GRAVITY;
+        const double before =
+            ball->energy(ball, c.robot, c.position, c.velocity) - 0.1 * STANCE_GRAVITY;
+        const double after =
+            ball->energy(ball, c.robot, r.position, r.velocity) - 0.1 * STANCE_GRAVITY;
         const double wanted = before - bounds[i].loss_rate * bounds[i].time;
         print_message("# %s: energy off %.1e of %.3g J after %.0f s\n", bounds[i].method,
                       after / wanted - 1, wanted, r.end_time);
@@ -275,7 +278,8 @@ static void painleve(void **state)
         c.velocity[2] = x[3];
         c.friction = x[2];
         double gap[2];
-        stance_scene_find("rod")->gaps(c.robot, c.position, gap);
+        const stance_scene *const rod = stance_scene_find("rod");
+        rod->gaps(rod, c.robot, c.position, gap);
         c.position[1] -= gap[0] < 0 ? gap[0] : 0;
         for (int d = 0; d < DEMANDS; d++) {
             const stance_result r = run_one("rod", demands[d].method, &c);
@@ -362,10 +366,11 @@ static void fallen_is_said_alike(void **state)
         c.step = 1e-6;
         c.steps = 1;
         kernel_of("implicit", NULL)->run(&c, &r, 1);
-        const bool says = scene->fallen(c.robot, r.position, c.fall_height);
+        const bool says = scene->fallen(scene, c.robot, r.position, c.fall_height);
         assert_int_equal(r.outcome == STANCE_FELL, says);
         fallen += says;
-        by_trunk += says && !scene->fallen(c.robot, (double[]){0, 5, 0, 0, 0}, c.fall_height) &&
+        by_trunk += says &&
+                    !scene->fallen(scene, c.robot, (double[]){0, 5, 0, 0, 0}, c.fall_height) &&
                     r.position[1] <= 0;
     }
     assert_true(fallen > 500 && fallen < 2500 && by_trunk > 100);

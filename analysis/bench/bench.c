@@ -32,8 +32,8 @@ static bool balance(const stance_scene *scene, const stance_equilibrium_choice *
     double re[STATES], im[STATES] = {0}, K[STANCE_MAX_ACTUATORS * STATES];
     for (int i = 0; i < n; i++)
         re[i] = -3 - 0.3 * i;
-    if (scene->equilibrium(c->robot, choice, &equilibrium, NULL) != STANCE_OK ||
-        scene->linearise(c->robot, &equilibrium, A, B) != STANCE_OK ||
+    if (scene->equilibrium(scene, c->robot, choice, &equilibrium, NULL) != STANCE_OK ||
+        scene->linearise(scene, c->robot, &equilibrium, A, B) != STANCE_OK ||
         stance_place(n, m, A, B, re, im, K, NULL, NULL, NULL) != STANCE_OK)
         return false;
     memcpy(c->position, equilibrium.position, sizeof c->position);
@@ -61,8 +61,7 @@ bool bench_cases(const stance_scene *scene, const char *regime, stance_case *cas
                         .settle_rate = 0.5,
                         .settle_hold = 0.5,
                         .fall_height = -1e9 /* never */};
-    for (int k = 0; k < scene->robot_count; k++)
-        base.robot[k] = scene->robot[k].fallback;
+    stance_robot_fallback(scene, base.robot);
     if (!workload->name || (workload->balance && !balance(scene, workload->balance, &base)))
         return false;
     for (int i = 0; i < count; i++) {

@@ -104,7 +104,7 @@ static bool start_energies(const struct scenario *s, uint64_t cases, double *ene
         stance_case c;
         int method;
         energy[i] = plan_resolve(&plan, i, &c, &method)
-                        ? fabs(s->scene->energy(c.robot, c.position, c.velocity))
+                        ? fabs(s->scene->energy(s->scene, c.robot, c.position, c.velocity))
                         : NAN;
         energy[i] = fmax(energy[i], least_energy);
     }

@@ -55,7 +55,7 @@ static uint64_t case_at(const struct scenario *s, int axis, size_t i)
 static bool invert_inertia(const stance_scene *scene, const stance_case *c, double *inverse)
 {
     const int n = scene->coordinates;
-    scene->inertia(c->robot, c->position, inverse);
+    scene->inertia(scene, c->robot, c->position, inverse);
     if (LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', n, inverse, n) != 0 ||
         LAPACKE_dpotri(LAPACK_ROW_MAJOR, 'L', n, inverse, n) != 0)
         return false;
@@ -118,7 +118,7 @@ static double runge_kutta_limit(int n, const double *eigenvalue, double kp, doub
 static bool flies(const stance_scene *scene, const stance_case *c)
 {
     double gap[STANCE_MAX_CONTACTS];
-    scene->gaps(c->robot, c->position, gap);
+    scene->gaps(scene, c->robot, c->position, gap);
     for (int i = 0; i < scene->contacts; i++)
         if ((c->contacts >> i & 1) && gap[i] <= 0)
             return false;
@@ -151,7 +151,7 @@ static double critical_sample_time(const struct scenario *s, const struct scenar
     stance_message message;
     const int n = 2 * scene->postures;
     if (!resolve_equilibrium(scene, values, model, &equilibrium, &message) ||
-        scene->linearise(values->robot, &equilibrium, A, B) != STANCE_OK)
+        scene->linearise(scene, values->robot, &equilibrium, A, B) != STANCE_OK)
         return NAN;
     for (int i = 0; i < scene->actuators; i++)
         for (int j = 0; j < n; j++)
@@ -173,9 +173,9 @@ static double jamming_friction(const struct scenario *s, const stance_case *c)
     double gap[STANCE_MAX_CONTACTS], point[2], speed[2], lowest = INFINITY;
     if (!invert_inertia(scene, c, inverse))
         return INFINITY;
-    scene->gaps(c->robot, c->position, gap);
+    scene->gaps(scene, c->robot, c->position, gap);
     for (int k = 0; k < scene->contacts; k++) {
-        scene->contact_point(c->robot, c->position, c->velocity, k, point, speed);
+        scene->contact_point(scene, c->robot, c->position, c->velocity, k, point, speed);
         if (gap[k] > 1e-12 || speed[0] == 0)
             continue;
         const double sign = speed[0] > 0 ? 1 : -1;
@@ -183,7 +183,7 @@ static double jamming_friction(const struct scenario *s, const stance_case *c)
         for (int i = 0; i < n; i++) {
             double unit[STANCE_MAX_COORDINATES] = {0};
             unit[i] = 1;
-            scene->contact_point(c->robot, c->position, unit, k, point, speed);
+            scene->contact_point(scene, c->robot, c->position, unit, k, point, speed);
             row[0][i] = speed[1], row[1][i] = speed[0];
         }
         for (int i = 0; i < n; i++)

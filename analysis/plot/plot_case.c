@@ -10,7 +10,13 @@
 
 GNUPLOT_SCRIPT(plot_case_gp, "analysis/plot/plot_case.gp");
 
-enum { MOST_ROWS = 4000, MOST_LINES = 4 * STANCE_MAX_COORDINATES };
+enum { MOST_ROWS = 4000, MOST_LINES = 4 * STANCE_MAX_COORDINATES, HUES = 7 /* style.gp */ };
+
+/* Contacts with the ground; those after them are stops of joints, which have no place on it. */
+static size_t grounded(const struct plot_case *c)
+{
+    return c->readable ? (size_t)plot_case_grounded(c->scenario.scene) : c->t->contacts;
+}
 
 /* ---- data --------------------------------------------------------------------------------- */
 
@@ -63,17 +69,18 @@ static void widen(struct range *range)
     range->high = middle + 0.56 * span;
 }
 
-/* Of columns first, first + every ... of `width`. With `robust`, single peaks (the impulses of
- * impacts) may stick out: the frame ends at half as much again as 98 % of the loaded rows need. */
+/* Of columns first, first + every ... before `end`, of `width`. With `robust`, single peaks (the
+ * impulses of impacts) may stick out: the frame ends at half as much again as 98 % of the loaded
+ * rows need. */
 static struct range range_of(const struct results_trajectory *t, const double *values, size_t width,
-                             size_t first, size_t every, bool robust)
+                             size_t first, size_t every, size_t end, bool robust)
 {
     struct range range = {INFINITY, -INFINITY, 0, 0};
     double *loaded = robust ? malloc(t->rows * width * sizeof *loaded) : NULL, limit = INFINITY;
     size_t n = 0;
 
     for (size_t k = 0; k < t->rows && loaded; k++) {
-        for (size_t c = first; c < width; c += every) {
+        for (size_t c = first; c < end; c += every) {
             double value = fabs(values[k * width + c]);
             if (isfinite(value) && value > 0)
                 loaded[n++] = value;
@@ -88,7 +95,7 @@ static struct range range_of(const struct results_trajectory *t, const double *v
     free(loaded);
     for (size_t k = 0; k < t->rows; k++) {
         bool beyond = false;
-        for (size_t c = first; c < width; c += every) {
+        for (size_t c = first; c < end; c += every) {
             double value = values[k * width + c];
             if (!isfinite(value))
                 continue;
@@ -229,7 +236,7 @@ static void put_line(struct page *page, size_t column, double factor, size_t hue
     gnuplot_set(&page->g,
                 "track_panel[%d] = %d; track_column[%d] = %zu; track_factor[%d] = %#.17g; "
                 "track_colour[%d] = hue[%zu]; track_dash[%d] = %d; track_width[%d] = %g",
-                k, page->panels, k, column + 2, k, factor, k, hue + 1, k, dotted ? 3 : 1, k,
+                k, page->panels, k, column + 2, k, factor, k, hue % HUES + 1, k, dotted ? 3 : 1, k,
                 dotted ? 1 : 1.7);
 }
 
@@ -260,11 +267,11 @@ static bool end_page(struct page *page, const char *picture, stance_message *mes
 }
 
 /* An entry of the legend for each contact or actuator. */
-static void put_names(struct page *page, const char (*names)[32], size_t count)
+static void put_names(struct page *page, const char (*names)[SCENARIO_NAME], size_t count)
 {
     char colour[32];
     for (size_t k = 0; k < count; k++) {
-        snprintf(colour, sizeof colour, "hue[%zu]", k + 1);
+        snprintf(colour, sizeof colour, "hue[%zu]", k % HUES + 1);
         gnuplot_legend(&page->g, colour, names[k]);
     }
 }
@@ -318,7 +325,8 @@ static bool draw_coordinates(const struct plot_case *c, stance_message *message)
         return false;
     for (size_t i = 0; i < t->coordinates; i++) {
         const stance_quantity *q = quantity(c, i);
-        struct range range = range_of(t, t->position, t->coordinates, i, t->coordinates, false);
+        struct range range =
+            range_of(t, t->position, t->coordinates, i, t->coordinates, t->coordinates, false);
         const double target = target_of(c, i);
         struct ramp setpoint;
         char text[300];
@@ -363,6 +371,7 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
     static const char *const components[] = {"Normal force, out of the ground",
                                              "Tangential force, along +x"};
     const struct results_trajectory *t = c->t;
+    const size_t count = grounded(c);
     struct page page = {.c = c};
     char text[300], what[80];
 
@@ -370,7 +379,7 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
                     220, message))
         return false;
     for (int k = 0; k < 2; k++) {
-        struct range range = range_of(t, t->force, 2 * t->contacts, (size_t)k, 2, true);
+        struct range range = range_of(t, t->force, 2 * t->contacts, (size_t)k, 2, 2 * count, true);
         snprintf(what, sizeof what, "%s", components[k]);
         if (t->rows > 1) {
             snprintf(what, sizeof what, "%s (means over %.4g s)", components[k],
@@ -378,13 +387,13 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
         }
         heading_of(t, what, &range, "N", text, sizeof text);
         put_panel(&page, text, k ? "tangential force (N)" : "normal force (N)", &range);
-        for (size_t i = 0; i < t->contacts; i++) {
+        for (size_t i = 0; i < count; i++) {
             for (int sign = -1; k == 1 && c->readable && sign <= 1; sign += 2)
                 put_line(&page, 2 * i, sign * c->values.friction, i, true);
             put_line(&page, 2 * i + (size_t)k, 1, i, false);
         }
     }
-    put_names(&page, t->contact, t->contacts);
+    put_names(&page, t->contact, count);
     if (c->readable) {
         snprintf(text, sizeof text, "limit of friction %.4g", c->values.friction);
         gnuplot_note(&page.g, "tangential, dotted:");
@@ -395,24 +404,36 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
 
 /* ---- torques and gaps --------------------------------------------------------------------- */
 
+/* What the actuators give: forces on what slides, torques on what turns. */
+static const char *torque_label(const struct plot_case *c, const char **unit)
+{
+    const stance_scene *const scene = c->readable ? c->scenario.scene : NULL;
+    int slides = 0;
+    for (int k = 0; scene && k < scene->actuators; k++)
+        slides += strcmp(scene->coordinate[scene->actuated[k]].unit, "m") == 0;
+    const bool all = slides > 0 && slides == scene->actuators;
+    *unit = all ? "N" : slides > 0 ? "N m, N" : "N m";
+    return all ? "force (N)" : slides > 0 ? "torque (N m), force (N)" : "torque (N m)";
+}
+
 static bool draw_torques(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
     struct page page = {.c = c};
-    struct range range = range_of(t, t->torque, t->actuators, 0, 1, true);
+    struct range range = range_of(t, t->torque, t->actuators, 0, 1, t->actuators, true);
     const double limit = c->readable ? c->values.torque_limit : INFINITY;
     const bool limited = isfinite(limit) && limit < 4 * fmax(fabs(range.low), fabs(range.high));
+    const char *unit, *const label = torque_label(c, &unit);
     char text[300];
 
-    if (!begin_page(&page, "Torques of the actuators", t->torque, t->actuators, 1, 260, message))
+    if (!begin_page(&page, "What the actuators give", t->torque, t->actuators, 1, 260, message))
         return false;
-    heading_of(t, "Torque applied in the step that ends at each instant", &range, "N m", text,
-               sizeof text);
+    heading_of(t, "Applied in the step that ends at each instant", &range, unit, text, sizeof text);
     if (limited) {
         include(&range, limit);
         include(&range, -limit);
     }
-    put_panel(&page, text, "torque (N m)", &range);
+    put_panel(&page, text, label, &range);
     for (size_t k = 0; k < t->actuators; k++)
         put_line(&page, k, 1, k, false);
     if (limited) {
@@ -421,7 +442,7 @@ static bool draw_torques(const struct plot_case *c, stance_message *message)
     }
     put_names(&page, t->actuator, t->actuators);
     if (isfinite(limit)) {
-        snprintf(text, sizeof text, "%slimit %.4g N m", limited ? "dashed: " : "", limit);
+        snprintf(text, sizeof text, "%slimit %.4g %s", limited ? "dashed: " : "", limit, unit);
         gnuplot_note(&page.g, text);
     }
     return end_page(&page, "torques", message);
@@ -430,18 +451,19 @@ static bool draw_torques(const struct plot_case *c, stance_message *message)
 static bool draw_gaps(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
+    const size_t count = grounded(c);
     struct page page = {.c = c};
-    struct range range = range_of(t, t->gap, t->contacts, 0, 1, false);
+    struct range range = range_of(t, t->gap, t->contacts, 0, 1, count, false);
 
     if (!begin_page(&page, "Heights of the contact points above the ground", t->gap, t->contacts, 1,
                     260, message))
         return false;
     include(&range, 0);
     put_panel(&page, "", "gap (m)", &range);
-    for (size_t k = 0; k < t->contacts; k++)
+    for (size_t k = 0; k < count; k++)
         put_line(&page, k, 1, k, false);
     put_level(&page, 0, "0x606060", false);
-    put_names(&page, t->contact, t->contacts);
+    put_names(&page, t->contact, count);
     return end_page(&page, "gaps", message);
 }
 
@@ -508,8 +530,10 @@ bool plot_case(const struct plot *plot, size_t place, uint64_t index, stance_mes
                  "%.100s: the trajectory of case %llu is empty", plot->r->file,
                  (unsigned long long)index);
     }
-    good = good && draw_coordinates(c, message) && (!t.force || draw_forces(c, message)) &&
-           (!t.torque || draw_torques(c, message)) && (!t.gap || draw_gaps(c, message));
+    const bool lands = good && grounded(c) > 0;
+    good = good && draw_coordinates(c, message) &&
+           (!t.force || !lands || draw_forces(c, message)) &&
+           (!t.torque || draw_torques(c, message)) && (!t.gap || !lands || draw_gaps(c, message));
     if (good && c->readable) {
         good = plot_strip(c, message);
     } else if (good) {

@@ -19,6 +19,9 @@ struct plot_case {
 bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *script,
                      const char *what, stance_message *message);
 
+/* Contacts with the ground: the first ones of a scene, before the stops of joints. */
+int plot_case_grounded(const stance_scene *scene);
+
 /* STEM-strip: stick figures at even intervals. */
 bool plot_strip(const struct plot_case *c, stance_message *message);
 

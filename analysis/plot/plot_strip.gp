@@ -1,5 +1,5 @@
 # plot_strip.gp - stick figures from left to right and row by row, at even intervals of time. Both directions
-# have the same scale. In the plane of $segments and $points the figures stand `spacing` apart.
+# have the same scale. In the plane of $ground, $segments and $points the figures stand `spacing` apart.
 per_row = 7
 side = 24
 legend_height = 36
@@ -17,7 +17,7 @@ panel_top(row) = top + legend_height + (row - 1)*(height + times_height)
 page_height = int(panel_top(rows + 1) + 8)
 load 'page.gp'
 
-group_colour(k) = k < contacts ? hue[k+1] : 0x303030
+group_colour(k) = k < contacts ? hue[k%|hue|+1] : 0x303030
 left = side
 do for [k=0:contacts] {
     name = k < contacts ? contact_name[k+1] : 'body'
@@ -47,7 +47,7 @@ do for [row=1:rows] {
     last = count < row*per_row ? count : row*per_row
     eval panel(side, panel_top(row), scale*spacing*(last - first), height)
     set xrange [first*spacing:last*spacing]
-    plot 0 with lines lw 2 lc rgb '#a0a0a0' notitle, \
+    plot $ground using 1:2 with lines lw 2 lc rgb '#a0a0a0' notitle, \
         for [k=contacts:0:-1] $segments using 1:($3 == k ? $2 : NaN) with lines lw 2.6 lc rgb group_colour(k) notitle, \
         for [k=contacts:0:-1] $points using 1:($3 == k ? $2 : NaN) with points pt 7 ps (k < contacts ? 0.75 : 0.9) \
             lc rgb group_colour(k) notitle

@@ -35,7 +35,7 @@ const char *summary_judged_word(const struct summary *summary)
     return summary->judged == RESULTS_RESTED ? "Rested" : "Stabilised";
 }
 
-size_t summary_final_state(const struct results *r, char name[][32], double *state)
+size_t summary_final_state(const struct results *r, char name[][SCENARIO_NAME], double *state)
 {
     const size_t n = results_words(r, "state", name, SCENARIO_MAX_STATES);
     const bool done = r->kind[0] != RESULTS_PENDING && r->kind[0] != RESULTS_FAILED;

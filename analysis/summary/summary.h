@@ -87,7 +87,7 @@ struct summary_field {
     char path[96], unit[16], text[160];
     double number; /* where it is one, else NAN */
 };
-enum { SUMMARY_FIELDS = 64, SUMMARY_FAILURES = 16 };
+enum { SUMMARY_FIELDS = 192, SUMMARY_FAILURES = 16 };
 
 struct summary {
     struct statistics_counts counts;
@@ -159,7 +159,7 @@ struct table_value summary_sampled(const struct results_varied *v, double value)
 void summary_answers(struct table *t, const struct summary *summary, enum table_form form);
 
 /* The state in which a file of one case ends: name[], state[]; how many, 0 if that is not known. */
-size_t summary_final_state(const struct results *r, char name[][32], double *state);
+size_t summary_final_state(const struct results *r, char name[][SCENARIO_NAME], double *state);
 
 /* Print it; false when memory or the output fails. */
 bool summary_print_text(const struct summary *summary, const struct results *r);

@@ -1,6 +1,7 @@
 /* summary_fields.c - the fields of the scenario that a sweep leaves alone, for `stance summary`. */
 #include "summary.h"
 
+#include "runner/base/problem.h"
 #include "runner/scenario/schema.h"
 
 #include <math.h>
@@ -56,6 +57,20 @@ static void add_text(struct collection *c, const char *path, const char *text)
         snprintf(field->text, sizeof field->text, "%s", text);
 }
 
+/* Contacts of the ground by name; stops of joints are none. */
+static void add_contacts(struct collection *c, const char *path, int contacts)
+{
+    const stance_scene *const scene = c->s->scene;
+    const char *names[STANCE_MAX_CONTACTS];
+    char text[sizeof c->summary->field->text];
+    size_t count = 0;
+    for (int i = 0; i < scene->contacts; i++)
+        if ((contacts >> i & 1) && !(scene->grip && scene->grip[i] < 0))
+            names[count++] = scene->contact_name[i];
+    if (count > 0)
+        add_text(c, path, words_join(text, sizeof text, " ", names, count));
+}
+
 static void add_initial(struct collection *c, const struct scenario_values *v)
 {
     const stance_scene *scene = c->s->scene;
@@ -71,6 +86,8 @@ static void add_initial(struct collection *c, const struct scenario_values *v)
     }
     if (v->support_foot > 0)
         add_number(c, "initial.support_foot", v->support_foot, "");
+    if (v->support)
+        add_contacts(c, "initial.support", v->support);
     for (int i = 0; i < 2 * scene->coordinates; i++) {
         const stance_quantity *q = &scene->coordinate[i % scene->coordinates];
         bool rate = i >= scene->coordinates, state = v->state_given;
@@ -172,7 +189,7 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
 {
     const stance_scene *scene = c->s->scene;
     const stance_method *const *methods = stance_methods();
-    char text[160] = "", path[96];
+    char path[96];
 
     for (int i = 0; i < scene->robot_count; i++) {
         snprintf(path, sizeof path, "robot.%s", scene->robot[i].name);
@@ -180,16 +197,12 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
     }
     add_number(c, "ground.friction", v->friction, "");
     add_number(c, "ground.restitution", v->restitution, "");
+    add_number(c, "ground.slope", scene->mechanism ? v->robot[STANCE_ROBOT_SLOPE] : NAN, "rad");
+    add_number(c, "ground.gravity", scene->mechanism ? v->robot[STANCE_ROBOT_GRAVITY] : NAN,
+               "m/s^2");
     if (v->prefer)
         add_text(c, "ground.prefer", "most-energy");
-    for (int i = 0; i < scene->contacts; i++) {
-        size_t used = strlen(text);
-        if (v->contacts >> i & 1) {
-            snprintf(text + used, sizeof text - used, "%s%s", used ? " " : "",
-                     scene->contact_name[i]);
-        }
-    }
-    add_text(c, "ground.contacts", text);
+    add_contacts(c, "ground.contacts", v->contacts);
     add_initial(c, v);
     add_controller(c, v);
     int count = 0;
@@ -208,7 +221,8 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
         add_number(c, "stop.settle.rate", v->settle_rate, "rad/s");
         add_number(c, "stop.settle.hold", v->settle_hold, "s");
     }
-    add_number(c, "stop.fall_height", scene->fallen ? v->fall_height : NAN, "");
+    add_number(c, "stop.fall_height", scene->fallen && !scene->mechanism ? v->fall_height : NAN,
+               "");
     if (v->capture)
         add_text(c, "stop.capture", "estimated");
 }

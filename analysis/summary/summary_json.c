@@ -220,7 +220,7 @@ static json_t *cost(const struct summary *summary)
 static json_t *single_case(const struct results *r)
 {
     static const char *const times[] = {"end_time", "settle_time", "fall_time"};
-    char name[SCENARIO_MAX_STATES][32];
+    char name[SCENARIO_MAX_STATES][SCENARIO_NAME];
     double state[SCENARIO_MAX_STATES], time;
     const bool failed = r->kind[0] == RESULTS_FAILED;
     json_t *final = json_object();

@@ -363,7 +363,7 @@ enum { CASE_TIMES = sizeof case_times / sizeof case_times[0] };
 
 static void print_case(const struct summary *summary, const struct results *r)
 {
-    char name[SCENARIO_MAX_STATES][32];
+    char name[SCENARIO_MAX_STATES][SCENARIO_NAME];
     double state[SCENARIO_MAX_STATES], time;
     int kind = r->kind[0];
 

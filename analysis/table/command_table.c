@@ -117,7 +117,7 @@ static void add_column(struct table *rows, const char *name)
 
 static void add_columns(struct listing *t)
 {
-    char states[SCENARIO_MAX_STATES][32], name[48];
+    char states[SCENARIO_MAX_STATES][SCENARIO_NAME], name[SCENARIO_NAME + 8];
     const size_t words = results_words(t->r, "state", states, SCENARIO_MAX_STATES);
     add_column(&t->rows, "case");
     for (int a = 0; !t->r->single && a < t->r->axes; a++)

@@ -16,7 +16,7 @@ static bool respond(const stance_scene *scene, const double *robot, const double
 {
     const int n = scene->coordinates;
     double A[STANCE_MAX_COORDINATES * STANCE_MAX_COORDINATES];
-    scene->inertia(robot, position, A);
+    scene->inertia(scene, robot, position, A);
     memset(X, 0, sizeof(double[STANCE_MAX_COORDINATES][2]));
     for (int i = 0; i < 2; i++)
         X[scene->posture[scene->postures - 2 + i]][i] = 1;

@@ -93,12 +93,12 @@ static bool begin(const struct search *s, uint64_t point, double radius, bool in
         c->position[scene->posture[k]] = c->near.target[k] + x[k];
         c->velocity[scene->posture[k]] = x[postures + k];
     }
-    scene->stand(c->robot, s->support, c->position, c->velocity);
+    scene->stand(scene, c->robot, 1u << s->support, c->position, c->velocity);
     c->basin_known = false;
     c->trajectory = NULL;
     c->grid_index = UINT64_MAX - point; /* noise that no case of a sweep has */
     c->sample_index = s->batch + 1;
-    scene->gaps(c->robot, c->position, gap);
+    scene->gaps(scene, c->robot, c->position, gap);
     for (int i = 0; i < scene->contacts; i++)
         if (i != s->support && (c->contacts >> i & 1) && !(gap[i] > 0))
             return false;
@@ -210,7 +210,8 @@ static double screen(struct search *s)
 static bool makes_sense(const stance_known_basin_search *ask)
 {
     const stance_case *c = &ask->base;
-    return ask->scene && ask->kernel && ask->kernel->scene == ask->scene && ask->scene->stand &&
+    return ask->scene && ask->kernel &&
+           (ask->kernel->scene == ask->scene || ask->scene->mechanism) && ask->scene->stand &&
            ask->scene->postures > 0 && ask->shapes >= 1 && ask->shapes <= STANCE_MAX_SHAPES &&
            ask->boundary >= 1 && ask->interior >= 0 && c->settle && c->has_target &&
            c->support >= 0 && c->support < ask->scene->contacts && c->delay == 0 && !c->decouples &&

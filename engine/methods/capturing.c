@@ -70,9 +70,9 @@ struct advance {
     lanes tolerance;
     lanes done; /* s, of the step */
     lanes part; /* s, next smooth step or, in a hunt, the interval that holds the event; 0: all */
-    lanes hunting;               /* 1: an event is known to lie within `part` ... */
-    lanes attempts;              /* in this step */
-    lanes stood[SCENE_CONTACTS]; /* see between_mode */
+    lanes hunting;         /* 1: an event is known to lie within `part` ... */
+    lanes attempts;        /* in this step */
+    lanes stood[CONTACTS]; /* see between_mode */
     struct step_report sum;
 };
 
@@ -86,6 +86,11 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     for (int i = 0; i < SCENE_CONTACTS; i++)
         lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
+}
+static void advance_forget(struct advance *a, mask m)
+{
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
 }
 static void advance_free(struct advance *a)
 {
@@ -138,8 +143,9 @@ static inline mask capture_implicit(const struct setting *set, const struct moti
     struct motion coarse = here, middle = here;
     struct step_report whole, half;
     struct setting law = *set;
-    law.restitution =
-        choose(capture_rebounds(set, now, h, acceleration), set->restitution, lanes_of(0));
+    const mask rebounds = capture_rebounds(set, now, h, acceleration);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        law.restitution[c] = choose(rebounds, set->restitution[c], lanes_of(0));
     report_clear(report);
     *next = *now;
     mask good =
@@ -213,6 +219,7 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
     explicit_take(set, now, torque, length, try, coupled, &mode, &begin, step);
     step->report.ambiguous_steps =
         choose(trouble.chosen, lanes_of(1), step->report.ambiguous_steps);
+    step->report.unranked_steps = choose(trouble.unranked, lanes_of(1), lanes_of(0));
     *stuck = try & (trouble.impact | trouble.none | trouble.several |
                     between_violated(set, &mode, &begin));
     return try & LANES_NOT(*stuck | step->violated | step->bad);
@@ -244,7 +251,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     struct explicit_step step;
     mask stuck, crossed = MASK_NONE, arrived = MASK_NONE;
     a->attempts += choose(live, one, none);
-    lanes acceleration, stood[SCENE_CONTACTS];
+    lanes acceleration, stood[CONTACTS];
     memcpy(stood, a->stood, sizeof stood);
     const mask inside = capture_smooth(set, now, torque, length, live, coupled, stood, &step,
                                        &stuck, &acceleration);

@@ -51,8 +51,8 @@
 /* What is remembered between steps, and what the functions that ARKODE calls see. */
 struct advance {
     double tolerance;
-    double next;                  /* s, internal step to try */
-    double stood[SCENE_CONTACTS]; /* see between_mode */
+    double next;            /* s, internal step to try */
+    double stood[CONTACTS]; /* see between_mode */
     struct event_problem problem;
     double attempts, most; /* internal steps in this step; then it fails */
     struct step_report *report;
@@ -80,11 +80,15 @@ static int event_rates(realtype tau, N_Vector y, N_Vector rate, void *data)
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         to[EVENT_IMPULSE + 2 * c] = e.force[c][0];
         to[EVENT_IMPULSE + 2 * c + 1] = e.force[c][1];
-        to[EVENT_SLIDE + c] = a->problem.mode.contact.closed[c] ? fabs(e.u[c][1]) : 0;
+        to[EVENT_SLIDE + c] =
+            contact_unknowns(c) == 2 && contact_part(c, a->problem.mode.contact.closed)
+                ? fabs(e.u[c][1])
+                : 0;
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         to[EVENT_INTEGRAL + i] = e.integral_rate[i];
-    to[EVENT_WORK] = scene_work(&a->problem.set->body, 1, a->problem.begin + tau, e.torque, w);
+    to[EVENT_WORK] =
+        scene_work(&a->problem.set->body, 1, a->problem.begin + tau, &e.trig, e.torque, w);
     return isfinite(sum) ? 0 : -1;
 }
 
@@ -196,6 +200,12 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     a->next = EVENT_LONGEST;
     for (int i = 0; i < SCENE_CONTACTS; i++)
         a->stood[i] = 0;
+}
+
+static void advance_forget(struct advance *a, mask m)
+{
+    (void)m;
+    memset(a->stood, 0, sizeof a->stood);
 }
 
 /* Makes ARKODE start at *from with the internal step `length`, not beyond `target`. */
@@ -392,6 +402,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         if (trouble.none || trouble.several)
             return STANCE_FAILURE_PAINLEVE;
         report->ambiguous_steps = fmax(trouble.chosen, report->ambiguous_steps);
+        report->unranked_steps = fmax(trouble.unranked, report->unranked_steps);
         between_stands(&m->contact, a->stood);
         double command[ACTUATORS];
         law_torque(law, s, w, command);
@@ -399,7 +410,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
             m->clipped[i] = command[i] > law->limit ? 1 : command[i] < -law->limit ? -1 : 0;
         m->touches = 0;
         for (int c = 0; c < SCENE_CONTACTS; c++)
-            m->touches |= m->contact.closed[c] ? 1u << c : 0;
+            m->touches |= m->contact.closed[c] ? contact_with(c) : 0;
         if (m->touches) /* a slip that has ended leaves what counts as zero */
             between_project(a->problem.set, &m->contact, true, p->y, p->y + SCENE_COORDINATES,
                             &p->e);
@@ -430,8 +441,8 @@ static void event_report(const struct advance *a, const struct event_point *p,
         report->impulse[c][0] += p->y[EVENT_IMPULSE + 2 * c];
         report->impulse[c][1] += p->y[EVENT_IMPULSE + 2 * c + 1];
         report->slip[c] = p->y[EVENT_SLIDE + c];
-        report_residuals(report, a->problem.mode.contact.closed[c], a->problem.set->friction,
-                         p->e.force[c], p->e.u[c]);
+        report_residuals(report, c, a->problem.mode.contact.closed, a->problem.set->friction,
+                         (const double(*)[2])p->e.force, p->e.u[c]);
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         report->torque[i] = p->e.torque[i];

@@ -6,8 +6,8 @@
  * step. When the mode does not last to the end - a foot would be below the ground, a force pull,
  * friction leave its cone, a slip turn around - the step is halved, and halved again, until the
  * time of the switch is bracketed to LAGRANGE_BRACKET; then the state is initialised anew: feet are
- * put onto the ground, the impact law of contact.h gives the velocities, the next mode follows from
- * the state. The rest of the step is one step, unless another switch is found in it.
+ * put onto the ground, the impact law of core/contact gives the velocities, the next mode follows
+ * from the state. The rest of the step is one step, unless another switch is found in it.
  *
  * Nothing else shortens a step: stiff servo gains need h |lambda| < 2.785, as for every explicit
  * formula of this kind. Switches that accumulate (Zeno) end the case with a message, as does a
@@ -39,10 +39,10 @@ static const double tableau_b[METHOD_STAGES] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 /
 
 /* Where each lane is inside its step. */
 struct advance {
-    lanes done;                  /* s, of the step */
-    lanes part;                  /* s, interval that holds a switch; INFINITY: none is known */
-    lanes events;                /* in this step */
-    lanes stood[SCENE_CONTACTS]; /* see between_mode */
+    lanes done;            /* s, of the step */
+    lanes part;            /* s, interval that holds a switch; INFINITY: none is known */
+    lanes events;          /* in this step */
+    lanes stood[CONTACTS]; /* see between_mode */
     struct step_report sum;
 };
 
@@ -55,6 +55,11 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     for (int i = 0; i < SCENE_CONTACTS; i++)
         lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
+}
+static void advance_forget(struct advance *a, mask m)
+{
+    for (int i = 0; i < SCENE_CONTACTS; i++)
+        a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
 }
 static void advance_free(struct advance *a)
 {
@@ -93,11 +98,12 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     step.report.signorini_residual = choose(found, none, step.report.signorini_residual);
     step.report.coulomb_residual = choose(found, none, step.report.coulomb_residual);
     step.report.dissipation_residual = choose(found, none, step.report.dissipation_residual);
-    lanes stands[SCENE_CONTACTS];
+    lanes stands[CONTACTS];
     between_stands(&mode, stands);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         a->stood[c] = choose(switched, none, choose(take, stands[c], a->stood[c]));
     step.report.ambiguous_steps = choose(trouble.chosen, one, step.report.ambiguous_steps);
+    step.report.unranked_steps = choose(trouble.unranked, one, none);
     struct step_report sum = a->sum;
     report_add(&sum, &step.report);
     choose_all(take, &sum, &a->sum, sizeof sum);

@@ -35,23 +35,27 @@ static const stance_quantity coordinate_quantities[COORDINATES] = {
 
 static const char *const contact_names[] = {"bottom"};
 
-static void gaps(const double *robot, const double *position, double *gap)
+static void gaps(const stance_scene *scene, const double *robot, const double *position,
+                 double *gap)
 {
+    (void)scene;
     gap[0] = position[Z] - robot[RADIUS];
 }
 
-static void contact_point(const double *robot, const double *position, const double *velocity,
-                          int contact, double point[2], double speed[2])
+static void contact_point(const stance_scene *scene, const double *robot, const double *position,
+                          const double *velocity, int contact, double point[2], double speed[2])
 {
-    (void)contact; /* there is one */
+    (void)scene, (void)contact; /* there is one */
     point[0] = position[X];
     point[1] = position[Z] - robot[RADIUS];
     speed[0] = velocity[X];
     speed[1] = velocity[Z];
 }
 
-static int figure(const double *robot, const double *position, double points[][2])
+static int figure(const stance_scene *scene, const double *robot, const double *position,
+                  double points[][2])
 {
+    (void)scene;
     const int n = robot[RADIUS] > 0 ? SIDES + 1 : 1;
     for (int i = 0; i < n; i++) { /* from the lowest point round to it */
         double sine, cosine;
@@ -62,15 +66,18 @@ static int figure(const double *robot, const double *position, double points[][2
     return n;
 }
 
-static double energy(const double *robot, const double *position, const double *velocity)
+static double energy(const stance_scene *scene, const double *robot, const double *position,
+                     const double *velocity)
 {
+    (void)scene;
     return robot[MASS] * (0.5 * (velocity[X] * velocity[X] + velocity[Z] * velocity[Z]) +
                           STANCE_GRAVITY * position[Z]);
 }
 
-static void inertia(const double *robot, const double *position, double *A)
+static void inertia(const stance_scene *scene, const double *robot, const double *position,
+                    double *A)
 {
-    (void)position;
+    (void)scene, (void)position;
     A[0] = A[3] = robot[MASS];
     A[1] = A[2] = 0;
 }

@@ -79,10 +79,11 @@ static inline void scene_posture(const lanes *s, lanes *posture)
 }
 
 /* residual = A change - h (forces without contact). */
-static inline void scene_residual(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
-                                  const lanes *w, const lanes *change, const lanes *torque,
-                                  lanes *residual)
+static inline void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *place,
+                                  const scene_trig *trig, const lanes *w, const lanes *change,
+                                  const lanes *torque, lanes *residual)
 {
+    (void)place;
     (void)t, (void)trig, (void)w, (void)torque;
     residual[0] = b->mass * change[0];
     residual[1] = b->mass * (change[1] + h * STANCE_GRAVITY);
@@ -108,9 +109,11 @@ static inline void scene_inertia(const scene_body *b, const scene_trig *trig, sc
 }
 
 /* Generalised forces without contact. */
-static inline void scene_forces(const scene_body *b, lanes t, const scene_trig *trig,
-                                const lanes *w, const lanes *torque, lanes *force)
+static inline void scene_forces(const scene_body *b, lanes t, const lanes *place,
+                                const scene_trig *trig, const lanes *w, const lanes *torque,
+                                lanes *force)
 {
+    (void)place;
     (void)t, (void)trig, (void)w, (void)torque;
     force[0] = lanes_of(0);
     force[1] = -(b->mass * STANCE_GRAVITY);
@@ -177,9 +180,10 @@ static inline lanes scene_gap_change_error(const scene_body *b, int c, const lan
 }
 
 /* Mechanical energy that a displacement d adds. */
-static inline lanes scene_energy_change(const scene_body *b, const scene_trig *trig, const lanes *w,
-                                        const lanes *d)
+static inline lanes scene_energy_change(const scene_body *b, const lanes *place,
+                                        const scene_trig *trig, const lanes *w, const lanes *d)
 {
+    (void)place;
     (void)trig, (void)w;
     return b->mass * (STANCE_GRAVITY * d[1]);
 }
@@ -202,9 +206,10 @@ static inline lanes scene_energy(const scene_body *b, const lanes *s, const lane
     return scene_kinetic(b, trig, w) + scene_potential(b, s, trig);
 }
 /* Nothing but gravity and contact acts. */
-static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const lanes *torque,
-                               const lanes *d)
+static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
+                               const lanes *torque, const lanes *d)
 {
+    (void)trig;
     (void)b, (void)h, (void)t, (void)torque, (void)d;
     return lanes_of(0);
 }

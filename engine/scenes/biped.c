@@ -22,7 +22,8 @@
  *
  * which says that the centre of mass is above foot s. Given theta and one leg it yields the sine of
  * the other; given both legs it reads a sin theta + b cos theta = 0, which two opposite pitches
- * solve. Either way there are two branches, and `lower` chooses between them.
+ * solve. Either way there are two branches, and branch 1 is
+ * the one with the hip below the foot.
  *
  * Linearisation with foot s pinned at the origin: p = l (-sin phi_s, cos phi_s), so that in
  * a = (theta, phi_s, phi_f) the kinetic energy is a'^T N(a) a' / 2 with
@@ -138,15 +139,18 @@ static point foot(const double *robot, const double *q, int i)
     return (point){p.x + robot[LEG_LENGTH] * sine, p.z - robot[LEG_LENGTH] * cosine};
 }
 
-static void gaps(const double *robot, const double *position, double *gap)
+static void gaps(const stance_scene *scene, const double *robot, const double *position,
+                 double *gap)
 {
+    (void)scene;
     for (int i = 0; i < FEET; i++)
         gap[i] = foot(robot, position, i).z;
 }
 
-static void contact_point(const double *robot, const double *position, const double *velocity,
-                          int contact, double at[2], double speed[2])
+static void contact_point(const stance_scene *scene, const double *robot, const double *position,
+                          const double *velocity, int contact, double at[2], double speed[2])
 {
+    (void)scene;
     double trunk_sine, trunk_cosine, leg_sine, leg_cosine;
     const point f = foot(robot, position, contact);
     stance_sincos(position[THETA], &trunk_sine, &trunk_cosine);
@@ -159,13 +163,15 @@ static void contact_point(const double *robot, const double *position, const dou
     speed[1] = velocity[Z] + trunk * trunk_sine + leg * leg_sine;
 }
 
-static void stand(const double *robot, int support, double *position, double *velocity)
+static void stand(const stance_scene *scene, const double *robot, uint32_t supports,
+                  double *position, double *velocity)
 {
+    const int support = supports & 1 ? 0 : 1;
     static const double zero[COORDINATES];
     double at[2], speed[2];
 
     position[X] = position[Z] = 0;
-    contact_point(robot, position, zero, support, at, speed);
+    contact_point(scene, robot, position, zero, support, at, speed);
     position[X] = 0 - at[0];
     position[Z] = 0 - at[1];
     /* Where the sum rounds downwards the foot would start inside the ground: the next heights. */
@@ -173,13 +179,15 @@ static void stand(const double *robot, int support, double *position, double *ve
     while (foot(robot, position, support).z < 0)
         position[Z] = fmax(nextafter(position[Z], INFINITY), position[Z] + least);
     velocity[X] = velocity[Z] = 0;
-    contact_point(robot, position, velocity, support, at, speed);
+    contact_point(scene, robot, position, velocity, support, at, speed);
     velocity[X] = 0 - speed[0];
     velocity[Z] = 0 - speed[1];
 }
 
-static int figure(const double *robot, const double *position, double points[][2])
+static int figure(const stance_scene *scene, const double *robot, const double *position,
+                  double points[][2])
 {
+    (void)scene;
     const point p = hip(robot, position), f1 = foot(robot, position, 0),
                 f2 = foot(robot, position, 1);
     const point line[] = {f1, p, f2, p, {position[X], position[Z]}};
@@ -191,12 +199,15 @@ static int figure(const double *robot, const double *position, double points[][2
     return n;
 }
 
-static bool fallen(const double *robot, const double *position, double fall_height)
+static bool fallen(const stance_scene *scene, const double *robot, const double *position,
+                   double fall_height)
 {
+    (void)scene;
     return hip(robot, position).z < fall_height * robot[LEG_LENGTH] || position[Z] <= 0;
 }
 
-static double energy(const double *robot, const double *position, const double *velocity)
+static double energy(const stance_scene *scene, const double *robot, const double *position,
+                     const double *velocity)
 {
     double sine, cosine, at[2], speed[2];
     stance_sincos(position[THETA], &sine, &cosine);
@@ -209,7 +220,7 @@ static double energy(const double *robot, const double *position, const double *
     sum += robot[HIP_MASS] *
            (0.5 * (hip_vx * hip_vx + hip_vz * hip_vz) + STANCE_GRAVITY * hip(robot, position).z);
     for (int i = 0; i < FEET; i++) {
-        contact_point(robot, position, velocity, i, at, speed);
+        contact_point(scene, robot, position, velocity, i, at, speed);
         sum += robot[FOOT_MASS] *
                (0.5 * (speed[0] * speed[0] + speed[1] * speed[1]) + STANCE_GRAVITY * at[1]);
     }
@@ -217,8 +228,10 @@ static double energy(const double *robot, const double *position, const double *
 }
 
 /* Sum over the masses of m J^T J, J their Jacobians by (x, z, theta, q1, q2). */
-static void inertia(const double *robot, const double *position, double *A)
+static void inertia(const stance_scene *scene, const double *robot, const double *position,
+                    double *A)
 {
+    (void)scene;
     const double mass[] = {robot[TRUNK_MASS], robot[HIP_MASS], robot[FOOT_MASS], robot[FOOT_MASS]};
     double J[4][2][COORDINATES] = {0}, sine, cosine;
     for (int k = 0; k < 4; k++) {
@@ -264,6 +277,17 @@ static stance_error refuse(stance_message *message, stance_error error, const ch
     return error;
 }
 
+/* The foot that these contacts are; -1: they are not one foot. */
+static int foot_of(uint32_t supports)
+{
+    return supports == 1 ? 0 : supports == 2 ? 1 : -1;
+}
+
+static double weight_of(const double *robot)
+{
+    return STANCE_GRAVITY * (2 * robot[FOOT_MASS] + robot[TRUNK_MASS] + robot[HIP_MASS]);
+}
+
 /* Weights of sin theta, sin phi_1, sin phi_2 in the relation that puts the centre of mass above
  * the foot `support`. */
 static void balance(const double *robot, int support, double weight[POSTURES])
@@ -286,10 +310,10 @@ static stance_error solve_leg(const double *weight, const stance_equilibrium_cho
     if (!(fabs(sine) <= 1 + 1e-14)) {
         return refuse(message, STANCE_NO_EQUILIBRIUM,
                       "no equilibrium: the %s leg would need sin(theta + q%d) = %.6g",
-                      unknown == 1 + choice->support ? "support" : "free", unknown, sine);
+                      unknown == 1 + foot_of(choice->supports) ? "support" : "free", unknown, sine);
     }
     const double upper = angle_of(fmax(-1, fmin(1, sine)), sqrt(fmax(0, (1 - sine) * (1 + sine))));
-    posture[unknown] = (choice->lower ? M_PI - upper : upper) - posture[0];
+    posture[unknown] = ((choice->branch == 1) ? M_PI - upper : upper) - posture[0];
     return STANCE_OK;
 }
 
@@ -297,7 +321,7 @@ static stance_error solve_leg(const double *weight, const stance_equilibrium_cho
 static stance_error solve_trunk(const double *weight, const stance_equilibrium_choice *choice,
                                 double posture[POSTURES], stance_message *message)
 {
-    const int s = 1 + choice->support;
+    const int s = 1 + foot_of(choice->supports);
     const double a =
         weight[0] + weight[1] * cosine_of(posture[1]) + weight[2] * cosine_of(posture[2]);
     const double b = weight[1] * sine_of(posture[1]) + weight[2] * sine_of(posture[2]);
@@ -309,21 +333,23 @@ static stance_error solve_trunk(const double *weight, const stance_equilibrium_c
                       "foot and every theta balances");
     }
     posture[0] = angle_of(-b, a);
-    if ((cosine_of(posture[0] + posture[s]) < 0) != choice->lower)
+    if ((cosine_of(posture[0] + posture[s]) < 0) != (choice->branch == 1))
         posture[0] += posture[0] > 0 ? -M_PI : M_PI;
     return STANCE_OK;
 }
 
-static stance_error equilibrium(const double *robot, const stance_equilibrium_choice *choice,
-                                stance_equilibrium *result, stance_message *message)
+static stance_error equilibrium(const stance_scene *scene, const double *robot,
+                                const stance_equilibrium_choice *choice, stance_equilibrium *result,
+                                stance_message *message)
 {
     int given = 0, unknown = -1;
     double posture[POSTURES], weight[POSTURES], velocity[COORDINATES] = {0};
 
-    if (choice->support < 0 || choice->support >= FEET) {
-        return refuse(message, STANCE_BAD_ARGUMENT, "no such foot to stand on: foot %d",
-                      choice->support + 1);
-    }
+    const int support = foot_of(choice->supports);
+    if (support < 0)
+        return refuse(message, STANCE_BAD_ARGUMENT, "an equilibrium stands on one of two feet");
+    if (choice->branch < 0 || choice->branch > 1)
+        return refuse(message, STANCE_BAD_ARGUMENT, "an equilibrium has the branches 0 and 1");
     for (int i = 0; i < POSTURES; i++) {
         posture[i] = choice->posture[i];
         if (isnan(posture[i])) {
@@ -342,14 +368,18 @@ static stance_error equilibrium(const double *robot, const stance_equilibrium_ch
                       : given == 1 ? "only one is"
                                    : "all three are");
     }
-    balance(robot, choice->support, weight);
+    balance(robot, support, weight);
     const stance_error error = unknown == 0 ? solve_trunk(weight, choice, posture, message)
                                             : solve_leg(weight, choice, posture, unknown, message);
     if (error != STANCE_OK)
         return error;
-    *result = (stance_equilibrium){.support = choice->support};
+    *result = (stance_equilibrium){.supports = choice->supports,
+                                   .freedoms = POSTURES,
+                                   .freedom = {THETA, Q1, Q2},
+                                   .condition = 1};
+    result->force[support][0] = weight_of(robot);
     memcpy(&result->position[THETA], posture, sizeof posture);
-    stand(robot, choice->support, result->position, velocity);
+    stand(scene, robot, choice->supports, result->position, velocity);
     for (int i = 0; i < TORQUES; i++) {
         result->torque[i] =
             0 - STANCE_GRAVITY * weight[1 + i] * sine_of(posture[0] + posture[1 + i]);
@@ -371,7 +401,8 @@ static pinned pin(const double *robot, const stance_equilibrium *equilibrium)
     const double l = robot[LEG_LENGTH], lt = robot[TRUNK_LENGTH], m = robot[FOOT_MASS],
                  mt = robot[TRUNK_MASS], carried = mt + robot[HIP_MASS] + m;
     const double *q = equilibrium->position;
-    const int s = Q1 + equilibrium->support, f = Q2 - equilibrium->support;
+    const int support = foot_of(equilibrium->supports);
+    const int s = Q1 + support, f = Q2 - support;
     const double phi_s = q[THETA] + q[s], phi_f = q[THETA] + q[f];
     return (pinned){
         .trunk = mt * lt * lt,
@@ -401,12 +432,13 @@ static void accelerate(const pinned *p, int support, const double force[POSTURES
     posture[2 - support] = phi_f - theta;
 }
 
-static stance_error linearise(const double *robot, const stance_equilibrium *equilibrium, double *A,
-                              double *B)
+static stance_error linearise(const stance_scene *scene, const double *robot,
+                              const stance_equilibrium *equilibrium, double *A, double *B)
 {
+    (void)scene;
     enum { STATES = 2 * POSTURES };
-    const int support = equilibrium->support;
-    if (support < 0 || support >= FEET)
+    const int support = foot_of(equilibrium->supports);
+    if (support < 0)
         return STANCE_BAD_ARGUMENT;
     const pinned p = pin(robot, equilibrium);
     double column[POSTURES];
@@ -440,7 +472,7 @@ static void momentum(const double *robot, const stance_equilibrium *equilibrium,
 {
     double weight[POSTURES];
     const double *q = equilibrium->position;
-    const int s = equilibrium->support, legs[POSTURES - 1] = {Q1 + s, Q2 - s};
+    const int s = foot_of(equilibrium->supports), legs[POSTURES - 1] = {Q1 + s, Q2 - s};
 
     balance(robot, s, weight);
     jacobian[0][0] = -weight[0] * sine_of(q[THETA]);
@@ -452,17 +484,18 @@ static void momentum(const double *robot, const stance_equilibrium *equilibrium,
     }
 }
 
-static stance_error contact_force(const double *robot, const stance_equilibrium *equilibrium,
-                                  double *force, double *by_state, double *by_torque)
+static stance_error contact_force(const stance_scene *scene, const double *robot,
+                                  const stance_equilibrium *equilibrium, double *force,
+                                  double *by_state, double *by_torque)
 {
     enum { STATES = 2 * POSTURES };
     double A[STATES * STATES], B[STATES * TORQUES], jacobian[2][POSTURES];
-    const stance_error error = linearise(robot, equilibrium, A, B);
+    const stance_error error = linearise(scene, robot, equilibrium, A, B);
     if (error != STANCE_OK)
         return error;
-    const int s = 1 + equilibrium->support, f = 2 - equilibrium->support;
+    const int support = foot_of(equilibrium->supports), s = 1 + support, f = 2 - support;
     momentum(robot, equilibrium, jacobian);
-    force[0] = STANCE_GRAVITY * (2 * robot[FOOT_MASS] + robot[TRUNK_MASS] + robot[HIP_MASS]);
+    force[0] = weight_of(robot);
     force[1] = 0;
     for (int c = 0; c < 2; c++) {
         /* The accelerations are those of (theta, q1, q2): phi_i'' = theta'' + q_i''. */
@@ -486,7 +519,7 @@ static stance_error contact_force(const double *robot, const stance_equilibrium 
 /* ---- workloads ------------------------------------------------------------------------------- */
 
 /* The paper's balance controller at its equilibrium, torques within 10 N m. */
-static const stance_equilibrium_choice balanced = {0, {-0.41, NAN, 0.82}, false};
+static const stance_equilibrium_choice balanced = {1, {-0.41, NAN, 0.82}, 0};
 
 static void flight(const double even[2], stance_case *c)
 {
@@ -501,7 +534,7 @@ static void one_foot(const double even[2], stance_case *c)
     c->torque_limit = 10;
     c->contacts = 1;
     c->position[THETA] += -0.09 + 0.1 * even[0];
-    stand(c->robot, 0, c->position, c->velocity);
+    stand(&stance_scene_biped, c->robot, 1, c->position, c->velocity);
 }
 
 /* The legs held apart; the other foot up to a centimetre high. */
@@ -514,7 +547,7 @@ static void two_feet(const double even[2], stance_case *c)
         c->near.target[1 + k] = c->position[Q1 + k] = k ? -leg : leg;
     }
     c->position[THETA] = -0.02 * even[0];
-    stand(c->robot, 0, c->position, c->velocity);
+    stand(&stance_scene_biped, c->robot, 1, c->position, c->velocity);
 }
 
 static const stance_workload workloads[] = {{"flight", &balanced, flight},

@@ -79,7 +79,7 @@ static inline void scene_enter(const double *robot, const double *q, const doubl
                                double *w)
 {
     double sine, cosine;
-    stance_sincos(q[2], &sine, &cosine);
+    angle_sincos(q[2], &sine, &cosine);
     s[0] = q[0] + robot[1] * sine;
     s[1] = q[1] - robot[1] * cosine;
     w[0] = v[0] + robot[1] * (cosine * v[2]);
@@ -92,7 +92,7 @@ static inline void scene_leave(const double *robot, const double *s, const doubl
                                double *v)
 {
     double sine, cosine;
-    stance_sincos(s[2], &sine, &cosine);
+    angle_sincos(s[2], &sine, &cosine);
     q[0] = s[0] - robot[1] * sine;
     q[1] = s[1] + robot[1] * cosine;
     v[0] = w[0] - robot[1] * (cosine * w[2]);
@@ -169,10 +169,11 @@ static inline void scene_coordinate_curvature(const scene_body *b, const scene_t
 
 /* residual = A(u) change - h (forces without contact), evaluated at angles `trig` and velocity w;
  * change = velocity at the end minus velocity before the step. */
-static inline void scene_residual(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
-                                  const lanes *w, const lanes *change, const lanes *torque,
-                                  lanes *residual)
+static inline void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *place,
+                                  const scene_trig *trig, const lanes *w, const lanes *change,
+                                  const lanes *torque, lanes *residual)
 {
+    (void)place;
     (void)t; /* no force depends on time */
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};
@@ -322,9 +323,11 @@ static inline void scene_inertia(const scene_body *b, const scene_trig *trig, sc
 }
 
 /* Generalised forces without contact: centrifugal, gravity, torques. */
-static inline void scene_forces(const scene_body *b, lanes t, const scene_trig *trig,
-                                const lanes *w, const lanes *torque, lanes *force)
+static inline void scene_forces(const scene_body *b, lanes t, const lanes *place,
+                                const scene_trig *trig, const lanes *w, const lanes *torque,
+                                lanes *force)
 {
+    (void)place;
     (void)t; /* no force depends on time */
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     const lanes tau[SCENE_ANGLES] = {-(torque[0] + torque[1]), torque[0], torque[1]};
@@ -448,9 +451,10 @@ static inline lanes scene_gap_change_error(const scene_body *b, int c, const lan
 }
 
 /* Mechanical energy that a small displacement d adds at velocity w, first order. */
-static inline lanes scene_energy_change(const scene_body *b, const scene_trig *trig, const lanes *w,
-                                        const lanes *d)
+static inline lanes scene_energy_change(const scene_body *b, const lanes *place,
+                                        const scene_trig *trig, const lanes *w, const lanes *d)
 {
+    (void)place;
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     lanes sum = b->mass * (STANCE_GRAVITY * d[1]);
     for (int a = 0; a < SCENE_ANGLES; a++) {
@@ -486,9 +490,10 @@ static inline lanes scene_energy(const scene_body *b, const lanes *s, const lane
     return scene_kinetic(b, trig, w) + scene_potential(b, s, trig);
 }
 /* Work of the torques over a displacement d. */
-static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const lanes *torque,
-                               const lanes *d)
+static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
+                               const lanes *torque, const lanes *d)
 {
+    (void)trig;
     (void)b, (void)h, (void)t;
     return lanes_fma(torque[0], d[3] - d[2], torque[1] * (d[4] - d[2]));
 }

@@ -40,16 +40,17 @@ static const stance_quantity coordinate_quantities[COORDINATES] = {
 
 static const char *const contact_names[] = {"base"};
 
-static void gaps(const double *robot, const double *position, double *gap)
+static void gaps(const stance_scene *scene, const double *robot, const double *position,
+                 double *gap)
 {
-    (void)robot;
+    (void)scene, (void)robot;
     gap[0] = position[Z];
 }
 
-static void contact_point(const double *robot, const double *position, const double *velocity,
-                          int contact, double point[2], double speed[2])
+static void contact_point(const stance_scene *scene, const double *robot, const double *position,
+                          const double *velocity, int contact, double point[2], double speed[2])
 {
-    (void)robot, (void)contact; /* there is one */
+    (void)scene, (void)robot, (void)contact; /* there is one */
     point[0] = position[X];
     point[1] = position[Z];
     speed[0] = velocity[X];
@@ -57,8 +58,10 @@ static void contact_point(const double *robot, const double *position, const dou
 }
 
 /* In the plane's frame, as everything; from the middle of the base round to it. */
-static int figure(const double *robot, const double *position, double points[][2])
+static int figure(const stance_scene *scene, const double *robot, const double *position,
+                  double points[][2])
 {
+    (void)scene;
     static const double corner[][2] = {{0, 0}, {0.5, 0}, {0.5, 1}, {-0.5, 1}, {-0.5, 0}, {0, 0}};
     const int n = sizeof corner / sizeof corner[0];
     (void)robot;
@@ -69,17 +72,20 @@ static int figure(const double *robot, const double *position, double points[][2
     return n;
 }
 
-static double energy(const double *robot, const double *position, const double *velocity)
+static double energy(const stance_scene *scene, const double *robot, const double *position,
+                     const double *velocity)
 {
+    (void)scene;
     double sine, cosine;
     stance_sincos(robot[SLOPE], &sine, &cosine);
     return robot[MASS] * (0.5 * (velocity[X] * velocity[X] + velocity[Z] * velocity[Z]) +
                           STANCE_GRAVITY * (cosine * position[Z] - sine * position[X]));
 }
 
-static void inertia(const double *robot, const double *position, double *A)
+static void inertia(const stance_scene *scene, const double *robot, const double *position,
+                    double *A)
 {
-    (void)position;
+    (void)scene, (void)position;
     A[0] = A[3] = robot[MASS];
     A[1] = A[2] = 0;
 }

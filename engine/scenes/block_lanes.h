@@ -37,7 +37,7 @@ typedef struct scene_matrix {
 static inline void scene_load_body(scene_body *b, int lane, const double *robot)
 {
     double sine, cosine;
-    stance_sincos(robot[1], &sine, &cosine);
+    angle_sincos(robot[1], &sine, &cosine);
     lane_set(&b->mass, lane, robot[0]);
     lane_set(&b->along, lane, STANCE_GRAVITY * sine);
     lane_set(&b->across, lane, STANCE_GRAVITY * cosine);
@@ -99,10 +99,11 @@ static inline void scene_posture(const lanes *s, lanes *posture)
 }
 
 /* residual = A change - h (forces without contact). */
-static inline void scene_residual(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
-                                  const lanes *w, const lanes *change, const lanes *torque,
-                                  lanes *residual)
+static inline void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *place,
+                                  const scene_trig *trig, const lanes *w, const lanes *change,
+                                  const lanes *torque, lanes *residual)
 {
+    (void)place;
     (void)trig, (void)w, (void)torque;
     residual[0] = b->mass * (change[0] - h * b->along) - h * scene_pull(b, t);
     residual[1] = b->mass * (change[1] + h * b->across);
@@ -128,9 +129,11 @@ static inline void scene_inertia(const scene_body *b, const scene_trig *trig, sc
 }
 
 /* Generalised forces without contact. */
-static inline void scene_forces(const scene_body *b, lanes t, const scene_trig *trig,
-                                const lanes *w, const lanes *torque, lanes *force)
+static inline void scene_forces(const scene_body *b, lanes t, const lanes *place,
+                                const scene_trig *trig, const lanes *w, const lanes *torque,
+                                lanes *force)
 {
+    (void)place;
     (void)trig, (void)w, (void)torque;
     force[0] = b->mass * b->along + scene_pull(b, t);
     force[1] = -(b->mass * b->across);
@@ -197,9 +200,10 @@ static inline lanes scene_gap_change_error(const scene_body *b, int c, const lan
 }
 
 /* Mechanical energy that a displacement d adds. */
-static inline lanes scene_energy_change(const scene_body *b, const scene_trig *trig, const lanes *w,
-                                        const lanes *d)
+static inline lanes scene_energy_change(const scene_body *b, const lanes *place,
+                                        const scene_trig *trig, const lanes *w, const lanes *d)
 {
+    (void)place;
     (void)trig, (void)w;
     return b->mass * (b->across * d[1] - b->along * d[0]);
 }
@@ -222,9 +226,10 @@ static inline lanes scene_energy(const scene_body *b, const lanes *s, const lane
     return scene_kinetic(b, trig, w) + scene_potential(b, s, trig);
 }
 /* Work of the pull at time t over a displacement d. */
-static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const lanes *torque,
-                               const lanes *d)
+static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
+                               const lanes *torque, const lanes *d)
 {
+    (void)trig;
     (void)h, (void)torque;
     return scene_pull(b, t) * d[0];
 }

@@ -51,9 +51,10 @@ static double arm(const double *robot, int end)
     return (end == 0 ? -0.5 : 0.5) * robot[LENGTH];
 }
 
-static void contact_point(const double *robot, const double *position, const double *velocity,
-                          int contact, double point[2], double speed[2])
+static void contact_point(const stance_scene *scene, const double *robot, const double *position,
+                          const double *velocity, int contact, double point[2], double speed[2])
 {
+    (void)scene;
     const double to_end = arm(robot, contact), turn = to_end * velocity[THETA];
     double sine, cosine;
     stance_sincos(position[THETA], &sine, &cosine);
@@ -63,36 +64,41 @@ static void contact_point(const double *robot, const double *position, const dou
     speed[1] = velocity[Z] + turn * cosine;
 }
 
-static void gaps(const double *robot, const double *position, double *gap)
+static void gaps(const stance_scene *scene, const double *robot, const double *position,
+                 double *gap)
 {
     static const double rest[COORDINATES];
     double point[2], speed[2];
     for (int i = 0; i < ENDS; i++) {
-        contact_point(robot, position, rest, i, point, speed);
+        contact_point(scene, robot, position, rest, i, point, speed);
         gap[i] = point[1];
     }
 }
 
-static int figure(const double *robot, const double *position, double points[][2])
+static int figure(const stance_scene *scene, const double *robot, const double *position,
+                  double points[][2])
 {
     static const double rest[COORDINATES];
     double speed[2];
     for (int i = 0; i < ENDS; i++)
-        contact_point(robot, position, rest, i, points[i], speed);
+        contact_point(scene, robot, position, rest, i, points[i], speed);
     return ENDS;
 }
 
-static double energy(const double *robot, const double *position, const double *velocity)
+static double energy(const stance_scene *scene, const double *robot, const double *position,
+                     const double *velocity)
 {
+    (void)scene;
     const double turn = robot[LENGTH] * velocity[THETA];
     return robot[MASS] * (0.5 * (velocity[X] * velocity[X] + velocity[Z] * velocity[Z] +
                                  robot[INERTIA_RATIO] * (turn * turn)) +
                           STANCE_GRAVITY * position[Z]);
 }
 
-static void inertia(const double *robot, const double *position, double *A)
+static void inertia(const stance_scene *scene, const double *robot, const double *position,
+                    double *A)
 {
-    (void)position;
+    (void)scene, (void)position;
     for (int i = 0; i < COORDINATES * COORDINATES; i++)
         A[i] = 0;
     A[0] = A[4] = robot[MASS];
@@ -110,7 +116,7 @@ static void one_end(const double even[2], stance_case *c)
 {
     double gap[ENDS];
     c->position[THETA] = 1.5707963267948966 + 0.02 * even[0] - 0.01;
-    gaps(c->robot, c->position, gap);
+    gaps(&stance_scene_rod, c->robot, c->position, gap);
     c->position[Z] -= gap[0];
 }
 

@@ -18,15 +18,30 @@ static bool refuse(stance_message *message, const char *what, stance_error error
 
 /* ---- the model ------------------------------------------------------------------------------- */
 
+const char *design_supports(const stance_scene *scene, const stance_equilibrium *equilibrium,
+                            char *buffer, size_t size)
+{
+    size_t length = 0;
+    buffer[0] = '\0';
+    for (int c = 0; c < scene->contacts && length < size; c++) {
+        if (equilibrium->supports >> c & 1) {
+            length += (size_t)snprintf(buffer + length, size - length, "%s%s",
+                                       length > 0 ? ", " : "", scene->contact_name[c]);
+        }
+    }
+    return buffer;
+}
+
 /* Weight of the robot: twice the kinetic energy of a unit of vertical speed, times gravity. */
 static double weight_of(const stance_scene *scene, const double *robot, const double *position)
 {
     double velocity[STANCE_MAX_COORDINATES] = {0};
-    const double rest = scene->energy(robot, position, velocity);
+    const double rest = scene->energy(scene, robot, position, velocity);
     for (int i = 0; i < scene->coordinates; i++)
         if (strcmp(scene->coordinate[i].name, "z") == 0)
             velocity[i] = 1;
-    return 2 * (scene->energy(robot, position, velocity) - rest) * STANCE_GRAVITY;
+    return 2 * (scene->energy(scene, robot, position, velocity) - rest) *
+           robot[STANCE_ROBOT_GRAVITY];
 }
 
 static bool open_loop(struct design_report *r, stance_message *message)
@@ -38,8 +53,10 @@ static bool open_loop(struct design_report *r, stance_message *message)
         return false;
     if (!scene->linearise)
         return complain(message, "the scene %s has no linearisation", scene->name);
+    r->remark = *message;
+    r->states = 2 * r->equilibrium.freedoms;
     r->weight = weight_of(scene, r->model, r->equilibrium.position);
-    stance_error error = scene->linearise(r->model, &r->equilibrium, r->A, r->B);
+    stance_error error = scene->linearise(scene, r->model, &r->equilibrium, r->A, r->B);
     if (error != STANCE_OK)
         return refuse(message, "linearisation", error);
     error = stance_eigenvalues(r->states, r->A, r->open_re, r->open_im);
@@ -60,12 +77,15 @@ static bool gains(struct design_report *r, stance_message *message)
 
     r->how = (struct resolved_gains){0, NAN};
     if (scenario_law(values)->designed)
-        return resolve_gains(scene, values, r->A, r->B, r->K, &r->how, message);
+        return resolve_gains(scene, values, &r->equilibrium, r->A, r->B, r->K, &r->how, message);
+    if (r->states < 2 * scene->postures)
+        return complain(message, "a law that is not designed acts on what the contacts hold, too: "
+                                 "it has no gains here");
     if (!resolve_law(scene, values, scenario_law(values), begin, &c.near, &c, message))
         return false;
     for (int i = 0; i < r->inputs; i++)
         for (int j = 0; j < r->states; j++)
-            r->K[i * r->states + j] = c.near.gain[i][j];
+            r->K[i * r->states + j] = c.near.gain[i][resolve_state(scene, &r->equilibrium, j)];
     return true;
 }
 
@@ -96,6 +116,9 @@ static const char *why_no_set(const struct design_report *r)
 {
     if (!scenario_law(&r->scenario->base)->designed || !r->scenario->scene->contact_force)
         return "only for state feedback on one foot";
+    if (r->equilibrium.supports == 0 ||
+        (r->equilibrium.supports & (r->equilibrium.supports - 1)) != 0)
+        return "only for a robot that stands on one contact";
     if (r->delay)
         return "not for a loop with a delay";
     return r->stable ? NULL : "the loop is not stable";
@@ -191,18 +214,17 @@ static bool closed_loop(struct design_report *r, stance_message *message)
 
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message)
 {
-    *r = (struct design_report){
-        .scenario = s, .states = 2 * s->scene->postures, .inputs = s->scene->actuators};
+    *r = (struct design_report){.scenario = s, .inputs = s->scene->actuators};
     return open_loop(r, message) && closed_loop(r, message);
 }
 
 /* ---- names ----------------------------------------------------------------------------------- */
 
-const char *design_state_name(const stance_scene *scene, int i, char name[32])
+const char *design_state_name(const struct design_report *r, int i, char name[SCENARIO_NAME])
 {
-    const int p = scene->postures;
-    const char *coordinate = scene->coordinate[scene->posture[i % p]].name;
-    snprintf(name, 32, "%s%s", i < p ? "" : "v", coordinate);
+    const int p = r->equilibrium.freedoms;
+    const char *coordinate = r->scenario->scene->coordinate[r->equilibrium.freedom[i % p]].name;
+    snprintf(name, SCENARIO_NAME, "%s%s", i < p ? "" : "v", coordinate);
     return name;
 }
 

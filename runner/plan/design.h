@@ -37,13 +37,18 @@ struct design_capture {
     double alone[DESIGN_STATES], extent[DESIGN_STATES];
 };
 
+/* "foot1", "foot1, foot2": what an equilibrium stands on. Returns buffer. */
+const char *design_supports(const stance_scene *scene, const stance_equilibrium *equilibrium,
+                            char *buffer, size_t size);
+
 /* Matrices are row-major with `states` and `inputs` as their sizes. */
 struct design_report {
     const struct scenario *scenario;
     int states, inputs;
     double model[STANCE_MAX_ROBOT];
     stance_equilibrium equilibrium;
-    double weight; /* N: the normal force */
+    stance_message remark; /* on it; empty: none */
+    double weight;         /* N: the normal force */
     double A[DESIGN_STATES * DESIGN_STATES], B[DESIGN_STATES * DESIGN_INPUTS];
     double open_re[DESIGN_STATES], open_im[DESIGN_STATES];
     double singular[DESIGN_STATES];
@@ -83,7 +88,13 @@ json_t *design_pairs_json(const struct design_pairs *d);
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message);
 
 /* Name of state i: a coordinate, or its rate with a "v" before it. */
-const char *design_state_name(const stance_scene *scene, int i, char name[32]);
+const char *design_state_name(const struct design_report *r, int i, char name[SCENARIO_NAME]);
+
+/* Its weight in a quadratic cost. */
+static inline double design_weight(const struct design_report *r, int i)
+{
+    return r->scenario->base.state_weights[resolve_state(r->scenario->scene, &r->equilibrium, i)];
+}
 
 /* What a bound of the set is. */
 const char *design_bound_name(const struct design_report *r, int bound, char name[64]);

@@ -36,14 +36,16 @@ static json_t *json_equilibrium(const struct design_report *r)
 {
     const stance_scene *scene = r->scenario->scene;
     json_t *position = json_object(), *torque = json_object();
+    char supports[STANCE_MAX_CONTACTS * 40];
     for (int i = 0; i < scene->coordinates; i++) {
         json_object_set_new(position, scene->coordinate[i].name,
                             json_real(r->equilibrium.position[i]));
     }
     for (int i = 0; i < scene->actuators; i++)
         json_object_set_new(torque, scene->actuator_name[i], json_real(r->equilibrium.torque[i]));
-    return json_pack("{s:s, s:o, s:o, s:f}", "support", scene->contact_name[r->equilibrium.support],
-                     "position", position, "torque", torque, "normal_force", r->weight);
+    return json_pack("{s:s, s:o, s:o, s:f}", "support",
+                     design_supports(scene, &r->equilibrium, supports, sizeof supports), "position",
+                     position, "torque", torque, "normal_force", r->weight);
 }
 
 static json_t *json_bounded(double x)
@@ -54,11 +56,9 @@ static json_t *json_bounded(double x)
 static json_t *json_states(const struct design_report *r, const double *x)
 {
     json_t *map = json_object();
-    char name[32];
-    for (int i = 0; i < r->states; i++) {
-        json_object_set_new(map, design_state_name(r->scenario->scene, i, name),
-                            json_bounded(x[i]));
-    }
+    char name[SCENARIO_NAME];
+    for (int i = 0; i < r->states; i++)
+        json_object_set_new(map, design_state_name(r, i, name), json_bounded(x[i]));
     return map;
 }
 
@@ -107,7 +107,10 @@ static void put_design(const struct design_report *r, json_t *controller)
     static const char *const times[] = {"continuous", "sampled"};
     const struct scenario_values *values = &r->scenario->base;
     const int design = values->design;
+    double weights[DESIGN_STATES];
 
+    for (int i = 0; i < r->states; i++)
+        weights[i] = design_weight(r, i);
     json_object_set_new(controller, "design", json_string(designs[design]));
     if (design != DESIGN_GAINS)
         json_object_set_new(controller, "design_time", json_string(times[values->design_time]));
@@ -117,9 +120,8 @@ static void put_design(const struct design_report *r, json_t *controller)
     }
     if (design == DESIGN_LQR) {
         json_object_set_new(controller, "weights",
-                            json_pack("{s:o, s:o}", "states",
-                                      json_vector(r->states, values->state_weights), "torques",
-                                      json_vector(r->inputs, values->torque_weights)));
+                            json_pack("{s:o, s:o}", "states", json_vector(r->states, weights),
+                                      "torques", json_vector(r->inputs, values->torque_weights)));
     }
     if (r->how.sweeps > 0) {
         json_object_set_new(controller, "condition", json_real(r->how.condition));
@@ -153,12 +155,12 @@ json_t *design_json(const struct design_report *r)
     const stance_scene *scene = r->scenario->scene;
     const int n = r->states;
     json_t *robot = json_object(), *states = json_array(), *inputs = json_array();
-    char name[32];
+    char name[SCENARIO_NAME];
 
     for (int i = 0; i < scene->robot_count; i++)
         json_object_set_new(robot, scene->robot[i].name, json_real(r->model[i]));
     for (int i = 0; i < n; i++)
-        json_array_append_new(states, json_string(design_state_name(scene, i, name)));
+        json_array_append_new(states, json_string(design_state_name(r, i, name)));
     for (int i = 0; i < r->inputs; i++)
         json_array_append_new(inputs, json_string(scene->actuator_name[i]));
     return json_pack(

@@ -35,11 +35,11 @@ bool design_pairs_compute(struct design_pairs *d, const struct scenario *s, stan
     return error == STANCE_OK;
 }
 
-static const char *pair_name(const struct design_pairs *d, int pair, char name[48])
+static const char *pair_name(const struct design_pairs *d, int pair, char name[SCENARIO_NAME])
 {
     int first = 0, second = 0;
     stance_pair(d->scenario->scene, pair, &first, &second);
-    snprintf(name, 48, "%s-%s", d->scenario->scene->coordinate[first].name,
+    snprintf(name, SCENARIO_NAME, "%s-%s", d->scenario->scene->coordinate[first].name,
              d->scenario->scene->coordinate[second].name);
     return name;
 }
@@ -53,7 +53,7 @@ static bool is_used(const struct design_pairs *d, int pair)
 
 void design_pairs_print(const struct design_pairs *d)
 {
-    char name[48];
+    char name[SCENARIO_NAME];
     printf("Pairs of coordinates under the decoupling law (* the scenario's)\n"
            "  The law inverts the matrix G that takes torques to the accelerations of the pair.\n"
            "  Where its condition number (SI units) is above %.0e the inverse is damped and the\n"
@@ -73,7 +73,7 @@ void design_pairs_print(const struct design_pairs *d)
 
 json_t *design_pairs_json(const struct design_pairs *d)
 {
-    char name[48];
+    char name[SCENARIO_NAME];
     json_t *pairs = json_array();
     for (int p = 0; p < d->count; p++) {
         json_t *start = isfinite(d->at_start[p]) ? json_real(d->at_start[p]) : json_null();

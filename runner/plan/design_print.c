@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Rounding leaves signed dust where an exact zero belongs. */
 static double dusted(double x, double scale)
@@ -24,17 +25,16 @@ static void print_matrix(const struct design_report *r, const char *name, int ro
 {
     const stance_scene *scene = r->scenario->scene;
     const double scale = largest(rows * columns, x);
-    char text[32];
+    char text[SCENARIO_NAME];
 
     printf("  %-8s", name);
     for (int j = 0; j < columns; j++) {
         printf(" %12s",
-               columns_are_inputs ? scene->actuator_name[j] : design_state_name(scene, j, text));
+               columns_are_inputs ? scene->actuator_name[j] : design_state_name(r, j, text));
     }
     putchar('\n');
     for (int i = 0; i < rows; i++) {
-        printf("  %-8s",
-               rows_are_inputs ? scene->actuator_name[i] : design_state_name(scene, i, text));
+        printf("  %-8s", rows_are_inputs ? scene->actuator_name[i] : design_state_name(r, i, text));
         for (int j = 0; j < columns; j++)
             printf(" %12.6g", dusted(x[i * columns + j], scale));
         putchar('\n');
@@ -63,8 +63,10 @@ static void print_equilibrium(const struct design_report *r)
 {
     const stance_scene *scene = r->scenario->scene;
     const stance_equilibrium *e = &r->equilibrium;
+    char supports[STANCE_MAX_CONTACTS * 40];
 
-    printf("\nEquilibrium, standing on %s\n", scene->contact_name[e->support]);
+    design_supports(scene, e, supports, sizeof supports);
+    printf("\nEquilibrium%s%s\n", e->supports ? ", standing on " : "", supports);
     for (int i = 0; i < scene->coordinates; i++) {
         const stance_quantity *c = &scene->coordinate[i];
         printf("  %-8s %12.6f %-4s %s\n", c->name, e->position[i] + 0.0, c->unit, c->text);
@@ -73,16 +75,22 @@ static void print_equilibrium(const struct design_report *r)
         printf("  %-8s %12.6f N m  torque that holds it\n", scene->actuator_name[i],
                dusted(e->torque[i], r->weight));
     }
-    printf("  %-8s %12.6f N    normal force on %s, the robot's weight\n", "force", r->weight,
-           scene->contact_name[e->support]);
+    if (e->supports)
+        printf("  %-8s %12.6f N    normal force on %s, the robot's weight\n", "force", r->weight,
+               supports);
+    if (r->remark.text[0])
+        printf("  %s\n", r->remark.text);
 }
 
 static void print_open_loop(const struct design_report *r)
 {
     const int n = r->states;
-    printf("\nLinearised about it with %s pinned: X' = A X + B u, X the departure from the\n"
+    char supports[STANCE_MAX_CONTACTS * 40];
+    printf("\nLinearised about it%s%s%s: X' = A X + B u, X the departure from the\n"
            "equilibrium (rad, rad/s), u that of the torques (N m)\n",
-           r->scenario->scene->contact_name[r->equilibrium.support]);
+           r->equilibrium.supports ? " with " : "",
+           design_supports(r->scenario->scene, &r->equilibrium, supports, sizeof supports),
+           r->equilibrium.supports ? " pinned" : "");
     print_matrix(r, "A", n, n, r->A, false, false);
     putchar('\n');
     print_matrix(r, "B", n, r->inputs, r->B, false, true);
@@ -133,7 +141,7 @@ static void print_set(const struct design_report *r)
 {
     const struct design_set *set = &r->set;
     const struct scenario_values *values = &r->scenario->base;
-    char name[64], state[32];
+    char name[64], state[SCENARIO_NAME];
 
     puts("\nLargest set V = X' P X <= c in which the linear picture meets no bound");
     if (!set->exists) {
@@ -147,15 +155,15 @@ static void print_set(const struct design_report *r)
     printf("  %-18s %s\n", "what binds", design_bound_name(r, set->binding, name));
     printf("  %-18s %14s %14s\n", "reach", "others 0", "others free");
     for (int i = 0; i < r->states; i++) {
-        printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r->scenario->scene, i, state),
-               set->alone[i], set->extent[i], i < r->states / 2 ? "rad" : "rad/s");
+        printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r, i, state), set->alone[i],
+               set->extent[i], i < r->states / 2 ? "rad" : "rad/s");
     }
 }
 
 static void print_capture(const struct design_report *r)
 {
     const stance_known_basin *set = &r->capture.set;
-    char shape[96], state[32];
+    char shape[96], state[SCENARIO_NAME];
 
     puts("\nLargest set X' M X <= 1 from whose boundary simulations recover (stop.capture)");
     if (!set->exists) {
@@ -175,8 +183,8 @@ static void print_capture(const struct design_report *r)
            KNOWN_BASIN_SAFETY);
     printf("  %-18s %14s %14s\n", "reach", "others 0", "others free");
     for (int i = 0; i < r->states; i++) {
-        printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r->scenario->scene, i, state),
-               r->capture.alone[i], r->capture.extent[i], i < r->states / 2 ? "rad" : "rad/s");
+        printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r, i, state), r->capture.alone[i],
+               r->capture.extent[i], i < r->states / 2 ? "rad" : "rad/s");
     }
 }
 
@@ -196,7 +204,7 @@ static void print_weights(const struct design_report *r)
     const struct scenario_values *values = &r->scenario->base;
     printf("  %-16s", "weights");
     for (int i = 0; i < r->states; i++)
-        printf(" %.6g%s", values->state_weights[i], i + 1 < r->states ? "," : "; torques");
+        printf(" %.6g%s", design_weight(r, i), i + 1 < r->states ? "," : "; torques");
     for (int i = 0; i < r->inputs; i++)
         printf(" %.6g%s", values->torque_weights[i], i + 1 < r->inputs ? "," : "\n");
 }
@@ -249,8 +257,13 @@ void design_print(const struct design_report *r)
     if (s->axes > 0)
         puts("This is the scenario without its sweep: the base values, not those along the axes.");
     printf("\nRobot that the design believes in\n");
+    int width = 14;
     for (int i = 0; i < scene->robot_count; i++)
-        printf("  %-14s %10.6g %s\n", scene->robot[i].name, r->model[i], scene->robot[i].unit);
+        width =
+            (int)strlen(scene->robot[i].name) > width ? (int)strlen(scene->robot[i].name) : width;
+    for (int i = 0; i < scene->robot_count; i++)
+        printf("  %-*s %10.6g %s\n", width, scene->robot[i].name, r->model[i],
+               scene->robot[i].unit);
     print_equilibrium(r);
     print_open_loop(r);
     print_closed_loop(r);

@@ -31,7 +31,10 @@ stance_error known_basin_bounds(const stance_scene *scene, const struct scenario
     const int n = 2 * scene->postures, m = scene->actuators;
     double force[2], by_state[2 * STATES], by_torque[2 * INPUTS];
 
-    const stance_error error = scene->contact_force(model, equilibrium, force, by_state, by_torque);
+    if (!equilibrium->supports || (equilibrium->supports & (equilibrium->supports - 1)))
+        return STANCE_BAD_ARGUMENT; /* bounds for one support's force */
+    const stance_error error =
+        scene->contact_force(scene, model, equilibrium, force, by_state, by_torque);
     for (int j = 0; error == STANCE_OK && j < n; j++) {
         double loop[2];
         for (int c = 0; c < 2; c++) {
@@ -154,9 +157,11 @@ bool known_basin_prepare(const stance_scene *scene, const struct scenario_values
     if (!resolve_equilibrium(scene, values, model, &equilibrium, message) ||
         !standing_case(scene, values, design, seed, &search->base, message))
         return false;
+    if (equilibrium.freedoms < scene->postures)
+        return complain(message, "no captured set: the contacts hold some of the coordinates");
     for (int i = 0; i < scene->actuators * n; i++)
         K[i] = design->gain[i / n][i % n];
-    stance_error error = scene->linearise(model, &equilibrium, A, B);
+    stance_error error = scene->linearise(scene, model, &equilibrium, A, B);
     if (error == STANCE_OK)
         error = resolve_loop(n, scene->actuators, A, B, K, values->sample_time, loop);
     if (error == STANCE_OK)

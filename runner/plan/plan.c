@@ -124,7 +124,8 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
     }
     if (!plan_trajectories(plan, trace, error))
         return false;
-    plan->design = calloc(plan->designs, sizeof *plan->design);
+    plan->design_size = resolve_packed(scenario->scene);
+    plan->design = calloc(plan->designs, plan->design_size * sizeof *plan->design);
     plan->design_status = calloc(plan->designs, sizeof *plan->design_status);
     if (!plan->design || !plan->design_status) {
         complain(&error->message, "not enough memory for %zu controller designs", plan->designs);
@@ -139,6 +140,18 @@ void plan_free(struct plan *plan)
     free(plan->design);
     free(plan->design_status);
     *plan = (struct plan){0};
+}
+
+struct resolved_design plan_design_at(const struct plan *plan, size_t d)
+{
+    struct resolved_design design;
+    resolve_unpack(plan->scenario->scene, &plan->design[d * plan->design_size], &design);
+    return design;
+}
+
+void plan_design_put(struct plan *plan, size_t d, const struct resolved_design *design)
+{
+    resolve_pack(plan->scenario->scene, design, &plan->design[d * plan->design_size]);
 }
 
 /* ---- where things are --------------------------------------------------------------------- */
@@ -322,7 +335,9 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
         if (plan->patience > 0 && computed > 0 && clock_seconds() - start > plan->patience)
             break;
         scenario_case_values(s, plan_design_case(plan, d), &values);
-        bool exists = resolve_design(s->scene, &values, &plan->design[d], &ignored);
+        struct resolved_design design = plan_design_at(plan, d);
+        bool exists = resolve_design(s->scene, &values, &design, &ignored);
+        plan_design_put(plan, d, &design);
         plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
         computed++;
     }
@@ -333,7 +348,8 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
         found[1] += plan->design_status[d] == STANCE_PENDING;
     }
     meet(plan, parallel);
-    parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
+    parallel_gather_block(parallel, plan->design, plan->design_size * sizeof *plan->design, first,
+                          count);
     parallel_gather_block(parallel, plan->design_status, 1, first, count);
     parallel_sum(parallel, found, 3);
     plan->pending = found[1];
@@ -356,16 +372,18 @@ bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
     for (size_t d = first; good && d < first + count; d++) {
         struct scenario_values values;
         stance_message why = {""}; /* there need not be a set */
-        if (plan->design_status[d] != STANCE_DONE || plan->design[d].capture_time != 0)
+        struct resolved_design design = plan_design_at(plan, d);
+        if (plan->design_status[d] != STANCE_DONE || design.capture_time != 0)
             continue; /* none, or known from another file */
         scenario_case_values(s, plan_design_case(plan, d), &values);
-        good = known_basin_estimate(s->scene, &values, &plan->design[d], s->seed, stop, context,
-                                    NULL, &why);
+        good = known_basin_estimate(s->scene, &values, &design, s->seed, stop, context, NULL, &why);
+        plan_design_put(plan, d, &design);
         if (!good)
             *message = why;
     }
     meet(plan, parallel);
-    parallel_gather_block(parallel, plan->design, sizeof *plan->design, first, count);
+    parallel_gather_block(parallel, plan->design, plan->design_size * sizeof *plan->design, first,
+                          count);
     return parallel_agree(parallel, good, message->text, sizeof message->text);
 }
 
@@ -388,8 +406,10 @@ bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *
 
     scenario_case_values(s, index, &values);
     *method = values.method;
-    if (plan->design_status[design] != STANCE_DONE ||
-        !resolve_case(s->scene, &values, &plan->design[design], s->seed, index, out, &ignored))
+    if (plan->design_status[design] != STANCE_DONE)
+        return false;
+    const struct resolved_design own = plan_design_at(plan, design);
+    if (!resolve_case(s->scene, &values, &own, s->seed, index, out, &ignored))
         return false;
     scenario_case_keys(s, index, &out->grid_index, &out->sample_index);
     return true;
@@ -408,8 +428,8 @@ static bool check_case(const struct plan *plan, uint64_t index, struct plan_erro
     if (plan->design_status[design] != STANCE_DONE)
         return true;
     scenario_case_values(s, index, &values);
-    if (resolve_case(s->scene, &values, &plan->design[design], s->seed, index, &resolved,
-                     &message) &&
+    const struct resolved_design own = plan_design_at(plan, design);
+    if (resolve_case(s->scene, &values, &own, s->seed, index, &resolved, &message) &&
         (s->cases > 1 || resolve_pair(s->scene, &resolved, &message)))
         return true;
     place_error(s, "initial:", message.text, error);
@@ -526,7 +546,8 @@ double plan_capture_cost(const struct plan *plan, double budget)
         if (is_late(&until))
             return NAN;
         scenario_case_values(s, plan_design_case(plan, d), &values);
-        if (!known_basin_prepare(s->scene, &values, &plan->design[d], s->seed, &search, &ignored))
+        const struct resolved_design design = plan_design_at(plan, d);
+        if (!known_basin_prepare(s->scene, &values, &design, s->seed, &search, &ignored))
             continue;
         memcpy(search.P[0], search.P[search.shapes / 2], sizeof search.P[0]);
         search.shapes = 1;

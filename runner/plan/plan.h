@@ -22,11 +22,12 @@ struct plan {
 
     bool methods_swept; /* some axis lists methods */
 
-    size_t designs;                 /* distinct ones, row-major over the axes flagged `design` */
-    struct resolved_design *design; /* [designs] */
-    uint8_t *design_status;         /* [designs] enum stance_status */
-    size_t pending;                 /* of these, for which there was no time */
-    double design_seconds;          /* what computing all of them takes on one rank */
+    size_t designs; /* distinct ones, row-major over the axes flagged `design` */
+    double *design; /* [designs][design_size], see plan_design_at */
+    size_t design_size;
+    uint8_t *design_status; /* [designs] enum stance_status */
+    size_t pending;         /* of these, for which there was no time */
+    double design_seconds;  /* what computing all of them takes on one rank */
 
     /* s after which designs that are not yet computed stay pending; 0: all are computed. */
     double patience;
@@ -87,6 +88,10 @@ double plan_capture_cost(const struct plan *plan, double budget);
  * evenly; where designs are pending, the first case of each that is not, too. Cases whose design
  * does not exist or is pending are left out. Needs the designs. */
 bool plan_check_cases(const struct plan *plan, struct plan_error *error);
+
+/* Design d, whatever its status; and into its place. */
+struct resolved_design plan_design_at(const struct plan *plan, size_t d);
+void plan_design_put(struct plan *plan, size_t d, const struct resolved_design *design);
 
 /* Method of a row, as index into stance_methods(). */
 int plan_method(const struct plan *plan, uint64_t row);

@@ -13,6 +13,8 @@
 #include "resolve.h"
 #include "known_basin.h"
 
+#include "engine/tree.h"
+
 #include "runner/base/message.h"
 #include "runner/scenario/schema.h"
 
@@ -27,20 +29,82 @@
 
 /* ---- design ---------------------------------------------------------------------------------- */
 
-static int support_of(const struct scenario_values *values)
+/* The first contact that the robot stands on, or -1. */
+/* The parts of a design that a scene uses: rows of so many numbers, a row every so many. */
+struct part {
+    size_t offset, rows, length, stride;
+};
+enum { DESIGN_PARTS = 6 };
+
+static void design_parts(const stance_scene *scene, struct part part[DESIGN_PARTS])
 {
-    return values->support_foot > 0 ? values->support_foot - 1 : 0;
+#define AT(field) offsetof(struct resolved_design, field) / sizeof(double)
+    const size_t n = (size_t)scene->coordinates, m = (size_t)scene->actuators,
+                 states = 2 * (size_t)scene->postures, room = 2 * STANCE_MAX_POSTURE;
+    const struct part all[DESIGN_PARTS] = {
+        {AT(start), 1, n, 0},
+        {AT(equilibrium), 1, n, 0},
+        {AT(torque), 1, m, 0},
+        {AT(gain), m, states, room},
+        {AT(captured), states, states, room},
+        {AT(capture_time), 1, sizeof(struct resolved_design) / sizeof(double) - AT(capture_time),
+         0},
+    };
+#undef AT
+    memcpy(part, all, sizeof all);
+}
+
+size_t resolve_packed(const stance_scene *scene)
+{
+    struct part part[DESIGN_PARTS];
+    size_t count = 0;
+    design_parts(scene, part);
+    for (int k = 0; k < DESIGN_PARTS; k++)
+        count += part[k].rows * part[k].length;
+    return count;
+}
+
+void resolve_pack(const stance_scene *scene, const struct resolved_design *design, double *number)
+{
+    struct part part[DESIGN_PARTS];
+    const double *const from = (const double *)(const void *)design;
+    design_parts(scene, part);
+    for (int k = 0; k < DESIGN_PARTS; k++)
+        for (size_t row = 0; row < part[k].rows; row++, number += part[k].length)
+            memcpy(number, &from[part[k].offset + row * part[k].stride],
+                   part[k].length * sizeof *number);
+}
+
+void resolve_unpack(const stance_scene *scene, const double *number, struct resolved_design *design)
+{
+    struct part part[DESIGN_PARTS];
+    double *const to = (double *)(void *)design;
+    design_parts(scene, part);
+    memset(design, 0, sizeof *design);
+    for (int k = 0; k < DESIGN_PARTS; k++)
+        for (size_t row = 0; row < part[k].rows; row++, number += part[k].length)
+            memcpy(&to[part[k].offset + row * part[k].stride], number,
+                   part[k].length * sizeof *number);
+}
+
+static int support_of(const stance_scene *scene, const struct scenario_values *values)
+{
+    const uint32_t supports = scenario_supports(scene, values);
+    int first = 0;
+    while (supports && !(supports >> first & 1))
+        first++;
+    return supports ? first : -1;
 }
 
 static bool solve_equilibrium(const stance_scene *scene, const double *robot,
-                              const struct scenario_equilibrium *wanted, int support,
+                              const struct scenario_equilibrium *wanted, uint32_t supports,
                               stance_equilibrium *result, stance_message *message)
 {
-    stance_equilibrium_choice choice = {.support = support, .lower = wanted->lower != 0};
+    stance_equilibrium_choice choice = {.supports = supports, .branch = wanted->branch};
     if (!scene->equilibrium || !scene->stand)
         return complain(message, "the scene %s has no equilibria: give initial.state", scene->name);
     memcpy(choice.posture, wanted->posture, sizeof choice.posture);
-    return scene->equilibrium(robot, &choice, result, message) == STANCE_OK;
+    return scene->equilibrium(scene, robot, &choice, result, message) == STANCE_OK;
 }
 
 bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values *values,
@@ -58,13 +122,48 @@ bool resolve_equilibrium(const stance_scene *scene, const struct scenario_values
                                      : "the scenario has no equilibrium: give initial.equilibrium");
     }
     return solve_equilibrium(scene, model, own ? &values->design_point : &values->equilibrium,
-                             support_of(values), equilibrium, message);
+                             scenario_supports(scene, values), equilibrium, message);
 }
 
-bool resolve_gains(const stance_scene *scene, const struct scenario_values *values, const double *A,
-                   const double *B, double *K, struct resolved_gains *how, stance_message *message)
+int resolve_state(const stance_scene *scene, const stance_equilibrium *equilibrium, int state)
 {
-    const int n = 2 * scene->postures, m = scene->actuators;
+    const int p = equilibrium->freedoms;
+    int k = 0;
+    while (scene->posture[k] != equilibrium->freedom[state % p])
+        k++;
+    return state < p ? k : scene->postures + k;
+}
+
+/* The columns of given gains that the linear model has; the others must be 0. */
+static bool take_gains(const stance_scene *scene, const struct scenario_values *values,
+                       const stance_equilibrium *equilibrium, double *K, stance_message *message)
+{
+    const int n = 2 * equilibrium->freedoms, all = 2 * scene->postures, m = scene->actuators;
+    bool taken[2 * STANCE_MAX_POSTURE] = {false};
+    for (int j = 0; j < n; j++) {
+        const int column = resolve_state(scene, equilibrium, j);
+        taken[column] = true;
+        for (int i = 0; i < m; i++)
+            K[i * n + j] = values->gains[i * all + column];
+    }
+    for (int k = 0; k < m * all; k++) {
+        const char *const name = scene->coordinate[scene->posture[k % all % scene->postures]].name;
+        if (!taken[k % all] && values->gains[k] != 0)
+            return complain(message,
+                            "controller.gains[%d][%d]: %s follows from the others while the "
+                            "contacts hold: give 0",
+                            k / all, k % all, name);
+    }
+    return true;
+}
+
+bool resolve_gains(const stance_scene *scene, const struct scenario_values *values,
+                   const stance_equilibrium *equilibrium, const double *A, const double *B,
+                   double *K, struct resolved_gains *how, stance_message *message)
+{
+    const int n = 2 * equilibrium->freedoms, m = scene->actuators;
+    double weights[2 * STANCE_MAX_POSTURE];
+    const bool places = values->design == DESIGN_PLACE || values->design == DESIGN_PLACE_SCHUR;
     const double *re = values->pole_re, *im = values->pole_im, T = values->sample_time;
     const bool sampled = values->design_time == DESIGN_SAMPLED;
     const stance_placement method =
@@ -75,13 +174,19 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     *how = (struct resolved_gains){0, NAN};
     message->text[0] = '\0';
     stance_error error = STANCE_OK;
+    for (int j = 0; j < n; j++)
+        weights[j] = values->state_weights[resolve_state(scene, equilibrium, j)];
+    if (places && scene->mechanism && values->poles != n)
+        return complain(message,
+                        "controller.poles: %d of them; where the contacts hold there are %d states",
+                        values->poles, n);
     if (values->design == DESIGN_GAINS) {
-        memcpy(K, values->gains, (size_t)(n * m) * sizeof *K);
+        if (!take_gains(scene, values, equilibrium, K, message))
+            return false;
     } else if (values->design == DESIGN_LQR) {
-        error = sampled ? stance_lqr_sampled(n, m, A, B, T, values->state_weights,
-                                             values->torque_weights, K, message)
-                        : stance_lqr(n, m, A, B, values->state_weights, values->torque_weights, K,
-                                     message);
+        error = sampled
+                    ? stance_lqr_sampled(n, m, A, B, T, weights, values->torque_weights, K, message)
+                    : stance_lqr(n, m, A, B, weights, values->torque_weights, K, message);
     } else if (sampled) {
         error = stance_place_sampled(method, n, m, A, B, T, re, im, K, &how->sweeps,
                                      &how->condition, message);
@@ -130,7 +235,7 @@ stance_error resolve_loop(int n, int m, const double *A, const double *B, const 
 static bool design_state_feedback(const stance_scene *scene, const struct scenario_values *values,
                                   struct resolved_design *design, stance_message *message)
 {
-    const int n = 2 * scene->postures, m = scene->actuators;
+    const int m = scene->actuators;
     double model[STANCE_MAX_ROBOT], K[SCENARIO_MAX_GAINS] = {0};
     double A[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
     double B[2 * STANCE_MAX_POSTURE * STANCE_MAX_ACTUATORS];
@@ -140,13 +245,14 @@ static bool design_state_feedback(const stance_scene *scene, const struct scenar
         return false;
     if (!scene->linearise)
         return complain(message, "the scene %s has no linearisation", scene->name);
-    const stance_error error = scene->linearise(model, &equilibrium, A, B);
+    const stance_error error = scene->linearise(scene, model, &equilibrium, A, B);
     if (error != STANCE_OK)
         return complain(message, "linearisation: %s", stance_error_text(error));
-    if (!resolve_gains(scene, values, A, B, K, NULL, message))
+    if (!resolve_gains(scene, values, &equilibrium, A, B, K, NULL, message))
         return false;
+    const int n = 2 * equilibrium.freedoms;
     for (int i = 0; i < m * n; i++)
-        design->gain[i / n][i % n] = K[i];
+        design->gain[i / n][resolve_state(scene, &equilibrium, i % n)] = K[i];
     memcpy(design->equilibrium, equilibrium.position,
            (size_t)scene->coordinates * sizeof *design->equilibrium);
     memcpy(design->torque, equilibrium.torque, (size_t)m * sizeof *design->torque);
@@ -189,8 +295,8 @@ bool resolve_design(const stance_scene *scene, const struct scenario_values *val
             return complain(message,
                             "an initial state is needed: initial.equilibrium or initial.state");
         }
-        if (!solve_equilibrium(scene, values->robot, &values->equilibrium, support_of(values),
-                               &start, message))
+        if (!solve_equilibrium(scene, values->robot, &values->equilibrium,
+                               scenario_supports(scene, values), &start, message))
             return false;
         memcpy(design->start, start.position, (size_t)scene->coordinates * sizeof *design->start);
     }
@@ -223,7 +329,7 @@ static void place_robot(const stance_scene *scene, const struct scenario_values 
         out->position[i] = start[i] + (angle ? scale * values->offset[i] : 0);
         out->velocity[i] = angle ? scale * values->offset[n + i] : 0;
     }
-    scene->stand(out->robot, support_of(values), out->position, out->velocity);
+    scene->stand(scene, out->robot, scenario_supports(scene, values), out->position, out->velocity);
     for (int i = 0; i < n; i++) {
         if (!is_posture(scene, i)) {
             out->position[i] += scale * values->offset[i];
@@ -242,7 +348,7 @@ static bool check_start(const stance_scene *scene, const stance_case *out, stanc
         if (!isfinite(out->velocity[i]))
             return complain(message, "the initial v%s is not a finite number", name);
     }
-    scene->gaps(out->robot, out->position, gap);
+    scene->gaps(scene, out->robot, out->position, gap);
     for (int c = 0; c < scene->contacts; c++) {
         if (!isfinite(gap[c])) {
             return complain(message,
@@ -250,6 +356,9 @@ static bool check_start(const stance_scene *scene, const stance_case *out, stanc
                             "1e4 rad",
                             scene->contact_name[c]);
         }
+        const bool stop = scene->grip && scene->grip[c] < 0;
+        if (stop && gap[c] < -DEEPEST_START)
+            return complain(message, "%s would start %.6g beyond", scene->contact_name[c], -gap[c]);
         if ((out->contacts >> c & 1) && gap[c] < -DEEPEST_START) {
             return complain(message, "%s would start %.6g m inside the ground",
                             scene->contact_name[c], -gap[c]);
@@ -266,6 +375,9 @@ static bool resolve_start(const stance_scene *scene, const struct scenario_value
     if (values->state_given) {
         memcpy(out->position, values->state, (size_t)n * sizeof *out->position);
         memcpy(out->velocity, values->state + n, (size_t)n * sizeof *out->velocity);
+        if (values->support > 0)
+            scene->stand(scene, out->robot, scenario_supports(scene, values), out->position,
+                         out->velocity);
     } else {
         place_robot(scene, values, design->start, out);
     }
@@ -282,7 +394,7 @@ static void feed_back(const stance_scene *scene, const struct scenario_values *v
     for (int k = 0; k < scene->postures; k++)
         out->near.target[k] = design->equilibrium[scene->posture[k]];
     out->has_target = true;
-    out->support = support_of(values);
+    out->support = support_of(scene, values);
 }
 
 /* A set somewhat smaller than the confirmed one. */
@@ -405,6 +517,18 @@ bool resolve_pair(const stance_scene *scene, const stance_case *start, stance_me
                     scene->coordinate[first].name, scene->coordinate[second].name);
 }
 
+/* What no actuator exceeds: the smallest of controller.torque_limit and their own limits. */
+static double least_limit(const stance_scene *scene, const struct scenario_values *values)
+{
+    stance_mechanism_numbers number;
+    double least = values->torque_limit;
+    if (scene->mechanism)
+        stance_mechanism_expand(scene->mechanism, values->robot, &number);
+    for (int i = 0; scene->mechanism && i < scene->actuators; i++)
+        least = fmin(least, number.limit[i]);
+    return least;
+}
+
 bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
                   const struct resolved_design *design, uint64_t seed, uint64_t index,
                   stance_case *out, stance_message *message)
@@ -415,7 +539,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .restitution = values->restitution,
         .most_energy = values->prefer != 0,
         .contacts = (uint32_t)values->contacts,
-        .torque_limit = values->torque_limit,
+        .torque_limit = least_limit(scene, values),
         .noise = values->noise,
         .delay = values->law == 0 ? 0 : values->delay,
         .settle = values->settle != 0,
@@ -428,6 +552,13 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .grid_index = index,
     };
     memcpy(out->robot, values->robot, sizeof out->robot);
+    if (scene->mechanism) {
+        stance_tree_numbers_make(scene->tree, scene->mechanism, out->robot, &out->body);
+        out->tree = scene->tree;
+        out->scene = scene;
+        for (int c = 0; c < scene->contacts; c++) /* stops are no ground */
+            out->contacts |= scene->grip[c] < 0 ? 1u << c : 0;
+    }
     if (!isfinite(out->friction) || out->friction < 0 ||
         !(out->restitution >= 0 && out->restitution <= 1)) {
         return complain(message, "ground.friction must not be negative, ground.restitution lie "

@@ -28,6 +28,13 @@ struct resolved_design {
     double capture_share; /* of the boundary: less than this fails, with 95 % confidence */
 };
 
+/* A design without the room that its scene has no use for: how many numbers it is, and to and from
+ * number[that many]. What is left out is 0 when it is back. */
+size_t resolve_packed(const stance_scene *scene);
+void resolve_pack(const stance_scene *scene, const struct resolved_design *design, double *number);
+void resolve_unpack(const stance_scene *scene, const double *number,
+                    struct resolved_design *design);
+
 /* Without a captured set. false: `message` says what is impossible (no such equilibrium, poles not
  * placeable, ...). */
 bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
@@ -50,10 +57,15 @@ struct resolved_gains {
     double condition; /* of its eigenvectors; NAN: another design */
 };
 
-/* K[actuators][2 postures] of a state-feedback law for x' = A x + B u: designed, or as given. `how`
+/* Which of the posture's 2 postures angles and rates is a state of the linear model about an
+ * equilibrium, whose contacts may leave it fewer. */
+int resolve_state(const stance_scene *scene, const stance_equilibrium *equilibrium, int state);
+
+/* K[actuators][states] of a state-feedback law for x' = A x + B u: designed, or as given. `how`
  * may be NULL. */
-bool resolve_gains(const stance_scene *scene, const struct scenario_values *values, const double *A,
-                   const double *B, double *K, struct resolved_gains *how, stance_message *message);
+bool resolve_gains(const stance_scene *scene, const struct scenario_values *values,
+                   const stance_equilibrium *equilibrium, const double *A, const double *B,
+                   double *K, struct resolved_gains *how, stance_message *message);
 
 /* loop[n][n] = A - B K; with interval > 0 of the model sampled so, torques held in between. */
 stance_error resolve_loop(int n, int m, const double *A, const double *B, const double *K,

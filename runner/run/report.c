@@ -193,7 +193,7 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
         scenario_axis_text(&s->axis[a], 0, 0, first, sizeof first);
         scenario_axis_text(&s->axis[a], s->axis[a].count - 1, 0, last, sizeof last);
         fprintf(out, "  %-32s %8zu  %s ... %s %s\n", s->axis[a].name, s->axis[a].count, first, last,
-                s->axis[a].words ? "" : s->axis[a].unit);
+                s->axis[a].words || strcmp(s->axis[a].unit, "1") == 0 ? "" : s->axis[a].unit);
     }
     report_designs(plan, e, out);
     if (plan->record_cases > 0) {

@@ -354,7 +354,8 @@ static bool take_designs(struct run *run)
     parallel_broadcast(&run->parallel, &good, sizeof good);
     if (!good && run->parallel.rank == 0)
         run_fail_io(run);
-    parallel_broadcast(&run->parallel, plan->design, plan->designs * sizeof *plan->design);
+    parallel_broadcast(&run->parallel, plan->design,
+                       plan->designs * plan->design_size * sizeof *plan->design);
     parallel_broadcast(&run->parallel, plan->design_status, plan->designs);
     return good;
 }
@@ -380,6 +381,20 @@ static void stage_designs(struct run *run)
         fail_scenario(run, &error);
     else if (run->options.dry_run && run->parallel.rank == 0)
         report_plan(&run->plan, run->parallel.size, run->file, false, stdout);
+}
+
+/* Of a scene that is described, compiled for it. */
+static void stage_kernels(struct run *run)
+{
+    stance_message message;
+    if (run->options.dry_run || run->kernels.count > 0)
+        return;
+    if (run->resume && !run->store) /* later: they are tried on cases, whose designs are there */
+        return;
+    const enum exit_code code =
+        kernels_take(&run->kernels, &run->plan, NULL, &run->parallel, run->options.quiet, &message);
+    if (code != EXIT_DONE)
+        run_fail(run, code, "stance run: %s", message.text);
 }
 
 /* Sets in which cases are captured, where the scenario asks for them. */
@@ -544,9 +559,11 @@ static int go_through(struct run *run)
         {stage_claim, "looking into the results file"},
         {stage_plan, "making the plan"},
         {stage_designs, "computing designs"},
+        {stage_kernels, "compiling kernels"},
         {stage_captures, "estimating captured sets"},
         {stage_create, "creating the results file"},
         {stage_open, "opening the results file"},
+        {stage_kernels, "compiling kernels"}, /* where they were to wait for the designs */
         {stage_extend, "copying the results of the old file"},
         {stage_compute, "computing"},
         {stage_timing, "storing times"},
@@ -599,6 +616,7 @@ static int run_run(int argc, char **argv)
     work_catch_signals();
     int code = go_through(run);
     store_abandon(run->store);
+    kernels_give_back(&run->kernels);
     plan_free(&run->plan);
     store_origin_free(&run->origin);
     if (run->scenario)

@@ -8,6 +8,7 @@
 #include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/units.h"
+#include "runner/plan/kernels.h"
 #include "runner/store/lock.h"
 
 struct options {
@@ -41,6 +42,7 @@ struct run {
     struct extension *extension; /* --extend, on rank 0 until its rows have been copied */
     struct heartbeat heartbeat;  /* on rank 0, once the lock is taken */
     struct plan plan;
+    struct kernels kernels;
     struct store *store;
     struct work work;
     stance_message message; /* what others say of a failure */

@@ -202,7 +202,8 @@ bool run_extend_designs(struct run *run, stance_message *message)
                 store_read_designs(store, &e->plan, message);
     for (size_t d = 0; good && d < e->plan.designs; d++) {
         const size_t to = sampled ? (size_t)moved(e, d) : d;
-        new->design[to] = e->plan.design[d];
+        const struct resolved_design design = plan_design_at(&e->plan, d);
+        plan_design_put(new, to, &design);
         new->design_status[to] = e->plan.design_status[d];
     }
     stance_message ignored;

@@ -1,4 +1,5 @@
 /* describe.c - documentation of the scenario format, and its JSON Schema, from the table. */
+#include "mechanism.h"
 #include "schema.h"
 #include "tree.h"
 
@@ -49,6 +50,13 @@ static const char *default_text(const struct scenario_field *field, char *buffer
     return buffer;
 }
 
+/* How many items a list has; of any mechanism it is not known. */
+static const char *count_text(size_t count, char text[24])
+{
+    snprintf(text, 24, "%zu", count);
+    return count ? text : "some";
+}
+
 static const char *kind_text(const struct scenario_field *field, char *buffer, size_t size)
 {
     static const struct {
@@ -68,7 +76,7 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         [FIELD_PATH] = {"path", ""},
         [FIELD_VALUES] = {"list of numbers, words or lists of these", ""},
     };
-    char range[96], words[400] = "";
+    char range[96], words[400] = "", count[2][24];
     const char *unit = strcmp(field->unit, "1") != 0 && field->columns == 0 ? field->unit : "";
 
     word_list(words, sizeof words, field->words, field->word_count);
@@ -81,11 +89,12 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         break;
     case FIELD_POLES:
     case FIELD_NUMBERS:
-        snprintf(buffer, size, "list of %zu numbers, %s", field->items, field->unit);
+        snprintf(buffer, size, "list of %s numbers, %s%s%s", count_text(field->items, count[0]),
+                 field->unit, words[0] ? text[FIELD_NUMBER].after : "", words);
         break;
     case FIELD_MATRIX:
-        snprintf(buffer, size, "%zu lists of %zu numbers, %s", field->items, field->columns,
-                 field->unit);
+        snprintf(buffer, size, "%s lists of %s numbers, %s", count_text(field->items, count[0]),
+                 count_text(field->columns, count[1]), field->unit);
         break;
     case FIELD_PATHS:
         snprintf(buffer, size, "list of at most %d paths", SCENARIO_MAX_PATHS);
@@ -273,7 +282,9 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
     case FIELD_WORD:
         return words_schema(field);
     case FIELD_WORDS: {
-        json_t *list = list_schema(words_schema(field), 0);
+        const bool any = schema->pattern && field->words == schema->elements;
+        json_t *list =
+            list_schema(any ? json_pack("{s:s}", "type", "string") : words_schema(field), 0);
         json_object_set_new(list, "uniqueItems", json_true());
         return list;
     }
@@ -346,16 +357,32 @@ static json_t *field_schema(const struct schema *schema, const struct scenario_f
 }
 
 /* A mapping with the keys below `path`. */
+/* Whether a key stands for any name. */
+static bool is_pattern(const struct schema *schema, const char *name)
+{
+    const stance_scene *const scene = schema->scene;
+    return schema->pattern &&
+           (strcmp(name, scene->mechanism->body[0].name) == 0 ||
+            (name[0] == 'v' && strcmp(name + 1, scene->mechanism->body[0].name) == 0) ||
+            strcmp(name, scene->mechanism->element[0].name) == 0 ||
+            strcmp(name, scene->mechanism->point[0].name) == 0 ||
+            strcmp(name, scene->mechanism->actuator[0].name) == 0);
+}
+
 static json_t *map_schema(const struct schema *schema, const char *path)
 {
     const char *names[SCHEMA_MAX_FIELDS];
     char below[256];
     size_t count = schema_children(schema, path, names, SCHEMA_MAX_FIELDS);
-    json_t *properties = json_object(), *required = json_array();
+    json_t *properties = json_object(), *required = json_array(), *others = json_array();
 
     for (size_t i = 0; i < count; i++) {
         snprintf(below, sizeof below, "%s%s%s", path, path[0] ? "." : "", names[i]);
         const struct scenario_field *field = schema_find(schema, below);
+        if (is_pattern(schema, names[i])) {
+            json_array_append_new(others, field_schema(schema, field));
+            continue;
+        }
         json_object_set_new(properties, names[i], field_schema(schema, field));
         /* What may also come from a sweep, or only some kinds need, cannot be asked for here. */
         if (field->required && field->type != FIELD_MAP && field->use == USE_ALWAYS &&
@@ -364,6 +391,9 @@ static json_t *map_schema(const struct schema *schema, const char *path)
     }
     json_t *object = json_pack("{s:s,s:o,s:b}", "type", "object", "properties", properties,
                                "additionalProperties", 0);
+    if (json_array_size(others) > 0)
+        json_object_set_new(object, "additionalProperties", json_pack("{s:O}", "anyOf", others));
+    json_decref(others);
     if (json_array_size(required) > 0)
         json_object_set(object, "required", required);
     json_decref(required);
@@ -455,11 +485,13 @@ bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *erro
     size_t count = 0;
     while (stance_scenes()[count])
         count++;
-    struct schema *schemas = calloc(count ? count : 1, sizeof *schemas);
-    bool good = schemas != NULL && count > 0;
+    struct schema *schemas = calloc(count + 1, sizeof *schemas);
+    stance_scene *any = mechanism_pattern();
+    bool good = schemas != NULL && any != NULL;
 
-    for (size_t i = 0; i < count && good; i++)
-        good = schema_build(&schemas[i], stance_scenes()[i]);
+    for (size_t i = 0; i <= count && good; i++)
+        good = schema_build(&schemas[i], i < count ? stance_scenes()[i] : any);
+    count++;
     if (!good) {
         fputs("stance describe: out of memory\n", errors);
     } else if (path) {
@@ -472,5 +504,6 @@ bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *erro
         print_all(out, schemas, count);
     }
     free(schemas);
+    stance_scene_free(any);
     return good;
 }

@@ -229,6 +229,17 @@ bool field_value(struct problems *problems, const struct scenario_field *field, 
     return good;
 }
 
+bool field_items(struct problems *problems, const char *name, const struct tree_node *node,
+                 size_t items, const char *what)
+{
+    char wanted[64];
+    snprintf(wanted, sizeof wanted, "%zu %s", items, what);
+    if (node->kind != TREE_LIST)
+        return field_mismatch(problems, name, wanted, node);
+    return node->count == items || problem_add(problems, node->mark, "%s: expected %s, found %zu",
+                                               name, wanted, node->count);
+}
+
 bool field_list(struct problems *problems, const char *name, const char *wanted,
                 const struct tree_node *node)
 {

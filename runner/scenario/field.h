@@ -55,6 +55,10 @@ bool field_admits(struct problems *problems, const struct scenario_field *field,
 bool field_mismatch(struct problems *problems, const char *name, const char *wanted,
                     const struct tree_node *node);
 
+/* A list of that many items; `what` they are. */
+bool field_items(struct problems *problems, const char *name, const struct tree_node *node,
+                 size_t items, const char *what);
+
 /* A non-empty list. */
 bool field_list(struct problems *problems, const char *name, const char *wanted,
                 const struct tree_node *node);

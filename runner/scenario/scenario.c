@@ -5,6 +5,7 @@
  * to others.
  */
 #include "scenario.h"
+#include "mechanism.h"
 #include "reader.h"
 
 #include "runner/base/command.h"
@@ -125,11 +126,19 @@ bool reader_value(struct reader *r, const char *path, double *value)
     return !node || field_value(&r->problems, field, path, node, value);
 }
 
-/* A key that is unknown here but stands elsewhere in the format, or NULL. */
-static const struct scenario_field *elsewhere(const struct schema *schema, const char *key)
+/* What mechanism_read has read: where keys stand is noted here, no more. */
+static bool is_described(const struct reader *r, const char *path)
 {
+    return r->s->own_scene && strncmp(path, "robot", strcspn(path, ".")) == 0 && path[0];
+}
+
+/* A key that is unknown here but stands elsewhere in the format, or NULL. */
+static const struct scenario_field *elsewhere(const struct reader *r, const char *key)
+{
+    const struct schema *const schema = &r->schema;
     for (size_t i = 0; i < schema->count; i++)
-        if (!strchr(schema->field[i].path, '[') &&
+        if (!strchr(schema->field[i].path, '[') && !is_described(r, schema->field[i].path) &&
+            !(r->s->own_scene && strncmp(schema->field[i].path, "controller.model.", 17) == 0) &&
             strcmp(schema_last_name(schema->field[i].path), key) == 0)
             return &schema->field[i];
     return NULL;
@@ -144,7 +153,7 @@ static void unknown_key(struct reader *r, const struct tree_key *key, const char
         return;
     }
     const char *near = nearest_word(key->name, known, count);
-    const struct scenario_field *other = elsewhere(&r->schema, key->name);
+    const struct scenario_field *other = elsewhere(r, key->name);
 
     if (!near && r->s->scene) {
         snprintf(near_path, sizeof near_path, "%s%s%.64s", path, path[0] ? "." : "", key->name);
@@ -200,6 +209,8 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
     bool good = field->type == FIELD_WORDS
                     ? field_words(&r->problems, field, field->path, node, &mask)
                     : field_value(&r->problems, field, field->path, node, &number);
+    if (good && field->type == FIELD_WORDS && r->s->scene->mechanism)
+        mask = mechanism_contacts(r->s->scene, mask);
     if (good && field->type == FIELD_NUMBER) {
         memcpy(place, &number, sizeof number);
     } else if (good) {
@@ -232,18 +243,6 @@ static bool check_conjugates(struct reader *r, const struct tree_node *node)
     return good;
 }
 
-static bool has_items(struct reader *r, const char *name, const struct tree_node *node,
-                      size_t items, const char *what)
-{
-    char wanted[64];
-    snprintf(wanted, sizeof wanted, "%zu %s", items, what);
-    if (node->kind != TREE_LIST)
-        return field_mismatch(&r->problems, name, wanted, node);
-    return node->count == items ||
-           problem_add(&r->problems, node->mark, "%s: expected %s, found %zu", name, wanted,
-                       node->count);
-}
-
 /* A list of fixed length: numbers, poles, rows of numbers. Its items have a row of their own. */
 static bool read_items(struct reader *r, const struct scenario_field *field,
                        const struct tree_node *node)
@@ -254,22 +253,28 @@ static bool read_items(struct reader *r, const struct scenario_field *field,
     snprintf(path, sizeof path, "%s%s", field->path, matrix ? "[][]" : "[]");
     const struct scenario_field *item = schema_find(&r->schema, path);
     double *number = (double *)(void *)((char *)&r->s->base + item->offset);
-    bool good = has_items(r, field->path, node, field->items,
-                          matrix  ? "rows"
-                          : poles ? "poles"
-                                  : "numbers");
-    for (size_t i = 0; good && i < field->items; i++) {
+    const size_t items =
+        field->fewer && node->kind == TREE_LIST && node->count > 0 && node->count < field->items
+            ? node->count
+            : field->items;
+    bool good = field_items(&r->problems, field->path, node, items,
+                            matrix  ? "rows"
+                            : poles ? "poles"
+                                    : "numbers");
+    for (size_t i = 0; good && i < items; i++) {
         const struct tree_node *row = node->item[i];
         snprintf(name, sizeof name, "%s[%zu]", field->path, i);
         good = poles ? field_pole(&r->problems, item, name, row, &number[i], &r->s->base.pole_im[i])
                : !matrix ? field_number(&r->problems, item, name, row, &number[i])
-                         : has_items(r, name, row, item->columns, "numbers");
+                         : field_items(&r->problems, name, row, item->columns, "numbers");
         for (size_t k = 0; good && matrix && k < item->columns; k++) {
             snprintf(name, sizeof name, "%s[%zu][%zu]", field->path, i, k);
             good = field_number(&r->problems, item, name, row->item[k],
                                 &number[i * item->columns + k]);
         }
     }
+    if (poles)
+        r->s->base.poles = (int)items;
     return good && (!poles || check_conjugates(r, node));
 }
 
@@ -285,6 +290,8 @@ static void read_value(struct reader *r, const struct scenario_field *field,
     const bool map = field->type == FIELD_MAP || field->type == FIELD_MAP_OR_WORD;
     if (map && node->kind == TREE_MAP) {
         read_map(r, node, field->path);
+    } else if (is_described(r, field->path)) {
+        return;
     } else if (field->type == FIELD_MAP_OR_WORD && node->kind == TREE_SCALAR &&
                strcmp(node->text, field->words[0]) == 0) {
         r->s->base.settle = 0; /* stop.settle is the only one */
@@ -304,7 +311,8 @@ static void read_value(struct reader *r, const struct scenario_field *field,
 
 static void read_map(struct reader *r, const struct tree_node *map, const char *path)
 {
-    reader_check_keys(r, map, path, path);
+    if (!is_described(r, path)) /* else it was checked when it was read */
+        reader_check_keys(r, map, path, path);
     for (size_t i = 0; i < map->count; i++) {
         char below[PATH_SIZE];
         snprintf(below, sizeof below, "%s%s%.64s", path, path[0] ? "." : "", map->key[i].name);
@@ -319,9 +327,13 @@ static void set_defaults(struct reader *r)
 {
     struct scenario_values *base = &r->s->base;
 
+    if (r->s->scene)
+        stance_robot_fallback(r->s->scene, base->robot);
+    for (int i = 0; i < STANCE_MAX_ROBOT; i++)
+        base->model[i] = NAN;
     for (size_t i = 0; i < r->schema.count; i++) {
         const struct scenario_field *field = &r->schema.field[i];
-        if (field->offset == NO_OFFSET)
+        if (field->offset == NO_OFFSET || is_described(r, field->path))
             continue;
         char *place = (char *)base + field->offset;
         if (field->type == FIELD_NUMBER) {
@@ -447,8 +459,10 @@ static void read_scene(struct reader *r)
     schema_build(&r->schema, NULL);
     if (scene &&
         field_word(&r->problems, schema_find(&r->schema, "scene"), "scene", scene, &place)) {
-        r->s->scene = stance_scenes()[place];
-        if (!schema_build(&r->schema, r->s->scene)) {
+        r->s->scene = stance_scenes()[place]; /* NULL behind the last one */
+        if (!r->s->scene)
+            r->s->scene = r->s->own_scene = mechanism_read(r);
+        if (r->s->scene && !schema_build(&r->schema, r->s->scene)) {
             problem_add(&r->problems, scene->mark, "scene: %s has more names than fit",
                         r->s->scene->name);
             r->s->scene = NULL;
@@ -607,7 +621,21 @@ void scenario_free(struct scenario *s)
     free(s->record_list);
     free(s->text);
     free(s->place);
+    stance_scene_free(s->own_scene);
     memset(s, 0, sizeof *s);
+}
+
+bool scenario_same_scene(const struct scenario *a, const struct scenario *b)
+{
+    return a->scene == b->scene || (a->own_scene && b->own_scene &&
+                                    mechanism_same(a->scene->mechanism, b->scene->mechanism));
+}
+
+uint32_t scenario_supports(const stance_scene *scene, const struct scenario_values *values)
+{
+    return scene->mechanism           ? (uint32_t)values->support
+           : values->support_foot > 0 ? UINT32_C(1) << (values->support_foot - 1)
+                                      : 1;
 }
 
 /* ---- laws ------------------------------------------------------------------------------------ */

@@ -9,7 +9,7 @@
 
 #include "doe.h"
 
-#include "engine/stance.h"
+#include "engine/mechanism.h"
 
 #include <stdio.h>
 
@@ -19,6 +19,7 @@ enum {
     SCENARIO_MAX_STATES = 2 * STANCE_MAX_COORDINATES,
     SCENARIO_MAX_GAINS = STANCE_MAX_ACTUATORS * 2 * STANCE_MAX_POSTURE,
     SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
+    SCENARIO_NAME = 2 * STANCE_NAME + 8,        /* bytes of the name of a rate, a contact, a pair */
     SCENARIO_FINAL_STATE = STANCE_ANSWER_COUNT, /* bit of `answers` for final_state */
 };
 _Static_assert(SCENARIO_FINAL_STATE < 31, "bits for all answers");
@@ -35,7 +36,7 @@ enum scenario_record { RECORD_NONE, RECORD_ALL, RECORD_LIST };
 struct scenario_equilibrium {
     bool given;
     double posture[STANCE_MAX_POSTURE]; /* theta, q1, q2 for the biped */
-    int lower;                          /* branch: 0 upper (default), 1 lower */
+    int branch;                         /* of several, from 0; the biped's: upper, lower */
 };
 
 /* Everything that one case needs, as numbers: a sweep changes fields of this struct only, found
@@ -48,6 +49,7 @@ struct scenario_values {
 
     struct scenario_equilibrium equilibrium; /* initial.equilibrium */
     int support_foot;                        /* 1-based contact; 0: none */
+    int support;                             /* of a mechanism: contacts, a bit each; 0: none */
     double offset[SCENARIO_MAX_STATES];      /* positions, then velocities, in the scene's order */
     double offset_scale;                     /* of all of them */
     int state_given;                         /* initial.state instead of an equilibrium */
@@ -59,6 +61,7 @@ struct scenario_values {
     double model[STANCE_MAX_ROBOT]; /* the robot that the design believes in; NAN: as robot */
     struct scenario_equilibrium design_point; /* controller.equilibrium; not given: initial's */
     double pole_re[SCENARIO_MAX_POLES], pole_im[SCENARIO_MAX_POLES];
+    int poles;                        /* that are given */
     double gains[SCENARIO_MAX_GAINS]; /* [actuators][2 postures] */
     double state_weights[SCENARIO_MAX_POLES], torque_weights[STANCE_MAX_ACTUATORS]; /* lqr */
     /* Of each law (stance_laws) its parameters as stance_law.set takes them; NAN: as it is at the
@@ -149,6 +152,7 @@ struct scenario {
     char name[128]; /* file name without directory and .yaml */
     char title[256];
     const stance_scene *scene;
+    stance_scene *own_scene; /* that the file describes; NULL: `scene` is one of stance_scenes() */
     struct scenario_values base;
     uint64_t seed;
 
@@ -199,6 +203,12 @@ void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid
 
 /* Fields of case `index` (flat, row-major in the order of the axes): base, then the axes. */
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);
+
+/* Whether two scenarios have the same scene, but for the numbers of a mechanism. */
+bool scenario_same_scene(const struct scenario *a, const struct scenario *b);
+
+/* The contacts that the robot stands on, a bit each; 0: none has to carry it. */
+uint32_t scenario_supports(const stance_scene *scene, const struct scenario_values *values);
 
 /* The law that acts, and the one far from its target: `none` where there is no other. */
 const stance_law *scenario_law(const struct scenario_values *values);

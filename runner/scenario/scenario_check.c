@@ -1,6 +1,7 @@
 /* scenario_check.c - what the keys of a scenario mean for each other: keys that are missing, that
  * have no meaning beside others, or that contradict each other.
  */
+#include "mechanism.h"
 #include "reader.h"
 
 #include <math.h>
@@ -246,8 +247,8 @@ static void check_required(struct reader *r, const struct situation *is)
 
 /* ---- equilibria ------------------------------------------------------------------------------ */
 
-/* All angles but one must be given; `path` is initial.equilibrium or controller.equilibrium. True:
- * the equilibrium is there. */
+/* Of a scene whose closed forms ask for it all angles but one must be given; `path` is
+ * initial.equilibrium or controller.equilibrium. True: the equilibrium is there. */
 static bool check_equilibrium(struct reader *r, const char *path)
 {
     const struct seen *map = reader_seen(r, path);
@@ -272,11 +273,38 @@ static bool check_equilibrium(struct reader *r, const char *path)
         return doubtful;
     if (!map->node && given == 0)
         mark = reader_seen(r, name)->sweep;
-    if (given != wanted && !doubtful) {
+    if (given != wanted && !doubtful && !scene->mechanism) {
         problem_add(&r->problems, mark, "%s: give %d of %s; %d given", path, wanted,
                     word_list(list, sizeof list, names, (size_t)scene->postures), given);
     }
     return true;
+}
+
+/* What a mechanism stands on: a state in which it stands has no translation of its own. */
+static void check_standing(struct reader *r, const struct situation *is)
+{
+    static const char *const translation[] = {"initial.state.x", "initial.state.z",
+                                              "initial.state.vx", "initial.state.vz"};
+    const stance_scene *const scene = r->s->scene;
+    const struct seen *const support = reader_seen(r, "initial.support");
+    if (!scene->mechanism)
+        return;
+    r->s->base.support_foot = 0;
+    if (support->node && scene->mechanism->body[0].joint != STANCE_FREE) {
+        problem_add(&r->problems, support->key,
+                    "initial.support: the root %s is not free: nothing has to carry it",
+                    scene->mechanism->body[0].name);
+    } else if (!support->node && is->from_equilibrium && scene->mechanism->elements > 0 &&
+               scene->mechanism->body[0].joint == STANCE_FREE) {
+        r->s->base.support = (int)mechanism_contacts(scene, 1);
+    }
+    for (int i = 0; support->node && is->from_state && i < 4; i++) {
+        const struct seen *const given = reader_seen(r, translation[i]);
+        if (reader_given(given))
+            problem_add(&r->problems, given->node ? given->key : given->sweep,
+                        "%s: with initial.support it follows from what the robot stands on",
+                        translation[i]);
+    }
 }
 
 static void check_start(struct reader *r, const struct situation *is)
@@ -312,18 +340,34 @@ static void check_start(struct reader *r, const struct situation *is)
         if (!reader_seen(r, "initial.support_foot")->node)
             base->support_foot = 1;
     }
+    check_standing(r, is);
+}
+
+static bool needs_pair(const stance_law *law)
+{
+    for (int p = 0; p < law->parameters; p++)
+        if (law->parameter[p].per == STANCE_PER_PAIR)
+            return true;
+    return false;
 }
 
 static void check_controller(struct reader *r, const struct situation *is)
 {
     struct scenario_values *base = &r->s->base;
     const struct seen *kind = reader_seen(r, "controller.kind");
+    int first, second;
 
     if (!is->law_known)
         return;
     if (is->law != stance_laws()[0] && r->s->scene->actuators == 0) {
         problem_add(&r->problems, kind->node->mark,
                     "controller.kind: the scene %s has no actuators", r->s->scene->name);
+    }
+    if (needs_pair(is->law) && r->s->scene->actuators > 0 &&
+        !stance_pair(r->s->scene, 0, &first, &second)) {
+        problem_add(&r->problems, kind->node->mark,
+                    "controller.kind: %s controls two coordinates by two actuators; here are %d",
+                    is->law->name, r->s->scene->actuators);
     }
     if (!is->law->designed)
         return;
@@ -503,8 +547,8 @@ static void check_steps(struct reader *r)
 static void check_support(struct reader *r, const struct situation *is)
 {
     const struct scenario *s = r->s;
-    if (!is->from_equilibrium || r->axes_bad || reader_seen(r, "ground.contacts")->bad ||
-        reader_seen(r, "initial.support_foot")->bad)
+    if (!is->from_equilibrium || s->own_scene || r->axes_bad ||
+        reader_seen(r, "ground.contacts")->bad || reader_seen(r, "initial.support_foot")->bad)
         return;
     for (int foot = 1; foot <= s->scene->contacts; foot++) {
         if (!(s->base.contacts >> (foot - 1) & 1) &&
@@ -513,6 +557,49 @@ static void check_support(struct reader *r, const struct situation *is)
                         "ground.contacts: %s, the support foot, is not among them",
                         s->scene->contact_name[foot - 1]);
         }
+    }
+}
+
+/* The contacts of a mechanism: those that it stands on must be able to carry it, and the stops of
+ * its joints are none of the ground's. */
+static void check_contacts(struct reader *r)
+{
+    const stance_scene *const scene = r->s->scene;
+    const stance_mechanism *const m = scene->mechanism;
+    struct scenario_values *const base = &r->s->base;
+    for (int e = 0; e < m->elements && !reader_seen(r, "ground.contacts")->bad; e++) {
+        const int contacts = (int)mechanism_contacts(scene, UINT32_C(1) << e);
+        if ((base->support & contacts) && !(base->contacts & contacts))
+            problem_add(&r->problems, where(r, "ground.contacts"),
+                        "ground.contacts: %s, which is to carry the robot, is not among them",
+                        m->element[e].name);
+    }
+    base->contacts |= ((1 << scene->contacts) - 1) & ~(int)mechanism_contacts(scene, UINT32_MAX);
+}
+
+/* Scenes that are not described have the world that their equations were written for. */
+static void check_world(struct reader *r)
+{
+    static const struct {
+        const char *path, *wanted;
+    } fixed[] = {
+        {"ground.slope", "level ground, 0"},
+        {"ground.gravity", "9.81"},
+        {"controller.model.slope", "level ground, 0"},
+        {"controller.model.gravity", "9.81"},
+    };
+    for (size_t i = 0; i < sizeof fixed / sizeof fixed[0]; i++) {
+        const struct scenario_field *const field = schema_find(&r->schema, fixed[i].path);
+        const double usual = i % 2 ? STANCE_GRAVITY : 0;
+        double least, largest;
+        if (!field || !reader_given(reader_seen(r, fixed[i].path)) || r->axes_bad ||
+            reader_seen(r, fixed[i].path)->bad)
+            continue;
+        scenario_extent(r->s, field->offset, &least, &largest);
+        if (least != usual || largest != usual)
+            problem_add(&r->problems, where(r, fixed[i].path),
+                        "%s: the scene %s knows %s alone; a mechanism (scene: mechanism) has any",
+                        fixed[i].path, r->s->scene->name, fixed[i].wanted);
     }
 }
 
@@ -533,4 +620,10 @@ void scenario_cross_check(struct reader *r)
     check_far(r, &is);
     check_capture(r, &is);
     check_support(r, &is);
+    if (r->s->own_scene) {
+        check_contacts(r);
+        mechanism_check(r);
+    } else {
+        check_world(r);
+    }
 }

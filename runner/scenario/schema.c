@@ -1,6 +1,7 @@
 /* schema.c - the scenario format: the table and how a scene's names fill it. */
 #include "schema.h"
 #include "schema_laws.h"
+#include "schema_mechanism.h"
 #include "tree.h"
 
 #include <math.h>
@@ -42,6 +43,7 @@ enum family {
     FAMILY_POSTURE,   /* angles that a posture law acts on */
     FAMILY_CONTACTS,  /* the words are names of contacts */
     FAMILY_FOOT,      /* the range is 1 ... contacts */
+    FAMILY_BRANCH,    /* of a mechanism a number */
     FAMILY_POLES,     /* 2 postures items */
     FAMILY_ACTUATORS, /* one item for each */
     FAMILY_MATRIX,    /* actuators x 2 postures */
@@ -65,6 +67,7 @@ struct row {
 
 /* Loose bounds that keep nonsense out where physics gives none. */
 #define LARGE 1e9
+#define RIGHT 1.5708 /* a right angle, rounded up */
 
 /* One member a line would make the table hard to read. */
 /* clang-format off */
@@ -87,6 +90,13 @@ static const struct row rows[] = {
     {0, {.path = "ground.restitution", .type = FIELD_NUMBER, .sweep = true, VALUE(restitution),
          .unit = "1", .fallback = 0, RANGE(0, 1), .text = "Newton's coefficient of restitution",
          .more = "Together with friction it can create energy in impacts; 0 never does."}},
+    {0, {.path = "ground.slope", .type = FIELD_NUMBER, .design = true, .sweep = true,
+         VALUE(robot[STANCE_ROBOT_SLOPE]), .unit = "rad", .fallback = 0, RANGE(-RIGHT, RIGHT),
+         .text = "slope of the ground, positive: +x is downhill",
+         .more = "x and z stay level and upright. Only of a mechanism; the block has robot.slope."}},
+    {0, {.path = "ground.gravity", .type = FIELD_NUMBER, .design = true, .sweep = true,
+         VALUE(robot[STANCE_ROBOT_GRAVITY]), .unit = "m/s^2", .fallback = STANCE_GRAVITY,
+         RANGE(0, 1e4), .text = "acceleration of gravity", .more = "Only of a mechanism."}},
     {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(prefer), .fallback = 0,
          WORDS(prefer_words), .text = "which motion, where several obey the contact laws",
          .more = "The one that leaves the least kinetic energy, or the most; contacts that stand "
@@ -100,12 +110,13 @@ static const struct row rows[] = {
          .text = "how a run begins: from an equilibrium or from a given state"}},
     {0, {.path = "initial.equilibrium", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
          BY_HAND, .text = "the position of rest that the run begins at",
-         .more = "Give all but one of the angles; the last follows. Excludes initial.state."}},
+         .more = "Give all but one of the angles of the biped; the last follows. Of a mechanism "
+                 "give any, or none: the others are found. Excludes initial.state."}},
     {FAMILY_POSTURE, {.path = "initial.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
          .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.posture),
          .fallback_text = "follows from the others", .text = "equilibrium: %s"}},
-    {0, {.path = "initial.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
-         .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.lower),
+    {FAMILY_BRANCH, {.path = "initial.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
+         .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.branch),
          .fallback = 0, WORDS(branch_words),
          .text = "which of the two solutions: hip above or below the foot"}},
     {FAMILY_FOOT, {.path = "initial.support_foot", .type = FIELD_INTEGER, .by_scene = true,
@@ -115,6 +126,12 @@ static const struct row rows[] = {
          .more = "With an equilibrium this foot stands at rest at the origin: offsets of angles "
                  "and their rates apply first, the translation follows from the foot, offsets of "
                  "the translation come last."}},
+    {FAMILY_CONTACTS, {.path = "initial.support", .type = FIELD_WORDS, .by_scene = true,
+         .design = true, VALUE(support),
+         .fallback_text = "the first contact with an equilibrium of a free root, else none",
+         .text = "contacts that the robot stands on",
+         .more = "They stand at rest, the first at the origin. With an equilibrium offsets apply "
+                 "as with support_foot; with a state x, z and their rates follow."}},
     {0, {.path = "initial.offset", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
          BY_HAND, .text = "how far from the equilibrium the run begins"}},
     {FAMILY_OFFSET, {.path = "initial.offset.*", .type = FIELD_NUMBER, .by_scene = true,
@@ -147,7 +164,8 @@ static const struct row rows[] = {
          .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",
          .text = "poles of the closed loop, in the open left half plane",
          .more = "Real, or complex as -3+1.5i with -3-1.5i beside it; with place none may stand "
-                 "there more often than there are actuators."}},
+                 "there more often than there are actuators. Of a mechanism as many as it has "
+                 "states while the contacts that it stands on hold."}},
     {FAMILY_POLES, {.path = "controller.poles[]", .type = FIELD_NUMBER, .by_scene = true,
          .use = USE_PLACE, .design = true, .sweep = true, VALUE(pole_re), .unit = "1/s",
          .fallback = NAN, RANGE(-1e6, 0), .high_open = true, .text = "pole of the closed loop",
@@ -179,14 +197,22 @@ static const struct row rows[] = {
     {FAMILY_ROBOT, {.path = "controller.model.*", .type = FIELD_NUMBER, .by_scene = true,
          .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model),
          .fallback_text = "as the robot", .text = "model of the design: %s"}},
+    {0, {.path = "controller.model.slope", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model[STANCE_ROBOT_SLOPE]),
+         .unit = "rad", .fallback = NAN, .fallback_text = "as the ground", RANGE(-RIGHT, RIGHT),
+         .text = "model of the design: slope of the ground"}},
+    {0, {.path = "controller.model.gravity", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model[STANCE_ROBOT_GRAVITY]),
+         .unit = "m/s^2", .fallback = NAN, .fallback_text = "as on the ground", RANGE(0, 1e4),
+         .text = "model of the design: acceleration of gravity"}},
     {0, {.path = "controller.equilibrium", .type = FIELD_MAP, .by_scene = true, .use = USE_FEEDBACK,
          BY_HAND, .fallback_text = "initial.equilibrium",
          .text = "the equilibrium that the controller is designed at"}},
     {FAMILY_POSTURE, {.path = "controller.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
          .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.posture),
          .fallback_text = "follows from the others", .text = "equilibrium of the controller: %s"}},
-    {0, {.path = "controller.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
-         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.lower),
+    {FAMILY_BRANCH, {.path = "controller.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.branch),
          .fallback = 0, WORDS(branch_words),
          .text = "which of the two solutions: hip above or below the foot"}},
     {FAMILY_FAR, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
@@ -403,6 +429,8 @@ static bool add_robot(struct schema *schema, const struct row *row)
 {
     if (!schema->scene)
         return true;
+    if (schema->scene->mechanism)
+        return schema_add_mechanism(schema, &row->field);
     for (int i = 0; i < schema->scene->robot_count; i++) {
         const stance_quantity *quantity = &schema->scene->robot[i];
         struct scenario_field *field = schema_add(schema, &row->field, "", quantity->name);
@@ -484,6 +512,9 @@ static const char *describe_tolerance(char *text, size_t size)
 static bool add_single(struct schema *schema, const struct row *row)
 {
     const stance_scene *scene = schema->scene;
+    /* Of any mechanism they are not known. */
+    const size_t postures = scene && !schema->pattern ? (size_t)scene->postures : 0;
+    const size_t actuators = scene && !schema->pattern ? (size_t)scene->actuators : 0;
     struct scenario_field *field = schema_add(schema, &row->field, "", "");
     if (!field)
         return false;
@@ -507,6 +538,12 @@ static bool add_single(struct schema *schema, const struct row *row)
         field->more = describe_tolerance(schema->tolerance, sizeof schema->tolerance);
     } else if (!scene) {
         return true; /* what follows is the scene's */
+    } else if (row->family == FAMILY_CONTACTS && scene->mechanism) {
+        const stance_mechanism *const m = scene->mechanism;
+        for (int i = 0; i < m->elements; i++)
+            schema->elements[i] = m->element[i].name;
+        field->words = schema->elements;
+        field->word_count = (size_t)m->elements;
     } else if (row->family == FAMILY_CONTACTS) {
         field->words = scene->contact_name;
         field->word_count = (size_t)scene->contacts;
@@ -514,13 +551,21 @@ static bool add_single(struct schema *schema, const struct row *row)
         field->low = 1;
         field->high = scene->contacts;
         field->fallback = NAN;
+    } else if (row->family == FAMILY_BRANCH && scene->mechanism) {
+        field->type = FIELD_INTEGER;
+        field->words = NULL;
+        field->word_count = 0;
+        field->high = 1000;
+        snprintf(field->text, sizeof field->text,
+                 "which of several solutions, those with the centre of mass higher up first");
     } else if (row->family == FAMILY_POLES) {
-        field->items = 2 * (size_t)scene->postures;
+        field->items = 2 * postures;
+        field->fewer = scene->mechanism && field->type == FIELD_POLES;
     } else if (row->family == FAMILY_ACTUATORS) {
-        field->items = (size_t)scene->actuators;
+        field->items = actuators;
     } else if (row->family == FAMILY_MATRIX) {
-        field->items = (size_t)scene->actuators;
-        field->columns = 2 * (size_t)scene->postures;
+        field->items = actuators;
+        field->columns = 2 * postures;
     }
     return true;
 }
@@ -529,6 +574,8 @@ static bool add_single(struct schema *schema, const struct row *row)
 static bool scene_has(const stance_scene *scene, const char *path)
 {
     const bool acts = scene->actuators > 0, stands = scene->equilibrium && scene->stand;
+    const bool described = scene->mechanism != NULL;
+    const bool touches = described ? scene->mechanism->elements > 0 : scene->contacts > 0;
     const struct {
         const char *begins;
         bool has;
@@ -536,11 +583,13 @@ static bool scene_has(const stance_scene *scene, const char *path)
         {"controller.kind", true},
         {"controller.", acts},
         {"stop.capture", acts},
+        {"ground.contacts", touches},
         {"initial.equilibrium", stands},
-        {"initial.support_foot", stands},
+        {"initial.support_foot", stands && !described},
+        {"initial.support", described && touches},
         {"initial.offset", stands},
         {"stop.settle.angle", scene->postures > 0},
-        {"stop.fall_height", scene->fallen != NULL},
+        {"stop.fall_height", scene->fallen && !described},
     };
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
         if (strncmp(path, needs[i].begins, strlen(needs[i].begins)) == 0)
@@ -574,8 +623,10 @@ static bool add_row(struct schema *schema, const struct row *row)
 bool schema_build(struct schema *schema, const stance_scene *scene)
 {
     *schema = (struct schema){.scene = scene};
-    for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_scenes()[i]; i++)
+    schema->pattern = scene && scene->mechanism && scene->mechanism->numbers == 0;
+    for (size_t i = 0; i < SCHEMA_MAX_WORDS - 1 && stance_scenes()[i]; i++)
         schema->scenes[schema->scene_count++] = stance_scenes()[i]->name;
+    schema->scenes[schema->scene_count++] = MECHANISM_WORD;
     for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_methods()[i]; i++)
         schema->methods[schema->method_count++] = stance_methods()[i]->name;
     for (const stance_law *const *law = stance_laws(); *law; law++) {

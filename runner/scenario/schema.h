@@ -10,6 +10,8 @@
 
 #include "scenario.h"
 
+#include "engine/mechanism.h"
+
 enum field_type {
     FIELD_MAP,
     FIELD_TEXT,
@@ -67,6 +69,7 @@ struct scenario_field {
     bool low_open, high_open; /* `low`, `high` itself is out of range */
     size_t items; /* lists of fixed length (poles, rows of the matrix): how many; else 0 */
     size_t columns;
+    bool fewer; /* ... may be given */
     const char *const *words;
     size_t word_count;
     char text[160];   /* what it is, in a line; long_name of an axis */
@@ -75,19 +78,22 @@ struct scenario_field {
 
 #define NO_OFFSET ((size_t)-1)
 
-enum { SCHEMA_MAX_FIELDS = 256, SCHEMA_MAX_WORDS = 32 };
+enum { SCHEMA_MAX_FIELDS = 1024, SCHEMA_MAX_WORDS = 40 };
 
 struct schema {
     const stance_scene *scene; /* NULL: unknown; fields by scene are left out then */
+    /* A mechanism without a number is that of the documentation: its names stand for any. */
+    bool pattern;
     size_t count;
     struct scenario_field field[SCHEMA_MAX_FIELDS];
     const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
     const char *laws[STANCE_MAX_LAWS], *far_laws[STANCE_MAX_LAWS];
     size_t scene_count, method_count, law_count, far_law_count;
-    char kind_of[STANCE_MAX_LAWS][48]; /* "controller.kind NAME" */
-    char kinds[600];                   /* what there is to know of controller.kind */
-    char pair[SCHEMA_MAX_WORDS][24];   /* "x-theta" */
+    char kind_of[STANCE_MAX_LAWS][48];          /* "controller.kind NAME" */
+    char kinds[600];                            /* what there is to know of controller.kind */
+    char pair[SCHEMA_MAX_WORDS][SCENARIO_NAME]; /* "x-theta" */
     const char *pairs[SCHEMA_MAX_WORDS];
+    const char *bodies[STANCE_MAX_BODIES], *elements[STANCE_MAX_ELEMENTS]; /* of a mechanism */
     char tolerance[400]; /* what there is to know of method.tolerance */
 };
 

@@ -73,6 +73,12 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
         field->words = schema->pairs;
         field->word_count = name_pairs(schema);
     }
+    if (p->per == STANCE_PER_PAIR && field->word_count == 0) { /* the law is refused, or of any */
+        field->type = FIELD_TEXT;
+        field->words = NULL;
+        field->sweep = false;
+        field->offset = NO_OFFSET;
+    }
     return true;
 }
 

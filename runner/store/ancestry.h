@@ -6,8 +6,8 @@
 #include "results.h"
 
 struct ancestry {
-    size_t scenarios;                        /* 1: as usual */
-    char date[STORE_MOST_ANCESTORS + 1][32]; /* of each: when it was first run */
+    size_t scenarios;                                   /* 1: as usual */
+    char date[STORE_MOST_ANCESTORS + 1][SCENARIO_NAME]; /* of each: when it was first run */
     uint64_t done[STORE_MOST_ANCESTORS + 1]; /* cases done with it; where scenarios > 1 */
 };
 

@@ -124,7 +124,7 @@ static bool same_axis(const struct scenario_axis *a, const struct scenario_axis 
 
 static bool same_axes(const struct scenario *a, const struct scenario *b)
 {
-    bool equal = a->scene == b->scene && a->axes == b->axes;
+    bool equal = scenario_same_scene(a, b) && a->axes == b->axes;
     for (int k = 0; equal && k < a->axes; k++)
         equal = same_axis(&a->axis[k], &b->axis[k]);
     return equal;

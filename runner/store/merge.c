@@ -129,15 +129,16 @@ static bool take_designs(struct merge *m, const struct merge_part *part,
                          stance_message *message)
 {
     for (size_t d = 0; d < opened->plan.designs; d++) {
-        const struct resolved_design *design = &opened->plan.design[d];
+        const struct resolved_design design = plan_design_at(&opened->plan, d);
         const size_t at = plan_design(plan, merge_row(m, part, plan_design_case(&opened->plan, d)));
         if (!taken[at]) {
             taken[at] = true;
-            plan->design[at] = *design;
+            plan_design_put(plan, at, &design);
             plan->design_status[at] = opened->plan.design_status[d];
             continue;
         }
-        const double distance = distance_between(&plan->design[at], design);
+        const struct resolved_design other = plan_design_at(plan, at);
+        const double distance = distance_between(&other, &design);
         if (plan->design_status[at] != opened->plan.design_status[d] || distance > last_bits) {
             return complain(message,
                             "%.100s: its controller design differs from that of another part",

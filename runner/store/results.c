@@ -130,7 +130,8 @@ static char **read_words(hid_t dataset, size_t n)
     return words;
 }
 
-size_t results_words(const struct results *r, const char *path, char word[][32], size_t room)
+size_t results_words(const struct results *r, const char *path, char word[][SCENARIO_NAME],
+                     size_t room)
 {
     hsize_t length[H5S_MAX_RANK];
     int rank;
@@ -141,7 +142,7 @@ size_t results_words(const struct results *r, const char *path, char word[][32],
     char **words = n && n <= room ? read_words(dataset, n) : NULL;
     hdf_close(dataset);
     for (size_t i = 0; words && i < n; i++)
-        snprintf(word[i], 32, "%s", words[i]);
+        snprintf(word[i], SCENARIO_NAME, "%s", words[i]);
     hdf_free_words(words, n);
     return words ? n : 0;
 }

@@ -44,7 +44,7 @@ struct results_axis {
 struct results_varied {
     struct results_axis of; /* name, unit, text, value[points]; of words their places in `word` */
     int factor;             /* which moves it, 0 ... */
-    char (*word)[32];       /* [words], or NULL: numbers, which may be infinite */
+    char (*word)[SCENARIO_NAME]; /* [words], or NULL: numbers, which may be infinite */
     int words;
 };
 
@@ -90,7 +90,8 @@ bool results_answer(const struct results *r, const char *name, double **values,
 size_t results_numbers(const struct results *r, const char *path, double *values, size_t room);
 
 /* Words of a dimension such as `state` or `trajectory/coordinate`; word[room]. Returns how many. */
-size_t results_words(const struct results *r, const char *path, char word[][32], size_t room);
+size_t results_words(const struct results *r, const char *path, char word[][SCENARIO_NAME],
+                     size_t room);
 
 /* Group `timing`: seconds of computing of the rank that computed longest and of all ranks together,
  * cases computed, number of ranks. false when there is none. */
@@ -127,8 +128,8 @@ struct results_trajectory {
     uint64_t index; /* flat index of the case */
     size_t rows;    /* up to the end of the case */
     size_t coordinates, actuators, contacts;
-    char coordinate[STANCE_MAX_COORDINATES][32], actuator[STANCE_MAX_ACTUATORS][32],
-        contact[STANCE_MAX_CONTACTS][32];
+    char coordinate[STANCE_MAX_COORDINATES][SCENARIO_NAME],
+        actuator[STANCE_MAX_ACTUATORS][SCENARIO_NAME], contact[STANCE_MAX_CONTACTS][SCENARIO_NAME];
     double *time;                /* [rows] */
     double *position, *velocity; /* [rows][coordinates] */
     double *torque;              /* [rows][actuators], or NULL */

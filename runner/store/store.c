@@ -515,23 +515,26 @@ bool store_verify(struct store *store, const struct rows *rows, stance_result *r
 
 /* ---- designs and timing ------------------------------------------------------------------- */
 
-bool store_move_design(const struct plan *plan, const struct store_design_column *column,
-                       hid_t dataset, enum hdf_direction way)
+bool store_move_design(const struct plan *plan, struct plan *into,
+                       const struct store_design_column *column, hid_t dataset)
 {
     const size_t rows = (size_t)column->rows, length = (size_t)column->columns;
     double *data = malloc(plan->designs * rows * length * sizeof *data);
-    bool good = data && (way == HDF_WRITE || hdf_read(dataset, KIND_double, data));
+    bool good = data && (!into || hdf_read(dataset, KIND_double, data));
     for (size_t i = 0; good && i < plan->designs * rows; i++) {
-        double *design = (double *)(void *)((char *)&plan->design[i / rows] + column->offset) +
-                         i % rows * (size_t)column->stride;
+        struct resolved_design own = plan_design_at(plan, i / rows);
+        double *design =
+            (double *)(void *)((char *)&own + column->offset) + i % rows * (size_t)column->stride;
         const bool exists = plan->design_status[i / rows] == STANCE_DONE;
         for (size_t k = 0; k < length; k++)
-            if (way == HDF_READ)
+            if (into)
                 design[k] = data[i * length + k];
             else
                 data[i * length + k] = exists ? design[k] : NAN;
+        if (into)
+            plan_design_put(into, i / rows, &own);
     }
-    good = good && (way == HDF_READ || hdf_write(dataset, KIND_double, data));
+    good = good && (into || hdf_write(dataset, KIND_double, data));
     free(data);
     return good;
 }
@@ -547,7 +550,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
         char name[64];
         snprintf(name, sizeof name, "design/%s", columns[k].name);
         const hid_t dataset = open_dataset(store, name);
-        good = store_move_design(plan, &columns[k], dataset, HDF_READ) && good;
+        good = store_move_design(plan, plan, &columns[k], dataset) && good;
         hdf_close(dataset);
     }
     const hid_t dataset = open_dataset(store, "design/status");

@@ -247,14 +247,14 @@ static bool make_state_names(struct layout *layout, hid_t parent, const char *na
                              struct dimension *dimension)
 {
     const stance_scene *scene = layout->plan->scenario->scene;
-    char text[SCENARIO_MAX_STATES][32];
+    char text[SCENARIO_MAX_STATES][SCENARIO_NAME];
     const char *words[SCENARIO_MAX_STATES];
     int n = posture ? scene->postures : scene->coordinates;
 
     for (int i = 0; i < n; i++) {
         const char *coordinate = scene->coordinate[posture ? scene->posture[i] : i].name;
         snprintf(text[i], sizeof text[i], "%s", coordinate);
-        snprintf(text[n + i], sizeof text[n + i], "v%.30s", coordinate);
+        snprintf(text[n + i], sizeof text[n + i], "v%s", coordinate);
     }
     for (int i = 0; i < 2 * n; i++)
         words[i] = text[i];
@@ -325,8 +325,7 @@ static bool put_design_columns(struct layout *layout, hid_t group, const struct 
         const struct variable variable = {
             columns[k].name, KIND_double, columns[k].unit, columns[k].text, true, NAN, NULL};
         hid_t dataset = make_variable(group, &variable, over, rank + columns[k].dimensions);
-        bool good =
-            dataset >= 0 && store_move_design(layout->plan, &columns[k], dataset, HDF_WRITE);
+        bool good = dataset >= 0 && store_move_design(layout->plan, NULL, &columns[k], dataset);
         hdf_close(dataset);
         if (!good)
             return false;
@@ -407,9 +406,10 @@ static bool put_trajectories(struct layout *layout)
                              recorded_time, plan, &time) &&
                 make_coordinates(layout, group, &coordinate) &&
                 make_actuators(layout, group, &actuator) &&
-                make_words(&layout->dimensions, group, "contact", scene->contact_name,
-                           (hsize_t)scene->contacts, &contact) &&
-                make_words(&layout->dimensions, group, "component", components, 2, &component);
+                (scene->contacts == 0 ||
+                 (make_words(&layout->dimensions, group, "contact", scene->contact_name,
+                             (hsize_t)scene->contacts, &contact) &&
+                  make_words(&layout->dimensions, group, "component", components, 2, &component)));
     const struct dimension *last[TRAJECTORIES] = {&coordinate, &coordinate, &actuator, &contact,
                                                   &contact};
     for (int v = 0; good && v < TRAJECTORIES; v++) {

@@ -90,8 +90,8 @@ enum { DESIGN_COLUMNS = 9 };
 void store_design_columns(const struct scenario *scenario,
                           struct store_design_column columns[DESIGN_COLUMNS]);
 /* Moves a column of all designs between the plan and its variable; NAN where there is none. */
-bool store_move_design(const struct plan *plan, const struct store_design_column *column,
-                       hid_t dataset, enum hdf_direction way);
+bool store_move_design(const struct plan *plan, struct plan *into,
+                       const struct store_design_column *column, hid_t dataset);
 
 struct store {
     char file[1024];

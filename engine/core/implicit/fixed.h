@@ -30,6 +30,10 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     (void)c;
     ordinary_forget(&a->quick, mask_of_lane(lane));
 }
+static void advance_forget(struct advance *a, mask m)
+{
+    ordinary_forget(&a->quick, m);
+}
 static void advance_free(struct advance *a)
 {
     (void)a;
@@ -98,14 +102,6 @@ COLD mask fixed_subdivide(const struct setting *set, const struct motion *from, 
     return run & LANES_NOT(failed);
 }
 
-/* The bundle's contacts as the compiler should know them. */
-enum {
-    TOUCHING_NONE = 0,
-    TOUCHING_FIRST = 1,
-    TOUCHING_SECOND = SCENE_CONTACTS > 1 ? 2 : 1,
-    TOUCHING_ALL = (1 << SCENE_CONTACTS) - 1
-};
-
 /* One ordinary step in all lanes, of which all have the contacts in `touching` closed; false: it is
  * not ordinary in all, or not all have, and nothing has happened. */
 #define ADVANCE_ORDINARY
@@ -115,7 +111,7 @@ HOT bool advance_ordinary(struct advance *a, const struct setting *set, const la
 {
     struct iterate it;
     mask apart = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
             apart |= live & LANES_NOT(ordinary_active(set, now, c));
     if (mask_any(apart))

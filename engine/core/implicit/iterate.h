@@ -12,18 +12,18 @@ enum step_kind { STEP_ANY, STEP_ORDINARY, STEP_FULL };
 struct iterate {
     lanes w[SCENE_COORDINATES];
     lanes s1[SCENE_COORDINATES];
-    lanes r[SCENE_CONTACTS][2], u[SCENE_CONTACTS][2];
-    lanes gap[SCENE_CONTACTS];
-    lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES]; /* to a unit impulse at a contact */
+    lanes r[CONTACTS][2], u[CONTACTS][2];
+    lanes gap[CONTACTS];
+    lanes response[CONTACTS][2][SCENE_COORDINATES]; /* to a unit impulse at a contact */
     lanes torque[ACTUATORS];
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
-    mask active[SCENE_CONTACTS];
-    mask ambiguous, unsolved;
-    lanes size;  /* of the last correction */
-    lanes shift; /* how far impulses moved with it, as a velocity */
-    lanes approach[SCENE_CONTACTS], energy, kinetic; /* at the end, see struct motion */
-    const lanes (*before)[2];                        /* see contact_rule */
-    const int *corner;                               /* see law_inside */
+    mask active[CONTACTS];
+    struct contact_verdict verdict;
+    lanes size;                                /* of the last correction */
+    lanes shift;                               /* how far impulses moved with it, as a velocity */
+    lanes approach[CONTACTS], energy, kinetic; /* at the end, see struct motion */
+    const lanes (*before)[2];                  /* see contact_rule */
+    const int *corner;                         /* see law_inside */
 };
 
 /* What corrections are measured by: the largest velocity, at least 1. */
@@ -70,63 +70,69 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
                           mask running, bool coupled, contact_set touching, const scene_matrix *J,
                           const scene_trig *direction, lanes lever, lanes *dw, struct iterate *it)
 {
-    lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES], rebound[SCENE_CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS];
+    EACH (c, 0, SCENE_CONTACTS)
         for (int i = 0; i < SCENE_COORDINATES; i++)
             rebound[c] = response[c][0][i] = response[c][1][i] = lanes_of(0);
-    lanes D[2][2][2][2], uf[2][2]; /* of SCENE_CONTACTS contacts; zero of those that are open */
-    for (int c = 0; c < 2; c++)
-        for (int a = 0; a < 2; a++) {
+    lanes D[CONTACTS][CONTACTS][2][2],
+        uf[CONTACTS][2]; /* zero of those that are not in `touching` */
+    EACH (c, 0, SCENE_CONTACTS)
+        EACH (a, 0, 2) {
             uf[c][a] = lanes_of(0);
-            for (int b = 0; b < 2; b++)
-                D[c][0][a][b] = D[c][1][a][b] = lanes_of(0);
+            EACH (k, 0, SCENE_CONTACTS)
+                D[c][k][a][0] = D[c][k][a][1] = lanes_of(0);
         }
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
             scene_contact_response(&set->body, J, coupled, direction, c, response[c]);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         lanes now[2], moved[2];
         if (!(touching >> c & 1))
             continue;
         scene_contact_velocity(&set->body, &it->end, c, it->w, now);
         scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, dw, moved);
-        rebound[c] = set->restitution * lanes_min(from->approach[c], lanes_of(0));
+        rebound[c] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
         uf[c][0] = now[0] + moved[0] + rebound[c];
         uf[c][1] = now[1] + moved[1];
-        for (int k = 0; k < SCENE_CONTACTS; k++)
-            for (int b = 0; b < 2 && touching >> k & 1; b++) {
+        EACH (k, 0, SCENE_CONTACTS)
+            EACH (b, 0, 2) {
+                if (b >= contact_unknowns(k) || !(touching >> k & 1))
+                    continue;
                 scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, response[k][b],
                                               moved);
                 D[c][k][0][b] = moved[0];
                 D[c][k][1][b] = moved[1];
             }
     }
-    lanes r[2][2];
-    mask ambiguous, unsolved;
-    const struct contact_rule rule = {set->friction, set->prefer, NULL, rebound, false, it->before};
-    solve_contacts(&rule, (const lanes(*)[2][2][2])D, (const lanes(*)[2])uf, touching, it->active,
-                   r, &ambiguous, &unsolved);
-    if (!all) {
-        ambiguous = (it->ambiguous & LANES_NOT(running)) | (ambiguous & running);
-        unsolved = (it->unsolved & LANES_NOT(running)) | (unsolved & running);
-    }
-    it->ambiguous = ambiguous;
-    it->unsolved = unsolved;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    lanes r[CONTACTS][2];
+    struct contact_verdict now;
+    const struct contact_rule rule = {.friction = set->friction,
+                                      .prefer = set->prefer,
+                                      .shift = rebound,
+                                      .before = it->before,
+                                      .last = (const lanes(*)[2])it->r};
+    solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])D, (const lanes(*)[2])uf, touching,
+                   it->active, r, &now);
+    it->verdict = all ? now : contact_verdicts(running, &now, &it->verdict);
+    EACH (c, 0, SCENE_CONTACTS) {
         if (!(touching >> c & 1))
             continue;
+        const int n = contact_unknowns(c);
+        const mask part = contact_part(c, it->active);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             /* Where nothing touches even the sign of a zero stays as it is. */
-            const lanes pushed =
-                lanes_fma(response[c][0][i], r[c][0], lanes_fma(response[c][1][i], r[c][1], dw[i]));
-            dw[i] = choose(it->active[c], pushed, dw[i]);
-            for (int a = 0; a < 2; a++)
+            lanes pushed = dw[i];
+            if (n == 2)
+                pushed = lanes_fma(response[c][1][i], r[c][1], pushed);
+            pushed = lanes_fma(response[c][0][i], r[c][0], pushed);
+            dw[i] = choose(part, pushed, dw[i]);
+            for (int a = 0; a < n; a++)
                 it->response[c][a][i] =
                     choose_unless(all, running, response[c][a][i], it->response[c][a][i]);
         }
-        for (int a = 0; a < 2; a++) {
-            const lanes moves = choose(
-                it->active[c], lanes_abs(r[c][a] - it->r[c][a]) * D[c][c][a][a], lanes_of(0));
+        for (int a = 0; a < n; a++) {
+            const lanes moves =
+                choose(part, lanes_abs(r[c][a] - it->r[c][a]) * D[c][c][a][a], lanes_of(0));
             it->shift = it->shift + moves;
             it->r[c][a] = choose_unless(all, running, r[c][a], it->r[c][a]);
         }
@@ -157,17 +163,16 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
     lanes torque[ACTUATORS], torque_rate[ACTUATORS][POSTURES];
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         torque[i] = it->torque[i];
-    if (coupled) {
-        lanes u[SCENE_COORDINATES];
-        for (int i = 0; i < SCENE_COORDINATES; i++)
-            u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+    lanes u[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+    if (coupled)
         law_inside(&set->law, u, v, h * (METHOD_THETA * METHOD_THETA), METHOD_THETA, it->torque,
                    it->corner, torque, torque_rate);
-    }
 
     scene_matrix J;
     lanes dw[SCENE_COORDINATES];
-    scene_residual(&set->body, h, from->t + METHOD_THETA * h, trig, v, change, torque, residual);
+    scene_residual(&set->body, h, from->t + METHOD_THETA * h, u, trig, v, change, torque, residual);
     scene_factor(&set->body, h, moves, lever, direction_lever, trig, &direction, v, change,
                  (const lanes(*)[2])it->r, coupled, (const lanes(*)[POSTURES])torque_rate, &J);
     for (int i = 0; i < SCENE_COORDINATES; i++)

@@ -10,20 +10,21 @@
 /* What does not change during a case. */
 struct setting {
     scene_body body;
-    lanes friction, restitution;
-    lanes may_touch[SCENE_CONTACTS]; /* 1 or 0 */
-    lanes prefer;                    /* of several contact solutions, see contact_problem */
+    lanes friction;
+    lanes restitution[CONTACTS]; /* Newton's, of each contact */
+    lanes may_touch[CONTACTS];   /* 1 or 0 */
+    lanes prefer;                /* of several contact solutions, see contact_rule */
     struct law law;
 };
 
 /* Where a system is; consists of lanes (choose_all). */
 struct motion {
     lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
-    lanes gap[SCENE_CONTACTS];
-    lanes approach[SCENE_CONTACTS]; /* normal velocity */
+    lanes gap[CONTACTS];
+    lanes approach[CONTACTS]; /* normal velocity */
     /* Impulses of the step that led here, N s; zero where there was none and where a contact came
      * to the ground in it. */
-    lanes impulse[SCENE_CONTACTS][2];
+    lanes impulse[CONTACTS][2];
     scene_trig trig;           /* at s */
     lanes t;                   /* s */
     lanes integral[ACTUATORS]; /* what the law has summed, see law.h */
@@ -34,10 +35,10 @@ struct motion {
 static inline contact_set step_touching(const struct setting *set, const lanes *gap, mask m)
 {
     contact_set touching = 0;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         if (mask_any(m & mask_less(lanes_of(0), set->may_touch[c]) &
                      mask_less_equal(gap[c], lanes_of(STEP_CLOSED))))
-            touching |= 1u << c;
+            touching |= contact_with(c);
     return touching;
 }
 

@@ -190,7 +190,7 @@ HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
 HOT mask ordinary_arrivals(const struct setting *set, const struct iterate *it)
 {
     mask there = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         there |= mask_less(lanes_of(0), set->may_touch[c]) & LANES_NOT(it->active[c]) &
                  LANES_NOT(mask_less(lanes_of(0), it->gap[c]));
     return there;
@@ -211,11 +211,11 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
 {
     mask good = run;
     it->corner = NULL;
-    it->ambiguous = it->unsolved = MASK_NONE;
+    it->verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
     it->before = from->impulse;
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         it->torque[i] = torque[i];
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         const bool here = touching >> c & 1;
         it->active[c] = MASK_NONE;
         it->r[c][0] = it->r[c][1] = lanes_of(0);
@@ -223,11 +223,11 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
             continue;
         it->active[c] = full ? LANES_ALL : ordinary_active(set, from, c);
         good &= LANES_NOT(it->active[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH)));
-        for (int a = 0; a < 2; a++)
+        EACH (a, 0, 2)
             it->r[c][a] = choose(it->active[c], from->impulse[c][a], lanes_of(0));
     }
     good &= ordinary_newton(q, set, from, h, good, touching, it, iterations);
-    return good & LANES_NOT(it->unsolved | it->ambiguous);
+    return good & LANES_NOT(it->verdict.unsolved | it->verdict.ambiguous | it->verdict.unranked);
 }
 
 /* Tries one ordinary step, arguments as above. Returns the lanes where it was one. */
@@ -238,7 +238,7 @@ HOT mask ordinary_try(const struct ordinary *q, const struct setting *set,
 {
     lanes iterations;
     mask good = ordinary_reach(q, set, from, torque, h, run, touching, full, it, &iterations);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
     good &= LANES_NOT(ordinary_arrivals(set, it));
     good = step_finish(set, from, h, touching, full ? STEP_FULL : STEP_ORDINARY, MASK_NONE, good,

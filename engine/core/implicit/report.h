@@ -15,24 +15,30 @@ enum told { TOLD_own, TOLD_each, TOLD_touching, TOLD_rare };
 struct step_report {
 #define TELL(name, type, how, told, unit, text) WHERE_TOLD_##told(lanes name;)
     STANCE_ANSWERS(TELL)
-    lanes impulse[SCENE_CONTACTS][2]; /* N s */
-    lanes slip[SCENE_CONTACTS];       /* m, where loaded */
-    lanes torque[ACTUATORS];          /* N m, as applied at the end */
-    lanes work;                       /* J, of actuators and other outer forces */
-    lanes least[SCENE_CONTACTS];      /* smallest normal force, N */
-    lanes landed;                     /* 1: a contact came to the ground */
-    lanes failure;                    /* stance_failure, or 0: the state tells */
+    lanes impulse[CONTACTS][2]; /* N s */
+    lanes slip[CONTACTS];       /* m, where loaded */
+    lanes torque[ACTUATORS];    /* N m, as applied at the end */
+    lanes work;                 /* J, of actuators and other outer forces */
+    lanes least[CONTACTS];      /* smallest normal force, N */
+    lanes landed;               /* 1: a contact came to the ground */
+    lanes failure;              /* stance_failure, or 0: the state tells */
 };
 
-/* Residuals of the contact laws at a contact with force (or impulse) r and velocity u, the normal
- * one relative to what restitution asks for. */
-HOT void report_residuals(struct step_report *report, mask part, lanes friction, const lanes r[2],
-                          const lanes u[2])
+/* Residuals of the contact laws at contact c, of forces (or impulses) r and velocities u, the
+ * normal ones relative to what restitution asks for; part: of each contact. What friction there is
+ * is its grip's, and said with the contact that holds it. */
+HOT void report_residuals(struct step_report *report, int c, const mask *part, lanes friction,
+                          const lanes (*force)[2], const lanes u[2])
 {
-    const lanes none = lanes_of(0), bound = friction * r[0], along = lanes_abs(u[1]);
-    const mask loaded = part & mask_less(none, r[0]);
+    const lanes none = lanes_of(0), along = lanes_abs(u[1]);
+    mask loaded = part[c] & mask_less(none, force[c][0]);
     const lanes normal = choose(loaded, lanes_abs(u[0]), lanes_max(-u[0], none));
-    report->signorini_residual = lanes_max(choose(part, normal, none), report->signorini_residual);
+    report->signorini_residual =
+        lanes_max(choose(part[c], normal, none), report->signorini_residual);
+    if (contact_unknowns(c) == 1)
+        return;
+    const lanes r[2] = {contact_load(c, force), force[c][1]}, bound = friction * r[0];
+    loaded = contact_part(c, part) & mask_less(none, r[0]);
     const lanes beyond = lanes_abs(r[1]) / choose(loaded, r[0], lanes_of(1)) - friction;
     report->coulomb_residual =
         choose(loaded, lanes_max(beyond, report->coulomb_residual), report->coulomb_residual);
@@ -55,7 +61,7 @@ static inline void report_clear_answers(struct step_report *report)
 static inline void report_clear(struct step_report *report)
 {
     memset(report, 0, sizeof *report);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         report->least[c] = lanes_of(INFINITY);
 }
 /* The same in one lane. */
@@ -64,36 +70,46 @@ static inline void report_clear_lane(struct step_report *report, int lane)
     lanes *const all = (lanes *)report;
     for (size_t i = 0; i < sizeof *report / sizeof(lanes); i++)
         lane_set(&all[i], lane, 0);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         lane_set(&report->least[c], lane, INFINITY);
 }
+/* How much of its friction grip c uses, of forces or impulses. */
+HOT void report_friction(struct step_report *report, int c, const mask *part, const lanes (*r)[2])
+{
+    if (contact_unknowns(c) == 1)
+        return;
+    const lanes load = contact_load(c, r);
+    const mask loaded = contact_part(c, part) & mask_less(lanes_of(0), load);
+    const lanes ratio = lanes_abs(r[c][1]) / choose(loaded, load, lanes_of(1));
+    report->friction_used =
+        choose(loaded, lanes_max(ratio, report->friction_used), report->friction_used);
+}
+
 /* Forces of the contacts in `part`, N. */
 static inline void report_forces(struct step_report *report, const mask *part,
-                                 const lanes force[SCENE_CONTACTS][2])
+                                 const lanes force[CONTACTS][2])
 {
     const lanes none = lanes_of(0);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        const mask loaded = part[c] & mask_less(none, force[c][0]);
-        const lanes ratio = lanes_abs(force[c][1]) / choose(loaded, force[c][0], lanes_of(1));
-        report->friction_used =
-            choose(loaded, lanes_max(ratio, report->friction_used), report->friction_used);
-        report->least[c] = lanes_min(choose(loaded, force[c][0], none), report->least[c]);
+    EACH (c, 0, SCENE_CONTACTS) {
+        const mask carries = part[c] & mask_less(none, force[c][0]);
+        report->least[c] = lanes_min(choose(carries, force[c][0], none), report->least[c]);
+        report_friction(report, c, part, force);
     }
 }
 
 /* Adds a part of a step to the whole. */
 static inline void report_add(struct step_report *sum, const struct step_report *part)
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         sum->slip[c] += part->slip[c];
-        for (int a = 0; a < 2; a++)
+        EACH (a, 0, 2)
             sum->impulse[c][a] += part->impulse[c][a];
     }
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         sum->torque[i] = part->torque[i];
     sum->landed = lanes_max(part->landed, sum->landed);
     sum->work += part->work;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         sum->least[c] = lanes_min(part->least[c], sum->least[c]);
 #define ADD_SUM(name) sum->name += part->name;
 #define ADD_MAX(name) sum->name = lanes_max(part->name, sum->name);

@@ -51,13 +51,15 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
     lanes x[SCENE_COORDINATES], work = lanes_of(0);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         x[i] = lanes_of(0);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         lanes response[2][SCENE_COORDINATES], u[2];
+        const bool grips = contact_unknowns(c) == 2;
         scene_contact_response(&set->body, &A, false, &it->end, c, response);
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
         for (int i = 0; i < SCENE_COORDINATES; i++)
-            x[i] += response[0][i] * it->r[c][0] + response[1][i] * it->r[c][1];
-        work += u[0] * it->r[c][0] + u[1] * it->r[c][1];
+            x[i] += grips ? response[0][i] * it->r[c][0] + response[1][i] * it->r[c][1]
+                          : response[0][i] * it->r[c][0];
+        work += grips ? u[0] * it->r[c][0] + u[1] * it->r[c][1] : u[0] * it->r[c][0];
     }
     return work - scene_kinetic(&set->body, trig, x);
 }
@@ -68,11 +70,11 @@ static inline mask step_obeys(const struct setting *set, const struct motion *fr
 {
     struct step_report laws;
     report_clear(&laws);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         lanes u[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
-        u[0] = lanes_fma(set->restitution, lanes_min(from->approach[c], lanes_of(0)), u[0]);
-        report_residuals(&laws, it->active[c], set->friction, it->r[c], (const lanes *)u);
+        u[0] = lanes_fma(set->restitution[c], lanes_min(from->approach[c], lanes_of(0)), u[0]);
+        report_residuals(&laws, c, it->active, set->friction, (const lanes(*)[2])it->r, u);
     }
     return mask_less_equal(lanes_max(laws.signorini_residual, laws.dissipation_residual),
                            lanes_of(STEP_FROZEN_RESIDUAL));
@@ -103,33 +105,38 @@ HOT mask step_rebounds(const struct motion *from, const struct iterate *it, lane
                                      lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12))));
 }
 
-/* What one contact says in a step that has arrived: velocity u, impulse r, where it is in `part`.
- * What hardly carries has no direction, see CONTACT_TOLERANCE. */
-HOT void report_contact(const struct setting *set, const struct motion *from, lanes h, mask part,
-                        lanes load, int c, const lanes u[2], const lanes r[2],
+/* What one contact says in a step that has arrived: velocity u, impulses r of all, where they are
+ * in `part`. What hardly carries has no direction, see CONTACT_TOLERANCE. */
+HOT void report_contact(const struct setting *set, const struct motion *from, lanes h,
+                        const mask *part, lanes load, int c, const lanes u[2], const lanes (*r)[2],
                         struct step_report *report)
 {
     const lanes none = lanes_of(0);
-    const mask loaded = part & mask_less(none, r[0]);
-    const mask carries = mask_less(1e-6 * load, r[0]);
+    const mask loaded = part[c] & mask_less(none, r[c][0]);
     const lanes relative[2] = {
-        lanes_fma(set->restitution, lanes_min(from->approach[c], none), u[0]), u[1]};
-    const lanes carried[2] = {choose(carries, r[0], none), choose(carries, r[1], none)};
-    report_residuals(report, part, set->friction, carried, relative);
-    report->slip[c] = choose(loaded, h * lanes_abs(u[1]), none);
-    for (int a = 0; a < 2; a++)
-        report->impulse[c][a] = choose(loaded, r[a], none);
-    const lanes ratio = lanes_abs(r[1]) / choose(loaded, r[0], lanes_of(1));
-    report->friction_used =
-        choose(loaded, lanes_max(ratio, report->friction_used), report->friction_used);
-    report->least[c] = choose(loaded, r[0] / h, none);
+        lanes_fma(set->restitution[c], lanes_min(from->approach[c], none), u[0]), u[1]};
+    lanes carried[CONTACTS][2];
+    EACH (k, 0, SCENE_CONTACTS) { /* of its grip */
+        carried[k][0] = choose(mask_less(1e-6 * load, r[k][0]), r[k][0], none);
+        carried[k][1] = choose(mask_less(1e-6 * load, contact_load(k, r)), r[k][1], none);
+    }
+    report_residuals(report, c, part, set->friction, (const lanes(*)[2])carried, relative);
+    report->impulse[c][0] = choose(loaded, r[c][0], none);
+    report->least[c] = choose(loaded, r[c][0] / h, none);
+    report->impulse[c][1] = report->slip[c] = none;
+    if (contact_unknowns(c) == 1)
+        return;
+    const mask grips = contact_part(c, part) & mask_less(none, contact_load(c, r));
+    report->impulse[c][1] = choose(grips, r[c][1], none);
+    report->slip[c] = choose(grips, h * lanes_abs(u[1]), none);
+    report_friction(report, c, part, r);
 }
 
 /* Lanes where a contact carries that did not stand on the ground before. */
 HOT mask step_lands(const struct motion *from, contact_set touching, const struct iterate *it)
 {
     mask lands = MASK_NONE;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
             lands |= it->active[c] & mask_less(lanes_of(0), it->r[c][0]) &
                      (mask_less(lanes_of(STEP_CLOSED), from->gap[c]) |
@@ -150,24 +157,27 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     mask somewhere = MASK_NONE;
     lanes moved[SCENE_COORDINATES], load = none;
     for (int i = 0; i < SCENE_COORDINATES; i++)
-        moved[i] = it->s1[i] - from->s[i];
-    report->work = scene_work(&set->body, h, from->t + METHOD_THETA * h, it->torque, moved);
+        moved[i] = (SCENE_PUSHES > 0 ? 0.5 : 1) * (it->s1[i] - from->s[i]);
+    const lanes middle = from->t + METHOD_THETA * h;
+    report->work = scene_work(&set->body, h, middle, &it->end, it->torque, moved);
+    if (SCENE_PUSHES > 0) /* whose ways bend: half of it at either end */
+        report->work += scene_work(&set->body, h, middle, &from->trig, it->torque, moved);
     report_clear_answers(report);
     report->failure = none;
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         report->torque[i] = it->torque[i];
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
             load += lanes_max(it->r[c][0], none);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
             somewhere |= it->active[c] & converged;
     if (impacts && mask_any(somewhere & impact))
         report->impact_energy = choose(somewhere & impact, impact_energy(set, it), none);
     if (frozen)
         converged &= step_obeys(set, from, it);
-    lanes u[2][2];
-    mask lands = MASK_NONE;
+    lanes u[CONTACTS][2];
+    mask part[CONTACTS], lands = MASK_NONE, rebounds = MASK_NONE;
     if (impacts)
         lands = step_lands(from, touching, it);
     if (touching) {
@@ -177,7 +187,11 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
                                                   somewhere, it, u, &report->projection_energy);
         converged &= right | LANES_NOT(somewhere);
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
+        part[c] = it->active[c] & converged;
+        rebounds |= mask_less(none, set->restitution[c]);
+    }
+    EACH (c, 0, SCENE_CONTACTS) {
         report->slip[c] = report->impulse[c][0] = report->impulse[c][1] = none;
         report->least[c] = none;
         const bool here = touching >> c & 1;
@@ -185,15 +199,15 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
             scene_contact_velocity(&set->body, &it->end, c, it->w, u[c]);
         it->approach[c] = u[c][0];
         if (here)
-            report_contact(set, from, h, it->active[c] & converged, load, c, (const lanes *)u[c],
-                           it->r[c], report);
+            report_contact(set, from, h, part, load, c, u[c], (const lanes(*)[2])it->r, report);
     }
     it->kinetic = scene_kinetic(&set->body, &it->end, it->w);
     it->energy = it->kinetic + scene_potential(&set->body, it->s1, &it->end);
-    const mask rebounds = somewhere & mask_less(none, set->restitution);
+    rebounds &= somewhere;
     converged &= (rebounds & step_rebounds(from, it, report->work)) |
                  (LANES_NOT(rebounds) & step_balances(from, it, report->work));
-    report->ambiguous_steps = choose(it->ambiguous & converged, lanes_of(1), none);
+    report->ambiguous_steps = choose(it->verdict.ambiguous & converged, lanes_of(1), none);
+    report->unranked_steps = choose(it->verdict.unranked & converged, lanes_of(1), none);
     report->landed = choose(lands, lanes_of(1), none);
     return converged;
 }
@@ -206,10 +220,10 @@ HOT void step_commit(lanes t, const struct iterate *it, bool all, mask done, mas
         to->s[i] = choose_unless(all, done, it->s1[i], to->s[i]);
         to->w[i] = choose_unless(all, done, it->w[i], to->w[i]);
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         to->gap[c] = choose_unless(all, done, it->gap[c], to->gap[c]);
         to->approach[c] = choose_unless(all, done, it->approach[c], to->approach[c]);
-        for (int a = 0; a < 2; a++)
+        EACH (a, 0, 2)
             to->impulse[c][a] = choose_unless(all, done, choose(landed, lanes_of(0), it->r[c][a]),
                                               to->impulse[c][a]);
     }
@@ -235,38 +249,40 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
     struct iterate it;
     it.corner = corner;
     mask impact = MASK_NONE, running = run;
-    mask closed[SCENE_CONTACTS];
-    lanes before[SCENE_CONTACTS][2];
+    mask closed[CONTACTS];
+    lanes before[CONTACTS][2];
     for (int i = 0; i < SCENE_COORDINATES; i++)
         it.w[i] = from->w[i];
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         it.torque[i] = torque[i];
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         closed[c] = mask_less(lanes_of(0), set->may_touch[c]) &
                     mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
         it.active[c] = closed[c];
         impact |= closed[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH));
         it.r[c][0] = it.r[c][1] = lanes_of(0);
-        for (int a = 0; a < 2; a++) {
+        EACH (a, 0, 2) {
             before[c][a] = choose(impact, lanes_of(0), from->impulse[c][a]);
             for (int i = 0; i < SCENE_COORDINATES; i++)
                 it.response[c][a][i] = lanes_of(0);
         }
     }
     it.before = (const lanes(*)[2])before;
-    it.ambiguous = it.unsolved = MASK_NONE;
+    it.verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
     iterate_place(set, from, h, false, &it);
     lanes iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
         /* All or none: position errors may have to be removed at a contact that is not active. */
-        const mask somewhere = (it.active[0] | it.active[SECOND]) & running;
-        const contact_set touching = mask_any(somewhere) ? (1u << SCENE_CONTACTS) - 1 : 0;
+        mask somewhere = MASK_NONE;
+        EACH (c, 0, SCENE_CONTACTS)
+            somewhere |= it.active[c] & running;
+        const contact_set touching = mask_any(somewhere) ? CONTACT_ALL : 0;
         iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
                        touching, &it);
         iterations += choose(running, lanes_of(1), lanes_of(0));
         iterate_place(set, from, h, k >= freeze_after, &it);
         mask news = MASK_NONE;
-        for (int c = 0; c < SCENE_CONTACTS; c++) {
+        EACH (c, 0, SCENE_CONTACTS) {
             const mask hit = running & LANES_NOT(it.active[c]) &
                              mask_less(lanes_of(0), set->may_touch[c]) &
                              mask_less_equal(it.gap[c], lanes_of(0));
@@ -275,7 +291,7 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
         }
         impact |= news;
         const mask done = mask_less_equal(it.size, STEP_TOLERANCE * iterate_speed(&it)) &
-                          LANES_NOT(news) & LANES_NOT(it.unsolved);
+                          LANES_NOT(news) & LANES_NOT(it.verdict.unsolved);
         running &= LANES_NOT(done);
     }
     mask converged = run & LANES_NOT(running);
@@ -291,7 +307,7 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
         iterate_place(set, from, h, false, &it);
     if (METHOD_THETA != 1)
         scene_trigonometry(it.s1, &it.end);
-    converged = step_finish(set, from, h, (1u << SCENE_CONTACTS) - 1, STEP_ANY, impact, converged,
+    converged = step_finish(set, from, h, CONTACT_ALL, STEP_ANY, impact, converged,
                             freeze_after < STEP_MAX_ITERATIONS, &it, report);
     report->iterations = report->evaluations = iterations;
     step_commit(from->t + h, &it, false, converged, mask_less(lanes_of(0), report->landed), to);

@@ -31,13 +31,23 @@
 enum { LANES = STANCE_LANES };
 
 /* Functions of the inner loop, compiled anew for what each caller knows; and those that are not.
- * Where multiply-adds are emulated nothing is gained by the first, and compiling takes long. */
-#if STANCE_LANES == 2 && defined(__SSE2__) && !defined(__FMA__)
+ * Where multiply-adds are emulated, or nothing is constant, nothing is gained by the first, and
+ * compiling takes long. */
+#if (STANCE_LANES == 2 && defined(__SSE2__) && !defined(__FMA__)) || defined(TREE_RUNTIME)
 #define HOT static inline
 #else
 #define HOT static inline __attribute__((always_inline))
 #endif
 #define COLD static __attribute__((noinline))
+
+/* for (int i = from; i < to; i++), unrolled so early that arrays of the bodies live in registers,
+ * and that what is structure folds. Not where there are very many contacts, nor where the structure
+ * is read at run time. */
+#if defined(TREE_RUNTIME) || (defined(TREE_CONTACTS) && TREE_CONTACTS > 6)
+#define EACH(i, from, to) for (int i = (from); i < (to); i++)
+#else
+#define EACH(i, from, to) _Pragma("GCC unroll 16") for (int i = (from); i < (to); i++)
+#endif
 
 /* Length of an array that may be empty: a scene without actuators, say. */
 #define SLOTS(n) ((n) > 0 ? (n) : 1)

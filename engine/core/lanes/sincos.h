@@ -51,4 +51,13 @@ static inline void lanes_sincos(lanes x, lanes *sine, lanes *cosine)
     *cosine = choose(in_range, choose(flip_cosine, -second, second), lanes_of(NAN));
 }
 
+/* The same of one angle. */
+static inline void angle_sincos(double angle, double *sine, double *cosine)
+{
+    lanes s, c;
+    lanes_sincos(lanes_of(angle), &s, &c);
+    *sine = lane_get(&s, 0);
+    *cosine = lane_get(&c, 0);
+}
+
 #endif

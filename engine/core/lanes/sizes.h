@@ -2,10 +2,40 @@
 #ifndef STANCE_CORE_LANES_SIZES_H
 #define STANCE_CORE_LANES_SIZES_H
 
+/* What a scene takes of a case. */
+#ifndef SCENE_NUMBERS
+#define SCENE_NUMBERS(c) (c)->robot
+#define SCENE_OF(c) KERNEL_SCENE
+#define SCENE_POSTURE_ORIGIN(c, i) ((void)(c), 0)
+#endif
+
+/* Pushes that a scene may get; without any: */
+#ifndef SCENE_PUSHES
+#define SCENE_PUSHES 0
+#define scene_push(body, t, h) (void)(h)
+#define scene_pushed_until(body) lanes_of(0)
+#define scene_strike(body, trig, t, h, w) MASK_NONE
+#endif
+
+/* What a case has of these, where the structure is read at run time: a scene's rows of arrays. */
+#ifndef OWN_COORDINATES
+#define OWN_COORDINATES SCENE_COORDINATES
+#define OWN_CONTACTS SCENE_CONTACTS
+#define OWN_ACTUATORS SCENE_ACTUATORS
+#define OWN_POSTURE SCENE_POSTURE
+#define SCENE_BEGIN(c) (void)(c)
+#endif
+
+/* Loops over no contacts are dead; these warnings look at them all the same. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wstringop-overflow"
+#pragma GCC diagnostic ignored "-Wstringop-overread"
+#endif
+
 enum {
-    SECOND = SCENE_CONTACTS - 1, /* the other contact, where there are two */
     FIRST_ANGLE = SCENE_COORDINATES - SCENE_ANGLES,
-    ACTUATORS = SLOTS(SCENE_ACTUATORS), /* lengths of arrays that may be empty */
+    CONTACTS = SLOTS(SCENE_CONTACTS), /* lengths of arrays that may be empty */
+    ACTUATORS = SLOTS(SCENE_ACTUATORS),
     POSTURES = SLOTS(SCENE_POSTURE),
 };
 

@@ -29,15 +29,27 @@ static bool known_basin_applies(const stance_case *c)
            !c->decouples && !c->switches && SCENE_POSTURE > 0;
 }
 
+/* Where a state of the kernel stands among the case's; -1: it is none of them. */
+static int known_basin_index(int i)
+{
+    const int of = i % POSTURES;
+    return of < OWN_POSTURE ? of + (i < POSTURES ? 0 : OWN_POSTURE) : -1;
+}
+
 static void known_basin_load(struct known_basin *basin, int lane, const stance_case *c)
 {
     const bool on = known_basin_applies(c);
     lane_set(&basin->on, lane, on);
     lane_set(&basin->last, lane, (double)c->steps - ceil(c->known_basin_time / c->step));
     for (int i = 0; i < 2 * SCENE_POSTURE; i++)
-        for (int j = 0; j <= i; j++)
+        for (int j = 0; j <= i; j++) {
+            const int row = known_basin_index(i), column = known_basin_index(j);
+            const bool own = row >= 0 && column >= 0;
             lane_set(&basin->form[i][j], lane,
-                     on ? (i == j ? 1 : 2) * c->known_basin[i][j] : INFINITY);
+                     !on   ? INFINITY
+                     : own ? (i == j ? 1 : 2) * c->known_basin[row][column]
+                           : 0);
+        }
 }
 
 /* Lanes in the set. */

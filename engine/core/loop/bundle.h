@@ -39,7 +39,7 @@ struct bundle {
     mask live;                        /* lanes that are not idle */
     int filled;                       /* how many */
     int recorded, capturing, unusual; /* of these: see case_is_unusual */
-    double target_key[sizeof(struct setting) / sizeof(lanes) + 8]; /* see rest_target */
+    double target_key[sizeof(struct setting) / sizeof(lanes) + 6 + CONTACTS]; /* see rest_target */
     bool target_known, target_holds;
     /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
     _Alignas(sizeof(lanes)) const stance_case *which[LANES]; /* NULL: idle */
@@ -54,11 +54,13 @@ struct bundle {
     lanes sample_every, next_sample;
     lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
     int64_t row[LANES];
-    lanes recorded_at;                /* step of the row before */
-    lanes impulse[SCENE_CONTACTS][2]; /* since then */
+    lanes struck;               /* step before which impulses were looked for */
+    lanes pushed_until;         /* s, after which nothing pushes */
+    lanes recorded_at;          /* step of the row before */
+    lanes impulse[CONTACTS][2]; /* since then */
 
-    lanes judge_on_way, has_target, mine[SCENE_CONTACTS]; /* 1: the contact to stand on */
-    lanes angle_scale, rate_scale;                        /* 1 / settle.angle and 1 / settle.rate */
+    lanes judge_on_way, has_target, mine[CONTACTS]; /* 1: the contact to stand on */
+    lanes angle_scale, rate_scale;                  /* 1 / settle.angle and 1 / settle.rate */
     lanes settle_steps, fall_height;
     struct window settled, resting;
     struct known_basin capture;
@@ -92,7 +94,7 @@ static bool case_is_coupled(const stance_case *c)
     if (case_samples(c) > 0)
         return false;
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        for (int j = 0; j < 2 * SCENE_POSTURE; j++)
+        for (int j = 0; j < 2 * OWN_POSTURE; j++)
             if (c->near.gain[i][j] != 0)
                 return true;
     return SCENE_ACTUATORS > 0 && c->decouples;
@@ -104,22 +106,24 @@ static inline void set_all(lanes *v, int n, int lane, const double *x)
         lane_set(&v[i], lane, x[i]);
 }
 
-static void bundle_load_linear(struct linear_law *law, int lane, const stance_linear_law *c)
+static void bundle_load_linear(struct linear_law *law, int lane, const stance_case *of,
+                               const stance_linear_law *c)
 {
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         lane_set(&law->feedforward[i], lane, c->feedforward[i]);
-        for (int j = 0; j < SCENE_POSTURE; j++) {
+        for (int j = 0; j < OWN_POSTURE; j++) {
             lane_set(&law->gain[i][j], lane, c->gain[i][j]);
-            lane_set(&law->gain[i][SCENE_POSTURE + j], lane, c->gain[i][SCENE_POSTURE + j]);
+            lane_set(&law->gain[i][SCENE_POSTURE + j], lane, c->gain[i][OWN_POSTURE + j]);
         }
     }
-    set_all(law->target, SCENE_POSTURE, lane, c->target);
+    for (int j = 0; j < OWN_POSTURE; j++)
+        lane_set(&law->target[j], lane, c->target[j] + SCENE_POSTURE_ORIGIN(of, j));
 }
 
 static void bundle_load_law(struct law *law, int lane, const stance_case *c)
 {
-    bundle_load_linear(&law->near, lane, &c->near);
-    bundle_load_linear(&law->far, lane, &c->far);
+    bundle_load_linear(&law->near, lane, c, &c->near);
+    bundle_load_linear(&law->far, lane, c, &c->far);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         struct servo *const servo = &law->servo[i];
         const stance_servo *const from = &c->servo[i];
@@ -135,22 +139,23 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
     }
     lane_set(&law->decouples, lane, c->decouples);
     lane_set(&law->switches, lane, c->switches);
-    for (int j = 0; j < SCENE_POSTURE; j++) {
+    for (int j = 0; j < OWN_POSTURE; j++) {
         lane_set(&law->inverse_axis[j], lane, c->switches ? 1 / c->switch_axis[j] : 0);
         lane_set(&law->inverse_axis[SCENE_POSTURE + j], lane,
-                 c->switches ? 1 / c->switch_axis[SCENE_POSTURE + j] : 0);
+                 c->switches ? 1 / c->switch_axis[OWN_POSTURE + j] : 0);
     }
     lane_set(&law->limit, lane, c->torque_limit);
 }
 
 static void bundle_load_setting(struct setting *set, int lane, const stance_case *c)
 {
-    scene_load_body(&set->body, lane, c->robot);
+    scene_load_body(&set->body, lane, SCENE_NUMBERS(c));
     lane_set(&set->friction, lane, c->friction);
-    lane_set(&set->restitution, lane, c->restitution);
     lane_set(&set->prefer, lane, c->most_energy ? -1 : 1);
-    for (int i = 0; i < SCENE_CONTACTS; i++)
+    for (int i = 0; i < SCENE_CONTACTS; i++) {
         lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
+        lane_set(&set->restitution[i], lane, contact_grip(i) >= 0 ? c->restitution : 0);
+    }
     bundle_load_law(&set->law, lane, c);
 }
 
@@ -167,6 +172,7 @@ static void bundle_clear_answers(struct bundle *b, int lane)
             lane_set(&b->impulse[i][a], lane, 0);
             lane_set(&b->now.impulse[i][a], lane, 0);
         }
+    lane_set(&b->struck, lane, -1);
     lane_set(&b->settled.begin, lane, -1);
     lane_set(&b->settled.measure, lane, 0);
     lane_set(&b->resting.begin, lane, -1);
@@ -191,13 +197,14 @@ static void bundle_count(struct bundle *b, const stance_case *c, int by)
 static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance_result *result)
 {
     double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    SCENE_BEGIN(c);
     b->which[lane] = c;
     b->result[lane] = result;
     b->live |= mask_of_lane(lane);
     b->filled++;
     bundle_count(b, c, 1);
     bundle_load_setting(&b->set, lane, c);
-    scene_enter(c->robot, c->position, c->velocity, s, w);
+    scene_enter(SCENE_NUMBERS(c), c->position, c->velocity, s, w);
     set_all(b->now.s, SCENE_COORDINATES, lane, s);
     set_all(b->now.w, SCENE_COORDINATES, lane, w);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
@@ -217,10 +224,12 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
         lane_set(&b->next_sample, lane, INFINITY);
     lane_set(&b->next_record, lane, c->trajectory && c->trajectory->rows > 0 ? 0 : INFINITY);
     b->row[lane] = 0;
+    const lanes until = scene_pushed_until(&b->set.body);
+    lane_set(&b->pushed_until, lane, lane_get(&until, lane));
     lane_set(&b->judge_on_way, lane, c->settle);
     lane_set(&b->has_target, lane, c->has_target);
     for (int i = 0; i < SCENE_CONTACTS; i++)
-        lane_set(&b->mine[i], lane, c->support == i);
+        lane_set(&b->mine[i], lane, c->support >= 0 && contact_ends(c->support) >> i & 1);
     lane_set(&b->angle_scale, lane, 1 / c->settle_angle);
     lane_set(&b->rate_scale, lane, 1 / c->settle_rate);
     lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));

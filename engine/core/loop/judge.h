@@ -34,7 +34,7 @@ HOT void account_contacts(struct bundle *b, bool all, mask ok, contact_set touch
     const lanes none = lanes_of(0);
     if (touching)
         account_told(b, all, ok, TOLD_touching, report);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         const bool here = touching >> c & 1;
         const mask support = ok & mask_less(none, b->mine[c]);
         b->answer.least_normal_force =
@@ -116,8 +116,10 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     angle = angle * b->angle_scale;
     speed = speed * b->rate_scale;
     mask alone = mask_less(none, b->has_target);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         const mask mine = mask_less(none, b->mine[c]);
+        if (contact_grip(c) < 0) /* no ground */
+            continue;
         if (!(touching >> c & 1)) {
             alone &= LANES_NOT(mine);
             continue;
@@ -136,7 +138,8 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
         all = scene_largest_rate(&b->set.body, b->now.w, &b->now.trig) * b->rate_scale;
         still &= mask_less_equal(all, one);
     }
-    const mask on_way = mask_less(none, b->judge_on_way);
+    const mask on_way =
+        mask_less(none, b->judge_on_way) & mask_less_equal(b->pushed_until, b->n * b->h);
     struct verdict v;
 #define VERDICT_NONE(NAME, name, number, text) v.name = MASK_NONE;
     STANCE_OUTCOMES(VERDICT_NONE)
@@ -161,7 +164,8 @@ static mask bundle_captured(const struct bundle *b, mask live, const mask *loade
     const mask instant =
         mask_less_equal(b->sample_every, lanes_of(0)) | mask_less_equal(b->next_sample, b->n);
     mask in = live & mask_less(lanes_of(0), b->capture.on) & instant &
-              mask_less_equal(b->n, b->capture.last);
+              mask_less_equal(b->n, b->capture.last) &
+              mask_less_equal(b->pushed_until, b->n * b->h);
     if (!mask_any(in))
         return in;
     const lanes rest = lanes_of(KNOWN_BASIN_REST);
@@ -173,7 +177,7 @@ static mask bundle_captured(const struct bundle *b, mask live, const mask *loade
     in &= known_basin_contains(&b->capture, posture, rate);
     if (!mask_any(in))
         return in;
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         const mask mine = mask_less(lanes_of(0), b->mine[c]);
         lanes u[2];
         scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, u);

@@ -11,19 +11,21 @@ static void bundle_record(struct bundle *b, int lane)
     stance_trajectory *const t = c->trajectory;
     const double n = lane_get(&b->n, lane);
     double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    double q[SCENE_COORDINATES] = {0}, v[SCENE_COORDINATES] = {0};
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
     const double elapsed = (n - lane_get(&b->recorded_at, lane)) * c->step;
     int64_t row = b->row[lane];
     for (; row < t->rows && nearbyint((double)row * t->interval / c->step) <= n; row++) {
-        scene_leave(c->robot, s, w, t->position + row * SCENE_COORDINATES,
-                    t->velocity + row * SCENE_COORDINATES);
-        for (int i = 0; i < SCENE_ACTUATORS; i++)
-            t->torque[row * SCENE_ACTUATORS + i] = lane_get(&b->torque[i], lane);
-        for (int k = 0; k < SCENE_CONTACTS; k++) {
-            t->gap[row * SCENE_CONTACTS + k] = lane_get(&b->now.gap[k], lane);
+        scene_leave(SCENE_NUMBERS(c), s, w, q, v);
+        memcpy(t->position + row * OWN_COORDINATES, q, sizeof *q * OWN_COORDINATES);
+        memcpy(t->velocity + row * OWN_COORDINATES, v, sizeof *v * OWN_COORDINATES);
+        for (int i = 0; i < OWN_ACTUATORS; i++)
+            t->torque[row * OWN_ACTUATORS + i] = lane_get(&b->torque[i], lane);
+        for (int k = 0; k < OWN_CONTACTS; k++) {
+            t->gap[row * OWN_CONTACTS + k] = lane_get(&b->now.gap[k], lane);
             for (int a = 0; a < 2; a++)
-                t->force[(row * SCENE_CONTACTS + k) * 2 + a] =
+                t->force[(row * OWN_CONTACTS + k) * 2 + a] =
                     elapsed > 0 ? lane_get(&b->impulse[k][a], lane) / elapsed : NAN;
         }
     }
@@ -78,8 +80,8 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
     STANCE_ANSWERS(FINISH)
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
-    scene_leave(c->robot, s, w, r->position, r->velocity);
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    scene_leave(SCENE_NUMBERS(c), s, w, r->position, r->velocity);
+    for (int i = 0; i < OWN_COORDINATES; i++) {
         r->position[i] = record_plain(r->position[i]);
         r->velocity[i] = record_plain(r->velocity[i]);
     }

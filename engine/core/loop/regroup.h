@@ -13,14 +13,15 @@ enum { REGROUP_KEYS = (1 << SCENE_CONTACTS) + 1 };
 
 static int regroup_key(const struct bundle *b, int lane)
 {
-    static const int rank[4] = {0, 1, 3, 2}; /* neighbours share contacts */
-    int touching = 0;
+    int touching = 0, rank = 0;
     if (!b->which[lane])
         return REGROUP_KEYS - 1;
     for (int c = 0; c < SCENE_CONTACTS; c++)
         if (b->which[lane]->contacts >> c & 1 && lane_get(&b->now.gap[c], lane) <= STEP_CLOSED)
             touching |= 1 << c;
-    return SCENE_CONTACTS > 1 ? rank[touching] : touching;
+    for (; touching; touching >>= 1) /* its place in Gray's code: neighbours share contacts */
+        rank ^= touching;
+    return rank;
 }
 
 _Static_assert(sizeof(struct bundle) % sizeof(lanes) == 0 &&

@@ -104,7 +104,7 @@ static void rest_evaluate(const struct rest *r, const lanes *s, const lanes *tor
     for (int i = 0; i < SCENE_COORDINATES; i++)
         still[i] = lanes_of(0);
     scene_trigonometry(s, &e->trig);
-    dynamics_evaluate(r->set, r->t, s, still, torque, (1u << SCENE_CONTACTS) - 1, false, e);
+    dynamics_evaluate(r->set, r->t, s, still, torque, CONTACT_ALL, false, e);
 }
 
 /* Accelerations along the ways. */
@@ -126,14 +126,15 @@ COLD bool rest_mode(const struct rest *r, const lanes *s, const lanes *torque,
 {
     struct dynamics e;
     struct between_trouble trouble;
-    lanes stood[SCENE_CONTACTS];
+    lanes stood[CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++)
         stood[c] = lanes_of(1);
     rest_evaluate(r, s, torque, &e);
-    between_mode(r->set, &e, (1u << SCENE_CONTACTS) - 1, stood, mode, &trouble);
+    between_mode(r->set, &e, CONTACT_ALL, stood, mode, &trouble);
     bool stands = !mask_get(trouble.none | trouble.impact, r->lane);
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (mask_get(mode->closed[c], r->lane) && lane_get(&r->set->friction, r->lane) > 0)
+        if (contact_grip(c) >= 0 && mask_get(mode->closed[c], r->lane) &&
+            lane_get(&r->set->friction, r->lane) > 0)
             stands &= lane_get(&mode->slide[c], r->lane) == 0;
     return stands;
 }
@@ -181,7 +182,7 @@ COLD void rest_ways(struct rest *r)
             scene_contact_velocity(&r->set->body, &trig, c, unit, u);
             rows[0][i] = u[0], rows[1][i] = u[1];
         }
-        const bool sticks = lane_get(&r->set->friction, r->lane) > 0;
+        const bool sticks = contact_grip(c) >= 0 && lane_get(&r->set->friction, r->lane) > 0;
         for (int a = 0; a < (sticks ? 2 : 1); a++) {
             double row[SCENE_COORDINATES];
             for (int i = 0; i < SCENE_COORDINATES; i++)
@@ -374,7 +375,7 @@ COLD bool rest_stands(const struct rest *r, const lanes *s, const lanes *w, doub
             continue;
         scene_contact_velocity(&r->set->body, &trig, c, w, u);
         stands &= fabs(lane_get(&u[0], r->lane)) <= bounce;
-        if (lane_get(&r->set->friction, r->lane) > 0)
+        if (contact_grip(c) >= 0 && lane_get(&r->set->friction, r->lane) > 0)
             stands &= fabs(lane_get(&u[1], r->lane)) <= REST_CREEP;
     }
     return stands;
@@ -504,6 +505,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     r.T = every > 0 ? every * h : h;
     r.fall_height = b->fall_height;
     r.hold = fmax(lane_get(&b->settle_steps, lane) * h, r.T);
+    scene_push(&wider.body, lanes_of(INFINITY), b->h); /* nothing pushes any more */
     wider.friction = wider.friction * (1 + REST_EDGE);
     r.set = &wider;
     r.lane = lane;
@@ -515,9 +517,9 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     scene_trig trig;
     scene_trigonometry(r.s, &trig);
     const lanes low = lanes_of(fmax(STANCE_GRAVITY * h * h, STEP_CLOSED));
-    const lanes near =
-        choose(mask_less(lanes_of(0), b->set.restitution), low, lanes_of(STEP_CLOSED));
     for (int c = 0; c < SCENE_CONTACTS; c++) { /* for laws that ask what the contacts do */
+        const lanes near =
+            choose(mask_less(lanes_of(0), b->set.restitution[c]), low, lanes_of(STEP_CLOSED));
         r.mode.closed[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
                            mask_less_equal(scene_gap(&b->set.body, r.s, &trig, c), near);
         r.mode.slide[c] = lanes_of(0);
@@ -567,19 +569,25 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
 /* ---- what becomes of a verdict ------------------------------------------------------------- */
 
 /* What is known of the target: circumstances of a case, and whether its equilibrium holds. */
-enum { REST_SETTING = sizeof(struct setting) / sizeof(lanes), REST_KEY = REST_SETTING + 8 };
+enum {
+    REST_SETTING = sizeof(struct setting) / sizeof(lanes),
+    REST_KEY = REST_SETTING + 6 + CONTACTS
+};
 
 /* The case in a lane, whatever its start: what rest_target depends on. */
 static void rest_key(const struct bundle *b, int lane, double *key)
 {
     const lanes *const set = (const lanes *)&b->set;
-    const lanes rest[] = {b->h,           b->steps,        b->sample_every, b->delayed,
-                          b->angle_scale, b->settle_steps, b->mine[0],      b->mine[SECOND]};
-    _Static_assert(sizeof rest / sizeof *rest == REST_KEY - REST_SETTING, "room for all");
+    const lanes rest[] = {b->h,       b->steps,       b->sample_every,
+                          b->delayed, b->angle_scale, b->settle_steps};
+    enum { REST_MINE = REST_SETTING + sizeof rest / sizeof *rest };
+    _Static_assert(REST_MINE + CONTACTS == REST_KEY, "room for all");
     for (int i = 0; i < REST_SETTING; i++)
         key[i] = lane_get(&set[i], lane);
-    for (int i = 0; i < REST_KEY - REST_SETTING; i++)
-        key[REST_SETTING + i] = lane_get(&rest[i], lane);
+    for (int i = REST_SETTING; i < REST_MINE; i++)
+        key[i] = lane_get(&rest[i - REST_SETTING], lane);
+    for (int i = 0; i < CONTACTS; i++)
+        key[REST_MINE + i] = lane_get(&b->mine[i], lane);
 }
 
 /* Is there an equilibrium at the target, on the support foot, that holds? Of cases that differ in
@@ -587,7 +595,7 @@ static void rest_key(const struct bundle *b, int lane, double *key)
 COLD bool rest_target(struct bundle *b, int lane)
 {
     const stance_case *const c = b->which[lane];
-    const stance_scene *const scene = &STANCE_JOIN2(scene, STANCE_SCENE);
+    const stance_scene *const scene = SCENE_OF(c);
     double key[REST_KEY], q[SCENE_COORDINATES] = {0}, v[SCENE_COORDINATES] = {0};
     double s1[SCENE_COORDINATES], w1[SCENE_COORDINATES];
     rest_key(b, lane, key);
@@ -597,8 +605,8 @@ COLD bool rest_target(struct bundle *b, int lane)
     for (int i = 0; i < scene->postures; i++)
         q[scene->posture[i]] = c->near.target[i];
     if (c->support >= 0)
-        scene->stand(c->robot, c->support, q, v);
-    scene_enter(c->robot, q, v, s1, w1);
+        scene->stand(scene, c->robot, 1u << c->support, q, v);
+    scene_enter(SCENE_NUMBERS(c), q, v, s1, w1);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lanes_of(s1[i]);
     for (int i = 0; i < ACTUATORS; i++)

@@ -16,10 +16,14 @@ static inline double noise_value(uint64_t bits)
 static void bundle_noise(const stance_case *c, double instant, double noise[ACTUATORS])
 {
     const philox4x64_key_t key = {{c->seed, 0}};
-    const philox4x64_ctr_t counter = {{c->grid_index, c->sample_index, (uint64_t)instant, 0}};
-    const philox4x64_ctr_t random = philox4x64(counter, key);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        noise[i] = c->noise * noise_value(random.v[i]);
+    philox4x64_ctr_t random = {{0}};
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        const philox4x64_ctr_t counter = {
+            {c->grid_index, c->sample_index, (uint64_t)instant, (uint64_t)i / 4}};
+        if (i % 4 == 0)
+            random = philox4x64(counter, key);
+        noise[i] = c->noise * noise_value(random.v[i % 4]);
+    }
 }
 
 /* What a law that is not linear commands at a sampling instant, in the lanes of `due`; the errors

@@ -41,11 +41,11 @@ enum { STREAM_BUNDLES = 1, STREAM_STEPS = 1000, STREAM_SLOW = 200 };
 COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
 {
     bundle_begin(b, fresh);
-    mask loaded[SCENE_CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    mask loaded[CONTACTS];
+    EACH (c, 0, SCENE_CONTACTS)
         loaded[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
                     mask_less_equal(b->now.gap[c], lanes_of(STEP_CLOSED));
-    const struct verdict v = bundle_judge(b, fresh, (1u << SCENE_CONTACTS) - 1, loaded, MASK_NONE);
+    const struct verdict v = bundle_judge(b, fresh, CONTACT_ALL, loaded, MASK_NONE);
     bundle_sample(b, fresh);
     if (!coupled) { /* a law that acts all the time, without gains: its torque is constant */
         lanes torque[ACTUATORS];
@@ -71,8 +71,8 @@ HOT void stream_follow(struct bundle *b, bool all, mask ok, mask failed, bool or
                        contact_set touching, const struct step_report *report)
 {
     bundle_account(b, all, ok, ordinary, touching, report);
-    mask loaded[SCENE_CONTACTS];
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    mask loaded[CONTACTS];
+    EACH (c, 0, SCENE_CONTACTS) {
         loaded[c] = MASK_NONE;
         if (touching >> c & 1)
             loaded[c] = mask_less(lanes_of(0), report->impulse[c][0]);
@@ -96,17 +96,32 @@ HOT bool stream_ordinary(struct bundle *b, contact_set touching)
     return true;
 }
 
-/* Compiled for each set of contacts that matters. */
+/* Compiled for the sets of contacts that matter: none, each grip alone, all grips, all. */
 HOT bool stream_try_ordinary(struct bundle *b)
 {
     const contact_set touching = step_touching(&b->set, b->now.gap, b->live);
-    if (touching == TOUCHING_NONE)
-        return stream_ordinary(b, TOUCHING_NONE);
-    if (touching == TOUCHING_FIRST)
-        return stream_ordinary(b, TOUCHING_FIRST);
-    if (touching == TOUCHING_SECOND)
-        return stream_ordinary(b, TOUCHING_SECOND);
-    return stream_ordinary(b, TOUCHING_ALL);
+    if (touching == 0)
+        return stream_ordinary(b, 0);
+#ifndef TREE_RUNTIME
+    const contact_set grips = CONTACT_ALL & ~contact_leaning(-1);
+#define TRY(c)                                                                                     \
+    if ((c) < SCENE_CONTACTS && contact_grip((c) % CONTACTS) == (c) &&                             \
+        touching == contact_ends(c))                                                               \
+    return stream_ordinary(b, contact_ends(c))
+#define TRY4(c)                                                                                    \
+    TRY(c);                                                                                        \
+    TRY((c) + 1);                                                                                  \
+    TRY((c) + 2);                                                                                  \
+    TRY((c) + 3)
+    TRY4(0);
+    TRY4(4);
+    TRY4(8);
+#undef TRY4
+#undef TRY
+    if (grips != CONTACT_ALL && touching == grips)
+        return stream_ordinary(b, grips);
+#endif
+    return stream_ordinary(b, CONTACT_ALL);
 }
 #endif
 
@@ -126,12 +141,58 @@ COLD void stream_any(struct bundle *b, bool coupled)
     if (coupled)
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             b->torque[i] = choose(ok, report.torque[i], b->torque[i]);
-    stream_follow(b, false, ok, failed, false, (1u << SCENE_CONTACTS) - 1, &report);
+    stream_follow(b, false, ok, failed, false, CONTACT_ALL, &report);
+}
+
+/* Impulses of the world that are due at the steps that begin: the contact laws see the velocity
+ * that they leave. */
+COLD void stream_strike(struct bundle *b)
+{
+    struct motion next = b->now;
+    struct step_report report;
+    const mask fresh = b->live & mask_less(b->struck, b->n);
+    const mask hit = fresh & scene_strike(&b->set.body, &next.trig, b->n * b->h, b->h, next.w);
+    b->struck = choose(fresh, b->n, b->struck);
+    if (!mask_any(hit))
+        return;
+    report_clear(&report);
+    const lanes given = scene_kinetic(&b->set.body, &next.trig, next.w) -
+                        scene_kinetic(&b->set.body, &next.trig, b->now.w);
+    const mask solved = between_impact(&b->set, hit, &next, &report);
+    motion_energy(&b->set, &next);
+    choose_all(hit, &next, &b->now, sizeof next);
+    b->energy_bound = choose(hit, b->energy_bound + given, b->energy_bound);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2; a++) {
+            b->now.impulse[c][a] = choose(hit, lanes_of(0), b->now.impulse[c][a]);
+            b->impulse[c][a] =
+                choose(hit, b->impulse[c][a] + report.impulse[c][a], b->impulse[c][a]);
+        }
+    b->answer.impact_energy = choose(hit, lanes_max(report.impact_energy, b->answer.impact_energy),
+                                     b->answer.impact_energy);
+    advance_forget(&b->advance, hit);
+    const mask failed = hit & LANES_NOT(solved);
+    b->failure = choose(failed, lanes_of(STANCE_FAILURE_CONTACT), b->failure);
+    if (mask_any(failed)) {
+        const struct verdict none = {0};
+        bundle_end(b, b->live, failed, &none, MASK_NONE);
+    }
+}
+
+/* What the world does in the steps that begin. */
+HOT void stream_push(struct bundle *b)
+{
+    const lanes begins = b->n * b->h;
+    if (SCENE_PUSHES == 0 || !mask_any(b->live & mask_less_equal(begins, b->pushed_until + b->h)))
+        return;
+    stream_strike(b);
+    scene_push(&b->set.body, begins, b->h);
 }
 
 /* One step of all lanes, with everything that follows from it. Returns for how many it counts. */
 HOT int stream_step(struct bundle *b, bool coupled)
 {
+    stream_push(b);
     bundle_sample(b, b->live);
 #ifdef ADVANCE_ORDINARY
     if (!coupled && stream_try_ordinary(b))
@@ -160,6 +221,8 @@ static mask stream_fill(struct stream *stream, struct bundle *b, bool coupled)
             continue;
         if (!stream->ahead && !stream->drained)
             stream->drained = !feed->next(feed->context, &stream->ahead, &stream->result);
+        if (stream->ahead)
+            SCENE_BEGIN(stream->ahead);
         if (!stream->ahead || case_is_coupled(stream->ahead) != coupled)
             break;
         bundle_load(b, lane, stream->ahead, stream->result);

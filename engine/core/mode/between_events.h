@@ -73,91 +73,60 @@ static inline void between_evaluate(const struct setting *set, lanes t, const la
     decoupling_apply(set, decouples, touching, e);
 }
 
-/* Force of one contact in its state that brings free[] to rest; friction 0: slides freely. `own`:
- * see contact_impulse. */
-static inline void between_one(mask closed, lanes slide, const lanes own[2][2], const lanes D[2][2],
-                               const lanes free[2], lanes friction, lanes r[2])
+/* Forces r of all contacts in their states that bring free[][] to rest; friction 0: what slides
+ * does so freely. */
+COLD void between_forces(const struct contact_state *m, const lanes (*D)[CONTACTS][2][2],
+                         const lanes (*free)[2], lanes friction, lanes (*r)[2])
 {
-    lanes stick[2];
-    contact_impulse(CONTACT_STICK, own, D, free, friction, stick);
-    const mask slides = mask_less(lanes_of(0), lanes_abs(slide));
-    const lanes edge = -(friction * slide);
-    const lanes normal = -free[0] / (D[0][0] + edge * D[0][1]);
-    r[0] = choose(closed, choose(slides, normal, stick[0]), lanes_of(0));
-    r[1] = choose(closed, choose(slides, edge * normal, stick[1]), lanes_of(0));
+    mask sticks[CONTACTS], rows[CONTACTS][2];
+    lanes edge[CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        sticks[c] = mask_less_equal(lanes_abs(m->slide[c]), lanes_of(0));
+        edge[c] = -(friction * m->slide[c]);
+    }
+    contact_mode_rows(m->closed, sticks, rows);
+    contact_rest(CONTACT_ALL, CONTACT_CAREFUL, D, free, (const mask(*)[2])rows, edge, r);
 }
 
-/* Forces r of all contacts in their states that bring free[][] to rest. */
-static inline void between_forces(const struct contact_state *m, const lanes D[2][2][2][2],
-                                  const lanes free[2][2], lanes friction, lanes r[2][2])
+/* Adds what forces or impulses r of contacts in `part` do, by their responses, to x. */
+static inline void between_push(const mask *part, const lanes (*response)[2][SCENE_COORDINATES],
+                                const lanes (*r)[2], lanes *x)
 {
-    const mask first = m->closed[0];
-    const mask both = SCENE_CONTACTS > 1 ? first & m->closed[SECOND] : MASK_NONE;
-    lanes D1[2][2], free1[2], r1[2];
-    for (int a = 0; a < 2; a++) {
-        free1[a] = choose(first, free[0][a], free[SECOND][a]);
-        for (int b = 0; b < 2; b++)
-            D1[a][b] = choose(first, D[0][0][a][b], D[SECOND][SECOND][a][b]);
-    }
-    between_one(first | m->closed[SECOND], choose(first, m->slide[0], m->slide[SECOND]),
-                (const lanes(*)[2])D1, (const lanes(*)[2])D1, free1, friction, r1);
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int a = 0; a < 2; a++)
-            r[c][a] = choose(m->closed[c], r1[a], lanes_of(0));
-    if (SCENE_CONTACTS == 1 || !mask_any(both))
-        return;
-    /* Contact 0 is eliminated: r[0] = alone + push r[1]. */
-    lanes alone[2], push[2][2], r2[2];
-    between_one(both, m->slide[0], D[0][0], D[0][0], free[0], friction, alone);
-    for (int b = 0; b < 2; b++) {
-        const lanes coupling[2] = {D[0][1][0][b], D[0][1][1][b]};
-        lanes column[2];
-        between_one(both, m->slide[0], D[0][0], D[0][0], coupling, friction, column);
-        push[0][b] = column[0], push[1][b] = column[1];
-    }
-    for (int a = 0; a < 2; a++) {
-        free1[a] = free[1][a] + D[1][0][a][0] * alone[0] + D[1][0][a][1] * alone[1];
-        for (int b = 0; b < 2; b++)
-            D1[a][b] = D[1][1][a][b] + D[1][0][a][0] * push[0][b] + D[1][0][a][1] * push[1][b];
-    }
-    between_one(both, m->slide[SECOND], D[1][1], (const lanes(*)[2])D1, free1, friction, r2);
-    for (int a = 0; a < 2; a++) {
-        r[0][a] = choose(both, alone[a] + push[a][0] * r2[0] + push[a][1] * r2[1], r[0][a]);
-        r[SECOND][a] = choose(both, r2[a], r[SECOND][a]);
-    }
-    /* On the edge of the cone exactly, whatever the elimination has lost by cancellation. */
-    const mask slides = both & mask_less(lanes_of(0), lanes_abs(m->slide[0]));
-    r[0][1] = choose(slides, -(friction * m->slide[0]) * r[0][0], r[0][1]);
+        for (int i = 0; i < SCENE_COORDINATES; i++) {
+            lanes push = response[c][0][i] * r[c][0];
+            if (contact_unknowns(c) == 2)
+                push += response[c][1][i] * r[c][1];
+            x[i] = choose(contact_part(c, part), x[i] + push, x[i]);
+        }
 }
 
 /* Contact forces in the mode, and the accelerations with them. */
 static inline void between_solve(const struct setting *set, const struct contact_state *m,
                                  struct dynamics *e)
 {
-    between_forces(m, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, set->friction,
-                   e->force);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int i = 0; i < SCENE_COORDINATES; i++)
-            e->acceleration[i] =
-                choose(m->closed[c],
-                       e->acceleration[i] + (e->response[c][0][i] * e->force[c][0] +
-                                             e->response[c][1][i] * e->force[c][1]),
-                       e->acceleration[i]);
+    between_forces(m, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free,
+                   set->friction, e->force);
+    between_push(m->closed, (const lanes(*)[2][SCENE_COORDINATES])e->response,
+                 (const lanes(*)[2])e->force, e->acceleration);
 }
 
 /* Why a state has no smooth motion ahead of it. */
 struct between_trouble {
-    mask impact;  /* a closed contact approaches */
-    mask none;    /* no forces fit the laws (Painleve) */
-    mask several; /* more than one set of forces does, at a contact that slides */
-    mask chosen;  /* more than one does, none slides: which is said in contact.h */
+    mask impact;   /* a closed contact approaches */
+    mask none;     /* no forces fit the laws (Painleve) */
+    mask several;  /* more than one set of forces does, at a contact that slides */
+    mask chosen;   /* more than one does, none slides: which is said in lane.h */
+    mask unranked; /* too many contacts to tell */
 };
 
 /* Contacts that stand, as between_mode wants to know of the step before: 1 or 0. */
 static inline void between_stands(const struct contact_state *m, lanes *stands)
 {
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        const mask sticks = m->closed[c] & mask_less_equal(lanes_abs(m->slide[c]), lanes_of(0));
+        mask sticks = m->closed[c];
+        if (contact_grip(c) >= 0)
+            sticks &= mask_less_equal(lanes_abs(m->slide[contact_grip(c)]), lanes_of(0));
         stands[c] = choose(sticks, lanes_of(1), lanes_of(0));
     }
 }
@@ -167,16 +136,16 @@ static inline void between_stands(const struct contact_state *m, lanes *stands)
 static inline mask between_jammed(const struct setting *set, const struct dynamics *e,
                                   const struct contact_state *m, const mask *starting)
 {
-    lanes r[2][2];
+    lanes r[CONTACTS][2], u[CONTACTS][2];
     mask jammed = MASK_NONE;
-    between_forces(m, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, set->friction, r);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        lanes along = e->free[c][1];
-        for (int k = 0; k < SCENE_CONTACTS; k++)
-            along += e->D[c][k][1][0] * r[k][0] + e->D[c][k][1][1] * r[k][1];
-        jammed |= starting[c] &
-                  (mask_less(along * m->slide[c], lanes_of(0)) | mask_less(r[c][0], lanes_of(0)));
-    }
+    between_forces(m, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free,
+                   set->friction, r);
+    direct_velocities((const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free, CONTACT_ALL,
+                      (const lanes(*)[2])r, u);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (contact_unknowns(c) == 2)
+            jammed |= starting[c] & (mask_less(u[c][1] * m->slide[c], lanes_of(0)) |
+                                     mask_less(contact_load(c, (const lanes(*)[2])r), lanes_of(0)));
     return jammed;
 }
 
@@ -187,53 +156,66 @@ static inline void between_mode(const struct setting *set, const struct dynamics
                                 struct between_trouble *trouble)
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
-    mask part[SCENE_CONTACTS], any = MASK_NONE, slides = MASK_NONE;
-    lanes sliding[SCENE_CONTACTS];
-    *trouble = (struct between_trouble){MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE};
+    mask part[CONTACTS], any = MASK_NONE, slides = MASK_NONE;
+    lanes sliding[CONTACTS]; /* of each grip */
+    *trouble = (struct between_trouble){MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE, MASK_NONE};
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask closed =
             mask_less(none, set->may_touch[c]) & mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED));
         trouble->impact |= closed & mask_less(e->u[c][0], lanes_of(-BETWEEN_REST));
         part[c] = closed & mask_less_equal(lanes_abs(e->u[c][0]), lanes_of(BETWEEN_REST));
-        sliding[c] = choose(mask_less(lanes_of(BETWEEN_REST), lanes_abs(e->u[c][1])),
-                            choose(mask_less(e->u[c][1], none), -one, one), none);
+        sliding[c] = none;
+        if (contact_unknowns(c) == 2)
+            sliding[c] = choose(mask_less(lanes_of(BETWEEN_REST), lanes_abs(e->u[c][1])),
+                                choose(mask_less(e->u[c][1], none), -one, one), none);
         any |= part[c];
-        slides |= part[c] & mask_less(none, lanes_abs(sliding[c])) & mask_less(none, set->friction);
         m->closed[c] = MASK_NONE;
         m->slide[c] = sliding[c];
     }
     if (!touching)
         return;
-    lanes r[2][2];
-    mask starting[SCENE_CONTACTS], ambiguous, unsolved, begins = MASK_NONE;
-    lanes before[SCENE_CONTACTS][2]; /* any impulse inside the cone, or none */
+    lanes r[CONTACTS][2], u[CONTACTS][2];
+    struct contact_verdict verdict;
+    mask starting[CONTACTS], begins = MASK_NONE;
+    lanes before[CONTACTS][2]; /* any impulse inside the cone, or none */
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        const mask rests = mask_less_equal(lanes_abs(sliding[c]), none);
-        before[c][0] = choose(rests, stood[c], none), before[c][1] = none;
+        const int g = contact_grip(c);
+        before[c][0] = stood[c], before[c][1] = none;
+        if (g < 0)
+            continue;
+        const mask goes_on = mask_less(none, lanes_abs(sliding[g]));
+        before[c][0] = choose(goes_on, none, stood[c]);
+        slides |= part[c] & goes_on & mask_less(none, set->friction);
     }
-    const struct contact_rule rule = {set->friction, set->prefer, sliding,
-                                      NULL,          false,       (const lanes(*)[2])before};
-    solve_contacts(&rule, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])e->free, touching, part,
-                   r, &ambiguous, &unsolved);
-    trouble->none = any & unsolved;
-    trouble->several = any & ambiguous & slides;
-    trouble->chosen = any & ambiguous & LANES_NOT(slides);
+    const struct contact_rule rule = {.friction = set->friction,
+                                      .prefer = set->prefer,
+                                      .sliding = sliding,
+                                      .before = (const lanes(*)[2])before};
+    solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free,
+                   touching, part, r, &verdict);
+    direct_velocities((const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free, CONTACT_ALL,
+                      (const lanes(*)[2])r, u);
+    trouble->none = any & verdict.unsolved;
+    trouble->several = any & verdict.ambiguous & slides;
+    trouble->chosen = any & verdict.ambiguous & LANES_NOT(slides);
+    trouble->unranked = any & verdict.unranked;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        m->closed[c] = part[c] & mask_less(none, r[c][0]);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        lanes along = e->free[c][1];
-        for (int k = 0; k < SCENE_CONTACTS; k++)
-            along += choose(part[k], e->D[c][k][1][0] * r[k][0] + e->D[c][k][1][1] * r[k][1], none);
+        starting[c] = MASK_NONE;
+        if (contact_unknowns(c) == 1)
+            continue;
         lanes scale = lanes_max(lanes_abs(e->free[c][0]), one);
         scale = lanes_max(lanes_abs(e->free[c][1]), scale);
-        m->closed[c] = part[c] & mask_less(none, r[c][0]);
+        const lanes load = contact_load(c, (const lanes(*)[2])r);
         /* contact_solve clips to the cone: on its edge the slip begins, against the force, unless
          * another contact prevents it. */
-        const mask edge =
-            mask_less_equal((1 - 1e-10) * (set->friction * r[c][0]), lanes_abs(r[c][1]));
-        const mask starts = (edge & mask_less(BETWEEN_START * scale, lanes_abs(along))) |
+        const mask edge = mask_less_equal((1 - 1e-10) * (set->friction * load), lanes_abs(r[c][1]));
+        const mask starts = (edge & mask_less(BETWEEN_START * scale, lanes_abs(u[c][1]))) |
                             mask_less_equal(set->friction, none);
         const lanes direction = choose(mask_less(none, r[c][1]), -one, one);
-        starting[c] = m->closed[c] & starts & mask_less_equal(lanes_abs(sliding[c]), none) &
-                      mask_less(none, set->friction);
+        starting[c] = contact_part(c, m->closed) & starts &
+                      mask_less_equal(lanes_abs(sliding[c]), none) & mask_less(none, set->friction);
         begins |= starting[c];
         m->slide[c] = choose(mask_less(none, lanes_abs(sliding[c])), sliding[c],
                              choose(starts, direction, none));
@@ -251,13 +233,17 @@ static inline mask between_violated(const struct setting *set, const struct cont
     mask out = MASK_NONE;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask closed = m->closed[c], open = LANES_NOT(closed);
-        const mask sticks = mask_less_equal(lanes_abs(m->slide[c]), none);
-        const lanes bound = (1 + 1e-12) * (set->friction * e->force[c][0]);
         out |= open & mask_less(none, set->may_touch[c]) &
                mask_less(e->gap[c], lanes_of(-BETWEEN_GAP));
         out |= closed & mask_less(e->force[c][0], none);
-        out |= closed & sticks & mask_less(bound, lanes_abs(e->force[c][1]));
-        out |= closed & mask_less(none, set->friction) &
+        if (contact_unknowns(c) == 1)
+            continue;
+        const mask part = contact_part(c, m->closed);
+        const mask sticks = mask_less_equal(lanes_abs(m->slide[c]), none);
+        const lanes load = contact_load(c, (const lanes(*)[2])e->force);
+        const lanes bound = (1 + 1e-12) * (set->friction * load);
+        out |= part & sticks & mask_less(bound, lanes_abs(e->force[c][1]));
+        out |= part & mask_less(none, set->friction) &
                mask_less(e->u[c][1] * m->slide[c], lanes_of(-BETWEEN_REST));
     }
     return out;
@@ -269,9 +255,9 @@ static inline void between_project_position(const struct setting *set, const mas
                                             struct dynamics *e)
 {
     const lanes none = lanes_of(0);
-    lanes error[SCENE_CONTACTS], multiplier[SCENE_CONTACTS];
-    lanes lift[SCENE_CONTACTS][SCENE_COORDINATES];
-    const lanes *along[SCENE_CONTACTS];
+    lanes error[CONTACTS], multiplier[CONTACTS];
+    lanes lift[CONTACTS][SCENE_COORDINATES];
+    const lanes *along[CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         for (int i = 0; i < SCENE_COORDINATES; i++)
             lift[c][i] = choose(held[c], e->response[c][0][i], none);
@@ -286,12 +272,11 @@ static inline void between_project_position(const struct setting *set, const mas
         if (!mask_any(todo))
             return;
         lanes d[SCENE_COORDINATES];
-        project_multipliers(set, &e->trig, (1u << SCENE_CONTACTS) - 1, along, held, error,
-                            multiplier);
+        project_multipliers(set, &e->trig, CONTACT_ALL, along, held, error, multiplier);
         for (int i = 0; i < SCENE_COORDINATES; i++) {
-            lanes sum = lift[0][i] * multiplier[0];
-            if (SCENE_CONTACTS > 1)
-                sum += lift[SECOND][i] * multiplier[SECOND];
+            lanes sum = none;
+            for (int c = 0; c < SCENE_CONTACTS; c++)
+                sum += lift[c][i] * multiplier[c];
             d[i] = choose(todo, sum, none);
             s[i] = choose(todo, s[i] + d[i], s[i]);
         }
@@ -315,8 +300,8 @@ static inline void between_project_position(const struct setting *set, const mas
 static inline void between_project(const struct setting *set, const struct contact_state *m,
                                    mask where, lanes *s, lanes *w, struct dynamics *e)
 {
-    mask held[SCENE_CONTACTS];
-    lanes velocity[2][2], r[2][2];
+    mask held[CONTACTS];
+    lanes velocity[CONTACTS][2], r[CONTACTS][2];
     for (int c = 0; c < SCENE_CONTACTS; c++)
         held[c] = where & m->closed[c];
     between_project_position(set, held, s, e);
@@ -325,12 +310,9 @@ static inline void between_project(const struct setting *set, const struct conta
         for (int a = 0; a < 2; a++)
             velocity[c][a] = e->u[c][a];
     }
-    between_forces(m, (const lanes(*)[2][2][2])e->D, (const lanes(*)[2])velocity, lanes_of(0), r);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int i = 0; i < SCENE_COORDINATES; i++)
-            w[i] = choose(held[c],
-                          w[i] + (e->response[c][0][i] * r[c][0] + e->response[c][1][i] * r[c][1]),
-                          w[i]);
+    between_forces(m, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])velocity,
+                   lanes_of(0), r);
+    between_push(held, (const lanes(*)[2][SCENE_COORDINATES])e->response, (const lanes(*)[2])r, w);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
 }
@@ -343,46 +325,44 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
 {
     const lanes none = lanes_of(0);
     struct dynamics e;
-    mask part[SCENE_CONTACTS], ambiguous, unsolved;
-    lanes torque[ACTUATORS], uf[2][2], r[2][2], energy = none;
+    mask part[CONTACTS];
+    struct contact_verdict verdict;
+    lanes torque[ACTUATORS], uf[CONTACTS][2], r[CONTACTS][2], energy = none;
     for (int i = 0; i < ACTUATORS; i++)
         torque[i] = none;
     scene_trigonometry(now->s, &e.trig);
-    dynamics_evaluate(set, now->t, now->s, now->w, torque, (1u << SCENE_CONTACTS) - 1, false, &e);
+    dynamics_evaluate(set, now->t, now->s, now->w, torque, CONTACT_ALL, false, &e);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         part[c] = where & mask_less(none, set->may_touch[c]) &
                   mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
     between_project_position(set, part, now->s, &e);
     mask impact = MASK_NONE; /* else only rounding is left to remove */
-    lanes rebound[SCENE_CONTACTS];
+    lanes rebound[CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         scene_contact_velocity(&set->body, &e.trig, c, now->w, e.u[c]);
         impact |= part[c] & mask_less(e.u[c][0], lanes_of(-BETWEEN_REST));
-        rebound[c] = set->restitution * lanes_min(e.u[c][0], none);
+        rebound[c] = set->restitution[c] * lanes_min(e.u[c][0], none);
         uf[c][0] = e.u[c][0] + rebound[c];
         uf[c][1] = e.u[c][1];
     }
-    const struct contact_rule rule = {set->friction, set->prefer, NULL, rebound, false, NULL};
-    solve_contacts(&rule, (const lanes(*)[2][2][2])e.D, (const lanes(*)[2])uf,
-                   (1u << SCENE_CONTACTS) - 1, part, r, &ambiguous, &unsolved);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int i = 0; i < SCENE_COORDINATES; i++)
-            now->w[i] =
-                choose(part[c],
-                       now->w[i] + (e.response[c][0][i] * r[c][0] + e.response[c][1][i] * r[c][1]),
-                       now->w[i]);
+    const struct contact_rule rule = {
+        .friction = set->friction, .prefer = set->prefer, .shift = rebound};
+    solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])e.D, (const lanes(*)[2])uf, CONTACT_ALL,
+                   part, r, &verdict);
+    between_push(part, (const lanes(*)[2][SCENE_COORDINATES])e.response, (const lanes(*)[2])r,
+                 now->w);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         lanes after[2];
         scene_contact_velocity(&set->body, &e.trig, c, now->w, after);
         now->gap[c] = choose(where, e.gap[c], now->gap[c]);
         now->approach[c] = choose(where, after[0], now->approach[c]);
-        for (int a = 0; a < 2; a++) {
-            energy += choose(part[c], 0.5 * (r[c][a] * (e.u[c][a] + after[a])), none);
-            report->impulse[c][a] += choose(part[c], r[c][a], none);
+        for (int a = 0; a < contact_unknowns(c); a++) {
+            energy += choose(contact_part(c, part), 0.5 * (r[c][a] * (e.u[c][a] + after[a])), none);
+            report->impulse[c][a] += choose(contact_part(c, part), r[c][a], none);
         }
         after[0] += rebound[c];
         struct step_report laws = *report;
-        report_residuals(&laws, part[c], set->friction, r[c], after);
+        report_residuals(&laws, c, part, set->friction, (const lanes(*)[2])r, after);
         choose_all(impact, &laws, report, sizeof laws);
     }
     for (int a = 0; a < SCENE_ANGLES; a++) {
@@ -391,8 +371,10 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     }
     report->impact_energy =
         choose(where, lanes_max(energy, report->impact_energy), report->impact_energy);
-    report->ambiguous_steps = choose(where & ambiguous, lanes_of(1), report->ambiguous_steps);
-    return where & LANES_NOT(unsolved);
+    report->ambiguous_steps =
+        choose(where & verdict.ambiguous, lanes_of(1), report->ambiguous_steps);
+    report->unranked_steps = choose(where & verdict.unranked, lanes_of(1), report->unranked_steps);
+    return where & LANES_NOT(verdict.unsolved);
 }
 
 #endif

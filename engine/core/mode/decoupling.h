@@ -16,7 +16,7 @@
  *
  *   gamma = (D + H Y K) lambda + (gamma_f + H Y torque_0),    K = -G^-1 S R,
  *
- * which is neither symmetric nor positive, and contact.h solves the laws with it: reactions and
+ * which is neither symmetric nor positive, and contact/ solves the laws with it: reactions and
  * torques together. Taking the reactions of the moment before instead is an iteration that diverges
  * wherever H Y K outweighs D. The limit of the torques is applied afterwards.
  *
@@ -45,8 +45,11 @@ static inline void decoupling_contacts(const struct setting *set, const struct d
         contact->closed[c] = mask_less(none, set->may_touch[c]) &
                              mask_less_equal(e->gap[c], lanes_of(STEP_CLOSED)) &
                              mask_less_equal(lanes_abs(e->u[c][0]), rest);
-        contact->slide[c] = choose(mask_less(rest, lanes_abs(slip)),
-                                   choose(mask_less(slip, none), lanes_of(-1), lanes_of(1)), none);
+        contact->slide[c] =
+            contact_unknowns(c) == 1
+                ? none
+                : choose(mask_less(rest, lanes_abs(slip)),
+                         choose(mask_less(slip, none), lanes_of(-1), lanes_of(1)), none);
     }
 }
 
@@ -58,47 +61,97 @@ static inline void decoupling_rates(const struct setting *set, const scene_trig 
 {
     lanes rate[SCENE_COORDINATES];
     scene_coordinate_rates(&set->body, trig, x, rate);
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < OWN_ACTUATORS; j++) {
         out[j] = lanes_of(0);
         for (int k = 0; k < SCENE_COORDINATES; k++)
             out[j] += set->law.servo[j].pick[k] * rate[k];
     }
 }
 
-/* Inverse of G, damped in the lanes that are returned. */
-static inline mask decoupling_inverse(const lanes G[2][2], lanes inverse[2][2])
+/* Inverse of G by Gauss and Jordan with the largest pivot of each column; not finite where it is
+ * singular. */
+static inline void decoupling_invert(lanes G[ACTUATORS][ACTUATORS],
+                                     lanes inverse[ACTUATORS][ACTUATORS])
 {
-    const lanes m00 = G[0][0] * G[0][0] + G[0][1] * G[0][1];
-    const lanes m01 = G[0][0] * G[1][0] + G[0][1] * G[1][1];
-    const lanes m11 = G[1][0] * G[1][0] + G[1][1] * G[1][1];
-    const lanes determinant = G[0][0] * G[1][1] - G[0][1] * G[1][0], trace = m00 + m11;
-    /* Of the singular values s1 > s2: trace = s1^2 + s2^2, |determinant| = s1 s2. */
-    const mask damped = mask_less(DECOUPLING_CONDITION * lanes_abs(determinant), trace);
-    const lanes reciprocal = 1 / choose(damped, lanes_of(1), determinant);
-    inverse[0][0] = G[1][1] * reciprocal, inverse[0][1] = -G[0][1] * reciprocal;
-    inverse[1][0] = -G[1][0] * reciprocal, inverse[1][1] = G[0][0] * reciprocal;
-    if (mask_any(damped)) {
-        const lanes squared = determinant * determinant;
-        const lanes d = trace * (1 / (DECOUPLING_CONDITION * DECOUPLING_CONDITION)) -
-                        squared / choose(damped, trace, lanes_of(1));
-        const lanes a = m00 + d, b = m11 + d;
-        const lanes scale = 1 / (squared + d * (trace + d));
-        for (int i = 0; i < 2; i++) {
-            const lanes first = (G[0][i] * b - G[1][i] * m01) * scale;
-            const lanes second = (G[1][i] * a - G[0][i] * m01) * scale;
-            inverse[i][0] = choose(damped, first, inverse[i][0]);
-            inverse[i][1] = choose(damped, second, inverse[i][1]);
+    const int m = OWN_ACTUATORS;
+    for (int i = 0; i < m; i++)
+        for (int j = 0; j < m; j++)
+            inverse[i][j] = lanes_of(i == j);
+    for (int k = 0; k < m; k++) {
+        for (int i = k + 1; i < m; i++) {
+            const mask larger = mask_less(lanes_abs(G[k][k]), lanes_abs(G[i][k]));
+            for (int j = 0; j < m; j++) {
+                const lanes a = G[k][j], b = inverse[k][j];
+                G[k][j] = choose(larger, G[i][j], a), G[i][j] = choose(larger, a, G[i][j]);
+                inverse[k][j] = choose(larger, inverse[i][j], b);
+                inverse[i][j] = choose(larger, b, inverse[i][j]);
+            }
         }
+        const lanes reciprocal = 1 / G[k][k];
+        for (int j = 0; j < m; j++)
+            G[k][j] = G[k][j] * reciprocal, inverse[k][j] = inverse[k][j] * reciprocal;
+        for (int i = 0; i < m; i++) {
+            const lanes factor = G[i][k];
+            for (int j = 0; j < m && i != k; j++) {
+                G[i][j] -= factor * G[k][j];
+                inverse[i][j] -= factor * inverse[k][j];
+            }
+        }
+    }
+}
+
+/* Sum of the squares of all elements. */
+static inline lanes decoupling_size(lanes G[ACTUATORS][ACTUATORS])
+{
+    lanes sum = lanes_of(0);
+    for (int i = 0; i < OWN_ACTUATORS; i++)
+        for (int j = 0; j < OWN_ACTUATORS; j++)
+            sum += G[i][j] * G[i][j];
+    return sum;
+}
+
+/* Inverse of G, damped in the lanes that are returned. */
+static inline mask decoupling_inverse(lanes G[ACTUATORS][ACTUATORS],
+                                      lanes inverse[ACTUATORS][ACTUATORS])
+{
+    const int m = OWN_ACTUATORS;
+    lanes left[ACTUATORS][ACTUATORS];
+    const lanes size = decoupling_size(G);
+    memcpy(left, G, sizeof left);
+    decoupling_invert(left, inverse);
+    /* The condition number is |G| |G^-1|, of Frobenius' norms; 1 / |G^-1| is about the least
+     * singular value. */
+    const lanes bound = lanes_of(DECOUPLING_CONDITION * DECOUPLING_CONDITION);
+    const lanes back = decoupling_size(inverse);
+    const mask damped = LANES_NOT(mask_less_equal(size * back, bound));
+    if (mask_any(damped)) {
+        const lanes known = choose(mask_finite(back), back, lanes_of(INFINITY));
+        const lanes d = size / bound - 1 / known;
+        lanes K[ACTUATORS][ACTUATORS], other[ACTUATORS][ACTUATORS];
+        for (int i = 0; i < m; i++)
+            for (int j = 0; j < m; j++) {
+                K[i][j] = i == j ? d : lanes_of(0);
+                for (int k = 0; k < m; k++)
+                    K[i][j] += G[i][k] * G[j][k];
+            }
+        decoupling_invert(K, other);
+        for (int i = 0; i < m; i++)
+            for (int j = 0; j < m; j++) {
+                lanes sum = lanes_of(0);
+                for (int k = 0; k < m; k++)
+                    sum += G[k][i] * other[k][j];
+                inverse[i][j] = choose(damped, sum, inverse[i][j]);
+            }
     }
     return damped;
 }
 
 /* Contact accelerations (normal, tangential) by a unit of each torque. */
 static inline void decoupling_reach(const struct setting *set, const struct dynamics *e,
-                                    contact_set touching, lanes reach[2][2][2])
+                                    contact_set touching, lanes (*reach)[ACTUATORS][2])
 {
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int i = 0; i < 2; i++) {
+        for (int i = 0; i < OWN_ACTUATORS; i++) {
             reach[c][i][0] = reach[c][i][1] = lanes_of(0);
             if (touching >> c & 1)
                 scene_contact_velocity(&set->body, &e->trig, c, e->push[i], reach[c][i]);
@@ -108,43 +161,54 @@ static inline void decoupling_reach(const struct setting *set, const struct dyna
 /* Adds to torque[] what the reactions change, e->several where more than one set of them fits;
  * returns the lanes where none does. */
 static inline mask decoupling_react(const struct setting *set, mask where, contact_set touching,
-                                    const struct contact_state *contact, const lanes inverse[2][2],
-                                    struct dynamics *e, lanes *torque)
+                                    const struct contact_state *contact,
+                                    lanes inverse[ACTUATORS][ACTUATORS], struct dynamics *e,
+                                    lanes *torque)
 {
     struct {
-        lanes D[2][2][2][2], free[2][2], r[2][2];
+        lanes D[CONTACTS][CONTACTS][2][2], free[CONTACTS][2], r[CONTACTS][2];
     } problem;
-    lanes reach[2][2][2], answer[2][2][2];
-    mask part[SCENE_CONTACTS], ambiguous, unsolved, none = MASK_NONE, several = MASK_NONE;
+    lanes reach[CONTACTS][ACTUATORS][2], answer[CONTACTS][2][ACTUATORS];
+    struct contact_verdict verdict;
+    mask part[CONTACTS], none = MASK_NONE, several = MASK_NONE;
     decoupling_reach(set, e, touching, reach);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         part[c] = where & contact->closed[c];
         for (int a = 0; a < 2; a++) {
-            lanes rate[2];
-            problem.free[c][a] = answer[c][a][0] = answer[c][a][1] = lanes_of(0);
+            lanes rate[ACTUATORS];
+            problem.free[c][a] = lanes_of(0);
+            for (int i = 0; i < OWN_ACTUATORS; i++)
+                answer[c][a][i] = lanes_of(0);
             if (!(touching >> c & 1))
                 continue;
             decoupling_rates(set, &e->trig, e->response[c][a], rate);
-            for (int i = 0; i < 2; i++)
-                answer[c][a][i] = -(inverse[i][0] * rate[0] + inverse[i][1] * rate[1]);
-            problem.free[c][a] =
-                e->free[c][a] + (reach[c][0][a] * torque[0] + reach[c][1][a] * torque[1]);
+            problem.free[c][a] = e->free[c][a];
+            for (int i = 0; i < OWN_ACTUATORS; i++) {
+                problem.free[c][a] += reach[c][i][a] * torque[i];
+                for (int j = 0; j < OWN_ACTUATORS; j++)
+                    answer[c][a][i] -= inverse[i][j] * rate[j];
+            }
         }
     }
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int k = 0; k < SCENE_CONTACTS; k++)
             for (int a = 0; a < 2; a++)
-                for (int b = 0; b < 2; b++)
-                    problem.D[c][k][a][b] = e->D[c][k][a][b] + (reach[c][0][a] * answer[k][b][0] +
-                                                                reach[c][1][a] * answer[k][b][1]);
-    const struct contact_rule rule = {set->friction, set->prefer, contact->slide, NULL, true, NULL};
+                for (int b = 0; b < 2; b++) {
+                    problem.D[c][k][a][b] = e->D[c][k][a][b];
+                    for (int i = 0; i < OWN_ACTUATORS; i++)
+                        problem.D[c][k][a][b] += reach[c][i][a] * answer[k][b][i];
+                }
+    const struct contact_rule rule = {.friction = set->friction,
+                                      .prefer = set->prefer,
+                                      .sliding = contact->slide,
+                                      .indefinite = true};
     for (int round = 0; round < 2; round++) {
-        solve_contacts(&rule, (const lanes(*)[2][2][2])problem.D, (const lanes(*)[2])problem.free,
-                       touching, part, problem.r, &ambiguous, &unsolved);
-        several |= where & ambiguous;
-        if (round > 0 || !mask_any(unsolved))
+        solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])problem.D,
+                       (const lanes(*)[2])problem.free, touching, part, problem.r, &verdict);
+        several |= where & verdict.ambiguous;
+        if (round > 0 || !mask_any(verdict.unsolved))
             break;
-        none = unsolved & where; /* then the reactions without torques */
+        none = verdict.unsolved & where; /* then the reactions without torques */
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++) {
                 problem.free[c][a] = choose(none, e->free[c][a], problem.free[c][a]);
@@ -155,11 +219,10 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
             }
     }
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int i = 0; i < 2; i++)
-            torque[i] = choose(
-                part[c],
-                torque[i] + (answer[c][0][i] * problem.r[c][0] + answer[c][1][i] * problem.r[c][1]),
-                torque[i]);
+        for (int a = 0; a < contact_unknowns(c); a++)
+            for (int i = 0; i < OWN_ACTUATORS; i++)
+                torque[i] = choose(contact_part(c, part),
+                                   torque[i] + answer[c][a][i] * problem.r[c][a], torque[i]);
     e->several = choose(several, lanes_of(1), lanes_of(0));
     return none;
 }
@@ -171,31 +234,35 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
                             const struct contact_state *contact, struct dynamics *e)
 {
     lanes q[SCENE_COORDINATES], v[SCENE_COORDINATES], curvature[SCENE_COORDINATES];
-    lanes error[2], wanted[2], rate[2], G[2][2], inverse[2][2], torque[2];
+    lanes error[ACTUATORS], wanted[ACTUATORS], rate[ACTUATORS], torque[ACTUATORS];
+    lanes G[ACTUATORS][ACTUATORS], inverse[ACTUATORS][ACTUATORS];
     scene_coordinates(&set->body, &e->trig, s, w, q, v);
     law_servo(&set->law, t, q, v, integral, error, wanted);
     scene_coordinate_curvature(&set->body, &e->trig, w, curvature);
     decoupling_rates(set, &e->trig, e->acceleration, rate);
-    for (int j = 0; j < 2; j++) {
+    for (int j = 0; j < OWN_ACTUATORS; j++) {
         wanted[j] -= rate[j];
         for (int k = 0; k < SCENE_COORDINATES; k++)
             wanted[j] -= set->law.servo[j].pick[k] * curvature[k];
     }
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < OWN_ACTUATORS; i++) {
         decoupling_rates(set, &e->trig, e->push[i], rate);
-        G[0][i] = rate[0], G[1][i] = rate[1];
+        for (int j = 0; j < OWN_ACTUATORS; j++)
+            G[j][i] = rate[j];
     }
-    mask degraded = decoupling_inverse((const lanes(*)[2])G, inverse);
-    for (int i = 0; i < 2; i++)
-        torque[i] = inverse[i][0] * wanted[0] + inverse[i][1] * wanted[1];
+    mask degraded = decoupling_inverse(G, inverse);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        torque[i] = lanes_of(0);
+        for (int j = 0; j < OWN_ACTUATORS && i < OWN_ACTUATORS; j++)
+            torque[i] += inverse[i][j] * wanted[j];
+    }
     mask stands = MASK_NONE;
     e->several = lanes_of(0);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         stands |= where & contact->closed[c];
     if (touching && mask_any(stands))
-        degraded |=
-            decoupling_react(set, where, touching, contact, (const lanes(*)[2])inverse, e, torque);
-    for (int i = 0; i < 2; i++)
+        degraded |= decoupling_react(set, where, touching, contact, inverse, e, torque);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->command[i] = torque[i];
     law_integral_rate(&set->law, error, integral, torque, e->integral_rate);
     e->degraded = choose(where & degraded, lanes_of(1), lanes_of(0));
@@ -205,9 +272,10 @@ static inline void decouple(const struct setting *set, mask where, lanes t, cons
 static inline void decoupling_apply(const struct setting *set, mask where, contact_set touching,
                                     struct dynamics *e)
 {
-    lanes torque[2] = {e->command[0], e->command[1]}, reach[2][2][2];
+    lanes torque[ACTUATORS], reach[CONTACTS][ACTUATORS][2];
+    memcpy(torque, e->command, sizeof torque);
     law_clip(&set->law, torque);
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < OWN_ACTUATORS; i++) {
         torque[i] = choose(where, torque[i], lanes_of(0));
         e->torque[i] += torque[i];
         for (int k = 0; k < SCENE_COORDINATES; k++)
@@ -216,7 +284,8 @@ static inline void decoupling_apply(const struct setting *set, mask where, conta
     decoupling_reach(set, e, touching, reach);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int a = 0; a < 2; a++)
-            e->free[c][a] += reach[c][0][a] * torque[0] + reach[c][1][a] * torque[1];
+            for (int i = 0; i < OWN_ACTUATORS; i++)
+                e->free[c][a] += reach[c][i][a] * torque[i];
 }
 
 #else /* no servos */
@@ -262,14 +331,14 @@ static inline mask law_command(const struct setting *set, mask due, lanes t, con
     if (!mask_any(servos))
         return servos;
     struct contact_state now;
-    const contact_set all = (1u << SCENE_CONTACTS) - 1;
+    const contact_set all = CONTACT_ALL;
     dynamics_evaluate(set, t, s, w, none, all, true, e);
     if (!contact) {
         decoupling_contacts(set, e, &now);
         contact = &now;
     }
     decouple(set, servos, t, s, w, integral, all, contact, e);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    for (int i = 0; i < OWN_ACTUATORS; i++)
         command[i] = choose(servos, e->command[i], command[i]);
     return servos;
 }

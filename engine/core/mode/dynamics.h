@@ -13,19 +13,19 @@
 
 /* What each contact does. */
 struct contact_state {
-    mask closed[SCENE_CONTACTS];
-    lanes slide[SCENE_CONTACTS]; /* sign of the slip; 0: sticks */
+    mask closed[CONTACTS];
+    lanes slide[CONTACTS]; /* sign of the slip of each grip; 0: sticks, or no grip */
 };
 
 /* The equations at one state. */
 struct dynamics {
     scene_trig trig;
-    lanes gap[SCENE_CONTACTS], u[SCENE_CONTACTS][2];
+    lanes gap[CONTACTS], u[CONTACTS][2];
     lanes torque[ACTUATORS];
     lanes acceleration[SCENE_COORDINATES]; /* without contact forces, until between_solve */
-    lanes response[SCENE_CONTACTS][2][SCENE_COORDINATES]; /* A^-1 H^T */
-    lanes D[2][2][2][2], free[2][2];                      /* of SCENE_CONTACTS contacts */
-    lanes force[2][2];                                    /* N */
+    lanes response[CONTACTS][2][SCENE_COORDINATES]; /* A^-1 H^T */
+    lanes D[CONTACTS][CONTACTS][2][2], free[CONTACTS][2];
+    lanes force[CONTACTS][2];                 /* N */
     lanes push[ACTUATORS][SCENE_COORDINATES]; /* A^-1 B, where a law acts that needs it */
     lanes command[ACTUATORS];                 /* N m, of that law, before the limit ... */
     lanes integral_rate[ACTUATORS];           /* ... and how fast it sums errors */
@@ -35,16 +35,16 @@ struct dynamics {
 /* Contact terms of the contacts that are not in `touching`: zero, so that sums may run over all. */
 static inline void dynamics_clear(contact_set touching, struct dynamics *e)
 {
-    for (int c = 0; c < 2; c++)
+    for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int a = 0; a < 2; a++) {
-            for (int k = 0; k < 2; k++)
+            for (int k = 0; k < SCENE_CONTACTS; k++)
                 for (int b = 0; b < 2; b++)
-                    if (!(touching >> c & touching >> k & 1))
+                    if (!(touching >> c & touching >> k & 1) || b >= contact_unknowns(k))
                         e->D[c][k][a][b] = lanes_of(0);
             if (touching >> c & 1)
                 continue;
             e->free[c][a] = lanes_of(0);
-            for (int i = 0; i < SCENE_COORDINATES && c < SCENE_CONTACTS; i++)
+            for (int i = 0; i < SCENE_COORDINATES; i++)
                 e->response[c][a][i] = lanes_of(0);
         }
 }
@@ -59,14 +59,14 @@ static inline void dynamics_evaluate(const struct setting *set, lanes t, const l
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->torque[i] = torque[i];
     scene_matrix A;
-    scene_forces(&set->body, t, &e->trig, w, e->torque, load);
+    scene_forces(&set->body, t, s, &e->trig, w, e->torque, load);
     scene_inertia(&set->body, &e->trig, &A);
     scene_solve(&A, false, load, e->acceleration);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         e->integral_rate[i] = lanes_of(0);
     e->degraded = e->several = lanes_of(0);
 #ifdef SCENE_SERVOS
-    for (int i = 0; i < SCENE_ACTUATORS && pushes; i++)
+    for (int i = 0; i < OWN_ACTUATORS && pushes; i++)
         scene_actuator_response(&set->body, &A, i, e->push[i]);
 #else
     (void)pushes;
@@ -89,7 +89,7 @@ static inline void dynamics_evaluate(const struct setting *set, lanes t, const l
         for (int a = 0; a < 2; a++)
             e->free[c][a] = forced[a] + curvature[a];
         for (int k = 0; k < SCENE_CONTACTS; k++)
-            for (int b = 0; b < 2 && touching >> k & 1; b++) {
+            for (int b = 0; b < contact_unknowns(k) && touching >> k & 1; b++) {
                 lanes u[2];
                 scene_contact_velocity(&set->body, &e->trig, c, e->response[k][b], u);
                 e->D[c][k][0][b] = u[0];

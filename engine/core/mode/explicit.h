@@ -50,10 +50,11 @@ static inline void explicit_report(const struct setting *set, const struct conta
         lanes_of(0);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         load += lanes_max(e->force[c][0], lanes_of(0));
-    for (int c = 0; c < SCENE_CONTACTS;
-         c++) /* what carries but a rounding error has no direction */
-        report_residuals(report, m->closed[c] & mask_less(1e-9 * load, e->force[c][0]),
-                         set->friction, e->force[c], e->u[c]);
+    mask part[CONTACTS]; /* what carries but a rounding error has no direction */
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        part[c] = m->closed[c] & mask_less(1e-9 * load, e->force[c][0]);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        report_residuals(report, c, part, set->friction, (const lanes(*)[2])e->force, e->u[c]);
 }
 
 /* One step of length h from `from` in the mode `m` with `begin` evaluated and solved there. */
@@ -70,7 +71,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     struct dynamics e = *begin;
     for (int c = 0; c < SCENE_CONTACTS; c++)
         if (mask_any(m->closed[c] & run))
-            touches |= 1u << c;
+            touches |= contact_with(c);
     report_clear(&out->report);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         out->torque[i] = begin->torque[i];
@@ -115,12 +116,13 @@ static inline void explicit_take(const struct setting *set, const struct motion 
             for (int i = 0; i < SCENE_COORDINATES; i++)
                 moved[i] = part * w[i];
             out->report.work +=
-                scene_work(&set->body, part, from->t + h * tableau_c[k], e.torque, moved);
+                scene_work(&set->body, part, from->t + h * tableau_c[k], &e.trig, e.torque, moved);
             explicit_add(out->end.s, out->end.w, part, ks[k], kw[k]);
             explicit_sum(sums, out->end.integral, part, kz[k]);
             for (int c = 0; c < SCENE_CONTACTS; c++) {
-                out->report.slip[c] +=
-                    choose(m->closed[c], part * lanes_abs(e.u[c][1]), lanes_of(0));
+                if (contact_unknowns(c) == 2)
+                    out->report.slip[c] += choose(contact_part(c, m->closed),
+                                                  part * lanes_abs(e.u[c][1]), lanes_of(0));
                 for (int a = 0; a < 2; a++)
                     out->report.impulse[c][a] += part * e.force[c][a];
             }

@@ -20,8 +20,7 @@
 #define EVENT_CLIP 1e-10    /* of the torque limit: a command beyond it by this is clipped */
 #define EVENT_SLIP 1e-12    /* m/s: a slip this small has ended */
 #define EVENT_JAM 1e-6      /* determinant of the forces at which a slide ends */
-#define EVENT_SINGULAR 1e-11 /* of the operator's largest element: a pivot that counts as zero */
-#define EVENT_LOWEST 1e-11   /* m: rebounds lower than this accumulate */
+#define EVENT_LOWEST 1e-11  /* m: rebounds lower than this accumulate */
 
 /* The state that ARKODE integrates: s, w, then what is summed over the step. */
 enum {
@@ -40,7 +39,7 @@ struct event_mode {
     double clipped[ACTUATORS];                          /* -1, 0, 1: the torque is at a limit */
     double depth[EVENT_MARGINS], window[EVENT_MARGINS]; /* shift; what counts as zero then */
     bool rises[EVENT_MARGINS];                          /* a gap or a slip that begins at zero */
-    double mobility[SCENE_CONTACTS];                    /* 1/kg, makes velocities of impulses */
+    double mobility[CONTACTS];                          /* 1/kg, makes velocities of impulses */
     double energy;                                      /* J, what work is measured in */
 };
 
@@ -64,101 +63,23 @@ struct event_point {
 
 /* ---- equations and margins of a mode ----------------------------------------------------------*/
 
-static void event_swap(double *x, double *y)
+/* All closed contacts stick: their forces, which need not be unique (see lane.h), and accelerations
+ * with them. */
+static void event_hold(const struct setting *set, const struct contact_state *m, struct dynamics *e)
 {
-    const double z = *x;
-    *x = *y, *y = z;
-}
-
-/* Forces of two contacts that stick: D r = -free by elimination with full pivoting, since where
- * both feet stand on one point, or both ends of a rod stick, D has rank 3. Then returns true, and
- * n, the forces that only strain the robot. */
-static bool event_stick(const double D[2][2][2][2], const double free[2][2], double *r, double *n)
-{
-    double m[4][5], largest = 0;
-    int unknown[4] = {0, 1, 2, 3}, rank = 0;
-    for (int i = 0; i < 4; i++) {
-        for (int j = 0; j < 4; j++)
-            m[i][j] = D[i / 2][j / 2][i % 2][j % 2];
-        m[i][4] = -free[i / 2][i % 2];
-    }
-    for (; rank < 4; rank++) {
-        int row = rank, column = rank;
-        for (int i = rank; i < 4; i++)
-            for (int j = rank; j < 4; j++)
-                if (fabs(m[i][j]) > fabs(m[row][column]))
-                    row = i, column = j;
-        const double pivot = m[row][column];
-        largest = fmax(fabs(pivot), largest);
-        if (!(fabs(pivot) > EVENT_SINGULAR * largest))
-            break;
-        for (int j = 0; j < 5; j++)
-            event_swap(&m[rank][j], &m[row][j]);
-        for (int i = 0; i < 4; i++)
-            event_swap(&m[i][rank], &m[i][column]);
-        const int moved = unknown[rank];
-        unknown[rank] = unknown[column], unknown[column] = moved;
-        for (int i = rank + 1; i < 4; i++) {
-            const double factor = m[i][rank] / pivot;
-            for (int j = rank; j < 5; j++)
-                m[i][j] -= factor * m[rank][j];
-        }
-    }
-    for (int i = 3; i >= 0; i--) {
-        double x = 0, null = i == rank ? 1 : 0;
-        if (i < rank) {
-            x = m[i][4];
-            for (int j = i + 1; j < 4; j++)
-                x -= m[i][j] * r[unknown[j]], null -= m[i][j] * n[unknown[j]];
-            x /= m[i][i], null /= m[i][i];
-        }
-        r[unknown[i]] = x, n[unknown[i]] = null;
-    }
-    return rank == 3;
-}
-
-/* Both contacts stick and their forces are not unique, but the motion is: of all such forces those
- * that keep farthest away from pulling and from the edges of the cones. */
-static void event_share(double friction, struct dynamics *e)
-{
-    double n[4], value[6], slope[6], best = -INFINITY, shift = 0;
-    if (!event_stick((const double(*)[2][2][2])e->D, (const double(*)[2])e->free, &e->force[0][0],
-                     n))
-        return;
-    for (int c = 0; c < 2; c++) {
-        const double normal = e->D[c][c][0][0], tangential = e->D[c][c][1][1];
-        value[3 * c] = normal * e->force[c][0];
-        slope[3 * c] = normal * n[2 * c];
-        for (int side = 1; side <= 2; side++) {
-            const double sign = side == 1 ? -1 : 1;
-            value[3 * c + side] = tangential * (friction * e->force[c][0] + sign * e->force[c][1]);
-            slope[3 * c + side] = tangential * (friction * n[2 * c] + sign * n[2 * c + 1]);
-        }
-    }
-    for (int j = 0; j < 6; j++)
-        for (int k = 0; k < 6; k++) {
-            if (slope[j] <= 0 || slope[k] >= 0)
-                continue;
-            const double x = (value[k] - value[j]) / (slope[j] - slope[k]);
-            double low = INFINITY;
-            for (int i = 0; i < 6; i++)
-                low = fmin(value[i] + slope[i] * x, low);
-            if (low > best)
-                best = low, shift = x;
-        }
-    for (int c = 0; c < 2; c++)
-        for (int i = 0; i < 2; i++)
-            e->force[c][i] += shift * n[2 * c + i];
-}
-
-/* Both contacts stick: forces, and accelerations with them. */
-static void event_hold(double friction, struct dynamics *e)
-{
-    event_share(friction, e);
+    const struct contact_rule rule = {.friction = set->friction};
+    struct lane_problem p;
+    contact_set closed = 0;
+    double r[LANE_ROWS] = {0};
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int i = 0; i < SCENE_COORDINATES; i++)
-            e->acceleration[i] +=
-                e->response[c][0][i] * e->force[c][0] + e->response[c][1][i] * e->force[c][1];
+        closed |= m->closed[c] ? 1u << c : 0;
+    lane_gather(&rule, (const double(*)[CONTACTS][2][2])e->D, (const double(*)[2])e->free, closed,
+                0, &p);
+    lane_hold(&p, r);
+    for (int i = 0; i < p.rows; i++)
+        e->force[p.contact[i]][p.axis[i]] = r[i];
+    between_push(m->closed, (const double(*)[2][SCENE_COORDINATES])e->response,
+                 (const double(*)[2])e->force, e->acceleration);
 }
 
 static void event_evaluate(struct event_problem *problem, double tau, const double *y,
@@ -179,9 +100,11 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
     between_evaluate(problem->set, problem->begin + tau, s, w, y + EVENT_INTEGRAL, &drive,
                      problem->mode.touches, e);
     const struct contact_state *const m = &problem->mode.contact;
-    if (SCENE_CONTACTS > 1 && m->closed[0] && m->closed[SECOND] && m->slide[0] == 0 &&
-        m->slide[SECOND] == 0)
-        event_hold(problem->set->friction, e);
+    bool holds = problem->mode.touches;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        holds &= m->slide[c] == 0 || !contact_part(c, m->closed);
+    if (holds)
+        event_hold(problem->set, m, e);
     else if (problem->mode.touches)
         between_solve(problem->set, m, e);
     problem->evaluations++;
@@ -193,34 +116,54 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
 static double event_determinant(const struct event_problem *problem, const struct dynamics *e)
 {
     const struct contact_state *const state = &problem->mode.contact;
-    double m[4][4], scale = 1;
-    int of[4], axis[4], n = 0;
+    double m[LANE_ROWS][LANE_ROWS], determinant = 1;
+    int of[LANE_ROWS], axis[LANE_ROWS], n = 0;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        if (!state->closed[c])
-            continue;
-        const bool sticks = state->slide[c] == 0;
         const double normal = e->D[c][c][0][0], cross = e->D[c][c][0][1];
-        scale *= sticks ? normal * e->D[c][c][1][1] - cross * cross : normal;
-        of[n] = c, axis[n++] = 0;
+        const bool sticks =
+            contact_unknowns(c) == 2 && contact_part(c, state->closed) && state->slide[c] == 0;
+        if (state->closed[c])
+            determinant /= sticks ? normal * e->D[c][c][1][1] - cross * cross : normal;
+        else if (sticks)
+            determinant /= e->D[c][c][1][1];
+        if (state->closed[c])
+            of[n] = c, axis[n++] = 0;
         if (sticks)
             of[n] = c, axis[n++] = 1;
     }
     for (int j = 0; j < n; j++) {
+        const int g = contact_grip(of[j]);
         const double edge =
-            axis[j] == 0 ? -(problem->set->friction * state->slide[of[j]]) : 0; /* 0: sticks */
-        for (int i = 0; i < n; i++)
-            m[i][j] = e->D[of[i]][of[j]][axis[i]][axis[j]] + edge * e->D[of[i]][of[j]][axis[i]][1];
+            axis[j] == 0 && g >= 0 ? -(problem->set->friction * state->slide[g]) : 0;
+        for (int i = 0; i < n; i++) {
+            m[i][j] = e->D[of[i]][of[j]][axis[i]][axis[j]];
+            if (edge != 0)
+                m[i][j] += edge * e->D[of[i]][g][axis[i]][1];
+        }
     }
-    if (n == 1)
-        return m[0][0] / scale;
-    if (n == 2)
-        return (m[0][0] * m[1][1] - m[0][1] * m[1][0]) / scale;
-    double sum = 0;
-    for (int k = 0; k < 3; k++) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        sum += m[0][k] * (m[1][i] * m[2][j] - m[1][j] * m[2][i]);
+    for (int k = 0; k < n; k++) { /* with the largest pivot of each column */
+        int p = k;
+        for (int i = k + 1; i < n; i++)
+            if (fabs(m[i][k]) > fabs(m[p][k]))
+                p = i;
+        determinant *= p == k ? m[p][k] : -m[p][k];
+        if (m[p][k] == 0)
+            return 0;
+        for (int j = k; j < n; j++) {
+            const double swap = m[k][j];
+            m[k][j] = m[p][j], m[p][j] = swap;
+        }
+        for (int i = k + 1; i < n; i++)
+            for (int j = n - 1; j >= k; j--)
+                m[i][j] -= m[i][k] / m[k][k] * m[k][j];
     }
-    return sum / scale;
+    return determinant;
+}
+
+/* Does contact c hold friction now? */
+static bool event_grips(const struct contact_state *m, int c)
+{
+    return contact_unknowns(c) == 2 && contact_part(c, m->closed);
 }
 
 /* Margins of the contact laws and of the torque limits; 1 where there is none. */
@@ -232,12 +175,14 @@ static void event_margins(const struct event_problem *problem, const double *y,
         margin[k] = 1;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         double *const own = &margin[3 * c];
-        if (!m->closed[c]) {
+        if (m->closed[c])
+            own[0] = e->force[c][0] * e->D[c][c][0][0];
+        else
             own[0] = problem->set->may_touch[c] > 0 ? e->gap[c] : 1;
+        if (!event_grips(m, c))
             continue;
-        }
-        const double bound = problem->set->friction * e->force[c][0], mobility = e->D[c][c][1][1];
-        own[0] = e->force[c][0] * e->D[c][c][0][0];
+        const double bound = problem->set->friction * contact_load(c, (const double(*)[2])e->force);
+        const double mobility = e->D[c][c][1][1];
         if (problem->set->friction > 0 && m->slide[c] != 0) {
             own[1] = m->slide[c] * e->u[c][1];
             own[2] = event_determinant(problem, e) - 2 * EVENT_JAM;
@@ -291,7 +236,8 @@ static void event_set_depths(struct event_problem *problem, const struct event_p
             rises[0] = raw[3 * c] <= 2 * STEP_CLOSED;
             depth[0] = rises[0] ? STEP_CLOSED : 0;
             window[0] = fmin(8 * DBL_EPSILON * size, 0.2 * STEP_CLOSED);
-        } else if (m->contact.slide[c] != 0) {
+        }
+        if (event_grips(&m->contact, c) && m->contact.slide[c] != 0) {
             rises[1] = raw[3 * c + 1] <= 2 * BETWEEN_REST;
             depth[1] = rises[1] ? BETWEEN_REST : 0;
             window[1] = EVENT_SLIP;
@@ -400,7 +346,7 @@ static void event_slopes(const struct event_problem *problem, const double *y,
         double forced[2], curvature[2];
         if (!m->closed[c])
             slope[3 * c] = problem->set->may_touch[c] > 0 ? e->u[c][0] : 0;
-        if (!m->closed[c] || m->slide[c] == 0 || problem->set->friction <= 0)
+        if (!event_grips(m, c) || m->slide[c] == 0 || problem->set->friction <= 0)
             continue;
         scene_contact_velocity(&problem->set->body, &e->trig, c, e->acceleration, forced);
         scene_contact_curvature(&problem->set->body, &e->trig, c, y + SCENE_COORDINATES, curvature);

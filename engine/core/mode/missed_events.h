@@ -26,13 +26,14 @@
 
 /* Forces of a step at the four fractions where the polynomials go through. */
 struct missed_forces {
-    lanes normal[4][SCENE_CONTACTS], tangential[4][SCENE_CONTACTS];
+    lanes normal[4][CONTACTS], load[4][CONTACTS], tangential[4][CONTACTS];
 };
 
 static inline void missed_note(const struct dynamics *e, int k, struct missed_forces *forces)
 {
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         forces->normal[k][c] = e->force[c][0];
+        forces->load[k][c] = contact_load(c, (const lanes(*)[2])e->force);
         forces->tangential[k][c] = e->force[c][1];
     }
 }
@@ -73,20 +74,22 @@ static inline lanes missed_cubic(const lanes *f)
     return lanes_min(lanes_min(f[0], f[3]), lanes_min(b1, b2));
 }
 
-/* Lanes where a force of contact c may have pulled, or have left the cone while it sticks. */
-static inline mask missed_of_forces(lanes friction, mask sticks, const struct missed_forces *forces,
-                                    int c)
+/* Lanes where a force of contact c may have pulled where it is closed, or have left the cone where
+ * it sticks. */
+static inline mask missed_of_forces(lanes friction, mask closed, mask sticks,
+                                    const struct missed_forces *forces, int c)
 {
     lanes normal[4], low[4], high[4], largest = lanes_of(0);
     for (int k = 0; k < 4; k++) {
         normal[k] = forces->normal[k][c];
-        low[k] = friction * normal[k] + forces->tangential[k][c];
-        high[k] = friction * normal[k] - forces->tangential[k][c];
+        low[k] = friction * forces->load[k][c] + forces->tangential[k][c];
+        high[k] = friction * forces->load[k][c] - forces->tangential[k][c];
         largest = lanes_max(lanes_abs(normal[k]), largest);
     }
     const lanes none = -DIP_FORCE * largest;
     const lanes room = lanes_min(missed_cubic(low), missed_cubic(high));
-    return mask_less(missed_cubic(normal), none) | (sticks & mask_less(room, friction * none));
+    return (closed & mask_less(missed_cubic(normal), none)) |
+           (sticks & mask_less(room, friction * none));
 }
 
 /* Lanes where the mode may have been left between `begin` and `end`, both solved in it, with the
@@ -99,14 +102,17 @@ static inline mask missed_between(const struct setting *set, const struct contac
     const lanes none = lanes_of(0);
     mask dips = MASK_NONE;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        const mask closed = m->closed[c];
+        const mask closed = m->closed[c], grips = contact_part(c, m->closed);
         const mask open = LANES_NOT(closed) & mask_less(none, set->may_touch[c]);
-        const mask sticks = mask_less_equal(lanes_abs(m->slide[c]), none);
+        mask sticks = MASK_NONE, slides = MASK_NONE;
+        if (contact_unknowns(c) == 2) {
+            sticks = mask_less_equal(lanes_abs(m->slide[c]), none);
+            slides = grips & LANES_NOT(sticks) & mask_less(none, set->friction);
+        }
         const mask near = open & (mask_less(begin->gap[c], h * lanes_abs(begin->u[c][0])) |
                                   mask_less(end->gap[c], h * lanes_abs(end->u[c][0])));
-        const mask slides = closed & LANES_NOT(sticks) & mask_less(none, set->friction);
-        if (mask_any(closed))
-            dips |= closed & missed_of_forces(set->friction, sticks, forces, c);
+        if (mask_any(grips))
+            dips |= missed_of_forces(set->friction, closed, grips & sticks, forces, c);
         if (!mask_any(near | slides))
             continue;
         lanes a0[2], a1[2];

@@ -1,0 +1,132 @@
+/* mechanism.h - a planar tree of rigid bodies as data: what a scenario describes, and what kernels
+ * are compiled from.
+ *
+ * Frames: x forward, z up, angles counter-clockwise, R(a) = [cos a, -sin a; sin a, cos a]. A body's
+ * frame has its origin at the joint to its parent and the parent's direction where the joint's
+ * angle is 0. `body[0]` is the root; the parent of every other one stands before it. Everything
+ * that is a number may be varied without another structure; which of them are varied a scene
+ * knows by robot[] (see `number`).
+ */
+#ifndef STANCE_MECHANISM_H
+#define STANCE_MECHANISM_H
+
+#include "stance.h"
+
+enum {
+    STANCE_NAME = 32,         /* bytes of a name, with its end */
+    STANCE_MAX_BODIES = 16,   /* fixed ones included */
+    STANCE_MAX_ELEMENTS = 6,  /* points, discs, soles */
+    STANCE_MAX_BRANCHES = 64, /* equilibria */
+};
+
+/* Root: free, hinge (to the world), slide (along a rail; does not turn). Others: hinge, fixed. */
+typedef enum stance_joint {
+    STANCE_FREE,
+    STANCE_HINGE,
+    STANCE_SLIDE,
+    STANCE_FIXED,
+} stance_joint;
+
+typedef struct stance_body_numbers {
+    double mass;      /* kg, >= 0 */
+    double inertia;   /* kg m^2, about the centre of mass, >= 0 */
+    double centre[2]; /* m, of mass, in the body's frame */
+    double at[2];     /* m, the joint in the parent's frame; a root's in the world's */
+    double axis[2];   /* of a slide, in the world's frame, of any length > 0 */
+    double stiffness; /* N m/rad or N/m, of the joint, >= 0 */
+    double damping;   /* N m s/rad or N s/m, >= 0 */
+    double rest;      /* rad or m: where the spring pulls nothing */
+    double armature;  /* kg m^2 or kg: of a geared rotor, as the joint feels it, >= 0 */
+    double limits[2]; /* rad or m, of the joint's coordinate: stops; -INFINITY, INFINITY: none */
+    double turn;      /* rad, angle from upright beyond which it has fallen; INFINITY: none */
+} stance_body_numbers;
+
+typedef struct stance_element_numbers {
+    double at[2];  /* m, in the body's frame: the point, the centre of a disc, a sole's first end */
+    double to[2];  /* m, a sole's second end */
+    double radius; /* m, of a disc; 0: a point */
+} stance_element_numbers;
+
+typedef struct stance_point_numbers {
+    double at[2];  /* m, in its body's frame */
+    double lowest; /* m above the ground: lower has fallen; -INFINITY: none */
+    double
+        force[2]; /* along the ground and normal to it: N, from `from` to `to`, or N s, at `from` */
+    double from, to; /* s */
+} stance_point_numbers;
+
+/* What the world does to a point. */
+typedef enum stance_push { STANCE_NO_PUSH, STANCE_FORCE, STANCE_IMPULSE } stance_push;
+
+typedef struct stance_mechanism_numbers {
+    stance_body_numbers body[STANCE_MAX_BODIES];
+    stance_element_numbers element[STANCE_MAX_ELEMENTS];
+    stance_point_numbers point[STANCE_MAX_NAMED];
+    double reference[2];                /* m, in the root's frame: what x and z are of */
+    double limit[STANCE_MAX_ACTUATORS]; /* N m or N, > 0, may be INFINITY */
+} stance_mechanism_numbers;
+
+typedef struct stance_mechanism {
+    int bodies, elements, points, actuators;
+    struct {
+        char name[STANCE_NAME];
+        stance_joint joint;
+        int parent;   /* -1: the root */
+        bool bounded; /* its `turn` counts */
+    } body[STANCE_MAX_BODIES];
+    struct {
+        char name[STANCE_NAME];
+        int body;
+        bool sole; /* from `at` to `to`; else a disc or a point */
+    } element[STANCE_MAX_ELEMENTS];
+    struct {
+        char name[STANCE_NAME];
+        int body;
+        bool falls;         /* its `lowest` counts */
+        stance_push pushed; /* at most STANCE_MAX_PUSHES are */
+    } point[STANCE_MAX_NAMED];
+    struct {
+        char name[STANCE_NAME];
+        int body; /* whose joint it drives: on the body, and the opposite on its parent */
+    } actuator[STANCE_MAX_ACTUATORS];
+    stance_mechanism_numbers value; /* as described */
+    /* robot[i] of a scene is the number at index number[i] of `value`, taken as an array of
+     * doubles; those with varies[i] may differ from it from case to case. */
+    int numbers, number[STANCE_MAX_ROBOT];
+    bool varies[STANCE_MAX_ROBOT];
+} stance_mechanism;
+
+/* Has the joint of body b, a hinge or a slide, a stop at its lower (side 0) or upper (1) limit? */
+bool stance_mechanism_stops(const stance_mechanism *m, int b, int side);
+
+/* The numbers with robot[numbers] in place of those of `value`. */
+void stance_mechanism_expand(const stance_mechanism *m, const double *robot,
+                             stance_mechanism_numbers *numbers);
+
+/* A scene that owns a copy of m, to be given back by stance_scene_free; `m` must be a tree as
+ * above.
+ *
+ * Coordinates: of a free root x, z (of its origin) and its angle, of one that slides its
+ * displacement; then the angles of the hinges, named as their bodies, in the bodies' order.
+ * Postures: all of them but x and z. Contacts: the elements, a sole as NAME_heel (`at`) and
+ * NAME_toe (`to`), then NAME_low and NAME_high for the stops of each body's joint, in the bodies'
+ * order. Robot quantities: m->number[], named by where they
+ * stand ("bodies.shank1.at[1]", "contacts.foot1.radius", "points.head.at[0]",
+ * "actuators.hip1.limit"; a sole's ends are "from" and "to").
+ * Errors: BAD_ARGUMENT (more contacts, points of a figure or numbers than fit), NO_MEMORY. */
+stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **scene,
+                                    stance_message *message);
+void stance_scene_free(stance_scene *scene);
+
+/* All equilibria that are found for a choice (but its branch) from many beginnings, in the order of
+ * branches: list[STANCE_MAX_BRANCHES], *count. Errors, each with a sentence: BAD_ARGUMENT;
+ * NO_EQUILIBRIUM where there is no such posture, where the conditions contradict each other, or
+ * where none of those found can be: the ground would have to pull, a joint be beyond its limits, an
+ * actuator give more than it has. Whether friction suffices is left to the caller, see
+ * stance_equilibrium.friction. */
+stance_error stance_mechanism_equilibria(const stance_scene *scene, const double *robot,
+                                         const stance_equilibrium_choice *choice,
+                                         stance_equilibrium *list, int *count,
+                                         stance_message *message);
+
+#endif

@@ -1,0 +1,169 @@
+/* tree_contacts.h - contacts of a tree: points, discs, soles, stops of joints. See tree_lanes.h,
+ * which includes this.
+ *
+ * A disc's friction acts at its lowest point: its row is the centre's and its radius times the rate
+ * of its body. A sole's acts at its lower end; with both on the ground the rows are the same. A
+ * stop is a row of its joint, without friction. */
+#ifndef STANCE_SCENES_TREE_CONTACTS_H
+#define STANCE_SCENES_TREE_CONTACTS_H
+
+/* x[direction] = J^-1 H_c^T e_direction for normal (0) and tangential (1) impulses at contact c. */
+HOT void scene_contact_response(const scene_body *b, const scene_matrix *m, bool coupled,
+                                const scene_trig *trig, int c, lanes x[2][SCENE_COORDINATES])
+{
+    for (int direction = 0; direction < 2; direction++) {
+        lanes load[SCENE_COORDINATES];
+        for (int k = 0; k < SCENE_COORDINATES; k++)
+            load[k] = lanes_of(0);
+        if (direction == 1 && scene_grip[c] != c) {
+            for (int k = 0; k < SCENE_COORDINATES; k++)
+                x[1][k] = lanes_of(0);
+            continue;
+        }
+        if (tree_is_stop(c)) {
+            tree_drive(tree_body[c], lanes_of(tree_sign(c)), load);
+        } else {
+            const lanes unit[2] = {lanes_of(direction == 1), lanes_of(direction == 0)};
+            if (tree_free)
+                load[0] = unit[0], load[1] = unit[1];
+            else if (tree_rail)
+                load[0] = b->rail[1 - direction];
+            TREE_UNROLL
+            for (int j = 0; j < tree_angles; j++) {
+                if (tree_path[c][j] < 0)
+                    continue;
+                lanes reach[2];
+                tree_reach(b, trig, c, j, direction == 1, reach);
+                load[TREE_BASE + j] = direction == 0 ? reach[0] : -reach[1];
+                if (direction == 1 && tree_kind[c] == STANCE_TREE_DISC &&
+                    tree_path[c][j] == TREE_OWN)
+                    load[TREE_BASE + j] = load[TREE_BASE + j] + b->end[c][2];
+            }
+        }
+        tree_solve(m, tree_loads[c], load, x[direction]);
+        if (coupled)
+            tree_answer(m, x[direction]);
+    }
+}
+
+/* Velocity of contact c: normal, tangential (of the grip; 0 at a stop). */
+HOT void scene_contact_velocity(const scene_body *b, const scene_trig *trig, int c, const lanes *w,
+                                lanes u[2])
+{
+    if (tree_is_stop(c)) {
+        u[0] = tree_sign(c) * tree_joint(w, tree_body[c]);
+        u[1] = lanes_of(0);
+        return;
+    }
+    u[0] = tree_base(b, w, 1);
+    u[1] = tree_base(b, w, 0);
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        if (tree_path[c][j] < 0)
+            continue;
+        lanes reach[2], grip[2];
+        tree_reach(b, trig, c, j, false, reach);
+        tree_reach(b, trig, c, j, true, grip);
+        u[0] = lanes_fma(w[TREE_BASE + j], reach[0], u[0]);
+        u[1] = lanes_fnma(w[TREE_BASE + j], grip[1], u[1]);
+        if (tree_kind[c] == STANCE_TREE_DISC && tree_path[c][j] == TREE_OWN)
+            u[1] = lanes_fma(w[TREE_BASE + j], b->end[c][2], u[1]);
+    }
+}
+/* Its derivative along `change` of the velocity, when the angles move by `lever` times the change:
+ * (H + lever dH/ds w) change. */
+HOT void scene_contact_velocity_change(const scene_body *b, const scene_trig *trig, int c,
+                                       const lanes *w, lanes lever, const lanes *change, lanes u[2])
+{
+    if (tree_is_stop(c)) {
+        scene_contact_velocity(b, trig, c, change, u);
+        return;
+    }
+    u[0] = tree_base(b, change, 1);
+    u[1] = tree_base(b, change, 0);
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        if (tree_path[c][j] < 0)
+            continue;
+        lanes reach[2], grip[2];
+        const lanes turn = lever * w[TREE_BASE + j], x = change[TREE_BASE + j];
+        tree_reach(b, trig, c, j, false, reach);
+        tree_reach(b, trig, c, j, true, grip);
+        u[0] = lanes_fma(x, lanes_fnma(turn, reach[1], reach[0]), u[0]);
+        u[1] = lanes_fnma(x, lanes_fma(turn, grip[0], grip[1]), u[1]);
+        if (tree_kind[c] == STANCE_TREE_DISC && tree_path[c][j] == TREE_OWN)
+            u[1] = lanes_fma(x, b->end[c][2], u[1]);
+    }
+}
+
+/* Acceleration of contact c (normal, tangential) when the coordinates do not accelerate. */
+HOT void scene_contact_curvature(const scene_body *b, const scene_trig *trig, int c, const lanes *w,
+                                 lanes a[2])
+{
+    a[0] = a[1] = lanes_of(0);
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        if (tree_is_stop(c) || tree_path[c][j] < 0)
+            continue;
+        lanes reach[2], grip[2];
+        const lanes turning = w[TREE_BASE + j] * w[TREE_BASE + j];
+        tree_reach(b, trig, c, j, false, reach);
+        tree_reach(b, trig, c, j, true, grip);
+        a[0] = lanes_fnma(turning, reach[1], a[0]);
+        a[1] = lanes_fnma(turning, grip[0], a[1]);
+    }
+}
+
+HOT lanes scene_gap(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+{
+    if (tree_is_stop(c))
+        return tree_sign(c) * (tree_joint(s, tree_body[c]) - b->end[c][0]);
+    lanes gap = tree_base(b, s, 1);
+    if (tree_top[c] >= 0)
+        gap = gap + b->joint[tree_top[c]][1];
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        if (tree_path[c][j] < 0)
+            continue;
+        lanes reach[2];
+        tree_reach(b, trig, c, j, false, reach);
+        gap = gap + reach[1];
+    }
+    if (tree_kind[c] == STANCE_TREE_DISC)
+        gap = gap - b->end[c][2];
+    return gap;
+}
+/* Gap after a small displacement d of s, to second order in the angles. */
+HOT lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c, const lanes *d)
+{
+    if (tree_is_stop(c))
+        return tree_sign(c) * tree_joint(d, tree_body[c]);
+    lanes sum = tree_base(b, d, 1);
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        if (tree_path[c][j] < 0)
+            continue;
+        lanes reach[2];
+        const lanes a = d[TREE_BASE + j];
+        tree_reach(b, trig, c, j, false, reach);
+        sum = lanes_fma(a, lanes_fnma(0.5 * a, reach[1], reach[0]), sum);
+    }
+    return sum;
+}
+/* Bound on what scene_gap_change leaves out. */
+HOT lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
+{
+    lanes sum = lanes_of(0);
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        const int through = tree_path[c][j];
+        if (tree_is_stop(c) || through < 0)
+            continue;
+        const lanes *const arm = through == TREE_OWN ? b->end[c] : b->joint[through];
+        const lanes a = lanes_abs(d[TREE_BASE + j]);
+        sum = lanes_fma(lanes_abs(arm[0]) + lanes_abs(arm[1]), a * a * a, sum);
+    }
+    return sum;
+}
+
+#endif

@@ -1,0 +1,542 @@
+/* tree_dynamics.h - inertia and forces of a tree, and the step's matrix: see tree_lanes.h, which
+ * includes this. */
+#ifndef STANCE_SCENES_TREE_DYNAMICS_H
+#define STANCE_SCENES_TREE_DYNAMICS_H
+
+/* K_i. */
+HOT void tree_moment(const scene_body *b, const scene_trig *trig, int i, lanes K[2])
+{
+    tree_turn(tree_straight[i], trig->sine[i], trig->cosine[i], b->moment[i], K);
+}
+/* C_ji and S_ji; K: that of i. */
+HOT void tree_couple(const scene_body *b, const scene_trig *trig, int j, int i, const lanes K[2],
+                     lanes *C, lanes *S)
+{
+    const int through = tree_through[i][j];
+    lanes D[2];
+    tree_turn(tree_straight_joint[through], trig->sine[j], trig->cosine[j], b->joint[through], D);
+    *C = lanes_fma(D[0], K[0], D[1] * K[1]);
+    *S = lanes_fms(D[0], K[1], D[1] * K[0]);
+}
+
+/* A vector in the plane along the base's coordinates, added to x with a factor. */
+HOT void tree_base_add(const scene_body *b, lanes factor, const lanes v[2], lanes *x)
+{
+    if (tree_free) {
+        x[0] = lanes_fma(factor, v[0], x[0]);
+        x[1] = lanes_fma(factor, v[1], x[1]);
+    } else if (tree_rail) {
+        x[0] = lanes_fma(factor, lanes_fma(b->rail[0], v[0], b->rail[1] * v[1]), x[0]);
+    }
+}
+/* Component `axis` of the motion x of the base. */
+HOT lanes tree_base(const scene_body *b, const lanes *x, int axis)
+{
+    if (tree_free)
+        return x[axis];
+    if (tree_rail)
+        return b->rail[axis] * x[0];
+    return lanes_of(0);
+}
+
+/* Adds a torque (or a force on the rail) in joint i with a factor. */
+HOT void tree_drive(int i, lanes torque, lanes *x)
+{
+    const int at = i < 0 ? 0 : TREE_BASE + i;
+    x[at] = x[at] + torque;
+    if (i >= 0 && tree_above[i] >= 0)
+        x[TREE_BASE + tree_above[i]] = x[TREE_BASE + tree_above[i]] - torque;
+}
+
+/* R(a_j) times the arm of push p in frame j. */
+HOT void tree_push_reach(const scene_body *b, const scene_trig *trig, int p, int j, lanes out[2])
+{
+    const int through = tree_push_path[p][j];
+    tree_turn(through != TREE_OWN && tree_straight_joint[through], trig->sine[j], trig->cosine[j],
+              through == TREE_OWN ? b->push[p] : b->joint[through], out);
+}
+/* Adds what a force at the point of push p is as a generalised one, times a factor, to x. */
+HOT void tree_push_add(const scene_body *b, const scene_trig *trig, int p, const lanes force[2],
+                       lanes factor, lanes *x)
+{
+    tree_base_add(b, factor, force, x);
+    TREE_UNROLL
+    for (int j = 0; j < tree_angles; j++) {
+        lanes reach[2];
+        if (tree_push_path[p][j] < 0)
+            continue;
+        tree_push_reach(b, trig, p, j, reach);
+        const lanes turning = lanes_fms(reach[0], force[1], reach[1] * force[0]);
+        x[TREE_BASE + j] = lanes_fma(factor, turning, x[TREE_BASE + j]);
+    }
+}
+
+/* Torques of actuators, springs and dampers at place s with rates w, times h, taken from x. */
+HOT void tree_resist(const scene_body *b, lanes h, const lanes *s, const lanes *w,
+                     const lanes *torque, lanes *x)
+{
+    TREE_UNROLL
+    for (int i = 0; i < tree_actuators; i++)
+        tree_drive(tree_actuator[i], -(h * torque[i]), x);
+    TREE_UNROLL
+    for (int k = 0; k < tree_springs; k++) {
+        const int i = tree_spring[k];
+        const lanes bent = tree_joint(s, i) - b->spring[k][2];
+        const lanes pull = lanes_fma(b->spring[k][0], bent, b->spring[k][1] * tree_joint(w, i));
+        tree_drive(i, h * pull, x);
+    }
+}
+
+/* residual = A(u) change - h (forces without contact), evaluated at the place s with angles `trig`
+ * and velocity w; change = velocity at the end minus velocity before the step. */
+HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
+                        const scene_trig *trig, const lanes *w, const lanes *change,
+                        const lanes *torque, lanes *residual)
+{
+    (void)t; /* no force depends on time */
+    tree_pad(residual);
+    lanes pull[2], sum[2] = {lanes_of(0), lanes_of(0)};
+    for (int axis = 0; axis < 2; axis++)
+        pull[axis] = lanes_fma(h, b->gravity[axis], tree_base(b, change, axis));
+    TREE_UNROLL
+    for (int i = 0; i < tree_angles; i++) {
+        lanes K[2];
+        tree_moment(b, trig, i, K);
+        const lanes c = change[TREE_BASE + i], rate = w[TREE_BASE + i];
+        const lanes centrifugal = h * (rate * rate);
+        sum[0] = lanes_fnma(K[1], c, lanes_fnma(K[0], centrifugal, sum[0]));
+        sum[1] = lanes_fma(K[0], c, lanes_fnma(K[1], centrifugal, sum[1]));
+        residual[TREE_BASE + i] =
+            lanes_fma(b->inertia[i], c, lanes_fms(K[0], pull[1], K[1] * pull[0]));
+    }
+    TREE_UNROLL
+    for (int i = 0; i < tree_angles; i++) {
+        TREE_UNROLL
+        for (int j = 0; j < i; j++) {
+            if (!tree_coupled[i][j])
+                continue;
+            lanes K[2], C, S;
+            tree_moment(b, trig, i, K);
+            tree_couple(b, trig, j, i, K, &C, &S);
+            const lanes vi = w[TREE_BASE + i], vj = w[TREE_BASE + j];
+            lanes *const ri = &residual[TREE_BASE + i], *const rj = &residual[TREE_BASE + j];
+            *ri = lanes_fma(C, change[TREE_BASE + j], lanes_fma(S, h * (vj * vj), *ri));
+            *rj = lanes_fma(C, change[TREE_BASE + i], lanes_fnma(S, h * (vi * vi), *rj));
+        }
+    }
+    TREE_UNROLL
+    for (int k = 0; k < tree_rotors; k++) {
+        const int i = tree_rotor[k];
+        if (i >= 0 && tree_above[i] >= 0) { /* its share of the diagonal is in the inertias */
+            lanes *const ri = &residual[TREE_BASE + i];
+            lanes *const rj = &residual[TREE_BASE + tree_above[i]];
+            *ri = lanes_fnma(b->rotor[k], change[TREE_BASE + tree_above[i]], *ri);
+            *rj = lanes_fnma(b->rotor[k], change[TREE_BASE + i], *rj);
+        }
+    }
+    if (tree_free) {
+        for (int axis = 0; axis < 2; axis++)
+            residual[axis] = lanes_fma(b->mass, pull[axis], sum[axis]);
+    } else if (tree_rail) {
+        const lanes along = lanes_fma(b->rail[0], b->lift[0], b->rail[1] * b->lift[1]);
+        residual[0] = lanes_fma(b->mass, lanes_fma(h, along, change[0]),
+                                lanes_fma(b->rail[0], sum[0], b->rail[1] * sum[1]));
+    }
+    tree_resist(b, h, s, w, torque, residual);
+    TREE_UNROLL
+    for (int p = 0; p < tree_pushes; p++)
+        tree_push_add(b, trig, p, b->pull[p], -h, residual);
+}
+
+/* R(a_j) times the arm. `tangential`: of the row of friction, which a sole has at its lower end. */
+HOT void tree_reach(const scene_body *b, const scene_trig *trig, int c, int j, bool tangential,
+                    lanes out[2])
+{
+    const int through = tree_path[c][j];
+    const lanes s = trig->sine[j], k = trig->cosine[j];
+    if (through != TREE_OWN) {
+        tree_turn(tree_straight_joint[through], s, k, b->joint[through], out);
+        return;
+    }
+    tree_turn(tree_straight_end[c], s, k, b->end[c], out);
+    if (!tangential || tree_other[c] < 0)
+        return;
+    lanes other[2];
+    tree_turn(tree_straight_end[tree_other[c]], s, k, b->end[tree_other[c]], other);
+    /* Of ends that are level the first one; both contacts see the same. */
+    const mask lower =
+        tree_other[c] < c ? mask_less(out[1], other[1]) : mask_less_equal(out[1], other[1]);
+    out[0] = choose(lower, out[0], other[0]);
+    out[1] = choose(lower, out[1], other[1]);
+}
+
+HOT bool tree_is_stop(int c)
+{
+    return tree_kind[c] == STANCE_TREE_LOW || tree_kind[c] == STANCE_TREE_HIGH;
+}
+HOT double tree_sign(int c)
+{
+    return tree_kind[c] == STANCE_TREE_LOW ? 1 : -1;
+}
+
+/* May J_ik be something else than zero, k < i a coordinate? */
+HOT bool tree_meets(int i, int k)
+{
+    return k < TREE_BASE ? k < tree_base_size : tree_near[i][k - TREE_BASE];
+}
+
+/* Eliminates the angles and inverts what is left of the base; m->row holds J_ij and J_ip, m->column
+ * J_ji and J_pi, pivot J_ii, base J_pp. */
+HOT void tree_eliminate(lanes *pivot, lanes base[2][2], scene_matrix *m)
+{
+    TREE_UNROLL
+    for (int i = tree_angles - 1; i >= 0; i--) {
+        m->inverse[i] = 1 / pivot[i];
+        lanes row[SCENE_COORDINATES];
+        TREE_UNROLL
+        for (int k = 0; k < TREE_BASE + i; k++)
+            if (tree_meets(i, k)) {
+                row[k] = m->inverse[i] * m->row[i][k];
+                m->row[i][k] = row[k];
+            }
+        TREE_UNROLL
+        for (int j = 0; j < i; j++) {
+            if (!tree_near[i][j])
+                continue;
+            const lanes factor = m->column[i][TREE_BASE + j];
+            pivot[j] = lanes_fnma(factor, row[TREE_BASE + j], pivot[j]);
+            TREE_UNROLL
+            for (int k = 0; k < TREE_BASE + j; k++)
+                if (tree_meets(i, k)) {
+                    m->row[j][k] = lanes_fnma(factor, row[k], m->row[j][k]);
+                    m->column[j][k] =
+                        lanes_fnma(m->column[i][k], row[TREE_BASE + j], m->column[j][k]);
+                }
+        }
+        for (int j = 0; j < tree_base_size; j++)
+            for (int k = 0; k < tree_base_size; k++)
+                base[j][k] = lanes_fnma(m->column[i][j], row[k], base[j][k]);
+    }
+    if (tree_free) {
+        const lanes reciprocal = 1 / lanes_fms(base[0][0], base[1][1], base[0][1] * base[1][0]);
+        m->base[0][0] = base[1][1] * reciprocal;
+        m->base[0][1] = -base[0][1] * reciprocal;
+        m->base[1][0] = -base[1][0] * reciprocal;
+        m->base[1][1] = base[0][0] * reciprocal;
+    } else if (tree_rail) {
+        m->base[0][0] = 1 / base[0][0];
+    }
+}
+
+/* x = J0^-1 b; path: NULL, or b is zero at angles j with path[j] < 0. */
+HOT void tree_solve(const scene_matrix *m, const int *path, const lanes *b, lanes *x)
+{
+    lanes y[SCENE_COORDINATES];
+    tree_pad(x);
+    TREE_UNROLL
+    for (int k = 0; k < SCENE_COORDINATES; k++)
+        y[k] = b[k];
+    TREE_UNROLL
+    for (int i = tree_angles - 1; i >= 0; i--) {
+        if (path && path[i] < 0)
+            continue;
+        y[TREE_BASE + i] = m->inverse[i] * y[TREE_BASE + i];
+        TREE_UNROLL
+        for (int k = 0; k < TREE_BASE + i; k++)
+            if (tree_meets(i, k))
+                y[k] = lanes_fnma(m->column[i][k], y[TREE_BASE + i], y[k]);
+    }
+    if (tree_free) {
+        x[0] = lanes_fma(m->base[0][0], y[0], m->base[0][1] * y[1]);
+        x[1] = lanes_fma(m->base[1][0], y[0], m->base[1][1] * y[1]);
+    } else if (tree_rail) {
+        x[0] = m->base[0][0] * y[0];
+    }
+    TREE_UNROLL
+    for (int i = 0; i < tree_angles; i++) {
+        lanes sum = path && path[i] < 0 ? lanes_of(0) : y[TREE_BASE + i];
+        TREE_UNROLL
+        for (int k = 0; k < TREE_BASE + i; k++)
+            if (tree_meets(i, k))
+                sum = lanes_fnma(m->row[i][k], x[k], sum);
+        x[TREE_BASE + i] = sum;
+    }
+}
+
+/* Inverse of a small matrix, by elimination with pivots of its columns. */
+HOT void tree_invert(lanes a[TREE_SLOTS(TREE_ACTUATORS)][TREE_SLOTS(TREE_ACTUATORS)],
+                     lanes inverse[TREE_SLOTS(TREE_ACTUATORS)][TREE_SLOTS(TREE_ACTUATORS)])
+{
+    const int N = tree_actuators;
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            inverse[i][j] = lanes_of(i == j);
+    for (int k = 0; k < N; k++) {
+        for (int r = k + 1; r < N; r++) {
+            const mask larger = mask_less(lanes_abs(a[k][k]), lanes_abs(a[r][k]));
+            for (int j = 0; j < N; j++) {
+                const lanes x = a[k][j], y = inverse[k][j];
+                a[k][j] = choose(larger, a[r][j], x);
+                a[r][j] = choose(larger, x, a[r][j]);
+                inverse[k][j] = choose(larger, inverse[r][j], y);
+                inverse[r][j] = choose(larger, y, inverse[r][j]);
+            }
+        }
+        const lanes reciprocal = 1 / a[k][k];
+        for (int j = 0; j < N; j++) {
+            a[k][j] = a[k][j] * reciprocal;
+            inverse[k][j] = inverse[k][j] * reciprocal;
+        }
+        for (int r = 0; r < N; r++) {
+            if (r == k)
+                continue;
+            const lanes factor = a[r][k];
+            for (int j = 0; j < N; j++) {
+                a[r][j] = lanes_fnma(factor, a[k][j], a[r][j]);
+                inverse[r][j] = lanes_fnma(factor, inverse[k][j], inverse[r][j]);
+            }
+        }
+    }
+}
+
+/* What the law answers to the rates x: its torques' change. */
+HOT void tree_gain(const scene_matrix *m, const lanes *x, lanes *torque)
+{
+    lanes rate[TREE_SLOTS(SCENE_POSTURE)];
+    scene_posture(x, rate);
+    for (int i = 0; i < tree_actuators; i++) {
+        torque[i] = lanes_of(0);
+        for (int j = 0; j < tree_postures; j++)
+            torque[i] = lanes_fma(m->gain[i][j], rate[j], torque[i]);
+    }
+}
+
+/* J = J0 - h B G: (J0 - h B G)^-1 = J0^-1 + Y (1 - G Y)^-1 G J0^-1 with Y = J0^-1 h B. */
+HOT void
+tree_close_loop(lanes h,
+                const lanes torque_rate[TREE_SLOTS(TREE_ACTUATORS)][TREE_SLOTS(SCENE_POSTURE)],
+                scene_matrix *m)
+{
+    lanes open[TREE_SLOTS(TREE_ACTUATORS)][TREE_SLOTS(TREE_ACTUATORS)];
+    for (int i = 0; i < tree_actuators; i++) {
+        lanes load[SCENE_COORDINATES];
+        for (int j = 0; j < tree_postures; j++)
+            m->gain[i][j] = torque_rate[i][j];
+        for (int k = 0; k < SCENE_COORDINATES; k++)
+            load[k] = lanes_of(0);
+        tree_drive(tree_actuator[i], h, load);
+        tree_solve(m, NULL, load, m->answer[i]);
+    }
+    for (int j = 0; j < tree_actuators; j++) {
+        lanes torque[TREE_SLOTS(TREE_ACTUATORS)];
+        tree_gain(m, m->answer[j], torque);
+        for (int i = 0; i < tree_actuators; i++)
+            open[i][j] = lanes_of(i == j) - torque[i];
+    }
+    tree_invert(open, m->loop);
+}
+HOT void tree_answer(const scene_matrix *m, lanes *x)
+{
+    lanes torque[TREE_SLOTS(TREE_ACTUATORS)];
+    tree_gain(m, x, torque);
+    for (int i = 0; i < tree_actuators; i++) {
+        lanes answer = lanes_of(0);
+        for (int j = 0; j < tree_actuators; j++)
+            answer = lanes_fma(m->loop[i][j], torque[j], answer);
+        for (int k = 0; k < SCENE_COORDINATES; k++)
+            x[k] = lanes_fma(m->answer[i][k], answer, x[k]);
+    }
+}
+
+/* x = J^-1 b. */
+HOT void scene_solve(const scene_matrix *m, bool coupled, const lanes *b, lanes *x)
+{
+    tree_solve(m, NULL, b, x);
+    if (coupled)
+        tree_answer(m, x);
+}
+
+/* Factors J = d residual / d velocity. `rate`: d(evaluation velocity)/d(velocity) = the method's
+ * theta; `lever`: d(evaluation angle)/d(velocity), s; `contact_lever` the same for the angles that
+ * the contact directions are taken at, with `contact_trig` there and the impulses r[contact][2] of
+ * the last iterate. torque_rate[i][j] = d torque_i / d(rate of posture j) in all, read when
+ * `coupled` only. */
+HOT void
+scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes contact_lever,
+             const scene_trig *trig, const scene_trig *contact_trig, const lanes *w,
+             const lanes *change, const lanes r[TREE_SLOTS(TREE_CONTACTS)][2], bool coupled,
+             const lanes torque_rate[TREE_SLOTS(TREE_ACTUATORS)][TREE_SLOTS(SCENE_POSTURE)],
+             scene_matrix *m)
+{
+    const lanes twice = 2 * rate * h;
+    lanes pivot[TREE_SLOTS(TREE_ANGLES)], along[TREE_SLOTS(TREE_ANGLES)],
+        across[TREE_SLOTS(TREE_ANGLES)], pull[2], base[2][2];
+    for (int axis = 0; axis < 2; axis++)
+        pull[axis] = lanes_fma(h, b->gravity[axis], tree_base(b, change, axis));
+    TREE_UNROLL
+    for (int i = 0; i < tree_angles; i++) {
+        lanes K[2];
+        const lanes turning = w[TREE_BASE + i];
+        tree_moment(b, trig, i, K);
+        along[i] = lanes_fnma(lever * h, turning * turning, lanes_of(1));
+        across[i] = lanes_fma(lever, change[TREE_BASE + i], twice * turning);
+        const lanes row[2] = {-K[1], K[0]};
+        const lanes column[2] = {lanes_fnma(K[1], along[i], -(K[0] * across[i])),
+                                 lanes_fms(K[0], along[i], K[1] * across[i])};
+        if (tree_free) {
+            for (int axis = 0; axis < 2; axis++)
+                m->row[i][axis] = row[axis], m->column[i][axis] = column[axis];
+        } else if (tree_rail) {
+            m->row[i][0] = lanes_fma(b->rail[0], row[0], b->rail[1] * row[1]);
+            m->column[i][0] = lanes_fma(b->rail[0], column[0], b->rail[1] * column[1]);
+        }
+        pivot[i] = lanes_fnma(lever, lanes_fma(K[0], pull[0], K[1] * pull[1]), b->inertia[i]);
+        TREE_UNROLL
+        for (int j = 0; j < i; j++)
+            if (tree_near[i][j])
+                m->row[i][TREE_BASE + j] = m->column[i][TREE_BASE + j] = lanes_of(0);
+    }
+    TREE_UNROLL
+    for (int i = 0; i < tree_angles; i++) {
+        TREE_UNROLL
+        for (int j = 0; j < i; j++) {
+            if (!tree_coupled[i][j])
+                continue;
+            lanes K[2], C, S;
+            const lanes vi = w[TREE_BASE + i], vj = w[TREE_BASE + j];
+            tree_moment(b, trig, i, K);
+            tree_couple(b, trig, j, i, K, &C, &S);
+            m->row[i][TREE_BASE + j] = lanes_fma(C, along[j], S * across[j]);
+            m->column[i][TREE_BASE + j] = lanes_fms(C, along[i], S * across[i]);
+            pivot[i] =
+                lanes_fma(lever, lanes_fms(C, h * (vj * vj), S * change[TREE_BASE + j]), pivot[i]);
+            pivot[j] =
+                lanes_fma(lever, lanes_fma(C, h * (vi * vi), S * change[TREE_BASE + i]), pivot[j]);
+        }
+    }
+    TREE_UNROLL
+    for (int c = 0; c < tree_contacts; c++) {
+        if (tree_is_stop(c))
+            continue;
+        TREE_UNROLL
+        for (int j = 0; j < tree_angles; j++) {
+            if (tree_path[c][j] < 0)
+                continue;
+            lanes reach[2], grip[2];
+            tree_reach(b, contact_trig, c, j, false, reach);
+            tree_reach(b, contact_trig, c, j, true, grip);
+            lanes turned = reach[1] * r[c][0];
+            if (scene_grip[c] == c)
+                turned = lanes_fma(grip[0], r[c][1], turned);
+            pivot[j] = lanes_fma(contact_lever, turned, pivot[j]);
+        }
+    }
+    for (int j = 0; j < 2; j++)
+        for (int k = 0; k < 2; k++)
+            base[j][k] = j == k ? b->mass : lanes_of(0);
+    TREE_UNROLL
+    for (int k = 0; k < tree_rotors; k++) {
+        const int i = tree_rotor[k];
+        if (i >= 0 && tree_above[i] >= 0) {
+            lanes *const row = &m->row[i][TREE_BASE + tree_above[i]];
+            lanes *const column = &m->column[i][TREE_BASE + tree_above[i]];
+            *row = *row - b->rotor[k], *column = *column - b->rotor[k];
+        }
+    }
+    TREE_UNROLL
+    for (int k = 0; k < tree_springs; k++) {
+        const int i = tree_spring[k];
+        const lanes stiff = h * lanes_fma(b->spring[k][0], lever, b->spring[k][1] * rate);
+        if (i < 0) {
+            base[0][0] = base[0][0] + stiff;
+            continue;
+        }
+        pivot[i] = pivot[i] + stiff;
+        if (tree_above[i] >= 0) {
+            lanes *const row = &m->row[i][TREE_BASE + tree_above[i]];
+            lanes *const column = &m->column[i][TREE_BASE + tree_above[i]];
+            pivot[tree_above[i]] = pivot[tree_above[i]] + stiff;
+            *row = *row - stiff, *column = *column - stiff;
+        }
+    }
+    TREE_UNROLL
+    for (int p = 0; p < tree_pushes; p++) {
+        TREE_UNROLL
+        for (int j = 0; j < tree_angles; j++) {
+            lanes reach[2];
+            if (tree_push_path[p][j] < 0)
+                continue;
+            tree_push_reach(b, trig, p, j, reach);
+            const lanes turned = lanes_fma(reach[0], b->pull[p][0], reach[1] * b->pull[p][1]);
+            pivot[j] = lanes_fma(lever * h, turned, pivot[j]);
+        }
+    }
+    tree_eliminate(pivot, base, m);
+    if (coupled)
+        tree_close_loop(h, torque_rate, m);
+}
+
+/* J = A, the inertia alone. */
+HOT void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix *m)
+{
+    lanes pivot[TREE_SLOTS(TREE_ANGLES)], base[2][2];
+    TREE_UNROLL
+    for (int i = 0; i < tree_angles; i++) {
+        lanes K[2];
+        tree_moment(b, trig, i, K);
+        if (tree_free) {
+            m->row[i][0] = m->column[i][0] = -K[1];
+            m->row[i][1] = m->column[i][1] = K[0];
+        } else if (tree_rail) {
+            m->row[i][0] = m->column[i][0] = lanes_fms(b->rail[1], K[0], b->rail[0] * K[1]);
+        }
+        pivot[i] = b->inertia[i];
+        TREE_UNROLL
+        for (int j = 0; j < i; j++) {
+            if (!tree_near[i][j])
+                continue;
+            lanes C = lanes_of(0), S;
+            if (tree_coupled[i][j])
+                tree_couple(b, trig, j, i, K, &C, &S);
+            m->row[i][TREE_BASE + j] = m->column[i][TREE_BASE + j] = C;
+        }
+    }
+    TREE_UNROLL
+    for (int k = 0; k < tree_rotors; k++) {
+        const int i = tree_rotor[k];
+        if (i >= 0 && tree_above[i] >= 0) {
+            lanes *const row = &m->row[i][TREE_BASE + tree_above[i]];
+            *row = *row - b->rotor[k];
+            m->column[i][TREE_BASE + tree_above[i]] = *row;
+        }
+    }
+    for (int j = 0; j < 2; j++)
+        for (int k = 0; k < 2; k++)
+            base[j][k] = j == k ? b->mass : lanes_of(0);
+    tree_eliminate(pivot, base, m);
+}
+
+/* Generalised forces without contact: centrifugal, gravity, torques, springs. */
+HOT void scene_forces(const scene_body *b, lanes t, const lanes *s, const scene_trig *trig,
+                      const lanes *w, const lanes *torque, lanes *force)
+{
+    lanes still[SCENE_COORDINATES];
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        still[i] = lanes_of(0);
+    scene_residual(b, lanes_of(1), t, s, trig, w, still, torque, force);
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        force[i] = -force[i];
+}
+
+/* x = A^-1 B e_i for a unit of torque i, of m from scene_inertia. */
+HOT void scene_actuator_response(const scene_body *b, const scene_matrix *m, int i, lanes *x)
+{
+    (void)b;
+    lanes load[SCENE_COORDINATES];
+    for (int k = 0; k < SCENE_COORDINATES; k++)
+        load[k] = lanes_of(0);
+    tree_drive(tree_actuator[i], lanes_of(1), load);
+    tree_solve(m, NULL, load, x);
+}
+
+#endif

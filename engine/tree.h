@@ -1,0 +1,68 @@
+/* tree.h - what of a mechanism is structure, and what are numbers: the tables of integers that
+ * kernels are compiled from (scenes/tree_lanes.h has the equations), and the numbers that go with
+ * them.
+ *
+ * Bodies that are fixed are merged into the one that carries them; what is left are the angles, in
+ * the order of their bodies, the parent before its children.
+ */
+#ifndef STANCE_TREE_H
+#define STANCE_TREE_H
+
+enum {
+    /* Kinds of contacts. */
+    STANCE_TREE_POINT,
+    STANCE_TREE_DISC,
+    STANCE_TREE_SOLE, /* an end of one */
+    STANCE_TREE_LOW,  /* stops of a joint */
+    STANCE_TREE_HIGH,
+
+    STANCE_TREE_OWN = 100, /* in a path: the body that carries the point */
+};
+#define TREE_SLOTS(n) ((n) > 0 ? (n) : 1)
+
+#ifndef TREE_ANGLES /* what follows is not for kernels */
+
+#include "mechanism.h"
+
+enum { STANCE_TREE_TEXT = 8192 }; /* bytes of the tables as text, at most */
+
+/* All indices are of angles unless said otherwise; -1: none, the base, the rail. */
+typedef struct stance_tree {
+    int base; /* coordinates of the base: 2 free, 1 on a rail, 0 pinned */
+    int angles, contacts, actuators, springs, rotors, points, turns, pushes;
+    int above[STANCE_MAX_ANGLES];                      /* whose frame the joint is in */
+    int straight[STANCE_MAX_ANGLES];                   /* its first moment has no x */
+    int straight_joint[STANCE_MAX_ANGLES];             /* nor its joint in the frame above */
+    int coupled[STANCE_MAX_ANGLES][STANCE_MAX_ANGLES]; /* [i][j]: j above i moves its joint */
+    int near[STANCE_MAX_ANGLES][STANCE_MAX_ANGLES];    /* or the elimination couples them */
+    int through[STANCE_MAX_ANGLES][STANCE_MAX_ANGLES]; /* [i][j]: the child of j towards i */
+    int carries[STANCE_MAX_ANGLES];                    /* it is on a contact's path */
+    int kind[STANCE_MAX_CONTACTS], body[STANCE_MAX_CONTACTS];
+    int straight_end[STANCE_MAX_CONTACTS];
+    int other[STANCE_MAX_CONTACTS]; /* contact: the other end of the sole */
+    int grip[STANCE_MAX_CONTACTS];  /* contact that holds its friction; -1: a stop */
+    /* How frames carry a point, by the arm in each: -1: it has none; STANCE_TREE_OWN: to the point;
+     * else to the joint of that angle. */
+    int path[STANCE_MAX_CONTACTS][STANCE_MAX_ANGLES];
+    int loads[STANCE_MAX_CONTACTS][STANCE_MAX_ANGLES]; /* >= 0: elimination has to do with it */
+    int top[STANCE_MAX_CONTACTS];                      /* of a base that is not free: first frame */
+    int actuator[STANCE_MAX_ACTUATORS];
+    int spring[STANCE_MAX_ANGLES + 1], rotor[STANCE_MAX_ANGLES + 1];
+    int point_path[STANCE_MAX_NAMED][STANCE_MAX_ANGLES], point_top[STANCE_MAX_NAMED];
+    int turning[STANCE_MAX_ANGLES];
+    int push_path[STANCE_MAX_PUSHES][STANCE_MAX_ANGLES], push_impulse[STANCE_MAX_PUSHES];
+} stance_tree;
+
+/* Errors: BAD_ARGUMENT where there are more angles, contacts or else than fit. */
+stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree,
+                              stance_message *message);
+
+/* The tables as C, for kernels; integers only. */
+void stance_tree_text(const stance_tree *tree, char text[STANCE_TREE_TEXT]);
+
+/* What kernels take of robot[], gravity and slope included. */
+void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m,
+                              const double *robot, stance_tree_numbers *number);
+
+#endif
+#endif

@@ -1,0 +1,283 @@
+/* compiler.c - see compiler.h. */
+#include "compiler.h"
+
+#include "runner/base/checksum.h"
+#include "runner/base/message.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <sched.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+/* From the Makefile: what the kernels of the program are compiled with. */
+#ifndef STANCE_OBJECT_FLAGS
+#define STANCE_OBJECT_FLAGS ""
+#define STANCE_OBJECT_ISAS
+#endif
+
+/* An object needs nothing but functions of the C library, which the program has. Warnings are for
+ * those who write kernels. */
+#define FLAGS                                                                                      \
+    STANCE_OBJECT_FLAGS " -w -g0 -pipe -fPIC -fvisibility=hidden -shared -nostdlib -I."            \
+                        " -DSTANCE_OBJECT -DSTANCE_SCENE_LANES=\"" COMPILER_TABLES "\""
+#define ISA(name, ...) {#name, FLAGS " " #__VA_ARGS__},
+static const struct {
+    const char *name, *flags;
+} isas[] = {STANCE_OBJECT_ISAS{NULL, NULL}};
+#undef ISA
+
+enum { FLAGS_SIZE = 1000, ARGUMENTS = 100, OUTPUT = 4000 };
+
+const char *compiler_isa(size_t index)
+{
+    return isas[index].name;
+}
+
+const char *compiler_flags(const char *isa)
+{
+    for (size_t i = 0; isas[i].name; i++)
+        if (strcmp(isas[i].name, isa) == 0)
+            return isas[i].flags;
+    return NULL;
+}
+
+/* Splits text at blanks, in place; at most `most` words. */
+static size_t split(char *text, char **word, size_t most)
+{
+    char *rest = NULL;
+    size_t n = 0;
+    for (char *w = strtok_r(text, " ", &rest); w && n < most; w = strtok_r(NULL, " ", &rest))
+        word[n++] = w;
+    return n;
+}
+
+/* ---- processes ----------------------------------------------------------------------------- */
+
+/* This process's environment, but for temporary files in the working directory and messages in
+ * English; to be freed. */
+static char **environment(void)
+{
+    static char tmpdir[] = "TMPDIR=.", language[] = "LC_ALL=C";
+    size_t n = 0, kept = 0;
+    while (environ[n])
+        n++;
+    char **const all = malloc((n + 3) * sizeof *all);
+    for (size_t i = 0; all && i < n; i++)
+        if (strncmp(environ[i], "TMPDIR=", 7) != 0 && strncmp(environ[i], "LC_ALL=", 7) != 0)
+            all[kept++] = environ[i];
+    if (all) {
+        all[kept++] = tmpdir;
+        all[kept++] = language;
+        all[kept] = NULL;
+    }
+    return all;
+}
+
+/* Starts a program, in a directory (negative: here), that writes into `output`. Negative: it cannot
+ * be started; errno says why. */
+static pid_t start(char *const *argument, int directory, int output)
+{
+    posix_spawn_file_actions_t actions;
+    pid_t child = -1;
+    char **const variables = environment();
+    int error = variables ? posix_spawn_file_actions_init(&actions) : ENOMEM;
+    if (error == 0) {
+        error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+        error = error ? error : posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
+        error = error ? error : posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO);
+        if (directory >= 0)
+            error = error ? error : posix_spawn_file_actions_addfchdir_np(&actions, directory);
+        error =
+            error ? error : posix_spawnp(&child, argument[0], &actions, NULL, argument, variables);
+        posix_spawn_file_actions_destroy(&actions);
+    }
+    free(variables);
+    errno = error;
+    return error == 0 ? child : -1;
+}
+
+/* Its status as of waitpid, -1 when there is none. */
+static int await(pid_t child)
+{
+    int status = -1;
+    while (child > 0 && waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return -1;
+    return child > 0 ? status : -1;
+}
+
+/* What a program wrote, up to OUTPUT bytes, as text. Closes the file. */
+static void read_output(int output, char text[OUTPUT])
+{
+    const ssize_t n = pread(output, text, OUTPUT - 1, 0);
+    text[n > 0 ? n : 0] = '\0';
+    close(output);
+}
+
+/* ---- which compiler ------------------------------------------------------------------------ */
+
+/* Appends what the compiler says to an option. false: it does not run, or fails, or says nothing.
+ */
+static bool ask(const struct compiler *compiler, char *option, char text[OUTPUT])
+{
+    char *argument[COMPILER_WORDS + 2];
+    memcpy(argument, compiler->word, compiler->words * sizeof *argument);
+    argument[compiler->words] = option;
+    argument[compiler->words + 1] = NULL;
+    const int output = memfd_create("compiler", MFD_CLOEXEC);
+    if (output < 0)
+        return false;
+    const int status = await(start(argument, -1, output));
+    read_output(output, text);
+    return status == 0 && text[0];
+}
+
+/* It will run in another directory. */
+static bool make_absolute(struct compiler *compiler)
+{
+    char here[PATH_MAX];
+    const char *const name = compiler->word[0];
+    if (name[0] == '/' || !strchr(name, '/'))
+        return true;
+    const int n = getcwd(here, sizeof here)
+                      ? snprintf(compiler->path, sizeof compiler->path, "%s/%s", here, name)
+                      : -1;
+    compiler->word[0] = compiler->path;
+    return n > 0 && (size_t)n < sizeof compiler->path;
+}
+
+/* Is there a compiler of this name? */
+static bool try_compiler(struct compiler *compiler, const char *name)
+{
+    static char version[] = "--version", machine[] = "-dumpmachine";
+    char said[2 * OUTPUT], hash[CHECKSUM_SHA256_TEXT];
+    if (strlen(name) >= sizeof compiler->text)
+        return false;
+    snprintf(compiler->text, sizeof compiler->text, "%s", name);
+    compiler->words = split(compiler->text, compiler->word, COMPILER_WORDS);
+    if (compiler->words == 0 || !make_absolute(compiler) || !ask(compiler, version, said))
+        return false;
+    snprintf(compiler->version, sizeof compiler->version, "%.*s", (int)strcspn(said, "\n"), said);
+    if (!ask(compiler, machine, said + strlen(said)))
+        return false;
+    /* The name as well: `gcc -m32` says the same as `gcc`. */
+    const size_t used = strlen(said);
+    snprintf(said + used, sizeof said - used, "%s", name);
+    checksum_sha256(said, strlen(said), hash);
+    snprintf(compiler->identity, sizeof compiler->identity, "%.32s", hash);
+    return true;
+}
+
+bool compiler_find(struct compiler *compiler, stance_message *why)
+{
+    static const char *const names[] = {"cc", "gcc", "clang"};
+    const char *const chosen = getenv("CC");
+    if (chosen && chosen[0])
+        return try_compiler(compiler, chosen) ||
+               complain(why, "the compiler CC='%.60s' does not run", chosen);
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (try_compiler(compiler, names[i]))
+            return true;
+    return complain(why, "there is no compiler here (CC, cc, gcc, clang)");
+}
+
+/* ---- compiling ----------------------------------------------------------------------------- */
+
+/* What a compiler that failed said: its first lines, from the first error on. */
+static void complain_of(struct compilation *c, const struct compiler *compiler, int status,
+                        char *said)
+{
+    const char *const error = strstr(said, "error");
+    char *from = said;
+    for (char *line = said; error && (line = strchr(line, '\n')) && line < error;)
+        from = ++line;
+    for (char *s = from; *s; s++)
+        if ((unsigned char)*s < ' ')
+            *s = s[1] && *s == '\n' ? '|' : ' ';
+    const bool killed = status != -1 && WIFSIGNALED(status);
+    complain(&c->message, "%.30s does not compile %s for %s (%s %d): %.130s", compiler->word[0],
+             c->method, c->isa, killed ? "signal" : "exit code",
+             status == -1 ? 127
+             : killed     ? WTERMSIG(status)
+                          : WEXITSTATUS(status),
+             from[0] ? from : "and does not say why");
+}
+
+/* One that has been started. */
+struct running {
+    pid_t child;
+    int output;
+};
+
+static void object_name(const struct compilation *c, char name[80])
+{
+    snprintf(name, 80, "%s-%s.so", c->method, c->isa);
+}
+
+static struct running begin(const struct compiler *compiler, int directory,
+                            const struct compilation *c)
+{
+    char flags[FLAGS_SIZE], source[80], object[80], *argument[ARGUMENTS];
+    static char to[] = "-o";
+    snprintf(flags, sizeof flags, "%s", compiler_flags(c->isa));
+    snprintf(source, sizeof source, "engine/methods/%s.c", c->method);
+    object_name(c, object);
+    memcpy(argument, compiler->word, compiler->words * sizeof *argument);
+    size_t n = compiler->words;
+    n += split(flags, argument + n, ARGUMENTS - COMPILER_WORDS - 4);
+    argument[n++] = to;
+    argument[n++] = object;
+    argument[n++] = source;
+    argument[n] = NULL;
+    struct running running = {-1, memfd_create("messages", MFD_CLOEXEC)};
+    if (running.output >= 0)
+        running.child = start(argument, directory, running.output);
+    return running;
+}
+
+static void end(const struct compiler *compiler, int directory, struct running running,
+                struct compilation *c)
+{
+    char name[80], said[OUTPUT] = "";
+    const int status = await(running.child);
+    if (running.output >= 0)
+        read_output(running.output, said);
+    object_name(c, name);
+    const int object = openat(directory, name, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    c->image = (struct image){NULL, 0};
+    if (status != 0 || object < 0 || !image_read(&c->image, object))
+        complain_of(c, compiler, status, said);
+    if (object >= 0)
+        close(object);
+}
+
+static size_t cores(void)
+{
+    cpu_set_t set;
+    return sched_getaffinity(0, sizeof set, &set) == 0 ? (size_t)CPU_COUNT(&set) : 1;
+}
+
+void compiler_run(const struct compiler *compiler, int directory, struct compilation *wanted,
+                  size_t count)
+{
+    enum { MANY = 64 };
+    struct running running[MANY] = {{.child = -1}};
+    const size_t most = cores() < MANY ? cores() : MANY;
+    for (size_t begun = 0, ended = 0; ended < count;) {
+        if (begun < count && begun - ended < most) {
+            running[begun % MANY] = begin(compiler, directory, &wanted[begun]);
+            begun++;
+        } else {
+            end(compiler, directory, running[ended % MANY], &wanted[ended]);
+            ended++;
+        }
+    }
+}

@@ -1,0 +1,47 @@
+/* compiler.h - the C compiler of the machine: which it is, and running it, several at a time.
+ *
+ * It is started with a list of arguments, never by a shell, in a directory that holds all it reads
+ * and writes (temporary files, too).
+ */
+#ifndef STANCE_OBJECTS_COMPILER_H
+#define STANCE_OBJECTS_COMPILER_H
+
+#include "image.h"
+
+#include "engine/stance.h"
+
+enum { COMPILER_WORDS = 16 };
+
+/* The environment variable CC if it is set, else the first of cc, gcc and clang in PATH. */
+struct compiler {
+    char *word[COMPILER_WORDS]; /* how it is called ... */
+    size_t words;
+    char text[512], path[4096];   /* ... kept here */
+    char version[IMAGE_COMPILER]; /* first line of --version */
+    char identity[IMAGE_HALF];    /* of all that it says of itself */
+};
+
+/* false: none runs; `why` says what was tried. */
+bool compiler_find(struct compiler *compiler, stance_message *why);
+
+/* The flags that an instruction set is compiled with, separated by blanks; NULL: there is none of
+ * this name. And the name of each instruction set of this build, NULL past the last. */
+const char *compiler_flags(const char *isa);
+const char *compiler_isa(size_t index);
+
+/* One kernel to be compiled, and what became of it. */
+struct compilation {
+    const char *method, *isa;
+    struct image image;     /* none: it failed ... */
+    stance_message message; /* ... and why */
+};
+
+/* The header that each of them is compiled with, see objects.h; in `directory`. */
+#define COMPILER_TABLES "tables.h"
+
+/* Compiles in `directory`, which holds the sources and COMPILER_TABLES; as many at a time as this
+ * process has cores. */
+void compiler_run(const struct compiler *compiler, int directory, struct compilation *wanted,
+                  size_t count);
+
+#endif

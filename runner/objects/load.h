@@ -1,0 +1,17 @@
+/* load.h - a compiled object becomes a kernel of this process. */
+#ifndef STANCE_OBJECTS_LOAD_H
+#define STANCE_OBJECTS_LOAD_H
+
+#include "image.h"
+#include "objects.h"
+
+/* Loads an image from memory. object->kernel says scene, method and instruction set; the rest of it
+ * is filled in. */
+bool load_object(const struct image *image, struct object *object, stance_message *message);
+
+/* Whether an object computes what the reference does, in every bit. true where there is nothing to
+ * compare with. */
+bool load_check(const struct object *object, const stance_kernel *reference,
+                const struct objects_request *request, stance_message *message);
+
+#endif

@@ -1,0 +1,71 @@
+/* objects.h - kernels that are compiled when they are needed, for what no kernel is built in.
+ *
+ * What is simulated is described by a header of tables; with it the engine's own sources, which the
+ * program carries, are compiled into an object for each method and instruction set, and kept in a
+ * cache: a directory of the user, one file for each key (tables, sources, flags, compiler). Rank 0
+ * alone reads, compiles and checks; every rank loads the bytes from memory.
+ *
+ * Trust: the tables are made by the engine and hold nothing but integers; a cache that others can
+ * change is refused; a file in it is taken if it is whole (SHA-256) and the user's own. Whatever
+ * the compiler, an object computes what the reference computes, to the bit, or is refused.
+ *
+ * What does not go as planned is said in one line each on standard error, by rank 0.
+ */
+#ifndef STANCE_OBJECTS_OBJECTS_H
+#define STANCE_OBJECTS_OBJECTS_H
+
+#include "image.h"
+
+#include "engine/stance.h"
+
+#include "runner/base/command.h"
+#include "runner/ranks/parallel.h"
+
+enum { OBJECTS_MOST = 64 }; /* in one request, over all ranks */
+
+struct objects_wanted {
+    const stance_method *method;
+    const char *isa;
+    /* A kernel that this machine runs and that computes the same to the bit: what an object is
+     * compared with, and what does instead where none can be had. NULL: there is none. */
+    const stance_kernel *reference;
+};
+
+struct objects_request {
+    const char *tables; /* a C header that ends with the lanes' (engine/scenes/..._lanes.h) */
+    const stance_scene *scene;
+    const struct objects_wanted *wanted; /* [count] */
+    size_t count;
+    const stance_case *check; /* [checks]; no trajectories */
+    size_t checks;
+    bool quiet; /* say nothing where all goes well */
+};
+
+/* Where a kernel comes from. */
+enum object_origin { OBJECT_KEPT, OBJECT_COMPILED, OBJECT_REFERENCE };
+
+struct object {
+    stance_kernel kernel;
+    enum object_origin origin;
+    /* Of a reference "". */
+    char key[IMAGE_KEY], compiler[IMAGE_COMPILER];
+    void *library; /* the rest is private */
+    int memory;
+};
+
+/* Names of the instruction sets that this build compiles for, run by this machine or not; NULL past
+ * the last. */
+const char *objects_isa(size_t index);
+
+/* Collective: the kernels of a request, object[count]. All ranks give the same tables; what they
+ * want of them may differ. A method that is not compiled on demand is its reference.
+ * EXIT_DONE: all there. EXIT_USAGE: there is no reference either, and no compiler or one that
+ * fails. EXIT_IO: the cache is refused, no memory. Then `message` is the same on every rank, and
+ * there is nothing to be released. */
+enum exit_code objects_take(const struct parallel *ranks, const struct objects_request *request,
+                            struct object *object, stance_message *message);
+
+/* Their kernels are gone. */
+void objects_release(struct object *object, size_t count);
+
+#endif

@@ -1,0 +1,31 @@
+/* kernels.h - the kernels of a plan whose scene is described: compiled for its structure, taken
+ * from the cache or, where neither can be, those that read it at run time. */
+#ifndef STANCE_PLAN_KERNELS_H
+#define STANCE_PLAN_KERNELS_H
+
+#include "plan.h"
+
+#include "runner/objects/objects.h"
+
+struct kernels {
+    struct object object[OBJECTS_MOST];
+    const stance_kernel *kernel[OBJECTS_MOST];
+    size_t count;
+};
+
+/* What else than the plan's methods for the instruction set in use: names, or 0 of them. */
+struct kernels_choice {
+    const char *const *method, *const *isa;
+    size_t methods, isas;
+};
+
+/* Collective: takes what the plan's methods (choice NULL) need; from then on instruction_set_kernel
+ * gives them. Built-in scenes need nothing. quiet: says nothing where all goes well. Needs the
+ * designs. Exit codes and message as objects_take; *kernels is to be given back where it is
+ * EXIT_DONE. */
+enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
+                            const struct kernels_choice *choice, const struct parallel *parallel,
+                            bool quiet, stance_message *message);
+void kernels_give_back(struct kernels *kernels);
+
+#endif

@@ -1,0 +1,208 @@
+/* description.c - the numbers of a mechanism that is being read.
+ *
+ * Those become robot[] that are given, also by `like`, in the controller's model, or by an axis.
+ * The others keep their defaults, and are not there for those who compile the structure.
+ */
+#include "description.h"
+
+#include <math.h>
+#include <string.h>
+
+const char *description_path(char path[DESCRIPTION_PATH], enum part part, const char *name,
+                             const char *key)
+{
+    snprintf(path, DESCRIPTION_PATH, "robot.%s.%.40s%s%.95s", part_kinds[part].key, name,
+             key[0] ? "." : "", key);
+    return path;
+}
+
+/* ---- numbers --------------------------------------------------------------------------------- */
+
+static double *places(stance_mechanism *m)
+{
+    return (double *)(void *)&m->value;
+}
+
+void description_defaults(stance_mechanism *m)
+{
+    for (int b = 0; b < STANCE_MAX_BODIES; b++) {
+        m->value.body[b].axis[0] = 1;
+        m->value.body[b].limits[0] = -INFINITY;
+        m->value.body[b].limits[1] = INFINITY;
+        m->value.body[b].turn = INFINITY;
+    }
+    for (int i = 0; i < STANCE_MAX_NAMED; i++)
+        m->value.point[i].lowest = -INFINITY;
+    for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
+        m->value.limit[i] = INFINITY;
+}
+
+/* Why a key that there is may not stand in part i. */
+static bool misplaced(struct description *d, const struct part_key *key, int i, const char *path,
+                      struct mark mark)
+{
+    static const char *const joint[] = {
+        [STANCE_FREE] = "a free root has no joint",
+        [STANCE_HINGE] = "a hinge has no rail",
+        [STANCE_SLIDE] = "a rail has no such number",
+        [STANCE_FIXED] = "what is fixed has no joint",
+    };
+    return problem_add(description_problems(d), mark, "%s: %s", path,
+                       key->part == PART_BODY ? joint[d->m->body[i].joint]
+                       : key->part == PART_POINT
+                           ? "a push has force, from and to, a stroke impulse and "
+                             "from"
+                       : key->of_point ? "a sole has from and to alone"
+                                       : "a contact has at, or from and to: not both");
+}
+
+static bool read_key(struct description *d, const struct part_key *key, int i,
+                     const struct entry *entry)
+{
+    const struct tree_node *const node = tree_find(entry->map, key->field.path);
+    const int count = part_numbers(key), place = part_place(d->m, key, i);
+    struct scenario_field row = key->field;
+    char path[DESCRIPTION_PATH], name[DESCRIPTION_PATH + 8];
+    description_path(path, key->part, entry->key->name, row.path);
+    snprintf(row.unit, sizeof row.unit, "%s", part_unit(d->m, key, i));
+    if (place < 0)
+        return misplaced(d, key, i, path, node->mark);
+    double *const value = &places(d->m)[place];
+    d->given[place] = true;
+    if (count == 1)
+        return field_number(description_problems(d), &row, path, node, value);
+    if (!field_items(description_problems(d), path, node, 2, "numbers"))
+        return false;
+    bool good = true;
+    for (int k = 0; k < 2; k++) {
+        snprintf(name, sizeof name, "%s[%d]", path, k);
+        d->given[place + k] = true;
+        good = field_number(description_problems(d), &row, name, node->item[k], &value[k]) && good;
+    }
+    if (isinf(value[0])) /* no lower stop */
+        value[0] = -INFINITY;
+    return good;
+}
+
+/* What body i has from the one that it is like: `at` only from one that hangs from another, too. */
+static void copy_numbers(struct description *d, int i, int from)
+{
+    for (size_t k = 0; k < part_key_count && part_keys[k].part == PART_BODY; k++) {
+        const struct part_key *const key = &part_keys[k];
+        const int to_place = part_place(d->m, key, i), place = part_place(d->m, key, from);
+        const bool at = key->field.offset == offsetof(stance_body_numbers, at);
+        if (to_place < 0 || place < 0 ||
+            (at && (d->m->body[from].parent < 0) != (d->m->body[i].parent < 0)))
+            continue;
+        for (int n = 0; n < part_numbers(key); n++) {
+            places(d->m)[to_place + n] = places(d->m)[place + n];
+            d->given[to_place + n] = d->given[place + n];
+        }
+    }
+}
+
+static bool read_numbers(struct description *d, enum part part, int i)
+{
+    struct entry *const entry = &d->entry[part][part == PART_BODY ? d->back[i] : i];
+    bool good = true;
+    if (entry->read)
+        return true;
+    entry->read = true;
+    if (entry->like >= 0) {
+        good = read_numbers(d, PART_BODY, d->place[entry->like]);
+        copy_numbers(d, i, d->place[entry->like]);
+    }
+    for (size_t k = 0; k < part_key_count; k++)
+        if (part_keys[k].part == part && part_numbers(&part_keys[k]) > 0 &&
+            tree_find(entry->map, part_keys[k].field.path))
+            good = read_key(d, &part_keys[k], i, entry) && good;
+    return good;
+}
+
+/* ---- which of them are robot[] --------------------------------------------------------------- */
+
+/* Whether an axis of a list of them names a path. */
+static bool names_path(const struct tree_node *list, const char *path)
+{
+    for (size_t i = 0; list && list->kind == TREE_LIST && i < list->count && i < SCENARIO_MAX_AXES;
+         i++) {
+        const struct tree_node *const one = tree_find(list->item[i], "path"), *const some =
+                                                                                  tree_find(
+                                                                                      list->item[i],
+                                                                                      "paths");
+        if (one && one->kind == TREE_SCALAR && strcmp(one->text, path) == 0)
+            return true;
+        for (size_t k = 0;
+             some && some->kind == TREE_LIST && k < some->count && k < SCENARIO_MAX_PATHS; k++)
+            if (some->item[k]->kind == TREE_SCALAR && strcmp(some->item[k]->text, path) == 0)
+                return true;
+    }
+    return false;
+}
+
+/* The value below keys, or NULL. */
+static const struct tree_node *find_below(const struct tree_node *node, const char *const *key)
+{
+    for (; node && *key; key++)
+        node = tree_find(node, *key);
+    return node;
+}
+
+/* Whether the sweep varies the number at a path below robot ("robot.") or the model. */
+static bool is_varied(const struct description *d, const char *of, const char *path)
+{
+    const struct tree_node *const root = d->r->tree.root;
+    char whole[DESCRIPTION_PATH + 24];
+    snprintf(whole, sizeof whole, "%s%s", of, path);
+    return names_path(find_below(root, (const char *const[]){"sweep", "grid", NULL}), whole) ||
+           names_path(find_below(root, (const char *const[]){"sweep", "sample", "vary", NULL}),
+                      whole);
+}
+
+static void choose_key(struct description *d, const struct part_key *key, int i)
+{
+    stance_mechanism *const m = d->m;
+    const int count = part_numbers(key), place = part_place(m, key, i);
+    const char *const name = part_name(m, key->part, i);
+    bool wanted = place >= 0 && d->given[place], varies[2] = {false};
+    if (place < 0)
+        return;
+    for (int n = 0; n < count; n++) {
+        char path[DESCRIPTION_PATH], item[8] = "";
+        if (count == 2)
+            snprintf(item, sizeof item, "[%d]", n);
+        snprintf(path, sizeof path, "%s.%s.%s%s", part_kinds[key->part].key, name, key->field.path,
+                 item);
+        varies[n] = is_varied(d, "robot.", path);
+        wanted = wanted || varies[n] || is_varied(d, "controller.model.", path);
+    }
+    wanted =
+        wanted || find_below(d->r->tree.root,
+                             (const char *const[]){"controller", "model", part_kinds[key->part].key,
+                                                   name, key->field.path, NULL});
+    for (int n = 0; wanted && n < count; n++) {
+        if (m->numbers < STANCE_ROBOT_GRAVITY) {
+            m->number[m->numbers] = place + n;
+            m->varies[m->numbers] = varies[n];
+        }
+        m->numbers++;
+    }
+}
+
+bool description_numbers(struct description *d)
+{
+    bool good = true;
+    for (int part = 0; part < PARTS; part++)
+        for (int i = 0; i < part_count(d->m, (enum part)part); i++)
+            good = read_numbers(d, (enum part)part, i) && good;
+    for (int part = 0; part < PARTS; part++)
+        for (int i = 0; i < part_count(d->m, (enum part)part); i++)
+            for (size_t k = 0; k < part_key_count; k++)
+                if (part_keys[k].part == (enum part)part)
+                    choose_key(d, &part_keys[k], i);
+    return (d->m->numbers <= STANCE_ROBOT_GRAVITY ||
+            problem_add(description_problems(d), tree_find(d->r->tree.root, "robot")->mark,
+                        "robot: %d numbers are given; at most %d", d->m->numbers,
+                        STANCE_ROBOT_GRAVITY)) &&
+           good;
+}

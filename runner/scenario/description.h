@@ -1,0 +1,46 @@
+/* description.h - a mechanism while it is read, shared by mechanism.c and description.c. */
+#ifndef STANCE_SCENARIO_DESCRIPTION_H
+#define STANCE_SCENARIO_DESCRIPTION_H
+
+#include "reader.h"
+#include "schema_mechanism.h"
+
+enum { DESCRIPTION_PATH = 192 };
+
+/* One of robot.bodies, .contacts, ... as it stands in the file. */
+struct entry {
+    const struct tree_key *key;
+    const struct tree_node *map;
+    stance_joint joint;
+    int parent, like; /* of a body: places in the file, or -1 */
+    int body;         /* that any other belongs to */
+    bool read;        /* its numbers are */
+};
+
+struct description {
+    struct reader *r;
+    stance_mechanism *m;
+    struct entry entry[PARTS][STANCE_MAX_BODIES];
+    int count[PARTS];
+    const char *body_name[STANCE_MAX_BODIES];
+    int place[STANCE_MAX_BODIES], back[STANCE_MAX_BODIES]; /* of the file's bodies in m; and back */
+    bool given[sizeof(stance_mechanism_numbers) / sizeof(double)]; /* of m->value, as numbers */
+};
+
+static inline struct problems *description_problems(struct description *d)
+{
+    return &d->r->problems;
+}
+
+/* "robot.bodies.trunk.mass". Returns path. */
+const char *description_path(char path[DESCRIPTION_PATH], enum part part, const char *name,
+                             const char *key);
+
+/* What the numbers are that nobody gives, where that is not 0. */
+void description_defaults(stance_mechanism *m);
+
+/* Reads the numbers of all parts, whose names and links are in m, and chooses those of robot[].
+ * False: a problem. */
+bool description_numbers(struct description *d);
+
+#endif

@@ -1,0 +1,508 @@
+/* mechanism.c - the tree of a mechanism as data: names, how bodies hang together, numbers.
+ *
+ * Which numbers become robot[]: those that are given, also by `like`, in the controller's model, or
+ * by an axis. The others keep their defaults, and are not there for those who compile the
+ * structure.
+ */
+#include "mechanism.h"
+#include "description.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* ---- names ----------------------------------------------------------------------------------- */
+
+static bool listed(const char *const *words, const char *word)
+{
+    while (*words && strcasecmp(*words, word) != 0)
+        words++;
+    return *words != NULL;
+}
+
+/* Why a text is no name; NULL: it is one. */
+static const char *name_fault(enum part part, const char *name)
+{
+    static const char *const truths[] = {"on", "off",  "yes",   "no",   "y",
+                                         "n",  "true", "false", "null", NULL};
+    static const char *const coordinates[] = {"x", "z", "vx", "vz", NULL};
+    static const char *const keys[] = {"scale", "branch", NULL};
+    bool word = isalpha((unsigned char)name[0]) != 0;
+    for (const char *s = name; *s; s++)
+        word = word && (isalnum((unsigned char)*s) || *s == '_');
+    if (!word)
+        return "a name is a letter, then letters, digits or _";
+    if (strlen(name) >= STANCE_NAME)
+        return "a name has at most 31 letters";
+    if (listed(truths, name))
+        return "some readers of YAML take it for true, false or nothing";
+    if (part != PART_ACTUATOR && listed(coordinates, name))
+        return "a coordinate of a free root, or its rate, is called so";
+    if (part == PART_BODY && listed(keys, name))
+        return "a key of initial.offset or initial.equilibrium is called so";
+    return NULL;
+}
+
+/* Another part of this name, or the body whose rate it is; actuators have names of their own. */
+static const struct entry *namesake(const struct description *d, enum part part, int i)
+{
+    const char *const name = d->entry[part][i].key->name;
+    for (int p = 0; p <= (int)part && part != PART_ACTUATOR; p++)
+        for (int k = 0; k < d->count[p] && !(p == (int)part && k >= i); k++)
+            if (strcmp(d->entry[p][k].key->name, name) == 0)
+                return &d->entry[p][k];
+    for (int k = 0; part == PART_BODY && name[0] == 'v' && k < d->count[part]; k++)
+        if (strcmp(d->entry[part][k].key->name, name + 1) == 0)
+            return &d->entry[part][k];
+    return NULL;
+}
+
+static bool check_names(struct description *d, enum part part)
+{
+    bool good = true;
+    for (int i = 0; i < d->count[part]; i++) {
+        const struct tree_key *const key = d->entry[part][i].key;
+        const char *const fault = name_fault(part, key->name);
+        const struct entry *const other = fault ? NULL : namesake(d, part, i);
+        char word[SHOWN_SIZE];
+        if (fault) {
+            good = problem_add(description_problems(d), key->mark, "robot.%s: '%s' is no name: %s",
+                               part_kinds[part].key, shown(word, key->name), fault);
+        } else if (other) {
+            const bool rate = strcmp(other->key->name, key->name) != 0;
+            good = problem_add(description_problems(d), key->mark,
+                               "robot.%s.%s: %s in line %d is called so, too: choose another name",
+                               part_kinds[part].key, key->name,
+                               rate ? "the rate of the body" : "the part", other->key->mark.line);
+        }
+    }
+    return good;
+}
+
+/* The keys of a mapping, which are those of the table. */
+static bool check_keys(struct description *d, const struct tree_node *map, const char *name,
+                       const char *const *known, size_t count)
+{
+    bool good = true;
+    for (size_t i = 0; i < map->count; i++) {
+        size_t k = 0;
+        while (k < count && strcmp(map->key[i].name, known[k]) != 0)
+            k++;
+        if (k == count)
+            good = field_unknown(description_problems(d), name, "key", map->key[i].name,
+                                 map->key[i].mark, known, count);
+    }
+    return good;
+}
+
+static bool check_part(struct description *d, enum part part, const struct entry *entry)
+{
+    char path[DESCRIPTION_PATH];
+    const char *known[16];
+    size_t count = 0;
+    description_path(path, part, entry->key->name, "");
+    if (entry->map->kind != TREE_MAP)
+        return field_mismatch(description_problems(d), path, "a mapping", entry->map);
+    for (size_t k = 0; k < part_key_count; k++)
+        if (part_keys[k].part == part)
+            known[count++] = part_keys[k].field.path;
+    return check_keys(d, entry->map, path, known, count);
+}
+
+static bool read_names(struct description *d, const struct tree_node *robot, enum part part)
+{
+    const struct part_kind *const kind = &part_kinds[part];
+    const struct tree_node *const map = tree_find(robot, kind->key);
+    char path[DESCRIPTION_PATH];
+    snprintf(path, sizeof path, "robot.%s", kind->key);
+    if (!map)
+        return part != PART_BODY || problem_add(description_problems(d), robot->mark,
+                                                "robot.bodies is missing: a mechanism is made "
+                                                "of them");
+    if (map->kind != TREE_MAP)
+        return field_mismatch(description_problems(d), path, "a mapping of names", map);
+    if (map->count == 0 && part == PART_BODY)
+        return problem_add(description_problems(d), map->mark, "%s: there is no body", path);
+    if (map->count > (size_t)kind->most)
+        return problem_add(description_problems(d), map->mark, "%s: %zu of them; at most %d", path,
+                           map->count, kind->most);
+    bool good = true;
+    d->count[part] = (int)map->count;
+    for (size_t i = 0; i < map->count; i++) {
+        d->entry[part][i] = (struct entry){
+            .key = &map->key[i], .map = map->item[i], .parent = -1, .like = -1, .body = -1};
+        good = check_part(d, part, &d->entry[part][i]) && good;
+        if (part == PART_BODY)
+            d->body_name[i] = map->key[i].name;
+    }
+    return check_names(d, part) && good;
+}
+
+/* ---- how they hang together ------------------------------------------------------------------ */
+
+/* The place in the file of the body that a key names. False: a problem, or (`required`) none. */
+static bool read_body(struct description *d, enum part part, const struct entry *entry,
+                      const char *key, bool required, int *body)
+{
+    const struct tree_node *const node = tree_find(entry->map, key);
+    char path[DESCRIPTION_PATH];
+    description_path(path, part, entry->key->name, key);
+    *body = -1;
+    if (!node)
+        return !required || problem_add(description_problems(d), entry->key->mark,
+                                        "%s is missing: the body that it %s", path,
+                                        part == PART_ACTUATOR ? "drives" : "belongs to");
+    if (node->kind != TREE_SCALAR)
+        return field_mismatch(description_problems(d), path, "the name of a body", node);
+    for (int b = 0; b < d->count[PART_BODY]; b++)
+        if (strcmp(d->body_name[b], node->text) == 0)
+            *body = b;
+    return *body >= 0 || field_unknown(description_problems(d), path, "body", node->text,
+                                       node->mark, d->body_name, (size_t)d->count[PART_BODY]);
+}
+
+static bool read_joint(struct description *d, struct entry *entry)
+{
+    const struct scenario_field *const row = &part_keys[0].field;
+    const struct tree_node *const node = tree_find(entry->map, row->path);
+    char path[DESCRIPTION_PATH], list[80];
+    int word = 0;
+    description_path(path, PART_BODY, entry->key->name, row->path);
+    if (!node)
+        return problem_add(description_problems(d), entry->key->mark, "%s is missing (%s)", path,
+                           word_list(list, sizeof list, row->words, row->word_count));
+    if (!field_word(description_problems(d), row, path, node, &word))
+        return false;
+    entry->joint = (stance_joint)word;
+    const bool root = !tree_find(entry->map, "parent");
+    const char *const wrong = entry->joint == STANCE_FIXED && root
+                                  ? "a root is free, or a hinge, or slides"
+                              : entry->joint == STANCE_FREE && !root
+                                  ? "only the root is free; what has a parent is a hinge or fixed"
+                              : entry->joint == STANCE_SLIDE && !root ? "only the root slides"
+                                                                      : NULL;
+    return !wrong || problem_add(description_problems(d), node->mark, "%s: %s", path, wrong);
+}
+
+/* What a body is like must not be like it in turn. */
+static bool check_like(struct description *d, int b)
+{
+    const struct entry *const entries = d->entry[PART_BODY];
+    int other = entries[b].like;
+    for (int steps = 0; other >= 0 && other != b && steps < d->count[PART_BODY]; steps++)
+        other = entries[other].like;
+    return other != b ||
+           problem_add(description_problems(d), tree_find(entries[b].map, "like")->mark,
+                       "robot.bodies.%s.like: it would be like itself", d->body_name[b]);
+}
+
+static bool read_links(struct description *d)
+{
+    bool good = true;
+    for (int b = 0; b < d->count[PART_BODY]; b++) {
+        struct entry *const entry = &d->entry[PART_BODY][b];
+        good = read_joint(d, entry) && good;
+        good = read_body(d, PART_BODY, entry, "parent", false, &entry->parent) && good;
+        good = read_body(d, PART_BODY, entry, "like", false, &entry->like) && good;
+    }
+    for (int b = 0; good && b < d->count[PART_BODY]; b++)
+        good = check_like(d, b);
+    for (int part = PART_CONTACT; part < PARTS; part++)
+        for (int i = 0; i < d->count[part]; i++)
+            good = read_body(d, (enum part)part, &d->entry[part][i], "body", true,
+                             &d->entry[part][i].body) &&
+                   good;
+    return good;
+}
+
+/* Those that are `left`, -1 in place[], or roots: "trunk, thigh1". */
+static const char *name_some(const struct description *d, bool left, char *text, size_t size)
+{
+    const char *words[STANCE_MAX_BODIES];
+    size_t count = 0;
+    for (int b = 0; b < d->count[PART_BODY]; b++)
+        if (left ? d->place[b] < 0 : d->entry[PART_BODY][b].parent < 0)
+            words[count++] = d->body_name[b];
+    return word_list(text, size, words, count);
+}
+
+/* Places for the bodies, parents first, else in the file's order. */
+static bool sort_bodies(struct description *d)
+{
+    const int n = d->count[PART_BODY];
+    int roots = 0, placed = 0, last = 0;
+    char text[600];
+    for (int b = 0; b < n; b++) {
+        d->place[b] = -1;
+        if (d->entry[PART_BODY][b].parent < 0) {
+            roots++;
+            last = b;
+        }
+    }
+    if (roots > 1)
+        return problem_add(description_problems(d), d->entry[PART_BODY][last].key->mark,
+                           "robot.bodies: %d bodies hang from nothing (%s): give all but one a "
+                           "parent",
+                           roots, name_some(d, false, text, sizeof text));
+    for (int b = 0; b < n; b++) {
+        const int parent = d->entry[PART_BODY][b].parent;
+        if (d->place[b] < 0 && (parent < 0 || d->place[parent] >= 0)) {
+            d->back[placed] = b;
+            d->place[b] = placed++;
+            b = -1; /* again from the first */
+        }
+    }
+    for (int b = 0; b < n; b++)
+        if (d->place[b] < 0)
+            return problem_add(description_problems(d), d->entry[PART_BODY][b].key->mark,
+                               "robot.bodies: %s hang%s and not from a root: a tree has no loops",
+                               name_some(d, true, text, sizeof text),
+                               n - placed == 1 ? "s from itself" : " from each other");
+    return true;
+}
+
+/* Names and links, with bodies in their places. */
+static void fill_structure(struct description *d)
+{
+    stance_mechanism *const m = d->m;
+    m->bodies = d->count[PART_BODY];
+    m->elements = d->count[PART_CONTACT];
+    m->points = d->count[PART_POINT];
+    m->actuators = d->count[PART_ACTUATOR];
+    for (int b = 0; b < m->bodies; b++) {
+        const struct entry *const entry = &d->entry[PART_BODY][d->back[b]];
+        snprintf(m->body[b].name, STANCE_NAME, "%s", entry->key->name);
+        m->body[b].joint = entry->joint;
+        m->body[b].parent = entry->parent < 0 ? -1 : d->place[entry->parent];
+        m->body[b].bounded = tree_find(entry->map, "turn");
+    }
+    for (int i = 0; i < m->elements; i++) {
+        const struct entry *const entry = &d->entry[PART_CONTACT][i];
+        snprintf(m->element[i].name, STANCE_NAME, "%s", entry->key->name);
+        m->element[i].body = d->place[entry->body];
+        m->element[i].sole = tree_find(entry->map, "from") || tree_find(entry->map, "to");
+    }
+    for (int i = 0; i < m->points; i++) {
+        snprintf(m->point[i].name, STANCE_NAME, "%s", d->entry[PART_POINT][i].key->name);
+        m->point[i].body = d->place[d->entry[PART_POINT][i].body];
+        m->point[i].falls = tree_find(d->entry[PART_POINT][i].map, "lowest");
+        m->point[i].pushed = tree_find(d->entry[PART_POINT][i].map, "impulse") ? STANCE_IMPULSE
+                             : tree_find(d->entry[PART_POINT][i].map, "force") ? STANCE_FORCE
+                                                                               : STANCE_NO_PUSH;
+    }
+    for (int i = 0; i < m->actuators; i++) {
+        snprintf(m->actuator[i].name, STANCE_NAME, "%s", d->entry[PART_ACTUATOR][i].key->name);
+        m->actuator[i].body = d->place[d->entry[PART_ACTUATOR][i].body];
+    }
+}
+
+static bool check_turning(struct description *d)
+{
+    int turning = 0;
+    for (int b = 0; b < d->m->bodies; b++)
+        turning += d->m->body[b].joint == STANCE_FREE || d->m->body[b].joint == STANCE_HINGE;
+    return turning <= STANCE_MAX_ANGLES ||
+           problem_add(description_problems(d),
+                       tree_find(tree_find(d->r->tree.root, "robot"), "bodies")->mark,
+                       "robot.bodies: %d of them turn; at most %d", turning, STANCE_MAX_ANGLES);
+}
+
+/* A contact needs a body that can leave the ground, and a point or two ends. */
+static bool check_contact(struct description *d, int i)
+{
+    const struct entry *const entry = &d->entry[PART_CONTACT][i];
+    const char *const name = entry->key->name;
+    int b = d->m->element[i].body;
+    while (d->m->body[b].joint == STANCE_FIXED)
+        b = d->m->body[b].parent;
+    bool good = d->m->body[b].joint != STANCE_SLIDE ||
+                problem_add(description_problems(d), tree_find(entry->map, "body")->mark,
+                            "robot.contacts.%s.body: %s cannot move off its rail", name,
+                            d->m->body[d->m->element[i].body].name);
+    const bool at = tree_find(entry->map, "at"), from = tree_find(entry->map, "from"),
+               to = tree_find(entry->map, "to");
+    if (!at && from != to)
+        good = problem_add(description_problems(d), entry->key->mark,
+                           "robot.contacts.%s.%s is missing: a sole has two ends", name,
+                           from ? "to" : "from");
+    else if (!at && !from)
+        good = problem_add(description_problems(d), entry->key->mark,
+                           "robot.contacts.%s.at is missing (from and to make it a sole)", name);
+    return good;
+}
+
+static bool check_actuator(struct description *d, int i)
+{
+    const struct entry *const entry = &d->entry[PART_ACTUATOR][i];
+    const struct tree_node *const node = tree_find(entry->map, "body");
+    const int b = d->m->actuator[i].body;
+    const stance_joint joint = d->m->body[b].joint;
+    if (joint == STANCE_FREE || joint == STANCE_FIXED)
+        return problem_add(description_problems(d), node->mark,
+                           "robot.actuators.%s.body: %s has no joint to "
+                           "drive: it is %s",
+                           entry->key->name, node->text, joint == STANCE_FREE ? "free" : "fixed");
+    for (int k = 0; k < i; k++)
+        if (d->m->actuator[k].body == b)
+            return problem_add(description_problems(d), node->mark,
+                               "robot.actuators.%s.body: %s drives this joint already",
+                               entry->key->name, d->m->actuator[k].name);
+    return true;
+}
+
+/* A push ends. */
+static bool check_push(struct description *d, int i)
+{
+    const struct entry *const entry = &d->entry[PART_POINT][i];
+    return d->m->point[i].pushed != STANCE_FORCE || tree_find(entry->map, "to") ||
+           problem_add(description_problems(d), entry->key->mark,
+                       "robot.points.%s.to is missing: when the push ends", entry->key->name);
+}
+
+static bool check_links(struct description *d)
+{
+    bool good = check_turning(d);
+    for (int i = 0; i < d->m->points; i++)
+        good = check_push(d, i) && good;
+    for (int i = 0; i < d->m->elements; i++)
+        good = check_contact(d, i) && good;
+    for (int i = 0; i < d->m->actuators; i++)
+        good = check_actuator(d, i) && good;
+    return good;
+}
+
+/* ---- the scene ------------------------------------------------------------------------------- */
+
+static bool describe(struct description *d)
+{
+    const struct tree_node *const robot = tree_find(d->r->tree.root, "robot");
+    const char *known[PARTS];
+    bool good;
+    if (!robot)
+        return problem_add(description_problems(d), d->r->tree.root->mark,
+                           "robot is missing: it describes the mechanism");
+    if (robot->kind != TREE_MAP)
+        return field_mismatch(description_problems(d), "robot", "a mapping", robot);
+    for (int part = 0; part < PARTS; part++)
+        known[part] = part_kinds[part].key;
+    good = check_keys(d, robot, "robot", known, PARTS);
+    for (int part = 0; part < PARTS; part++)
+        good = read_names(d, robot, (enum part)part) && good;
+    if (!good || !read_links(d) || !sort_bodies(d))
+        return false;
+    fill_structure(d);
+    description_defaults(d->m);
+    good = check_links(d);
+    return description_numbers(d) && good;
+}
+
+/* Names that the scene makes of those that are given must be its own, too. */
+static bool check_contact_names(struct description *d, const stance_scene *scene)
+{
+    for (int c = 0; c < scene->contacts; c++)
+        for (int k = 0; k < c; k++)
+            if (strcmp(scene->contact_name[c], scene->contact_name[k]) == 0)
+                return problem_add(description_problems(d),
+                                   tree_find(d->r->tree.root, "robot")->mark,
+                                   "robot: %s would stand for two contacts (an end of a sole, or "
+                                   "the stop of a joint, is called so): choose other names",
+                                   scene->contact_name[c]);
+    return true;
+}
+
+static stance_scene *make_scene(struct description *d)
+{
+    stance_scene *scene = NULL;
+    stance_message message;
+    const stance_error error = stance_mechanism_scene(d->m, &scene, &message);
+    if (error == STANCE_NO_MEMORY) {
+        problem_no_memory(description_problems(d));
+    } else if (error != STANCE_OK) {
+        problem_add(description_problems(d), tree_find(d->r->tree.root, "robot")->mark, "robot: %s",
+                    message.text);
+    } else if (!check_contact_names(d, scene)) {
+        stance_scene_free(scene);
+        scene = NULL;
+    }
+    return scene;
+}
+
+stance_scene *mechanism_read(struct reader *r)
+{
+    struct description *const d = calloc(1, sizeof *d);
+    stance_mechanism *const m = calloc(1, sizeof *m);
+    stance_scene *scene = NULL;
+    if (d && m) {
+        d->r = r;
+        d->m = m;
+        if (describe(d))
+            scene = make_scene(d);
+    } else {
+        problem_no_memory(&r->problems);
+    }
+    free(d);
+    free(m);
+    return scene;
+}
+
+static bool same_parts(const stance_mechanism *a, const stance_mechanism *b, enum part part)
+{
+    bool same = part_count(a, part) == part_count(b, part);
+    for (int i = 0; same && i < part_count(a, part); i++)
+        same = strcmp(part_name(a, part, i), part_name(b, part, i)) == 0 &&
+               part_body(a, part, i) == part_body(b, part, i);
+    return same;
+}
+
+bool mechanism_same(const stance_mechanism *a, const stance_mechanism *b)
+{
+    bool same = a->numbers == b->numbers;
+    for (int part = 0; part < PARTS; part++)
+        same = same && same_parts(a, b, (enum part)part);
+    for (int i = 0; same && i < a->bodies; i++)
+        same = a->body[i].joint == b->body[i].joint && a->body[i].bounded == b->body[i].bounded;
+    for (int i = 0; same && i < a->elements; i++)
+        same = a->element[i].sole == b->element[i].sole;
+    for (int i = 0; same && i < a->points; i++)
+        same = a->point[i].falls == b->point[i].falls && a->point[i].pushed == b->point[i].pushed;
+    for (int i = 0; same && i < a->numbers; i++)
+        same = a->number[i] == b->number[i] && a->varies[i] == b->varies[i];
+    return same;
+}
+
+uint32_t mechanism_contacts(const stance_scene *scene, uint32_t elements)
+{
+    const stance_mechanism *const m = scene->mechanism;
+    uint32_t contacts = 0;
+    int c = 0;
+    for (int e = 0; e < m->elements; e++) {
+        const int ends = m->element[e].sole ? 2 : 1;
+        if (elements >> e & 1)
+            contacts |= ((UINT32_C(1) << ends) - 1) << c;
+        c += ends;
+    }
+    return contacts;
+}
+
+stance_scene *mechanism_pattern(void)
+{
+    stance_mechanism *const m = calloc(1, sizeof *m);
+    stance_scene *scene = NULL;
+    stance_message message;
+    if (!m)
+        return NULL;
+    m->bodies = m->elements = m->points = m->actuators = 1;
+    m->body[0].joint = STANCE_FREE;
+    m->body[0].parent = -1;
+    snprintf(m->body[0].name, STANCE_NAME, "BODY");
+    snprintf(m->element[0].name, STANCE_NAME, "CONTACT");
+    snprintf(m->point[0].name, STANCE_NAME, "POINT");
+    snprintf(m->actuator[0].name, STANCE_NAME, "ACTUATOR");
+    description_defaults(m);
+    if (stance_mechanism_scene(m, &scene, &message) != STANCE_OK)
+        scene = NULL;
+    free(m);
+    return scene;
+}

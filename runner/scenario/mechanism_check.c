@@ -1,0 +1,199 @@
+/* mechanism_check.c - what must hold of a mechanism's numbers together, whatever axes make of them.
+ */
+#include "mechanism.h"
+#include "reader.h"
+#include "schema_mechanism.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the inertia matrix scaled to unit diagonal: below it nothing resists some acceleration. */
+#define LEAST_EIGENVALUE 1e-10
+enum { POSTURES = 64 };
+
+/* What is wrong with some numbers: of which key, and why. */
+struct fault {
+    char path[96], text[160];
+};
+
+#define FAULT(f, what, name, key, ...)                                                             \
+    (snprintf((f)->path, sizeof(f)->path, "robot." what ".%.31s%s", name, key),                    \
+     snprintf((f)->text, sizeof(f)->text, __VA_ARGS__), true)
+
+/* ---- body by body ---------------------------------------------------------------------------- */
+
+static bool body_fault(const stance_mechanism *m, const stance_mechanism_numbers *number, int b,
+                       struct fault *f)
+{
+    const stance_body_numbers *const body = &number->body[b];
+    const char *const name = m->body[b].name;
+    if (body->inertia > 0 && !(body->mass > 0))
+        return FAULT(f, "bodies", name, ".inertia", "%.6g kg m^2, but no mass", body->inertia);
+    if (!(body->limits[0] < body->limits[1]))
+        return FAULT(f, "bodies", name, ".limits", "%.6g is not below %.6g", body->limits[0],
+                     body->limits[1]);
+    if (m->body[b].joint == STANCE_SLIDE && body->axis[0] == 0 && body->axis[1] == 0)
+        return FAULT(f, "bodies", name, ".axis", "[0, 0] has no direction");
+    return false;
+}
+
+static bool sole_fault(const stance_mechanism *m, const stance_mechanism_numbers *number, int e,
+                       struct fault *f)
+{
+    const stance_element_numbers *const sole = &number->element[e];
+    return m->element[e].sole && sole->at[0] == sole->to[0] && sole->at[1] == sole->to[1] &&
+           FAULT(f, "contacts", m->element[e].name, ".to",
+                 "stands where from does: a sole has a length");
+}
+
+/* ---- inertia --------------------------------------------------------------------------------- */
+
+/* Cholesky's factors of the inertia matrix, scaled to unit diagonal, less LEAST_EIGENVALUE times
+ * the identity: the first coordinate whose pivot is not positive, or -1. */
+static int unresisted(int n, double *A)
+{
+    double scale[STANCE_MAX_COORDINATES];
+    for (int i = 0; i < n; i++) {
+        if (!(A[i * n + i] > 0))
+            return i;
+        scale[i] = sqrt(A[i * n + i]);
+    }
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++) {
+            double sum = i == j ? 1 - LEAST_EIGENVALUE : A[i * n + j] / (scale[i] * scale[j]);
+            for (int k = 0; k < j; k++)
+                sum -= A[i * n + k] * A[j * n + k];
+            if (i == j && !(sum > 0))
+                return i;
+            A[i * n + j] = i == j ? sqrt(sum) : sum / A[j * n + j];
+        }
+    }
+    return -1;
+}
+
+/* In postures spread evenly: multiples of roots of primes, modulo a turn. */
+static bool inertia_fault(const stance_scene *scene, const double *robot, struct fault *f)
+{
+    static const double prime[] = {2, 3, 5, 7, 11, 13, 17, 19, 23};
+    _Static_assert(sizeof prime / sizeof *prime >= STANCE_MAX_COORDINATES, "one for each");
+    const int n = scene->coordinates;
+    double position[STANCE_MAX_COORDINATES];
+    double A[STANCE_MAX_COORDINATES * STANCE_MAX_COORDINATES];
+    for (int k = 0; k < POSTURES; k++) {
+        for (int i = 0; i < n; i++)
+            position[i] = 6.283185307179586 * fmod(k * sqrt(prime[i]), 1);
+        scene->inertia(scene, robot, position, A);
+        const int i = unresisted(n, A);
+        if (i < 0)
+            continue;
+        const char *const name = scene->coordinate[i].name;
+        const bool body = strcmp(name, "x") != 0 && strcmp(name, "z") != 0;
+        snprintf(f->path, sizeof f->path, "robot.bodies%s%s", body ? "." : "", body ? name : "");
+        snprintf(f->text, sizeof f->text, "nothing with mass or inertia resists %s",
+                 body ? "its joint: give it, or what hangs from it, some" : "motion");
+        return true;
+    }
+    return false;
+}
+
+static bool find_fault(const stance_scene *scene, const double *robot, struct fault *f)
+{
+    const stance_mechanism *const m = scene->mechanism;
+    stance_mechanism_numbers number;
+    stance_mechanism_expand(m, robot, &number);
+    for (int b = 0; b < m->bodies; b++)
+        if (body_fault(m, &number, b, f))
+            return true;
+    for (int e = 0; e < m->elements; e++)
+        if (sole_fault(m, &number, e, f))
+            return true;
+    return inertia_fault(scene, robot, f);
+}
+
+/* ---- as they stand, and along axes ----------------------------------------------------------- */
+
+/* Of the key, or of what it stands in. */
+static struct mark mark_of(struct reader *r, const char *path)
+{
+    char around[96];
+    snprintf(around, sizeof around, "%s", path);
+    for (char *dot = around; dot; dot = strrchr(around, '.')) {
+        if (dot != around)
+            *dot = '\0';
+        if (reader_seen(r, around)->node)
+            return reader_seen(r, around)->key;
+    }
+    return r->tree.root->mark;
+}
+
+static bool is_robot(size_t offset)
+{
+    return offset < sizeof(double[STANCE_ROBOT_GRAVITY]);
+}
+
+/* The points of an axis where a path has its least and its largest value. */
+static void find_ends(const struct scenario_axis *axis, int k, size_t end[2])
+{
+    end[0] = 0;
+    end[1] = axis->count - 1;
+    for (size_t i = 0; axis->value && i < axis->count; i++) {
+        const double value = scenario_axis_value(axis, i, k);
+        end[0] = value < scenario_axis_value(axis, end[0], k) ? i : end[0];
+        end[1] = value > scenario_axis_value(axis, end[1], k) ? i : end[1];
+    }
+}
+
+/* The robot with what an axis makes of it at a point. False: a problem, reported of path k. */
+static bool check_point(struct reader *r, const double *first, int a, int k, size_t point)
+{
+    const struct scenario_axis *const axis = &r->s->axis[a];
+    double robot[STANCE_MAX_ROBOT];
+    struct fault fault;
+    memcpy(robot, first, sizeof robot);
+    for (int i = 0; i < axis->paths; i++)
+        if (is_robot(axis->offset[i]))
+            robot[axis->offset[i] / sizeof *robot] = scenario_axis_value(axis, point, i);
+    if (!find_fault(r->s->scene, robot, &fault))
+        return true;
+    char name[AXIS_NAME];
+    return problem_add(&r->problems, r->swept[a][k].mark, "%s: with %s = %.6g %s: %s",
+                       axis_key(r->s, a, name), axis->path[k], scenario_axis_value(axis, point, k),
+                       fault.path, fault.text);
+}
+
+/* The ends of all paths of the robot, at the first point of all other axes. */
+static bool check_axes(struct reader *r, const double *first)
+{
+    bool any = false;
+    for (int a = 0; a < r->s->axes; a++) {
+        const struct scenario_axis *const axis = &r->s->axis[a];
+        for (int k = 0; k < axis->paths; k++) {
+            size_t end[2];
+            if (!is_robot(axis->offset[k]))
+                continue;
+            any = true;
+            find_ends(axis, k, end);
+            if (!check_point(r, first, a, k, end[0]) || !check_point(r, first, a, k, end[1]))
+                return true;
+        }
+    }
+    return any;
+}
+
+void mechanism_check(struct reader *r)
+{
+    struct scenario_values *const values = malloc(sizeof *values);
+    struct fault fault;
+    if (!values) {
+        problem_no_memory(&r->problems);
+        return;
+    }
+    memcpy(values, &r->s->base, sizeof *values);
+    if (!r->axes_bad)
+        scenario_case_values(r->s, 0, values);
+    if ((r->axes_bad || !check_axes(r, values->robot)) &&
+        find_fault(r->s->scene, values->robot, &fault))
+        problem_add(&r->problems, mark_of(r, fault.path), "%s: %s", fault.path, fault.text);
+    free(values);
+}

@@ -1,0 +1,301 @@
+/* schema_mechanism.c - the rows of the scenario format that describe a mechanism. */
+#include "schema_mechanism.h"
+#include "schema_laws.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const struct part_kind part_kinds[PARTS] = {
+    [PART_BODY] = {"bodies", "body", STANCE_MAX_BODIES, "rigid bodies, each with its joint"},
+    [PART_CONTACT] = {"contacts", "contact", STANCE_MAX_ELEMENTS,
+                      "what may touch the ground: points, discs, soles"},
+    [PART_POINT] = {"points", "point", STANCE_MAX_NAMED, "points of bodies that have a name"},
+    [PART_ACTUATOR] = {"actuators", "actuator", STANCE_MAX_ACTUATORS, "motors in joints"},
+};
+
+/* In the order of stance_joint. */
+static const char *const joint_words[] = {"free", "hinge", "slide", "fixed"};
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+enum {
+    SLIDES = 1 << STANCE_SLIDE,
+    MOVES = SLIDES | 1 << STANCE_HINGE,
+    HANGS = MOVES | 1 << STANCE_FIXED,
+    ANY = HANGS | 1 << STANCE_FREE,
+};
+
+/* Loose bounds that keep nonsense out where physics gives none. */
+#define LARGE 1e9
+#define FAR 1e6
+#define TURN 1e4 /* rad, beyond which sines are not defined */
+
+#define RANGE(least, largest) .low = (least), .high = (largest)
+#define IN(record, member) .offset = offsetof(record, member)
+#define BODY(member) .type = FIELD_NUMBER, IN(stance_body_numbers, member)
+#define BODY_TWO(member) .type = FIELD_NUMBERS, .items = 2, IN(stance_body_numbers, member)
+#define ELEMENT(member) IN(stance_element_numbers, member)
+#define POINT(member) IN(stance_point_numbers, member)
+#define TWO .type = FIELD_NUMBERS, .items = 2
+#define WORD_ROW .offset = NO_OFFSET, .fallback = NAN
+
+/* One member a line would make the table hard to read. */
+/* clang-format off */
+const struct part_key part_keys[] = {
+    {PART_BODY, {.path = "joint", .type = FIELD_WORD, .required = true, WORD_ROW,
+        .words = joint_words, .word_count = 4, .text = "what it may do against its parent",
+        .more = "A root (one body has no parent) is free, turns on a hinge in the world, or slides "
+                "along a rail and does not turn. Any other turns on a hinge, or is fixed to its "
+                "parent. Its angle, counter-clockwise, is called as the body is; 0: its frame has "
+                "the parent's direction."}, .joints = ANY},
+    {PART_BODY, {.path = "parent", .type = FIELD_WORD, WORD_ROW,
+        .fallback_text = "none, it is the root", .text = "the body that it hangs from"},
+        .joints = HANGS, .names_body = true},
+    {PART_BODY, {.path = "like", .type = FIELD_WORD, WORD_ROW, .fallback_text = "none",
+        .text = "another body whose numbers it has, where it has not its own",
+        .more = "A copy: varying the one leaves the other as it is. What a root has as `at` is not "
+                "copied."}, .joints = ANY, .names_body = true},
+    {PART_BODY, {.path = "at", BODY_TWO(at), .unit = "m", RANGE(-FAR, FAR),
+        .fallback_text = "[0, 0]", .text = "its joint, x and z in the parent's frame",
+        .more = "Of a root in the world's. It is the origin of the body's own frame."},
+        .joints = HANGS},
+    {PART_BODY, {.path = "axis", BODY_TWO(axis), .unit = "1", RANGE(-FAR, FAR),
+        .fallback_text = "[1, 0]", .text = "direction of its rail, x and z, of any length"},
+        .joints = SLIDES},
+    {PART_BODY, {.path = "mass", BODY(mass), .unit = "kg", RANGE(0, LARGE), .text = "mass"},
+        .joints = ANY},
+    {PART_BODY, {.path = "inertia", BODY(inertia), .unit = "kg m^2", RANGE(0, LARGE),
+        .text = "moment of inertia about its centre of mass"}, .joints = ANY},
+    {PART_BODY, {.path = "centre", BODY_TWO(centre), .unit = "m", RANGE(-FAR, FAR),
+        .fallback_text = "[0, 0]", .text = "its centre of mass, x and z in its frame"},
+        .joints = ANY},
+    {PART_BODY, {.path = "stiffness", BODY(stiffness), .unit = "N m/rad", RANGE(0, LARGE),
+        .text = "stiffness of a spring in the joint"}, .joints = MOVES, .slide_unit = "N/m"},
+    {PART_BODY, {.path = "damping", BODY(damping), .unit = "N m s/rad", RANGE(0, LARGE),
+        .text = "damping of the joint"}, .joints = MOVES, .slide_unit = "N s/m"},
+    {PART_BODY, {.path = "rest", BODY(rest), .unit = "rad", RANGE(-TURN, TURN),
+        .text = "where the spring is slack"}, .joints = MOVES, .slide_unit = "m"},
+    {PART_BODY, {.path = "armature", BODY(armature), .unit = "kg m^2", RANGE(0, LARGE),
+        .text = "inertia of a geared rotor, as the joint feels it"}, .joints = MOVES,
+        .slide_unit = "kg"},
+    {PART_BODY, {.path = "limits", BODY_TWO(limits), .unit = "rad", RANGE(-TURN, TURN),
+        .words = schema_none, .word_count = 1, .fallback_text = "[none, none]",
+        .text = "stops of the joint, the lower one first"}, .joints = MOVES, .slide_unit = "m"},
+    {PART_BODY, {.path = "turn", BODY(turn), .unit = "rad", RANGE(0, TURN), .low_open = true,
+        .fallback = NAN, .fallback_text = "none",
+        .text = "angle from upright beyond which the robot has fallen"},
+        .joints = 1 << STANCE_FREE | 1 << STANCE_HINGE},
+
+    {PART_CONTACT, {.path = "body", .type = FIELD_WORD, .required = true, WORD_ROW,
+        .text = "the body that it belongs to"}, .names_body = true, .of_sole = true,
+        .of_point = true},
+    {PART_CONTACT, {.path = "at", TWO, ELEMENT(at), .unit = "m", RANGE(-FAR, FAR),
+        .text = "the point or the disc's centre, x and z in the body's frame",
+        .more = "Give this, or from and to: then it is a flat sole, which carries at both ends and "
+                "slips as one."}, .of_point = true},
+    {PART_CONTACT, {.path = "from", TWO, ELEMENT(at), .unit = "m", RANGE(-FAR, FAR),
+        .text = "one end of a flat sole"}, .of_sole = true},
+    {PART_CONTACT, {.path = "to", TWO, ELEMENT(to), .unit = "m", RANGE(-FAR, FAR),
+        .text = "the sole's other end"}, .of_sole = true},
+    {PART_CONTACT, {.path = "radius", .type = FIELD_NUMBER, ELEMENT(radius), .unit = "m",
+        RANGE(0, FAR), .text = "radius of a disc, as a wheel or a round foot; 0: a point"},
+        .of_point = true},
+
+    {PART_POINT, {.path = "body", .type = FIELD_WORD, .required = true, WORD_ROW,
+        .text = "the body that it belongs to"}, .names_body = true},
+    {PART_POINT, {.path = "at", TWO, POINT(at), .unit = "m", RANGE(-FAR, FAR),
+        .fallback_text = "[0, 0]", .text = "where it is, x and z in the body's frame"},
+        .pushes = 0},
+    {PART_POINT, {.path = "lowest", .type = FIELD_NUMBER, POINT(lowest), .unit = "m",
+        RANGE(-FAR, FAR), .fallback = NAN, .fallback_text = "none",
+        .text = "height above the ground at which the robot has fallen",
+        .more = "0: where the point touches the ground. The height is normal to the ground."},
+        .pushes = 0},
+    {PART_POINT, {.path = "force", TWO, POINT(force), .unit = "N", RANGE(-LARGE, LARGE),
+        .text = "force, [0] along the ground, [1] normal",
+        .more = "The world pushes the point with it from `from` to `to`. Each "
+                "step gets the mean over it, so that the whole is exact."},
+        .pushes = 1 << STANCE_FORCE},
+    {PART_POINT, {.path = "impulse", TWO, POINT(force), .unit = "N s", RANGE(-LARGE, LARGE),
+        .text = "impulse, [0] along the ground, [1] normal",
+        .more = "The world strikes the point with it at the step that begins nearest to `from`; the "
+                "contact laws see the velocity that it leaves."},
+        .pushes = 1 << STANCE_IMPULSE},
+    {PART_POINT, {.path = "from", .type = FIELD_NUMBER, POINT(from), .unit = "s", RANGE(0, LARGE),
+        .text = "when the push begins, or the impulse falls"},
+        .pushes = 1 << STANCE_FORCE | 1 << STANCE_IMPULSE},
+    {PART_POINT, {.path = "to", .type = FIELD_NUMBER, POINT(to), .unit = "s", RANGE(0, LARGE),
+        .text = "when the push ends"}, .pushes = 1 << STANCE_FORCE},
+
+    {PART_ACTUATOR, {.path = "body", .type = FIELD_WORD, .required = true, WORD_ROW,
+        .text = "the body whose joint it drives",
+        .more = "A torque on the body and its opposite on the parent; on one that slides a force."},
+        .names_body = true},
+    {PART_ACTUATOR, {.path = "limit", .type = FIELD_NUMBER, .offset = 0, .unit = "N m",
+        RANGE(0, LARGE), .low_open = true, .fallback = INFINITY, .fallback_text = "none",
+        .words = schema_none, .word_count = 1, .text = "largest torque",
+        .more = "Where controller.torque_limit is smaller, that one holds."}, .slide_unit = "N"},
+};
+/* clang-format on */
+const size_t part_key_count = sizeof part_keys / sizeof part_keys[0];
+
+/* ---- parts ----------------------------------------------------------------------------------- */
+
+int part_count(const stance_mechanism *m, enum part part)
+{
+    const int count[] = {[PART_BODY] = m->bodies,
+                         [PART_CONTACT] = m->elements,
+                         [PART_POINT] = m->points,
+                         [PART_ACTUATOR] = m->actuators};
+    return count[part];
+}
+
+const char *part_name(const stance_mechanism *m, enum part part, int i)
+{
+    return part == PART_BODY      ? m->body[i].name
+           : part == PART_CONTACT ? m->element[i].name
+           : part == PART_POINT   ? m->point[i].name
+                                  : m->actuator[i].name;
+}
+
+int part_body(const stance_mechanism *m, enum part part, int i)
+{
+    return part == PART_BODY      ? m->body[i].parent
+           : part == PART_CONTACT ? m->element[i].body
+           : part == PART_POINT   ? m->point[i].body
+                                  : m->actuator[i].body;
+}
+
+int part_numbers(const struct part_key *key)
+{
+    return key->field.offset == NO_OFFSET ? 0 : key->field.type == FIELD_NUMBERS ? 2 : 1;
+}
+
+int part_place(const stance_mechanism *m, const struct part_key *key, int i)
+{
+    static const size_t begins[] = {
+        [PART_BODY] = offsetof(stance_mechanism_numbers, body),
+        [PART_CONTACT] = offsetof(stance_mechanism_numbers, element),
+        [PART_POINT] = offsetof(stance_mechanism_numbers, point),
+        [PART_ACTUATOR] = offsetof(stance_mechanism_numbers, limit),
+    };
+    static const size_t size[] = {
+        [PART_BODY] = sizeof(stance_body_numbers),
+        [PART_CONTACT] = sizeof(stance_element_numbers),
+        [PART_POINT] = sizeof(stance_point_numbers),
+        [PART_ACTUATOR] = sizeof(double),
+    };
+    if (part_numbers(key) == 0 ||
+        (key->part == PART_BODY && !(key->joints >> m->body[i].joint & 1)) ||
+        (key->part == PART_POINT && key->pushes && !(key->pushes >> m->point[i].pushed & 1)) ||
+        (key->part == PART_CONTACT && !(m->element[i].sole ? key->of_sole : key->of_point)))
+        return -1;
+    return (int)((begins[key->part] + (size_t)i * size[key->part] + key->field.offset) /
+                 sizeof(double));
+}
+
+int part_robot(const stance_mechanism *m, int place)
+{
+    for (int i = 0; place >= 0 && i < m->numbers; i++)
+        if (m->number[i] == place)
+            return i;
+    return -1;
+}
+
+const char *part_unit(const stance_mechanism *m, const struct part_key *key, int i)
+{
+    const int body = key->part == PART_ACTUATOR ? m->actuator[i].body : i;
+    return key->slide_unit && m->body[body].joint == STANCE_SLIDE ? key->slide_unit
+                                                                  : key->field.unit;
+}
+
+/* ---- rows ------------------------------------------------------------------------------------ */
+
+static bool add_map(struct schema *schema, const struct scenario_field *row, const char *name,
+                    const char *text)
+{
+    struct scenario_field *const field = schema_add(schema, row, "", name);
+    if (!field)
+        return false;
+    field->type = FIELD_MAP;
+    field->sweep = field->design = false;
+    field->offset = NO_OFFSET;
+    field->fallback_text = NULL;
+    snprintf(field->text, sizeof field->text, "%s", text);
+    return true;
+}
+
+/* The row of a key of part i, and where it is a list that of its items. */
+static bool add_key(struct schema *schema, const struct scenario_field *row, bool model,
+                    const struct part_key *key, int i)
+{
+    const stance_mechanism *const m = schema->scene->mechanism;
+    const int number = part_robot(m, part_place(m, key, i)), count = part_numbers(key);
+    const char *const name = part_name(m, key->part, i);
+    const struct scenario_field *const own = &key->field;
+    for (int item = 0; item < (count == 2 ? 2 : 1); item++) {
+        char path[96];
+        snprintf(path, sizeof path, "%s.%.31s.%.24s%s", part_kinds[key->part].key, name, own->path,
+                 item ? "[]" : "");
+        struct scenario_field *const field = schema_add(schema, row, "", path);
+        if (!field)
+            return false;
+        const bool varied = (number >= 0 || (schema->pattern && count > 0)) && (count == 1 || item);
+        const struct scenario_field general = *field;
+        *field = *own;
+        memcpy(field->path, general.path, sizeof field->path);
+        field->use = general.use;
+        field->by_scene = true;
+        field->required = own->required && !model;
+        field->sweep = varied;
+        field->design = general.design && key->part != PART_POINT; /* no law knows those */
+        field->offset =
+            varied && number >= 0 ? general.offset + (size_t)number * sizeof(double) : NO_OFFSET;
+        snprintf(field->unit, sizeof field->unit, "%s", part_unit(m, key, i));
+        snprintf(field->text, sizeof field->text, "%s%.31s: %.100s", model ? "model of " : "", name,
+                 own->text);
+        if (model) {
+            field->fallback = NAN;
+            field->fallback_text = "as the robot";
+        }
+        if (item) {
+            field->type = FIELD_NUMBER;
+            field->fallback = NAN;
+            field->fallback_text = NULL;
+        }
+        if (key->names_body && schema->pattern) {
+            field->type = FIELD_TEXT;
+        } else if (key->names_body) {
+            field->words = schema->bodies;
+            field->word_count = (size_t)m->bodies;
+        }
+    }
+    return true;
+}
+
+bool schema_add_mechanism(struct schema *schema, const struct scenario_field *row)
+{
+    const stance_mechanism *const m = schema->scene->mechanism;
+    const bool model = row->fallback_text != NULL;
+    bool good = true;
+    for (int b = 0; b < m->bodies; b++)
+        schema->bodies[b] = m->body[b].name;
+    for (int part = 0; good && part < PARTS; part++) {
+        const struct part_kind *const kind = &part_kinds[part];
+        good = add_map(schema, row, kind->key, kind->text);
+        for (int i = 0; good && i < part_count(m, (enum part)part); i++) {
+            char name[64], text[64];
+            snprintf(name, sizeof name, "%s.%.31s", kind->key, part_name(m, (enum part)part, i));
+            snprintf(text, sizeof text, "the %s %.31s", kind->one,
+                     part_name(m, (enum part)part, i));
+            good = add_map(schema, row, name, text);
+            for (size_t k = 0; good && k < part_key_count; k++)
+                if (part_keys[k].part == (enum part)part &&
+                    (!model || part_robot(m, part_place(m, &part_keys[k], i)) >= 0 ||
+                     (schema->pattern && part_numbers(&part_keys[k]) > 0)))
+                    good = add_key(schema, row, model, &part_keys[k], i);
+        }
+    }
+    return good;
+}

@@ -1,0 +1,435 @@
+/* test_mechanism.c - described mechanisms: the biped among them against its own scene, and what is
+ * known in closed form. */
+#include "linear.h"
+#include "mechanism_text.h"
+
+/* Its coordinates are of the trunk's mass, its root is the hip. */
+#define BIPED                                                                                      \
+    "body trunk free - 1.8 0 0 0.535 0 0\n"                                                        \
+    "reference 0 0.535\n"                                                                          \
+    "body hip fixed trunk 5.4 0 0 0 0 0\n"                                                         \
+    "body leg1 hinge hip 1.8 0 0 -0.535 0 0\n"                                                     \
+    "body leg2 hinge hip 1.8 0 0 -0.535 0 0\n"                                                     \
+    "point foot1 leg1 0 -0.535\n"                                                                  \
+    "point foot2 leg2 0 -0.535\n"                                                                  \
+    "actuator hip1 leg1 10\n"                                                                      \
+    "actuator hip2 leg2 10\n"
+
+static void same(const double *got, const double *wanted, int count, double scale, const char *what)
+{
+    for (int i = 0; i < count; i++)
+        assert_near(got[i], wanted[i], 1e-12 * scale, what);
+}
+
+static void names(void **state)
+{
+    (void)state;
+    stance_scene *const s = mechanism_scene("body base free - 1 0.1 0 0 0 0\n"
+                                            "body foot hinge base 1 0.1 0 -0.1 0 -0.5 limits -1 1\n"
+                                            "sole flat foot -0.1 -0.2 0.2 -0.2\n"
+                                            "disc wheel base 0 0.3 0.1\n"
+                                            "named head base 0 0.4 0.3\n"
+                                            "reference 0.05 0\n"
+                                            "actuator ankle foot 40\n");
+    static const char *const contacts[] = {"flat_heel", "flat_toe", "wheel", "foot_low",
+                                           "foot_high"};
+    static const char *const coordinates[] = {"x", "z", "base", "foot"};
+    static const int grip[] = {0, 0, 2, -1, -1};
+    assert_int_equal(s->contacts, 5);
+    assert_int_equal(s->coordinates, 4);
+    for (int c = 0; c < 5; c++) {
+        assert_text(s->contact_name[c], contacts[c]);
+        assert_int_equal(s->grip[c], grip[c]);
+    }
+    for (int i = 0; i < 4; i++)
+        assert_text(s->coordinate[i].name, coordinates[i]);
+    assert_true(s->postures == 2 && s->posture[0] == 2 && s->actuated[0] == 3);
+    const struct {
+        const char *name;
+        double fallback;
+    } number[] = {{"bodies.foot.centre[1]", -0.1}, {"bodies.foot.at[1]", -0.5},
+                  {"bodies.foot.limits[1]", 1},    {"bodies.foot.turn", INFINITY},
+                  {"contacts.flat.from[0]", -0.1}, {"contacts.flat.to[1]", -0.2},
+                  {"contacts.wheel.radius", 0.1},  {"points.head.at[1]", 0.4},
+                  {"points.head.lowest", 0.3},     {"bodies.base.reference[0]", 0.05},
+                  {"actuators.ankle.limit", 40}};
+    for (size_t k = 0; k < sizeof number / sizeof number[0]; k++) {
+        int i = 0;
+        while (i < s->robot_count && strcmp(s->robot[i].name, number[k].name) != 0)
+            i++;
+        if (i == s->robot_count || s->robot[i].fallback != number[k].fallback)
+            fail_msg("%s", number[k].name);
+    }
+    stance_scene_free(s);
+}
+
+/* Gaps, contact points, energy, inertia, standing of the biped at random states. */
+static void the_biped(void **state)
+{
+    (void)state;
+    stance_scene *const s = mechanism_scene(BIPED);
+    double robot[STANCE_MAX_ROBOT], own[STANCE_MAX_ROBOT];
+    uint64_t seed = 1;
+    stance_robot_fallback(s, robot);
+    stance_robot_fallback(biped(), own);
+    for (int i = 0; i < 1000; i++) {
+        double q[5], v[5], gap[2][2], point[2][2], speed[2][2], A[2][25], q2[5], v2[5];
+        for (int k = 0; k < 5; k++) {
+            q[k] = q2[k] = uniform(&seed, -3, 3);
+            v[k] = v2[k] = uniform(&seed, -10, 10);
+        }
+        s->gaps(s, robot, q, gap[0]);
+        biped()->gaps(biped(), own, q, gap[1]);
+        same(gap[0], gap[1], 2, 1, "gaps");
+        for (int c = 0; c < 2; c++) {
+            s->contact_point(s, robot, q, v, c, point[0], speed[0]);
+            biped()->contact_point(biped(), own, q, v, c, point[1], speed[1]);
+            same(point[0], point[1], 2, 1, "contact point");
+            same(speed[0], speed[1], 2, 10, "contact speed");
+        }
+        s->inertia(s, robot, q, A[0]);
+        biped()->inertia(biped(), own, q, A[1]);
+        same(A[0], A[1], 25, 10, "inertia");
+        assert_near(s->energy(s, robot, q, v), biped()->energy(biped(), own, q, v), 1e-10,
+                    "energy");
+        s->stand(s, robot, 1u << i % 2, q, v);
+        biped()->stand(biped(), own, 1u << i % 2, q2, v2);
+        same(q, q2, 5, 1, "stands");
+        same(v, v2, 5, 10, "stands still");
+        s->gaps(s, robot, q, gap[0]);
+        assert_true(gap[0][i % 2] >= 0 && gap[0][i % 2] <= 1e-15);
+    }
+    stance_scene_free(s);
+}
+
+/* The biped's equilibrium, its linearisation and its contact force, on either foot. */
+static void the_biped_at_rest(void **state)
+{
+    (void)state;
+    stance_scene *const s = mechanism_scene(BIPED);
+    double robot[STANCE_MAX_ROBOT], own[STANCE_MAX_ROBOT];
+    uint64_t seed = 3;
+    int found = 0;
+    stance_robot_fallback(s, robot);
+    stance_robot_fallback(biped(), own);
+    for (int i = 0; i < 200; i++) {
+        stance_equilibrium_choice choice = {1, {-0.41, NAN, 0.82}, 0};
+        if (i > 0) {
+            choice.supports = 1u << i % 2;
+            for (int k = 0; k < 3; k++)
+                choice.posture[k] = uniform(&seed, -1.5, 1.5);
+            choice.posture[i / 2 % 3] = NAN;
+        }
+        stance_equilibrium e[2];
+        stance_message message;
+        double A[2][36], B[2][12], force[2][2], by[2][12], by_torque[2][4];
+        if (biped()->equilibrium(biped(), own, &choice, &e[0], NULL) != STANCE_OK)
+            continue;
+        if (s->equilibrium(s, robot, &choice, &e[1], &message) != STANCE_OK) {
+            assert_true(fabs(e[0].torque[0]) > 10 || fabs(e[0].torque[1]) > 10);
+            continue;
+        }
+        found++;
+        assert_int_equal(message.text[0], 0);
+        for (int k = 2; k < 5; k++)
+            assert_near(remainder(e[1].position[k] - e[0].position[k], 2 * M_PI), 0, 1e-12,
+                        "posture");
+        same(e[1].position, e[0].position, 2, 1, "position");
+        same(e[1].torque, e[0].torque, 2, 10, "torque");
+        same(e[1].force[0], e[0].force[0], 4, 100, "force");
+        assert_true(e[1].freedoms == 3 && e[1].freedom[2] == 4 && e[1].condition < 1 + 1e-12);
+        assert_near(e[1].friction, 0, 1e-12, "friction");
+        for (int k = 0; k < 2; k++) {
+            const stance_scene *const scene = k ? s : biped();
+            const double *const r = k ? robot : own;
+            assert_int_equal(scene->linearise(scene, r, &e[k], A[k], B[k]), STANCE_OK);
+            assert_int_equal(scene->contact_force(scene, r, &e[k], force[k], by[k], by_torque[k]),
+                             STANCE_OK);
+        }
+        same(A[1], A[0], 36, 100, "A");
+        same(B[1], B[0], 12, 10, "B");
+        same(force[1], force[0], 2, 100, "contact force");
+        same(by[1], by[0], 12, 1000, "contact force by state");
+        same(by_torque[1], by_torque[0], 4, 10, "contact force by torque");
+    }
+    print_message("# equilibria compared: %d\n", found);
+    assert_true(found > 50);
+    stance_scene_free(s);
+}
+
+/* The rod's own scene and the rod described. */
+static void the_rod(void **state)
+{
+    (void)state;
+    const stance_scene *const rod = stance_scene_find("rod");
+    stance_scene *const s = mechanism_scene("body rod free - 1 0.08333333333333333 0 0 0 0\n"
+                                            "point end1 rod -0.5 0\n"
+                                            "point end2 rod 0.5 0\n");
+    double robot[STANCE_MAX_ROBOT], own[STANCE_MAX_ROBOT];
+    uint64_t seed = 5;
+    stance_robot_fallback(s, robot);
+    stance_robot_fallback(rod, own);
+    for (int i = 0; i < 100; i++) {
+        double q[3], v[3], gap[2][2], A[2][9], at[2][2], speed[2][2];
+        for (int k = 0; k < 3; k++) {
+            q[k] = uniform(&seed, -3, 3);
+            v[k] = uniform(&seed, -3, 3);
+        }
+        for (int k = 0; k < 2; k++) {
+            const stance_scene *const scene = k ? s : rod;
+            const double *const r = k ? robot : own;
+            scene->gaps(scene, r, q, gap[k]);
+            scene->inertia(scene, r, q, A[k]);
+            scene->contact_point(scene, r, q, v, i % 2, at[k], speed[k]);
+        }
+        same(gap[1], gap[0], 2, 1, "gaps");
+        same(A[1], A[0], 9, 1, "inertia");
+        same(at[1], at[0], 2, 1, "an end");
+        same(speed[1], speed[0], 2, 1, "its speed");
+        assert_near(s->energy(s, robot, q, v), rod->energy(rod, own, q, v), 1e-12, "energy");
+    }
+    stance_scene_free(s);
+}
+
+static stance_equilibrium at_rest(const stance_scene *s, const double *robot,
+                                  const stance_equilibrium_choice *choice)
+{
+    stance_equilibrium e;
+    stance_message message;
+    if (s->equilibrium(s, robot, choice, &e, &message) != STANCE_OK)
+        fail_msg("%s", message.text);
+    return e;
+}
+
+/* A pendulum with spring, damper and rotor hangs, and stands: I a'' = -m g l sin a - k a - d a'. */
+static void a_pendulum(void **state)
+{
+    (void)state;
+    const double m = 2, inertia = 0.1, l = 0.5, g = 9.81, k = 3, d = 0.4, rotor = 0.05;
+    const double I = inertia + m * l * l + rotor;
+    stance_scene *const s = mechanism_scene("body rod hinge - 2 0.1 0 -0.5 0.3 1 stiffness 3 "
+                                            "damping 0.4 armature 0.05\n"
+                                            "actuator motor rod 20\n");
+    double robot[STANCE_MAX_ROBOT], A[4], B[2];
+    stance_robot_fallback(s, robot);
+    const stance_equilibrium e = at_rest(s, robot, &(stance_equilibrium_choice){0, {0}, 0});
+    assert_int_equal(s->linearise(s, robot, &e, A, B), STANCE_OK);
+    same(A, (double[]){0, 1, -(m * g * l + k) / I, -d / I}, 4, 100, "A");
+    same(B, (double[]){0, 1 / I}, 2, 10, "B");
+    const stance_equilibrium tilted = at_rest(s, robot, &(stance_equilibrium_choice){0, {1}, 0});
+    assert_near(tilted.torque[0], m * g * l * sin(1) + k, 1e-13, "torque");
+    stance_scene_free(s);
+}
+
+/* (M + m) x'' - m l a'' = F,  -m l x'' + (I + m l^2) a'' = m g l a. */
+static void a_cart_pole(void **state)
+{
+    (void)state;
+    const double M = 1, m = 0.1, l = 0.5, I = 0.00833, g = 1.62;
+    stance_scene *const s = mechanism_scene("body cart slide - 1 0 0 0 0 0\n"
+                                            "body pole hinge cart 0.1 0.00833 0 0.5 0 0\n"
+                                            "actuator push cart 20\n");
+    double robot[STANCE_MAX_ROBOT], A[16], B[4];
+    stance_robot_fallback(s, robot);
+    robot[STANCE_ROBOT_GRAVITY] = g;
+    const double J = I + m * l * l, det = (M + m) * J - m * l * m * l;
+    const double wanted[16] = {
+        0, 0, 1, 0, 0, 0, 0, 1, 0, m * l * m * g * l / det, 0, 0, 0, (M + m) * m * g * l / det,
+        0, 0};
+    for (int branch = 0; branch < 2; branch++) {
+        const stance_equilibrium e =
+            at_rest(s, robot, &(stance_equilibrium_choice){0, {0.3, NAN}, branch});
+        assert_true(e.position[0] == 0.3 && e.undetermined == 0);
+        assert_near(e.position[1], branch ? M_PI : 0, 1e-14, branch ? "hangs" : "stands");
+        assert_near(e.torque[0], 0, 1e-14, "force");
+        if (branch == 0) {
+            assert_int_equal(s->linearise(s, robot, &e, A, B), STANCE_OK);
+            same(A, wanted, 16, 10, "A");
+            same(B, (double[]){0, 0, J / det, m * l / det}, 4, 10, "B");
+        }
+    }
+    const stance_equilibrium anywhere =
+        at_rest(s, robot, &(stance_equilibrium_choice){0, {NAN, NAN}, 0});
+    assert_true(anywhere.undetermined == 1 && anywhere.position[0] == 0);
+    stance_scene_free(s);
+}
+
+/* A wheel whose mass is off its axis rests on a slope with that mass above where it touches; with
+ * V = m g (r a sin s + c sin a) and I + m d^2 about that point, it swings, or rolls away. */
+static void a_heavy_side(void **state)
+{
+    (void)state;
+    const double m = 2, I = 0.1, r = 0.3, c = 0.1, slope = 0.2;
+    stance_scene *const s = mechanism_scene("body hub free - 2 0.1 0.1 0 0 0\n"
+                                            "disc rim hub 0 0 0.3\n");
+    double robot[STANCE_MAX_ROBOT], A[4], none[1];
+    stance_robot_fallback(s, robot);
+    robot[STANCE_ROBOT_SLOPE] = slope;
+    const double up = acos(-r * sin(slope) / c);
+    for (int branch = 0; branch < 2; branch++) {
+        const double a = branch ? -up : up;
+        const stance_equilibrium e =
+            at_rest(s, robot, &(stance_equilibrium_choice){1, {NAN}, branch});
+        assert_near(e.position[2], a, 1e-13, "angle");
+        assert_near(e.friction, tan(slope), 1e-13, "friction");
+        assert_near(e.force[0][0], m * STANCE_GRAVITY * cos(slope), 1e-12, "normal");
+        const double high = r * cos(slope) + c * sin(a);
+        assert_int_equal(s->linearise(s, robot, &e, A, none), STANCE_OK);
+        same(A, (double[]){0, 1, m * STANCE_GRAVITY * c * sin(a) / (I + m * high * high), 0}, 4,
+             100, "A");
+    }
+    stance_equilibrium list[STANCE_MAX_BRANCHES];
+    int count;
+    assert_int_equal(stance_mechanism_equilibria(
+                         s, robot, &(stance_equilibrium_choice){1, {NAN}, 0}, list, &count, NULL),
+                     STANCE_OK);
+    assert_int_equal(count, 2);
+    stance_scene_free(s);
+}
+
+/* A sentence for each reason why there is no equilibrium. */
+static void no_equilibrium(void **state)
+{
+    (void)state;
+#define LAMP                                                                                       \
+    "body foot free - 1 0.01 0.05 0.02 0 0\n"                                                      \
+    "body arm hinge foot 3 0.1 0 0.5 0 0.1 limits -0.3 1\n"                                        \
+    "sole plate foot -0.1 0 0.2 0\n"                                                               \
+    "actuator ankle arm 10\n"
+    static const struct {
+        const char *mechanism;
+        stance_equilibrium_choice choice;
+        const char *text;
+    } wrong[] = {
+        {BIPED, {1, {-0.41, 0.82, NAN}, 0}, "there is no such posture: trunk cannot be balanced"},
+        {BIPED,
+         {1, {-0.41, 0.5, 0.82}, 0},
+         "the conditions on the equilibrium contradict each other: trunk cannot be balanced"},
+        {BIPED, {0, {NAN, NAN, NAN}, 0}, "nothing carries the weight where no contact does"},
+        {BIPED, {4, {NAN, NAN, NAN}, 0}, "an equilibrium stands on some of 2 contacts"},
+        {BIPED, {1, {INFINITY, NAN, NAN}, 0}, "an equilibrium's trunk must lie within +-1000"},
+        {BIPED,
+         {1, {-0.41, NAN, 0.82}, 2},
+         "there is no branch 2 of the equilibrium: 2 found, counted from 0"},
+        {BIPED, {1, {-0.9, NAN, 0.9 + M_PI / 2}, 0}, "it takes"},
+        {LAMP, {3, {NAN, 0.5}, 0}, "plate_toe would have to pull, with"},
+        {LAMP, {3, {NAN, -0.6}, 0}, "plate_heel would have to pull, with"},
+        {LAMP, {3, {NAN, -0.35}, 0}, "beyond its limits -0.3 ... 1"},
+        {LAMP, {3, {0.1, 0}, 0}, "cannot touch"},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        stance_scene *const s = mechanism_scene(wrong[i].mechanism);
+        stance_equilibrium e;
+        stance_message message = {""};
+        double robot[STANCE_MAX_ROBOT];
+        stance_robot_fallback(s, robot);
+        assert_int_not_equal(s->equilibrium(s, robot, &wrong[i].choice, &e, &message), STANCE_OK);
+        if (!strstr(message.text, wrong[i].text))
+            fail_msg("'%s' instead of '%s'", message.text, wrong[i].text);
+        assert_int_not_equal(s->equilibrium(s, robot, &wrong[i].choice, &e, NULL), STANCE_OK);
+        stance_scene_free(s);
+    }
+#undef LAMP
+}
+
+/* Numbers of robot[] take the place of described ones. */
+static void numbers_vary(void **state)
+{
+    (void)state;
+    stance_scene *const s = mechanism_scene("body rod hinge - 2 0.1 0 -0.5 0 0\n");
+    double robot[STANCE_MAX_ROBOT], A;
+    stance_robot_fallback(s, robot);
+    for (int i = 0; i < s->robot_count; i++)
+        if (strcmp(s->robot[i].name, "bodies.rod.mass") == 0)
+            robot[i] = 5;
+    s->inertia(s, robot, (double[]){0.3}, &A);
+    assert_near(A, 0.1 + 5 * 0.25, 1e-15, "inertia");
+    stance_scene_free(s);
+}
+
+/* A wheel on a slope stands on its lowest point, and rolls. */
+static void a_wheel(void **state)
+{
+    (void)state;
+    stance_scene *const s = mechanism_scene("body hub free - 2 0.1 0 0 0 0\n"
+                                            "disc rim hub 0.01 0 0.3\n");
+    double robot[STANCE_MAX_ROBOT], q[3] = {5, 5, 0.4}, v[3] = {1, 2, -3}, gap, point[2], speed[2];
+    stance_robot_fallback(s, robot);
+    robot[STANCE_ROBOT_SLOPE] = 0.2;
+    s->stand(s, robot, 1, q, v);
+    s->gaps(s, robot, q, &gap);
+    assert_true(gap >= 0 && gap < 1e-16);
+    s->contact_point(s, robot, q, v, 0, point, speed);
+    same(point, (double[]){0, 0}, 2, 1, "at the origin");
+    same(speed, (double[]){0, 0}, 2, 1, "at rest");
+    assert_near(q[0], 0.3 * sin(0.2) - 0.01 * cos(0.4), 1e-15, "x of the hub");
+    assert_near(q[1], 0.3 * cos(0.2) - 0.01 * sin(0.4), 1e-15, "z of the hub");
+    stance_scene_free(s);
+}
+
+/* By a point too near the ground, normal to it, or a body turned too far. */
+static void falls(void **state)
+{
+    (void)state;
+    stance_scene *const s = mechanism_scene("body base free - 1 0.1 0 0 0 0 turn 1.5\n"
+                                            "body arm hinge base 1 0.1 0 0.5 0 1\n"
+                                            "named head arm 0 0.5 0.3\n"
+                                            "point foot base 0 0\n");
+    double robot[STANCE_MAX_ROBOT];
+    stance_robot_fallback(s, robot);
+    assert_false(s->fallen(s, robot, (double[]){0, 0, 0, 0}, 0.2));
+    assert_false(s->fallen(s, robot, (double[]){0, 0, 0, 2.5}, 0.2));
+    assert_false(s->fallen(s, robot, (double[]){0, -0.1, 0, M_PI}, 0.2));
+    assert_true(s->fallen(s, robot, (double[]){0, -0.3, 0, M_PI}, 0.2));
+    assert_true(s->fallen(s, robot, (double[]){0, 2, -1.6, 0}, 0.2));
+    robot[STANCE_ROBOT_SLOPE] = -0.5;
+    assert_true(s->fallen(s, robot, (double[]){3, 0, 0, 0}, 0.2));
+    stance_scene_free(s);
+}
+
+/* Every joint, contact and massless tip is on the line, which ends where it began. */
+static void figures(void **state)
+{
+    (void)state;
+    stance_scene *const s = mechanism_scene("body trunk free - 20 2.22 0 0.2 0 0\n"
+                                            "body thigh1 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
+                                            "body thigh2 hinge trunk 6.8 1.08 0 -0.163 0 0\n"
+                                            "body shank1 hinge thigh1 3.2 0.93 0 -0.128 0 -0.4\n"
+                                            "body shank2 hinge thigh2 3.2 0.93 0 -0.128 0 -0.4\n"
+                                            "disc foot1 shank1 0 -0.4 0.05\n"
+                                            "sole foot2 shank2 -0.1 -0.4 0.2 -0.4\n"
+                                            "named head trunk 0 0.625\n");
+    double robot[STANCE_MAX_ROBOT], points[STANCE_MAX_POINTS][2];
+    const double q[7] = {0};
+    static const double on[][2] = {{0, 0},       {0, 0.625},  {0, -0.4},
+                                   {-0.1, -0.8}, {0.2, -0.8}, {0, -0.85}};
+    stance_robot_fallback(s, robot);
+    const int n = s->figure(s, robot, q, points);
+    for (size_t k = 0; k < sizeof on / sizeof on[0]; k++) {
+        double least = 1;
+        for (int i = 0; i < n; i++)
+            least = fmin(least, hypot(points[i][0] - on[k][0], points[i][1] - on[k][1]));
+        assert_near(least, 0, 1e-15, "a point of the figure");
+    }
+    assert_memory_equal(points[0], points[n - 1], sizeof points[0]);
+    stance_scene_free(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(names),
+        cmocka_unit_test(the_biped),
+        cmocka_unit_test(the_biped_at_rest),
+        cmocka_unit_test(the_rod),
+        cmocka_unit_test(a_pendulum),
+        cmocka_unit_test(a_cart_pole),
+        cmocka_unit_test(a_heavy_side),
+        cmocka_unit_test(no_equilibrium),
+        cmocka_unit_test(numbers_vary),
+        cmocka_unit_test(a_wheel),
+        cmocka_unit_test(falls),
+        cmocka_unit_test(figures),
+    };
+    return cmocka_run_group_tests_name("mechanism", tests, NULL, NULL);
+}

@@ -1,0 +1,296 @@
+/* test_mechanism_reader.c - scenarios that describe a mechanism: what they make, and what each
+ * wrong one is told.
+ */
+#include "reading.h"
+
+#include "engine/mechanism.h"
+#include "runner/plan/resolve.h"
+
+/* RABBIT, with every name on a line of its own. */
+static const char good[] = "stance: 1\n"
+                           "scene: mechanism\n"
+                           "robot:\n"
+                           "  bodies:\n"
+                           "    trunk: {joint: free, mass: 20, inertia: 2.22, centre: [0, 0.2]}\n"
+                           "    shank1: {joint: hinge, parent: thigh1, at: [0, -0.4], mass: 3.2, "
+                           "inertia: 0.93, centre: [0, -0.128], limits: [-2.5, 0]}\n"
+                           "    thigh1: {joint: hinge, parent: trunk, mass: 6.8, inertia: 1.08, "
+                           "centre: [0, -0.163]}\n"
+                           "    thigh2: {joint: hinge, parent: trunk, like: thigh1}\n"
+                           "    shank2: {joint: hinge, parent: thigh2, like: shank1}\n"
+                           "    rotor: {joint: fixed, parent: trunk, mass: 0.5, at: [0, 0.1]}\n"
+                           "  contacts:\n"
+                           "    foot1: {body: shank1, at: [0, -0.4]}\n"
+                           "    foot2: {body: shank2, from: [-0.05, -0.4], to: [0.1, -0.4]}\n"
+                           "  points:\n"
+                           "    head: {body: trunk, at: [0, 0.625]}\n"
+                           "  actuators:\n"
+                           "    hip1: {body: thigh1, limit: 150}\n"
+                           "    knee1: {body: shank1}\n"
+                           "ground: {friction: 0.6, slope: 0.1, gravity: 1.62, contacts: [foot2]}\n"
+                           "initial: {state: {trunk: -0.1, shank1: -0.3, shank2: -0.5, vtrunk: 1}, "
+                           "support: [foot2]}\n"
+                           "stop: {time: 5}\n";
+
+/* A cart on a rail. */
+static const char cart[] = "stance: 1\n"
+                           "scene: mechanism\n"
+                           "robot:\n"
+                           "  bodies:\n"
+                           "    cart: {joint: slide, axis: [1, 0], mass: 1, limits: [-2, 2]}\n"
+                           "    pole: {joint: hinge, parent: cart, mass: 0.1, centre: [0, 0.5]}\n"
+                           "  actuators:\n"
+                           "    push: {body: cart, limit: 20}\n"
+                           "initial: {state: {pole: 0.1}}\n"
+                           "stop: {time: 5}\n";
+
+/* The text with `from` replaced by `to`; freed by the caller. */
+static char *edited(const char *text, const char *from, const char *to)
+{
+    const char *const at = strstr(text, from);
+    assert_non_null(at);
+    char *const result = malloc(strlen(text) + strlen(to) + 1);
+    assert_non_null(result);
+    sprintf(result, "%.*s%s%s", (int)(at - text), text, to, at + strlen(from));
+    return result;
+}
+
+/* ---- what it makes --------------------------------------------------------------------------- */
+
+static int body_called(const stance_mechanism *m, const char *name)
+{
+    for (int b = 0; b < m->bodies; b++)
+        if (strcmp(m->body[b].name, name) == 0)
+            return b;
+    fail_msg("no body %s", name);
+    return -1;
+}
+
+static double quantity(const struct scenario *s, const double *robot, const char *name)
+{
+    for (int i = 0; i < s->scene->robot_count; i++)
+        if (strcmp(s->scene->robot[i].name, name) == 0)
+            return robot[i];
+    fail_msg("no number %s", name);
+    return NAN;
+}
+
+static void description_becomes_a_scene(void **state)
+{
+    struct scenario s;
+    (void)state;
+    read_good(&s, good, NULL, 0);
+    const stance_mechanism *const m = s.scene->mechanism;
+    assert_true(m && m->bodies == 6 && m->elements == 2 && m->points == 1 && m->actuators == 2);
+    for (int b = 0; b < m->bodies; b++)
+        assert_true(m->body[b].parent < b);
+    static const char *const order[] = {"trunk", "thigh1", "shank1", "thigh2", "shank2", "rotor"};
+    for (int b = 0; b < m->bodies; b++)
+        assert_string_equal(m->body[b].name, order[b]);
+    const int shank2 = body_called(m, "shank2");
+    assert_near(m->value.body[shank2].at[1], -0.4, 0);
+    assert_near(m->value.body[shank2].limits[0], -2.5, 0);
+    assert_near(m->value.body[body_called(m, "thigh2")].at[1], 0, 0);
+    assert_true(isinf(m->value.body[body_called(m, "thigh2")].limits[1]));
+    assert_true(!m->element[0].sole && m->element[1].sole);
+    assert_near(m->value.element[1].to[0], 0.1, 0);
+    assert_true(m->value.limit[0] == 150 && isinf(m->value.limit[1]));
+    assert_near(quantity(&s, s.base.robot, "bodies.shank2.mass"), 3.2, 0);
+    assert_near(s.base.robot[STANCE_ROBOT_SLOPE], 0.1, 0);
+    assert_near(s.base.robot[STANCE_ROBOT_GRAVITY], 1.62, 0);
+    assert_int_equal(s.scene->coordinates, 7);
+    /* foot1 and not: both ends of foot2's sole, and two stops of each of two knees. */
+    assert_int_equal(s.scene->contacts, 7);
+    assert_int_equal(s.base.contacts, 0x7e);
+    assert_int_equal(s.base.support, 6);
+    for (int i = 0; i < m->numbers; i++)
+        assert_false(m->varies[i]);
+    scenario_free(&s);
+}
+
+/* A number that is set, swept, sampled; one that is swept alone is there, too, and varies. */
+static void numbers_vary(void **state)
+{
+    static const char *const sets[] = {
+        "robot.bodies.thigh1.mass=7", "controller={kind: hold, kp: 1, kd: 1}",
+        "sweep.grid=[{path: 'robot.bodies.trunk.centre[0]', from: -0.1, to: 0.1, count: 3}, "
+        "{path: robot.bodies.shank1.damping, values: [0, 2]}, "
+        "{paths: [robot.bodies.thigh1.mass, robot.bodies.thigh2.mass], values: [[5, 6]]}]"};
+    struct scenario s;
+    struct scenario_values v;
+    (void)state;
+    read_good(&s, good, sets, 3);
+    assert_near(quantity(&s, s.base.robot, "bodies.thigh2.mass"), 7, 0); /* like thigh1 */
+    assert_int_equal(s.cases, 6);
+    scenario_case_values(&s, 5, &v);
+    assert_near(quantity(&s, v.robot, "bodies.trunk.centre[0]"), 0.1, 0);
+    assert_near(quantity(&s, v.robot, "bodies.shank1.damping"), 2, 0);
+    assert_near(quantity(&s, v.robot, "bodies.thigh1.mass"), 5, 0);
+    assert_near(quantity(&s, v.robot, "bodies.thigh2.mass"), 6, 0);
+    const stance_mechanism *const m = s.scene->mechanism;
+    int varied = 0;
+    for (int i = 0; i < m->numbers; i++) {
+        const bool wanted = strcmp(s.scene->robot[i].name, "bodies.trunk.centre[0]") == 0 ||
+                            strcmp(s.scene->robot[i].name, "bodies.shank1.damping") == 0 ||
+                            strcmp(s.scene->robot[i].name, "bodies.thigh1.mass") == 0 ||
+                            strcmp(s.scene->robot[i].name, "bodies.thigh2.mass") == 0;
+        assert_int_equal(m->varies[i], wanted);
+        varied += wanted;
+    }
+    assert_int_equal(varied, 4);
+    scenario_free(&s);
+}
+
+/* The text that files store makes the same scene, and the same text again. */
+static void text_reads_back(void **state)
+{
+    static const char *const texts[] = {good, cart};
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct scenario s, again;
+        read_good(&s, texts[i], NULL, 0);
+        read_good(&again, s.text, NULL, 0);
+        assert_string_equal(s.text, again.text);
+        assert_true(scenario_same_scene(&s, &again));
+        assert_memory_equal(&s.base, &again.base, sizeof s.base);
+        scenario_free(&again);
+        const char *const set = i ? "robot.bodies.pole.mass=2" : "robot.bodies.trunk.mass=2";
+        read_good(&again, texts[i], &set, 1);
+        assert_true(scenario_same_scene(&s, &again)); /* but for a number */
+        scenario_free(&again);
+        const char *const more =
+            i ? "robot.bodies.pole.damping=2" : "robot.contacts.foot1.body=trunk";
+        read_good(&again, texts[i], &more, 1);
+        assert_false(scenario_same_scene(&s, &again));
+        scenario_free(&again);
+        scenario_free(&s);
+    }
+}
+
+/* ---- what is made of it ---------------------------------------------------------------------- */
+
+static void resolve(const char *text, const char *const *sets, size_t set_count,
+                    struct resolved_design *design, stance_case *c, const char *wanted)
+{
+    struct scenario s;
+    stance_message message = {""};
+    read_good(&s, text, sets, set_count);
+    if (!resolve_design(s.scene, &s.base, design, &message) ||
+        !resolve_case(s.scene, &s.base, design, 1, 0, c, &message))
+        assert_string_equal(message.text, wanted ? wanted : "");
+    else
+        assert_null(wanted);
+    scenario_free(&s);
+}
+
+/* The regulator of a cart and pole, by SciPy from the linear model in closed form. */
+static void designs_act_on_names(void **state)
+{
+    static const char *const sets[] = {
+        "initial={equilibrium: {}}",
+        "controller={kind: state-feedback, design: lqr, weights: {states: [1, 10, 1, 1], torques: "
+        "[0.1]}}",
+        "robot.bodies.pole.inertia=0.00833"};
+    static const double gain[4] = {-3.16227766, 49.53696991, -5.91436222, 12.84512014};
+    struct resolved_design design;
+    stance_case c;
+    (void)state;
+    resolve(cart, sets, 3, &design, &c, NULL);
+    for (int i = 0; i < 4; i++)
+        assert_near(design.gain[0][i], gain[i], 1e-3);
+    assert_near(c.torque_limit, 20, 0);
+    assert_int_equal(c.support, -1);
+}
+
+/* On a flat foot the posture has a coordinate more than the linear model: no gain acts on it. */
+static void held_coordinates_have_no_gains(void **state)
+{
+    static const char *const sets[] = {
+        "robot.actuators={hip1: {body: thigh1}, knee1: {body: shank1}, hip2: {body: thigh2}, "
+        "knee2: {body: shank2}}",
+        "initial={equilibrium: {thigh2: 0.3, shank2: -0.4, shank1: -0.5}, support: [foot2]}",
+        "controller={kind: state-feedback, design: lqr}", "ground.contacts=[foot1, foot2]",
+        "controller={kind: state-feedback, design: place, poles: [-1, -2, -3, -4]}"};
+    struct resolved_design design;
+    stance_case c;
+    int held = 0;
+    (void)state;
+    resolve(good, sets, 4, &design, &c, NULL);
+    for (int k = 0; k < 5; k++) {
+        bool any = false;
+        for (int i = 0; i < 4; i++)
+            any = any || design.gain[i][k] != 0 || design.gain[i][5 + k] != 0;
+        held += !any;
+    }
+    assert_int_equal(held, 1);
+    resolve(good, sets, 5, &design, &c,
+            "controller.poles: 4 of them; where the contacts hold there are 8 states");
+}
+
+/* With initial.support a state stands on the ground; beyond a stop it does not begin. */
+static void states_stand(void **state)
+{
+    static const char *const sets[] = {"initial.support=[foot1]", "ground.contacts=[foot1]",
+                                       "initial.state.shank1=0.1"};
+    struct resolved_design design;
+    struct scenario s;
+    stance_case c;
+    (void)state;
+    read_good(&s, good, sets, 2);
+    stance_message message;
+    double gap[STANCE_MAX_CONTACTS];
+    assert_true(resolve_design(s.scene, &s.base, &design, &message) &&
+                resolve_case(s.scene, &s.base, &design, 1, 0, &c, &message));
+    s.scene->gaps(s.scene, c.robot, c.position, gap);
+    assert_near(gap[0], 0, 1e-15);
+    scenario_free(&s);
+    resolve(good, sets, 3, &design, &c, "shank1_high would start 0.1 beyond");
+}
+
+/* ---- wrong ones ------------------------------------------------------------------------------ */
+
+static const struct {
+    const char *from, *to; /* in `good` */
+    const char *wanted;    /* LINE:COLUMN: message */
+} wrong[] = {
+#include "mechanism_errors.h"
+};
+enum { WRONG = sizeof wrong / sizeof wrong[0] };
+
+static void wrong_ones_are_told(void **state)
+{
+    int failed = 0;
+    (void)state;
+    for (int i = 0; i < WRONG; i++) {
+        const bool own = strstr(good, wrong[i].from) != NULL;
+        char *const text = edited(own ? good : cart, wrong[i].from, wrong[i].to);
+        char wanted[1024];
+        struct scenario s;
+        snprintf(wanted, sizeof wanted, "bad.yaml:%s\n", wrong[i].wanted);
+        if (read_as(&s, "bad.yaml", text, NULL, 0)) {
+            print_error("%s -> %s: accepted, not %s", wrong[i].from, wrong[i].to, wanted);
+            scenario_free(&s);
+            failed++;
+        } else if (strcmp(errors, wanted) != 0) {
+            print_error("%s -> %s: %snot %s", wrong[i].from, wrong[i].to, errors, wanted);
+            failed++;
+        }
+        free(text);
+    }
+    assert_int_equal(failed, 0);
+    assert_true(WRONG >= 60);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(description_becomes_a_scene),
+        cmocka_unit_test(numbers_vary),
+        cmocka_unit_test(text_reads_back),
+        cmocka_unit_test(designs_act_on_names),
+        cmocka_unit_test(held_coordinates_have_no_gains),
+        cmocka_unit_test(states_stand),
+        cmocka_unit_test(wrong_ones_are_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,204 @@
+/* test_random_mechanisms - random trees of 1 to 7 angles with up to 6 contact elements, springs,
+ * dampers, rotors, stops, motors and pushes, thrown at random near the ground, steps of 0.1 to 20
+ * ms, friction 0 to 2: nothing is not finite, nothing is below the ground or moves into it, no
+ * friction is outside its cone, no impact adds energy; and what fails says so. A root that is held
+ * may jam, where no contact impulse fits; a free one may not, and must not fail.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "random_mechanism.h"
+
+#include "engine/tree.h"
+
+enum { CASES = 100, STEPS = 250 };
+
+/* One that has no more contacts than fit. */
+static stance_scene *random_scene(int tree)
+{
+    static stance_mechanism m;
+    stance_scene *scene = NULL;
+    dice = 1000003u * (uint64_t)tree + 11;
+    do {
+        random_mechanism(&m, whole(1, STANCE_MAX_ANGLES), STANCE_MAX_ELEMENTS);
+        for (int p = 0; p < m.points; p++) {
+            stance_point_numbers *const n = &m.value.point[p];
+            m.point[p].pushed = sometimes(0.5) ? STANCE_FORCE : STANCE_IMPULSE;
+            for (int axis = 0; axis < 2; axis++)
+                n->force[axis] =
+                    m.point[p].pushed == STANCE_FORCE ? between(-100, 100) : between(-3, 3);
+            n->from = between(0, 0.2);
+            n->to = n->from + between(0, 0.1);
+        }
+        for (int e = 0; e < m.elements; e++) /* a sole has a length */
+            m.element[e].sole &= hypot(m.value.element[e].at[0] - m.value.element[e].to[0],
+                                       m.value.element[e].at[1] - m.value.element[e].to[1]) > 0.05;
+    } while (stance_mechanism_scene(&m, &scene, NULL) != STANCE_OK);
+    return scene;
+}
+
+/* Where no stop is passed; a free root just above the ground or on it. What then is below the
+ * ground all the same, the root being held, is no contact. */
+static void random_case(const stance_scene *scene, stance_case *c)
+{
+    double gap[STANCE_MAX_CONTACTS], least = INFINITY;
+    bool beyond = true;
+    memset(c, 0, sizeof *c);
+    stance_robot_fallback(scene, c->robot);
+    const double slope = sometimes(0.5) ? 0 : between(-0.3, 0.3);
+    c->robot[STANCE_ROBOT_SLOPE] = slope;
+    while (beyond) {
+        for (int i = 0; i < scene->coordinates; i++) {
+            c->position[i] = between(-2, 2);
+            c->velocity[i] = between(-4, 4);
+        }
+        scene->gaps(scene, c->robot, c->position, gap);
+        beyond = false;
+        for (int k = 0; k < scene->contacts; k++)
+            beyond |= scene->grip[k] < 0 && gap[k] < 0;
+    }
+    for (int k = 0; k < scene->contacts; k++)
+        if (scene->grip[k] >= 0)
+            least = fmin(least, gap[k]);
+    if (scene->mechanism->body[0].joint == STANCE_FREE && isfinite(least)) {
+        c->position[1] += ((sometimes(0.5) ? 1e-13 : between(0, 0.2)) - least) / cos(slope);
+        scene->gaps(scene, c->robot, c->position, gap);
+    }
+    c->contacts = (1u << scene->contacts) - 1;
+    for (int k = 0; k < scene->contacts; k++)
+        for (int end = 0; end < scene->contacts; end++)
+            if (gap[k] < 0 && scene->grip[end] == scene->grip[k] && scene->grip[k] >= 0)
+                c->contacts &= ~(1u << end);
+    c->scene = scene;
+    c->tree = scene->tree;
+    stance_tree_numbers_make(scene->tree, scene->mechanism, c->robot, &c->body);
+    c->friction = between(0, 2);
+    c->support = -1;
+    c->sample_every = sometimes(0.8);
+    /* Held torques may feed a light body without end. */
+    c->torque_limit = c->sample_every ? 20 : INFINITY;
+    for (int i = 0; i < scene->actuators; i++)
+        for (int p = 0; p < scene->postures; p++)
+            if (scene->posture[p] == scene->actuated[i]) {
+                c->near.gain[i][p] = between(0, 50);
+                c->near.gain[i][scene->postures + p] = between(0, 5);
+                c->near.target[p] = c->position[scene->actuated[i]];
+            }
+    c->step = exp(between(log(1e-4), log(2e-2)));
+    c->steps = (int64_t)fmin(STEPS, 0.25 / c->step);
+}
+
+struct tally {
+    double penetration, cone, signorini, impact;
+    long cases, failed[STANCE_FAILURE_COUNT], ambiguous, unranked, subdivided, iterations, steps;
+};
+
+/* What one case came to; false: to what it must not. */
+static bool take_down(const stance_case *c, const stance_result *r, struct tally *t)
+{
+    t->cases++;
+    t->failed[r->failure]++;
+    t->steps += r->steps, t->iterations += r->iterations;
+    if (r->status != STANCE_DONE)
+        return r->status == STANCE_FAILED && r->failure != STANCE_FAILURE_NONE &&
+               c->scene->mechanism->body[0].joint != STANCE_FREE;
+    const double energy = c->scene->energy(c->scene, c->robot, c->position, c->velocity);
+    bool finite = true;
+    for (int i = 0; i < c->scene->coordinates; i++)
+        finite &= isfinite(r->position[i]) && isfinite(r->velocity[i]);
+    const double impact = r->impact_energy / (1 + fabs(energy));
+    t->penetration = fmax(t->penetration, r->max_penetration);
+    t->cone = fmax(t->cone, r->coulomb_residual);
+    t->signorini = fmax(t->signorini, r->signorini_residual);
+    t->impact = fmax(t->impact, impact);
+    t->ambiguous += r->ambiguous_steps > 0;
+    t->unranked += r->unranked_steps > 0;
+    t->subdivided += r->subdivided_steps > 0;
+    return finite && r->signorini_residual <= 1e-8 && r->max_penetration <= 1e-9 &&
+           r->coulomb_residual <= 1e-9 && impact <= 1e-9 &&
+           r->friction_used <= c->friction * (1 + 1e-9) + 1e-9;
+}
+
+static void tell(const char *method, int tree, int k, const stance_case *c, const stance_result *r)
+{
+    print_message(
+        "# %s, tree %d, case %d: h %g, friction %g; %s, penetration %.2g, cone %.2g, friction "
+        "used %.2g, impact %.2g, signorini %.2g\n",
+        method, tree, k, c->step, c->friction, stance_failure_name[r->failure], r->max_penetration,
+        r->coulomb_residual, r->friction_used, r->impact_energy, r->signorini_residual);
+}
+
+static int trees_of(void)
+{
+    return getenv("STANCE_TEST_LONG") ? 200 : 40;
+}
+
+static void hunt(const stance_method *method, int trees)
+{
+    static stance_case cases[CASES];
+    static stance_result results[CASES];
+    struct tally t = {0};
+    long bad = 0;
+    for (int tree = 0; tree < trees; tree++) {
+        stance_scene *const scene = random_scene(tree);
+        for (int k = 0; k < CASES; k++) {
+            random_case(scene, &cases[k]);
+            cases[k].tolerance = method->tolerance;
+        }
+        stance_kernel_find(scene, method, NULL)->run(cases, results, CASES);
+        for (int k = 0; k < CASES; k++)
+            if (!take_down(&cases[k], &results[k], &t)) {
+                bad++;
+                tell(method->name, tree, k, &cases[k], &results[k]);
+            }
+        stance_scene_free(scene);
+    }
+    print_message(
+        "## %s: penetration %.1e, cone %.1e, impacts add %.1e of the energy, Signorini %.1e "
+        "m/s; of %ld cases %ld ambiguous, %ld unranked, %ld subdivided; %.2f iterations\n",
+        method->name, t.penetration, t.cone, t.impact, t.signorini, t.cases, t.ambiguous,
+        t.unranked, t.subdivided, (double)t.iterations / (double)t.steps);
+    long failed = 0;
+    for (int f = 1; f < STANCE_FAILURE_COUNT; f++) {
+        failed += t.failed[f];
+        if (t.failed[f])
+            print_message("## %s: %ld failed: %s\n", method->name, t.failed[f],
+                          stance_failure_text[f]);
+    }
+    assert_int_equal(bad, 0);
+    assert_true(failed <= 1 + t.cases / 2000);
+}
+
+static void implicit(void **state)
+{
+    (void)state;
+    hunt(stance_method_find("implicit"), trees_of());
+}
+static void midpoint(void **state)
+{
+    (void)state;
+    hunt(stance_method_find("midpoint"), trees_of());
+}
+static void capturing(void **state)
+{
+    (void)state;
+    hunt(stance_method_find("capturing"), trees_of() / 4);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(implicit),
+        cmocka_unit_test(midpoint),
+        cmocka_unit_test(capturing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,218 @@
+#!/usr/bin/env bash
+# Kernels that are compiled on demand, and their cache, under all circumstances that a user's machine
+# may have: whatever is wrong is safe and said. The lanes of the ball and of the rod stand for those of
+# a mechanism; what is compiled must give the bits of the kernel that is built in (test_objects).
+# Speaks TAP.
+# shellcheck disable=SC2016,SC2034
+set -u
+build=$(cd "$(dirname "$0")/../${BUILD:-build}" && pwd)
+# shellcheck source=tests/scratch.sh
+. "$(dirname "$0")/scratch.sh"
+job=$build/tests/test_objects isa=scalar
+export STANCE_CACHE=$scratch/cache
+unset CC XDG_CACHE_HOME
+umask 022
+
+others() { # what there is in a cache beside the lock
+    find "$1" -mindepth 1 ! -name lock
+}
+object() { # a file of the cache, by what its name begins with
+    ls -d "$STANCE_CACHE/$1"-*.so
+}
+is() { # name, command: ok when it succeeds; the log stays that of the job before
+    local name=$1
+    shift
+    "$@" >/dev/null 2>&1
+    result $? "$name"
+}
+compiles() { # name, number of lines that the program says beside, job ...: compiled, with the right bits
+    expect "$1" 0 "$job" "${@:3}"
+    says "... compiled, the same bits" 'compiled, the same bits'
+    is "... and $2 lines more are said" test "$(grep -c '^stance:' log)" = $((1 + $2))
+}
+# A stand-in for the compiler, of which --version and -dumpmachine are the true ones.
+compiler() { # file, what it does instead of compiling
+    printf '#!/bin/bash\ncase $1 in --version | -dumpmachine) exec cc "$@" ;; esac\n%s\n' "$2" >"$1"
+    chmod +x "$1"
+}
+
+# ---- all goes well --------------------------------------------------------------------------------
+for scene in ball rod; do
+    expect "$scene: compiled" 0 "$job" $scene implicit,midpoint,capturing,lagrange $isa
+    is "$scene: ... each with the right bits" test "$(grep -c 'compiled, the same bits' log)" = 4
+    expect "$scene: kept" 0 "$job" $scene implicit,midpoint,capturing,lagrange $isa
+    is "$scene: ... each with the right bits" test "$(grep -c 'kept, the same bits' log)" = 4
+done
+expect "event-driven is always the one that is built in" 0 "$job" rod event-driven scalar
+says "... which computes" 'event-driven scalar: built in, the same bits'
+expect "... or none" 2 "$job" rod event-driven scalar alone
+says "... which is said" 'event-driven is not compiled on demand, and none of this size is built in'
+is "the cache has eight objects, a lock and nothing else" test "$(others "$STANCE_CACHE" | grep -c '\.so$')/$(others "$STANCE_CACHE" | wc -l)" = 8/8
+is "... and is the user's alone" test "$(stat -c %a "$STANCE_CACHE" "$STANCE_CACHE"/*.so | sort -u | tr '\n' ' ')" = "600 700 "
+fastest=$(timeout "$patience" "$stance" --version | sed -n 's/.*in use: //p')
+for isa in $(timeout "$patience" "$stance" --version | sed -n 's/instruction sets \(.*\); in use.*/\1/p' | tr -d ,); do
+    expect "rod, $isa" 0 "$job" rod lagrange "$isa"
+    says "... the same bits" 'the same bits'
+done
+isa=scalar
+HOME=$scratch/home && mkdir home && export HOME
+env -u STANCE_CACHE "$job" ball lagrange scalar >log 2>&1
+is "without STANCE_CACHE it is ~/.cache/stance" test -e home/.cache/stance/lock
+env -u STANCE_CACHE XDG_CACHE_HOME="$scratch/xdg" "$job" ball lagrange scalar >log 2>&1
+is "... or XDG_CACHE_HOME's" test -e xdg/stance/lock
+
+# ---- several at once ------------------------------------------------------------------------------
+rm -rf "$STANCE_CACHE"
+for k in 1 2 3; do timeout "$patience" "$job" rod lagrange $isa >"log$k" 2>&1 & done
+wait
+cat log[123] >log
+is "of three jobs at once one compiles" test "$(grep -c 'compiled, the same bits' log)$(grep -c 'kept, the same bits' log)" = 12
+rm -rf "$STANCE_CACHE"
+expect "two ranks" 0 mpirun -n 2 "$job" rod lagrange,capturing $isa
+is "... compile once" test "$(grep -c '^stance: compiling' log)" = 1
+is "... and both have the right bits" test "$(grep -c 'compiled, the same bits' log)" = 4
+expect "two ranks, kept" 0 mpirun -n 2 "$job" rod lagrange,capturing $isa
+is "... and both have the right bits" test "$(grep -c 'kept, the same bits' log)" = 4
+
+rm -rf "$STANCE_CACHE"
+expect "two ranks on different processors" 0 mpirun -n 1 "$job" rod lagrange,capturing scalar : -n 1 "$job" rod lagrange "$fastest"
+is "... have each its own, with the right bits" test "$(grep -Ec "(0: lagrange scalar|1: lagrange $fastest): compiled, the same bits" log)" = 2
+
+# ---- files that are not what they should be -------------------------------------------------------
+spoilt() { # name, what is said, command that spoils a file
+    local file # of the command
+    file=$(object lagrange-$isa)
+    eval "$3" || echo "cannot be made: $3" >&2
+    compiles "$1: compiled anew" 1 rod lagrange $isa
+    says "... and said" "$2: thrown away"
+    expect "... and kept" 0 "$job" rod lagrange $isa
+    says "... whole" 'kept, the same bits'
+}
+{
+    spoilt "an object cut short" 'truncated or damaged' 'truncate -s 1000 "$file"'
+    spoilt "an object of nothing" 'truncated or damaged' ': >"$file"'
+    spoilt "an object with a bit turned over" 'truncated or damaged' \
+        'printf "\101" | dd of="$file" bs=1 seek=9000 conv=notrunc status=none; printf "\102" | dd of="$file" bs=1 seek=9001 conv=notrunc status=none'
+    spoilt "another object under its name" 'something else under this name' 'cp "$(object capturing-$isa)" "$file"'
+    spoilt "an object that others can write" 'not a file of this user alone' 'chmod 666 "$file"'
+    spoilt "a link to an object" 'cannot be read' 'mv "$file" elsewhere && ln -s "$scratch/elsewhere" "$file"'
+    spoilt "a pipe" 'not a file of this user alone' 'rm "$file" && mkfifo "$file"'
+    if ((UID == 0)); then
+        spoilt "an object of another user" 'not a file of this user alone' 'chown nobody "$file"'
+    else
+        skip "an object of another user" "not root"
+    fi
+}
+
+# ---- directories that cannot be trusted -----------------------------------------------------------
+distrusted() { # name, what is said
+    expect "$1 is refused" 3 "$job" rod lagrange $isa
+    says "... and said, with the mend" "$2"
+    is "... in one line" test "$(wc -l <log)" = 1
+}
+chmod 777 "$STANCE_CACHE"
+distrusted "a directory that others can write to" "others can write to it: not used as cache; chmod go-w $STANCE_CACHE"
+chmod 720 "$STANCE_CACHE"
+distrusted "... or the group" "others can write to it: not used as cache; chmod go-w $STANCE_CACHE"
+chmod 700 "$STANCE_CACHE"
+ln -s cache link
+STANCE_CACHE=$scratch/link/ distrusted "a symbolic link" 'a symbolic link: not used as cache; name the directory itself with STANCE_CACHE'
+if ((UID == 0)); then
+    mkdir theirs && chown nobody theirs
+    STANCE_CACHE=$scratch/theirs distrusted "a directory of another user" 'belongs to another user: not used as cache; name a directory of yours'
+else
+    skip "a directory of another user" "not root"
+fi
+
+# ---- no room --------------------------------------------------------------------------------------
+export TMPDIR=$scratch/tmp && mkdir tmp
+STANCE_CACHE=/sys/stance compiles "a home that nothing can be written to" 1 rod lagrange $isa
+says "... and said" "compiled in $TMPDIR, for this run alone"
+env -u STANCE_CACHE -u HOME "$job" rod lagrange $isa >log 2>&1
+says "no home" "neither STANCE_CACHE nor HOME names a directory; compiled in $TMPDIR, for this run alone"
+if ((UID == 0)) && mount -t tmpfs -o size=1m none "$disk" 2>/dev/null; then
+    mkdir -m 700 "$disk/cache"
+    STANCE_CACHE=$disk/cache compiles "a full disk" 1 rod lagrange $isa
+    says "... is said" 'No space left on device; compiled in'
+    is "... and left as it was" test -z "$(others "$disk/cache")"
+    cp "$(object lagrange-$isa)" "$disk/cache"
+    mount -o remount,ro "$disk"
+    STANCE_CACHE=$disk/cache expect "an object on a disk that can only be read" 0 "$job" rod lagrange $isa
+    says "... is taken" 'kept, the same bits'
+    STANCE_CACHE=$disk/cache compiles "another one" 1 rod capturing $isa
+    says "... is not kept" 'Read-only file system; compiled in'
+    umount "$disk"
+else
+    skip "a full disk" "no tmpfs can be mounted"
+fi
+rm -rf "$STANCE_CACHE"
+expect "files that may not be larger than 200 kB" 0 bash -c "trap '' XFSZ; ulimit -f 200; '$job' rod lagrange $isa | cat"
+says "... is said" 'File too large; kernels that are built in compute instead'
+is "nothing is left in the directory for temporary files" test -z "$(ls tmp)"
+unset TMPDIR
+
+# ---- compilers ------------------------------------------------------------------------------------
+refused() { # name, what is said, what the job is started with
+    expect "$1: the kernel that is built in computes" 0 env "${@:3}" "$job" rod lagrange $isa
+    says "... with the right bits" 'built in, the same bits'
+    says "... and that is said" "$2.*kernels that are built in compute instead, more slowly"
+    is "... and nothing kept" test -z "$(others "$STANCE_CACHE")"
+}
+compiler fusing 'exec cc "$@" -ffp-contract=fast'
+refused "a compiler that fuses" 'computes another [a-z_]* in check [0-9]*: refused' CC=./fusing
+CC=./fusing expect "... whose results are others indeed" 1 "$job" ball lagrange $isa alone
+rm -rf "$STANCE_CACHE"
+compiler failing 'echo "x.c:1:2: note: before" >&2; echo "x.c:3:4: error: no such thing" >&2; echo "  3 | here" >&2; exit 1'
+refused "a compiler that fails" 'failing does not compile lagrange for scalar (exit code 1): x.c:3:4: error: no such thing|  3 | here' CC=./failing
+CC=./failing expect "... and no kernel built in" 2 "$job" rod lagrange $isa alone
+is "... is said in one line" test "$(grep -vc '^stance: compiling' log)" = 1
+compiler dying 'kill -9 $$'
+refused "a compiler that is killed" 'dying does not compile lagrange for scalar (signal 9): and does not say why' CC=./dying
+compiler empty 'exit 0'
+refused "a compiler that makes nothing" 'empty does not compile lagrange for scalar' CC=./empty
+compiler other 'while [ "$1" != -o ]; do shift; done; echo text >"$2"'
+refused "a compiler that makes no object" 'a compiled kernel cannot be loaded' CC=./other
+refused "a compiler that is not there" "the compiler CC='/nowhere/cc' does not run" CC=/nowhere/cc
+refused "no compiler" 'there is no compiler here' PATH="$scratch"
+CC=/nowhere/cc expect "no compiler, and no kernel built in" 2 "$job" rod lagrange $isa alone
+says "... says what to do" '`stance build` where there is one, and copy '"$STANCE_CACHE/lagrange-$isa-"
+if command -v clang >/dev/null; then
+    CC=clang compiles "clang" 0 rod lagrange "$fastest"
+else
+    skip "clang" "not installed"
+fi
+CC="cc -DUNUSED" compiles "CC may have options" 0 rod lagrange $isa
+CC=/nowhere/cc expect "an object serves where there is no compiler, whoever compiled it" 0 "$job" rod lagrange $isa alone
+says "... with the right bits" 'kept, the same bits'
+
+# ---- the command ----------------------------------------------------------------------------------
+expect "stance build of a scene that is built in" 0 "$stance" build "$shipped/ball_bounce.yaml" --method lagrange --isa scalar
+says "... says that there is nothing to do" 'the scene ball is built in: nothing is to be compiled'
+expect "... of no scenario" 3 "$stance" build nothing.yaml
+expect "... for no method" 2 "$stance" build "$shipped/ball_bounce.yaml" --method lagrang
+says "... says so" "stance build: --method takes one of .*lagrange"
+expect "... for no instruction set" 2 "$stance" build "$shipped/ball_bounce.yaml" --isa=avx
+says "... says so" "stance build: --isa takes one of .*scalar"
+
+# ---- kills ----------------------------------------------------------------------------------------
+compiler slow 'echo $$ >compiling; exec sleep 60'
+rm -rf "$STANCE_CACHE"
+CC=./slow "$job" rod lagrange $isa >/dev/null 2>&1 &
+victim=$!
+until [ -s "$(echo "$STANCE_CACHE"/compile-*/compiling)" ]; do sleep 0.1; done
+kill -9 $victim "$(cat "$STANCE_CACHE"/compile-*/compiling)"
+wait $victim 2>/dev/null
+is "a job that is killed leaves a directory" test -n "$(ls -d "$STANCE_CACHE"/compile-*)"
+touch -d '100 days ago' "$STANCE_CACHE/forgotten-scalar-0.so"
+touch -d '80 days ago' "$STANCE_CACHE/remembered-scalar-0.so"
+compiles "the next one compiles" 0 rod lagrange $isa
+is "... and removes it, and what nobody used for 90 days" \
+    test "$(cd "$STANCE_CACHE" && echo *)" = "$(basename "$(object lagrange)") lock remembered-scalar-0.so"
+truncate -s 200M "$STANCE_CACHE/large-scalar-0.so" "$STANCE_CACHE/larger-scalar-0.so"
+touch -d '30 days ago' "$STANCE_CACHE/large-scalar-0.so"
+rm "$(object lagrange)"
+compiles "another one" 0 rod lagrange $isa
+is "... removes, beyond 256 MiB, what nobody used for longest" \
+    test "$(cd "$STANCE_CACHE" && echo *)" = "$(basename "$(object lagrange)") larger-scalar-0.so lock"
+
+echo "1..$count"
