@@ -403,7 +403,7 @@ static void test_designs_stored(void **state)
     struct plan copy = f->plan;
     unlink(f->file);
     assert_true(store_create(f->file, &f->plan, 1, "here", &message));
-    copy.design = calloc(4, sizeof *copy.design);
+    copy.design = calloc(4, copy.design_size * sizeof *copy.design);
     copy.design_status = calloc(4, 1);
     assert_true(store_open(&store, f->file, &f->plan, 1, &message));
     assert_true(store_read_designs(store, &copy, &message));
