@@ -324,7 +324,7 @@ CORES := $(shell nproc)
 processor := $(shell grep -m1 -o 'avx512dq' /proc/cpuinfo || grep -m1 -ow 'avx2' /proc/cpuinfo)
 own_isa    = $(or $(filter $(patsubst avx512dq,avx512,$(processor)),$(ISAS)),$(lastword $(filter-out avx2 avx512,$(ISAS))))
 demo: packages
-	$(MAKE) ISAS='$(own_isa)' bin/stance
+	$(MAKE) -j$(CORES) ISAS='$(own_isa)' bin/stance
 	@mkdir -p results
 	$(MPI_ENVIRONMENT) mpirun -n $(CORES) bin/stance run --force scenarios/basin_one_foot.yaml
 	bin/stance summary results/basin_one_foot.h5
