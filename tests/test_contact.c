@@ -7,50 +7,13 @@
 #define STANCE_ISA inside
 #define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
 #include "engine/methods/implicit.c"
+#define DENSE_ROWS 4
+#include "dense.h"
 #include "support.h"
 
 struct problem {
     double D[4][4], v[4], e[2], friction; /* v: velocities without impulses; e: restitution terms */
 };
-
-/* Solves a[n][n] x = b, full pivoting; false: singular to `guard` of the first pivot. */
-static bool dense_solve(int n, double a[4][5], double *x)
-{
-    int column[4] = {0, 1, 2, 3};
-    double first = 0;
-    for (int k = 0; k < n; k++) {
-        int p = k, q = k;
-        for (int i = k; i < n; i++)
-            for (int j = k; j < n; j++)
-                if (fabs(a[i][j]) > fabs(a[p][q]))
-                    p = i, q = j;
-        first = fmax(first, fabs(a[p][q]));
-        if (!(fabs(a[p][q]) > 1e-11 * first))
-            return false;
-        for (int j = 0; j <= n; j++) {
-            const double t = a[k][j];
-            a[k][j] = a[p][j], a[p][j] = t;
-        }
-        for (int i = 0; i < n; i++) {
-            const double t = a[i][k];
-            a[i][k] = a[i][q], a[i][q] = t;
-        }
-        const int t = column[k];
-        column[k] = column[q], column[q] = t;
-        for (int i = k + 1; i < n; i++) {
-            const double f = a[i][k] / a[k][k];
-            for (int j = k; j <= n; j++)
-                a[i][j] -= f * a[k][j];
-        }
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        double sum = a[k][n];
-        for (int j = k + 1; j < n; j++)
-            sum -= a[k][j] * x[column[j]];
-        x[column[k]] = sum / a[k][k];
-    }
-    return true;
-}
 
 /* What an impulse violates, as a velocity; *energy: the kinetic energy that it adds. */
 static double violation(const struct problem *p, int contacts, const double *r, double *energy)

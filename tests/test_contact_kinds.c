@@ -19,9 +19,11 @@ enum {
 #define SCENE_GRIPS
 static const int scene_grip[SCENE_CONTACTS] = {0, 1, 2, 3, 4, 5, 6, 6, 8, 8, -1, -1};
 #include "engine/core/contact/direct.h"
+#define DENSE_ROWS 18
+#include "dense.h"
 #include "support.h"
 
-enum { M = 12, ROWS = 18, MOST = 8 };
+enum { M = 12, ROWS = DENSE_ROWS, MOST = 8 };
 
 /* Rows of an element: tangential (-1: none), then its normal ones. */
 struct element {
@@ -34,47 +36,6 @@ struct problem {
     int contact[ROWS]; /* of each row, as the kernel counts; tangential rows: of the first end */
     double D[ROWS][ROWS], v[ROWS], e[ROWS], friction; /* e: restitution terms */
 };
-
-/* Solves a[n][n] x = b, full pivoting; false: singular to 1e-11 of the first pivot. */
-static bool dense_solve(int n, double a[ROWS][ROWS + 1], double *x)
-{
-    int column[ROWS];
-    double first = 0;
-    for (int k = 0; k < n; k++)
-        column[k] = k;
-    for (int k = 0; k < n; k++) {
-        int p = k, q = k;
-        for (int i = k; i < n; i++)
-            for (int j = k; j < n; j++)
-                if (fabs(a[i][j]) > fabs(a[p][q]))
-                    p = i, q = j;
-        first = fmax(first, fabs(a[p][q]));
-        if (!(fabs(a[p][q]) > 1e-11 * first))
-            return false;
-        for (int j = 0; j <= n; j++) {
-            const double t = a[k][j];
-            a[k][j] = a[p][j], a[p][j] = t;
-        }
-        for (int i = 0; i < n; i++) {
-            const double t = a[i][k];
-            a[i][k] = a[i][q], a[i][q] = t;
-        }
-        const int t = column[k];
-        column[k] = column[q], column[q] = t;
-        for (int i = k + 1; i < n; i++) {
-            const double f = a[i][k] / a[k][k];
-            for (int j = k; j <= n; j++)
-                a[i][j] -= f * a[k][j];
-        }
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        double sum = a[k][n];
-        for (int j = k + 1; j < n; j++)
-            sum -= a[k][j] * x[column[j]];
-        x[column[k]] = sum / a[k][k];
-    }
-    return true;
-}
 
 /* What an impulse violates, as a velocity; *energy: the kinetic energy that it adds; u: velocities.
  */

@@ -2,7 +2,6 @@
 #include "control.h"
 
 #include <lapacke.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,17 +13,6 @@
 #define RANK_TOLERANCE 1e-12
 /* A product A^k B this small, against what its factors could make, is rounding. */
 #define BLOCK_ROUNDING 1e-14
-
-stance_error stance_refuse(stance_message *message, stance_error error, const char *format, ...)
-{
-    if (message) {
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(message->text, sizeof message->text, format, arguments);
-        va_end(arguments);
-    }
-    return error;
-}
 
 const char *stance_complex_text(double _Complex number, char text[64])
 {

@@ -9,13 +9,11 @@
 
 #include "design.h"
 
+#include "engine/refuse.h"
+
 #include <complex.h>
 #include <math.h>
 #include <stdlib.h>
-
-/* Writes a sentence to `message`, which may be NULL, and returns `error`. */
-stance_error stance_refuse(stance_message *message, stance_error error, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
 
 /* A complex number as people write it: no part that is nothing but rounding. */
 const char *stance_complex_text(double _Complex number, char text[64]);

@@ -48,11 +48,10 @@
  * Its second derivative is that sum's Jacobian times a'' plus squares of rates: about rest, to
  * first order and exactly, the Jacobian at the equilibrium times the da'' above.
  */
-#include "engine/stance.h"
+#include "engine/refuse.h"
 
 #include <float.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -263,20 +262,6 @@ static void inertia(const stance_scene *scene, const double *robot, const double
 
 /* ---- equilibrium ----------------------------------------------------------------------------- */
 
-static stance_error refuse(stance_message *message, stance_error error, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static stance_error refuse(stance_message *message, stance_error error, const char *format, ...)
-{
-    if (message) {
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(message->text, sizeof message->text, format, arguments);
-        va_end(arguments);
-    }
-    return error;
-}
-
 /* The foot that these contacts are; -1: they are not one foot. */
 static int foot_of(uint32_t supports)
 {
@@ -308,9 +293,10 @@ static stance_error solve_leg(const double *weight, const stance_equilibrium_cho
         weight[unknown];
     /* A sine of 1 that rounding has made larger is one still. */
     if (!(fabs(sine) <= 1 + 1e-14)) {
-        return refuse(message, STANCE_NO_EQUILIBRIUM,
-                      "no equilibrium: the %s leg would need sin(theta + q%d) = %.6g",
-                      unknown == 1 + foot_of(choice->supports) ? "support" : "free", unknown, sine);
+        return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
+                             "no equilibrium: the %s leg would need sin(theta + q%d) = %.6g",
+                             unknown == 1 + foot_of(choice->supports) ? "support" : "free", unknown,
+                             sine);
     }
     const double upper = angle_of(fmax(-1, fmin(1, sine)), sqrt(fmax(0, (1 - sine) * (1 + sine))));
     posture[unknown] = ((choice->branch == 1) ? M_PI - upper : upper) - posture[0];
@@ -328,9 +314,10 @@ static stance_error solve_trunk(const double *weight, const stance_equilibrium_c
     const double size = fabs(weight[0]) + fabs(weight[1]) + fabs(weight[2]);
 
     if (fmax(fabs(a), fabs(b)) <= 1e-14 * size) {
-        return refuse(message, STANCE_NO_EQUILIBRIUM,
-                      "no single equilibrium: with these q1 and q2 the centre of mass is at the "
-                      "foot and every theta balances");
+        return stance_refuse(
+            message, STANCE_NO_EQUILIBRIUM,
+            "no single equilibrium: with these q1 and q2 the centre of mass is at the "
+            "foot and every theta balances");
     }
     posture[0] = angle_of(-b, a);
     if ((cosine_of(posture[0] + posture[s]) < 0) != (choice->branch == 1))
@@ -347,26 +334,28 @@ static stance_error equilibrium(const stance_scene *scene, const double *robot,
 
     const int support = foot_of(choice->supports);
     if (support < 0)
-        return refuse(message, STANCE_BAD_ARGUMENT, "an equilibrium stands on one of two feet");
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "an equilibrium stands on one of two feet");
     if (choice->branch < 0 || choice->branch > 1)
-        return refuse(message, STANCE_BAD_ARGUMENT, "an equilibrium has the branches 0 and 1");
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "an equilibrium has the branches 0 and 1");
     for (int i = 0; i < POSTURES; i++) {
         posture[i] = choice->posture[i];
         if (isnan(posture[i])) {
             unknown = i;
         } else if (!isfinite(posture[i]) || fabs(posture[i]) > 1e3) {
-            return refuse(message, STANCE_BAD_ARGUMENT,
-                          "an equilibrium's angles must lie within +-1000 rad");
+            return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                 "an equilibrium's angles must lie within +-1000 rad");
         } else {
             given++;
         }
     }
     if (given != 2) {
-        return refuse(message, STANCE_BAD_ARGUMENT,
-                      "an equilibrium needs exactly two of theta, q1, q2; %s given",
-                      given == 0   ? "none is"
-                      : given == 1 ? "only one is"
-                                   : "all three are");
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "an equilibrium needs exactly two of theta, q1, q2; %s given",
+                             given == 0   ? "none is"
+                             : given == 1 ? "only one is"
+                                          : "all three are");
     }
     balance(robot, support, weight);
     const stance_error error = unknown == 0 ? solve_trunk(weight, choice, posture, message)

@@ -16,11 +16,11 @@
  * the least are taken. Newton begins with all angles in line and from angles spread evenly; what it
  * finds are the branches.
  */
+#include "engine/refuse.h"
 #include "engine/scenes/mechanism_pose.h"
 #include "engine/scenes/rows.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -58,20 +58,6 @@ struct trial {
     int unknowns, conditions;
     double c[CONDITIONS], J[CONDITIONS][UNKNOWNS];
 };
-
-static stance_error refuse(stance_message *message, stance_error error, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static stance_error refuse(stance_message *message, stance_error error, const char *format, ...)
-{
-    if (message) {
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(message->text, sizeof message->text, format, arguments);
-        va_end(arguments);
-    }
-    return error;
-}
 
 /* ---- the conditions -------------------------------------------------------------------------- */
 
@@ -409,9 +395,9 @@ static stance_error check(const struct search *s, const stance_equilibrium *e,
     stance_pose_at(s->m, s->robot, e->position, &pose);
     for (int c = 0; c < s->scene->contacts; c++) {
         if ((e->supports >> c & 1) && !(e->force[c][0] > 0)) {
-            return refuse(message, STANCE_NO_EQUILIBRIUM,
-                          "no equilibrium: %s would have to pull, with %.6g",
-                          s->scene->contact_name[c], -e->force[c][0]);
+            return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
+                                 "no equilibrium: %s would have to pull, with %.6g",
+                                 s->scene->contact_name[c], -e->force[c][0]);
         }
     }
     for (int b = 0; b < s->m->bodies; b++) {
@@ -420,16 +406,17 @@ static stance_error check(const struct search *s, const stance_equilibrium *e,
             continue;
         const double q = e->position[pose.own[b]];
         if (!(q >= limits[0] - at_limit && q <= limits[1] + at_limit)) {
-            return refuse(message, STANCE_NO_EQUILIBRIUM,
-                          "no equilibrium: %s would be at %.6g, beyond its limits %.6g ... %.6g",
-                          s->m->body[b].name, q, limits[0], limits[1]);
+            return stance_refuse(
+                message, STANCE_NO_EQUILIBRIUM,
+                "no equilibrium: %s would be at %.6g, beyond its limits %.6g ... %.6g",
+                s->m->body[b].name, q, limits[0], limits[1]);
         }
     }
     for (int k = 0; k < s->m->actuators; k++) {
         if (!(fabs(e->torque[k]) <= pose.number.limit[k] * (1 + 1e-12))) {
-            return refuse(message, STANCE_NO_EQUILIBRIUM,
-                          "no equilibrium: it takes %.6g from %s, whose limit is %.6g",
-                          e->torque[k], s->m->actuator[k].name, pose.number.limit[k]);
+            return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
+                                 "no equilibrium: it takes %.6g from %s, whose limit is %.6g",
+                                 e->torque[k], s->m->actuator[k].name, pose.number.limit[k]);
         }
     }
     return STANCE_OK;
@@ -446,14 +433,14 @@ static stance_error begin(const stance_scene *scene, const double *robot,
     struct trial t;
     *s = (struct search){.scene = scene, .m = m, .robot = robot, .choice = choice};
     if (scene->contacts < 32 && choice->supports >> scene->contacts) {
-        return refuse(message, STANCE_BAD_ARGUMENT, "an equilibrium stands on some of %d contacts",
-                      scene->contacts);
+        return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                             "an equilibrium stands on some of %d contacts", scene->contacts);
     }
     stance_pose_at(m, robot, straight, &t.pose);
     stance_pose_sticking(scene, &t.pose, choice->supports, &t.sticking);
     if (m->body[0].joint == STANCE_FREE && choice->supports == 0 && t.pose.gravity != 0) {
-        return refuse(message, STANCE_NO_EQUILIBRIUM,
-                      "no equilibrium: nothing carries the weight where no contact does");
+        return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
+                             "no equilibrium: nothing carries the weight where no contact does");
     }
     s->rows = t.sticking.rows;
     s->coordinates = scene->coordinates;
@@ -478,9 +465,9 @@ static stance_error begin(const stance_scene *scene, const double *robot,
     for (int k = 0; k < scene->postures; k++) {
         const double value = choice->posture[k];
         if (!isnan(value) && !(fabs(value) <= 1e3)) {
-            return refuse(message, STANCE_BAD_ARGUMENT,
-                          "an equilibrium's %s must lie within +-1000",
-                          scene->coordinate[scene->posture[k]].name);
+            return stance_refuse(message, STANCE_BAD_ARGUMENT,
+                                 "an equilibrium's %s must lie within +-1000",
+                                 scene->coordinate[scene->posture[k]].name);
         }
         s->given[scene->posture[k]] = value;
     }
@@ -568,10 +555,10 @@ static stance_error none(const struct search *s, const struct trial *t, bool con
     } else {
         snprintf(what, sizeof what, "%s cannot be balanced", s->scene->coordinate[worst].name);
     }
-    return refuse(message, STANCE_NO_EQUILIBRIUM,
-                  contradict ? "the conditions on the equilibrium contradict each other: %s"
-                             : "there is no such posture: %s",
-                  what);
+    return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
+                         contradict ? "the conditions on the equilibrium contradict each other: %s"
+                                    : "there is no such posture: %s",
+                         what);
 }
 
 /* Do the conditions ask for more than the unknowns can give, anywhere? */
@@ -654,9 +641,9 @@ stance_error stance_mechanism_equilibrium(const stance_scene *scene, const doubl
     if (error != STANCE_OK)
         return error;
     if (choice->branch < 0 || choice->branch >= count) {
-        return refuse(message, STANCE_NO_EQUILIBRIUM,
-                      "there is no branch %d of the equilibrium: %d found, counted from 0",
-                      choice->branch, count);
+        return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
+                             "there is no branch %d of the equilibrium: %d found, counted from 0",
+                             choice->branch, count);
     }
     *result = list[choice->branch];
     if (result->undetermined > 0 && message) {
