@@ -154,6 +154,8 @@ $(BUILD)/revision: FORCE
 -include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
 
 # ---- tests ---------------------------------------------------------------------------------------
+# Without MuJoCo what compares with it is skipped.
+MUJOCO := $(wildcard /usr/include/mujoco/mujoco.h)
 test_sources  := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
@@ -212,10 +214,12 @@ golden-neon:
 	    CC=aarch64-linux-gnu-gcc SCALAR_METHODS= LIBRARY_CFLAGS= LDFLAGS=-static \
 	    GOLDEN_LIBS=-lm golden
 
-# ---- benchmarks: what the kernels are held to; a program without MuJoCo skips that comparison -----
-MUJOCO := $(wildcard /usr/include/mujoco/mujoco.h)
-bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco)
-$(BUILD)/tests/bench_mujoco: LIBS += -lmujoco
+# Models of ours in MuJoCo.
+$(BUILD)/tests/test_export: LIBS += $(MUJOCO:%=-lmujoco)
+
+# ---- benchmarks: what the kernels are held to -----------------------------------------------------
+bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit)
+$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit: LIBS += -lmujoco
 # By hand as fast as the compiler makes it: the instructions of the one-lane kernel, contracted.
 $(BUILD)/tests/bench_scalar: BENCH_FLAGS = $(filter -m%,$(isa_flags_scalar)) -ffp-contract=fast
 $(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(archives)

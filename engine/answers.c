@@ -35,6 +35,20 @@ const stance_answer stance_answers[] = {
     CODE(failure),
 };
 
+int stance_answer_words(const stance_scene *scene, int answer, const char **word)
+{
+    const stance_answer *const a = &stance_answers[answer];
+    int count = 0;
+    for (; count < a->words; count++)
+        word[count] = a->word[count];
+    if (answer == STANCE_ANSWER_fall_cause) {
+        word[count++] = "none";
+        for (int k = 0; k < scene->causes; k++)
+            word[count++] = scene->cause[k];
+    }
+    return count;
+}
+
 void stance_result_clear(stance_result *result)
 {
     memset(result, 0, sizeof *result);

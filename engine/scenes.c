@@ -29,20 +29,28 @@ const stance_scene *stance_scene_find(const char *name)
     return NULL;
 }
 
-bool stance_pair(const stance_scene *scene, int index, int *first, int *second)
+/* Binomial coefficient. */
+static int choices(int n, int k)
 {
-    if (scene->actuators != 2 || index < 0)
+    int count = 1;
+    for (int i = 0; i < k; i++)
+        count = count * (n - i) / (i + 1);
+    return k > n ? 0 : count;
+}
+
+bool stance_selection(const stance_scene *scene, int index, int *coordinate)
+{
+    const int n = scene->coordinates, m = scene->actuators;
+    if (m == 0 || index < 0 || index >= choices(n, m))
         return false;
-    for (int i = 0; i < scene->coordinates; i++) {
-        const int rest = scene->coordinates - 1 - i;
-        if (index < rest) {
-            *first = i;
-            *second = i + 1 + index;
-            return true;
-        }
-        index -= rest;
+    for (int i = 0, k = 0; k < m; i++) { /* those that begin with i, or go on without it */
+        const int with = choices(n - i - 1, m - k - 1);
+        if (index < with)
+            coordinate[k++] = i;
+        else
+            index -= with;
     }
-    return false;
+    return true;
 }
 
 const char *stance_error_text(stance_error error)

@@ -21,6 +21,7 @@ enum {
     STANCE_MAX_ANGLES = 7,  /* bodies of a mechanism that turn */
     STANCE_MAX_NAMED = 8,   /* points of a mechanism that have a name */
     STANCE_MAX_PUSHES = 4,
+    STANCE_MAX_WORDS = 32,                       /* that an answer may be, if it is a code */
     STANCE_ROBOT_GRAVITY = STANCE_MAX_ROBOT - 2, /* m/s^2 */
     STANCE_ROBOT_SLOPE = STANCE_MAX_ROBOT - 1,   /* rad, of the ground; positive: +x is downhill */
     STANCE_MAX_POINTS = 192,                     /* points of a stick figure */
@@ -133,6 +134,8 @@ struct stance_scene {
     /* Stick figure: a polyline of `n` points (x, z); returns n <= STANCE_MAX_POINTS. */
     int (*figure)(const stance_scene *scene, const double *robot, const double *position,
                   double points[][2]);
+    int causes; /* of a fall, by what touches the ground, is too low or has turned too far */
+    const char *const *cause; /* [causes] its names, in the order of the lanes' scene_falls */
     /* Has it fallen: the hip is lower than fall_height leg lengths, or the trunk's end touches the
      * ground; a mechanism, by its own points and angles alone. NULL where nothing falls. */
     bool (*fallen)(const stance_scene *scene, const double *robot, const double *position,
@@ -166,12 +169,17 @@ struct stance_scene {
 
 #define STANCE_ILL_CONDITIONED 1e4 /* condition number from which on a decoupling law is damped */
 
-/* The pairs of coordinates that two actuators can control, in order: (0, 1), (0, 2), ... False:
- * there is no such pair, or the scene has not two actuators. */
-bool stance_pair(const stance_scene *scene, int index, int *first, int *second);
+/* The choices of as many coordinates as there are actuators, which can control them, in order: with
+ * two (0, 1), (0, 2), ... coordinate[actuators]. False: there is no such selection. */
+bool stance_selection(const stance_scene *scene, int index, int *coordinate);
+enum { STANCE_MAX_SELECTIONS = 126 }; /* of 9 coordinates 4 or 5 */
+_Static_assert(STANCE_MAX_COORDINATES <= 9, "room for all selections");
 
 /* The robot that a scene has by default, and the world's numbers. robot[STANCE_MAX_ROBOT]. */
 void stance_robot_fallback(const stance_scene *scene, double *robot);
+/* What each actuator gives at most, in its unit: its own limit or `most`, whichever is smaller. */
+void stance_torque_limits(const stance_scene *scene, const double *robot, double most,
+                          double limit[STANCE_MAX_ACTUATORS]);
 
 /* The scenes there are, NULL-terminated; and one by name, or NULL. */
 const stance_scene *const *stance_scenes(void);
@@ -265,7 +273,7 @@ typedef enum stance_per {
     STANCE_PER_LAW,        /* one */
     STANCE_PER_ACTUATOR,   /* one for each, named by the coordinate that it drives */
     STANCE_PER_COORDINATE, /* one for each coordinate of the scene */
-    STANCE_PER_PAIR,       /* a pair of coordinates, see stance_pair: an int */
+    STANCE_PER_SELECTION,  /* which coordinates, see stance_selection: an int */
 } stance_per;
 
 typedef struct stance_parameter {
@@ -286,6 +294,7 @@ typedef struct stance_law {
     const char *name, *text;
     bool designed; /* brings the robot to an equilibrium by gains that are designed or given */
     bool acts_far; /* may act outside the ellipsoid inside which a designed law does */
+    bool servos;   /* controls the coordinates of a selection, each by a servo */
     int parameters;
     const stance_parameter *parameter; /* [parameters] */
     /* Makes *c act by it. value[parameters * STANCE_LAW_ROOM]: of each parameter one number, or by
@@ -320,6 +329,7 @@ typedef struct stance_tree_numbers {
     double point[STANCE_MAX_NAMED][2];  /* m: points that may fall, in their frames ... */
     double lowest[STANCE_MAX_NAMED];    /* ... and how far */
     double turn[STANCE_MAX_ANGLES];     /* rad, that bodies may turn */
+    double limit[STANCE_MAX_ACTUATORS]; /* N m, N: what an actuator gives at most */
     double push[STANCE_MAX_PUSHES][6];  /* m: place in its frame; N, or N s where it is at an
                                          * instant,  in the ground's axes; s: from, to */
 } stance_tree_numbers;
@@ -336,6 +346,7 @@ typedef struct stance_case {
      * energy; true, the most. */
     bool most_energy;
     uint32_t contacts; /* bit c: contact c may touch the ground */
+    bool lands_ahead;  /* of these a foot in the air only where it is ahead: core/loop/feet.h */
     double position[STANCE_MAX_COORDINATES], velocity[STANCE_MAX_COORDINATES];
 
     /* The law `near` acts, with noise, clipped to +-torque_limit. `decouples`: the servos instead
@@ -347,8 +358,8 @@ typedef struct stance_case {
     bool decouples, switches;
     stance_servo servo[STANCE_MAX_ACTUATORS];
     double switch_axis[2 * STANCE_MAX_POSTURE]; /* rad, rad/s, > 0 */
-    double torque_limit;                        /* N m, > 0, may be INFINITY */
-    double noise;         /* N m, half-width of uniform noise, 0 when continuous */
+    double torque_limit; /* N m, > 0, may be INFINITY; of an actuator, `body.limit` where smaller */
+    double noise;        /* N m, half-width of uniform noise, 0 when continuous */
     int64_t sample_every; /* steps per sample, held between; 0: acts continuously inside the step */
     int64_t delay;        /* whole samples between measuring and acting: 0, or 1 when sampled */
 
@@ -362,7 +373,7 @@ typedef struct stance_case {
      * holds, too, no further than settle_angle away: see core/loop/rest.h. */
     bool settle;
     bool has_target;     /* without one nothing is ever `stabilised` */
-    int support;         /* contact that a stabilised robot stands on, or -1 */
+    uint32_t supports;   /* bit c: a stabilised robot stands on contact c, and on no other */
     double settle_angle; /* rad */
     double settle_rate;  /* rad/s, and m/s for the translation */
     double settle_hold;  /* s */
@@ -399,6 +410,7 @@ typedef struct stance_case {
     X(end_time, double, END, own, "s", "time at which the simulation stopped")                     \
     X(settle_time, double, END, own, "s", "time from which the case stayed settled")               \
     X(fall_time, double, END, own, "s", "time at which the robot had fallen")                      \
+    X(fall_cause, uint8_t, END, own, "1", "point or body by which the robot fell")                 \
     X(steps, int64_t, END, own, "1", "time steps taken")                                           \
     X(iterations, int64_t, SUM, each, "1", "Newton iterations over all steps")                     \
     X(ambiguous_steps, int64_t, STEPS, rare, "1",                                                  \
@@ -411,6 +423,7 @@ typedef struct stance_case {
       "samples at which a decoupling law could not do what it promises")                           \
     X(max_penetration, double, MAX, own, "m", "deepest penetration at the end of a step")          \
     X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
+    X(footfalls, int64_t, SUM, own, "1", "landings of another foot than the one that landed last") \
     X(peak_torque, double, MAX, own, "N m", "largest torque applied")                              \
     X(friction_used, double, MAX, touching, "1", "largest ratio |rT|/rN of a contact")             \
     X(least_normal_force, double, MIN, own, "N", "smallest normal force on the support foot")      \
@@ -452,11 +465,15 @@ typedef struct stance_answer {
     stance_type type;
     size_t size, offset; /* bytes; in stance_result */
     double none;         /* value of a case without one */
-    /* Of an answer that is a code: the words that its numbers stand for; else NULL, 0. */
+    /* Of an answer that is a code: the words that its numbers stand for; else NULL, 0. (Of
+     * fall_cause they are the scene's: see stance_answer_words.) */
     const char *const *word;
     int words;
 } stance_answer;
 extern const stance_answer stance_answers[STANCE_ANSWER_COUNT];
+
+/* The words of an answer that is a code, word[STANCE_MAX_WORDS], and how many; 0: it is none. */
+int stance_answer_words(const stance_scene *scene, int answer, const char **word);
 
 /* The result of a case that has none: every answer its `none`, the state NAN, status pending. */
 void stance_result_clear(stance_result *result);

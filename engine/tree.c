@@ -418,7 +418,7 @@ static void write_table(char **end, const char *name, int rows, int columns,
     write(end, "};\n");
 }
 
-void stance_tree_text(const stance_tree *t, char text[STANCE_TREE_TEXT])
+void stance_tree_text(const stance_tree *t, bool servos, char text[STANCE_TREE_TEXT])
 {
     char *end = text;
     const struct {
@@ -428,7 +428,7 @@ void stance_tree_text(const stance_tree *t, char text[STANCE_TREE_TEXT])
                  {"CONTACTS", t->contacts}, {"ACTUATORS", t->actuators},
                  {"SPRINGS", t->springs},   {"ROTORS", t->rotors},
                  {"POINTS", t->points},     {"TURNS", t->turns},
-                 {"PUSHES", t->pushes},     {"DECOUPLES", t->actuators == 2}};
+                 {"PUSHES", t->pushes},     {"SERVOS", servos && t->actuators > 0}};
     for (size_t i = 0; i < sizeof count / sizeof *count; i++)
         write(&end, "#define TREE_%s %d\n", count[i].name, count[i].value);
     write_list(&end, "tree_above", t->above, t->angles);
@@ -548,6 +548,7 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         if (m->body[b].bounded)
             number->turn[turn++] = body->turn;
     }
+    memcpy(number->limit, v.limit, sizeof number->limit);
     for (int p = 0, k = 0; p < m->points; p++) {
         if (!m->point[p].falls)
             continue;

@@ -57,8 +57,8 @@ typedef struct stance_tree {
 stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree,
                               stance_message *message);
 
-/* The tables as C, for kernels; integers only. */
-void stance_tree_text(const stance_tree *tree, char text[STANCE_TREE_TEXT]);
+/* The tables as C, for kernels; integers only. servos: laws need them, see stance_law. */
+void stance_tree_text(const stance_tree *tree, bool servos, char text[STANCE_TREE_TEXT]);
 
 /* What kernels take of robot[], gravity and slope included. */
 void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m,

@@ -19,7 +19,7 @@ echo "Kernels, $rounds rounds" >&2
 # The columns that say which program, compiler, processor, machine and day.
 origin=$(sed -n 2p "$table" | cut -d, -f16-)
 
-for rival in scalar mujoco; do
+for rival in scalar mujoco mujoco_rabbit; do
     if [ -x "$build/tests/bench_$rival" ]; then
         echo "Beside ${rival/scalar/the step by hand}" >&2
         "$build/tests/bench_$rival" >>"$table" || exit 1
@@ -89,7 +89,7 @@ fi
 
 cp "$table" $csv || exit 3
 echo "$csv"
-awk -F, '$11 == "ratio to stance" && $4 == "implicit" { printf "%s, %s: %.1f times the time of implicit, %s\n", $1, $3, $13, $5 }
+awk -F, '$11 == "ratio to stance" && $4 == "implicit" { printf "%s, %s, %s: %.1f times the time of implicit, %s\n", $1, $2, $3, $13, $5 }
     $11 == "ratio to scalar by hand" { printf "one-lane kernel: %.2f times the time of the step by hand\n", $13 }
     $11 == "penetration" || $11 == "creep" { printf "%s, %s: %s %.1e %s\n", $1, $3, $11, $13, $12 }
     $11 == "parallel efficiency" && $7 == 2 { printf "parallel efficiency of 2 ranks: %.2f (%.2f ... %.2f)\n", $13, $14, $15 }

@@ -16,11 +16,9 @@
  * Also reported: how far a foot is in the ground, and how fast a robot that stands creeps along it.
  */
 #include "analysis/bench/bench.h"
+#include "mujoco_model.h"
 
 #include <math.h>
-#include <mujoco/mujoco.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { CASES = 32, ROUNDS = 11, STATES = 200 };
 static const double radius = 1e-4; /* m, of the spheres at the feet */
@@ -46,7 +44,7 @@ static const char *const flags[SETTINGS] = {
 static mjModel *make_model(const double *robot, double friction, double step, enum setting setting)
 {
     const double l = robot[0], lt = robot[1], m = robot[2], mt = robot[3], mh = robot[4];
-    char xml[4096], leg[2][600], message[400];
+    char xml[4096], leg[2][600];
     for (int i = 0; i < 2; i++)
         snprintf(leg[i], sizeof leg[i],
                  "<body pos='0 0 %.17g'><joint name='q%d' type='hinge' axis='0 -1 0'/>"
@@ -70,20 +68,7 @@ static mjModel *make_model(const double *robot, double friction, double step, en
         setting == DEFAULT ? "<actuator><motor joint='q1'/><motor joint='q2'/></actuator>" : "");
     if (length < 0 || (size_t)length >= sizeof xml)
         return NULL;
-    mjVFS *files = malloc(sizeof *files); /* a few hundred kilobytes */
-    mjModel *model = NULL;
-    if (files) {
-        mj_defaultVFS(files);
-        if (mj_makeEmptyFileVFS(files, "biped.xml", length + 1) == 0) {
-            memcpy(files->filedata[mj_findFileVFS(files, "biped.xml")], xml, (size_t)length + 1);
-            model = mj_loadXML("biped.xml", files, message, sizeof message);
-            if (!model)
-                fprintf(stderr, "bench_mujoco: %s\n", message);
-        }
-        mj_deleteVFS(files);
-        free(files);
-    }
-    return model;
+    return mujoco_model(xml);
 }
 
 /* ---- the same robot? ---------------------------------------------------------------------- */

@@ -35,7 +35,6 @@ static inline stance_case plain_case(void)
     c.torque_limit = INFINITY;
     c.step = 1e-3;
     c.steps = 1000;
-    c.support = -1;
     c.settle_angle = 0.05, c.settle_rate = 0.5, c.settle_hold = 0.5;
     c.fall_height = 0.2;
     return c;
@@ -112,7 +111,7 @@ static inline void golden_case(uint64_t *seed, int i, stance_case *c)
         c->velocity[2] = c->velocity[3] = c->velocity[4] = 0;
         biped()->stand(biped(), c->robot, 1, c->position, c->velocity);
         c->has_target = c->settle = true;
-        c->support = 0;
+        c->supports = 1;
         c->contacts = i % 2 ? 1 : 3;
         c->torque_limit = 10, c->noise = 0.1;
         c->sample_every = 1 + i % 4;

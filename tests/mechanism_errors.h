@@ -271,7 +271,7 @@
      "22:89: robot.bodies.trunk.mass: -1 is out of range (0 ... 1e+09 kg)"},
     {"initial: {state: {pole: 0.1}}",
      "controller: {kind: decoupling, controlled: x-z}\ninitial: {state: {pole: 0.1}}",
-     "9:20: controller.kind: decoupling controls two coordinates by two actuators; here are 1"},
+     "9:44: controller.controlled: unknown word 'x-z' (known: cart, pole)"},
     {"stop: {time: 5}\n",
      "stop: {time: 5}\ncontroller: {kind: hold, kp: 1, kd: 1, target: {rotor: 1}}\n",
      "22:49: controller.target: unknown key 'rotor' (known: thigh1, shank1)"},

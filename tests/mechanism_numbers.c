@@ -10,14 +10,8 @@
  *
  * Standard output: for each of these a line "begin WORD" and lines "NAME number ...".
  */
-#define METHOD_THETA 1.0
-#define STANCE_LANES 1
-#define STANCE_SCENE runtime
-#define STANCE_ISA scalar
-#include "engine/core/loop/kernel.h"
-/* In this order. */
-#include "engine/scenes/runtime_lanes.h"
-
+#include "mechanism_algebra.h"
+/* After it, which says how many lanes there are. */
 #include "mechanism_text.h"
 
 static void row(const char *name, const double *value, int count)
@@ -56,42 +50,26 @@ static void say_push(const stance_scene *s, const double *robot, struct words *w
 {
     const int n = s->coordinates;
     double q[SCENE_COORDINATES] = {0}, v[SCENE_COORDINATES] = {0}, torque[SCENE_ACTUATORS] = {0},
-           force[SCENE_COORDINATES], at[SCENE_COORDINATES], rate[SCENE_COORDINATES],
-           x[SCENE_COORDINATES], y[SCENE_COORDINATES], more[SCENE_COORDINATES];
-    stance_tree_numbers number;
-    scene_body body;
-    scene_trig trig;
-    scene_matrix matrix;
+           x[SCENE_COORDINATES], y[SCENE_COORDINATES];
+    struct algebra at;
     for (int i = 0; i < 2 * n; i++)
         *(i < n ? &q[i] : &v[i - n]) = next_number(w);
     for (int i = 0; i < s->actuators; i++)
         torque[i] = next_number(w);
-    tree_now = s->tree;
-    stance_tree_numbers_make(s->tree, s->mechanism, robot, &number);
-    memset(&body, 0, sizeof body);
-    memset(&matrix, 0, sizeof matrix);
-    scene_load_body(&body, 0, &number);
-    scene_enter(&number, q, v, at, rate);
-    scene_trigonometry(at, &trig);
-    scene_inertia(&body, &trig, &matrix);
-    scene_forces(&body, 0, at, &trig, rate, torque, force);
-    scene_solve(&matrix, false, force, x);
-    scene_coordinate_rates(&body, &trig, x, y);
-    scene_coordinate_curvature(&body, &trig, rate, more);
-    for (int i = 0; i < n; i++)
-        y[i] += more[i];
+    algebra_at(s, robot, q, v, &at);
+    algebra_accelerate(&at, torque, x, y);
     printf("begin push\n");
     row("acceleration", y, n);
     for (int c = 0; c < s->contacts; c++) {
         double u[2], a[2], response[2][SCENE_COORDINATES];
-        scene_contact_velocity(&body, &trig, c, x, u);
-        scene_contact_curvature(&body, &trig, c, rate, a);
+        scene_contact_velocity(&at.body, &at.trig, c, x, u);
+        scene_contact_curvature(&at.body, &at.trig, c, at.rate, a);
         u[0] += a[0], u[1] += a[1];
         row("contact", u, 2);
-        scene_contact_response(&body, &matrix, false, &trig, c, response);
+        scene_contact_response(&at.body, &at.matrix, false, &at.trig, c, response);
         for (int direction = 0; direction < (s->grip[c] == c ? 2 : 1); direction++) {
             for (int k = 0; k < s->contacts; k++) {
-                scene_contact_velocity(&body, &trig, k, response[direction], u);
+                scene_contact_velocity(&at.body, &at.trig, k, response[direction], u);
                 row("answer", u, 2);
             }
         }

@@ -337,7 +337,8 @@ def strip():
 
 def mechanisms():
     """Stops are no feet, forces no torques; the ground slopes; what touches nothing is drawn, too."""
-    run("gait", "mechanisms/compass_gait.yaml")
+    stance("run", f"{SCENARIOS}/mechanisms/compass_gait.yaml", "--only", "4009", "--trace", "--set", "stop.time=0.8",
+           "--quiet", "-o", "gait.h5")
     stance("plot", "gait.h5")
     p = Picture("gait-strip.svg")
     assert p.legend() == {"foot1": HUES[0], "foot2": HUES[1], "body": "303030"}

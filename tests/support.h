@@ -52,7 +52,7 @@ static inline stance_case balance_case(double theta, double vtheta)
     c.torque_limit = 10;
     c.sample_every = 1;
     c.steps = 8000;
-    c.support = 0;
+    c.supports = 1;
     c.has_target = c.settle = true;
     return c;
 }

@@ -29,7 +29,7 @@ static stance_case pair_case(int pair, const double *posture, bool stands, doubl
     c.decouples = true;
     c.contacts = stands;
     c.friction = 50;
-    c.support = stands ? 0 : -1;
+    c.supports = stands;
     c.fall_height = -1e9;
     c.step = 0.01;
     c.steps = HORIZON;
@@ -38,7 +38,7 @@ static stance_case pair_case(int pair, const double *posture, bool stands, doubl
     memcpy(c.velocity, rates, sizeof rates);
     if (stands)
         scene->stand(scene, c.robot, 1, c.position, c.velocity);
-    assert_true(stance_pair(scene, pair, &controlled[0], &controlled[1]));
+    assert_true(stance_selection(scene, pair, controlled));
     for (int i = 0; i < 2; i++)
         c.servo[i] = (stance_servo){.coordinate = controlled[i],
                                     .setpoint = c.position[controlled[i]] + (i ? -0.05 : 0.05),

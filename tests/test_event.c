@@ -25,7 +25,6 @@ static stance_case event_case(const char *name, double step, double time)
                      .step = step,
                      .steps = (int64_t)lround(time / step),
                      .tolerance = 1e-12,
-                     .support = -1,
                      .settle_angle = 0.05,
                      .settle_rate = 0.5,
                      .settle_hold = 0.5,

@@ -254,7 +254,7 @@ static void stops_only_where_it_may(void **state)
                 other.switch_axis[i] = 100;
             break;
         case 6: /* on no foot */
-            other.support = 1;
+            other.supports = 2;
             break;
         case 7: /* the foot slides */
             other.friction = 0.01, other.position[2] -= 0.1;

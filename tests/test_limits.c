@@ -181,7 +181,7 @@ static stance_case sampled_case(const struct balance *b, double *critical)
     c.position[2] += 1e-6;
     scene->stand(scene, c.robot, 1, c.position, c.velocity);
     c.contacts = 1;
-    c.support = 0;
+    c.supports = 1;
     c.has_target = true;
     c.tolerance = 1e-13;
     return c;

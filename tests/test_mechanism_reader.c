@@ -198,8 +198,9 @@ static void designs_act_on_names(void **state)
     resolve(cart, sets, 3, &design, &c, NULL);
     for (int i = 0; i < 4; i++)
         assert_near(design.gain[0][i], gain[i], 1e-3);
-    assert_near(c.torque_limit, 20, 0);
-    assert_int_equal(c.support, -1);
+    assert_true(isinf(c.torque_limit));
+    assert_near(c.body.limit[0], 20, 0);
+    assert_int_equal(c.supports, 0);
 }
 
 /* On a flat foot the posture has a coordinate more than the linear model: no gain acts on it. */
@@ -225,6 +226,39 @@ static void held_coordinates_have_no_gains(void **state)
     assert_int_equal(held, 1);
     resolve(good, sets, 5, &design, &c,
             "controller.poles: 4 of them; where the contacts hold there are 8 states");
+}
+
+/* A target on both feet is reached on both. */
+static void targets_stand_on_both_feet(void **state)
+{
+    static const char *const sets[] = {
+        "robot.actuators={hip1: {body: thigh1}, knee1: {body: shank1}, hip2: {body: thigh2}, "
+        "knee2: {body: shank2}}",
+        "robot.contacts={foot1: {body: shank1, at: [0, -0.4]}, foot2: {body: shank2, at: [0, "
+        "-0.4]}}",
+        "initial={equilibrium: {trunk: -0.05, thigh1: 0.5, shank1: -0.4}, support: [foot1, foot2], "
+        "offset: {trunk: 0.02}}",
+        "controller={kind: state-feedback, design: lqr, sample_time: 0.001}",
+        "ground={friction: 0.8}",
+        "robot.bodies.shank1.limits=[-2.5, 2.5]"};
+    struct scenario s;
+    struct resolved_design design;
+    stance_message message;
+    stance_case c;
+    stance_result end;
+    (void)state;
+    read_good(&s, good, sets, 6);
+    assert_true(resolve_design(s.scene, &s.base, &design, &message));
+    assert_true(resolve_case(s.scene, &s.base, &design, 1, 0, &c, &message));
+    assert_int_equal(c.supports, 3);
+    c.step = 1e-3, c.sample_every = 1;
+    stance_kernel_find(c.scene, stance_method_find("midpoint"), NULL)->run(&c, &end, 1);
+    assert_int_equal(end.outcome, STANCE_STABILISED);
+    assert_true(end.end_time < 2);
+    c.supports = 1; /* it stands on more than that */
+    stance_kernel_find(c.scene, stance_method_find("midpoint"), NULL)->run(&c, &end, 1);
+    assert_int_not_equal(end.outcome, STANCE_STABILISED);
+    scenario_free(&s);
 }
 
 /* With initial.support a state stands on the ground; beyond a stop it does not begin. */
@@ -289,6 +323,7 @@ int main(void)
         cmocka_unit_test(text_reads_back),
         cmocka_unit_test(designs_act_on_names),
         cmocka_unit_test(held_coordinates_have_no_gains),
+        cmocka_unit_test(targets_stand_on_both_feet),
         cmocka_unit_test(states_stand),
         cmocka_unit_test(wrong_ones_are_told),
     };

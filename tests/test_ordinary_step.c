@@ -96,7 +96,6 @@ static void random_motion(uint64_t *seed, int i, double h, struct bundle *b)
     if (c.contacts == 2)
         c.contacts = 3;
     c.friction = uniform(seed, 0, 1.2);
-    c.support = -1;
     c.position[1] = 2;
     c.position[2] = uniform(seed, -0.6, 0.6);
     c.position[3] = uniform(seed, 0.2, 0.8), c.position[4] = uniform(seed, -0.8, -0.2);

@@ -81,7 +81,6 @@ static void random_case(const stance_scene *scene, stance_case *c)
     c->tree = scene->tree;
     stance_tree_numbers_make(scene->tree, scene->mechanism, c->robot, &c->body);
     c->friction = between(0, 2);
-    c->support = -1;
     c->sample_every = sometimes(0.8);
     /* Held torques may feed a light body without end. */
     c->torque_limit = c->sample_every ? 20 : INFINITY;

@@ -87,7 +87,7 @@ static void balance(void **state)
     assert_memory_equal(c.near.gain, wanted.near.gain, sizeof c.near.gain);
     assert_memory_equal(c.near.feedforward, wanted.near.feedforward, sizeof c.near.feedforward);
     assert_memory_equal(c.near.target, wanted.near.target, sizeof c.near.target);
-    assert_true(c.settle && c.has_target && c.support == 0 && !c.trajectory);
+    assert_true(c.settle && c.has_target && c.supports == 1 && !c.trajectory);
     assert_true(c.seed == 42 && c.grid_index == 17 && c.sample_index == 0);
     assert_true(c.sample_every == 1 && c.step == 0.001 && c.steps == 8000);
     assert_true(c.torque_limit == 10 && c.contacts == 1 && c.fall_height == 0.2);
@@ -132,7 +132,7 @@ static void other_foot(void **state)
     const stance_case c = resolved(&v);
     double gap[2];
     biped()->gaps(biped(), c.robot, c.position, gap);
-    assert_int_equal(c.support, 1);
+    assert_int_equal(c.supports, 2);
     assert_true(gap[1] >= 0 && gap[1] < 1e-15 && gap[0] > 0.03);
     v.support_foot = 0; /* foot 1 where nothing is said: no equilibrium with this q1 */
     assert_refused(&v, "no equilibrium: the free leg would need sin(theta + q2) = 1.59444");
@@ -178,7 +178,7 @@ static void no_law(void **state)
         for (int j = 0; j < 6; j++)
             assert_true(c.near.gain[i][j] == 0);
     }
-    assert_true(!c.has_target && c.support == -1 && c.settle);
+    assert_true(!c.has_target && c.supports == 0 && c.settle);
 }
 
 static void hold_law(void **state)
@@ -200,7 +200,7 @@ static void hold_law(void **state)
     get_gain(&c, gain);
     assert_memory_equal(gain, wanted, sizeof gain);
     assert_true(c.near.target[1] == 0.9 && c.near.target[2] == -1);
-    assert_true(c.near.feedforward[0] == 0 && !c.has_target && c.support == -1);
+    assert_true(c.near.feedforward[0] == 0 && !c.has_target && c.supports == 0);
     law_value(&v, "hold", "target")[1] = -0.7; /* of the second joint */
     c = resolved(&v);
     assert_true(c.near.target[1] == 0.9 && c.near.target[2] == -0.7);
@@ -331,7 +331,7 @@ static void scenes_without_equilibrium(void **state)
         assert_true(resolve_design(scene, &v, &design, &message));
         assert_true(resolve_case(scene, &v, &design, 1, 2, &c, &message));
         assert_true(c.position[1] == 2 && c.velocity[0] == -3);
-        assert_true(!c.has_target && c.support == -1 && c.sample_every == 1);
+        assert_true(!c.has_target && c.supports == 0 && c.sample_every == 1);
         v.state[1] = -1;
         assert_false(resolve_case(scene, &v, &design, 1, 2, &c, &message));
         assert_non_null(strstr(message.text, "inside the ground"));

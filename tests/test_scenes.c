@@ -33,7 +33,6 @@ static stance_case known_case(const stance_scene *scene, const json_t *entry,
                               const struct demand *demand, double t)
 {
     stance_case c = {.torque_limit = INFINITY,
-                     .support = -1,
                      .settle_angle = 0.05,
                      .settle_rate = 0.5,
                      .settle_hold = 0.5,
@@ -174,7 +173,6 @@ static stance_case scene_case_of(const char *name, double step, double time)
 {
     const stance_scene *scene = stance_scene_find(name);
     stance_case c = {.torque_limit = INFINITY,
-                     .support = -1,
                      .settle_angle = 0.05,
                      .settle_rate = 0.5,
                      .settle_hold = 0.5,
@@ -354,7 +352,7 @@ static void fallen_is_said_alike(void **state)
     (void)state;
     const stance_scene *const scene = stance_scene_find("biped");
     uint64_t seed = 17;
-    int fallen = 0, by_trunk = 0;
+    int fallen = 0, by_trunk = 0, by_hip = 0;
     for (int i = 0; i < 3000; i++) {
         stance_case c = plain_case();
         stance_result r;
@@ -368,12 +366,17 @@ static void fallen_is_said_alike(void **state)
         kernel_of("implicit", NULL)->run(&c, &r, 1);
         const bool says = scene->fallen(scene, c.robot, r.position, c.fall_height);
         assert_int_equal(r.outcome == STANCE_FELL, says);
+        const double leg = c.robot[0], trunk = c.robot[1];
+        const bool hip =
+            r.position[1] - trunk * cos(r.position[2]) < c.fall_height * leg; /* is too low */
+        assert_int_equal(r.fall_cause, hip ? 1 : says ? 2 : 0);
+        by_hip += hip;
         fallen += says;
         by_trunk += says &&
                     !scene->fallen(scene, c.robot, (double[]){0, 5, 0, 0, 0}, c.fall_height) &&
                     r.position[1] <= 0;
     }
-    assert_true(fallen > 500 && fallen < 2500 && by_trunk > 100);
+    assert_true(fallen > 500 && fallen < 2500 && by_trunk > 100 && by_hip > 100 && by_hip < fallen);
 }
 
 int main(void)

@@ -300,12 +300,16 @@ static bool setpoint_of(const struct plot_case *c, size_t i, struct ramp *setpoi
 {
     const struct scenario_values *v = &c->values;
     const char *const law = "decoupling";
-    int index, pair[2];
+    int index, coordinate[STANCE_MAX_ACTUATORS];
+    bool led = false;
     if (!c->readable || scenario_law(v) != stance_law_find(law))
         return false;
     memcpy(&index, scenario_law_value(v, law, "controlled"), sizeof index);
-    if (!stance_pair(c->scenario.scene, index, &pair[0], &pair[1]) ||
-        ((int)i != pair[0] && (int)i != pair[1]))
+    if (!stance_selection(c->scenario.scene, index, coordinate))
+        return false;
+    for (int k = 0; k < c->scenario.scene->actuators; k++)
+        led = led || coordinate[k] == (int)i;
+    if (!led)
         return false;
     const double start = scenario_law_value(v, law, "setpoint")[i];
     setpoint->start = isnan(start) ? c->t->position[i] : start;
@@ -416,33 +420,51 @@ static const char *torque_label(const struct plot_case *c, const char **unit)
     return all ? "force (N)" : slides > 0 ? "torque (N m), force (N)" : "torque (N m)";
 }
 
+/* The limits that actuators have, each once; returns how many. */
+static size_t torque_levels(const struct plot_case *c, size_t actuators, double *level)
+{
+    double limit[STANCE_MAX_ACTUATORS];
+    size_t count = 0;
+    if (!c->readable)
+        return 0;
+    stance_torque_limits(c->scenario.scene, c->values.robot, c->values.torque_limit, limit);
+    for (size_t i = 0; i < actuators; i++) {
+        bool listed = !isfinite(limit[i]);
+        for (size_t k = 0; k < count; k++)
+            listed = listed || level[k] == limit[i];
+        if (!listed)
+            level[count++] = limit[i];
+    }
+    return count;
+}
+
 static bool draw_torques(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
     struct page page = {.c = c};
     struct range range = range_of(t, t->torque, t->actuators, 0, 1, t->actuators, true);
-    const double limit = c->readable ? c->values.torque_limit : INFINITY;
-    const bool limited = isfinite(limit) && limit < 4 * fmax(fabs(range.low), fabs(range.high));
+    const double extent = 4 * fmax(fabs(range.low), fabs(range.high));
     const char *unit, *const label = torque_label(c, &unit);
+    double limit[STANCE_MAX_ACTUATORS];
     char text[300];
 
     if (!begin_page(&page, "What the actuators give", t->torque, t->actuators, 1, 260, message))
         return false;
     heading_of(t, "Applied in the step that ends at each instant", &range, unit, text, sizeof text);
-    if (limited) {
-        include(&range, limit);
-        include(&range, -limit);
-    }
+    const size_t limits = torque_levels(c, t->actuators, limit);
+    for (size_t k = 0; k < limits; k++)
+        for (int sign = -1; limit[k] < extent && sign <= 1; sign += 2)
+            include(&range, sign * limit[k]);
     put_panel(&page, text, label, &range);
     for (size_t k = 0; k < t->actuators; k++)
         put_line(&page, k, 1, k, false);
-    if (limited) {
-        put_level(&page, limit, "0x606060", true);
-        put_level(&page, -limit, "0x606060", true);
-    }
+    for (size_t k = 0; k < limits; k++)
+        for (int sign = -1; limit[k] < extent && sign <= 1; sign += 2)
+            put_level(&page, sign * limit[k], "0x606060", true);
     put_names(&page, t->actuator, t->actuators);
-    if (isfinite(limit)) {
-        snprintf(text, sizeof text, "%slimit %.4g %s", limited ? "dashed: " : "", limit, unit);
+    for (size_t k = 0; k < limits; k++) {
+        snprintf(text, sizeof text, "%slimit %.4g %s", limit[k] < extent ? "dashed: " : "",
+                 limit[k], unit);
         gnuplot_note(&page.g, text);
     }
     return end_page(&page, "torques", message);

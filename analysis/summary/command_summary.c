@@ -60,6 +60,7 @@ const struct command command_summary = {
     "                 damaged: pending, because their checksums do not fit\n"
     "    failures     {reason: count}\n"
     "    outcomes     {name: {count, share, low, high}} of the cases done\n"
+    "    fall_causes  {point or body: count} of those that fell\n"
     "    extents      [{path, unit, outcome, stabilised, low, high, low_at_end, high_at_end,\n"
     "                 low_unknown, high_unknown, at: {path: value}}]; outcome of the case nearest\n"
     "                 to the equilibrium; where that is pending or failed stabilised is null\n"

@@ -2,6 +2,7 @@
 #include "summary.h"
 
 #include "analysis/statistics/statistics.h"
+#include "runner/store/results_rows.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -104,6 +105,25 @@ static void collect_failures(struct summary *summary, const struct results *r)
             summary->failures[failure < SUMMARY_FAILURES ? failure : 0]++;
         }
     }
+}
+
+static bool collect_causes(struct summary *summary, const struct results *r,
+                           stance_message *message)
+{
+    struct results_column column;
+    double *values = NULL;
+    if (!results_column_open(r, stance_answers[STANCE_ANSWER_fall_cause].name, &column, message))
+        return false;
+    char *rest = column.words;
+    for (int k = 0; rest && k < STANCE_MAX_WORDS; k++)
+        snprintf(summary->cause[k], sizeof summary->cause[k], "%s", strsep(&rest, " "));
+    const bool good = column.id < 0 || results_answer(r, column.name, &values, message);
+    for (uint64_t i = 0; values && i < r->cases; i++)
+        if (r->kind[i] == RESULTS_FELL && values[i] >= 0 && values[i] < STANCE_MAX_WORDS)
+            summary->fallen_by[(int)values[i]]++;
+    free(values);
+    results_column_close(&column);
+    return good;
 }
 
 static bool collect_pair(struct summary *summary, const struct results *r, stance_message *message)
@@ -254,7 +274,7 @@ bool summary_make(struct summary *summary, const struct results *r, stance_messa
     statistics_count(r, -1, 0, &summary->counts);
     collect_failures(summary, r);
     bool good = collect_intervals(summary, r, message) && collect_numbers(summary, r, message) &&
-                collect_counts(summary, r, message) &&
+                collect_counts(summary, r, message) && collect_causes(summary, r, message) &&
                 statistics_inferred(r, &summary->inferred, NULL, message) &&
                 collect_axes(summary, r, message) && collect_bins(summary, r, message) &&
                 collect_rays(summary, r, message) && ancestry_read(r, &summary->ancestry, message);

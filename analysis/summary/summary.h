@@ -95,6 +95,9 @@ struct summary {
     /* What the cases are judged by: STABILISED, or where no controller has a target RESTED. */
     enum results_kind judged;
     uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
+    /* By what cases fell, as the file names it: none of them, then the scene's causes. */
+    char cause[STANCE_MAX_WORDS][STANCE_NAME];
+    uint64_t fallen_by[STANCE_MAX_WORDS];
     struct summary_numbers numbers[SUMMARY_NUMBER_COUNT];
     struct summary_count count[SUMMARY_COUNT_COUNT];
     uint64_t inferred; /* from neighbours, in a refined map */

@@ -136,22 +136,23 @@ static void add_law(struct collection *c, const struct scenario_values *v, const
 {
     const stance_scene *const scene = c->s->scene;
     char path[96];
-    int pair[2] = {-1, -1};
+    int selected[STANCE_MAX_ACTUATORS], selection = -1;
 
     for (int p = 0; p < law->parameters; p++) {
         const stance_parameter *const parameter = &law->parameter[p];
         const enum telling telling = parameter->told ? ALWAYS : WHERE_GIVEN;
         snprintf(path, sizeof path, "controller.%s", parameter->of.name);
-        if (parameter->per == STANCE_PER_PAIR && !is_varied(c->r, c->s, path)) {
-            int index;
-            memcpy(&index, scenario_law_value(v, law->name, parameter->of.name), sizeof index);
-            stance_pair(scene, index, &pair[0], &pair[1]);
-        }
-        if (parameter->per == STANCE_PER_LAW || parameter->per == STANCE_PER_PAIR)
+        if (parameter->per == STANCE_PER_SELECTION && !is_varied(c->r, c->s, path))
+            memcpy(&selection, scenario_law_value(v, law->name, parameter->of.name),
+                   sizeof selection);
+        if (parameter->per == STANCE_PER_LAW || parameter->per == STANCE_PER_SELECTION)
             add_entry(c, path, v, telling);
-        for (int k = 0; parameter->per == STANCE_PER_COORDINATE && k < 2 && pair[k] >= 0; k++) {
+        if (parameter->per != STANCE_PER_COORDINATE ||
+            !stance_selection(scene, selection, selected))
+            continue;
+        for (int k = 0; k < scene->actuators; k++) {
             snprintf(path, sizeof path, "controller.%s.%s", parameter->of.name,
-                     scene->coordinate[pair[k]].name);
+                     scene->coordinate[selected[k]].name);
             add_entry(c, path, v, telling);
         }
     }
@@ -202,6 +203,8 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
                "m/s^2");
     if (v->prefer)
         add_text(c, "ground.prefer", "most-energy");
+    if (v->lands)
+        add_text(c, "ground.lands", "ahead");
     add_contacts(c, "ground.contacts", v->contacts);
     add_initial(c, v);
     add_controller(c, v);

@@ -67,6 +67,15 @@ static json_t *failures(const struct summary *summary)
     return object;
 }
 
+static json_t *fall_causes(const struct summary *summary)
+{
+    json_t *object = json_object();
+    for (int k = 1; k < STANCE_MAX_WORDS; k++)
+        if (summary->fallen_by[k] > 0)
+            table_put(object, summary->cause[k], as_whole(summary->fallen_by[k]));
+    return object;
+}
+
 static json_t *outcomes(const struct summary *summary)
 {
     struct table t = {0};
@@ -252,7 +261,8 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
         root, TABLE_OBJECT({"axes", as_tree(axes(r))}, {"fixed", as_tree(fixed(summary))},
                            {"cases", as_tree(cases(summary, r))},
                            {"failures", as_tree(failures(summary))},
-                           {"outcomes", as_tree(known ? outcomes(summary) : NULL)}));
+                           {"outcomes", as_tree(known ? outcomes(summary) : NULL)},
+                           {"fall_causes", as_tree(fall_causes(summary))}));
     if (r->single) {
         json_object_set_new(root, "case", single_case(r));
     } else {

@@ -116,6 +116,11 @@ static bool print_outcomes(const struct summary *summary, const struct results *
     } else if (r->sample < 0 && counts->done > 1) {
         printf("  (of the grid; one case is %.2g %%)\n", 100 / (double)counts->done);
     }
+    for (int k = 1; k < STANCE_MAX_WORDS; k++) {
+        if (summary->fallen_by[k] > 0)
+            printf("  fell by %16" PRIu64 "  %7.3f %%   %s\n", summary->fallen_by[k],
+                   100 * (double)summary->fallen_by[k] / (double)counts->done, summary->cause[k]);
+    }
     if (summary->inferred > 0) {
         printf("  of these %14" PRIu64
                "  %7.3f %%   not simulated: inferred from neighbours that agree\n",
@@ -378,6 +383,9 @@ static void print_case(const struct summary *summary, const struct results *r)
     for (int k = 0; k < CASE_TIMES; k++)
         if (results_numbers(r, case_times[k].name, &time, 1) == 1 && !isnan(time))
             printf("  %-12s %.6g s\n", case_times[k].text, time);
+    for (int k = 1; k < STANCE_MAX_WORDS; k++)
+        if (summary->fallen_by[k] > 0)
+            printf("  %-12s %s\n", "fell by", summary->cause[k]);
     const size_t n = summary_final_state(r, name, state);
     for (size_t i = 0; i < n; i++) {
         printf("%s%s %.6g",

@@ -130,7 +130,7 @@ static void add_columns(struct listing *t)
         const struct results_column *column = &t->column[k];
         for (size_t i = 0; i < column->width; i++) {
             if (i < words)
-                snprintf(name, sizeof name, "final_%s", states[i]);
+                snprintf(name, sizeof name, "final_%.*s", SCENARIO_NAME - 1, states[i]);
             else
                 snprintf(name, sizeof name, "final_%zu", i);
             add_column(&t->rows, column->width == 1 ? column->name : name);

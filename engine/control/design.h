@@ -22,22 +22,22 @@ stance_error stance_place(int n, int m, const double *A, const double *B, const 
                           stance_message *message);
 
 /* Condition number (2-norm, SI units) of the matrix that takes torques to the accelerations of a
- * pair of coordinates, without reactions; INFINITY where it is singular: there the decoupling law
- * has no torques. position[coordinates]. */
-stance_error stance_pair_condition(const stance_scene *scene, const double *robot,
-                                   const double *position, int pair, double *condition);
+ * selection of coordinates (stance_selection), without reactions; INFINITY where it is singular:
+ * there the decoupling law has no torques. position[coordinates]. */
+stance_error stance_selection_condition(const stance_scene *scene, const double *robot,
+                                        const double *position, int selection, double *condition);
 
-enum { STANCE_MAX_PAIRS = 10 };
-
-/* One pair over all postures, resolution^postures of them in -pi ... pi. */
-typedef struct stance_pair_report {
+/* One selection over postures spread through -pi ... pi (m for what slides), so many that they and
+ * the selections together are `evaluations`. */
+typedef struct stance_selection_report {
     bool singular;          /* the determinant changes sign: singular on a surface of postures */
     double ill_conditioned; /* share of the postures with a condition number above
                              * STANCE_ILL_CONDITIONED */
     double best;            /* smallest condition number */
-} stance_pair_report;
-stance_error stance_pair_survey(const stance_scene *scene, const double *robot, int resolution,
-                                int pairs, stance_pair_report *report);
+} stance_selection_report;
+stance_error stance_selection_survey(const stance_scene *scene, const double *robot,
+                                     long evaluations, int selections,
+                                     stance_selection_report *report);
 /* Pole assignment by Varga's Schur method (SLICOT SB01BD): K[m][n] with eig(A - B K) = re + i im.
  * Poles: n values, conjugate pairs complete, of any multiplicity. What it minimises is the gain of
  * each of its steps, not the sensitivity of the whole. */

@@ -34,7 +34,7 @@ enum {
 
 struct search {
     const stance_known_basin_search *ask;
-    int n, support;
+    int n;
     double inverse[SQUARE]; /* columns of L^-T, row-major upper triangle */
     uint64_t batch;         /* number of the batch: no two use the same random numbers */
     int64_t simulations;
@@ -93,14 +93,14 @@ static bool begin(const struct search *s, uint64_t point, double radius, bool in
         c->position[scene->posture[k]] = c->near.target[k] + x[k];
         c->velocity[scene->posture[k]] = x[postures + k];
     }
-    scene->stand(scene, c->robot, 1u << s->support, c->position, c->velocity);
+    scene->stand(scene, c->robot, c->supports, c->position, c->velocity);
     c->basin_known = false;
     c->trajectory = NULL;
     c->grid_index = UINT64_MAX - point; /* noise that no case of a sweep has */
     c->sample_index = s->batch + 1;
     scene->gaps(scene, c->robot, c->position, gap);
     for (int i = 0; i < scene->contacts; i++)
-        if (i != s->support && (c->contacts >> i & 1) && !(gap[i] > 0))
+        if ((c->contacts & ~c->supports) >> i & 1 && !(gap[i] > 0))
             return false;
     return true;
 }
@@ -213,9 +213,8 @@ static bool makes_sense(const stance_known_basin_search *ask)
     return ask->scene && ask->kernel &&
            (ask->kernel->scene == ask->scene || ask->scene->mechanism) && ask->scene->stand &&
            ask->scene->postures > 0 && ask->shapes >= 1 && ask->shapes <= STANCE_MAX_SHAPES &&
-           ask->boundary >= 1 && ask->interior >= 0 && c->settle && c->has_target &&
-           c->support >= 0 && c->support < ask->scene->contacts && c->delay == 0 && !c->decouples &&
-           !c->switches;
+           ask->boundary >= 1 && ask->interior >= 0 && c->settle && c->has_target && c->supports &&
+           !(c->supports >> ask->scene->contacts) && c->delay == 0 && !c->decouples && !c->switches;
 }
 
 /* Sets are tried until one passes, and how many that takes is not known beforehand: 0.05 / m for
@@ -265,7 +264,6 @@ stance_error stance_known_basin_estimate(const stance_known_basin_search *search
     if (!makes_sense(search))
         return STANCE_BAD_ARGUMENT;
     s.n = 2 * search->scene->postures;
-    s.support = search->base.support;
     s.cases = calloc(CHUNK, sizeof *s.cases);
     s.results = calloc(CHUNK, sizeof *s.results);
     if (!s.cases || !s.results) {

@@ -1,22 +1,25 @@
-/* decoupling.c - two coordinates follow set-points, each as a PID on it asks (the paper's section
- * 3.3); how torques and reactions are found for that stands in core/mode/decoupling.h. */
+/* decoupling.c - as many coordinates as there are actuators follow set-points, each as a PID on it
+ * asks (the paper's section 3.3 has two); how torques and reactions are found for that stands in
+ * core/mode/decoupling.h. */
 #include "engine/stance.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { PAIR, KP, KD, KI, LIMIT, SETPOINT, RAMP, RAMP_TIME, PARAMETERS };
+enum { CONTROLLED, KP, KD, KI, LIMIT, SETPOINT, RAMP, RAMP_TIME, PARAMETERS };
 #define LARGE 1e9
 
 static const stance_parameter parameters[PARAMETERS] = {
-    [PAIR] = {{"controlled", "", "the two coordinates that the law controls", NAN, 0, 0},
-              .per = STANCE_PER_PAIR,
-              .required = true,
-              .told = true,
-              .more = "The others move as they must. Where the law would need a ground that pulls, "
-                      "or is near a singular posture, it degrades: see the answer "
-                      "degraded_samples."},
+    [CONTROLLED] =
+        {{"controlled", "", "the coordinates that the law controls, one for each actuator", NAN, 0,
+          0},
+         .per = STANCE_PER_SELECTION,
+         .required = true,
+         .told = true,
+         .more = "The others move as they must. Where the law would need a ground that pulls, "
+                 "or is near a singular posture, it degrades: see the answer "
+                 "degraded_samples."},
     [KP] = {{"proportional", "1/s^2", "proportional gain on %s", 100, 0, LARGE},
             .per = STANCE_PER_COORDINATE,
             .told = true,
@@ -52,16 +55,16 @@ static const stance_parameter parameters[PARAMETERS] = {
 static stance_error set(const stance_scene *scene, const double *value, const double *begin,
                         stance_linear_law *linear, stance_case *c, stance_message *message)
 {
-    int pair, controlled[2];
+    int selection, controlled[STANCE_MAX_ACTUATORS];
     (void)linear;
-    memcpy(&pair, &value[PAIR * STANCE_LAW_ROOM], sizeof pair);
-    if (!stance_pair(scene, pair, &controlled[0], &controlled[1])) {
+    memcpy(&selection, &value[CONTROLLED * STANCE_LAW_ROOM], sizeof selection);
+    if (!stance_selection(scene, selection, controlled)) {
         snprintf(message->text, sizeof message->text,
-                 "controller.controlled is no pair of coordinates");
+                 "controller.controlled is no selection of coordinates");
         return STANCE_BAD_ARGUMENT;
     }
     c->decouples = true;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < scene->actuators; i++) {
         const double *const of = &value[controlled[i]];
         stance_servo *const servo = &c->servo[i];
         const double setpoint = of[SETPOINT * STANCE_LAW_ROOM];
@@ -87,8 +90,9 @@ static stance_error set(const stance_scene *scene, const double *value, const do
 
 const stance_law stance_law_decoupling = {
     .name = "decoupling",
-    .text = "torques and reactions solved together so that two coordinates follow set-points",
+    .text = "torques and reactions solved together so that coordinates follow set-points",
     .acts_far = true,
+    .servos = true,
     .parameters = PARAMETERS,
     .parameter = parameters,
     .set = set,

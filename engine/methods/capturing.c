@@ -32,6 +32,10 @@
 #define METHOD_STAGES 6
 #define METHOD_EMBEDDED
 
+/* Cases may change lanes; a step may be of any length. */
+#define ADVANCE_MOVES
+#define ADVANCE_PIECES
+
 #include "engine/core/loop/kernel.h"
 /* In this order. */
 #include STANCE_SCENE_LANES
@@ -55,15 +59,11 @@ static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 #include "engine/core/mode/explicit.h"
 // clang-format on
 
-#define KNOWN_BASIN_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
-#define KNOWN_BASIN_LOWEST                                                                         \
-    1e-11 /* m: an impact after a fall from less than this does not rebound */
-#define KNOWN_BASIN_ATTEMPTS 20000  /* in one step, then the case fails */
-#define KNOWN_BASIN_INSTANT 0x1p-10 /* of the tolerance: what moves less does not move */
-#define KNOWN_BASIN_GROWTH 64 /* an error this much smaller than the tolerance: twice as long */
-
-/* Cases may change lanes. */
-#define ADVANCE_MOVES
+#define CAPTURE_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
+#define CAPTURE_LOWEST 1e-11    /* m: an impact after a fall from less than this does not rebound */
+#define CAPTURE_ATTEMPTS 20000  /* in one step, then the case fails */
+#define CAPTURE_INSTANT 0x1p-10 /* of the tolerance: what moves less does not move */
+#define CAPTURE_GROWTH 64       /* an error this much smaller than the tolerance: twice as long */
 
 /* Where each lane is inside its step. */
 struct advance {
@@ -98,11 +98,11 @@ static void advance_free(struct advance *a)
 }
 
 /* Lanes where a contact that may meet the ground within h is fast enough to rebound: faster than
- * after a fall from KNOWN_BASIN_LOWEST. Gaps are known to BETWEEN_GAP only, which is less. */
+ * after a fall from CAPTURE_LOWEST. Gaps are known to BETWEEN_GAP only, which is less. */
 static inline mask capture_rebounds(const struct setting *set, const struct motion *now, lanes h,
                                     lanes acceleration)
 {
-    const lanes slow = 2 * lanes_max(acceleration, lanes_of(STANCE_GRAVITY)) * KNOWN_BASIN_LOWEST;
+    const lanes slow = 2 * lanes_max(acceleration, lanes_of(STANCE_GRAVITY)) * CAPTURE_LOWEST;
     mask fast = MASK_NONE;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask near =
@@ -246,7 +246,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     const mask hunt = live & mask_less(none, a->hunting);
     const lanes part = choose(hunt, a->part, lanes_min(missed_longest(set, now->w), a->part));
     /* Halves add up to the step but for rounding: what is left of it then is no interval. */
-    const lanes interval = choose(mask_less(part, left - KNOWN_BASIN_SMALLEST * h), part, left);
+    const lanes interval = choose(mask_less(part, left - CAPTURE_SMALLEST * h), part, left);
     const lanes length = choose(hunt, 0.5 * interval, interval);
     struct explicit_step step;
     mask stuck, crossed = MASK_NONE, arrived = MASK_NONE;
@@ -262,7 +262,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
         struct step_report over;
         const lanes fastest = lanes_max(acceleration, capture_size(now));
         const mask instant =
-            stuck & mask_less_equal(fastest * interval, KNOWN_BASIN_INSTANT * tolerance);
+            stuck & mask_less_equal(fastest * interval, CAPTURE_INSTANT * tolerance);
         if (coupled) /* a decoupling law is held over the crossing */
             torque = step.torque;
         crossed = capture_implicit(set, now, a->stood, torque, interval, cross, coupled, tolerance,
@@ -287,7 +287,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
      * interval with the event, or its first half; half as long where the error was too large or
      * something may have passed unseen. */
     const mask on = good & LANES_NOT(hunt);
-    const mask easy = mask_less_equal(KNOWN_BASIN_GROWTH * step.error, tolerance);
+    const mask easy = mask_less_equal(CAPTURE_GROWTH * step.error, tolerance);
     const lanes longer = lanes_max(choose(easy, 2 * length, length), a->part);
     lanes next = choose(on, longer, choose(good | event, length, 0.5 * length));
     next = choose(crossed, lanes_of(INFINITY), next);
@@ -296,8 +296,8 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     a->part = choose(live, next, a->part);
     a->hunting = choose(live, choose(hunts, one, none), a->hunting);
     const mask tired =
-        live & LANES_NOT(arrived) & mask_less(lanes_of(KNOWN_BASIN_ATTEMPTS), a->attempts);
-    *failed = tired | (smooth & LANES_NOT(good) & mask_less(next, KNOWN_BASIN_SMALLEST * h));
+        live & LANES_NOT(arrived) & mask_less(lanes_of(CAPTURE_ATTEMPTS), a->attempts);
+    *failed = tired | (smooth & LANES_NOT(good) & mask_less(next, CAPTURE_SMALLEST * h));
     *report = a->sum;
     report->failure =
         choose(tired, lanes_of(STANCE_FAILURE_WORK), lanes_of(STANCE_FAILURE_TOLERANCE));

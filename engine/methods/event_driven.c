@@ -23,6 +23,7 @@
  * regularisation.
  */
 #define METHOD_THETA 0.5 /* read by core/implicit/step.h, whose implicit step is not taken here */
+#define ADVANCE_PIECES   /* a step may be of any length */
 
 #include "engine/core/loop/kernel.h"
 /* In this order. */
@@ -407,7 +408,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         double command[ACTUATORS];
         law_torque(law, s, w, command);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
-            m->clipped[i] = command[i] > law->limit ? 1 : command[i] < -law->limit ? -1 : 0;
+            m->clipped[i] = command[i] > law->limit[i] ? 1 : command[i] < -law->limit[i] ? -1 : 0;
         m->touches = 0;
         for (int c = 0; c < SCENE_CONTACTS; c++)
             m->touches |= m->contact.closed[c] ? contact_with(c) : 0;

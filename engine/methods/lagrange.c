@@ -17,6 +17,10 @@
 #define METHOD_THETA 0.5 /* read by core/implicit/step.h, whose implicit step is not taken here */
 #define METHOD_STAGES 4
 
+/* Cases may change lanes; a step may be of any length. */
+#define ADVANCE_MOVES
+#define ADVANCE_PIECES
+
 #include "engine/core/loop/kernel.h"
 /* In this order. */
 #include STANCE_SCENE_LANES
@@ -33,9 +37,6 @@ static const double tableau_b[METHOD_STAGES] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 /
 #define LAGRANGE_SMALLEST 0x1p-40 /* of a step: what is left of it by rounding */
 #define LAGRANGE_EVENTS 200       /* in one step, then the case fails */
 #define LAGRANGE_DEEPEST 1e-8     /* m: a foot that is further below the ground has gone astray */
-
-/* Cases may change lanes. */
-#define ADVANCE_MOVES
 
 /* Where each lane is inside its step. */
 struct advance {

@@ -166,6 +166,12 @@ static inline lanes scene_gap(const scene_body *b, const lanes *s, const scene_t
     (void)trig, (void)c;
     return s[1] - b->radius;
 }
+/* Where a contact is along the ground, m. */
+static inline lanes scene_along(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+{
+    (void)b, (void)trig, (void)c;
+    return s[0];
+}
 /* What a displacement d adds to the gap; exact. */
 static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c,
                                      const lanes *d)
@@ -215,10 +221,11 @@ static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const scen
 }
 
 /* A ball has nothing to fall from. */
-static inline mask scene_fallen(const scene_body *b, const lanes *s, const scene_trig *trig,
-                                lanes fall_height)
+#define SCENE_CAUSES 0
+static inline mask scene_falls(const scene_body *b, const lanes *s, const scene_trig *trig,
+                               lanes fall_height, int cause)
 {
-    (void)b, (void)s, (void)trig, (void)fall_height;
+    (void)b, (void)s, (void)trig, (void)fall_height, (void)cause;
     return MASK_NONE;
 }
 /* Largest of the rates. */

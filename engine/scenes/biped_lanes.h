@@ -436,6 +436,11 @@ static inline lanes scene_gap(const scene_body *b, const lanes *s, const scene_t
 {
     return lanes_fnma(b->leg, trig->cosine[1 + c], s[1]);
 }
+/* Where a contact is along the ground, m. */
+static inline lanes scene_along(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+{
+    return lanes_fma(b->leg, trig->sine[1 + c], s[0]);
+}
 /* Gap after a small displacement d of s, to second order in the leg's angle. */
 static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c,
                                      const lanes *d)
@@ -498,12 +503,14 @@ static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const scen
     return lanes_fma(torque[0], d[3] - d[2], torque[1] * (d[4] - d[2]));
 }
 
-/* Down: the hip below `fall_height` leg lengths, or the trunk on the ground. */
-static inline mask scene_fallen(const scene_body *b, const lanes *s, const scene_trig *trig,
-                                lanes fall_height)
+/* Down by cause 0, the hip below `fall_height` leg lengths, or 1, the trunk on the ground. */
+#define SCENE_CAUSES 2
+static inline mask scene_falls(const scene_body *b, const lanes *s, const scene_trig *trig,
+                               lanes fall_height, int cause)
 {
-    return mask_less(s[1], fall_height * b->leg) |
-           mask_less_equal(lanes_fma(b->trunk, trig->cosine[0], s[1]), lanes_of(0));
+    if (cause == 0)
+        return mask_less(s[1], fall_height * b->leg);
+    return mask_less_equal(lanes_fma(b->trunk, trig->cosine[0], s[1]), lanes_of(0));
 }
 /* Largest of the rates: the trunk's x and z, its pitch, the joints. */
 static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, const scene_trig *trig)

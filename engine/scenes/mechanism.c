@@ -23,6 +23,7 @@ struct described {
     char coordinate_text[STANCE_MAX_COORDINATES][TEXT];
     char contact[STANCE_MAX_CONTACTS][LABEL];
     const char *contact_name[STANCE_MAX_CONTACTS], *actuator_name[STANCE_MAX_ACTUATORS];
+    const char *cause[STANCE_MAX_NAMED + STANCE_MAX_BODIES];
     int posture[STANCE_MAX_POSTURE], actuated[STANCE_MAX_ACTUATORS], grip[STANCE_MAX_CONTACTS];
 };
 
@@ -224,6 +225,18 @@ static void add_contacts(struct described *d)
                 add_contact(d, m->body[b].name, side ? "_high" : "_low", -1);
 }
 
+/* Points, then bodies, as the tables of the tree have them. */
+static void add_causes(struct described *d)
+{
+    const stance_mechanism *const m = &d->m;
+    for (int p = 0; p < m->points; p++)
+        if (m->point[p].falls)
+            d->cause[d->scene.causes++] = m->point[p].name;
+    for (int b = 0; b < m->bodies; b++)
+        if (m->body[b].bounded && m->body[b].joint != STANCE_FIXED)
+            d->cause[d->scene.causes++] = m->body[b].name;
+}
+
 static int contacts_of(const stance_mechanism *m)
 {
     int count = 0;
@@ -268,6 +281,7 @@ stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **sc
         .coordinate = d->coordinate,
         .contact_name = d->contact_name,
         .grip = d->grip,
+        .cause = d->cause,
         .actuator_name = d->actuator_name,
         .posture = d->posture,
         .actuated = d->actuated,
@@ -292,6 +306,7 @@ stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **sc
         describe_number(d, i);
     add_coordinates(d);
     add_contacts(d);
+    add_causes(d);
     stance_robot_fallback(&d->scene, robot);
     stance_pose_at(&d->m, robot, straight, &pose);
     for (int a = 0; a < m->actuators; a++) {

@@ -13,6 +13,16 @@ void stance_mechanism_expand(const stance_mechanism *m, const double *robot,
         memcpy((char *)numbers + (size_t)m->number[i] * sizeof *robot, &robot[i], sizeof *robot);
 }
 
+void stance_torque_limits(const stance_scene *scene, const double *robot, double most,
+                          double limit[STANCE_MAX_ACTUATORS])
+{
+    stance_mechanism_numbers number;
+    if (scene->mechanism)
+        stance_mechanism_expand(scene->mechanism, robot, &number);
+    for (int i = 0; i < scene->actuators; i++)
+        limit[i] = scene->mechanism ? fmin(number.limit[i], most) : most;
+}
+
 static double along(const double a[2], const double b[2])
 {
     return a[0] * b[0] + a[1] * b[1];

@@ -190,6 +190,11 @@ static inline lanes scene_gap(const scene_body *b, const lanes *s, const scene_t
 {
     return s[1] + scene_arm(b, c) * trig->sine[0];
 }
+/* Where a contact is along the ground, m. */
+static inline lanes scene_along(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+{
+    return s[0] + scene_arm(b, c) * trig->cosine[0];
+}
 /* What a small displacement d adds to a gap, to second order in the angle. */
 static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c,
                                      const lanes *d)
@@ -241,10 +246,11 @@ static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const scen
 }
 
 /* A rod has no height that it ought to keep. */
-static inline mask scene_fallen(const scene_body *b, const lanes *s, const scene_trig *trig,
-                                lanes fall_height)
+#define SCENE_CAUSES 0
+static inline mask scene_falls(const scene_body *b, const lanes *s, const scene_trig *trig,
+                               lanes fall_height, int cause)
 {
-    (void)b, (void)s, (void)trig, (void)fall_height;
+    (void)b, (void)s, (void)trig, (void)fall_height, (void)cause;
     return MASK_NONE;
 }
 /* Largest of the rates. */

@@ -114,24 +114,35 @@ HOT void scene_contact_curvature(const scene_body *b, const scene_trig *trig, in
     }
 }
 
-HOT lanes scene_gap(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+/* Where a contact is along an axis of the ground: 0 along it, 1 normal to it. */
+HOT lanes tree_place(const scene_body *b, const lanes *s, const scene_trig *trig, int c, int axis)
 {
-    if (tree_is_stop(c))
-        return tree_sign(c) * (tree_joint(s, tree_body[c]) - b->end[c][0]);
-    lanes gap = tree_base(b, s, 1);
+    lanes place = tree_base(b, s, axis);
     if (tree_top[c] >= 0)
-        gap = gap + b->joint[tree_top[c]][1];
+        place = place + b->joint[tree_top[c]][axis];
     TREE_UNROLL
     for (int j = 0; j < tree_angles; j++) {
         if (tree_path[c][j] < 0)
             continue;
         lanes reach[2];
         tree_reach(b, trig, c, j, false, reach);
-        gap = gap + reach[1];
+        place = place + reach[axis];
     }
+    return place;
+}
+HOT lanes scene_gap(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+{
+    if (tree_is_stop(c))
+        return tree_sign(c) * (tree_joint(s, tree_body[c]) - b->end[c][0]);
+    lanes gap = tree_place(b, s, trig, c, 1);
     if (tree_kind[c] == STANCE_TREE_DISC)
         gap = gap - b->end[c][2];
     return gap;
+}
+/* Where it is along the ground, m; no stop. */
+HOT lanes scene_along(const scene_body *b, const lanes *s, const scene_trig *trig, int c)
+{
+    return tree_place(b, s, trig, c, 0);
 }
 /* Gap after a small displacement d of s, to second order in the angles. */
 HOT lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c, const lanes *d)

@@ -68,8 +68,8 @@ enum {
 #define tree_free (tree_base_size == 2)
 #define tree_rail (tree_base_size == 1)
 #define tree_postures (tree_rail + tree_angles)
-/* Two torques can drive two coordinates: see core/mode/decoupling.h. */
-#if TREE_DECOUPLES
+/* Torques may drive as many coordinates: see core/mode/decoupling.h. */
+#if TREE_SERVOS
 #define SCENE_SERVOS
 #endif
 #define SCENE_GRIPS
@@ -77,6 +77,7 @@ enum {
 #define SCENE_NUMBERS(c) &(c)->body
 #define SCENE_OF(c) (c)->scene
 #define SCENE_POSTURE_ORIGIN(c, i) scene_posture_origin(&(c)->body, i)
+#define SCENE_TORQUE_LIMIT(c, i) (c)->body.limit[i]
 
 #ifdef TREE_RUNTIME
 #define TREE_UNROLL
@@ -355,8 +356,8 @@ HOT void scene_coordinate_curvature(const scene_body *b, const scene_trig *trig,
 #include "engine/scenes/tree_contacts.h"
 #include "engine/scenes/tree_energy.h"
 
-/* Pushes of the step from t to t + h: each acts by its mean over the step, so that what it gives in
- * all is exact wherever its ends fall. */
+/* Pushes from t to t + h: each acts by its mean over that, so that what it gives in all is exact
+ * wherever its ends fall. */
 HOT void scene_push(scene_body *b, lanes t, lanes h)
 {
     TREE_UNROLL
@@ -370,6 +371,20 @@ HOT void scene_push(scene_body *b, lanes t, lanes h)
         }
     }
 }
+/* Time from t to the next instant at which a push begins or ends or a blow falls, where it is more
+ * than `least` away from t and from t + h; else h. */
+HOT lanes scene_push_edge(const scene_body *b, lanes t, lanes h, lanes least)
+{
+    lanes next = h;
+    TREE_UNROLL
+    for (int p = 0; p < tree_pushes; p++)
+        for (int end = 4; end < 6; end++) {
+            const lanes off = b->push[p][end] - t;
+            const mask inside = mask_less(least, off) & mask_less(off, h - least);
+            next = choose(inside, lanes_min(off, next), next);
+        }
+    return next;
+}
 /* Time after which nothing pushes any more. */
 HOT lanes scene_pushed_until(const scene_body *b)
 {
@@ -378,15 +393,15 @@ HOT lanes scene_pushed_until(const scene_body *b)
         until = lanes_max(b->push[p][5], until);
     return until;
 }
-/* Lanes where an impulse is due at the step that begins at t, the nearest to its instant; *w
- * changes by what it gives. */
-HOT mask scene_strike(const scene_body *b, const scene_trig *trig, lanes t, lanes h, lanes *w)
+/* Lanes where an impulse is due at t: its instant is `within` of it; *w changes by what it gives.
+ */
+HOT mask scene_strike(const scene_body *b, const scene_trig *trig, lanes t, lanes within, lanes *w)
 {
     mask struck = MASK_NONE;
     scene_matrix A;
     for (int p = 0; p < tree_pushes; p++) {
         const lanes off = b->push[p][4] - t;
-        const mask due = mask_less(-0.5 * h, off) & mask_less_equal(off, 0.5 * h);
+        const mask due = mask_less(-within, off) & mask_less_equal(off, within);
         if (!tree_push_impulse[p] || !mask_any(due))
             continue;
         lanes load[SCENE_COORDINATES], x[SCENE_COORDINATES];
@@ -402,34 +417,31 @@ HOT mask scene_strike(const scene_body *b, const scene_trig *trig, lanes t, lane
     return struck;
 }
 
-/* Down: a point lower than it may be, or a body turned further. */
-HOT mask scene_fallen(const scene_body *b, const lanes *s, const scene_trig *trig,
-                      lanes fall_height)
+/* Down by a cause: a point lower than it may be, or, after the points, a body turned further. */
+#define SCENE_CAUSES (tree_points + tree_turns)
+HOT mask scene_falls(const scene_body *b, const lanes *s, const scene_trig *trig, lanes fall_height,
+                     int cause)
 {
     (void)fall_height;
-    mask down = MASK_NONE;
-    TREE_UNROLL
-    for (int k = 0; k < tree_points; k++) {
-        lanes height = tree_base(b, s, 1);
-        if (tree_point_top[k] >= 0)
-            height = height + b->joint[tree_point_top[k]][1];
-        TREE_UNROLL
-        for (int j = 0; j < tree_angles; j++) {
-            const int through = tree_point_path[k][j];
-            if (through < 0)
-                continue;
-            lanes reach[2];
-            tree_turn(through != TREE_OWN && tree_straight_joint[through], trig->sine[j],
-                      trig->cosine[j], through == TREE_OWN ? b->point[k] : b->joint[through],
-                      reach);
-            height = height + reach[1];
-        }
-        down |= mask_less_equal(height, b->lowest[k]);
+    if (cause >= tree_points) {
+        const int k = cause - tree_points;
+        return mask_less(b->turn[k], lanes_abs(s[TREE_BASE + tree_turning[k]] - b->slope[0]));
     }
+    lanes height = tree_base(b, s, 1);
+    if (tree_point_top[cause] >= 0)
+        height = height + b->joint[tree_point_top[cause]][1];
     TREE_UNROLL
-    for (int k = 0; k < tree_turns; k++)
-        down |= mask_less(b->turn[k], lanes_abs(s[TREE_BASE + tree_turning[k]] - b->slope[0]));
-    return down;
+    for (int j = 0; j < tree_angles; j++) {
+        const int through = tree_point_path[cause][j];
+        if (through < 0)
+            continue;
+        lanes reach[2];
+        tree_turn(through != TREE_OWN && tree_straight_joint[through], trig->sine[j],
+                  trig->cosine[j], through == TREE_OWN ? b->point[cause] : b->joint[through],
+                  reach);
+        height = height + reach[1];
+    }
+    return mask_less_equal(height, b->lowest[cause]);
 }
 /* Largest of the rates: the reference point's, the root's, the joints'. */
 HOT lanes scene_largest_rate(const scene_body *b, const lanes *w, const scene_trig *trig)

@@ -55,19 +55,20 @@ static int report_at(const struct scenario *s, const char *text)
 /* A decoupling law has no linear design: what there is to know is where it is singular. */
 static int design_decoupling(const struct scenario *s, bool json)
 {
-    struct design_pairs pairs;
+    struct design_selections selections;
     stance_message message = {""};
 
-    if (!design_pairs_compute(&pairs, s, &message))
+    if (!design_selections_compute(&selections, s, &message))
         return report_at(s, message.text);
     if (json) {
-        const int code = print_json(design_pairs_json(&pairs));
-        return code == EXIT_DONE && pairs.singular ? report_at(s, pairs.complaint.text) : code;
+        const int code = print_json(design_selections_json(&selections));
+        return code == EXIT_DONE && selections.singular ? report_at(s, selections.complaint.text)
+                                                        : code;
     }
     printf("%s\n\n", s->title);
-    design_pairs_print(&pairs);
+    design_selections_print(&selections);
     fflush(stdout);
-    return pairs.singular ? report_at(s, pairs.complaint.text) : EXIT_DONE;
+    return selections.singular ? report_at(s, selections.complaint.text) : EXIT_DONE;
 }
 
 static int design(const struct scenario *s, bool json)
@@ -166,9 +167,10 @@ const struct command command_design = {
     "                             captured_level (share of the level in which cases stop),\n"
     "                             alone, extent as above\n"
     "\n"
-    "With controller.kind decoupling it prints instead for each pair of coordinates where the law\n"
-    "is singular; as JSON: scenario, title, scene and\n"
-    "    pairs                    [{pair, controlled (is it the scenario's?),\n"
+    "With controller.kind decoupling it prints instead for each selection of coordinates where "
+    "the\n"
+    "law is singular; as JSON: scenario, title, scene and\n"
+    "    selections               [{coordinates, controlled (is it the scenario's?),\n"
     "                             condition_at_start (null: singular), best_condition,\n"
     "                             damped_share (of all postures), singular}, ...]\n",
 };

@@ -67,22 +67,22 @@ struct design_report {
     struct design_capture capture;
 };
 
-/* What is known of the pairs of coordinates that a decoupling law may control, in stance_pair's
- * order. */
-struct design_pairs {
+/* What is known of the selections of coordinates that a decoupling law may control, in
+ * stance_selection's order. */
+struct design_selections {
     const struct scenario *scenario;
     int count;
-    double at_start[STANCE_MAX_PAIRS]; /* condition number; INFINITY: singular */
-    stance_pair_report report[STANCE_MAX_PAIRS];
-    bool singular; /* the scenario's pair is, at the start: `complaint` says so */
+    double at_start[STANCE_MAX_SELECTIONS]; /* condition number; INFINITY: singular */
+    stance_selection_report report[STANCE_MAX_SELECTIONS];
+    bool singular; /* the scenario's is, at the start: `complaint` says so */
     stance_message complaint;
 };
 
 /* false: `message` says what does not exist. */
-bool design_pairs_compute(struct design_pairs *d, const struct scenario *s,
-                          stance_message *message);
-void design_pairs_print(const struct design_pairs *d);
-json_t *design_pairs_json(const struct design_pairs *d);
+bool design_selections_compute(struct design_selections *d, const struct scenario *s,
+                               stance_message *message);
+void design_selections_print(const struct design_selections *d);
+json_t *design_selections_json(const struct design_selections *d);
 
 /* false: `message` says what does not exist. */
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message);

@@ -71,6 +71,7 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
                             bool quiet, stance_message *message)
 {
     const stance_scene *const scene = plan->scenario->scene;
+    const struct scenario_values *const base = &plan->scenario->base;
     struct objects_wanted wanted[OBJECTS_MOST];
     char tables[STANCE_TREE_TEXT];
     kernels->count = 0;
@@ -79,7 +80,7 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
     stance_case *const check = calloc(CHECKS, sizeof *check);
     if (!check)
         abort(); /* the others wait */
-    stance_tree_text(scene->tree, tables);
+    stance_tree_text(scene->tree, scenario_law(base)->servos || scenario_far(base)->servos, tables);
     const struct objects_request request = {
         .tables = tables,
         .scene = scene,

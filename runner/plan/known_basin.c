@@ -29,7 +29,7 @@ stance_error known_basin_bounds(const stance_scene *scene, const struct scenario
                                 const double *K, double *a, double *d)
 {
     const int n = 2 * scene->postures, m = scene->actuators;
-    double force[2], by_state[2 * STATES], by_torque[2 * INPUTS];
+    double force[2], by_state[2 * STATES], by_torque[2 * INPUTS], limit[STANCE_MAX_ACTUATORS];
 
     if (!equilibrium->supports || (equilibrium->supports & (equilibrium->supports - 1)))
         return STANCE_BAD_ARGUMENT; /* bounds for one support's force */
@@ -50,9 +50,10 @@ stance_error known_basin_bounds(const stance_scene *scene, const struct scenario
         a[(2 * m + 1) * n + j] = -loop[1] - values->friction * loop[0];
         a[(2 * m + 2) * n + j] = -loop[0];
     }
+    stance_torque_limits(scene, values->robot, values->torque_limit, limit);
     for (int i = 0; i < m; i++) {
-        d[2 * i] = values->torque_limit - equilibrium->torque[i];
-        d[2 * i + 1] = values->torque_limit + equilibrium->torque[i];
+        d[2 * i] = limit[i] - equilibrium->torque[i];
+        d[2 * i + 1] = limit[i] + equilibrium->torque[i];
     }
     d[2 * m] = d[2 * m + 1] = values->friction * force[0];
     d[2 * m + 2] = force[0];

@@ -25,7 +25,7 @@
 
 #define DEEPEST_START 1e-9 /* m: penetration of an initial state that counts as rounding */
 #define MOST_STEPS 1e15
-#define MOST_CONDITION 1e12 /* of a pair of coordinates: above it is singular */
+#define MOST_CONDITION 1e12 /* of selected coordinates: above it is singular */
 
 /* ---- design ---------------------------------------------------------------------------------- */
 
@@ -85,15 +85,6 @@ void resolve_unpack(const stance_scene *scene, const double *number, struct reso
         for (size_t row = 0; row < part[k].rows; row++, number += part[k].length)
             memcpy(&to[part[k].offset + row * part[k].stride], number,
                    part[k].length * sizeof *number);
-}
-
-static int support_of(const stance_scene *scene, const struct scenario_values *values)
-{
-    const uint32_t supports = scenario_supports(scene, values);
-    int first = 0;
-    while (supports && !(supports >> first & 1))
-        first++;
-    return supports ? first : -1;
 }
 
 static bool solve_equilibrium(const stance_scene *scene, const double *robot,
@@ -338,6 +329,29 @@ static void place_robot(const stance_scene *scene, const struct scenario_values 
     }
 }
 
+/* Where a contact is along the ground. */
+static double along(const stance_scene *scene, const stance_case *out, int c)
+{
+    double point[2], speed[2], sine, cosine;
+    stance_sincos(out->robot[STANCE_ROBOT_SLOPE], &sine, &cosine);
+    scene->contact_point(scene, out->robot, out->position, out->velocity, c, point, speed);
+    return cosine * point[0] - sine * point[1];
+}
+
+/* May a foot be in the ground, as one that lands ahead only and is no further than another? */
+static bool passes_through(const stance_scene *scene, const stance_case *out, int c,
+                           const double *gap)
+{
+    bool behind = false;
+    for (int k = 0; k < scene->contacts && out->lands_ahead; k++) {
+        const bool other =
+            scene->grip ? scene->grip[k] >= 0 && scene->grip[k] != scene->grip[c] : k != c;
+        if (other && (out->contacts >> k & 1) && fabs(gap[k]) <= DEEPEST_START)
+            behind |= along(scene, out, c) <= along(scene, out, k);
+    }
+    return behind;
+}
+
 static bool check_start(const stance_scene *scene, const stance_case *out, stance_message *message)
 {
     double gap[STANCE_MAX_CONTACTS];
@@ -359,7 +373,8 @@ static bool check_start(const stance_scene *scene, const stance_case *out, stanc
         const bool stop = scene->grip && scene->grip[c] < 0;
         if (stop && gap[c] < -DEEPEST_START)
             return complain(message, "%s would start %.6g beyond", scene->contact_name[c], -gap[c]);
-        if ((out->contacts >> c & 1) && gap[c] < -DEEPEST_START) {
+        if ((out->contacts >> c & 1) && gap[c] < -DEEPEST_START &&
+            !passes_through(scene, out, c, gap)) {
             return complain(message, "%s would start %.6g m inside the ground",
                             scene->contact_name[c], -gap[c]);
         }
@@ -394,7 +409,7 @@ static void feed_back(const stance_scene *scene, const struct scenario_values *v
     for (int k = 0; k < scene->postures; k++)
         out->near.target[k] = design->equilibrium[scene->posture[k]];
     out->has_target = true;
-    out->support = support_of(scene, values);
+    out->supports = scenario_supports(scene, values);
 }
 
 /* A set somewhat smaller than the confirmed one. */
@@ -497,36 +512,28 @@ static bool resolve_time(const struct scenario_values *values, stance_case *out,
     return true;
 }
 
-bool resolve_pair(const stance_scene *scene, const stance_case *start, stance_message *message)
+bool resolve_selection(const stance_scene *scene, const stance_case *start, stance_message *message)
 {
     double condition;
-    int pair = 0, first, second;
-    const stance_servo *const servo = start->servo;
+    int selection = 0, coordinate[STANCE_MAX_ACTUATORS];
+    char name[SCENARIO_NAME];
     if (!start->decouples)
         return true;
-    while (stance_pair(scene, pair, &first, &second) &&
-           (first != servo[0].coordinate || second != servo[1].coordinate))
-        pair++;
-    if (stance_pair_condition(scene, start->robot, start->position, pair, &condition) ==
+    for (bool same = false; !same && stance_selection(scene, selection, coordinate); selection++) {
+        same = true;
+        for (int i = 0; i < scene->actuators; i++)
+            same = same && coordinate[i] == start->servo[i].coordinate;
+    }
+    selection--;
+    if (stance_selection_condition(scene, start->robot, start->position, selection, &condition) ==
             STANCE_OK &&
         condition < MOST_CONDITION)
         return true;
+    scenario_selection_name(scene, selection, name);
     return complain(message,
-                    "controller.controlled: the pair %s-%s is singular in the initial posture: no "
-                    "torques give it the accelerations that the law asks for",
-                    scene->coordinate[first].name, scene->coordinate[second].name);
-}
-
-/* What no actuator exceeds: the smallest of controller.torque_limit and their own limits. */
-static double least_limit(const stance_scene *scene, const struct scenario_values *values)
-{
-    stance_mechanism_numbers number;
-    double least = values->torque_limit;
-    if (scene->mechanism)
-        stance_mechanism_expand(scene->mechanism, values->robot, &number);
-    for (int i = 0; scene->mechanism && i < scene->actuators; i++)
-        least = fmin(least, number.limit[i]);
-    return least;
+                    "controller.controlled: %.100s is singular in the initial posture: no torques "
+                    "give the accelerations that the law asks for",
+                    name);
 }
 
 bool resolve_case(const stance_scene *scene, const struct scenario_values *values,
@@ -538,12 +545,12 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .friction = values->friction,
         .restitution = values->restitution,
         .most_energy = values->prefer != 0,
+        .lands_ahead = values->lands != 0,
         .contacts = (uint32_t)values->contacts,
-        .torque_limit = least_limit(scene, values),
+        .torque_limit = values->torque_limit,
         .noise = values->noise,
         .delay = values->law == 0 ? 0 : values->delay,
         .settle = values->settle != 0,
-        .support = -1,
         .settle_angle = values->settle_angle,
         .settle_rate = values->settle_rate,
         .settle_hold = values->settle_hold,

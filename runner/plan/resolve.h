@@ -83,8 +83,8 @@ bool resolve_law(const stance_scene *scene, const struct scenario_values *values
                  const stance_law *law, const double *begin, stance_linear_law *linear,
                  stance_case *out, stance_message *message);
 
-/* false: a decoupling law's pair of coordinates is singular where *start begins. In a sweep such a
+/* false: the selection of a decoupling law is singular where *start begins. In a sweep such a
  * case runs all the same, with a damped law. */
-bool resolve_pair(const stance_scene *scene, const stance_case *start, stance_message *message);
+bool resolve_selection(const stance_scene *scene, const stance_case *start, stance_message *message);
 
 #endif

@@ -654,6 +654,18 @@ const stance_law *scenario_far(const struct scenario_values *values)
     return *law;
 }
 
+bool scenario_selection_name(const stance_scene *scene, int selection, char name[SCENARIO_NAME])
+{
+    int coordinate[STANCE_MAX_ACTUATORS];
+    char *end = name;
+    if (!stance_selection(scene, selection, coordinate))
+        return false;
+    for (int i = 0; i < scene->actuators; i++)
+        end += snprintf(end, STANCE_NAME + 1, "%s%s", i ? "-" : "",
+                        scene->coordinate[coordinate[i]].name);
+    return true;
+}
+
 const double *scenario_law_value(const struct scenario_values *values, const char *law,
                                  const char *parameter)
 {

@@ -19,7 +19,8 @@ enum {
     SCENARIO_MAX_STATES = 2 * STANCE_MAX_COORDINATES,
     SCENARIO_MAX_GAINS = STANCE_MAX_ACTUATORS * 2 * STANCE_MAX_POSTURE,
     SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
-    SCENARIO_NAME = 2 * STANCE_NAME + 8,        /* bytes of the name of a rate, a contact, a pair */
+    /* bytes of the name of a rate, a contact, a selection of coordinates */
+    SCENARIO_NAME = STANCE_MAX_ACTUATORS * STANCE_NAME + 8,
     SCENARIO_FINAL_STATE = STANCE_ANSWER_COUNT, /* bit of `answers` for final_state */
 };
 _Static_assert(SCENARIO_FINAL_STATE < 31, "bits for all answers");
@@ -45,6 +46,7 @@ struct scenario_values {
     double robot[STANCE_MAX_ROBOT];
     double friction, restitution;
     int prefer;   /* of several motions: 0 least energy, 1 most */
+    int lands;    /* of feet in the air: 0 anywhere, 1 ahead of those on the ground */
     int contacts; /* bit mask */
 
     struct scenario_equilibrium equilibrium; /* initial.equilibrium */
@@ -65,7 +67,7 @@ struct scenario_values {
     double gains[SCENARIO_MAX_GAINS]; /* [actuators][2 postures] */
     double state_weights[SCENARIO_MAX_POLES], torque_weights[STANCE_MAX_ACTUATORS]; /* lqr */
     /* Of each law (stance_laws) its parameters as stance_law.set takes them; NAN: as it is at the
-     * beginning. What is a pair is an int in the first bytes of its place. */
+     * beginning. What is a selection is an int in the first bytes of its place. */
     double law_value[STANCE_MAX_LAWS][STANCE_LAW_PARAMETERS * STANCE_LAW_ROOM];
     int far;                      /* what acts far from the target, see scenario_far; 0: none */
     double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
@@ -214,6 +216,8 @@ uint32_t scenario_supports(const stance_scene *scene, const struct scenario_valu
 const stance_law *scenario_law(const struct scenario_values *values);
 const stance_law *scenario_far(const struct scenario_values *values);
 /* The numbers of a law's parameter, by coordinates or actuators. Both must exist. */
+/* Name of a selection of coordinates (stance_selection): "x-theta". False: there is none. */
+bool scenario_selection_name(const stance_scene *scene, int selection, char name[SCENARIO_NAME]);
 const double *scenario_law_value(const struct scenario_values *values, const char *law,
                                  const char *parameter);
 

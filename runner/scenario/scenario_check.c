@@ -343,31 +343,16 @@ static void check_start(struct reader *r, const struct situation *is)
     check_standing(r, is);
 }
 
-static bool needs_pair(const stance_law *law)
-{
-    for (int p = 0; p < law->parameters; p++)
-        if (law->parameter[p].per == STANCE_PER_PAIR)
-            return true;
-    return false;
-}
-
 static void check_controller(struct reader *r, const struct situation *is)
 {
     struct scenario_values *base = &r->s->base;
     const struct seen *kind = reader_seen(r, "controller.kind");
-    int first, second;
 
     if (!is->law_known)
         return;
     if (is->law != stance_laws()[0] && r->s->scene->actuators == 0) {
         problem_add(&r->problems, kind->node->mark,
                     "controller.kind: the scene %s has no actuators", r->s->scene->name);
-    }
-    if (needs_pair(is->law) && r->s->scene->actuators > 0 &&
-        !stance_pair(r->s->scene, 0, &first, &second)) {
-        problem_add(&r->problems, kind->node->mark,
-                    "controller.kind: %s controls two coordinates by two actuators; here are %d",
-                    is->law->name, r->s->scene->actuators);
     }
     if (!is->law->designed)
         return;
@@ -577,6 +562,22 @@ static void check_contacts(struct reader *r)
     base->contacts |= ((1 << scene->contacts) - 1) & ~(int)mechanism_contacts(scene, UINT32_MAX);
 }
 
+/* To be ahead takes two feet. */
+static void check_lands(struct reader *r)
+{
+    const stance_scene *const scene = r->s->scene;
+    int feet = 0;
+    if (r->axes_bad || reader_seen(r, "ground.contacts")->bad ||
+        !takes_word(r, offsetof(struct scenario_values, lands), 1))
+        return;
+    for (int c = 0; c < scene->contacts; c++)
+        feet += (!scene->grip || scene->grip[c] == c) && (r->s->base.contacts >> c & 1);
+    if (feet < 2)
+        problem_add(&r->problems, where(r, "ground.lands"),
+                    "ground.lands: ahead needs two contacts that may touch the ground, there %s %d",
+                    feet == 1 ? "is" : "are", feet);
+}
+
 /* Scenes that are not described have the world that their equations were written for. */
 static void check_world(struct reader *r)
 {
@@ -626,4 +627,5 @@ void scenario_cross_check(struct reader *r)
     } else {
         check_world(r);
     }
+    check_lands(r);
 }

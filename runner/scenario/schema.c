@@ -16,6 +16,7 @@ static const char *const design_words[] = {"place", "place-schur", "lqr", "gains
 static const char *const design_time_words[] = {"continuous", "sampled"};
 static const char *const branch_words[] = {"upper", "lower"};
 static const char *const prefer_words[] = {"least-energy", "most-energy"};
+static const char *const lands_words[] = {"anywhere", "ahead"};
 static const char *const spacing_words[] = {"linear", "log"};
 static const char *const truth_words[] = {"false", "true"};
 static const char *const record_words[] = {"none", "all"};
@@ -97,6 +98,12 @@ static const struct row rows[] = {
     {0, {.path = "ground.gravity", .type = FIELD_NUMBER, .design = true, .sweep = true,
          VALUE(robot[STANCE_ROBOT_GRAVITY]), .unit = "m/s^2", .fallback = STANCE_GRAVITY,
          RANGE(0, 1e4), .text = "acceleration of gravity", .more = "Only of a mechanism."}},
+    {0, {.path = "ground.lands", .type = FIELD_WORD, .sweep = true, VALUE(lands), .fallback = 0,
+         WORDS(lands_words), .text = "where a foot in the air may come to the ground",
+         .more = "ahead: only where it is further along the ground than all other feet on it, as "
+                 "walkers without knees need, whose swinging foot would scuff; elsewhere it goes "
+                 "through the ground. Decided at the end of each step. Both ends of a sole are one "
+                 "foot."}},
     {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(prefer), .fallback = 0,
          WORDS(prefer_words), .text = "which motion, where several obey the contact laws",
          .more = "The one that leaves the least kinetic energy, or the most; contacts that stand "
@@ -279,7 +286,8 @@ static const struct row rows[] = {
          .text = "how long it must stay settled"}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
          .unit = "1", .fallback = 0.2, RANGE(0, 1),
-         .text = "height of the hip, in leg lengths, below which the robot has fallen"}},
+         .text = "height of the hip, in leg lengths, below which the robot has fallen",
+         .more = "Its fall_cause is then hip, and trunk where the trunk touches the ground."}},
 
     {0, {.path = "stop.capture", .type = FIELD_WORD, VALUE(capture), .fallback = 0,
          WORDS(capture_words),

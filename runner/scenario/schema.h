@@ -91,8 +91,8 @@ struct schema {
     size_t scene_count, method_count, law_count, far_law_count;
     char kind_of[STANCE_MAX_LAWS][48];          /* "controller.kind NAME" */
     char kinds[600];                            /* what there is to know of controller.kind */
-    char pair[SCHEMA_MAX_WORDS][SCENARIO_NAME]; /* "x-theta" */
-    const char *pairs[SCHEMA_MAX_WORDS];
+    char selection[STANCE_MAX_SELECTIONS][SCENARIO_NAME]; /* "x-theta" */
+    const char *selections[STANCE_MAX_SELECTIONS];
     const char *bodies[STANCE_MAX_BODIES], *elements[STANCE_MAX_ELEMENTS]; /* of a mechanism */
     char tolerance[400]; /* what there is to know of method.tolerance */
 };

@@ -5,16 +5,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Names of the pairs of coordinates, in stance_pair's order. */
-static size_t name_pairs(struct schema *schema)
+/* Names of the selections of coordinates, in stance_selection's order. */
+static size_t name_selections(struct schema *schema)
 {
-    const stance_scene *scene = schema->scene;
-    int first, second;
     size_t count = 0;
-    while (count < SCHEMA_MAX_WORDS && stance_pair(scene, (int)count, &first, &second)) {
-        snprintf(schema->pair[count], sizeof schema->pair[count], "%s-%s",
-                 scene->coordinate[first].name, scene->coordinate[second].name);
-        schema->pairs[count] = schema->pair[count];
+    while (count < STANCE_MAX_SELECTIONS &&
+           scenario_selection_name(schema->scene, (int)count, schema->selection[count])) {
+        schema->selections[count] = schema->selection[count];
         count++;
     }
     return count;
@@ -35,7 +32,7 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
                        int parameter, const stance_quantity *coordinate, int place)
 {
     const stance_parameter *const p = &stance_laws()[law]->parameter[parameter];
-    const bool one = p->per == STANCE_PER_LAW || p->per == STANCE_PER_PAIR;
+    const bool one = p->per == STANCE_PER_LAW || p->per == STANCE_PER_SELECTION;
     char name[64];
     snprintf(name, sizeof name, "%s%s%s", p->of.name, coordinate ? "." : "",
              coordinate ? coordinate->name : "");
@@ -68,12 +65,13 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
         field->words = schema_none;
         field->word_count = 1;
     }
-    if (p->per == STANCE_PER_PAIR) {
+    if (p->per == STANCE_PER_SELECTION) {
         field->type = FIELD_WORD;
-        field->words = schema->pairs;
-        field->word_count = name_pairs(schema);
+        field->words = schema->selections;
+        field->word_count = name_selections(schema);
     }
-    if (p->per == STANCE_PER_PAIR && field->word_count == 0) { /* the law is refused, or of any */
+    if (p->per == STANCE_PER_SELECTION &&
+        field->word_count == 0) { /* the law is refused, or of any */
         field->type = FIELD_TEXT;
         field->words = NULL;
         field->sweep = false;
@@ -91,7 +89,7 @@ static bool add_parameter(struct schema *schema, const struct scenario_field *ro
                       : per == STANCE_PER_ACTUATOR   ? scene->actuators
                       : per == STANCE_PER_COORDINATE ? scene->coordinates
                                                      : 0;
-    if (per == STANCE_PER_PAIR && !scene) {
+    if (per == STANCE_PER_SELECTION && !scene) {
         struct scenario_field known = *row; /* the key is known all the same */
         known.by_scene = true;
         return schema_add(schema, &known, "", stance_laws()[law]->parameter[parameter].of.name);

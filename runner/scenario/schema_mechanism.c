@@ -84,7 +84,8 @@ const struct part_key part_keys[] = {
         .text = "stops of the joint, the lower one first"}, .joints = MOVES, .slide_unit = "m"},
     {PART_BODY, {.path = "turn", BODY(turn), .unit = "rad", RANGE(0, TURN), .low_open = true,
         .fallback = NAN, .fallback_text = "none",
-        .text = "angle from upright beyond which the robot has fallen"},
+        .text = "angle from upright beyond which the robot has fallen",
+        .more = "Its fall_cause is then the body."},
         .joints = 1 << STANCE_FREE | 1 << STANCE_HINGE},
 
     {PART_CONTACT, {.path = "body", .type = FIELD_WORD, .required = true, WORD_ROW,
@@ -110,7 +111,8 @@ const struct part_key part_keys[] = {
     {PART_POINT, {.path = "lowest", .type = FIELD_NUMBER, POINT(lowest), .unit = "m",
         RANGE(-FAR, FAR), .fallback = NAN, .fallback_text = "none",
         .text = "height above the ground at which the robot has fallen",
-        .more = "0: where the point touches the ground. The height is normal to the ground."},
+        .more = "0: where the point touches the ground. The height is normal to the ground. Its "
+                "fall_cause is then the point."},
         .pushes = 0},
     {PART_POINT, {.path = "force", TWO, POINT(force), .unit = "N", RANGE(-LARGE, LARGE),
         .text = "force, [0] along the ground, [1] normal",

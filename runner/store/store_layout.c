@@ -231,15 +231,15 @@ static bool put_axes(struct layout *layout)
 /* ---- the answers -------------------------------------------------------------------------- */
 
 /* The words of a variable that is a code, in one text; NULL: it is none. */
-static const char *flags_of(int column, char text[400])
+enum { FLAGS = 1024 }; /* bytes of them */
+static const char *flags_of(const stance_scene *scene, int column, char text[FLAGS])
 {
     static const char *const status[] = {"pending", "done", "failed"};
     if (column == COLUMN_STATUS)
-        return words_join(text, 400, " ", status, 3);
-    if (column >= STANCE_ANSWER_COUNT || stance_answers[column].words == 0)
-        return NULL;
-    return words_join(text, 400, " ", stance_answers[column].word,
-                      (size_t)stance_answers[column].words);
+        return words_join(text, FLAGS, " ", status, 3);
+    const char *word[STANCE_MAX_WORDS];
+    const int words = column < STANCE_ANSWER_COUNT ? stance_answer_words(scene, column, word) : 0;
+    return words > 0 ? words_join(text, FLAGS, " ", word, (size_t)words) : NULL;
 }
 
 /* Names of the state: the coordinates, then "v" and the coordinates, of the body or the posture. */
@@ -276,10 +276,14 @@ static bool put_answers(struct layout *layout)
         const struct store_column *column = &store_columns[c];
         if (!store_has_column(s, c))
             continue;
-        char flags[400];
-        const struct variable variable = {column->name,      column->kind,   column->unit,
-                                          column->text,      column->filled, column->fill,
-                                          flags_of(c, flags)};
+        char flags[FLAGS];
+        const struct variable variable = {column->name,
+                                          column->kind,
+                                          column->unit,
+                                          column->text,
+                                          column->filled,
+                                          column->fill,
+                                          flags_of(s->scene, c, flags)};
         hid_t dataset =
             make_variable(layout->file, &variable, over, layout->rank + (c == COLUMN_FINAL_STATE));
         bool good = dataset >= 0 && put_coordinates(layout, dataset);
@@ -354,9 +358,9 @@ static bool put_designs(struct layout *layout)
                                                       &inner[DESIGN_POSTURE_OTHER])) &&
                 put_design_columns(layout, group, over, rank, inner);
     if (good) {
-        char flags[400];
+        char flags[FLAGS];
         const struct variable variable = {"status", KIND_uint8_t, NULL, "whether the design exists",
-                                          .flags = flags_of(COLUMN_STATUS, flags)};
+                                          .flags = flags_of(s->scene, COLUMN_STATUS, flags)};
         hid_t status = make_variable(group, &variable, over, rank);
         good = status >= 0 && hdf_write(status, KIND_uint8_t, plan->design_status);
         hdf_close(status);

@@ -159,14 +159,16 @@ bool store_count(const char *file, struct store_counts *counts, stance_message *
 
 enum { VERIFIED_ROWS = 1 << 12 }; /* at a time */
 
-/* Opens the columns of a file that is only looked at, whatever its scenario. */
+/* Opens the columns of a file that is only looked at, whatever its scenario. One that is there but
+ * does not open, as a damaged header leaves it, is none that was left out: rows could not be
+ * verified. */
 static bool open_columns(struct store *store, hid_t file, uint64_t cases)
 {
     bool good = true;
     for (int c = 0; c < COLUMNS; c++) {
-        store->column[c] = hdf_exists(file, store_columns[c].name)
-                               ? H5Dopen2(file, store_columns[c].name, H5P_DEFAULT)
-                               : -1;
+        const bool there = hdf_exists(file, store_columns[c].name);
+        store->column[c] = there ? H5Dopen2(file, store_columns[c].name, H5P_DEFAULT) : -1;
+        good = good && (!there || store->column[c] >= 0);
         if (store->column[c] < 0)
             continue;
         const hid_t space = H5Dget_space(store->column[c]);

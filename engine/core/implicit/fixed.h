@@ -47,7 +47,10 @@ COLD mask fixed_step(const struct setting *set, const struct motion *from, const
                      struct step_report *report)
 {
     mask good = take_step(set, from, torque, h, run, coupled, freeze_after, to, report);
-    mask failed = run & LANES_NOT(good) & mask_less(set->law.limit, lanes_of(INFINITY));
+    mask limited = MASK_NONE;
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        limited |= mask_less(set->law.limit[i], lanes_of(INFINITY));
+    mask failed = run & limited & LANES_NOT(good);
     if (SCENE_ACTUATORS == 0 || !coupled || !mask_any(failed))
         return good;
     int ways = 1;

@@ -42,6 +42,16 @@ static inline contact_set step_touching(const struct setting *set, const lanes *
     return touching;
 }
 
+/* Lanes that have fallen, by whatever cause. */
+HOT mask motion_fallen(const scene_body *body, const lanes *s, const scene_trig *trig,
+                       lanes fall_height)
+{
+    mask fallen = MASK_NONE;
+    EACH (k, 0, SCENE_CAUSES)
+        fallen |= scene_falls(body, s, trig, fall_height, k);
+    return fallen;
+}
+
 /* Fills in the energies of a motion. */
 static inline void motion_energy(const struct setting *set, struct motion *m)
 {

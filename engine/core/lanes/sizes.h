@@ -7,14 +7,16 @@
 #define SCENE_NUMBERS(c) (c)->robot
 #define SCENE_OF(c) KERNEL_SCENE
 #define SCENE_POSTURE_ORIGIN(c, i) ((void)(c), 0)
+#define SCENE_TORQUE_LIMIT(c, i) ((void)(c), INFINITY)
 #endif
 
 /* Pushes that a scene may get; without any: */
 #ifndef SCENE_PUSHES
 #define SCENE_PUSHES 0
-#define scene_push(body, t, h) (void)(h)
+#define scene_push(body, t, h) (void)(t), (void)(h)
+#define scene_push_edge(body, t, h, least) ((void)(t), (void)(least), (h))
 #define scene_pushed_until(body) lanes_of(0)
-#define scene_strike(body, trig, t, h, w) MASK_NONE
+#define scene_strike(body, trig, t, within, w) ((void)(within), MASK_NONE)
 #endif
 
 /* What a case has of these, where the structure is read at run time: a scene's rows of arrays. */

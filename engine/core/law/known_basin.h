@@ -25,7 +25,7 @@ struct known_basin {
 /* Only laws whose torques at an instant follow from the state at it alone. */
 static bool known_basin_applies(const stance_case *c)
 {
-    return c->basin_known && c->settle && c->has_target && c->support >= 0 && c->delay == 0 &&
+    return c->basin_known && c->settle && c->has_target && c->supports && c->delay == 0 &&
            !c->decouples && !c->switches && SCENE_POSTURE > 0;
 }
 

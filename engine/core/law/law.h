@@ -42,7 +42,7 @@ struct law {
     lanes decouples; /* 1: torques are those of the servos, where the law does not switch */
     lanes switches;  /* 1: `linear` inside the ellipsoid only */
     lanes inverse_axis[2 * POSTURES]; /* of the ellipsoid, 1/rad and s/rad */
-    lanes limit;                      /* N m */
+    lanes limit[ACTUATORS];           /* N m */
 };
 
 /* Does a law that acts all the time sum errors in any lane? */
@@ -76,7 +76,7 @@ static inline void law_torque(const struct law *law, const lanes *s, const lanes
 static inline void law_clip(const struct law *law, lanes *torque)
 {
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        torque[i] = lanes_max(lanes_min(torque[i], law->limit), -law->limit);
+        torque[i] = lanes_max(lanes_min(torque[i], law->limit[i]), -law->limit[i]);
 }
 
 /* The linear law acting inside the step: torque and its derivative by the velocity at the end, of
@@ -94,9 +94,11 @@ static inline void law_inside(const struct law *law, const lanes *s, const lanes
         torque[i] = command[i];
     law_clip(law, torque);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        mask free = mask_less(lanes_abs(command[i]), law->limit);
+        mask free = mask_less(lanes_abs(command[i]), law->limit[i]);
         if (corner) {
-            torque[i] = corner[i] == 0 ? command[i] : corner[i] > 0 ? law->limit : -law->limit;
+            torque[i] = corner[i] == 0  ? command[i]
+                        : corner[i] > 0 ? law->limit[i]
+                                        : -law->limit[i];
             free = corner[i] == 0 ? LANES_ALL : MASK_NONE;
         }
         torque[i] = choose(decouples, held[i], torque[i]);
@@ -116,9 +118,10 @@ static inline mask law_agrees(const struct law *law, const lanes *s, const lanes
     mask agrees = LANES_ALL;
     law_torque(law, s, w, command);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        agrees &= corner[i] == 0 ? mask_less_equal(lanes_abs(command[i]), (1 + 1e-12) * law->limit)
-                                 : mask_less_equal((1 - 1e-12) * law->limit,
-                                                   corner[i] > 0 ? command[i] : -command[i]);
+        agrees &= corner[i] == 0
+                      ? mask_less_equal(lanes_abs(command[i]), (1 + 1e-12) * law->limit[i])
+                      : mask_less_equal((1 - 1e-12) * law->limit[i],
+                                        corner[i] > 0 ? command[i] : -command[i]);
     return agrees;
 }
 
@@ -162,7 +165,7 @@ static inline void law_integral_rate(const struct law *law, const lanes *error,
 {
     mask clipped = MASK_NONE;
     for (int i = 0; i < SCENE_ACTUATORS; i++)
-        clipped |= mask_less(law->limit, lanes_abs(command[i]));
+        clipped |= mask_less(law->limit[i], lanes_abs(command[i]));
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         const mask grows = mask_less_equal(lanes_of(0), error[i] * integral[i]);
         const mask full = mask_less_equal(law->servo[i].integral_limit, lanes_abs(integral[i]));

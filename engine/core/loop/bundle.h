@@ -36,9 +36,9 @@ struct gathered {
 
 struct bundle {
     const stance_feed *feed;
-    mask live;                        /* lanes that are not idle */
-    int filled;                       /* how many */
-    int recorded, capturing, unusual; /* of these: see case_is_unusual */
+    mask live;                                /* lanes that are not idle */
+    int filled;                               /* how many */
+    int recorded, capturing, unusual, choosy; /* of these: see bundle_count */
     double target_key[sizeof(struct setting) / sizeof(lanes) + 6 + CONTACTS]; /* see rest_target */
     bool target_known, target_holds;
     /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
@@ -54,16 +54,23 @@ struct bundle {
     lanes sample_every, next_sample;
     lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
     int64_t row[LANES];
-    lanes struck;               /* step before which impulses were looked for */
-    lanes pushed_until;         /* s, after which nothing pushes */
+    lanes struck;       /* step before which impulses were looked for */
+    lanes pushed_until; /* s, after which nothing pushes */
+#ifdef ADVANCE_PIECES
+    lanes piece_from, piece_to; /* s, of the step: see stream_push */
+    struct step_report pieces;  /* of the step, before that */
+#endif
     lanes recorded_at;          /* step of the row before */
     lanes impulse[CONTACTS][2]; /* since then */
 
-    lanes judge_on_way, has_target, mine[CONTACTS]; /* 1: the contact to stand on */
+    lanes judge_on_way, has_target, mine[CONTACTS]; /* 1: a contact to stand on */
     lanes angle_scale, rate_scale;                  /* 1 / settle.angle and 1 / settle.rate */
     lanes settle_steps, fall_height;
     struct window settled, resting;
     struct known_basin capture;
+
+    lanes ahead[CONTACTS]; /* 1: lands only there, see feet.h */
+    lanes foot;            /* that landed last; -1: none has */
 
     struct gathered answer;
     lanes energy_bound; /* J, initial energy and the work since */
@@ -136,6 +143,7 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
         lane_set(&servo->ki, lane, from->ki);
         lane_set(&servo->kd, lane, from->kd);
         lane_set(&servo->integral_limit, lane, from->integral_limit);
+        lane_set(&law->limit[i], lane, fmin(SCENE_TORQUE_LIMIT(c, i), c->torque_limit));
     }
     lane_set(&law->decouples, lane, c->decouples);
     lane_set(&law->switches, lane, c->switches);
@@ -144,7 +152,6 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
         lane_set(&law->inverse_axis[SCENE_POSTURE + j], lane,
                  c->switches ? 1 / c->switch_axis[OWN_POSTURE + j] : 0);
     }
-    lane_set(&law->limit, lane, c->torque_limit);
 }
 
 static void bundle_load_setting(struct setting *set, int lane, const stance_case *c)
@@ -191,6 +198,7 @@ static void bundle_count(struct bundle *b, const stance_case *c, int by)
     b->recorded += c->trajectory && c->trajectory->rows > 0 ? by : 0;
     b->capturing += known_basin_applies(c) ? by : 0;
     b->unusual += case_is_unusual(c) ? by : 0;
+    b->choosy += c->lands_ahead ? by : 0;
 }
 
 /* Puts a case into a lane. The motion's derived parts follow in bundle_begin. */
@@ -209,8 +217,8 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     set_all(b->now.w, SCENE_COORDINATES, lane, w);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         lane_set(&b->torque[i], lane, 0);
-        lane_set(&b->pending[i], lane,
-                 fmax(fmin(c->near.feedforward[i], c->torque_limit), -c->torque_limit));
+        const double limit = lane_get(&b->set.law.limit[i], lane);
+        lane_set(&b->pending[i], lane, fmax(fmin(c->near.feedforward[i], limit), -limit));
         lane_set(&b->now.integral[i], lane, 0);
     }
     lane_set(&b->delayed, lane, c->delay > 0);
@@ -226,10 +234,19 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     b->row[lane] = 0;
     const lanes until = scene_pushed_until(&b->set.body);
     lane_set(&b->pushed_until, lane, lane_get(&until, lane));
+#ifdef ADVANCE_PIECES
+    lane_set(&b->piece_from, lane, 0);
+    lane_set(&b->piece_to, lane, c->step);
+    report_clear_lane(&b->pieces, lane);
+#endif
     lane_set(&b->judge_on_way, lane, c->settle);
     lane_set(&b->has_target, lane, c->has_target);
-    for (int i = 0; i < SCENE_CONTACTS; i++)
-        lane_set(&b->mine[i], lane, c->support >= 0 && contact_ends(c->support) >> i & 1);
+    for (int i = 0; i < SCENE_CONTACTS; i++) {
+        lane_set(&b->mine[i], lane, c->supports >> i & 1);
+        lane_set(&b->ahead[i], lane,
+                 c->lands_ahead && contact_grip(i) >= 0 && (c->contacts >> i & 1));
+    }
+    lane_set(&b->foot, lane, -1);
     lane_set(&b->angle_scale, lane, 1 / c->settle_angle);
     lane_set(&b->rate_scale, lane, 1 / c->settle_rate);
     lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));

@@ -143,7 +143,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     struct verdict v;
 #define VERDICT_NONE(NAME, name, number, text) v.name = MASK_NONE;
     STANCE_OUTCOMES(VERDICT_NONE)
-    v.fell = live & scene_fallen(&b->set.body, b->now.s, &b->now.trig, b->fall_height);
+    v.fell = live & motion_fallen(&b->set.body, b->now.s, &b->now.trig, b->fall_height);
     v.stabilised =
         on_way & window_advance(&b->settled, live, at_target, error, b->n, b->settle_steps);
     v.rested = on_way & window_advance(&b->resting, live, still, all, b->n, b->settle_steps);

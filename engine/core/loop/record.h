@@ -54,6 +54,15 @@ static double record_finite(const lanes *v, int lane)
     return isfinite(x) ? x : NAN;
 }
 
+/* By what a lane has fallen, counted from 1; of several causes the first. 0: by none. */
+static uint8_t bundle_fall_cause(const struct bundle *b, int lane)
+{
+    for (int k = 0; k < SCENE_CAUSES; k++)
+        if (mask_get(scene_falls(&b->set.body, b->now.s, &b->now.trig, b->fall_height, k), lane))
+            return (uint8_t)(k + 1);
+    return 0;
+}
+
 /* Hands a lane's result in and leaves the lane idle. */
 COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance_outcome outcome,
                         stance_failure failure, bool inferred)
@@ -73,6 +82,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         .end_time = n * h,
         .settle_time = calm && !inferred ? (begin >= 0 ? begin : n) * h : NAN,
         .fall_time = outcome == STANCE_FELL ? n * h : NAN,
+        .fall_cause = outcome == STANCE_FELL ? bundle_fall_cause(b, lane) : 0,
         .steps = (int64_t)n,
     };
 #define FINISH(name, type, how, told, unit, text)                                                  \

@@ -17,7 +17,8 @@ static int regroup_key(const struct bundle *b, int lane)
     if (!b->which[lane])
         return REGROUP_KEYS - 1;
     for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (b->which[lane]->contacts >> c & 1 && lane_get(&b->now.gap[c], lane) <= STEP_CLOSED)
+        if (lane_get(&b->set.may_touch[c], lane) > 0 &&
+            lane_get(&b->now.gap[c], lane) <= STEP_CLOSED)
             touching |= 1 << c;
     for (; touching; touching >>= 1) /* its place in Gray's code: neighbours share contacts */
         rank ^= touching;
@@ -47,7 +48,7 @@ static void regroup_swap(struct bundle *a, int i, struct bundle *b, int j)
 static void regroup_recount(struct bundle *b)
 {
     b->live = MASK_NONE;
-    b->filled = b->recorded = b->capturing = b->unusual = 0;
+    b->filled = b->recorded = b->capturing = b->unusual = b->choosy = 0;
     for (int lane = 0; lane < LANES; lane++)
         if (b->which[lane]) {
             b->live |= mask_of_lane(lane);

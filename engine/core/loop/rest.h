@@ -74,7 +74,7 @@ static bool rest_fallen(const struct rest *r, const lanes *s)
 {
     scene_trig trig;
     scene_trigonometry(s, &trig);
-    return mask_get(scene_fallen(&r->set->body, s, &trig, r->fall_height), r->lane);
+    return mask_get(motion_fallen(&r->set->body, s, &trig, r->fall_height), r->lane);
 }
 
 /* Torques that the law commands, limited, and the rates of its integrals. */
@@ -590,7 +590,7 @@ static void rest_key(const struct bundle *b, int lane, double *key)
         key[REST_MINE + i] = lane_get(&b->mine[i], lane);
 }
 
-/* Is there an equilibrium at the target, on the support foot, that holds? Of cases that differ in
+/* Is there an equilibrium at the target, on the supports, that holds? Of cases that differ in
  * their starts alone it is asked once. */
 COLD bool rest_target(struct bundle *b, int lane)
 {
@@ -604,8 +604,8 @@ COLD bool rest_target(struct bundle *b, int lane)
     lanes s[SCENE_COORDINATES], integral[ACTUATORS];
     for (int i = 0; i < scene->postures; i++)
         q[scene->posture[i]] = c->near.target[i];
-    if (c->support >= 0)
-        scene->stand(scene, c->robot, 1u << c->support, q, v);
+    if (c->supports)
+        scene->stand(scene, c->robot, c->supports, q, v);
     scene_enter(SCENE_NUMBERS(c), q, v, s1, w1);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lanes_of(s1[i]);

@@ -13,12 +13,14 @@
  *                                         *failed,
  *   void advance_free(a)                  at the end of all,
  *
- * and may define ADVANCE_ORDINARY (see stream_ordinary), and ADVANCE_MOVES where struct advance
- * consists of lanes, so that cases may change lanes between steps.
+ * and may define ADVANCE_ORDINARY (see stream_ordinary), ADVANCE_MOVES where struct advance
+ * consists of lanes, so that cases may change lanes between steps, and ADVANCE_PIECES where a step
+ * may be of any length: then pushes begin and end, and blows fall, at their instants.
  */
 #ifndef STANCE_CORE_LOOP_STREAM_H
 #define STANCE_CORE_LOOP_STREAM_H
 
+#include "feet.h"
 #include "record.h"
 #include "sample.h"
 
@@ -41,6 +43,8 @@ enum { STREAM_BUNDLES = 1, STREAM_STEPS = 1000, STREAM_SLOW = 200 };
 COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
 {
     bundle_begin(b, fresh);
+    feet_begin(b, fresh);
+    feet_choose(b, fresh);
     mask loaded[CONTACTS];
     EACH (c, 0, SCENE_CONTACTS)
         loaded[c] = mask_less(lanes_of(0), b->set.may_touch[c]) &
@@ -71,6 +75,7 @@ HOT void stream_follow(struct bundle *b, bool all, mask ok, mask failed, bool or
                        contact_set touching, const struct step_report *report)
 {
     bundle_account(b, all, ok, ordinary, touching, report);
+    feet_choose(b, ok);
     mask loaded[CONTACTS];
     EACH (c, 0, SCENE_CONTACTS) {
         loaded[c] = MASK_NONE;
@@ -125,13 +130,42 @@ HOT bool stream_try_ordinary(struct bundle *b)
 }
 #endif
 
+#ifdef ADVANCE_PIECES
+/* Lanes of `ok`, each at the end of a piece, where it was the step's last; *report becomes that of
+ * the step. */
+COLD mask stream_join(struct bundle *b, mask ok, struct step_report *report)
+{
+    const mask last = ok & mask_less_equal(b->h, b->piece_to);
+    struct step_report sum = b->pieces, none;
+    report_add(&sum, report);
+    report_clear(&none);
+    choose_all(ok, &sum, &b->pieces, sizeof sum);
+    choose_all(last, &sum, report, sizeof sum);
+    choose_all(last, &none, &b->pieces, sizeof none);
+    b->piece_from = choose(ok, choose(last, lanes_of(0), b->piece_to), b->piece_from);
+    return last;
+}
+#endif
+
 /* One step of all lanes, whatever happens in it. */
 COLD void stream_any(struct bundle *b, bool coupled)
 {
     struct step_report report;
-    mask failed;
-    const mask ok =
-        advance(&b->advance, &b->set, b->torque, b->h, b->live, coupled, &b->now, &report, &failed);
+    mask failed, down[CONTACTS];
+    EACH (c, 0, SCENE_CONTACTS)
+        down[c] = feet_down(b, c);
+    lanes h = b->h;
+#ifdef ADVANCE_PIECES
+    if (SCENE_PUSHES > 0)
+        h = b->piece_to - b->piece_from;
+#endif
+    mask ok =
+        advance(&b->advance, &b->set, b->torque, h, b->live, coupled, &b->now, &report, &failed);
+#ifdef ADVANCE_PIECES
+    if (SCENE_PUSHES > 0)
+        ok = stream_join(b, ok, &report);
+#endif
+    feet_count(b, b->live, down);
     b->failure = choose(failed, report.failure, b->failure);
     const mask tired = ok & mask_less(b->most_work, b->answer.evaluations + report.evaluations);
     b->failure = choose(tired, lanes_of(STANCE_FAILURE_WORK), b->failure);
@@ -144,15 +178,26 @@ COLD void stream_any(struct bundle *b, bool coupled)
     stream_follow(b, false, ok, failed, false, CONTACT_ALL, &report);
 }
 
-/* Impulses of the world that are due at the steps that begin: the contact laws see the velocity
- * that they leave. */
-COLD void stream_strike(struct bundle *b)
+/* Instants of pushes nearer to a lane's own than this part of a step are there already. */
+#define STREAM_INSTANT 0x1p-30
+
+/* Impulses of the world that are due where the lanes are, `from` into their steps: the contact laws
+ * see the velocity that they leave. In a step that is not taken in pieces they fall at its nearer
+ * end. */
+COLD void stream_strike(struct bundle *b, lanes from)
 {
+#ifdef ADVANCE_PIECES
+    const lanes within = STREAM_INSTANT * b->h;
+#else
+    const lanes within = 0.5 * b->h;
+#endif
+    const lanes steps = b->n + from / b->h;
     struct motion next = b->now;
     struct step_report report;
-    const mask fresh = b->live & mask_less(b->struck, b->n);
-    const mask hit = fresh & scene_strike(&b->set.body, &next.trig, b->n * b->h, b->h, next.w);
-    b->struck = choose(fresh, b->n, b->struck);
+    const mask fresh = b->live & mask_less(b->struck, steps);
+    const mask hit =
+        fresh & scene_strike(&b->set.body, &next.trig, b->n * b->h + from, within, next.w);
+    b->struck = choose(fresh, steps, b->struck);
     if (!mask_any(hit))
         return;
     report_clear(&report);
@@ -179,14 +224,23 @@ COLD void stream_strike(struct bundle *b)
     }
 }
 
-/* What the world does in the steps that begin. */
+/* What the world does in the steps that begin, or in their next pieces: up to the next instant at
+ * which a push begins or ends or a blow falls. */
 HOT void stream_push(struct bundle *b)
 {
     const lanes begins = b->n * b->h;
     if (SCENE_PUSHES == 0 || !mask_any(b->live & mask_less_equal(begins, b->pushed_until + b->h)))
         return;
-    stream_strike(b);
+#ifdef ADVANCE_PIECES
+    stream_strike(b, b->piece_from);
+    const lanes t = begins + b->piece_from, left = b->h - b->piece_from;
+    const lanes edge = scene_push_edge(&b->set.body, t, left, STREAM_INSTANT * b->h);
+    b->piece_to = choose(mask_less(edge, left), b->piece_from + edge, b->h);
+    scene_push(&b->set.body, t, b->piece_to - b->piece_from);
+#else
+    stream_strike(b, lanes_of(0));
     scene_push(&b->set.body, begins, b->h);
+#endif
 }
 
 /* One step of all lanes, with everything that follows from it. Returns for how many it counts. */

@@ -94,7 +94,7 @@ static void event_evaluate(struct event_problem *problem, double tau, const doub
         law_torque(&problem->set->law, s, w, torque);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             if (problem->mode.clipped[i] != 0)
-                torque[i] = problem->mode.clipped[i] * problem->set->law.limit;
+                torque[i] = problem->mode.clipped[i] * problem->set->law.limit[i];
     }
     const struct drive drive = {torque, servos, &problem->mode.contact};
     between_evaluate(problem->set, problem->begin + tau, s, w, y + EVENT_INTEGRAL, &drive,
@@ -191,12 +191,14 @@ static void event_margins(const struct event_problem *problem, const double *y,
             own[2] = (bound + e->force[c][1]) * mobility;
         }
     }
-    if (problem->coupled && isfinite(problem->set->law.limit)) {
+    if (problem->coupled) {
         double command[ACTUATORS];
-        const double limit = problem->set->law.limit;
         law_torque(&problem->set->law, y, y + SCENE_COORDINATES, command);
         for (int i = 0; i < SCENE_ACTUATORS; i++) {
+            const double limit = problem->set->law.limit[i];
             double *const own = &margin[3 * SCENE_CONTACTS + 2 * i];
+            if (!isfinite(limit))
+                continue;
             const double clipped = problem->mode.clipped[i];
             own[0] = clipped != 0 ? clipped * command[i] - limit : limit - command[i];
             own[1] = clipped != 0 ? 1 : limit + command[i];
@@ -247,7 +249,8 @@ static void event_set_depths(struct event_problem *problem, const struct event_p
         m->mobility[c] = m->contact.closed[c] ? p->e.D[c][c][0][0] : 1;
     }
     for (int k = 3 * SCENE_CONTACTS; k < EVENT_MARGINS; k++) {
-        m->depth[k] = isfinite(problem->set->law.limit) ? EVENT_CLIP * problem->set->law.limit : 0;
+        const double limit = problem->set->law.limit[(k - 3 * SCENE_CONTACTS) / 2];
+        m->depth[k] = isfinite(limit) ? EVENT_CLIP * limit : 0;
         m->window[k] = 0.25 * m->depth[k];
         m->rises[k] = false;
     }
