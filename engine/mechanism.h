@@ -2,10 +2,10 @@
  * are compiled from.
  *
  * Frames: x forward, z up, angles counter-clockwise, R(a) = [cos a, -sin a; sin a, cos a]. A body's
- * frame has its origin at the joint to its parent and the parent's direction where the joint's
- * angle is 0. `body[0]` is the root; the parent of every other one stands before it. Everything
- * that is a number may be varied without another structure; which of them are varied a scene
- * knows by robot[] (see `number`).
+ * frame has its origin at the joint to its parent, from where a slide takes it along its axis, and
+ * the parent's direction where the joint's angle is 0. `body[0]` is the root; the parent of every
+ * other one stands before it. Everything that is a number may be varied without another structure;
+ * which of them are varied a scene knows by robot[] (see `number`).
  */
 #ifndef STANCE_MECHANISM_H
 #define STANCE_MECHANISM_H
@@ -19,7 +19,8 @@ enum {
     STANCE_MAX_BRANCHES = 64, /* equilibria */
 };
 
-/* Root: free, hinge (to the world), slide (along a rail; does not turn). Others: hinge, fixed. */
+/* Root: free, hinge (to the world), slide (along a rail; does not turn). Others: hinge, slide
+ * (along an axis of the parent, whose angle it keeps), fixed. */
 typedef enum stance_joint {
     STANCE_FREE,
     STANCE_HINGE,
@@ -32,7 +33,7 @@ typedef struct stance_body_numbers {
     double inertia;   /* kg m^2, about the centre of mass, >= 0 */
     double centre[2]; /* m, of mass, in the body's frame */
     double at[2];     /* m, the joint in the parent's frame; a root's in the world's */
-    double axis[2];   /* of a slide, in the world's frame, of any length > 0 */
+    double axis[2];   /* of a slide, likewise, of any length > 0 */
     double stiffness; /* N m/rad or N/m, of the joint, >= 0 */
     double damping;   /* N m s/rad or N s/m, >= 0 */
     double rest;      /* rad or m: where the spring pulls nothing */
@@ -107,7 +108,8 @@ void stance_mechanism_expand(const stance_mechanism *m, const double *robot,
  * above.
  *
  * Coordinates: of a free root x, z (of its origin) and its angle, of one that slides its
- * displacement; then the angles of the hinges, named as their bodies, in the bodies' order.
+ * displacement; then the angles of hinges and displacements of slides, named as their bodies, in
+ * the bodies' order.
  * Postures: all of them but x and z. Contacts: the elements, a sole as NAME_heel (`at`) and
  * NAME_toe (`to`), then NAME_low and NAME_high for the stops of each body's joint, in the bodies'
  * order. Robot quantities: m->number[], named by where they

@@ -18,7 +18,7 @@ enum {
     STANCE_MAX_ACTUATORS = 6,
     STANCE_MAX_POSTURE = 8, /* coordinates that a posture law acts on */
     STANCE_MAX_ROBOT = 96,  /* parameters of a scene's body; the last two are the world's: */
-    STANCE_MAX_ANGLES = 7,  /* bodies of a mechanism that turn */
+    STANCE_MAX_ANGLES = 7,  /* joints of a mechanism; a rail is none, a free root one */
     STANCE_MAX_NAMED = 8,   /* points of a mechanism that have a name */
     STANCE_MAX_PUSHES = 4,
     STANCE_MAX_WORDS = 32,                       /* that an answer may be, if it is a code */
@@ -321,8 +321,9 @@ typedef struct stance_tree_numbers {
     double reference[2]; /* m, of the root's frame: what x and z are of */
     double curvature[3]; /* for Newton's stop rule */
     double moment[STANCE_MAX_ANGLES][2];     /* kg m, first */
-    double inertia[STANCE_MAX_ANGLES];       /* kg m^2, second, about the joint, rotors included */
-    double joint[STANCE_MAX_ANGLES][2];      /* m, in the frame above */
+    double inertia[STANCE_MAX_ANGLES];       /* kg m^2, second, about the joint, rotors included; of
+                                              * a slide kg */
+    double joint[STANCE_MAX_ANGLES][2];      /* m, in the frame above; of a slide its direction */
     double rotor[STANCE_MAX_ANGLES + 1];     /* kg m^2, kg */
     double spring[STANCE_MAX_ANGLES + 1][3]; /* stiffness, damping, where it rests */
     double end[STANCE_MAX_CONTACTS][3]; /* m: place in its frame, radius; of a stop: the limit */

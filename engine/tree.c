@@ -3,6 +3,8 @@
  * Lumping: body b of mass m, inertia J about its centre c (in the frame of the angle i that carries
  * it) adds m c to k_i and J + m |c|^2 to I_i; all that hangs on a joint at d in frame j, of mass
  * m', adds m' d to k_j and m' |d|^2 to I_j. A geared rotor's inertia is added to both diagonals.
+ * What a joint of frame f moves that slides has its first moment about the origin of f for k, and
+ * its mass for I; it adds first and second moment to those of the frame.
  *
  * Curvature (for Newton's stop rule, scene_curvature): a correction d of the velocities leaves an
  * error with |e_i| <= K h |d|_1 (|d|_1 + shift), K = max(K1, K2),
@@ -16,40 +18,51 @@
  *
  *   a_p = sum over bodies at the base of m J / (J + m c^2),      a_j = J + c^2 m m_e / (m + m_e),
  *   1 / m_e = 1 / m_P + r_P^2 / J_P  of the parent, infinite where it is pinned.
+ *
+ * With joints that slide points move by E T (d_f y_l + d_l y_f) in second order, besides the - R e
+ * d_f y_f of angles. A slide l of mass m_l (its own body m_s, J_s, whose centre is b off the line
+ * through its parent's along the axis) resists with a_l, a frame with the J of what slides in it,
+ * too; e and I_j are as long as limits let them be (SLIDES_TO where there are none), and
+ *
+ *   a_l = 1 / (1 / m_s + 1 / m_P + b^2 / (J_s + J_P)),         I' >= m_l,        r >= 1,
+ *   sqrt(I'_j / a_j) becomes max( sqrt(I'_j / a_j) + sum_l sqrt(m_l / a_l), sqrt(m_l / a_j) ).
  */
 #include "tree.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
+#define SLIDES_TO 10.0 /* m */
+
 /* ---- frames ---------------------------------------------------------------------------------- */
 
-/* Which angle carries each body, and where in its frame the body's own is. */
+/* Which angle carries each body, and where in its frame the body's own is while nothing slides. */
 struct frames {
-    int of[STANCE_MAX_BODIES]; /* -1: the base */
+    int of[STANCE_MAX_BODIES];    /* -1: the base */
+    int joint[STANCE_MAX_BODIES]; /* the same, or the joint that slides in that frame and carries it
+                                   */
     double at[STANCE_MAX_BODIES][2];
-    int body[STANCE_MAX_ANGLES]; /* that turns */
+    int body[STANCE_MAX_ANGLES]; /* that turns, or slides */
     int angles;
 };
 
 static void frames_make(const stance_mechanism *m, const stance_mechanism_numbers *v,
                         struct frames *f)
 {
-    f->angles = 0;
+    *f = (struct frames){0};
     for (int b = 0; b < m->bodies; b++) {
         const int parent = m->body[b].parent;
         const stance_joint joint = m->body[b].joint;
         const double *const at = v->body[b].at;
+        const bool turns = joint == STANCE_FREE || joint == STANCE_HINGE;
+        const bool keeps = !turns && parent >= 0; /* the angle of its parent */
         for (int k = 0; k < 2; k++)
-            f->at[b][k] = joint == STANCE_FIXED ? f->at[parent][k] + at[k] : 0;
-        if (joint == STANCE_FIXED) {
-            f->of[b] = f->of[parent];
-        } else if (joint == STANCE_SLIDE) {
-            f->of[b] = -1;
-        } else {
-            f->of[b] = f->angles;
+            f->at[b][k] = keeps ? f->at[parent][k] + at[k] : 0;
+        f->of[b] = turns ? f->angles : keeps ? f->of[parent] : -1;
+        f->joint[b] = keeps ? f->joint[parent] : -1;
+        if (turns || (keeps && joint == STANCE_SLIDE)) {
+            f->joint[b] = f->angles;
             if (f->angles < STANCE_MAX_ANGLES)
                 f->body[f->angles] = b;
             f->angles++;
@@ -57,32 +70,59 @@ static void frames_make(const stance_mechanism *m, const stance_mechanism_number
     }
 }
 
-/* The joint of an angle in the frame above, or (no angle is above) in the base's. */
+static bool slides(const stance_mechanism *m, const struct frames *f, int joint)
+{
+    return m->body[f->body[joint]].joint == STANCE_SLIDE;
+}
+
+/* Where a point of body b is in its frame, or (no angle carries it) in the base's. */
+static void frames_place(const stance_mechanism_numbers *v, const struct frames *f, int b,
+                         const double local[2], double place[2])
+{
+    for (int k = 0; k < 2; k++) {
+        place[k] = f->at[b][k] + local[k];
+        if (f->of[b] < 0)
+            place[k] += v->body[0].at[k]; /* the rail's origin */
+    }
+}
+
+/* The joint of an angle in the frame above, or (no angle is above) in the base's; the direction of
+ * one that slides. */
 static void frames_joint(const stance_mechanism *m, const stance_mechanism_numbers *v,
                          const struct frames *f, int angle, double joint[2])
 {
     const int b = f->body[angle], parent = m->body[b].parent;
     const bool free = m->body[0].joint == STANCE_FREE;
-    for (int k = 0; k < 2; k++) {
-        joint[k] = parent < 0 ? (free ? 0 : v->body[b].at[k]) : f->at[parent][k] + v->body[b].at[k];
-        if (parent >= 0 && f->of[parent] < 0)
-            joint[k] += v->body[0].at[k]; /* of the rail's origin */
+    if (slides(m, f, angle)) {
+        const double *const axis = v->body[b].axis, size = hypot(axis[0], axis[1]);
+        joint[0] = axis[0] / size, joint[1] = axis[1] / size;
+        return;
     }
+    if (parent >= 0)
+        frames_place(v, f, parent, v->body[b].at, joint);
+    for (int k = 0; k < 2 && parent < 0; k++)
+        joint[k] = free ? 0 : v->body[b].at[k];
 }
 
 /* ---- lumps ----------------------------------------------------------------------------------- */
 
 struct lumps {
-    double mass, base; /* of all; of what slides without turning */
+    double mass, base; /* of all; of what slides along the rail without turning */
     double own_mass[STANCE_MAX_ANGLES], own_centre[STANCE_MAX_ANGLES][2],
-        own_inertia[STANCE_MAX_ANGLES]; /* of a frame's bodies together, about their centre */
+        own_inertia[STANCE_MAX_ANGLES]; /* of a joint's bodies together, about their centre */
     double moment[STANCE_MAX_ANGLES][2], inertia[STANCE_MAX_ANGLES], joint[STANCE_MAX_ANGLES][2];
 };
 
-static int above(const stance_mechanism *m, const struct frames *f, int angle)
+/* The frame that a joint is in, and the joint that it hangs from. */
+static int above(const stance_mechanism *m, const struct frames *f, int joint)
 {
-    const int parent = m->body[f->body[angle]].parent;
+    const int parent = m->body[f->body[joint]].parent;
     return parent < 0 ? -1 : f->of[parent];
+}
+static int before(const stance_mechanism *m, const struct frames *f, int joint)
+{
+    const int parent = m->body[f->body[joint]].parent;
+    return parent < 0 ? -1 : f->joint[parent];
 }
 
 static double squared(const double v[2])
@@ -97,7 +137,7 @@ static void lumps_make(const stance_mechanism *m, const stance_mechanism_numbers
     memset(l, 0, sizeof *l);
     for (int b = 0; b < m->bodies; b++) {
         const stance_body_numbers *const body = &v->body[b];
-        const int i = f->of[b];
+        const int i = f->joint[b];
         l->mass += body->mass;
         if (i < 0) {
             l->base += body->mass;
@@ -120,7 +160,7 @@ static void lumps_make(const stance_mechanism *m, const stance_mechanism_numbers
     for (int i = 0; i < f->angles; i++) {
         l->own_inertia[i] = 0;
         for (int b = 0; b < m->bodies; b++) {
-            if (f->of[b] != i)
+            if (f->joint[b] != i)
                 continue;
             const double d[2] = {f->at[b][0] + v->body[b].centre[0] - l->own_centre[i][0],
                                  f->at[b][1] + v->body[b].centre[1] - l->own_centre[i][1]};
@@ -128,17 +168,21 @@ static void lumps_make(const stance_mechanism *m, const stance_mechanism_numbers
         }
     }
     for (int i = f->angles - 1; i >= 0; i--) {
-        const int j = above(m, f, i);
+        const int j = before(m, f, i);
+        const bool slid = slides(m, f, i);
+        const double second = l->inertia[i];
+        if (slid)
+            l->inertia[i] = beyond[i];
         if (j < 0)
             continue;
         beyond[j] += beyond[i];
         for (int k = 0; k < 2; k++)
-            l->moment[j][k] += beyond[i] * l->joint[i][k];
-        l->inertia[j] += beyond[i] * squared(l->joint[i]);
+            l->moment[j][k] += slid ? l->moment[i][k] : beyond[i] * l->joint[i][k];
+        l->inertia[j] += slid ? second : beyond[i] * squared(l->joint[i]);
     }
     for (int b = 0; b < m->bodies; b++) {
         const int i = f->of[b];
-        if (m->body[b].joint == STANCE_FIXED || i < 0)
+        if (m->body[b].joint == STANCE_FIXED || m->body[b].joint == STANCE_SLIDE)
             continue;
         const int j = above(m, f, i);
         l->inertia[i] += v->body[b].armature;
@@ -147,35 +191,100 @@ static void lumps_make(const stance_mechanism *m, const stance_mechanism_numbers
     }
 }
 
+/* How far a joint that slides may go, m. */
+static double goes(const stance_mechanism *m, const stance_mechanism_numbers *v,
+                   const struct frames *f, int joint)
+{
+    const double *const limits = v->body[f->body[joint]].limits;
+    const double far = fmax(fabs(limits[0]), fabs(limits[1]));
+    return !slides(m, f, joint) ? 0 : far < SLIDES_TO ? far : SLIDES_TO;
+}
+
+/* What a joint that slides resists with. */
+static double slide_resists(const stance_mechanism *m, const struct frames *f,
+                            const struct lumps *l, int i)
+{
+    const int j = before(m, f, i);
+    const double held = j < 0 ? l->base : l->own_mass[j], moves = l->own_mass[i];
+    if (!(moves > 0 && held > 0))
+        return 0;
+    double yields = 1 / moves + 1 / held;
+    if (above(m, f, i) >= 0) {
+        const double *const t = l->joint[i];
+        const double d[2] = {l->own_centre[i][0] - l->own_centre[j][0],
+                             l->own_centre[i][1] - l->own_centre[j][1]};
+        const double off = d[0] * t[1] - d[1] * t[0];
+        yields += off == 0 ? 0 : off * off / (l->own_inertia[i] + l->own_inertia[j]);
+    }
+    return 1 / yields;
+}
+
+/* Longest second moment of a frame, and what slides in it: the inertia of their own, and
+ * sum sqrt(mass / what it resists with). */
+struct slid {
+    double inertia, own, drawn, mass, least;
+};
+static struct slid slid_in(const stance_mechanism *m, const stance_mechanism_numbers *v,
+                           const struct frames *f, const struct lumps *l, int frame)
+{
+    struct slid s = {.inertia = l->inertia[frame], .least = INFINITY};
+    double stretch = 0; /* sum of mass and way, less than the true square's */
+    for (int i = frame + 1; i < f->angles; i++) {
+        if (!slides(m, f, i) || above(m, f, i) != frame)
+            continue;
+        const double far = goes(m, v, f, i), resists = slide_resists(m, f, l, i);
+        s.inertia += 2 * far * hypot(l->moment[i][0], l->moment[i][1]);
+        s.inertia += far * (l->inertia[i] * far + 2 * stretch);
+        stretch += l->inertia[i] * far;
+        s.own += l->own_inertia[i];
+        s.drawn += sqrt(l->inertia[i] / fmax(resists, 1e-6 * l->mass));
+        s.mass = fmax(s.mass, l->inertia[i]);
+        s.least = fmin(s.least, resists);
+    }
+    return s;
+}
+
 /* The coefficients of theta^2 in K1, of 1 in K1, of theta^2 in K2. */
-static void lumps_curvature(const stance_mechanism *m, const struct frames *f,
-                            const struct lumps *l, double arm, double out[3])
+static void lumps_curvature(const stance_mechanism *m, const stance_mechanism_numbers *v,
+                            const struct frames *f, const struct lumps *l, double arm,
+                            double out[3])
 {
     const bool free = m->body[0].joint == STANCE_FREE, rail = m->body[0].joint == STANCE_SLIDE;
     double hub = rail ? l->base : 0, least = INFINITY, least_angle = INFINITY;
     double most = l->mass, others = 0, share = 0;
     for (int i = 0; i < f->angles; i++) {
-        const int j = above(m, f, i);
+        if (slides(m, f, i)) {
+            if (above(m, f, i) < 0) /* in no frame */
+                least_angle = fmin(least_angle, slide_resists(m, f, l, i));
+            continue;
+        }
+        const int j = before(m, f, i);
+        const struct slid slid = slid_in(m, v, f, l, i);
         const double mass = l->own_mass[i], inertia = l->own_inertia[i];
         const double c2 = squared(l->own_centre[i]);
         double held = j < 0 ? (free ? 0 : rail ? l->base : INFINITY) : 0;
         if (j >= 0 && l->own_mass[j] > 0) {
             const double d[2] = {l->joint[i][0] - l->own_centre[j][0],
                                  l->joint[i][1] - l->own_centre[j][1]};
-            const bool pinned = above(m, f, j) < 0 && !free;
+            const bool pinned = before(m, f, j) < 0 && !free && !slides(m, f, j);
             const double yields = (pinned ? 0 : 1 / l->own_mass[j]) +
                                   (squared(d) > 0 ? squared(d) / l->own_inertia[j] : 0);
             held = 1 / yields;
         }
-        const bool at_base = free && (j < 0 || (above(m, f, j) < 0 && squared(l->joint[i]) == 0));
+        const bool at_base = free && (j < 0 || (before(m, f, j) < 0 && squared(l->joint[i]) == 0));
         if (at_base && inertia + mass * c2 > 0)
             hub += mass * inertia / (inertia + mass * c2);
         const double with = isinf(held) ? mass : mass + held > 0 ? mass * held / (mass + held) : 0;
-        const double resists = inertia + c2 * with;
-        least_angle = fmin(least_angle, resists);
-        most = fmax(most, l->inertia[i]);
-        others = fmax(others, l->inertia[i] - inertia);
-        share = fmax(share, (l->inertia[i] - inertia) / resists);
+        const double resists = inertia + c2 * with + slid.own;
+        least_angle = fmin(least_angle, fmin(resists, slid.least));
+        most = fmax(most, slid.inertia);
+        others = fmax(others, fmax(slid.inertia - inertia, slid.mass));
+        share = fmax(share, (slid.inertia - inertia) / resists);
+        if (slid.mass > 0) {
+            const double drawn = sqrt((slid.inertia - inertia) / resists) + slid.drawn;
+            share = fmax(share, fmax(drawn * drawn, slid.mass / resists));
+            arm = arm > 0 ? fmax(arm, 1) : 0;
+        }
     }
     least = m->body[0].joint == STANCE_HINGE ? least_angle : fmin(hub, least_angle);
     /* Where nothing resists in some posture there is no bound; then one for what nearly nothing
@@ -199,19 +308,27 @@ static void typical(const stance_mechanism *m, stance_mechanism_numbers *v)
             ((double *)v)[m->number[i]] = 0.5 + 0.7548776662466927 * i;
 }
 
-/* The arms from the root to the point `own` in the frame of `body`; returns the first frame. */
-static int path_make(const stance_tree *tree, const struct lumps *l, int body, const double own[2],
-                     int *path)
+/* The arms from the root to the point `own` in the frame of what `joint` carries; returns the first
+ * frame, or STANCE_TREE_OWN where there is none. */
+static int path_make(const stance_mechanism *m, const struct frames *f, const stance_tree *tree,
+                     const struct lumps *l, int joint, const double own[2], int *path)
 {
-    int next = STANCE_TREE_OWN, top = -1;
+    int next = STANCE_TREE_OWN;
+    bool longer = false; /* by what slides */
     for (int j = 0; j < STANCE_MAX_ANGLES; j++)
         path[j] = -1;
-    for (int j = body; j >= 0; j = tree->above[j]) {
-        if (squared(next == STANCE_TREE_OWN ? own : l->joint[next]) != 0)
+    for (int j = joint; j >= 0; j = before(m, f, j)) {
+        if (tree->slide[j]) {
+            path[j] = 0;
+            longer = true;
+            continue;
+        }
+        if (longer || squared(next == STANCE_TREE_OWN ? own : l->joint[next]) != 0)
             path[j] = next;
-        top = next = j;
+        next = j;
+        longer = false;
     }
-    return tree->base < 2 ? top : -1;
+    return tree->base < 2 ? next : -1;
 }
 
 static stance_error refuse(stance_message *message, const char *what, int limit)
@@ -227,10 +344,14 @@ static void tables_couple(const stance_mechanism *m, const struct frames *f, con
     const int n = tree->angles;
     for (int i = 0; i < n; i++) {
         int from = i;
-        for (int j = tree->above[i]; j >= 0; from = j, j = tree->above[j]) {
+        bool longer = tree->slide[i]; /* the arm, by what slides */
+        for (int j = before(m, f, i); j >= 0; j = before(m, f, j)) {
             tree->through[i][j] = from;
-            tree->coupled[i][j] = squared(l->joint[from]) != 0;
+            longer |= tree->slide[j];
+            tree->coupled[i][j] = longer || squared(l->joint[from]) != 0;
             tree->near[i][j] = tree->coupled[i][j];
+            if (!tree->slide[j])
+                from = j, longer = false;
         }
         if (tree->above[i] >= 0 && m->value.body[f->body[i]].armature != 0)
             tree->near[i][tree->above[i]] = 1;
@@ -249,20 +370,24 @@ static void tables_couple(const stance_mechanism *m, const struct frames *f, con
 }
 
 /* Adds a contact at a point of its frame; false: there is no room. */
-static bool add_contact(stance_tree *tree, const struct lumps *l, int kind, int body,
-                        const double own[2], int other, int grip)
+static bool add_contact(const stance_mechanism *m, const struct frames *f, stance_tree *tree,
+                        const struct lumps *l, int kind, int body, const double own[2], int other,
+                        int grip)
 {
-    const int c = tree->contacts;
+    const bool stop = kind >= STANCE_TREE_LOW;
+    const int c = tree->contacts, joint = stop ? -1 : f->joint[body], frame = f->of[body];
     if (c == STANCE_MAX_CONTACTS)
         return false;
     tree->kind[c] = kind;
-    tree->body[c] = body;
+    tree->body[c] = stop ? f->joint[body] : frame;
     tree->straight_end[c] = own[0] == 0;
     tree->other[c] = other;
     tree->grip[c] = grip;
-    tree->top[c] = path_make(tree, l, kind >= STANCE_TREE_LOW ? -1 : body, own, tree->path[c]);
-    if (kind == STANCE_TREE_DISC || (kind == STANCE_TREE_SOLE && squared(own) == 0))
-        tree->path[c][body] = STANCE_TREE_OWN; /* friction has an arm, whatever the centre's */
+    tree->top[c] = path_make(m, f, tree, l, joint, own, tree->path[c]);
+    if (stop)
+        tree->top[c] = -1;
+    if (frame >= 0 && (kind == STANCE_TREE_DISC || (kind == STANCE_TREE_SOLE && squared(own) == 0)))
+        tree->path[c][frame] = STANCE_TREE_OWN; /* friction has an arm, whatever the centre's */
     for (int j = 0; j < STANCE_MAX_ANGLES; j++)
         tree->carries[j] |= tree->path[c][j] >= 0;
     tree->contacts++;
@@ -275,23 +400,24 @@ static bool tables_contacts(const stance_mechanism *m, const stance_mechanism_nu
     static const double none[2] = {0, 0};
     bool fits = true;
     for (int e = 0; e < m->elements; e++) {
-        const int b = m->element[e].body, c = tree->contacts, body = f->of[b];
+        const int b = m->element[e].body, c = tree->contacts;
         const stance_element_numbers *const at = &v->element[e];
         double end[2][2];
-        for (int k = 0; k < 2; k++)
-            end[0][k] = f->at[b][k] + at->at[k], end[1][k] = f->at[b][k] + at->to[k];
+        frames_place(v, f, b, at->at, end[0]);
+        frames_place(v, f, b, at->to, end[1]);
         const int kind = m->element[e].sole ? STANCE_TREE_SOLE
                          : at->radius != 0  ? STANCE_TREE_DISC
                                             : STANCE_TREE_POINT;
-        fits = fits && add_contact(tree, l, kind, body, end[0], m->element[e].sole ? c + 1 : -1, c);
+        fits =
+            fits && add_contact(m, f, tree, l, kind, b, end[0], m->element[e].sole ? c + 1 : -1, c);
         if (m->element[e].sole)
-            fits = fits && add_contact(tree, l, kind, body, end[1], c, c);
+            fits = fits && add_contact(m, f, tree, l, kind, b, end[1], c, c);
     }
     for (int b = 0; b < m->bodies; b++) {
         for (int side = 0; side < 2; side++)
             if (stance_mechanism_stops(m, b, side))
-                fits = fits && add_contact(tree, l, side ? STANCE_TREE_HIGH : STANCE_TREE_LOW,
-                                           f->of[b], none, -1, -1);
+                fits = fits && add_contact(m, f, tree, l, side ? STANCE_TREE_HIGH : STANCE_TREE_LOW,
+                                           b, none, -1, -1);
     }
     return fits;
 }
@@ -306,7 +432,7 @@ static void tables_loads(stance_tree *tree)
             loads[j] = tree->path[c][j] >= 0 ? 0 : -1;
         if (tree->kind[c] >= STANCE_TREE_LOW && body >= 0) {
             loads[body] = 0;
-            if (tree->above[body] >= 0)
+            if (tree->above[body] >= 0 && !tree->slide[body])
                 loads[tree->above[body]] = 0;
         }
         for (int i = tree->angles - 1; i >= 0; i--)
@@ -331,12 +457,15 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
     typical(m, &v);
     frames_make(m, &v, &f);
     if (f.angles > STANCE_MAX_ANGLES)
-        return refuse(message, "bodies that turn", STANCE_MAX_ANGLES);
+        return refuse(message, "bodies that turn or slide", STANCE_MAX_ANGLES);
     lumps_make(m, &v, &f, &l);
     tree->base = m->body[0].joint == STANCE_FREE ? 2 : m->body[0].joint == STANCE_SLIDE;
     tree->angles = f.angles;
     for (int i = 0; i < f.angles; i++) {
         tree->above[i] = above(m, &f, i);
+        tree->slide[i] = slides(m, &f, i);
+        if (tree->slide[i])
+            tree->sliding[tree->slides++] = i;
         tree->straight[i] = l.moment[i][0] == 0;
         tree->straight_joint[i] = l.joint[i][0] == 0;
         for (int j = 0; j < STANCE_MAX_ANGLES; j++)
@@ -347,154 +476,102 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
         if (m->body[b].joint == STANCE_FIXED)
             continue;
         if (body->stiffness != 0 || body->damping != 0)
-            tree->spring[tree->springs++] = f.of[b];
+            tree->spring[tree->springs++] = f.joint[b];
         if (body->armature != 0)
-            tree->rotor[tree->rotors++] = f.of[b];
+            tree->rotor[tree->rotors++] = f.joint[b];
         if (m->body[b].bounded)
             tree->turning[tree->turns++] = f.of[b];
     }
     for (int i = 0; i < m->actuators; i++)
-        tree->actuator[tree->actuators++] = f.of[m->actuator[i].body];
+        tree->actuator[tree->actuators++] = f.joint[m->actuator[i].body];
     if (!tables_contacts(m, &v, &f, &l, tree))
         return refuse(message, "contacts (a sole has two, a limit of a joint is one)",
                       STANCE_MAX_CONTACTS);
     for (int p = 0; p < m->points; p++) {
         const int b = m->point[p].body;
-        const double own[2] = {f.at[b][0] + v.point[p].at[0], f.at[b][1] + v.point[p].at[1]};
+        double own[2];
         if (!m->point[p].falls)
             continue;
+        frames_place(&v, &f, b, v.point[p].at, own);
         tree->point_top[tree->points] =
-            path_make(tree, &l, f.of[b], own, tree->point_path[tree->points]);
+            path_make(m, &f, tree, &l, f.joint[b], own, tree->point_path[tree->points]);
         tree->points++;
     }
     for (int p = 0; p < m->points; p++) {
         const int b = m->point[p].body;
-        const double own[2] = {f.at[b][0] + v.point[p].at[0], f.at[b][1] + v.point[p].at[1]};
+        double own[2];
         if (m->point[p].pushed == STANCE_NO_PUSH)
             continue;
         if (tree->pushes == STANCE_MAX_PUSHES)
             return refuse(message, "points that are pushed", STANCE_MAX_PUSHES);
         tree->push_impulse[tree->pushes] = m->point[p].pushed == STANCE_IMPULSE;
-        path_make(tree, &l, f.of[b], own, tree->push_path[tree->pushes++]);
+        frames_place(&v, &f, b, v.point[p].at, own);
+        path_make(m, &f, tree, &l, f.joint[b], own, tree->push_path[tree->pushes++]);
     }
     tables_couple(m, &f, &l, tree);
     tables_loads(tree);
     return STANCE_OK;
 }
 
-/* ---- tables as text -------------------------------------------------------------------------- */
-
-static void write(char **end, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void write(char **end, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    *end += vsprintf(*end, format, arguments); // NOLINT: room is counted, see STANCE_TREE_TEXT
-    va_end(arguments);
-}
-
-static void write_row(char **end, const int *row, int n)
-{
-    for (int i = 0; i < n; i++)
-        write(end, "%s%d", i ? ", " : "{", row[i]);
-    write(end, n ? "}" : "{0}");
-}
-
-static void write_list(char **end, const char *name, const int *list, int n)
-{
-    write(end, "static const int %s[] = ", name);
-    write_row(end, list, n);
-    write(end, ";\n");
-}
-
-static void write_table(char **end, const char *name, int rows, int columns,
-                        const int table[][STANCE_MAX_ANGLES])
-{
-    write(end, "static const int %s[][%d] = {", name, TREE_SLOTS(columns));
-    for (int i = 0; i < TREE_SLOTS(rows); i++) {
-        write(end, i ? ", " : "");
-        write_row(end, table[i], columns);
-    }
-    write(end, "};\n");
-}
-
-void stance_tree_text(const stance_tree *t, bool servos, char text[STANCE_TREE_TEXT])
-{
-    char *end = text;
-    const struct {
-        const char *name;
-        int value;
-    } count[] = {{"BASE", t->base},         {"ANGLES", t->angles},
-                 {"CONTACTS", t->contacts}, {"ACTUATORS", t->actuators},
-                 {"SPRINGS", t->springs},   {"ROTORS", t->rotors},
-                 {"POINTS", t->points},     {"TURNS", t->turns},
-                 {"PUSHES", t->pushes},     {"SERVOS", servos && t->actuators > 0}};
-    for (size_t i = 0; i < sizeof count / sizeof *count; i++)
-        write(&end, "#define TREE_%s %d\n", count[i].name, count[i].value);
-    write_list(&end, "tree_above", t->above, t->angles);
-    write_list(&end, "tree_straight", t->straight, t->angles);
-    write_list(&end, "tree_straight_joint", t->straight_joint, t->angles);
-    write_list(&end, "tree_straight_end", t->straight_end, t->contacts);
-    write_list(&end, "tree_carries", t->carries, t->angles);
-    write_list(&end, "tree_kind", t->kind, t->contacts);
-    write_list(&end, "tree_body", t->body, t->contacts);
-    write_list(&end, "tree_other", t->other, t->contacts);
-    write_list(&end, "scene_grip", t->grip, t->contacts);
-    write_list(&end, "tree_top", t->top, t->contacts);
-    write_list(&end, "tree_point_top", t->point_top, t->points);
-    write_list(&end, "tree_actuator", t->actuator, t->actuators);
-    write_list(&end, "tree_spring", t->spring, t->springs);
-    write_list(&end, "tree_rotor", t->rotor, t->rotors);
-    write_list(&end, "tree_push_impulse", t->push_impulse, t->pushes);
-    write_list(&end, "tree_turning", t->turning, t->turns);
-    write_table(&end, "tree_coupled", t->angles, t->angles, t->coupled);
-    write_table(&end, "tree_near", t->angles, t->angles, t->near);
-    write_table(&end, "tree_through", t->angles, t->angles, t->through);
-    write_table(&end, "tree_path", t->contacts, t->angles, t->path);
-    write_table(&end, "tree_loads", t->contacts, t->angles, t->loads);
-    write_table(&end, "tree_push_path", t->pushes, t->angles, t->push_path);
-    write_table(&end, "tree_point_path", t->points, t->angles, t->point_path);
-    write(&end, "#include \"engine/scenes/tree_lanes.h\"\n");
-}
-
 /* ---- numbers --------------------------------------------------------------------------------- */
 
 /* Longest of the arms between a contact and the frames on its way. */
-static double longest_arm(const stance_tree *tree, const struct lumps *l, int c,
-                          const double end[2])
+static double longest_arm(const stance_tree *tree, const stance_mechanism *m,
+                          const stance_mechanism_numbers *v, const struct frames *f,
+                          const struct lumps *l, int c, const double end[2])
 {
     double longest = 0;
     for (int j = 0; j < tree->angles; j++) {
         const int next = tree->path[c][j];
-        if (next >= 0)
-            longest = fmax(longest, hypot(next == STANCE_TREE_OWN ? end[0] : l->joint[next][0],
-                                          next == STANCE_TREE_OWN ? end[1] : l->joint[next][1]));
+        if (next < 0 || tree->slide[j])
+            continue;
+        double more = 0;
+        for (int i = j; i < tree->angles; i++)
+            if (tree->above[i] == j && tree->path[c][i] >= 0)
+                more += goes(m, v, f, i);
+        longest = fmax(longest, more + hypot(next == STANCE_TREE_OWN ? end[0] : l->joint[next][0],
+                                             next == STANCE_TREE_OWN ? end[1] : l->joint[next][1]));
     }
     return longest;
+}
+
+/* A vector of the base's, upright, into the ground's axes. */
+static void lay(double sine, double cosine, const double v[2], double out[2])
+{
+    const double x = v[0], z = v[1];
+    out[0] = cosine * x - sine * z;
+    out[1] = sine * x + cosine * z;
+}
+
+/* Is a joint's coordinate an angle against the upright? */
+static bool is_upright(const stance_tree *tree, int joint)
+{
+    return joint >= 0 && tree->above[joint] < 0 && !tree->slide[joint];
 }
 
 /* Numbers of contacts, in the order of tables_contacts; returns the longest arm. */
 static double number_contacts(const stance_tree *tree, const stance_mechanism *m,
                               const stance_mechanism_numbers *v, const struct frames *f,
-                              const struct lumps *l, double slope, double (*end)[3])
+                              const struct lumps *l, const double slope[3], double (*end)[3])
 {
     double arm = 0;
     int c = 0;
     for (int e = 0; e < m->elements; e++) {
         const stance_element_numbers *const at = &v->element[e];
-        const double *const frame = f->at[m->element[e].body];
+        const int b = m->element[e].body;
         for (int side = 0; side < 1 + m->element[e].sole; side++, c++) {
-            for (int k = 0; k < 2; k++)
-                end[c][k] = frame[k] + (side ? at->to[k] : at->at[k]);
+            frames_place(v, f, b, side ? at->to : at->at, end[c]);
+            if (f->of[b] < 0)
+                lay(slope[1], slope[2], end[c], end[c]);
             end[c][2] = m->element[e].sole ? 0 : at->radius;
-            arm = fmax(arm, longest_arm(tree, l, c, end[c]) + end[c][2]);
+            arm = fmax(arm, longest_arm(tree, m, v, f, l, c, end[c]) + end[c][2]);
         }
     }
     for (int b = 0; b < m->bodies; b++) {
-        const bool upright = f->of[b] >= 0 && tree->above[f->of[b]] < 0;
         for (int side = 0; side < 2; side++)
             if (stance_mechanism_stops(m, b, side))
-                end[c++][0] = v->body[b].limits[side] + (upright ? slope : 0);
+                end[c++][0] =
+                    v->body[b].limits[side] + (is_upright(tree, f->joint[b]) ? slope[0] : 0);
     }
     return arm;
 }
@@ -530,12 +607,13 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         const double *const joint = l.joint[i];
         number->inertia[i] = l.inertia[i];
         memcpy(number->moment[i], l.moment[i], sizeof l.moment[i]);
-        number->joint[i][0] = turned ? cosine * joint[0] - sine * joint[1] : joint[0];
-        number->joint[i][1] = turned ? sine * joint[0] + cosine * joint[1] : joint[1];
+        memcpy(number->joint[i], joint, sizeof l.joint[i]);
+        if (turned)
+            lay(sine, cosine, joint, number->joint[i]);
     }
     for (int b = 0, spring = 0, rotor = 0, turn = 0; b < m->bodies; b++) {
         const stance_body_numbers *const body = &v.body[b];
-        const int i = f.of[b];
+        const int i = f.joint[b];
         if (m->body[b].joint == STANCE_FIXED)
             continue;
         if (rotor < tree->rotors && tree->rotor[rotor] == i)
@@ -543,7 +621,7 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         if (spring < tree->springs && tree->spring[spring] == i) {
             number->spring[spring][0] = body->stiffness;
             number->spring[spring][1] = body->damping;
-            number->spring[spring++][2] = body->rest + (i >= 0 && tree->above[i] < 0 ? slope : 0);
+            number->spring[spring++][2] = body->rest + (is_upright(tree, i) ? slope : 0);
         }
         if (m->body[b].bounded)
             number->turn[turn++] = body->turn;
@@ -552,21 +630,20 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
     for (int p = 0, k = 0; p < m->points; p++) {
         if (!m->point[p].falls)
             continue;
-        for (int axis = 0; axis < 2; axis++)
-            number->point[k][axis] = f.at[m->point[p].body][axis] + v.point[p].at[axis];
+        frames_place(&v, &f, m->point[p].body, v.point[p].at, number->point[k]);
+        if (f.of[m->point[p].body] < 0)
+            lay(sine, cosine, number->point[k], number->point[k]);
         number->lowest[k++] = v.point[p].lowest;
     }
     for (int p = 0, k = 0; p < m->points; p++) {
         const stance_point_numbers *const point = &v.point[p];
         if (m->point[p].pushed == STANCE_NO_PUSH)
             continue;
-        for (int axis = 0; axis < 2; axis++) {
-            number->push[k][axis] = f.at[m->point[p].body][axis] + point->at[axis];
-            number->push[k][2 + axis] = point->force[axis];
-        }
+        frames_place(&v, &f, m->point[p].body, point->at, number->push[k]);
+        memcpy(&number->push[k][2], point->force, sizeof point->force);
         number->push[k][4] = point->from;
         number->push[k++][5] = m->point[p].pushed == STANCE_IMPULSE ? point->from : point->to;
     }
-    const double arm = number_contacts(tree, m, &v, &f, &l, slope, number->end);
-    lumps_curvature(m, &f, &l, arm, number->curvature);
+    const double arm = number_contacts(tree, m, &v, &f, &l, number->slope, number->end);
+    lumps_curvature(m, &v, &f, &l, arm, number->curvature);
 }

@@ -3,7 +3,8 @@
  * them.
  *
  * Bodies that are fixed are merged into the one that carries them; what is left are the angles, in
- * the order of their bodies, the parent before its children.
+ * the order of their bodies, the parent before its children. A joint inside the tree that slides is
+ * one of the angles here, and marked as such: it has a place among them, and a displacement.
  */
 #ifndef STANCE_TREE_H
 #define STANCE_TREE_H
@@ -30,22 +31,27 @@ enum { STANCE_TREE_TEXT = 8192 }; /* bytes of the tables as text, at most */
 typedef struct stance_tree {
     int base; /* coordinates of the base: 2 free, 1 on a rail, 0 pinned */
     int angles, contacts, actuators, springs, rotors, points, turns, pushes;
-    int above[STANCE_MAX_ANGLES];                      /* whose frame the joint is in */
-    int straight[STANCE_MAX_ANGLES];                   /* its first moment has no x */
-    int straight_joint[STANCE_MAX_ANGLES];             /* nor its joint in the frame above */
+    int slides, sliding[STANCE_MAX_ANGLES]; /* the joints that slide */
+    int above[STANCE_MAX_ANGLES];           /* whose frame the joint is in */
+    int slide[STANCE_MAX_ANGLES];           /* is it one of them, and no frame? */
+    int straight[STANCE_MAX_ANGLES];        /* its first moment has no x */
+    int straight_joint[STANCE_MAX_ANGLES];  /* nor its joint in the frame above, or its axis */
     int coupled[STANCE_MAX_ANGLES][STANCE_MAX_ANGLES]; /* [i][j]: j above i moves its joint */
     int near[STANCE_MAX_ANGLES][STANCE_MAX_ANGLES];    /* or the elimination couples them */
-    int through[STANCE_MAX_ANGLES][STANCE_MAX_ANGLES]; /* [i][j]: the child of j towards i */
-    int carries[STANCE_MAX_ANGLES];                    /* it is on a contact's path */
+    /* [i][j]: the joint in frame j through which i hangs from it; of a j that slides, >= 0 where it
+     * moves i. */
+    int through[STANCE_MAX_ANGLES][STANCE_MAX_ANGLES];
+    int carries[STANCE_MAX_ANGLES]; /* it is on a contact's path */
     int kind[STANCE_MAX_CONTACTS], body[STANCE_MAX_CONTACTS];
     int straight_end[STANCE_MAX_CONTACTS];
     int other[STANCE_MAX_CONTACTS]; /* contact: the other end of the sole */
     int grip[STANCE_MAX_CONTACTS];  /* contact that holds its friction; -1: a stop */
     /* How frames carry a point, by the arm in each: -1: it has none; STANCE_TREE_OWN: to the point;
-     * else to the joint of that angle. */
+     * else to the joint of that angle; of what slides, >= 0: it moves the point. */
     int path[STANCE_MAX_CONTACTS][STANCE_MAX_ANGLES];
     int loads[STANCE_MAX_CONTACTS][STANCE_MAX_ANGLES]; /* >= 0: elimination has to do with it */
-    int top[STANCE_MAX_CONTACTS];                      /* of a base that is not free: first frame */
+    int top[STANCE_MAX_CONTACTS];                      /* of a base that is not free: first frame,
+                                                         or STANCE_TREE_OWN */
     int actuator[STANCE_MAX_ACTUATORS];
     int spring[STANCE_MAX_ANGLES + 1], rotor[STANCE_MAX_ANGLES + 1];
     int point_path[STANCE_MAX_NAMED][STANCE_MAX_ANGLES], point_top[STANCE_MAX_NAMED];

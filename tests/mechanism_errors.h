@@ -27,10 +27,19 @@
     {"joint: free", "joint: fixed",
      "5:20: robot.bodies.trunk.joint: a root is free, or a hinge, or slides"},
     {"{joint: hinge, parent: thigh1", "{joint: free, parent: thigh1",
-     "6:21: robot.bodies.shank1.joint: only the root is free; what has a parent is a hinge or "
-     "fixed"},
-    {"{joint: hinge, parent: thigh1", "{joint: slide, parent: thigh1",
-     "6:21: robot.bodies.shank1.joint: only the root slides"},
+     "6:21: robot.bodies.shank1.joint: only the root is free; what has a parent is a hinge, "
+     "slides, or is fixed"},
+    {"{joint: hinge, parent: thigh1", "{joint: slide, axis: [0, 0], parent: thigh1",
+     "6:28: robot.bodies.shank1.axis: [0, 0] has no direction"},
+    {"{joint: hinge, parent: thigh1", "{joint: slide, turn: 1, parent: thigh1",
+     "6:34: robot.bodies.shank1.turn: what slides has no such number"},
+    {"{joint: hinge, parent: thigh1", "{joint: slide, axis: 1, parent: thigh1",
+     "6:34: robot.bodies.shank1.axis: expected 2 numbers, found '1'"},
+    {"    rotor: {joint: fixed", "    rotor: {joint: slide, limits: [0.2, 0.1]",
+     "10:27: robot.bodies.rotor.limits: 0.2 is not below 0.1"},
+    {"rotor: {joint: fixed, parent: trunk, mass: 0.5", "rotor: {joint: slide, parent: trunk",
+     "10:5: robot.bodies.rotor: nothing with mass or inertia resists its joint: give it, or what "
+     "hangs from it, some"},
     {"parent: thigh1", "parent: tigh1",
      "6:36: robot.bodies.shank1.parent: unknown body 'tigh1'; did you mean 'thigh1'? (known: "
      "trunk, shank1, thigh1, thigh2, shank2, rotor)"},
@@ -92,7 +101,7 @@
      "6:115: robot.bodies.shank1.damping: -1 is out of range (0 ... 1e+09 N m s/rad)"},
     {"limits: [-2.5, 0]", "armature: -1",
      "6:116: robot.bodies.shank1.armature: -1 is out of range (0 ... 1e+09 kg m^2)"},
-    {"limits: [-2.5, 0]", "axis: [0, 1]", "6:112: robot.bodies.shank1.axis: a hinge has no rail"},
+    {"limits: [-2.5, 0]", "axis: [0, 1]", "6:112: robot.bodies.shank1.axis: a hinge has no axis"},
     {"centre: [0, 0.2]", "stiffness: 10",
      "5:62: robot.bodies.trunk.stiffness: a free root has no joint"},
     {"centre: [0, 0.2]", "at: [0, 1]", "5:55: robot.bodies.trunk.at: a free root has no joint"},
@@ -193,7 +202,12 @@
      "    a: {joint: hinge, parent: trunk, mass: 1, centre: [0, 1]}\n    b: {joint: hinge, parent: "
      "trunk, mass: 1, centre: [0, 1]}\n    c: {joint: hinge, parent: trunk, mass: 1, centre: [0, "
      "1]}\n    rotor: {joint: fixed",
-     "5:5: robot.bodies: 8 of them turn; at most 7"},
+     "5:5: robot.bodies: 8 of them turn or slide against their parents; at most 7"},
+    {"    rotor: {joint: fixed",
+     "    a: {joint: slide, parent: trunk, mass: 1}\n    b: {joint: slide, parent: a, mass: 1}\n   "
+     " "
+     "c: {joint: slide, parent: b, mass: 1}\n    rotor: {joint: fixed",
+     "5:5: robot.bodies: 8 of them turn or slide against their parents; at most 7"},
     {"    rotor: {joint: fixed",
      "    b0: {joint: fixed, parent: trunk}\n    b1: {joint: fixed, parent: trunk}\n    b2: "
      "{joint: fixed, parent: trunk}\n    b3: {joint: fixed, parent: trunk}\n    b4: {joint: fixed, "

@@ -6,6 +6,8 @@
  *   state q ... v ...         energy, inertia, and each contact's gap, point and speed there
  *   push q ... v ... torque ...  accelerations and contacts by the kernels' algebra, in one lane
  *   rest SUPPORTS BRANCH p ...   the equilibrium (nan: not given), its linearisation and forces
+ *   step THETA h q ... w0 ... w ... r ...  the inverse of a step's matrix, row by row for a unit of
+ *                             each generalised force; r: (normal, tangential) of each contact
  *   end                       another mechanism follows
  *
  * Standard output: for each of these a line "begin WORD" and lines "NAME number ...".
@@ -76,6 +78,61 @@ static void say_push(const stance_scene *s, const double *robot, struct words *w
     }
 }
 
+/* Generalised forces of the user's coordinates as loads of the tree's. */
+static void load_of(const stance_tree_numbers *number, int k, double *load)
+{
+    const double *const slope = number->slope;
+    memset(load, 0, sizeof(double[SCENE_COORDINATES]));
+    if (tree_free && k < 2)
+        load[k] = slope[2], load[1 - k] = k ? -slope[1] : slope[1];
+    else
+        tree_drive(k - tree_base_size, 1, load);
+}
+
+static void say_step(const stance_scene *s, const double *robot, struct words *w)
+{
+    const int n = s->coordinates;
+    double q[SCENE_COORDINATES] = {0}, rate[2][SCENE_COORDINATES] = {{0}}, at[SCENE_COORDINATES],
+           before[SCENE_COORDINATES], after[SCENE_COORDINATES], v[SCENE_COORDINATES],
+           change[SCENE_COORDINATES], r[SCENE_CONTACTS][2] = {{0}}, load[SCENE_COORDINATES],
+           x[SCENE_COORDINATES], y[SCENE_COORDINATES];
+    const double none[SCENE_ACTUATORS][SCENE_POSTURE] = {{0}};
+    stance_tree_numbers number;
+    scene_body body;
+    scene_trig trig;
+    scene_matrix matrix;
+    const double theta = next_number(w), h = next_number(w), lever = h * (theta * theta);
+    for (int i = 0; i < 3 * n; i++)
+        *(i < n ? &q[i] : &rate[i / n - 1][i % n]) = next_number(w);
+    for (int c = 0; c < s->contacts; c++)
+        for (int axis = 0; axis < 2; axis++)
+            r[c][axis] = next_number(w);
+    tree_now = s->tree;
+    stance_tree_numbers_make(s->tree, s->mechanism, robot, &number);
+    memset(&body, 0, sizeof body);
+    memset(&matrix, 0, sizeof matrix);
+    scene_load_body(&body, 0, &number);
+    scene_enter(&number, q, rate[0], at, before);
+    scene_enter(&number, q, rate[1], at, after);
+    for (int k = 0; k < SCENE_COORDINATES; k++) {
+        v[k] = (1 - theta) * before[k] + theta * after[k];
+        at[k] += h * theta * v[k];
+        change[k] = after[k] - before[k];
+    }
+    scene_trigonometry(at, &trig);
+    scene_factor(&body, h, theta, lever, lever, &trig, &trig, v, change, (const double(*)[2])r,
+                 false, none, &matrix);
+    printf("begin step\ninverse");
+    for (int k = 0; k < n; k++) {
+        load_of(&number, k, load);
+        scene_solve(&matrix, false, load, x);
+        scene_coordinate_rates(&body, &trig, x, y);
+        for (int i = 0; i < n; i++)
+            printf(" %.17g", y[i]);
+    }
+    putchar('\n');
+}
+
 static void say_rest(const stance_scene *s, const double *robot, struct words *w)
 {
     double A[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE],
@@ -143,6 +200,8 @@ int main(void)
             say_push(scene, robot, &w);
         } else if (strcmp(word, "rest") == 0) {
             say_rest(scene, robot, &w);
+        } else if (strcmp(word, "step") == 0) {
+            say_step(scene, robot, &w);
         } else if (strcmp(word, "end") == 0) {
             stance_scene_free(scene);
             scene = NULL;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Mechanisms by an independent way: maximal coordinates.
 
-Each body has its own (x, z, angle) of its centre of mass; hinges are constraints J X'' = bias, and
+Each body has its own (x, z, angle) of its centre of mass; joints are constraints J X'' = bias, and
 
     [ M  J' ] [ X''     ]   [ F    ]
     [ J  0  ] [ -forces ] = [ bias ]
@@ -10,7 +10,7 @@ gives accelerations, with contacts that stick among the constraints. Derivatives
 steps in extended precision (18 digits), on the manifold of the constraints. Nothing of the engine's
 formulas is used. Compared: inertia, energy, contacts' gaps, points and speeds at random states;
 equilibria (nothing accelerates, stationary torques); A, B and contact forces of linearisations; and of
-the kernels' algebra accelerations and how contacts answer forces.
+the kernels' algebra accelerations, how contacts answer forces, and the inverse of a step's matrix.
 
     mechanism_oracle.py PROGRAM      PROGRAM: build/tests/mechanism_numbers; speaks TAP
 """
@@ -109,6 +109,23 @@ class Mechanism:
         row[3 * k + 2] = 1
         return X[3 * k + 2], row, 0
 
+    def sliding(self, k, direction, X, V):
+        """The way of body k from where its joint is in the parent's frame, along a direction there."""
+        up = self.index[self.bodies[k]["parent"]]
+        c, s = np.cos(X[3 * up + 2]), np.sin(X[3 * up + 2])
+        x, z = np.array(direction, dtype=COMPLEX)
+        way, turned = np.array([c * x - s * z, s * x + c * z]), np.array([-s * x - c * z, c * x - s * z])
+
+        def apart(direction):
+            return self.minus(self.point(k, (0, 0), X, V, direction),
+                              self.point(up, self.bodies[k]["at"], X, V, direction))
+
+        value, row, bias = apart(way)
+        off, rates, _ = apart(turned)
+        row[3 * up + 2] += off
+        rate = V[3 * up + 2]
+        return value, row, bias - 2 * rate * (rates @ V) + rate ** 2 * value
+
     @staticmethod
     def minus(a, b):
         return tuple(x - y for x, y in zip(a, b))
@@ -121,6 +138,10 @@ class Mechanism:
                 continue
             if b["parent"] is not None:
                 up = self.index[b["parent"]]
+                if b["joint"] == "slide":
+                    across = (-b["axis"][1], b["axis"][0])
+                    out += [self.sliding(k, across, X, V), self.minus(self.angle(k, X), self.angle(up, X))]
+                    continue
                 out += [self.minus(self.point(k, (0, 0), X, V, w), self.point(up, b["at"], X, V, w)) for w in ways]
                 if b["joint"] == "fixed":
                     out.append(self.minus(self.angle(k, X), self.angle(up, X)))
@@ -143,6 +164,8 @@ class Mechanism:
         if kind == "slide":
             axis = np.array(b["axis"], dtype=COMPLEX)
             axis = axis / np.sqrt(axis @ axis)
+            if b["parent"] is not None:
+                return self.sliding(k, axis, X, V)
             value, row, bias = self.point(k, (0, 0), X, V, axis)
             return value - axis @ np.array(b["at"], dtype=COMPLEX), row, bias
         if kind == "angle" or b["parent"] is None:
@@ -197,7 +220,9 @@ class Mechanism:
                 p = np.array([q[0] - c * r[0] + s * r[1], q[1] - s * r[0] - c * r[1]], dtype=COMPLEX)
             elif b["joint"] == "slide":
                 axis = np.array(b["axis"], dtype=COMPLEX)
-                p = p + axis / np.sqrt(axis @ axis) * q[at[k]]
+                axis = axis / np.sqrt(axis @ axis) * q[at[k]]
+                c, s = np.cos(a), np.sin(a)
+                p = p + np.array([c * axis[0] - s * axis[1], s * axis[0] + c * axis[1]])
             elif b["joint"] == "hinge":
                 a = a + q[at[k]]
             origin[k] = p
@@ -224,7 +249,7 @@ class Mechanism:
         for i, (k, kind) in enumerate(self.joint):
             if kind in ("hinge", "slide"):
                 A[i, i] += self.bodies[k].get("armature", 0)
-        return A.real
+        return A
 
     def energy(self, q, v):
         X = self.start(q)
@@ -251,7 +276,7 @@ class Mechanism:
             q, row, bias = self.coordinate(i, X, V)
             pull = -b.get("stiffness", 0) * (q - b.get("rest", 0)) - b.get("damping", 0) * (row @ V)
             pull += sum(t for t, (_, on, _) in zip(torque, self.actuators) if on == b["name"])
-            F = F + row * pull
+            F = F + row * (pull + b.get("armature", 0) * bias)
             M = M + b.get("armature", 0) * np.outer(row, row)
         rows = self.constraints(X, V)
         joints = len(rows)
@@ -395,8 +420,34 @@ def mechanisms():
         [], [("elbow", "lower", 30)]), [(0, [None, None]), (0, [None, None], 3), (0, [None, 0.5]), (0, [None, 0.5], 1)]
 
 
-def random_mechanism(random, number):
-    """Any tree: its equilibria may be refused."""
+def sliding():
+    yield Mechanism("hopper", [
+        body("leg", "free", None, 4, 0.1, (0.02, 0.1)),
+        body("shoe", "slide", "leg", 0.5, 0.001, (0.01, 0), (0, -0.3), axis=(0, -1), stiffness=3000, damping=5,
+             rest=0.2, limits=(0, 0.25), armature=0.1)],
+        [("point", "foot", "shoe", (0, -0.05))], [("thrust", "shoe", 500)], slope=0.1), [(1, [None, None]), (1, [None, 0.12])]
+    yield Mechanism("two slides with a hinge beyond", [
+        body("base", "free", None, 3, 0.1, (0.05, 0.1)),
+        body("boom", "slide", "base", 1, 0.02, (0.1, 0.02), (0.1, 0.3), axis=(3, 1), damping=0.7, stiffness=40, rest=0.2),
+        body("mast", "slide", "boom", 0.7, 0.03, (0.05, 0.2), (0.2, 0.1), axis=(-0.5, 1), armature=0.2),
+        body("plate", "fixed", "mast", 0.4, 0.02, (0.1, 0.1), (0.1, 0.1)),
+        body("hand", "hinge", "plate", 0.5, 0.01, (0.1, -0.2), (0.05, 0.3), stiffness=5),
+        body("nail", "slide", "hand", 0.2, 0.002, (0.03, 0.02), (0.1, 0.05), axis=(1, 0), stiffness=80),
+        body("leg", "hinge", "boom", 1.5, 0.04, (0, -0.3), (0.02, -0.1))],
+        [("point", "tip", "nail", (0.1, 0.02)), ("disc", "foot", "leg", (0, -0.5), 0.06),
+         ("sole", "pad", "boom", (-0.1, -0.3), (0.2, -0.35))],
+        [("push", "boom", 100), ("lift", "mast", 100), ("hip", "leg", 30)], slope=-0.2), [
+            (2, [None] * 6), (2, [None, 0.1, 0.3, None, None, None]), (12, [None, 0.1, None, None, None, 0.2])]
+    yield Mechanism("gantry", [
+        body("bridge", "slide", None, 3, 0, (0, 0), (0.1, 2), axis=(1, 0.1), damping=1),
+        body("trolley", "slide", "bridge", 1, 0.1, (0.1, 0.2), (0.2, 0.1), axis=(0.2, -1), stiffness=30),
+        body("load", "hinge", "trolley", 0.6, 0.02, (0.01, -0.5), (0.1, -0.1))],
+        [("point", "hook", "load", (0, -0.6)), ("disc", "wheel", "trolley", (0.1, -0.2), 0.1)],
+        [("drive", "bridge", 50), ("winch", "trolley", 80)]), [(0, [0.2, None, None]), (0, [0.2, 0.4, None], 1)]
+
+
+def random_mechanism(random, number, slides):
+    """Any tree, a share of its joints slides: its equilibria may be refused."""
     def pair(size):
         return tuple(float(x) for x in np.where(random.random(2) < 0.3, 0, random.uniform(-size, size, 2)))
 
@@ -405,7 +456,9 @@ def random_mechanism(random, number):
     turning = 0
     for k in range(random.integers(2, 9)):
         joint = root if k == 0 else "fixed" if random.random() < 0.2 else "hinge"
-        turning += joint in ("hinge", "free")
+        if joint == "hinge" and k > 0 and slides > 0 and random.random() < slides:
+            joint = "slide"
+        turning += joint in ("hinge", "free") or (joint == "slide" and k > 0)
         if turning > 7:
             break
         more = {}
@@ -426,7 +479,7 @@ def random_mechanism(random, number):
             kind = ("point", "disc", "sole")[random.integers(3)]
             rest = {"point": [], "disc": [random.uniform(0.05, 0.4)], "sole": [pair(0.5)]}[kind]
             contacts.append((kind, f"c{k}", f"b{k}", pair(0.5), *rest))
-    m = Mechanism(f"random tree {number}, {root}", bodies, contacts, actuators[:6], random.uniform(1, 20),
+    m = Mechanism(f"random tree {number}, {root}{', slides' if slides else ''}", bodies, contacts, actuators[:6], random.uniform(1, 20),
                   random.uniform(-0.3, 0.3), pair(0.3) if root == "free" else (0, 0))
     m.may_refuse = True
     cases = []
@@ -482,7 +535,7 @@ def compare_state(m, check, q, v, a):
     zero = np.zeros_like(X)
     V = m.rates(X, v.astype(COMPLEX)[:, None])[:, 0]
     check.near("joints close", [abs(c[0]) for c in m.constraints(X, zero)], np.zeros(len(m.constraints(X, zero))), 1)
-    check.near("inertia", a["inertia"], m.inertia(q))
+    check.near("inertia", a["inertia"], m.inertia(q).real)
     check.near("energy", a["energy"], [m.energy(q, v).real], scale=float(abs(m.energy(q, v)) + 1))
     check.near("gap", a["gap"], [m.contact(c, X, zero, 0)[0].real for c in range(len(m.contacts))], 5)
     for c, d in enumerate(m.contacts):
@@ -523,6 +576,31 @@ def compare_push(m, check, q, v, torque, a):
                 check.near("answer to a force", next(answer), line, max(float(np.max(np.abs(D))), 1e-3))
 
 
+def compare_step(m, check, theta, h, q, before, after, impulse, a):
+    """The inverse of dP/dw, P = A(u) (w - w0) - h F(u, v) - H' r, against complex steps."""
+    J = []
+    for k in range(m.n):
+        w = np.array(after, dtype=COMPLEX)
+        w[k] += STEP2
+        v = (1 - REAL(theta)) * before + REAL(theta) * w
+        u = q + REAL(h) * REAL(theta) * v
+        X = m.start(u)
+        basis = m.rates(X, np.eye(m.n))
+        V = basis @ v
+        XX, _ = m.accelerate(X, V, [0] * len(m.actuators))
+        P = m.inertia(u) @ (w - before - REAL(h) * m.q_accelerations(X, V, XX))
+        for c, d in enumerate(m.contacts):
+            for direction in range(2 if d["grip"] == c else 1):
+                on = c
+                if direction == 1:  # a sole's at its lower end
+                    on = min((e for e, o in enumerate(m.contacts) if o["grip"] == d["grip"]),
+                             key=lambda e: m.contact(e, X, V, 0)[0].real)
+                P = P - basis.T @ m.contact(on, X, V, direction)[1] * REAL(impulse[2 * c + direction])
+        J.append(P.imag / STEP)
+    J = np.array(J).T
+    check.near("inverse of the step's matrix", a["inverse"], solve(J, np.eye(m.n)).real.T)
+
+
 def free_conditions(m, given, supports, q0, torque, force):
     """Conditions on u = (free coordinates, torques, forces), in their gradient at the equilibrium."""
     free = [i for i in m.postures if given[m.postures.index(i)] is None] + ([1] if m.bodies[0]["joint"] == "free" else [])
@@ -560,9 +638,12 @@ def compare_rest(m, check, case, a):
     gaps = [m.contact(c, X, zero, 0)[0].real for c, d in stick if d == 0]
     check.near("supports touch", gaps, np.zeros(len(gaps)), 1)
     # The torques are stationary among all equilibria.
+    # One without a limit weighs as the strongest of the others, forces with the mechanism's size.
+    size = sum(np.sum(np.abs(b["centre"])) + np.sum(np.abs(b["at"])) * (k > 0) for k, b in enumerate(m.bodies)) or 1
+    unit = np.array([1 if m.bodies[m.index[on]]["joint"] == "slide" else size for _, on, _ in m.actuators])
     limit = np.array([x for _, _, x in m.actuators])
-    finite = limit[np.isfinite(limit)]
-    limit = np.where(np.isfinite(limit), limit, max(finite) if len(finite) else 1)
+    finite = np.isfinite(limit)
+    limit = np.where(finite, limit, unit * (max((limit / unit)[finite]) if any(finite) else 1))
     J, free = free_conditions(m, given, supports, q, torque, force)
     if len(torque):
         scale = np.concatenate([np.ones(free), limit, 100 * np.ones(len(force))])
@@ -575,6 +656,8 @@ def compare_rest(m, check, case, a):
             check.worst["stationary"] = max(check.worst.get("stationary", 0), worst)
             assert worst < 1e-8, f"torques not stationary: {worst:.3g}"
     chosen = [int(i) for i in a["freedom"]]
+    if m.may_refuse and len(m.constraints(X, zero)) + len(stick) + len(chosen) != len(X):
+        return  # supports that strain each other
     A, B, lam = m.linearise(q, torque, supports, chosen)
     check.near("A", a["A"], A)
     check.near("B", a["B"], B)
@@ -604,10 +687,10 @@ def self_check(m, random):
 
 
 def main():
-    random = np.random.default_rng(1)
+    random, chance = np.random.default_rng(1), np.random.default_rng(2)
     bad = 0
-    random_ones = (random_mechanism(random, k) for k in range(20))
-    for number, (m, cases) in enumerate(itertools.chain(mechanisms(), random_ones), 1):
+    random_ones = (random_mechanism(random, k, 0.4 * (k >= 20)) for k in range(40))
+    for number, (m, cases) in enumerate(itertools.chain(mechanisms(), random_ones, sliding()), 1):
         check = Check()
         try:
             for _ in range(5):
@@ -618,11 +701,18 @@ def main():
             lines += [" ".join(["push", *map(repr, map(float, [*q, *v, *t]))]) for q, v, t in pushes]
             lines += [" ".join(["rest", str(c[0]), str(c[2] if len(c) > 2 else 0),
                                 *("nan" if x is None else repr(x) for x in c[1])]) for c in cases]
+            steps = [(chance.choice([0.5, 1]), 10 ** chance.uniform(-4, -1.5), q, v, v + chance.uniform(-1, 1, m.n),
+                      chance.uniform(-1, 1, 2 * len(m.contacts)))
+                     for q, v in states if m.reference == (0, 0)]
+            lines += [" ".join(["step", *(repr(float(x)) for x in np.hstack(step))]) for step in steps]
             said = answers(sys.argv[1], m.text() + "\n".join(lines) + "\n")
             for (q, v), a in zip(states, said):
                 compare_state(m, check, q, v, a)
             for (q, v, t), a in zip(pushes, said[len(states):]):
                 compare_push(m, check, q, v, t, a)
+            for step, a in zip(steps, said[2 * len(states) + len(cases):]):
+                q = tuple(np.asarray(x, dtype=REAL) for x in step[2:5])
+                compare_step(m, check, *step[:2], *q, step[5], a)
             for case, a in zip(cases, said[2 * len(states):]):
                 if m.may_refuse and "refused" in a:
                     continue

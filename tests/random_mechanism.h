@@ -60,32 +60,34 @@ static inline void add_body(stance_mechanism *m, stance_joint joint, int parent)
     }
 }
 
-static inline int last_angle(const stance_mechanism *m)
+static inline int last_joint(const stance_mechanism *m)
 {
     for (int b = m->bodies - 1; b > 0; b--)
-        if (m->body[b].joint == STANCE_HINGE)
+        if (m->body[b].joint != STANCE_FIXED)
             return b;
     return 0;
 }
 
-/* `angles` bodies that turn, fixed ones, up to most_elements contacts, motors, springs, stops,
- * pushed points (without a force yet). It may have more contacts than fit: see
+/* `joints`, of which about a share slides, fixed bodies, up to most_elements contacts, motors,
+ * springs, stops, pushed points (without a force yet). It may have more contacts than fit: see
  * stance_mechanism_scene. */
-static inline void random_mechanism(stance_mechanism *m, int angles, int most_elements)
+static inline void random_mechanism(stance_mechanism *m, int joints, double slides,
+                                    int most_elements)
 {
     memset(m, 0, sizeof *m);
     const stance_joint root = (stance_joint)whole(0, 2);
     add_body(m, root, -1);
-    for (int turning = root == STANCE_SLIDE ? 0 : 1; turning < angles;) {
-        const bool fixed = sometimes(0.2) && m->bodies < STANCE_MAX_BODIES - angles;
-        add_body(m, fixed ? STANCE_FIXED : STANCE_HINGE, whole(0, m->bodies - 1));
-        turning += !fixed;
+    for (int moving = root == STANCE_SLIDE ? 0 : 1; moving < joints;) {
+        const bool fixed = sometimes(0.2) && m->bodies < STANCE_MAX_BODIES - joints;
+        const stance_joint joint = slides > 0 && sometimes(slides) ? STANCE_SLIDE : STANCE_HINGE;
+        add_body(m, fixed ? STANCE_FIXED : joint, whole(0, m->bodies - 1));
+        moving += !fixed;
     }
-    const int elements = root == STANCE_SLIDE && angles == 0 ? 0 : whole(0, most_elements);
+    const int elements = root == STANCE_SLIDE && joints == 0 ? 0 : whole(0, most_elements);
     for (int e = 0; e < elements; e++) {
-        int b = sometimes(0.5) ? last_angle(m) : whole(0, m->bodies - 1);
+        int b = sometimes(0.5) ? last_joint(m) : whole(0, m->bodies - 1);
         if (root == STANCE_SLIDE)
-            b = last_angle(m);
+            b = last_joint(m);
         if (root == STANCE_SLIDE && b == 0)
             break;
         snprintf(m->element[e].name, STANCE_NAME, "contact%d", e);

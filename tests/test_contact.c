@@ -169,7 +169,7 @@ static void solve(const struct problem *p, int contacts, bool stood, bool most, 
                                       .shift = shift,
                                       .before = stood ? before : NULL};
     solve_contacts(&rule, (const double(*)[2][2][2])D, (const double(*)[2])uf,
-                   contacts == 2 ? 3 : 1, active, out, &verdict);
+                   contacts == 2 ? 3 : 1, LANES_ALL, active, out, &verdict);
     *ambiguous = verdict.ambiguous, *unsolved = verdict.unsolved;
     for (int i = 0; i < 2 * contacts; i++)
         r[i] = out[i / 2][i % 2];

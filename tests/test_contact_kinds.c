@@ -235,7 +235,7 @@ static struct contact_verdict solve(const struct problem *p, bool stood, bool mo
                                       .before = stood ? (const double(*)[2])before : NULL,
                                       .last = last};
     solve_contacts(&rule, (const double(*)[CONTACTS][2][2])D, (const double(*)[2])uf, touching,
-                   active, out, &verdict);
+                   LANES_ALL, active, out, &verdict);
     if (unique)
         *unique = direct_unique(p->friction, (const double(*)[CONTACTS][2][2])D, touching, active);
     for (int i = 0; i < p->rows; i++)

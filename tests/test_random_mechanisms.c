@@ -1,8 +1,8 @@
-/* test_random_mechanisms - random trees of 1 to 7 angles with up to 6 contact elements, springs,
- * dampers, rotors, stops, motors and pushes, thrown at random near the ground, steps of 0.1 to 20
- * ms, friction 0 to 2: nothing is not finite, nothing is below the ground or moves into it, no
- * friction is outside its cone, no impact adds energy; and what fails says so. A root that is held
- * may jam, where no contact impulse fits; a free one may not, and must not fail.
+/* test_random_mechanisms - random trees of 1 to 7 joints, hinges and slides, with up to 6 contact
+ * elements, springs, dampers, rotors, stops, motors and pushes, thrown at random near the ground,
+ * steps of 0.1 to 20 ms, friction 0 to 2: nothing is not finite, nothing is below the ground or
+ * moves into it, no friction is outside its cone, no impact adds energy; and what fails says so. A
+ * root that is held may jam, where no contact impulse fits; a free one may not, and must not fail.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,13 +22,13 @@
 enum { CASES = 100, STEPS = 250 };
 
 /* One that has no more contacts than fit. */
-static stance_scene *random_scene(int tree)
+static stance_scene *random_scene(int tree, double slides)
 {
     static stance_mechanism m;
     stance_scene *scene = NULL;
     dice = 1000003u * (uint64_t)tree + 11;
     do {
-        random_mechanism(&m, whole(1, STANCE_MAX_ANGLES), STANCE_MAX_ELEMENTS);
+        random_mechanism(&m, whole(1, STANCE_MAX_ANGLES), slides, STANCE_MAX_ELEMENTS);
         for (int p = 0; p < m.points; p++) {
             stance_point_numbers *const n = &m.value.point[p];
             m.point[p].pushed = sometimes(0.5) ? STANCE_FORCE : STANCE_IMPULSE;
@@ -140,14 +140,16 @@ static int trees_of(void)
     return getenv("STANCE_TEST_LONG") ? 200 : 40;
 }
 
-static void hunt(const stance_method *method, int trees)
+/* Trees of hinges alone, then those that slide. */
+static void hunt(const stance_method *method, int hinged, int sliding)
 {
     static stance_case cases[CASES];
     static stance_result results[CASES];
     struct tally t = {0};
     long bad = 0;
-    for (int tree = 0; tree < trees; tree++) {
-        stance_scene *const scene = random_scene(tree);
+    for (int tree = 0; tree < hinged + sliding; tree++) {
+        stance_scene *const scene =
+            tree < hinged ? random_scene(tree, 0) : random_scene(tree - hinged, 0.4);
         for (int k = 0; k < CASES; k++) {
             random_case(scene, &cases[k]);
             cases[k].tolerance = method->tolerance;
@@ -179,17 +181,17 @@ static void hunt(const stance_method *method, int trees)
 static void implicit(void **state)
 {
     (void)state;
-    hunt(stance_method_find("implicit"), trees_of());
+    hunt(stance_method_find("implicit"), trees_of(), 40);
 }
 static void midpoint(void **state)
 {
     (void)state;
-    hunt(stance_method_find("midpoint"), trees_of());
+    hunt(stance_method_find("midpoint"), trees_of(), 40);
 }
 static void capturing(void **state)
 {
     (void)state;
-    hunt(stance_method_find("capturing"), trees_of() / 4);
+    hunt(stance_method_find("capturing"), trees_of() / 4, 10);
 }
 
 int main(void)

@@ -82,6 +82,16 @@ static void near(double got, double wanted, double tolerance, const char *what)
                  fabs(got - wanted), tolerance);
 }
 
+/* The body of a joint. */
+static int body_of(const struct trial *t, int joint)
+{
+    const stance_mechanism *const m = t->scene->mechanism;
+    for (int b = 0; b < m->bodies; b++)
+        if (m->body[b].joint != STANCE_FIXED && (b > 0 || !tree_rail) && joint-- == 0)
+            return b;
+    return -1;
+}
+
 /* ---- against the user's coordinates -----------------------------------------------------------*/
 
 static double energy_of(const struct trial *t)
@@ -127,6 +137,17 @@ static void compare_contacts(const struct trial *t)
         }
         near(u[1], speed[0], 1e-12 * 20, "tangential velocity");
     }
+}
+
+/* What has fallen, and what not, of points that may be anywhere. */
+static int down;
+static void compare_falls(const struct trial *t)
+{
+    bool fallen = false;
+    for (int cause = 0; cause < SCENE_CAUSES; cause++)
+        fallen = fallen || mask_any(scene_falls(&t->body, t->s, &t->trig, 0, cause));
+    assert_int_equal(fallen, t->scene->fallen(t->scene, t->robot, t->q, 0));
+    down += fallen;
 }
 
 static void compare_coordinates(const struct trial *t)
@@ -275,6 +296,53 @@ static void compare_matrix(const struct trial *t, double theta, bool coupled)
         near(x[k], d[k], coupled ? 2e-5 : 2e-6, coupled ? "coupled step matrix" : "step matrix");
 }
 
+/* What Newton's step leaves of a distance in flight is within the bound of the stop rule, as long
+ * as no slide is beyond its limits. */
+static double worst_curvature;
+static void compare_curvature(const struct trial *t, double theta)
+{
+    struct step p = {.h = between(2e-4, 5e-3), .theta = theta};
+    double w[SCENE_COORDINATES], change[SCENE_COORDINATES], v[SCENE_COORDINATES],
+        u[SCENE_COORDINATES], wanted[SCENE_COORDINATES], here[SCENE_COORDINATES],
+        d[SCENE_COORDINATES], size = 0;
+    const double way = between(0.01, 1), lever = p.h * (theta * theta);
+    for (int i = 0; i < tree_angles; i++) {
+        const double *const limits = t->scene->mechanism->value.body[body_of(t, i)].limits;
+        const double place = t->s[TREE_BASE + i];
+        if (tree_slides(i) && !(place > limits[0] && place < limits[1]))
+            return;
+    }
+    memcpy(p.s0, t->s, sizeof p.s0);
+    memcpy(p.w0, t->w, sizeof p.w0);
+    for (int k = 0; k < SCENE_COORDINATES; k++) {
+        w[k] = in_use(k) ? t->w[k] + way * between(-1, 1) : 0;
+        change[k] = w[k] - p.w0[k];
+        v[k] = (1 - theta) * p.w0[k] + theta * w[k];
+        u[k] = p.s0[k] + p.h * theta * v[k];
+    }
+    equation(t, &p, t->w, wanted);
+    equation(t, &p, w, here);
+    for (int k = 0; k < SCENE_COORDINATES; k++)
+        wanted[k] -= here[k];
+    scene_trig trig;
+    scene_matrix J;
+    scene_trigonometry(u, &trig);
+    scene_factor(&t->body, p.h, theta, lever, lever, &trig, &trig, v, change,
+                 (const double(*)[2])p.r, false, (const double(*)[SCENE_POSTURE])p.gain, &J);
+    scene_solve(&J, false, wanted, d);
+    for (int k = 0; k < SCENE_COORDINATES; k++)
+        size += fabs(d[k]);
+    /* The bound is of first order in h: gravity and pushes bend in third. */
+    const double bound =
+        (theta * theta * t->number.curvature[0] * p.h + 1e4 * p.h * p.h * p.h) * (size * size);
+    for (int k = 0; k < SCENE_COORDINATES; k++) {
+        const double left = fabs(w[k] + d[k] - t->w[k]);
+        if (left > 1e-10)
+            worst_curvature = fmax(worst_curvature, left / bound);
+        near(left, 0, bound + 1e-10, "left by Newton");
+    }
+}
+
 static void compare_inertia(const struct trial *t)
 {
     scene_matrix A;
@@ -320,7 +388,7 @@ static void compare_changes(const struct trial *t)
     for (int c = 0; c < t->scene->contacts; c++) {
         const double change =
             scene_gap(&t->body, place, &trig, c) - scene_gap(&t->body, t->s, &t->trig, c);
-        const double bound = scene_gap_change_error(&t->body, c, d);
+        const double bound = scene_gap_change_error(&t->body, &t->trig, c, d);
         near(scene_gap_change(&t->body, &t->trig, c, d), change, bound + 1e-14, "gap change");
         double u[2][2], a[2], ends[2][SCENE_COORDINATES];
         for (int side = 0; side < 2; side++) {
@@ -361,33 +429,56 @@ static void compare_pushes(const struct trial *t)
          "work of pushes");
 }
 
-static void trees(void **state)
+static void trees_of(double slides)
 {
-    (void)state;
     static stance_mechanism m;
+    worst_curvature = 0, down = 0;
     for (int tree = 0; tree < TREES; tree++) {
         struct trial t;
         dice = 1000003u * (uint64_t)tree + 7;
-        random_mechanism(&m, whole(1, STANCE_MAX_ANGLES), 3);
+        random_mechanism(&m, whole(1, STANCE_MAX_ANGLES), slides, 3);
+        for (int p = 0; p < m.points; p++) {
+            m.point[p].falls = sometimes(0.5);
+            m.value.point[p].lowest = between(-2, 1);
+        }
         begin(&t, &m);
         for (int k = 0; k < STATES; k++) {
             random_state_of(&t);
             compare_coordinates(&t);
             compare_energy(&t);
             compare_contacts(&t);
+            compare_falls(&t);
             compare_forces(&t);
             compare_inertia(&t);
             compare_changes(&t);
             compare_pushes(&t);
             for (int i = 0; i < 4; i++)
                 compare_matrix(&t, i / 2 ? 1 : 0.5, i % 2);
+            for (int i = 0; i < 4; i++)
+                compare_curvature(&t, i / 2 ? 1 : 0.5);
         }
         stance_scene_free(t.scene);
     }
+    print_message("# Newton leaves %.2g of its bound; %d states are down\n", worst_curvature, down);
+    assert_in_range(down, 100, TREES * STATES - 100);
+}
+
+static void trees(void **state)
+{
+    (void)state;
+    trees_of(0);
+}
+static void trees_that_slide(void **state)
+{
+    (void)state;
+    trees_of(0.4);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(trees)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(trees),
+        cmocka_unit_test(trees_that_slide),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

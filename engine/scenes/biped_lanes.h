@@ -449,9 +449,11 @@ static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig
     return lanes_fma(b->leg * a, lanes_fma(0.5 * a, trig->cosine[1 + c], trig->sine[1 + c]), d[1]);
 }
 /* Bound on what scene_gap_change leaves out. */
-static inline lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
+static inline lanes scene_gap_change_error(const scene_body *b, const scene_trig *trig, int c,
+                                           const lanes *d)
 {
     const lanes a = lanes_abs(d[3 + c]);
+    (void)trig;
     return b->leg * (a * a * a);
 }
 

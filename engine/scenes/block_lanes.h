@@ -199,9 +199,10 @@ static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig
     (void)b, (void)trig, (void)c;
     return d[1];
 }
-static inline lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
+static inline lanes scene_gap_change_error(const scene_body *b, const scene_trig *trig, int c,
+                                           const lanes *d)
 {
-    (void)b, (void)c, (void)d;
+    (void)b, (void)trig, (void)c, (void)d;
     return lanes_of(0);
 }
 

@@ -192,11 +192,13 @@ static void add_coordinates(struct described *d)
     else
         add_coordinate(d, root, true, "angle of", root, " against the upright");
     for (int b = 1; b < m->bodies; b++) {
-        if (m->body[b].joint == STANCE_HINGE) {
-            char against[STANCE_NAME + 10];
-            snprintf(against, sizeof against, " against %s", m->body[m->body[b].parent].name);
-            add_coordinate(d, m->body[b].name, true, "angle of", m->body[b].name, against);
-        }
+        const bool turns = m->body[b].joint == STANCE_HINGE;
+        char against[STANCE_NAME + 10];
+        if (m->body[b].joint == STANCE_FIXED)
+            continue;
+        snprintf(against, sizeof against, " against %s", m->body[m->body[b].parent].name);
+        add_coordinate(d, m->body[b].name, turns, turns ? "angle of" : "displacement of",
+                       m->body[b].name, against);
     }
     for (int i = first; i < d->scene.coordinates; i++)
         d->posture[d->scene.postures++] = i;

@@ -57,12 +57,12 @@ static void draw_element(struct pen *pen, int e)
     line_to(pen, pen->pose->origin[body]);
 }
 
-/* What slides has no size; it is drawn with a tenth of what the mechanism reaches. */
+/* What slides on a rail has no size; it is drawn with a tenth of what the mechanism reaches. */
 static void draw_slide(struct pen *pen)
 {
     static const double corner[][2] = {{-1, 0.5}, {-1, -0.5}, {1, -0.5}, {1, 0.5}, {-1, 0.5}};
     const stance_mechanism_numbers *const n = &pen->pose->number;
-    const double *const axis = pen->pose->axis;
+    const double *const axis = pen->pose->axis[0];
     double size = 0;
     for (int b = 0; b < pen->pose->m->bodies; b++)
         for (int k = 0; k < 2; k++)
@@ -81,7 +81,7 @@ static void draw_body(struct pen *pen, int body)
     const stance_mechanism_numbers *const n = &pen->pose->number;
     bool ends = false;
     line_to(pen, pen->pose->origin[body]);
-    if (m->body[body].joint == STANCE_SLIDE)
+    if (body == 0 && m->body[body].joint == STANCE_SLIDE)
         draw_slide(pen);
     for (int e = 0; e < m->elements; e++) {
         if (m->element[e].body == body) {

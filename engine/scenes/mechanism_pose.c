@@ -41,6 +41,16 @@ void stance_pose_point(const stance_pose *pose, int body, const double local[2],
     point[1] += pose->origin[body][1];
 }
 
+/* T of body b, whose axis is given in a frame turned so; it is where its slide has taken it. */
+static void place_slide(stance_pose *pose, int b, double sine, double cosine)
+{
+    const double *const given = pose->number.body[b].axis;
+    const double length = sqrt(along(given, given));
+    turned(sine, cosine, (const double[]){given[0] / length, given[1] / length}, pose->axis[b]);
+    for (int k = 0; k < 2; k++)
+        pose->origin[b][k] += pose->position[pose->own[b]] * pose->axis[b][k];
+}
+
 static void place_root(stance_pose *pose)
 {
     const stance_body_numbers *const root = &pose->number.body[0];
@@ -59,11 +69,7 @@ static void place_root(stance_pose *pose)
         for (int k = 0; k < 2; k++)
             pose->origin[0][k] -= arm[k];
     } else if (!pose->turns[0]) {
-        const double length = sqrt(along(root->axis, root->axis));
-        for (int k = 0; k < 2; k++) {
-            pose->axis[k] = root->axis[k] / length;
-            pose->origin[0][k] += q[0] * pose->axis[k];
-        }
+        place_slide(pose, 0, 0, 1);
     }
 }
 
@@ -80,7 +86,7 @@ void stance_pose_at(const stance_mechanism *m, const double *robot, const double
 
     int count = m->body[0].joint == STANCE_FREE ? 3 : 1;
     for (int b = 1; b < m->bodies; b++)
-        count += m->body[b].joint == STANCE_HINGE;
+        count += m->body[b].joint != STANCE_FIXED;
     memcpy(pose->position, position, (size_t)count * sizeof *position);
     place_root(pose);
     for (int b = 1; b < m->bodies; b++) {
@@ -88,9 +94,11 @@ void stance_pose_at(const stance_mechanism *m, const double *robot, const double
         stance_pose_point(pose, parent, pose->number.body[b].at, pose->origin[b]);
         memcpy(pose->pivot[b], pose->origin[b], sizeof pose->pivot[b]);
         pose->turns[b] = m->body[b].joint == STANCE_HINGE;
-        pose->own[b] = pose->turns[b] ? pose->coordinates++ : -1;
+        pose->own[b] = m->body[b].joint != STANCE_FIXED ? pose->coordinates++ : -1;
         pose->angle[b] = pose->angle[parent] + (pose->turns[b] ? position[pose->own[b]] : 0);
         stance_sincos(pose->angle[b], &pose->sine[b], &pose->cosine[b]);
+        if (m->body[b].joint == STANCE_SLIDE)
+            place_slide(pose, b, pose->sine[b], pose->cosine[b]);
     }
 }
 
@@ -106,8 +114,8 @@ void stance_pose_jacobian(const stance_pose *pose, int body, const double point[
             J[1][i] = point[0] - pose->pivot[b][0];
             turn[i] = 1;
         } else if (i >= 0) {
-            J[0][i] = pose->axis[0];
-            J[1][i] = pose->axis[1];
+            J[0][i] = pose->axis[b][0];
+            J[1][i] = pose->axis[b][1];
         }
     }
     if (pose->m->body[0].joint == STANCE_FREE)
@@ -210,12 +218,14 @@ static void stiffen(const stance_pose *pose, int body, const double point[2], co
                     double dQ[][STANCE_MAX_COORDINATES])
 {
     for (int b = body; b >= 0; b = pose->m->body[b].parent) {
-        if (!pose->turns[b])
-            continue;
-        const double arm[2] = {point[0] - pose->pivot[b][0], point[1] - pose->pivot[b][1]};
-        const double lever = along(force, arm);
         const int i = pose->own[b];
-        dQ[i][i] -= lever;
+        const double *const T = pose->axis[b];
+        const double arm[2] = {point[0] - pose->pivot[b][0], point[1] - pose->pivot[b][1]};
+        const double lever = pose->turns[b] ? along(force, arm) : force[0] * T[1] - force[1] * T[0];
+        if (i < 0)
+            continue;
+        if (pose->turns[b])
+            dQ[i][i] -= lever;
         for (int up = pose->m->body[b].parent; up >= 0; up = pose->m->body[up].parent) {
             if (pose->turns[up]) {
                 dQ[i][pose->own[up]] -= lever;

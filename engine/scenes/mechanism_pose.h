@@ -1,11 +1,13 @@
 /* mechanism_pose.h - where the bodies of a mechanism are, and how points of them move.
  *
- * Coordinates q: of a free root (x, z) of its reference point and its angle, of a root that slides
- * its displacement, then the angle of each hinge against the parent. O_i the joint of body i, of a
- * free root its reference point, E the quarter turn (x, z) -> (-z, x): a point P of body b moves by
+ * Coordinates q: of a free root (x, z) of its reference point and its angle, else of each joint the
+ * angle against the parent or the displacement along it. O_i the joint of body i, of a free root
+ * its reference point, T_i the direction in which it slides, E the quarter turn (x, z) -> (-z, x):
+ * a point P of body b moves, for each joint between b and the world, itself included, by
  *
- *   dP/dq_i = E (P - O_i)   for each hinge i between b and the world, itself included,
- *   d2P/dq_i dq_j = -(P - O_k),   k the one of i, j that is further from the root,
+ *   dP/dq_i = E (P - O_i) of a hinge,   T_i of a slide,
+ *   d2P/dq_i dq_j = -(P - O_k) of two hinges, k the one of i, j that is further from the root,
+ *                   E T_j where j slides and i is a hinge nearer to the root,
  *
  * and 0 for all others; a free root's angle is a hinge here. The ground passes through the origin
  * with slope s: tangent t = (cos s, -sin s), normal n = (sin s, cos s). A contact's gap and its
@@ -33,8 +35,8 @@ typedef struct stance_pose {
     bool turns[STANCE_MAX_BODIES];
     double angle[STANCE_MAX_BODIES], sine[STANCE_MAX_BODIES], cosine[STANCE_MAX_BODIES];
     double origin[STANCE_MAX_BODIES][2], pivot[STANCE_MAX_BODIES][2]; /* of the frame; O */
-    double axis[2];                          /* of a root that slides, of length 1 */
-    double position[STANCE_MAX_COORDINATES]; /* q */
+    double axis[STANCE_MAX_BODIES][2];                                /* of what slides: T */
+    double position[STANCE_MAX_COORDINATES];                          /* q */
 } stance_pose;
 
 typedef struct stance_touch {

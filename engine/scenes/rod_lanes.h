@@ -203,10 +203,11 @@ static inline lanes scene_gap_change(const scene_body *b, const scene_trig *trig
     return d[1] + scene_arm(b, c) * (turn * (trig->cosine[0] - 0.5 * (turn * trig->sine[0])));
 }
 /* Bound on what scene_gap_change leaves out. */
-static inline lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
+static inline lanes scene_gap_change_error(const scene_body *b, const scene_trig *trig, int c,
+                                           const lanes *d)
 {
     const lanes turn = lanes_abs(d[2]);
-    (void)c;
+    (void)trig, (void)c;
     return b->half * (turn * turn * turn);
 }
 

@@ -19,6 +19,7 @@
 #define TREE_TURNS STANCE_MAX_ANGLES
 #define TREE_PUSHES STANCE_MAX_PUSHES
 #define TREE_SERVOS 1
+#define TREE_SLIDES 1
 
 enum { SCENE_POSTURE = STANCE_MAX_POSTURE };
 
@@ -36,6 +37,9 @@ static _Thread_local const stance_tree *tree_now;
 #define tree_turns (tree_now->turns)
 #define tree_pushes (tree_now->pushes)
 #define tree_above (tree_now->above)
+#define tree_slide (tree_now->slide)
+#define tree_sliding (tree_now->sliding)
+#define tree_slide_count (tree_now->slides)
 #define tree_straight (tree_now->straight)
 #define tree_straight_joint (tree_now->straight_joint)
 #define tree_straight_end (tree_now->straight_end)

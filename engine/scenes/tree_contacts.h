@@ -89,6 +89,13 @@ HOT void scene_contact_velocity_change(const scene_body *b, const scene_trig *tr
         const lanes turn = lever * w[TREE_BASE + j], x = change[TREE_BASE + j];
         tree_reach(b, trig, c, j, false, reach);
         tree_reach(b, trig, c, j, true, grip);
+        if (tree_slides(j)) { /* E T (a' dl + l' da) */
+            const lanes bent =
+                lanes_fma(lever * tree_frame_rate(w, j), x, turn * tree_frame_rate(change, j));
+            u[0] = lanes_fma(x, reach[0], lanes_fnma(bent, reach[1], u[0]));
+            u[1] = lanes_fnma(x, reach[1], lanes_fnma(bent, reach[0], u[1]));
+            continue;
+        }
         u[0] = lanes_fma(x, lanes_fnma(turn, reach[1], reach[0]), u[0]);
         u[1] = lanes_fnma(x, lanes_fma(turn, grip[0], grip[1]), u[1]);
         if (tree_kind[c] == STANCE_TREE_DISC && tree_path[c][j] == TREE_OWN)
@@ -106,7 +113,7 @@ HOT void scene_contact_curvature(const scene_body *b, const scene_trig *trig, in
         if (tree_is_stop(c) || tree_path[c][j] < 0)
             continue;
         lanes reach[2], grip[2];
-        const lanes turning = w[TREE_BASE + j] * w[TREE_BASE + j];
+        const lanes turning = tree_centrifugal(w, j);
         tree_reach(b, trig, c, j, false, reach);
         tree_reach(b, trig, c, j, true, grip);
         a[0] = lanes_fnma(turning, reach[1], a[0]);
@@ -119,11 +126,16 @@ HOT lanes tree_place(const scene_body *b, const lanes *s, const scene_trig *trig
 {
     lanes place = tree_base(b, s, axis);
     if (tree_top[c] >= 0)
-        place = place + b->joint[tree_top[c]][axis];
+        place = place + (tree_top[c] == TREE_OWN ? b->end[c][axis] : b->joint[tree_top[c]][axis]);
     TREE_UNROLL
     for (int j = 0; j < tree_angles; j++) {
         if (tree_path[c][j] < 0)
             continue;
+        if (tree_slides(j)) { /* in the arms of its frame, if there is one */
+            if (tree_above[j] < 0)
+                place = lanes_fma(trig->sine[j], b->joint[j][axis], place);
+            continue;
+        }
         lanes reach[2];
         tree_reach(b, trig, c, j, false, reach);
         place = place + reach[axis];
@@ -144,7 +156,7 @@ HOT lanes scene_along(const scene_body *b, const lanes *s, const scene_trig *tri
 {
     return tree_place(b, s, trig, c, 0);
 }
-/* Gap after a small displacement d of s, to second order in the angles. */
+/* Gap after a small displacement d of s, to second order. */
 HOT lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c, const lanes *d)
 {
     if (tree_is_stop(c))
@@ -156,13 +168,16 @@ HOT lanes scene_gap_change(const scene_body *b, const scene_trig *trig, int c, c
             continue;
         lanes reach[2];
         const lanes a = d[TREE_BASE + j];
+        lanes turned = 0.5 * a;
+        if (tree_slides(j))
+            turned = tree_frame_rate(d, j);
         tree_reach(b, trig, c, j, false, reach);
-        sum = lanes_fma(a, lanes_fnma(0.5 * a, reach[1], reach[0]), sum);
+        sum = lanes_fma(a, lanes_fnma(turned, reach[1], reach[0]), sum);
     }
     return sum;
 }
 /* Bound on what scene_gap_change leaves out. */
-HOT lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
+HOT lanes scene_gap_change_error(const scene_body *b, const scene_trig *trig, int c, const lanes *d)
 {
     lanes sum = lanes_of(0);
     TREE_UNROLL
@@ -170,8 +185,14 @@ HOT lanes scene_gap_change_error(const scene_body *b, int c, const lanes *d)
         const int through = tree_path[c][j];
         if (tree_is_stop(c) || through < 0)
             continue;
-        const lanes *const arm = through == TREE_OWN ? b->end[c] : b->joint[through];
         const lanes a = lanes_abs(d[TREE_BASE + j]);
+        if (tree_slides(j)) { /* |e| of its frame is longer by |l|, and E T turns on */
+            const lanes turned = lanes_abs(tree_frame_rate(d, j));
+            const lanes more = lanes_fma(lanes_abs(trig->sine[j]), turned, a);
+            sum = lanes_fma(turned * turned, more, sum);
+            continue;
+        }
+        const lanes *const arm = through == TREE_OWN ? b->end[c] : b->joint[through];
         sum = lanes_fma(lanes_abs(arm[0]) + lanes_abs(arm[1]), a * a * a, sum);
     }
     return sum;

@@ -3,10 +3,53 @@
 #ifndef STANCE_SCENES_TREE_DYNAMICS_H
 #define STANCE_SCENES_TREE_DYNAMICS_H
 
+/* k of an angle, or kappa of a joint that slides, in its frame; `straight`: it has no x. */
+HOT bool tree_first(const scene_body *b, const scene_trig *trig, int i, lanes first[2])
+{
+    const int frame = tree_slides(i) ? tree_above[i] : i;
+    bool straight = tree_straight[i];
+    first[0] = b->moment[i][0], first[1] = b->moment[i][1];
+    TREE_UNROLL
+    for (int k = 0; k < tree_slide_count; k++) {
+        const int j = tree_sliding[k];
+        const bool beyond = j == i || tree_through[j][i] >= 0;
+        if (tree_above[j] != frame || !(beyond || tree_through[i][j] >= 0))
+            continue;
+        const lanes moved = b->inertia[beyond ? j : i] * trig->sine[j];
+        straight = straight && tree_straight_joint[j];
+        for (int axis = 0; axis < 2; axis++)
+            first[axis] = lanes_fma(moved, b->joint[j][axis], first[axis]);
+    }
+    return straight;
+}
 /* K_i. */
 HOT void tree_moment(const scene_body *b, const scene_trig *trig, int i, lanes K[2])
 {
-    tree_turn(tree_straight[i], trig->sine[i], trig->cosine[i], b->moment[i], K);
+    lanes k[2];
+    if (tree_slides(i)) {
+        tree_slide_arm(b, trig, i, k);
+        K[0] = b->inertia[i] * k[0], K[1] = b->inertia[i] * k[1];
+        return;
+    }
+    const bool straight = tree_first(b, trig, i, k);
+    tree_turn(straight, trig->sine[i], trig->cosine[i], k, K);
+}
+/* I_i. */
+HOT lanes tree_inertia(const scene_body *b, const scene_trig *trig, int i)
+{
+    lanes sum = b->inertia[i];
+    TREE_UNROLL
+    for (int k = 0; k < tree_slide_count; k++) {
+        const int j = tree_sliding[k];
+        lanes kappa[2];
+        if (tree_above[j] != i)
+            continue;
+        tree_first(b, trig, j, kappa);
+        for (int axis = 0; axis < 2; axis++)
+            sum =
+                lanes_fma(trig->sine[j] * b->joint[j][axis], b->moment[j][axis] + kappa[axis], sum);
+    }
+    return sum;
 }
 /* C_ji and S_ji; K: that of i. */
 HOT void tree_couple(const scene_body *b, const scene_trig *trig, int j, int i, const lanes K[2],
@@ -14,9 +57,31 @@ HOT void tree_couple(const scene_body *b, const scene_trig *trig, int j, int i, 
 {
     const int through = tree_through[i][j];
     lanes D[2];
-    tree_turn(tree_straight_joint[through], trig->sine[j], trig->cosine[j], b->joint[through], D);
+    if (tree_slides(i) && tree_above[i] == j) {
+        const bool straight = tree_first(b, trig, i, D) && tree_straight_joint[i];
+        const lanes *const t = b->joint[i];
+        *C = lanes_of(0);
+        *S = -(D[1] * t[1]);
+        if (!straight) {
+            *C = lanes_fms(D[0], t[1], D[1] * t[0]);
+            *S = -lanes_fma(D[0], t[0], D[1] * t[1]);
+        }
+        return;
+    }
+    if (tree_slides(j))
+        tree_slide_arm(b, trig, j, D);
+    else
+        tree_arm(b, trig, tree_straight_joint[through], b->joint[through], j, tree_through[i], D);
     *C = lanes_fma(D[0], K[0], D[1] * K[1]);
     *S = lanes_fms(D[0], K[1], D[1] * K[0]);
+}
+/* a_i'^2, or N_i of a joint that slides. */
+HOT lanes tree_centrifugal(const lanes *w, int i)
+{
+    const lanes rate = w[TREE_BASE + i];
+    if (tree_slides(i))
+        return 2 * (tree_frame_rate(w, i) * rate);
+    return rate * rate;
 }
 
 /* A vector in the plane along the base's coordinates, added to x with a factor. */
@@ -44,16 +109,19 @@ HOT void tree_drive(int i, lanes torque, lanes *x)
 {
     const int at = i < 0 ? 0 : TREE_BASE + i;
     x[at] = x[at] + torque;
-    if (i >= 0 && tree_above[i] >= 0)
-        x[TREE_BASE + tree_above[i]] = x[TREE_BASE + tree_above[i]] - torque;
+    if (i >= 0 && tree_against(i) >= 0)
+        x[TREE_BASE + tree_against(i)] = x[TREE_BASE + tree_against(i)] - torque;
 }
 
-/* R(a_j) times the arm of push p in frame j. */
+/* R(a_j) times the arm of push p in frame j; -E T of a joint that slides. */
 HOT void tree_push_reach(const scene_body *b, const scene_trig *trig, int p, int j, lanes out[2])
 {
     const int through = tree_push_path[p][j];
-    tree_turn(through != TREE_OWN && tree_straight_joint[through], trig->sine[j], trig->cosine[j],
-              through == TREE_OWN ? b->push[p] : b->joint[through], out);
+    if (tree_slides(j))
+        tree_slide_arm(b, trig, j, out);
+    else
+        tree_arm(b, trig, through != TREE_OWN && tree_straight_joint[through],
+                 through == TREE_OWN ? b->push[p] : b->joint[through], j, tree_push_path[p], out);
 }
 /* Adds what a force at the point of push p is as a generalised one, times a factor, to x. */
 HOT void tree_push_add(const scene_body *b, const scene_trig *trig, int p, const lanes force[2],
@@ -102,12 +170,12 @@ HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
     for (int i = 0; i < tree_angles; i++) {
         lanes K[2];
         tree_moment(b, trig, i, K);
-        const lanes c = change[TREE_BASE + i], rate = w[TREE_BASE + i];
-        const lanes centrifugal = h * (rate * rate);
+        const lanes c = change[TREE_BASE + i];
+        const lanes centrifugal = h * tree_centrifugal(w, i);
         sum[0] = lanes_fnma(K[1], c, lanes_fnma(K[0], centrifugal, sum[0]));
         sum[1] = lanes_fma(K[0], c, lanes_fnma(K[1], centrifugal, sum[1]));
         residual[TREE_BASE + i] =
-            lanes_fma(b->inertia[i], c, lanes_fms(K[0], pull[1], K[1] * pull[0]));
+            lanes_fma(tree_inertia(b, trig, i), c, lanes_fms(K[0], pull[1], K[1] * pull[0]));
     }
     TREE_UNROLL
     for (int i = 0; i < tree_angles; i++) {
@@ -118,17 +186,21 @@ HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
             lanes K[2], C, S;
             tree_moment(b, trig, i, K);
             tree_couple(b, trig, j, i, K, &C, &S);
-            const lanes vi = w[TREE_BASE + i], vj = w[TREE_BASE + j];
             lanes *const ri = &residual[TREE_BASE + i], *const rj = &residual[TREE_BASE + j];
-            *ri = lanes_fma(C, change[TREE_BASE + j], lanes_fma(S, h * (vj * vj), *ri));
-            *rj = lanes_fma(C, change[TREE_BASE + i], lanes_fnma(S, h * (vi * vi), *rj));
+            *ri =
+                lanes_fma(C, change[TREE_BASE + j], lanes_fma(S, h * tree_centrifugal(w, j), *ri));
+            *rj =
+                lanes_fma(C, change[TREE_BASE + i], lanes_fnma(S, h * tree_centrifugal(w, i), *rj));
         }
     }
     TREE_UNROLL
     for (int k = 0; k < tree_rotors; k++) {
         const int i = tree_rotor[k];
-        if (i >= 0 && tree_above[i] >= 0) { /* its share of the diagonal is in the inertias */
-            lanes *const ri = &residual[TREE_BASE + i];
+        lanes *const ri = &residual[TREE_BASE + (i < 0 ? 0 : i)];
+        if (i >= 0 && tree_slides(i)) {
+            *ri = lanes_fma(b->rotor[k], change[TREE_BASE + i], *ri);
+        } else if (i >= 0 &&
+                   tree_above[i] >= 0) { /* its share of the diagonal is in the inertias */
             lanes *const rj = &residual[TREE_BASE + tree_above[i]];
             *ri = lanes_fnma(b->rotor[k], change[TREE_BASE + tree_above[i]], *ri);
             *rj = lanes_fnma(b->rotor[k], change[TREE_BASE + i], *rj);
@@ -148,21 +220,26 @@ HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
         tree_push_add(b, trig, p, b->pull[p], -h, residual);
 }
 
-/* R(a_j) times the arm. `tangential`: of the row of friction, which a sole has at its lower end. */
+/* R(a_j) times the arm; -E T of a joint that slides. `tangential`: of the row of friction, which a
+ * sole has at its lower end. */
 HOT void tree_reach(const scene_body *b, const scene_trig *trig, int c, int j, bool tangential,
                     lanes out[2])
 {
     const int through = tree_path[c][j];
-    const lanes s = trig->sine[j], k = trig->cosine[j];
-    if (through != TREE_OWN) {
-        tree_turn(tree_straight_joint[through], s, k, b->joint[through], out);
+    if (tree_slides(j)) {
+        tree_slide_arm(b, trig, j, out);
         return;
     }
-    tree_turn(tree_straight_end[c], s, k, b->end[c], out);
+    if (through != TREE_OWN) {
+        tree_arm(b, trig, tree_straight_joint[through], b->joint[through], j, tree_path[c], out);
+        return;
+    }
+    tree_arm(b, trig, tree_straight_end[c], b->end[c], j, tree_path[c], out);
     if (!tangential || tree_other[c] < 0)
         return;
     lanes other[2];
-    tree_turn(tree_straight_end[tree_other[c]], s, k, b->end[tree_other[c]], other);
+    tree_arm(b, trig, tree_straight_end[tree_other[c]], b->end[tree_other[c]], j, tree_path[c],
+             other);
     /* Of ends that are level the first one; both contacts see the same. */
     const mask lower =
         tree_other[c] < c ? mask_less(out[1], other[1]) : mask_less_equal(out[1], other[1]);
@@ -356,6 +433,59 @@ HOT void scene_solve(const scene_matrix *m, bool coupled, const lanes *b, lanes 
         tree_answer(m, x);
 }
 
+/* Where the columns of angles have more for the joints that slide in their frames, and rows and
+ * columns what is bent. */
+HOT void tree_factor_slides(const scene_body *b, lanes h, lanes twice, lanes lever,
+                            const scene_trig *trig, const lanes *w, const lanes *change,
+                            const lanes *bend, lanes *pivot, scene_matrix *m)
+{
+    lanes rush[TREE_SLOTS(TREE_ANGLES)], twist[TREE_SLOTS(TREE_ANGLES)];
+    TREE_UNROLL
+    for (int k = 0; k < tree_slide_count; k++) {
+        const int i = tree_sliding[k], f = tree_above[i];
+        if (f < 0)
+            continue;
+        lanes K[2];
+        tree_moment(b, trig, i, K);
+        rush[i] = lanes_fma(lever, change[TREE_BASE + i], twice * w[TREE_BASE + i]);
+        twist[i] = lever * (h * tree_centrifugal(w, i));
+        const lanes column[2] = {lanes_fms(K[1], twist[i], K[0] * rush[i]),
+                                 lanes_fnma(K[0], twist[i], -(K[1] * rush[i]))};
+        if (tree_free) {
+            for (int axis = 0; axis < 2; axis++)
+                m->column[f][axis] = m->column[f][axis] + column[axis];
+        } else if (tree_rail) {
+            m->column[f][0] =
+                lanes_fma(b->rail[0], column[0], lanes_fma(b->rail[1], column[1], m->column[f][0]));
+        }
+        m->row[i][TREE_BASE + f] = m->row[i][TREE_BASE + f] + bend[i];
+        m->column[i][TREE_BASE + f] =
+            lanes_fma(b->inertia[i], twist[i], m->column[i][TREE_BASE + f] + bend[i]);
+    }
+    TREE_UNROLL
+    for (int i = 0; i < tree_angles; i++) {
+        TREE_UNROLL
+        for (int j = 0; j < i; j++) {
+            const int f = tree_above[i], g = tree_above[j];
+            if (!tree_coupled[i][j] || !(tree_slides(i) || tree_slides(j)))
+                continue;
+            lanes K[2], C, S;
+            tree_moment(b, trig, i, K);
+            tree_couple(b, trig, j, i, K, &C, &S);
+            if (tree_slides(j) && g >= 0) {
+                lanes *const entry = &m->row[i][TREE_BASE + g];
+                *entry = lanes_fma(S, rush[j], lanes_fnma(C, twist[j], *entry));
+            }
+            if (tree_slides(i) && f >= 0) {
+                lanes *const entry = j == f  ? &pivot[f]
+                                     : j > f ? &m->row[j][TREE_BASE + f]
+                                             : &m->column[f][TREE_BASE + j];
+                *entry = lanes_fnma(S, rush[i], lanes_fnma(C, twist[i], *entry));
+            }
+        }
+    }
+}
+
 /* Factors J = d residual / d velocity. `rate`: d(evaluation velocity)/d(velocity) = the method's
  * theta; `lever`: d(evaluation angle)/d(velocity), s; `contact_lever` the same for the angles that
  * the contact directions are taken at, with `contact_trig` there and the impulses r[contact][2] of
@@ -370,7 +500,7 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
 {
     const lanes twice = 2 * rate * h;
     lanes pivot[TREE_SLOTS(TREE_ANGLES)], along[TREE_SLOTS(TREE_ANGLES)],
-        across[TREE_SLOTS(TREE_ANGLES)], pull[2], base[2][2];
+        across[TREE_SLOTS(TREE_ANGLES)], bend[TREE_SLOTS(TREE_ANGLES)], pull[2], base[2][2];
     for (int axis = 0; axis < 2; axis++)
         pull[axis] = lanes_fma(h, b->gravity[axis], tree_base(b, change, axis));
     TREE_UNROLL
@@ -380,6 +510,10 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
         tree_moment(b, trig, i, K);
         along[i] = lanes_fnma(lever * h, turning * turning, lanes_of(1));
         across[i] = lanes_fma(lever, change[TREE_BASE + i], twice * turning);
+        if (tree_slides(i)) {
+            along[i] = tree_above[i] < 0 ? lanes_of(1) : along[tree_above[i]];
+            across[i] = tree_above[i] < 0 ? lanes_of(0) : across[tree_above[i]];
+        }
         const lanes row[2] = {-K[1], K[0]};
         const lanes column[2] = {lanes_fnma(K[1], along[i], -(K[0] * across[i])),
                                  lanes_fms(K[0], along[i], K[1] * across[i])};
@@ -390,7 +524,10 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
             m->row[i][0] = lanes_fma(b->rail[0], row[0], b->rail[1] * row[1]);
             m->column[i][0] = lanes_fma(b->rail[0], column[0], b->rail[1] * column[1]);
         }
-        pivot[i] = lanes_fnma(lever, lanes_fma(K[0], pull[0], K[1] * pull[1]), b->inertia[i]);
+        pivot[i] = lanes_fnma(lever, lanes_fma(K[0], pull[0], K[1] * pull[1]),
+                              tree_slides(i) ? lanes_of(0) : tree_inertia(b, trig, i));
+        if (tree_slides(i))
+            bend[i] = pivot[i], pivot[i] = b->inertia[i] * along[i];
         TREE_UNROLL
         for (int j = 0; j < i; j++)
             if (tree_near[i][j])
@@ -403,15 +540,16 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
             if (!tree_coupled[i][j])
                 continue;
             lanes K[2], C, S;
-            const lanes vi = w[TREE_BASE + i], vj = w[TREE_BASE + j];
+            lanes *const bi = tree_slides(i) ? &bend[i] : &pivot[i];
+            lanes *const bj = tree_slides(j) ? &bend[j] : &pivot[j];
             tree_moment(b, trig, i, K);
             tree_couple(b, trig, j, i, K, &C, &S);
             m->row[i][TREE_BASE + j] = lanes_fma(C, along[j], S * across[j]);
             m->column[i][TREE_BASE + j] = lanes_fms(C, along[i], S * across[i]);
-            pivot[i] =
-                lanes_fma(lever, lanes_fms(C, h * (vj * vj), S * change[TREE_BASE + j]), pivot[i]);
-            pivot[j] =
-                lanes_fma(lever, lanes_fma(C, h * (vi * vi), S * change[TREE_BASE + i]), pivot[j]);
+            *bi = lanes_fma(
+                lever, lanes_fms(C, h * tree_centrifugal(w, j), S * change[TREE_BASE + j]), *bi);
+            *bj = lanes_fma(
+                lever, lanes_fma(C, h * tree_centrifugal(w, i), S * change[TREE_BASE + i]), *bj);
         }
     }
     TREE_UNROLL
@@ -428,7 +566,8 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
             lanes turned = reach[1] * r[c][0];
             if (scene_grip[c] == c)
                 turned = lanes_fma(grip[0], r[c][1], turned);
-            pivot[j] = lanes_fma(contact_lever, turned, pivot[j]);
+            lanes *const bj = tree_slides(j) ? &bend[j] : &pivot[j];
+            *bj = lanes_fma(contact_lever, turned, *bj);
         }
     }
     for (int j = 0; j < 2; j++)
@@ -437,7 +576,9 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
     TREE_UNROLL
     for (int k = 0; k < tree_rotors; k++) {
         const int i = tree_rotor[k];
-        if (i >= 0 && tree_above[i] >= 0) {
+        if (i >= 0 && tree_slides(i)) {
+            pivot[i] = pivot[i] + b->rotor[k];
+        } else if (i >= 0 && tree_above[i] >= 0) {
             lanes *const row = &m->row[i][TREE_BASE + tree_above[i]];
             lanes *const column = &m->column[i][TREE_BASE + tree_above[i]];
             *row = *row - b->rotor[k], *column = *column - b->rotor[k];
@@ -452,7 +593,7 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
             continue;
         }
         pivot[i] = pivot[i] + stiff;
-        if (tree_above[i] >= 0) {
+        if (tree_against(i) >= 0) {
             lanes *const row = &m->row[i][TREE_BASE + tree_above[i]];
             lanes *const column = &m->column[i][TREE_BASE + tree_above[i]];
             pivot[tree_above[i]] = pivot[tree_above[i]] + stiff;
@@ -468,9 +609,12 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
                 continue;
             tree_push_reach(b, trig, p, j, reach);
             const lanes turned = lanes_fma(reach[0], b->pull[p][0], reach[1] * b->pull[p][1]);
-            pivot[j] = lanes_fma(lever * h, turned, pivot[j]);
+            lanes *const bj = tree_slides(j) ? &bend[j] : &pivot[j];
+            *bj = lanes_fma(lever * h, turned, *bj);
         }
     }
+    if (tree_slide_count > 0)
+        tree_factor_slides(b, h, twice, lever, trig, w, change, bend, pivot, m);
     tree_eliminate(pivot, base, m);
     if (coupled)
         tree_close_loop(h, torque_rate, m);
@@ -490,7 +634,7 @@ HOT void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix
         } else if (tree_rail) {
             m->row[i][0] = m->column[i][0] = lanes_fms(b->rail[1], K[0], b->rail[0] * K[1]);
         }
-        pivot[i] = b->inertia[i];
+        pivot[i] = tree_inertia(b, trig, i);
         TREE_UNROLL
         for (int j = 0; j < i; j++) {
             if (!tree_near[i][j])
@@ -504,7 +648,9 @@ HOT void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix
     TREE_UNROLL
     for (int k = 0; k < tree_rotors; k++) {
         const int i = tree_rotor[k];
-        if (i >= 0 && tree_above[i] >= 0) {
+        if (i >= 0 && tree_slides(i)) {
+            pivot[i] = pivot[i] + b->rotor[k];
+        } else if (i >= 0 && tree_above[i] >= 0) {
             lanes *const row = &m->row[i][TREE_BASE + tree_above[i]];
             *row = *row - b->rotor[k];
             m->column[i][TREE_BASE + tree_above[i]] = *row;

@@ -16,7 +16,8 @@ HOT lanes scene_kinetic(const scene_body *b, const scene_trig *trig, const lanes
         lanes K[2];
         const lanes xi = x[TREE_BASE + i];
         tree_moment(b, trig, i, K);
-        lanes drawn = lanes_fma(0.5 * b->inertia[i], xi, lanes_fms(K[0], p[1], K[1] * p[0]));
+        lanes drawn =
+            lanes_fma(0.5 * tree_inertia(b, trig, i), xi, lanes_fms(K[0], p[1], K[1] * p[0]));
         TREE_UNROLL
         for (int j = 0; j < i; j++) {
             if (!tree_coupled[i][j])
@@ -29,8 +30,10 @@ HOT lanes scene_kinetic(const scene_body *b, const scene_trig *trig, const lanes
     }
     TREE_UNROLL
     for (int k = 0; k < tree_rotors; k++) {
-        const int i = tree_rotor[k], j = i < 0 ? -1 : tree_above[i];
-        if (j >= 0)
+        const int i = tree_rotor[k], j = i < 0 ? -1 : tree_against(i);
+        if (i >= 0 && tree_slides(i))
+            sum = lanes_fma(0.5 * b->rotor[k], x[TREE_BASE + i] * x[TREE_BASE + i], sum);
+        else if (j >= 0)
             sum = lanes_fnma(b->rotor[k], x[TREE_BASE + i] * x[TREE_BASE + j], sum);
     }
     return sum;
@@ -43,6 +46,12 @@ HOT lanes scene_potential(const scene_body *b, const lanes *s, const scene_trig 
     TREE_UNROLL
     for (int i = 0; i < tree_angles; i++) {
         lanes K[2];
+        if (tree_slides(i)) { /* in the moment of its frame, if there is one */
+            const lanes moved = b->inertia[i] * trig->sine[i];
+            for (int axis = 0; axis < 2 && tree_above[i] < 0; axis++)
+                moment[axis] = lanes_fma(moved, b->joint[i][axis], moment[axis]);
+            continue;
+        }
         tree_moment(b, trig, i, K);
         moment[0] = moment[0] + K[0];
         moment[1] = moment[1] + K[1];
@@ -63,6 +72,14 @@ HOT lanes scene_energy(const scene_body *b, const lanes *s, const lanes *w, cons
 {
     return scene_kinetic(b, trig, w) + scene_potential(b, s, trig);
 }
+/* a' da of an angle; a' dl + l' da of a joint that slides. */
+HOT lanes tree_bent(const lanes *w, const lanes *d, int i)
+{
+    const lanes wi = w[TREE_BASE + i], di = d[TREE_BASE + i];
+    if (tree_slides(i))
+        return lanes_fma(tree_frame_rate(w, i), di, wi * tree_frame_rate(d, i));
+    return wi * di;
+}
 /* Mechanical energy that a small displacement d adds at velocity w, first order. */
 HOT lanes scene_energy_change(const scene_body *b, const lanes *s, const scene_trig *trig,
                               const lanes *w, const lanes *d)
@@ -75,17 +92,24 @@ HOT lanes scene_energy_change(const scene_body *b, const lanes *s, const scene_t
         lanes K[2];
         const lanes wi = w[TREE_BASE + i], di = d[TREE_BASE + i];
         tree_moment(b, trig, i, K);
-        /* d/da of a' (E K).p' + g.K */
+        /* d/da of a' (E K).p' + g.K; what slides moves on with a' dl + l' da in place of a' da */
         const lanes drawn = lanes_fma(K[0], p[0], K[1] * p[1]);
         const lanes lifted = lanes_fms(K[0], b->gravity[1], K[1] * b->gravity[0]);
-        sum = lanes_fma(di, lanes_fnma(wi, drawn, lifted), sum);
+        if (tree_slides(i))
+            sum = lanes_fma(di, lifted, lanes_fnma(tree_bent(w, d, i), drawn, sum));
+        else
+            sum = lanes_fma(di, lanes_fnma(wi, drawn, lifted), sum);
         TREE_UNROLL
         for (int j = 0; j < i; j++) {
             if (!tree_coupled[i][j])
                 continue;
             lanes C, S; /* d C_ji / d a_i = -S, / d a_j = S: C = D . K */
             tree_couple(b, trig, j, i, K, &C, &S);
-            sum = lanes_fma(S * (wi * w[TREE_BASE + j]), d[TREE_BASE + j] - di, sum);
+            const lanes wj = w[TREE_BASE + j];
+            if (tree_slides(i) || tree_slides(j))
+                sum = lanes_fma(S, lanes_fms(wi, tree_bent(w, d, j), wj * tree_bent(w, d, i)), sum);
+            else
+                sum = lanes_fma(S * (wi * wj), d[TREE_BASE + j] - di, sum);
         }
     }
     TREE_UNROLL

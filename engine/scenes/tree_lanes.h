@@ -27,8 +27,39 @@
  *   J_ii = I_i - lever K_i.(c_p + h g) + lever ( sum_{j above} (C h v_j^2 - S c_j)
  *          + sum_{l below} (C h v_l^2 + S c_l) ) + contact lever sum over contacts (R e_i).f:
  *
- * directions of contacts only touch the diagonal, which is why the angles are absolute. A spring
- * and damper of a joint adds h (lever' k + theta d) [1 -1; -1 1], a geared rotor [1 -1; -1 1] times
+ * directions of contacts only touch the diagonal, which is why the angles are absolute.
+ *
+ * A joint i that slides, by l_i along t_i in frame f and without turning against it, has l_i for
+ * its coordinate and moves what hangs beyond, of mass m_i, by T_i = R(a_f) t_i. With
+ *
+ *   k_f = k_f0 + sum_{i in f} m_i l_i t_i,   d_fl = d_fl0 + sum_{i in f, above l} l_i t_i,
+ *   kappa_i = kappa_i0 + sum_{j in f} m_ij l_j t_j   (m_ij: the mass that both move)   the first
+ *       moment about the origin of f of what it moves,   I_f = I_f0 + sum_i l_i t_i.(kappa_i0 +
+ *       kappa_i)
+ *
+ * such a joint is in all equations above as an angle with
+ *
+ *   K_i = -m_i E T_i,   D_il = -E T_i,   I_i = m_i,   C_fi = kappa_i x t_i,   S_fi = -kappa_i.t_i,
+ *   a_i'^2 replaced by N_i = 2 a_f' l_i', of Coriolis:
+ *
+ * what it moves gets -E K_i/m_i and E N_i of accelerations. In the derivative along_i and across_i
+ * are those of f (1 and 0 where the base does not turn), and what follows from d2P/da_f dl_i = E
+ * T_i instead of d2P/da^2 = -R e stands off the diagonal: what the sum J_ii has above for angles,
+ *
+ *   bend_i = lever ( -K_i.(c_p + h g) + sum_{j above} (C h N_j - S c_j) + sum_{l below} (C h N_l +
+ *            S c_l) ) + contact lever sum over contacts (-E T_i).f,
+ *
+ * is added to J_if, and with lever m_i h N_i to J_fi, while J_ii = m_i along_f. Besides, with
+ * rush_i = lever c_i + 2 theta h l_i', twist_i = lever h N_i, the column of a_f has
+ *
+ *   J_pf += -K_i rush_i - E K_i twist_i,   J_jf += -S_ji rush_i - C_ji twist_i   (j above i),
+ *   J_lf += S_il rush_i - C_il twist_i     (l below i).
+ *
+ * Forces of a joint that slides act on l_i alone. Nothing fills in, as f and what hangs beyond are
+ * coupled anyway.
+ *
+ * A spring
+ * and damper of a hinge adds h (lever' k + theta d) [1 -1; -1 1], a geared rotor [1 -1; -1 1] times
  * its inertia. J is eliminated from the leaves to the root, the base last: A_ij is not zero only
  * along a branch, and what hangs on a body couples its ancestors already, so nothing fills in. A
  * law that acts inside the step adds -h B G of the rank of its actuators (Woodbury).
@@ -63,6 +94,7 @@ enum {
     tree_points = TREE_POINTS,
     tree_turns = TREE_TURNS,
     tree_pushes = TREE_PUSHES,
+    tree_slide_count = TREE_SLIDES,
 #endif
 };
 #define tree_free (tree_base_size == 2)
@@ -73,6 +105,7 @@ enum {
 #define SCENE_SERVOS
 #endif
 #define SCENE_GRIPS
+#define SCENE_SLIDES(a) tree_slides(a)
 #define SCENE_PUSHES TREE_PUSHES
 #define SCENE_NUMBERS(c) &(c)->body
 #define SCENE_OF(c) (c)->scene
@@ -94,9 +127,9 @@ typedef struct scene_body {
     lanes rail[2];      /* its direction */
     lanes reference[2]; /* of the root's frame: what the user's x and z are of */
     lanes curvature[3]; /* see scene_curvature */
-    lanes moment[TREE_SLOTS(TREE_ANGLES)][2]; /* k */
-    lanes inertia[TREE_SLOTS(TREE_ANGLES)];   /* I, rotors included */
-    lanes joint[TREE_SLOTS(TREE_ANGLES)][2];  /* of a body, in the frame above */
+    lanes moment[TREE_SLOTS(TREE_ANGLES)][2]; /* k; of a slide kappa, both where l = 0 */
+    lanes inertia[TREE_SLOTS(TREE_ANGLES)];   /* I, rotors included; of a slide the mass */
+    lanes joint[TREE_SLOTS(TREE_ANGLES)][2];  /* of a body, in the frame above; a slide's axis */
     lanes rotor[TREE_SLOTS(TREE_ROTORS)];
     lanes spring[TREE_SLOTS(TREE_SPRINGS)][3]; /* stiffness, damping, angle at rest */
     lanes end[TREE_SLOTS(TREE_CONTACTS)][3];   /* place in its body, radius; of a stop: limit */
@@ -107,6 +140,7 @@ typedef struct scene_body {
     lanes pull[TREE_SLOTS(TREE_PUSHES)][2];    /* N, in the present step: see scene_push */
 } scene_body;
 
+/* Of a joint that slides the displacement in place of the sine. */
 typedef struct scene_trig {
     lanes sine[TREE_SLOTS(TREE_ANGLES)], cosine[TREE_SLOTS(TREE_ANGLES)];
 } scene_trig;
@@ -183,14 +217,67 @@ HOT void tree_turn(bool straight, lanes sine, lanes cosine, const lanes v[2], la
     out[1] = lanes_fma(sine, v[0], cosine * v[1]);
 }
 
+/* Does joint i slide? */
+HOT bool tree_slides(int i)
+{
+    return TREE_SLIDES && tree_slide[i];
+}
+/* The angle that the coordinate of joint i is measured against, or -1. */
+HOT int tree_against(int i)
+{
+    return tree_slides(i) ? -1 : tree_above[i];
+}
+/* Is the coordinate an angle against the ground's normal? */
+HOT bool tree_upright(int i)
+{
+    return tree_above[i] < 0 && !tree_slides(i);
+}
 /* Angle or place of joint i (-1: the rail) in these absolute coordinates, or its rate. */
 HOT lanes tree_joint(const lanes *s, int i)
 {
     if (i < 0)
         return s[0];
-    if (tree_above[i] < 0)
+    if (tree_against(i) < 0)
         return s[TREE_BASE + i];
-    return s[TREE_BASE + i] - s[TREE_BASE + tree_above[i]];
+    return s[TREE_BASE + i] - s[TREE_BASE + tree_against(i)];
+}
+/* The rate of the frame that joint i slides in. */
+HOT lanes tree_frame_rate(const lanes *w, int i)
+{
+    return tree_above[i] < 0 ? lanes_of(0) : w[TREE_BASE + tree_above[i]];
+}
+
+/* T of joint i, which slides. */
+HOT void tree_axis(const scene_body *b, const scene_trig *trig, int i, lanes T[2])
+{
+    const int j = tree_above[i];
+    T[0] = b->joint[i][0], T[1] = b->joint[i][1];
+    if (j >= 0)
+        tree_turn(tree_straight_joint[i], trig->sine[j], trig->cosine[j], b->joint[i], T);
+}
+/* -E T of joint i: as which a slide is in a sum over the arms of angles. */
+HOT void tree_slide_arm(const scene_body *b, const scene_trig *trig, int i, lanes out[2])
+{
+    lanes T[2];
+    tree_axis(b, trig, i, T);
+    out[0] = T[1], out[1] = -T[0];
+}
+/* R(a_j) times an arm of frame j that the joints of `row` lengthen which slide in it: those >= 0.
+ */
+HOT void tree_arm(const scene_body *b, const scene_trig *trig, bool straight, const lanes arm[2],
+                  int j, const int *row, lanes out[2])
+{
+    lanes v[2] = {arm[0], arm[1]};
+    TREE_UNROLL
+    for (int k = 0; k < tree_slide_count; k++) {
+        const int i = tree_sliding[k];
+        if (tree_above[i] != j || row[i] < 0)
+            continue;
+        straight = straight && tree_straight_joint[i];
+        for (int axis = 0; axis < 2; axis++)
+            v[axis] = lanes_fma(trig->sine[i], b->joint[i][axis], v[axis]);
+    }
+    tree_turn(straight, trig->sine[j], trig->cosine[j], v, out);
 }
 
 /* The user's coordinates q = (x, z of the reference point, upright; the root's angle, upright;
@@ -202,8 +289,10 @@ static inline void scene_enter(const stance_tree_numbers *number, const double *
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = i < tree_base_size ? q[i] : 0, w[i] = i < tree_base_size ? v[i] : 0;
     for (int i = 0; i < tree_angles; i++) {
-        const int up = tree_above[i];
-        s[TREE_BASE + i] = q[tree_base_size + i] + (up < 0 ? slope[0] : s[TREE_BASE + up]);
+        const int up = tree_against(i);
+        s[TREE_BASE + i] = q[tree_base_size + i] + (tree_upright(i) ? slope[0]
+                                                    : up < 0        ? 0
+                                                                    : s[TREE_BASE + up]);
         w[TREE_BASE + i] = v[tree_base_size + i] + (up < 0 ? 0 : w[TREE_BASE + up]);
     }
     if (tree_free) {
@@ -224,8 +313,10 @@ static inline void scene_leave(const stance_tree_numbers *number, const double *
     for (int i = 0; i < tree_base_size; i++)
         q[i] = s[i], v[i] = w[i];
     for (int i = 0; i < tree_angles; i++) {
-        const int up = tree_above[i];
-        q[tree_base_size + i] = s[TREE_BASE + i] - (up < 0 ? slope[0] : s[TREE_BASE + up]);
+        const int up = tree_against(i);
+        q[tree_base_size + i] = s[TREE_BASE + i] - (tree_upright(i) ? slope[0]
+                                                    : up < 0        ? 0
+                                                                    : s[TREE_BASE + up]);
         v[tree_base_size + i] = w[TREE_BASE + i] - (up < 0 ? 0 : w[TREE_BASE + up]);
     }
     if (tree_free) {
@@ -242,12 +333,19 @@ static inline void scene_leave(const stance_tree_numbers *number, const double *
     }
 }
 
+HOT void tree_trigonometry(const lanes *s, int a, scene_trig *trig)
+{
+    if (tree_slides(a))
+        trig->sine[a] = s[TREE_BASE + a], trig->cosine[a] = lanes_of(0);
+    else
+        lanes_sincos(s[TREE_BASE + a], &trig->sine[a], &trig->cosine[a]);
+}
 HOT void scene_trigonometry(const lanes *s, scene_trig *trig)
 {
     tree_pad_trig(trig);
     TREE_UNROLL
     for (int a = 0; a < tree_angles; a++)
-        lanes_sincos(s[TREE_BASE + a], &trig->sine[a], &trig->cosine[a]);
+        tree_trigonometry(s, a, trig);
 }
 /* The part that contacts need. */
 HOT void scene_contact_trigonometry(const lanes *s, scene_trig *trig)
@@ -256,7 +354,7 @@ HOT void scene_contact_trigonometry(const lanes *s, scene_trig *trig)
     TREE_UNROLL
     for (int a = 0; a < tree_angles; a++)
         if (tree_carries[a])
-            lanes_sincos(s[TREE_BASE + a], &trig->sine[a], &trig->cosine[a]);
+            tree_trigonometry(s, a, trig);
 }
 HOT void scene_choose_trig(mask m, const scene_trig *a, const scene_trig *b, scene_trig *trig)
 {
@@ -273,7 +371,8 @@ HOT mask scene_angles_in_range(const lanes *s)
 {
     mask in = LANES_ALL;
     for (int a = 0; a < tree_angles; a++)
-        in &= mask_less_equal(lanes_abs(s[TREE_BASE + a]), lanes_of(SINCOS_LARGEST_ANGLE));
+        if (!tree_slides(a))
+            in &= mask_less_equal(lanes_abs(s[TREE_BASE + a]), lanes_of(SINCOS_LARGEST_ANGLE));
     return in;
 }
 
@@ -291,7 +390,7 @@ HOT void scene_posture(const lanes *s, lanes *posture)
 /* What the user's posture is to be raised by for that. */
 static inline double scene_posture_origin(const stance_tree_numbers *number, int i)
 {
-    return i >= tree_rail && tree_above[i - tree_rail] < 0 ? number->slope[0] : 0;
+    return i >= tree_rail && tree_upright(i - tree_rail) ? number->slope[0] : 0;
 }
 
 /* q and its rates: what scene_leave gives, without sines of its own. */
@@ -305,7 +404,7 @@ HOT void scene_coordinates(const scene_body *b, const scene_trig *trig, const la
     for (int i = 0; i < tree_angles; i++) {
         q[tree_base_size + i] = tree_joint(s, i);
         v[tree_base_size + i] = tree_joint(w, i);
-        if (tree_above[i] < 0)
+        if (tree_upright(i))
             q[tree_base_size + i] = q[tree_base_size + i] - b->slope[0];
     }
     if (tree_free) {
@@ -429,16 +528,22 @@ HOT mask scene_falls(const scene_body *b, const lanes *s, const scene_trig *trig
     }
     lanes height = tree_base(b, s, 1);
     if (tree_point_top[cause] >= 0)
-        height = height + b->joint[tree_point_top[cause]][1];
+        height = height + (tree_point_top[cause] == TREE_OWN ? b->point[cause][1]
+                                                             : b->joint[tree_point_top[cause]][1]);
     TREE_UNROLL
     for (int j = 0; j < tree_angles; j++) {
         const int through = tree_point_path[cause][j];
         if (through < 0)
             continue;
+        if (tree_slides(j)) {
+            if (tree_above[j] < 0)
+                height = lanes_fma(trig->sine[j], b->joint[j][1], height);
+            continue;
+        }
         lanes reach[2];
-        tree_turn(through != TREE_OWN && tree_straight_joint[through], trig->sine[j],
-                  trig->cosine[j], through == TREE_OWN ? b->point[cause] : b->joint[through],
-                  reach);
+        tree_arm(b, trig, through != TREE_OWN && tree_straight_joint[through],
+                 through == TREE_OWN ? b->point[cause] : b->joint[through], j,
+                 tree_point_path[cause], reach);
         height = height + reach[1];
     }
     return mask_less_equal(height, b->lowest[cause]);

@@ -43,8 +43,8 @@ static bool misplaced(struct description *d, const struct part_key *key, int i, 
 {
     static const char *const joint[] = {
         [STANCE_FREE] = "a free root has no joint",
-        [STANCE_HINGE] = "a hinge has no rail",
-        [STANCE_SLIDE] = "a rail has no such number",
+        [STANCE_HINGE] = "a hinge has no axis",
+        [STANCE_SLIDE] = "what slides has no such number",
         [STANCE_FIXED] = "what is fixed has no joint",
     };
     return problem_add(description_problems(d), mark, "%s: %s", path,

@@ -177,12 +177,12 @@ static bool read_joint(struct description *d, struct entry *entry)
         return false;
     entry->joint = (stance_joint)word;
     const bool root = !tree_find(entry->map, "parent");
-    const char *const wrong = entry->joint == STANCE_FIXED && root
-                                  ? "a root is free, or a hinge, or slides"
-                              : entry->joint == STANCE_FREE && !root
-                                  ? "only the root is free; what has a parent is a hinge or fixed"
-                              : entry->joint == STANCE_SLIDE && !root ? "only the root slides"
-                                                                      : NULL;
+    const char *const wrong =
+        entry->joint == STANCE_FIXED && root ? "a root is free, or a hinge, or slides"
+        : entry->joint == STANCE_FREE && !root
+            ? "only the root is free; what has a parent is a hinge, slides, or "
+              "is fixed"
+            : NULL;
     return !wrong || problem_add(description_problems(d), node->mark, "%s: %s", path, wrong);
 }
 
@@ -298,15 +298,24 @@ static void fill_structure(struct description *d)
     }
 }
 
-static bool check_turning(struct description *d)
+/* Does a body move along the root's rail alone? */
+static bool on_rail(const stance_mechanism *m, int b)
 {
-    int turning = 0;
+    while (m->body[b].joint == STANCE_FIXED)
+        b = m->body[b].parent;
+    return b == 0 && m->body[b].joint == STANCE_SLIDE;
+}
+
+static bool check_joints(struct description *d)
+{
+    int moving = 0;
     for (int b = 0; b < d->m->bodies; b++)
-        turning += d->m->body[b].joint == STANCE_FREE || d->m->body[b].joint == STANCE_HINGE;
-    return turning <= STANCE_MAX_ANGLES ||
+        moving += d->m->body[b].joint != STANCE_FIXED && !(b == 0 && on_rail(d->m, b));
+    return moving <= STANCE_MAX_ANGLES ||
            problem_add(description_problems(d),
                        tree_find(tree_find(d->r->tree.root, "robot"), "bodies")->mark,
-                       "robot.bodies: %d of them turn; at most %d", turning, STANCE_MAX_ANGLES);
+                       "robot.bodies: %d of them turn or slide against their parents; at most %d",
+                       moving, STANCE_MAX_ANGLES);
 }
 
 /* A contact needs a body that can leave the ground, and a point or two ends. */
@@ -314,10 +323,7 @@ static bool check_contact(struct description *d, int i)
 {
     const struct entry *const entry = &d->entry[PART_CONTACT][i];
     const char *const name = entry->key->name;
-    int b = d->m->element[i].body;
-    while (d->m->body[b].joint == STANCE_FIXED)
-        b = d->m->body[b].parent;
-    bool good = d->m->body[b].joint != STANCE_SLIDE ||
+    bool good = !on_rail(d->m, d->m->element[i].body) ||
                 problem_add(description_problems(d), tree_find(entry->map, "body")->mark,
                             "robot.contacts.%s.body: %s cannot move off its rail", name,
                             d->m->body[d->m->element[i].body].name);
@@ -363,7 +369,7 @@ static bool check_push(struct description *d, int i)
 
 static bool check_links(struct description *d)
 {
-    bool good = check_turning(d);
+    bool good = check_joints(d);
     for (int i = 0; i < d->m->points; i++)
         good = check_push(d, i) && good;
     for (int i = 0; i < d->m->elements; i++)

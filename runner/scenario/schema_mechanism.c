@@ -46,9 +46,10 @@ const struct part_key part_keys[] = {
     {PART_BODY, {.path = "joint", .type = FIELD_WORD, .required = true, WORD_ROW,
         .words = joint_words, .word_count = 4, .text = "what it may do against its parent",
         .more = "A root (one body has no parent) is free, turns on a hinge in the world, or slides "
-                "along a rail and does not turn. Any other turns on a hinge, or is fixed to its "
-                "parent. Its angle, counter-clockwise, is called as the body is; 0: its frame has "
-                "the parent's direction."}, .joints = ANY},
+                "along a rail and does not turn. Any other turns on a hinge, slides along an axis "
+                "of its parent and keeps the parent's angle, or is fixed to it. Its angle, "
+                "counter-clockwise, or its displacement is called as the body is; 0: its frame has "
+                "the parent's direction, or stands where its joint is."}, .joints = ANY},
     {PART_BODY, {.path = "parent", .type = FIELD_WORD, WORD_ROW,
         .fallback_text = "none, it is the root", .text = "the body that it hangs from"},
         .joints = HANGS, .names_body = true},
@@ -58,11 +59,11 @@ const struct part_key part_keys[] = {
                 "copied."}, .joints = ANY, .names_body = true},
     {PART_BODY, {.path = "at", BODY_TWO(at), .unit = "m", RANGE(-FAR, FAR),
         .fallback_text = "[0, 0]", .text = "its joint, x and z in the parent's frame",
-        .more = "Of a root in the world's. It is the origin of the body's own frame."},
-        .joints = HANGS},
+        .more = "Of a root in the world's. It is the origin of the body's own frame, from where what "
+                "slides takes it along."}, .joints = HANGS},
     {PART_BODY, {.path = "axis", BODY_TWO(axis), .unit = "1", RANGE(-FAR, FAR),
-        .fallback_text = "[1, 0]", .text = "direction of its rail, x and z, of any length"},
-        .joints = SLIDES},
+        .fallback_text = "[1, 0]", .text = "direction in which it slides, of any length",
+        .more = "x and z in the parent's frame; of a root in the world's."}, .joints = SLIDES},
     {PART_BODY, {.path = "mass", BODY(mass), .unit = "kg", RANGE(0, LARGE), .text = "mass"},
         .joints = ANY},
     {PART_BODY, {.path = "inertia", BODY(inertia), .unit = "kg m^2", RANGE(0, LARGE),

@@ -90,6 +90,20 @@ HOT mask direct_stood(const struct contact_rule *rule, contact_set touching, con
     return stood;
 }
 
+/* Lanes where impulses r of active contacts are in the cones. */
+HOT mask direct_obeys(lanes friction, contact_set touching, const lanes (*r)[2])
+{
+    mask inside = LANES_ALL;
+    EACH (c, 0, SCENE_CONTACTS) {
+        if (!(touching >> c & 1))
+            continue;
+        inside &= mask_less_equal(lanes_of(0), r[c][0]);
+        if (contact_unknowns(c) == 2)
+            inside &= contact_inside(friction, contact_load(c, r), r[c][1]);
+    }
+    return inside;
+}
+
 /* Impulses with which all active contacts stick; returns the lanes where they are in the cones, and
  * the operator is regular. */
 HOT mask direct_stick(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
@@ -97,16 +111,139 @@ HOT mask direct_stick(const struct contact_rule *rule, const lanes (*D)[CONTACTS
 {
     mask rows[CONTACTS][2];
     direct_rows(active, rows);
-    mask inside = contact_rest(touching, CONTACT_PLAIN, D, uf, (const mask(*)[2])rows, NULL, r);
-    EACH (c, 0, SCENE_CONTACTS) {
-        if (!(touching >> c & 1))
+    const mask regular =
+        contact_rest(touching, CONTACT_PLAIN, D, uf, (const mask(*)[2])rows, NULL, r);
+    return regular & direct_obeys(rule->friction, touching, (const lanes(*)[2])r);
+}
+
+/* Velocities with the impulses r of contacts in `touching`, of others zero. */
+HOT void direct_velocities(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2],
+                           contact_set touching, const lanes (*r)[2], lanes (*u)[2])
+{
+    EACH (c, 0, SCENE_CONTACTS)
+        EACH (a, 0, 2) {
+            u[c][a] = lanes_of(0);
+            if (!(touching >> c & 1) || a >= contact_unknowns(c))
+                continue;
+            u[c][a] = uf[c][a];
+            EACH (k, 0, SCENE_CONTACTS)
+                EACH (b, 0, 2)
+                    if (b < contact_unknowns(k) && (touching >> k & 1))
+                        u[c][a] = lanes_fma(D[c][k][a][b], r[k][b], u[c][a]);
+        }
+}
+
+/* What can be exchanged between contacts in `rows` without any change of velocity: n with D n = 0,
+ * from the blocks G that elimination has left. Returns the lanes where there is one such direction;
+ * several: *many. */
+static inline mask direct_redundant(contact_set touching, const lanes (*D)[CONTACTS][2][2],
+                                    const mask (*rows)[2], const lanes (*G)[CONTACTS][2][2],
+                                    const struct contact_factors *f, lanes (*n)[2], mask *many)
+{
+    mask any = MASK_NONE;
+    *many = MASK_NONE;
+    for (int p = SCENE_CONTACTS - 1; p >= 0; p--) {
+        const lanes(*const g)[2] = G[p][p];
+        lanes own[2], null[2] = {lanes_of(1), lanes_of(0)};
+        n[p][0] = n[p][1] = lanes_of(0);
+        if (!(touching >> p & 1))
             continue;
-        inside &= mask_less_equal(lanes_of(0), r[c][0]);
-        if (contact_unknowns(c) == 2)
-            inside &=
-                contact_inside(rule->friction, contact_load(c, (const lanes(*)[2])r), r[c][1]);
+        for (int a = 0; a < 2; a++)
+            own[a] = choose(rows[p][a], lanes_abs(D[p][p][a][a]), lanes_of(1));
+        lanes left = g[0][0], whole = own[0];
+        if (contact_unknowns(p) == 2) {
+            const mask first = mask_less_equal(lanes_abs(g[1][1]), lanes_abs(g[0][0]));
+            const lanes larger = choose(first, g[0][0], g[1][1]);
+            left = lanes_fnma(g[0][1], g[1][0], g[0][0] * g[1][1]);
+            whole = own[0] * own[1];
+            null[0] = choose(first, -g[0][1], g[1][1]);
+            null[1] = choose(first, g[0][0], -g[1][0]);
+            *many |=
+                mask_less_equal(lanes_abs(larger), LANE_PARALLEL * choose(first, own[0], own[1]));
+        }
+        const mask here = mask_less_equal(lanes_abs(left), LANE_PARALLEL * whole);
+        *many |= any & here;
+        any |= here;
+        for (int a = 0; a < contact_unknowns(p); a++) {
+            n[p][a] = choose(here, null[a], lanes_of(0));
+            for (int k = p + 1; k < SCENE_CONTACTS; k++)
+                if (touching >> k & 1)
+                    n[p][a] = contact_row(k, f->push[p][k][a], n[k], n[p][a]);
+        }
     }
-    return inside;
+    return any & LANES_NOT(*many);
+}
+
+/* How far r lies from the middle of what the laws admit along n: see lane_share. */
+static inline lanes direct_middle(lanes friction, contact_set touching, const lanes (*n)[2],
+                                  const lanes (*r)[2])
+{
+    const lanes none = lanes_of(0);
+    lanes low = lanes_of(-INFINITY), high = lanes_of(INFINITY);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int side = -1; side <= 1 && touching >> c & 1; side++) {
+            lanes room = r[c][0], rate = n[c][0];
+            if (side == 0 ? contact_is_point(c) : contact_unknowns(c) == 1)
+                continue;
+            if (side != 0) {
+                room = lanes_fma(friction, contact_load(c, r), side * r[c][1]);
+                rate = lanes_fma(friction, contact_load(c, n), side * n[c][1]);
+            }
+            const lanes edge = -room / rate;
+            low = choose(mask_less(none, rate), lanes_max(edge, low), low);
+            high = choose(mask_less(rate, none), lanes_min(edge, high), high);
+        }
+    const lanes middle = 0.5 * (low + high);
+    return choose(mask_less_equal(low, high) & mask_finite(middle), middle, none);
+}
+
+/* As lane_hold, in lanes, but where there are several redundancies: impulses with which all active
+ * contacts stick, whatever the operator, and the lanes where they obey the laws. */
+COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS][2][2],
+                      const lanes (*uf)[2], contact_set touching, const mask *active, lanes (*r)[2])
+{
+    const lanes none = lanes_of(0);
+    struct contact_factors f;
+    mask rows[CONTACTS][2], many, good = LANES_ALL;
+    lanes M[CONTACTS][CONTACTS][2][2], n[CONTACTS][2], u[CONTACTS][2], x[CONTACTS][2];
+    direct_rows(active, rows);
+    contact_matrix(touching, D, (const mask(*)[2])rows, NULL, M);
+    contact_factor(touching, CONTACT_CAREFUL, M, &f);
+    const mask shared = direct_redundant(touching, D, (const mask(*)[2])rows,
+                                         (const lanes(*)[CONTACTS][2][2])M, &f, n, &many);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2; a++)
+            r[c][a] = none;
+    for (int round = 0; round < 2; round++) { /* once more with what is left */
+        direct_velocities(D, uf, touching, (const lanes(*)[2])r, u);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                u[c][a] = choose(rows[c][a], u[c][a], none);
+        contact_back(touching, &f, (const lanes(*)[2])u, x);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                r[c][a] = r[c][a] + x[c][a];
+    }
+    if (mask_any(shared)) {
+        const lanes by =
+            direct_middle(friction, touching, (const lanes(*)[2])n, (const lanes(*)[2])r);
+        mask moves = shared;
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            x[c][0] = x[c][1] = none;
+        direct_velocities(D, (const lanes(*)[2])x, touching, (const lanes(*)[2])n, u);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                moves &= LANES_NOT(rows[c][a]) |
+                         mask_less_equal(lanes_abs(by * u[c][a]), 0.25 * tolerance);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                r[c][a] = choose(moves, lanes_fma(by, n[c][a], r[c][a]), r[c][a]);
+    }
+    direct_velocities(D, uf, touching, (const lanes(*)[2])r, u);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2; a++)
+            good &= LANES_NOT(rows[c][a]) | mask_less_equal(lanes_abs(u[c][a]), tolerance);
+    return good & LANES_NOT(many) & direct_obeys(friction, touching, (const lanes(*)[2])r);
 }
 
 /* ---- one mode of all ------------------------------------------------------------------------- */
@@ -187,23 +324,6 @@ HOT lanes direct_violation(const struct contact_rule *rule, const lanes (*D)[CON
         worst = lanes_max(choose(contact_part(c, active), off, none), worst);
     }
     return worst;
-}
-
-/* Velocities with the impulses r of contacts in `touching`, of others zero. */
-HOT void direct_velocities(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2],
-                           contact_set touching, const lanes (*r)[2], lanes (*u)[2])
-{
-    EACH (c, 0, SCENE_CONTACTS)
-        EACH (a, 0, 2) {
-            u[c][a] = lanes_of(0);
-            if (!(touching >> c & 1) || a >= contact_unknowns(c))
-                continue;
-            u[c][a] = uf[c][a];
-            EACH (k, 0, SCENE_CONTACTS)
-                EACH (b, 0, 2)
-                    if (b < contact_unknowns(k) && (touching >> k & 1))
-                        u[c][a] = lanes_fma(D[c][k][a][b], r[k][b], u[c][a]);
-        }
 }
 
 /* Tries modes in the lanes of `todo`, where a solution is the only one: r. Returns the lanes where
@@ -289,14 +409,17 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
 {
     const lanes none = lanes_of(0);
     lanes stick[CONTACTS][2], scale = lanes_of(1);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < contact_unknowns(c) && touching >> c & 1; a++)
+            scale = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), scale);
+    const lanes tolerance = CONTACT_TOLERANCE * scale;
     const mask stood = unsure & direct_stood(rule, touching, active);
-    const mask inside = unsure & direct_stick(rule, D, uf, touching, active, stick);
+    const mask inside =
+        unsure & direct_hold(rule->friction, tolerance, D, uf, touching, active, stick);
     mask least = rule->indefinite ? MASK_NONE : inside & mask_less(none, rule->prefer);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         if (!(touching >> c & 1))
             continue;
-        for (int a = 0; a < contact_unknowns(c); a++)
-            scale = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), scale);
         if (rule->shift)
             least &= LANES_NOT(active[c] & mask_less(rule->shift[c], none));
         if (rule->sliding)
@@ -312,7 +435,7 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
         done |= least & sure;
         const mask todo = sure & LANES_NOT(done);
         if (mask_any(todo))
-            done |= direct_modes(rule, D, uf, touching, active, CONTACT_TOLERANCE * scale, todo, r);
+            done |= direct_modes(rule, D, uf, touching, active, tolerance, todo, r);
     }
     const mask left = unsure & LANES_NOT(done);
     for (int lane = 0; lane < LANES && mask_any(left); lane++) {
@@ -345,10 +468,10 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
     }
 }
 
-/* Impulses of the active contacts for the linearised step; zero elsewhere. `rule` is about all
- * contacts, D and uf are zero but for those in `touching`. */
+/* Impulses of the active contacts for the linearised step, in the lanes of `where`; zero of other
+ * contacts. `rule` is about all contacts, D and uf are zero but for those in `touching`. */
 HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                        const lanes (*uf)[2], contact_set touching, const mask *active,
+                        const lanes (*uf)[2], contact_set touching, mask where, const mask *active,
                         lanes (*r)[2], struct contact_verdict *v)
 {
     const lanes none = lanes_of(0);
@@ -412,6 +535,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
                         r[c][a] = choose(stays, all[c][a], r[c][a]);
         }
     }
+    unsure &= where;
     if (!mask_any(unsure))
         return;
     /* With copies: what is passed on by address stays in memory. */

@@ -65,7 +65,8 @@ static inline void iterate_place(const struct setting *set, const struct motion 
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
 }
 
-/* Contact impulses of an iterate: adds what they do to the correction dw of the velocity. */
+/* Contact impulses of an iterate in the lanes of `running`: adds what they do to the correction dw
+ * of the velocity; `all`: whatever becomes of the others. */
 HOT void iterate_contacts(const struct setting *set, const struct motion *from, bool all,
                           mask running, bool coupled, contact_set touching, const scene_matrix *J,
                           const scene_trig *direction, lanes lever, lanes *dw, struct iterate *it)
@@ -112,7 +113,7 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
                                       .before = it->before,
                                       .last = (const lanes(*)[2])it->r};
     solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])D, (const lanes(*)[2])uf, touching,
-                   it->active, r, &now);
+                   running, it->active, r, &now);
     it->verdict = all ? now : contact_verdicts(running, &now, &it->verdict);
     EACH (c, 0, SCENE_CONTACTS) {
         if (!(touching >> c & 1))
@@ -139,7 +140,7 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
     }
 }
 
-/* One Newton iteration in the lanes that still run. With the
+/* One Newton iteration in the lanes that still run; `all`: whatever becomes of the others. With the
  * geometry frozen the derivatives by it are left out too, so that the operator is constant. */
 HOT void iterate_newton(const struct setting *set, const struct motion *from, lanes h, bool all,
                         mask running, bool impacts, mask impact, bool coupled, bool frozen,

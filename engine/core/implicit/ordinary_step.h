@@ -55,6 +55,10 @@ static inline void ordinary_forget(struct ordinary *q, mask m)
 HOT void ordinary_turn(const scene_trig *from, const lanes *d, scene_trig *to)
 {
     for (int a = 0; a < SCENE_ANGLES; a++) {
+        if (SCENE_SLIDES(a)) {
+            to->sine[a] = from->sine[a] + d[a], to->cosine[a] = from->cosine[a];
+            continue;
+        }
         const lanes x = d[a], t = x * x, s = from->sine[a], c = from->cosine[a];
         lanes sine = lanes_fma(t, lanes_of(-1. / 5040), lanes_of(1. / 120));
         sine = lanes_fma(t, sine, lanes_of(-1. / 6));
@@ -76,8 +80,8 @@ HOT void ordinary_take(bool all, mask m, const scene_trig *from, scene_trig *to)
     }
 }
 
-/* Places the iterate in the lanes of m, or in all: its end position and the sines there (and
- * halfway). */
+/* Places the iterate in the lanes of m - `all`: whatever becomes of the others -, its end position
+ * and the sines there (and halfway). */
 HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lanes h, bool all,
                         mask m, struct iterate *it)
 {
@@ -88,7 +92,8 @@ HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lan
         halfway[i] = from->s[i] + METHOD_THETA * move;
         if (i >= FIRST_ANGLE) {
             d[i - FIRST_ANGLE] = METHOD_THETA * move;
-            farthest = lanes_max(lanes_abs(move), farthest);
+            if (!SCENE_SLIDES(i - FIRST_ANGLE))
+                farthest = lanes_max(lanes_abs(move), farthest);
         }
     }
     if (SCENE_ANGLES == 0) {
@@ -123,15 +128,15 @@ HOT mask ordinary_arrive(const struct motion *from, lanes h, const lanes *old, s
     for (int i = 0; i < SCENE_COORDINATES; i++) {
         d[i] = (h * METHOD_THETA) * (it->w[i] - old[i]);
         it->s1[i] = lanes_fma(h, step_velocity(from->w[i], it->w[i]), from->s[i]);
-        if (i >= FIRST_ANGLE)
+        if (i >= FIRST_ANGLE && !SCENE_SLIDES(i - FIRST_ANGLE))
             farthest = lanes_max(lanes_abs(d[i]), farthest);
     }
     trig_turn(&it->end, LANES_ALL, d);
     return mask_less_equal(farthest, lanes_of(ORDINARY_SMALL));
 }
 
-/* One iteration in the lanes of m, or in all; `old` is where it started. Returns the lanes where
- * the error left is certainly small. */
+/* One iteration in the lanes of m; `all`: whatever becomes of the others. `old` is where it
+ * started. Returns the lanes where the error left is certainly small. */
 HOT mask ordinary_iterate(const struct ordinary *q, const struct setting *set,
                           const struct motion *from, lanes h, bool all, mask m,
                           contact_set touching, lanes *old, struct iterate *it)
@@ -172,7 +177,7 @@ HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
     for (int i = 0; i < SCENE_COORDINATES; i++)
         it->w[i] = from->w[i] + lanes_fms(lanes_of(2), q->change[i], q->before[i]);
     *iterations = lanes_of(1);
-    mask there = run & ordinary_iterate(q, set, from, h, true, LANES_ALL, touching, old, it);
+    mask there = run & ordinary_iterate(q, set, from, h, true, run, touching, old, it);
     const mask running = run & LANES_NOT(there);
     if (mask_any(running)) { /* with copies: what is passed on by address stays in memory */
         struct iterate copy = *it;

@@ -94,6 +94,10 @@ HOT void trig_turn(scene_trig *trig, mask where, const lanes *d)
 {
     for (int a = 0; a < SCENE_ANGLES; a++) {
         const lanes x = d[FIRST_ANGLE + a], s = trig->sine[a], c = trig->cosine[a];
+        if (SCENE_SLIDES(a)) {
+            trig->sine[a] = choose(where, s + x, s);
+            continue;
+        }
         const lanes half = 0.5 * (x * x);
         trig->sine[a] = choose(where, s + (x * c - half * s), s);
         trig->cosine[a] = choose(where, c - (x * s + half * c), c);
@@ -174,14 +178,14 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
         for (int i = 0; i < SCENE_COORDINATES; i++) {
             d[i] = choose(todo, d[i], lanes_of(0));
             it->s1[i] = choose(todo, it->s1[i] + d[i], it->s1[i]);
-            if (i >= FIRST_ANGLE)
+            if (i >= FIRST_ANGLE && !SCENE_SLIDES(i - FIRST_ANGLE))
                 turned += lanes_abs(d[i]);
         }
         *energy += lanes_abs(scene_energy_change(&set->body, it->s1, &it->end, it->w, d));
         EACH (c, 0, SCENE_CONTACTS) {
             it->gap[c] =
                 choose(todo, it->gap[c] + scene_gap_change(&set->body, &it->end, c, d), it->gap[c]);
-            far = lanes_max(scene_gap_change_error(&set->body, c, d), far);
+            far = lanes_max(scene_gap_change_error(&set->body, &it->end, c, d), far);
         }
         trig_turn(&it->end, todo, d);
         const mask moved = todo & mask_less(lanes_of(0.1 * STEP_PROJECTION), far);

@@ -10,6 +10,12 @@
 #define SCENE_TORQUE_LIMIT(c, i) ((void)(c), INFINITY)
 #endif
 
+/* Of the last SCENE_ANGLES coordinates some may be displacements that scene_trig keeps in place of
+ * the sine. */
+#ifndef SCENE_SLIDES
+#define SCENE_SLIDES(a) ((void)(a), false)
+#endif
+
 /* Pushes that a scene may get; without any: */
 #ifndef SCENE_PUSHES
 #define SCENE_PUSHES 0

@@ -192,7 +192,7 @@ static inline void between_mode(const struct setting *set, const struct dynamics
                                       .sliding = sliding,
                                       .before = (const lanes(*)[2])before};
     solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free,
-                   touching, part, r, &verdict);
+                   touching, LANES_ALL, part, r, &verdict);
     direct_velocities((const lanes(*)[CONTACTS][2][2])e->D, (const lanes(*)[2])e->free, CONTACT_ALL,
                       (const lanes(*)[2])r, u);
     trouble->none = any & verdict.unsolved;
@@ -348,7 +348,7 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     const struct contact_rule rule = {
         .friction = set->friction, .prefer = set->prefer, .shift = rebound};
     solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])e.D, (const lanes(*)[2])uf, CONTACT_ALL,
-                   part, r, &verdict);
+                   LANES_ALL, part, r, &verdict);
     between_push(part, (const lanes(*)[2][SCENE_COORDINATES])e.response, (const lanes(*)[2])r,
                  now->w);
     for (int c = 0; c < SCENE_CONTACTS; c++) {

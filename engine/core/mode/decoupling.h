@@ -204,7 +204,8 @@ static inline mask decoupling_react(const struct setting *set, mask where, conta
                                       .indefinite = true};
     for (int round = 0; round < 2; round++) {
         solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])problem.D,
-                       (const lanes(*)[2])problem.free, touching, part, problem.r, &verdict);
+                       (const lanes(*)[2])problem.free, touching, LANES_ALL, part, problem.r,
+                       &verdict);
         several |= where & verdict.ambiguous;
         if (round > 0 || !mask_any(verdict.unsolved))
             break;
