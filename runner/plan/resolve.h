@@ -85,6 +85,7 @@ bool resolve_law(const stance_scene *scene, const struct scenario_values *values
 
 /* false: the selection of a decoupling law is singular where *start begins. In a sweep such a
  * case runs all the same, with a damped law. */
-bool resolve_selection(const stance_scene *scene, const stance_case *start, stance_message *message);
+bool resolve_selection(const stance_scene *scene, const stance_case *start,
+                       stance_message *message);
 
 #endif

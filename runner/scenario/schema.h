@@ -89,8 +89,8 @@ struct schema {
     const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
     const char *laws[STANCE_MAX_LAWS], *far_laws[STANCE_MAX_LAWS];
     size_t scene_count, method_count, law_count, far_law_count;
-    char kind_of[STANCE_MAX_LAWS][48];          /* "controller.kind NAME" */
-    char kinds[600];                            /* what there is to know of controller.kind */
+    char kind_of[STANCE_MAX_LAWS][48]; /* "controller.kind NAME" */
+    char kinds[600];                   /* what there is to know of controller.kind */
     char selection[STANCE_MAX_SELECTIONS][SCENARIO_NAME]; /* "x-theta" */
     const char *selections[STANCE_MAX_SELECTIONS];
     const char *bodies[STANCE_MAX_BODIES], *elements[STANCE_MAX_ELEMENTS]; /* of a mechanism */
