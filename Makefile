@@ -164,7 +164,7 @@ other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/golden $(BUILD)/te
 
 $(BUILD)/tests/%: tests/%.c $(shared_objects) $(archives)
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(kernel_warnings) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
 	    $(shared_objects) $(archives) $(LDFLAGS) $(LIBS) -lcmocka
 
 # Each instruction set's fused multiply-adds, for test_fma.
@@ -218,7 +218,7 @@ golden-neon:
 $(BUILD)/tests/test_export: LIBS += $(MUJOCO:%=-lmujoco)
 
 # ---- benchmarks: what the kernels are held to -----------------------------------------------------
-bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit)
+bench_programs = $(BUILD)/tests/bench_scalar $(BUILD)/tests/bench_tables $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit)
 $(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit: LIBS += -lmujoco
 # By hand as fast as the compiler makes it: the instructions of the one-lane kernel, contracted.
 $(BUILD)/tests/bench_scalar: BENCH_FLAGS = $(filter -m%,$(isa_flags_scalar)) -ffp-contract=fast

@@ -444,6 +444,31 @@ static void stop_is_hit(void **state)
     arrives("a stop is hit", &r, 0.004, 1.6, x, 20);
     stance_scene_free(r.scene);
 }
+/* Whatever the interval before it is, an impact is the contact law's and not the projection's; nor
+ * does that stop what slides. */
+static void impacts_are_not_projected(void **state)
+{
+    (void)state;
+    struct robot r = robot_of("body foot free - 1 0.01 0 0.05 0 0 turn 1.5\n"
+                              "body shank hinge foot 4 0.06 0 0.2 0 0.07 limits -0.8 0.8\n"
+                              "body thigh hinge shank 40 3 0 0.4 0 0.42 limits 0 2.5\n"
+                              "sole sole foot -0.06 0 0.14 0\n",
+                              0);
+    const stance_method *const method = stance_method_find("capturing");
+    uint64_t seed = 11;
+    double most = 0;
+    for (int k = 0; k < 200; k++) {
+        r.c.friction = uniform(&seed, 0.1, 1);
+        for (int i = 3; i < 5; i++) {
+            r.c.position[i] = i == 3 ? uniform(&seed, -0.7, 0.7) : uniform(&seed, 0.1, 1.5);
+            r.c.velocity[i] = uniform(&seed, -3, 3);
+        }
+        most = fmax(most, attempt(&r, method, 0.01, 1).projection_energy);
+    }
+    print_message("# energy added by projection in impacts: %.1e J\n", most);
+    assert_true(most < 1e-5);
+    stance_scene_free(r.scene);
+}
 
 /* Two bodies about one point in free flight: the stop shares out the moment of momentum. */
 static void stop_in_flight(void **state)
@@ -728,6 +753,7 @@ int main(void)
         cmocka_unit_test(sole_slides),
         cmocka_unit_test(sole_tips),
         cmocka_unit_test(stop_is_hit),
+        cmocka_unit_test(impacts_are_not_projected),
         cmocka_unit_test(stop_in_flight),
         cmocka_unit_test(rail_ends),
         cmocka_unit_test(rimless_wheel),

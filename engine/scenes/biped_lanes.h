@@ -85,7 +85,7 @@ static inline void scene_enter(const double *robot, const double *q, const doubl
     w[0] = v[0] + robot[1] * (cosine * v[2]);
     w[1] = v[1] + robot[1] * (sine * v[2]);
     s[2] = q[2], w[2] = v[2];
-    for (int i = 3; i < 5; i++)
+    EACH (i, 3, 5)
         s[i] = q[2] + q[i], w[i] = v[2] + v[i];
 }
 static inline void scene_leave(const double *robot, const double *s, const double *w, double *q,
@@ -98,25 +98,25 @@ static inline void scene_leave(const double *robot, const double *s, const doubl
     v[0] = w[0] - robot[1] * (cosine * w[2]);
     v[1] = w[1] - robot[1] * (sine * w[2]);
     q[2] = s[2], v[2] = w[2];
-    for (int i = 3; i < 5; i++)
+    EACH (i, 3, 5)
         q[i] = s[i] - s[2], v[i] = w[i] - w[2];
 }
 
 static inline void scene_trigonometry(const lanes *s, scene_trig *trig)
 {
-    for (int a = 0; a < SCENE_ANGLES; a++)
+    EACH (a, 0, SCENE_ANGLES)
         lanes_sincos(s[2 + a], &trig->sine[a], &trig->cosine[a]);
 }
 /* The part that contacts need: the legs. */
 static inline void scene_contact_trigonometry(const lanes *s, scene_trig *trig)
 {
-    for (int a = 1; a < SCENE_ANGLES; a++)
+    EACH (a, 1, SCENE_ANGLES)
         lanes_sincos(s[2 + a], &trig->sine[a], &trig->cosine[a]);
 }
 static inline void scene_choose_trig(mask m, const scene_trig *a, const scene_trig *b,
                                      scene_trig *trig)
 {
-    for (int i = 1; i < SCENE_ANGLES; i++) {
+    EACH (i, 1, SCENE_ANGLES) {
         trig->sine[i] = choose(m, a->sine[i], b->sine[i]);
         trig->cosine[i] = choose(m, a->cosine[i], b->cosine[i]);
     }
@@ -180,7 +180,7 @@ static inline void scene_residual(const scene_body *b, lanes h, lanes t, const l
     const lanes tau[SCENE_ANGLES] = {-(torque[0] + torque[1]), torque[0], torque[1]};
     const lanes hg = h * STANCE_GRAVITY;
     lanes x = b->mass * change[0], z = b->mass * (change[1] + hg);
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         const lanes s = trig->sine[a], c = trig->cosine[a];
         const lanes centrifugal = h * (w[2 + a] * w[2 + a]);
         const lanes along = k[a] * change[2 + a], across = k[a] * centrifugal;
@@ -198,23 +198,23 @@ static inline void scene_invert_angles(lanes m[SCENE_ANGLES][SCENE_ANGLES],
                                        lanes inverse[SCENE_ANGLES][SCENE_ANGLES])
 {
     lanes cofactor[3][3];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) {
+    EACH (i, 0, 3)
+        EACH (j, 0, 3) {
             const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
             cofactor[i][j] = lanes_fms(m[i1][j1], m[i2][j2], m[i1][j2] * m[i2][j1]);
         }
     const lanes reciprocal =
         1 / lanes_fma(m[0][0], cofactor[0][0],
                       lanes_fma(m[0][1], cofactor[0][1], m[0][2] * cofactor[0][2]));
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
+    EACH (i, 0, 3)
+        EACH (j, 0, 3)
             inverse[i][j] = cofactor[j][i] * reciprocal;
 }
 
 /* y = D^-1 x over the angles. */
 static inline void scene_solve_angles(const scene_matrix *m, bool coupled, const lanes *x, lanes *y)
 {
-    for (int i = 0; i < SCENE_ANGLES; i++) {
+    EACH (i, 0, SCENE_ANGLES) {
         if (!coupled) {
             y[i] = m->inverse[i][i] * x[i];
             continue;
@@ -238,7 +238,7 @@ HOT void scene_factor(const scene_body *b, lanes h, double rate, lanes lever, la
     const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};
     const lanes hg = h * STANCE_GRAVITY, twice = 2 * rate * h;
     lanes diagonal[SCENE_ANGLES];
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         const lanes s = trig->sine[a], c = trig->cosine[a], rotation = w[2 + a];
         const lanes along = lanes_fnma(lever * h, rotation * rotation, lanes_of(1));
         const lanes across = lanes_fma(lever, change[2 + a], twice * rotation);
@@ -249,28 +249,28 @@ HOT void scene_factor(const scene_body *b, lanes h, double rate, lanes lever, la
         m->column[a][1] = lanes_fma(z, along, x * across);
         diagonal[a] = lanes_fma(lever, lanes_fms(x, change[1] + hg, z * change[0]), inertia[a]);
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         const int a = 1 + c;
         const lanes turning =
             lanes_fms(contact_trig->cosine[a], r[c][0], contact_trig->sine[a] * r[c][1]);
         diagonal[a] = lanes_fnma(contact_lever * b->leg, turning, diagonal[a]);
     }
     if (!coupled) {
-        for (int a = 0; a < SCENE_ANGLES; a++) {
-            for (int j = 0; j < SCENE_ANGLES; j++)
+        EACH (a, 0, SCENE_ANGLES) {
+            EACH (j, 0, SCENE_ANGLES)
                 m->inverse[a][j] = lanes_of(0);
             m->inverse[a][a] = 1 / diagonal[a];
         }
     } else {
         lanes block[3][3];
-        for (int j = 0; j < 3; j++)
-            for (int i = 0; i < 3; i++)
+        EACH (j, 0, 3)
+            EACH (i, 0, 3)
                 block[i][j] = i == j ? diagonal[i] : lanes_of(0);
-        for (int j = 0; j < 3; j++) {
+        EACH (j, 0, 3) {
             /* By the absolute angles: d/dtheta' = d/dtheta' - d/dq1' - d/dq2', d/dphi_i' = d/dq_i'.
              */
             lanes g[2];
-            for (int i = 0; i < 2; i++) {
+            EACH (i, 0, 2) {
                 g[i] = h * torque_rate[i][j];
                 if (j == 0)
                     g[i] -= h * (torque_rate[i][1] + torque_rate[i][2]);
@@ -283,12 +283,12 @@ HOT void scene_factor(const scene_body *b, lanes h, double rate, lanes lever, la
     }
     /* Schur complement: M I - column^T D^-1 row. */
     lanes xx = b->mass, xz = lanes_of(0), zx = lanes_of(0), zz = b->mass;
-    for (int j = 0; j < 2; j++) {
+    EACH (j, 0, 2) {
         const lanes x[3] = {m->row[0][j], m->row[1][j], m->row[2][j]};
         lanes y[3];
         scene_solve_angles(m, coupled, x, y);
         lanes *const first = j == 0 ? &xx : &xz, *const second = j == 0 ? &zx : &zz;
-        for (int a = 0; a < SCENE_ANGLES; a++) {
+        EACH (a, 0, SCENE_ANGLES) {
             *first = lanes_fnma(m->column[a][0], y[a], *first);
             *second = lanes_fnma(m->column[a][1], y[a], *second);
         }
@@ -306,7 +306,7 @@ static inline void scene_inertia(const scene_body *b, const scene_trig *trig, sc
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     const lanes inverse[SCENE_ANGLES] = {b->inverse_trunk, b->inverse_leg, b->inverse_leg};
     lanes xx = b->mass, xz = lanes_of(0), zz = b->mass;
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         const lanes x = k[a] * trig->cosine[a], z = k[a] * trig->sine[a];
         const lanes scaled = inverse[a] * x;
         m->row[a][0] = m->column[a][0] = x;
@@ -332,7 +332,7 @@ static inline void scene_forces(const scene_body *b, lanes t, const lanes *place
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     const lanes tau[SCENE_ANGLES] = {-(torque[0] + torque[1]), torque[0], torque[1]};
     lanes x = lanes_of(0), z = -(b->mass * STANCE_GRAVITY);
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         const lanes centrifugal = k[a] * (w[2 + a] * w[2 + a]);
         x = lanes_fma(centrifugal, trig->sine[a], x);
         z = lanes_fnma(centrifugal, trig->cosine[a], z);
@@ -348,14 +348,14 @@ static inline void scene_solve(const scene_matrix *m, bool coupled, const lanes 
     lanes y[SCENE_ANGLES];
     scene_solve_angles(m, coupled, b + 2, y);
     lanes p[2];
-    for (int j = 0; j < 2; j++)
+    EACH (j, 0, 2)
         p[j] =
             lanes_fnma(m->column[0][j], y[0],
                        lanes_fnma(m->column[1][j], y[1], lanes_fnma(m->column[2][j], y[2], b[j])));
     x[0] = lanes_fma(m->schur[0][0], p[0], m->schur[0][1] * p[1]);
     x[1] = lanes_fma(m->schur[1][0], p[0], m->schur[1][1] * p[1]);
     lanes rest[SCENE_ANGLES];
-    for (int a = 0; a < SCENE_ANGLES; a++)
+    EACH (a, 0, SCENE_ANGLES)
         rest[a] = lanes_fnma(m->row[a][0], x[0], lanes_fnma(m->row[a][1], x[1], b[2 + a]));
     scene_solve_angles(m, coupled, rest, x + 2);
 }
@@ -376,22 +376,22 @@ static inline void scene_contact_response(const scene_body *b, const scene_matri
                                           const scene_trig *trig, int c,
                                           lanes x[2][SCENE_COORDINATES])
 {
-    for (int direction = 0; direction < 2; direction++) {
+    EACH (direction, 0, 2) {
         const bool normal = direction == 0;
         const lanes lever = b->leg * (normal ? trig->sine[1 + c] : trig->cosine[1 + c]);
         /* As scene_solve, of a load on the hip in one direction and on one angle. */
         lanes y[SCENE_ANGLES], p[2] = {lanes_of(normal ? 0 : 1), lanes_of(normal ? 1 : 0)};
-        for (int a = 0; a < SCENE_ANGLES; a++) {
+        EACH (a, 0, SCENE_ANGLES) {
             if (!coupled && a != 1 + c)
                 continue;
             y[a] = m->inverse[a][1 + c] * lever;
-            for (int j = 0; j < 2; j++)
+            EACH (j, 0, 2)
                 p[j] = lanes_fnma(m->column[a][j], y[a], p[j]);
         }
         x[direction][0] = lanes_fma(m->schur[0][0], p[0], m->schur[0][1] * p[1]);
         x[direction][1] = lanes_fma(m->schur[1][0], p[0], m->schur[1][1] * p[1]);
         lanes rest[SCENE_ANGLES];
-        for (int a = 0; a < SCENE_ANGLES; a++) {
+        EACH (a, 0, SCENE_ANGLES) {
             const lanes drawn =
                 lanes_fma(m->row[a][0], x[direction][0], m->row[a][1] * x[direction][1]);
             rest[a] = -drawn;
@@ -464,7 +464,7 @@ static inline lanes scene_energy_change(const scene_body *b, const lanes *place,
     (void)place;
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     lanes sum = b->mass * (STANCE_GRAVITY * d[1]);
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         const lanes s = trig->sine[a], c = trig->cosine[a];
         const lanes drawn = lanes_fms(c, w[1], s * w[0]);
         sum = lanes_fma(k[a] * d[2 + a], lanes_fma(w[2 + a], drawn, STANCE_GRAVITY * s), sum);
@@ -477,7 +477,7 @@ static inline lanes scene_kinetic(const scene_body *b, const scene_trig *trig, c
     const lanes k[SCENE_ANGLES] = {b->coupling_trunk, b->coupling_leg, b->coupling_leg};
     const lanes inertia[SCENE_ANGLES] = {b->inertia_trunk, b->inertia_leg, b->inertia_leg};
     lanes sum = (0.5 * b->mass) * lanes_fma(x[0], x[0], x[1] * x[1]);
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         const lanes along = lanes_fma(trig->cosine[a], x[0], trig->sine[a] * x[1]);
         sum = lanes_fma(x[2 + a], lanes_fma(k[a], along, (0.5 * inertia[a]) * x[2 + a]), sum);
     }
@@ -521,7 +521,7 @@ static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, cons
     lanes largest = lanes_max(lanes_abs(lanes_fnma(turn, trig->cosine[0], w[0])),
                               lanes_abs(lanes_fnma(turn, trig->sine[0], w[1])));
     largest = lanes_max(lanes_abs(w[2]), largest);
-    for (int i = 3; i < SCENE_COORDINATES; i++)
+    EACH (i, 3, SCENE_COORDINATES)
         largest = lanes_max(lanes_abs(w[i] - w[2]), largest);
     return largest;
 }

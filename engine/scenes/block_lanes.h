@@ -60,14 +60,14 @@ static inline void scene_enter(const double *robot, const double *q, const doubl
                                double *w)
 {
     (void)robot;
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         s[i] = q[i], w[i] = v[i];
 }
 static inline void scene_leave(const double *robot, const double *s, const double *w, double *q,
                                double *v)
 {
     (void)robot;
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         q[i] = s[i], v[i] = w[i];
 }
 
@@ -143,7 +143,7 @@ static inline void scene_forces(const scene_body *b, lanes t, const lanes *place
 static inline void scene_solve(const scene_matrix *m, bool coupled, const lanes *b, lanes *x)
 {
     (void)coupled;
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         x[i] = m->inverse_mass * b[i];
 }
 

@@ -51,14 +51,14 @@ static inline void scene_enter(const double *robot, const double *q, const doubl
                                double *w)
 {
     (void)robot;
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         s[i] = q[i], w[i] = v[i];
 }
 static inline void scene_leave(const double *robot, const double *s, const double *w, double *q,
                                double *v)
 {
     (void)robot;
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         q[i] = s[i], v[i] = w[i];
 }
 
@@ -110,7 +110,7 @@ HOT void scene_factor(const scene_body *b, lanes h, double rate, lanes lever, la
     (void)h, (void)rate, (void)lever, (void)trig, (void)w, (void)change;
     (void)coupled, (void)torque_rate;
     lanes turned = b->inertia;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         turned += contact_lever * (scene_arm(b, c) * (contact_trig->sine[0] * r[c][0] +
                                                       contact_trig->cosine[0] * r[c][1]));
     m->inverse_mass = 1 / b->mass;

@@ -124,26 +124,31 @@ struct contact_factors {
     mask regular;                            /* no pivot is small, nor negative */
 };
 
-/* The operator of the unknowns x in the rows that take part; rows of the identity elsewhere, so
- * that to the bit nothing changes with contacts that do not. edge: NULL, or of each grip r_T - x_T
- * by r_N. */
+/* The operator of the unknowns x in the rows that take part; of the others in `touching` rows of
+ * the identity, so that to the bit nothing changes with contacts that do not. edge: NULL, or of
+ * each grip r_T - x_T by r_N. */
 HOT void contact_matrix(contact_set touching, const lanes (*D)[CONTACTS][2][2],
                         const mask (*rows)[2], const lanes *edge, lanes (*M)[CONTACTS][2][2])
 {
-    EACH (c, 0, SCENE_CONTACTS)
-        EACH (k, 0, SCENE_CONTACTS)
+    EACH (c, 0, SCENE_CONTACTS) {
+        if (!(touching >> c & 1))
+            continue;
+        EACH (k, 0, SCENE_CONTACTS) {
+            if (!(touching >> k & 1))
+                continue;
             EACH (a, 0, 2)
                 EACH (b, 0, 2) {
                     const int g = contact_grip(k);
                     M[c][k][a][b] = lanes_of(c == k && a == b);
-                    if (!(touching >> c & touching >> k & 1) || a >= contact_unknowns(c) ||
-                        b >= contact_unknowns(k))
+                    if (a >= contact_unknowns(c) || b >= contact_unknowns(k))
                         continue;
                     lanes d = D[c][k][a][b];
                     if (edge && b == 0 && g >= 0)
                         d = lanes_fma(edge[g], D[c][g][a][1], d);
                     M[c][k][a][b] = choose(rows[c][a] & rows[k][b], d, M[c][k][a][b]);
                 }
+        }
+    }
 }
 
 /* What becomes of pivots that are roundings of zero: anything; contacts that depend on others do
@@ -215,35 +220,43 @@ HOT void contact_factor(contact_set touching, enum contact_care care, lanes (*M)
     lanes own[CONTACTS][2];
     f->regular = LANES_ALL;
     EACH (c, 0, SCENE_CONTACTS)
-        EACH (a, 0, 2) {
-            own[c][a] = M[c][c][a][a];
-            f->inverse[c][a][0] = f->inverse[c][a][1] = lanes_of(0);
-        }
+        if (touching >> c & 1)
+            own[c][0] = M[c][c][0][0], own[c][1] = M[c][c][1][1];
     EACH (p, 0, SCENE_CONTACTS) {
-        if (touching >> p & 1)
-            f->regular &= contact_invert(contact_unknowns(p), care, own[p],
-                                         (const lanes(*)[2])M[p][p], f->inverse[p]);
-        EACH (k, p + 1, SCENE_CONTACTS)
+        if (!(touching >> p & 1))
+            continue;
+        EACH (a, 0, 2)
+            f->inverse[p][a][0] = f->inverse[p][a][1] = lanes_of(0);
+        f->regular &= contact_invert(contact_unknowns(p), care, own[p], (const lanes(*)[2])M[p][p],
+                                     f->inverse[p]);
+        EACH (k, p + 1, SCENE_CONTACTS) {
+            if (!(touching >> k & 1))
+                continue;
             EACH (b, 0, 2) {
                 const lanes column[2] = {M[p][k][0][b], M[p][k][1][b]};
                 EACH (a, 0, 2) {
                     f->through[p][k][b][a] = M[k][p][b][a];
                     f->push[p][k][a][b] = lanes_of(0);
-                    if (touching >> p & touching >> k & 1 && a < contact_unknowns(p) &&
-                        b < contact_unknowns(k))
+                    if (a < contact_unknowns(p) && b < contact_unknowns(k))
                         f->push[p][k][a][b] = contact_row(p, f->inverse[p][a], column, lanes_of(0));
                 }
             }
-        EACH (i, p + 1, SCENE_CONTACTS)
-            EACH (k, p + 1, SCENE_CONTACTS)
+        }
+        EACH (i, p + 1, SCENE_CONTACTS) {
+            if (!(touching >> i & 1))
+                continue;
+            EACH (k, p + 1, SCENE_CONTACTS) {
+                if (!(touching >> k & 1))
+                    continue;
                 EACH (a, 0, 2)
                     EACH (b, 0, 2) {
                         const lanes column[2] = {f->push[p][k][0][b], f->push[p][k][1][b]};
-                        if (touching >> p & touching >> i & touching >> k & 1 &&
-                            a < contact_unknowns(i) && b < contact_unknowns(k))
+                        if (a < contact_unknowns(i) && b < contact_unknowns(k))
                             M[i][k][a][b] =
                                 contact_row(p, f->through[p][i][a], column, M[i][k][a][b]);
                     }
+            }
+        }
     }
 }
 

@@ -133,6 +133,30 @@ HOT void direct_velocities(const lanes (*D)[CONTACTS][2][2], const lanes (*uf)[2
         }
 }
 
+/* Of what is rare: compiled once. As contact_matrix and contact_factor, whose arguments they take;
+ * ridge: share of their diagonal that is added to tangential rows. */
+COLD void direct_factor(contact_set touching, enum contact_care care,
+                        const lanes (*D)[CONTACTS][2][2], const mask (*rows)[2], const lanes *edge,
+                        double ridge, lanes (*M)[CONTACTS][2][2], struct contact_factors *f)
+{
+    contact_matrix(touching, D, rows, edge, M);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        if (contact_unknowns(c) == 2 && touching >> c & 1)
+            M[c][c][1][1] = (1 + ridge) * M[c][c][1][1];
+    contact_factor(touching, care, M, f);
+}
+
+/* The unknowns x that bring the velocities u to rest in `rows`, zero in others. */
+COLD void direct_back(contact_set touching, const mask (*rows)[2], const struct contact_factors *f,
+                      const lanes (*u)[2], lanes (*x)[2])
+{
+    lanes part[CONTACTS][2];
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2; a++)
+            part[c][a] = choose(rows[c][a], u[c][a], lanes_of(0));
+    contact_back(touching, f, (const lanes(*)[2])part, x);
+}
+
 /* What can be exchanged between contacts in `rows` without any change of velocity: n with D n = 0,
  * from the blocks G that elimination has left. Returns the lanes where there is one such direction;
  * several: *many. */
@@ -207,8 +231,7 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
     mask rows[CONTACTS][2], many, good = LANES_ALL;
     lanes M[CONTACTS][CONTACTS][2][2], n[CONTACTS][2], u[CONTACTS][2], x[CONTACTS][2];
     direct_rows(active, rows);
-    contact_matrix(touching, D, (const mask(*)[2])rows, NULL, M);
-    contact_factor(touching, CONTACT_CAREFUL, M, &f);
+    direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, NULL, 0, M, &f);
     const mask shared = direct_redundant(touching, D, (const mask(*)[2])rows,
                                          (const lanes(*)[CONTACTS][2][2])M, &f, n, &many);
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -216,10 +239,7 @@ COLD mask direct_hold(lanes friction, lanes tolerance, const lanes (*D)[CONTACTS
             r[c][a] = none;
     for (int round = 0; round < 2; round++) { /* once more with what is left */
         direct_velocities(D, uf, touching, (const lanes(*)[2])r, u);
-        for (int c = 0; c < SCENE_CONTACTS; c++)
-            for (int a = 0; a < 2; a++)
-                u[c][a] = choose(rows[c][a], u[c][a], none);
-        contact_back(touching, &f, (const lanes(*)[2])u, x);
+        direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = r[c][a] + x[c][a];
@@ -264,22 +284,18 @@ COLD mask direct_unique(lanes friction, const lanes (*D)[CONTACTS][2][2], contac
     mask rows[CONTACTS][2];
     lanes M[CONTACTS][CONTACTS][2][2], u[CONTACTS][2], x[CONTACTS][2], sum[CONTACTS];
     direct_rows(active, rows);
-    contact_matrix(touching, D, (const mask(*)[2])rows, NULL, M);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    direct_factor(touching, CONTACT_GUARDED, D, (const mask(*)[2])rows, NULL, DIRECT_RIDGE, M, &f);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
         sum[c] = lanes_of(0);
-        if (contact_unknowns(c) == 2 && touching >> c & 1)
-            M[c][c][1][1] = (1 + DIRECT_RIDGE) * M[c][c][1][1];
-    }
-    contact_factor(touching, CONTACT_GUARDED, M, &f);
     lanes largest = lanes_of(0);
     for (int h = 0; h < SCENE_CONTACTS; h++) {
         if (!(touching >> h & 1) || contact_unknowns(h) != 2)
             continue;
         for (int c = 0; c < SCENE_CONTACTS; c++) {
-            u[c][0] = choose(rows[c][0], lanes_of(contact_grip(c) == h ? -1 : 0), lanes_of(0));
-            u[c][1] = x[c][0] = x[c][1] = lanes_of(0);
+            u[c][0] = lanes_of(contact_grip(c) == h ? -1 : 0);
+            u[c][1] = lanes_of(0);
         }
-        contact_back(touching, &f, (const lanes(*)[2])u, x);
+        direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
         for (int g = 0; g < SCENE_CONTACTS; g++)
             if (touching >> g & 1 && contact_unknowns(g) == 2)
                 sum[g] += lanes_abs(contact_load(g, (const lanes(*)[2])x));
@@ -353,9 +369,15 @@ COLD mask direct_modes(const struct contact_rule *rule, const lanes (*D)[CONTACT
         edge[c] = choose(sticks[c], none, edge[c]);
     }
     for (int round = 0; round < DIRECT_ROUNDS && mask_any(todo); round++) {
-        lanes candidate[CONTACTS][2], u[CONTACTS][2];
+        struct contact_factors f;
+        lanes M[CONTACTS][CONTACTS][2][2], candidate[CONTACTS][2], u[CONTACTS][2];
         contact_mode_rows(closed, sticks, rows);
-        contact_rest(touching, CONTACT_CAREFUL, D, uf, (const mask(*)[2])rows, edge, candidate);
+        direct_factor(touching, CONTACT_CAREFUL, D, (const mask(*)[2])rows, edge, 0, M, &f);
+        direct_back(touching, (const mask(*)[2])rows, &f, uf, candidate);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            if (touching >> c & 1 && contact_unknowns(c) == 2)
+                candidate[c][1] = lanes_fma(edge[c], contact_load(c, (const lanes(*)[2])candidate),
+                                            candidate[c][1]);
         direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
         const lanes violation = direct_violation(
             rule, D, touching, active, (const lanes(*)[2])candidate, (const lanes(*)[2])u);
@@ -414,26 +436,16 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
             scale = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), scale);
     const lanes tolerance = CONTACT_TOLERANCE * scale;
     const mask stood = unsure & direct_stood(rule, touching, active);
-    const mask inside =
-        unsure & direct_hold(rule->friction, tolerance, D, uf, touching, active, stick);
-    mask least = rule->indefinite ? MASK_NONE : inside & mask_less(none, rule->prefer);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        if (!(touching >> c & 1))
-            continue;
-        if (rule->shift)
-            least &= LANES_NOT(active[c] & mask_less(rule->shift[c], none));
-        if (rule->sliding)
-            least &= LANES_NOT(active[c] & mask_less(none, lanes_abs(rule->sliding[c])));
+    mask done = MASK_NONE;
+    if (mask_any(stood)) {
+        done = stood & direct_hold(rule->friction, tolerance, D, uf, touching, active, stick);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                r[c][a] = choose(done, stick[c][a], r[c][a]);
     }
-    mask done = inside & stood;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int a = 0; a < 2; a++)
-            r[c][a] = choose(done | least, stick[c][a], r[c][a]);
     if (!rule->indefinite && mask_any(unsure & LANES_NOT(done))) {
-        const mask sure =
+        const mask todo =
             unsure & LANES_NOT(done) & direct_unique(rule->friction, D, touching, active);
-        done |= least & sure;
-        const mask todo = sure & LANES_NOT(done);
         if (mask_any(todo))
             done |= direct_modes(rule, D, uf, touching, active, tolerance, todo, r);
     }
@@ -448,12 +460,12 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
             here |= touching >> c & 1 && mask_get(active[c], lane) ? 1u << c : 0;
         lane_gather(rule, D, uf, here, lane, &p);
         lane_choose_none(&best);
-        if (mask_get(stood, lane) && lane_hold(&p, best.r)) {
+        if ((mask_get(stood, lane) ||
+             (p.elements > DIRECT_ENUMERATED && lane_stick_is_least(&p))) &&
+            lane_hold(&p, best.r)) {
             best.violation = 0;
         } else if (p.elements <= DIRECT_ENUMERATED) {
             lane_enumerate(&p, &best);
-        } else if (mask_get(least, lane)) {
-            continue;
         } else {
             crowd_solve(&p, &best);
             v->unranked |= mask_of_lane(lane);
@@ -469,7 +481,7 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
 }
 
 /* Impulses of the active contacts for the linearised step, in the lanes of `where`; zero of other
- * contacts. `rule` is about all contacts, D and uf are zero but for those in `touching`. */
+ * contacts. `rule` is about all contacts, D and uf are of those in `touching`. */
 HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                         const lanes (*uf)[2], contact_set touching, mask where, const mask *active,
                         lanes (*r)[2], struct contact_verdict *v)
@@ -550,13 +562,16 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
         shift[c] = rule->shift ? rule->shift[c] : none;
         EACH (a, 0, 2) {
             r1[c][a] = r[c][a];
-            uf1[c][a] = uf[c][a];
             before[c][a] = rule->before ? rule->before[c][a] : none;
             last[c][a] = rule->last ? rule->last[c][a] : none;
-            EACH (k, 0, SCENE_CONTACTS)
-                EACH (b, 0, 2)
-                    D1[c][k][a][b] = D[c][k][a][b];
         }
+        if (!(touching >> c & 1))
+            continue;
+        EACH (a, 0, 2)
+            uf1[c][a] = uf[c][a];
+        EACH (k, 0, SCENE_CONTACTS)
+            if (touching >> k & 1)
+                memcpy(D1[c][k], D[c][k], sizeof D1[c][k]);
     }
     own.sliding = rule->sliding ? sliding : NULL;
     own.shift = rule->shift ? shift : NULL;

@@ -54,7 +54,7 @@ COLD mask fixed_step(const struct setting *set, const struct motion *from, const
     if (SCENE_ACTUATORS == 0 || !coupled || !mask_any(failed))
         return good;
     int ways = 1;
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    EACH (i, 0, SCENE_ACTUATORS)
         ways *= 3;
     for (int way = 0; way < ways && mask_any(failed); way++) {
         static const int ends[3] = {0, 1, -1};

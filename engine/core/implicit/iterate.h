@@ -30,7 +30,7 @@ struct iterate {
 HOT lanes iterate_speed(const struct iterate *it)
 {
     lanes speed = lanes_of(1);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         speed = lanes_max(lanes_abs(it->w[i]), speed);
     return speed;
 }
@@ -48,7 +48,7 @@ static inline void iterate_place(const struct setting *set, const struct motion 
                                  bool frozen, struct iterate *it)
 {
     lanes middle[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    EACH (i, 0, SCENE_COORDINATES) {
         const lanes v = step_velocity(from->w[i], it->w[i]);
         it->s1[i] = from->s[i] + h * v;
         middle[i] = from->s[i] + (METHOD_THETA * h) * v;
@@ -61,7 +61,7 @@ static inline void iterate_place(const struct setting *set, const struct motion 
         scene_trigonometry(middle, &it->middle);
         scene_contact_trigonometry(it->s1, &it->end); /* the rest when the step is done */
     }
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
 }
 
@@ -73,16 +73,9 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
 {
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS];
     EACH (c, 0, SCENE_CONTACTS)
-        for (int i = 0; i < SCENE_COORDINATES; i++)
+        EACH (i, 0, SCENE_COORDINATES)
             rebound[c] = response[c][0][i] = response[c][1][i] = lanes_of(0);
-    lanes D[CONTACTS][CONTACTS][2][2],
-        uf[CONTACTS][2]; /* zero of those that are not in `touching` */
-    EACH (c, 0, SCENE_CONTACTS)
-        EACH (a, 0, 2) {
-            uf[c][a] = lanes_of(0);
-            EACH (k, 0, SCENE_CONTACTS)
-                D[c][k][a][0] = D[c][k][a][1] = lanes_of(0);
-        }
+    lanes D[CONTACTS][CONTACTS][2][2], uf[CONTACTS][2]; /* of those in `touching` */
     EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
             scene_contact_response(&set->body, J, coupled, direction, c, response[c]);
@@ -120,7 +113,7 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
             continue;
         const int n = contact_unknowns(c);
         const mask part = contact_part(c, it->active);
-        for (int i = 0; i < SCENE_COORDINATES; i++) {
+        EACH (i, 0, SCENE_COORDINATES) {
             /* Where nothing touches even the sign of a zero stays as it is. */
             lanes pushed = dw[i];
             if (n == 2)
@@ -150,22 +143,24 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
     const lanes lever = h * (METHOD_THETA * moves), end_lever = h * moves;
     const scene_trig *const trig = METHOD_THETA == 1 ? &it->end : &it->middle;
     lanes v[SCENE_COORDINATES], change[SCENE_COORDINATES], residual[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    EACH (i, 0, SCENE_COORDINATES) {
         v[i] = step_velocity(from->w[i], it->w[i]);
         change[i] = it->w[i] - from->w[i];
     }
-    scene_trig direction = *trig;
+    const scene_trig *direction = trig;
+    scene_trig mixed;
     lanes direction_lever = METHOD_THETA == 1 ? end_lever : lever;
     if (METHOD_THETA != 1 && impacts) {
-        scene_choose_trig(impact, &it->end, &it->middle, &direction);
+        scene_choose_trig(impact, &it->end, &it->middle, &mixed);
+        direction = &mixed;
         direction_lever = choose(impact, end_lever, lever);
     }
 
     lanes torque[ACTUATORS], torque_rate[ACTUATORS][POSTURES];
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    EACH (i, 0, SCENE_ACTUATORS)
         torque[i] = it->torque[i];
     lanes u[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
     if (coupled)
         law_inside(&set->law, u, v, h * (METHOD_THETA * METHOD_THETA), METHOD_THETA, it->torque,
@@ -174,22 +169,22 @@ HOT void iterate_newton(const struct setting *set, const struct motion *from, la
     scene_matrix J;
     lanes dw[SCENE_COORDINATES];
     scene_residual(&set->body, h, from->t + METHOD_THETA * h, u, trig, v, change, torque, residual);
-    scene_factor(&set->body, h, moves, lever, direction_lever, trig, &direction, v, change,
+    scene_factor(&set->body, h, moves, lever, direction_lever, trig, direction, v, change,
                  (const lanes(*)[2])it->r, coupled, (const lanes(*)[POSTURES])torque_rate, &J);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         residual[i] = -residual[i];
     scene_solve(&J, coupled, residual, dw);
 
     it->shift = lanes_of(0);
     if (touching)
-        iterate_contacts(set, from, all, running, coupled, touching, &J, &direction, end_lever, dw,
+        iterate_contacts(set, from, all, running, coupled, touching, &J, direction, end_lever, dw,
                          it);
     it->size = lanes_of(0);
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    EACH (i, 0, SCENE_COORDINATES) {
         it->w[i] = choose_unless(all, running, it->w[i] + dw[i], it->w[i]);
         it->size += lanes_abs(dw[i]); /* a sum keeps NAN */
     }
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    EACH (i, 0, SCENE_ACTUATORS)
         it->torque[i] = choose_unless(all, running, torque[i], it->torque[i]);
 }
 

@@ -43,7 +43,7 @@ struct ordinary {
 static inline void ordinary_forget(struct ordinary *q, mask m)
 {
     const lanes none = lanes_of(0);
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    EACH (i, 0, SCENE_COORDINATES) {
         q->change[i] = choose(m, none, q->change[i]);
         q->before[i] = choose(m, none, q->before[i]);
     }
@@ -54,7 +54,7 @@ static inline void ordinary_forget(struct ordinary *q, mask m)
 /* Sines and cosines after turning by d[], at most ORDINARY_ANGLE. */
 HOT void ordinary_turn(const scene_trig *from, const lanes *d, scene_trig *to)
 {
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         if (SCENE_SLIDES(a)) {
             to->sine[a] = from->sine[a] + d[a], to->cosine[a] = from->cosine[a];
             continue;
@@ -74,7 +74,7 @@ HOT void ordinary_turn(const scene_trig *from, const lanes *d, scene_trig *to)
 /* Takes sines and cosines over where m holds, or everywhere. */
 HOT void ordinary_take(bool all, mask m, const scene_trig *from, scene_trig *to)
 {
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         to->sine[a] = choose_unless(all, m, from->sine[a], to->sine[a]);
         to->cosine[a] = choose_unless(all, m, from->cosine[a], to->cosine[a]);
     }
@@ -86,7 +86,7 @@ HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lan
                         mask m, struct iterate *it)
 {
     lanes d[SLOTS(SCENE_ANGLES)], halfway[SCENE_COORDINATES], farthest = lanes_of(0);
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    EACH (i, 0, SCENE_COORDINATES) {
         const lanes move = h * step_velocity(from->w[i], it->w[i]);
         it->s1[i] = choose_unless(all, m, from->s[i] + move, it->s1[i]);
         halfway[i] = from->s[i] + METHOD_THETA * move;
@@ -125,7 +125,7 @@ HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lan
 HOT mask ordinary_arrive(const struct motion *from, lanes h, const lanes *old, struct iterate *it)
 {
     lanes d[SCENE_COORDINATES], farthest = lanes_of(0);
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    EACH (i, 0, SCENE_COORDINATES) {
         d[i] = (h * METHOD_THETA) * (it->w[i] - old[i]);
         it->s1[i] = lanes_fma(h, step_velocity(from->w[i], it->w[i]), from->s[i]);
         if (i >= FIRST_ANGLE && !SCENE_SLIDES(i - FIRST_ANGLE))
@@ -142,7 +142,7 @@ HOT mask ordinary_iterate(const struct ordinary *q, const struct setting *set,
                           contact_set touching, lanes *old, struct iterate *it)
 {
     ordinary_place(q, from, h, all, m, it);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         old[i] = choose_unless(all, m, it->w[i], old[i]);
     iterate_newton(set, from, h, all, m, false, MASK_NONE, false, false, touching, it);
     const lanes left = (h * scene_curvature(&set->body) * it->size) * (it->size + it->shift);
@@ -154,12 +154,13 @@ HOT mask ordinary_iterate(const struct ordinary *q, const struct setting *set,
 
 /* Further iterations, where one was not enough; returns the lanes where they got there. */
 COLD mask ordinary_more(const struct ordinary *q, const struct setting *set,
-                        const struct motion *from, lanes h, mask running, contact_set touching,
-                        lanes *old, lanes *iterations, struct iterate *it)
+                        const struct motion *from, lanes h, int first, mask running,
+                        contact_set touching, lanes *old, lanes *iterations, struct iterate *it)
 {
     mask there = MASK_NONE;
-    for (int k = 1; k < ORDINARY_ITERATIONS && mask_any(running); k++) {
-        *iterations += choose(running, lanes_of(1), lanes_of(0));
+    for (int k = first; k < ORDINARY_ITERATIONS && mask_any(running); k++) {
+        if (k > 0)
+            *iterations += choose(running, lanes_of(1), lanes_of(0));
         const mask small = ordinary_iterate(q, set, from, h, false, running, touching, old, it);
         there |= running & small;
         running &= LANES_NOT(small);
@@ -171,19 +172,21 @@ COLD mask ordinary_more(const struct ordinary *q, const struct setting *set,
  * there. */
 HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
                          const struct motion *from, lanes h, mask run, contact_set touching,
-                         struct iterate *it, lanes *iterations)
+                         bool full, struct iterate *it, lanes *iterations)
 {
     lanes old[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         it->w[i] = from->w[i] + lanes_fms(lanes_of(2), q->change[i], q->before[i]);
     *iterations = lanes_of(1);
-    mask there = run & ordinary_iterate(q, set, from, h, true, run, touching, old, it);
+    mask there = MASK_NONE;
+    if (full)
+        there = run & ordinary_iterate(q, set, from, h, true, run, touching, old, it);
     const mask running = run & LANES_NOT(there);
     if (mask_any(running)) { /* with copies: what is passed on by address stays in memory */
         struct iterate copy = *it;
         lanes start[SCENE_COORDINATES], count = *iterations;
         memcpy(start, old, sizeof start);
-        there |= ordinary_more(q, set, from, h, running, touching, start, &count, &copy);
+        there |= ordinary_more(q, set, from, h, full, running, touching, start, &count, &copy);
         *it = copy;
         *iterations = count;
         memcpy(old, start, sizeof old);
@@ -197,7 +200,7 @@ HOT mask ordinary_arrivals(const struct setting *set, const struct iterate *it)
     mask there = MASK_NONE;
     EACH (c, 0, SCENE_CONTACTS)
         there |= mask_less(lanes_of(0), set->may_touch[c]) & LANES_NOT(it->active[c]) &
-                 LANES_NOT(mask_less(lanes_of(0), it->gap[c]));
+                 LANES_NOT(mask_less(lanes_of(STEP_CLOSED), it->gap[c]));
     return there;
 }
 
@@ -218,7 +221,7 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
     it->corner = NULL;
     it->verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
     it->before = from->impulse;
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    EACH (i, 0, SCENE_ACTUATORS)
         it->torque[i] = torque[i];
     EACH (c, 0, SCENE_CONTACTS) {
         const bool here = touching >> c & 1;
@@ -231,7 +234,7 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
         EACH (a, 0, 2)
             it->r[c][a] = choose(it->active[c], from->impulse[c][a], lanes_of(0));
     }
-    good &= ordinary_newton(q, set, from, h, good, touching, it, iterations);
+    good &= ordinary_newton(q, set, from, h, good, touching, full, it, iterations);
     return good & LANES_NOT(it->verdict.unsolved | it->verdict.ambiguous | it->verdict.unranked);
 }
 
@@ -258,7 +261,7 @@ HOT void ordinary_keep(struct ordinary *q, const struct iterate *it, lanes h, bo
                        struct motion *now)
 {
     const mask second = mask_less(lanes_of(0), q->known);
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    EACH (i, 0, SCENE_COORDINATES) {
         const lanes change = it->w[i] - now->w[i];
         q->before[i] = choose(second, q->change[i], change);
         q->change[i] = change;

@@ -18,11 +18,11 @@
 COLD void project_lift(contact_set touching, const mask *idle, const lanes (*G)[CONTACTS],
                        const lanes *error, lanes *multiplier)
 {
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
+    EACH (c, 0, SCENE_CONTACTS) {
         if (!(touching >> c & 1))
             continue;
         lanes left = error[c];
-        for (int k = 0; k < SCENE_CONTACTS; k++)
+        EACH (k, 0, SCENE_CONTACTS)
             if (touching >> k & 1)
                 left = lanes_fnma(G[c][k], multiplier[k], left);
         multiplier[c] = choose(idle[c] & mask_less(lanes_of(0), left),
@@ -92,7 +92,7 @@ HOT void project_multipliers(const struct setting *set, const scene_trig *trig,
 /* Sine and cosine after turning by small angles d, to third order. */
 HOT void trig_turn(scene_trig *trig, mask where, const lanes *d)
 {
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         const lanes x = d[FIRST_ANGLE + a], s = trig->sine[a], c = trig->cosine[a];
         if (SCENE_SLIDES(a)) {
             trig->sine[a] = choose(where, s + x, s);
@@ -125,7 +125,7 @@ HOT void project_move(const struct setting *set, const struct iterate *it, conta
         project_multipliers(set, &it->end, touching, lift, held, rest, more);
         EACH (c, 0, SCENE_CONTACTS)
             multiplier[c] = multiplier[c] + more[c];
-        for (int i = 0; i < SCENE_COORDINATES; i++) {
+        EACH (i, 0, SCENE_COORDINATES) {
             d[i] = lanes_of(0);
             EACH (c, 0, SCENE_CONTACTS)
                 if (touching >> c & 1)
@@ -175,7 +175,7 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
             break;
         lanes d[SCENE_COORDINATES], far = lanes_of(0);
         project_move(set, it, touching, held, error, d);
-        for (int i = 0; i < SCENE_COORDINATES; i++) {
+        EACH (i, 0, SCENE_COORDINATES) {
             d[i] = choose(todo, d[i], lanes_of(0));
             it->s1[i] = choose(todo, it->s1[i] + d[i], it->s1[i]);
             if (i >= FIRST_ANGLE && !SCENE_SLIDES(i - FIRST_ANGLE))
@@ -194,7 +194,7 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
             scene_trigonometry(it->s1, &trig);
             EACH (c, 0, SCENE_CONTACTS)
                 it->gap[c] = choose(moved, scene_gap(&set->body, it->s1, &trig, c), it->gap[c]);
-            for (int a = 0; a < SCENE_ANGLES; a++) {
+            EACH (a, 0, SCENE_ANGLES) {
                 it->end.sine[a] = choose(moved, trig.sine[a], it->end.sine[a]);
                 it->end.cosine[a] = choose(moved, trig.cosine[a], it->end.cosine[a]);
             }
@@ -215,16 +215,19 @@ HOT void grip_factor(const struct setting *set, const scene_trig *trig, contact_
                      const lanes (*response)[2][SCENE_COORDINATES], struct grip *g)
 {
     lanes D[CONTACTS][CONTACTS][2][2], M[CONTACTS][CONTACTS][2][2];
-    EACH (c, 0, SCENE_CONTACTS)
+    EACH (c, 0, SCENE_CONTACTS) {
+        if (!(touching >> c & 1))
+            continue;
         EACH (k, 0, SCENE_CONTACTS)
             EACH (b, 0, 2) {
                 D[c][k][0][b] = D[c][k][1][b] = lanes_of(0);
-                if (b >= contact_unknowns(k) || !(touching >> c & touching >> k & 1))
+                if (b >= contact_unknowns(k) || !(touching >> k & 1))
                     continue;
                 lanes moved[2];
                 scene_contact_velocity(&set->body, trig, c, response[k][b], moved);
                 D[c][k][0][b] = moved[0], D[c][k][1][b] = moved[1];
             }
+    }
     contact_matrix(touching, (const lanes(*)[CONTACTS][2][2])D, (const mask(*)[2])g->rows, NULL, M);
     contact_factor(touching, CONTACT_CAREFUL, M, &g->factors);
 }
@@ -266,7 +269,7 @@ HOT lanes project_move_velocity(const struct setting *set, const scene_trig *tri
     EACH (c, 0, SCENE_CONTACTS)
         EACH (a, 0, 2)
             if (a < contact_unknowns(c) && (touching >> c & 1))
-                for (int i = 0; i < SCENE_COORDINATES; i++)
+                EACH (i, 0, SCENE_COORDINATES)
                     w[i] = choose(g->rows[c][a] & where,
                                   lanes_fma(response[c][a][i], x[c][a], w[i]), w[i]);
     EACH (c, 0, SCENE_CONTACTS) {
@@ -357,6 +360,23 @@ HOT void project_rows(const struct setting *set, mask run, const struct iterate 
     }
 }
 
+/* Takes contacts out that move on: the impulses of a very short step are so small that rounding
+ * puts a sliding one into the cone. One that sticks has r_T - u_T / D_TT inside, with room. */
+static inline void project_slides(const struct setting *set, const struct iterate *it,
+                                  contact_set touching, struct grip *g)
+{
+    EACH (c, 0, SCENE_CONTACTS) {
+        if (contact_unknowns(c) == 1 || !(touching >> c & 1))
+            continue;
+        lanes u[2], moved[2];
+        scene_contact_velocity(&set->body, &it->end, c, it->w, u);
+        scene_contact_velocity(&set->body, &it->end, c, it->response[c][1], moved);
+        const lanes load = contact_load(c, (const lanes(*)[2])it->r);
+        g->rows[c][1] &= mask_less(lanes_fma(lanes_abs(it->r[c][1]), moved[1], lanes_abs(u[1])),
+                                   set->friction * load * moved[1]);
+    }
+}
+
 /* Lanes where a contact that does not carry lies on the ground and approaches it; where an end of a
  * grip carries; and where one that slides has come to slide the way its friction points. */
 HOT mask project_falls(const struct setting *set, mask run, const struct grip *g, int c,
@@ -369,7 +389,7 @@ HOT mask project_falls(const struct setting *set, mask run, const struct grip *g
 HOT mask project_loaded(const struct grip *g, int c)
 {
     mask loaded = g->rows[c][0];
-    for (int k = c + 1; k < SCENE_CONTACTS; k++)
+    EACH (k, c + 1, SCENE_CONTACTS)
         if (contact_grip(k) == c)
             loaded |= g->rows[k][0];
     return loaded;
@@ -391,8 +411,9 @@ static inline mask project_far(const struct setting *set, const struct motion *f
     memset(&g, 0, sizeof g);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         rebound[c] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
-    const mask near = project_position(set, from, h, touching, true, run, it, energy);
     project_rows(set, run, it, &g);
+    project_slides(set, it, touching, &g);
+    const mask near = project_position(set, from, h, touching, true, run, it, energy);
     project_inertia(set, impact, it, response);
     mask where = run; /* a lane in which nothing is left to do has done with it */
     for (int round = 0; round < 2 + SCENE_CONTACTS; round++) {

@@ -105,7 +105,7 @@ static inline void report_add(struct step_report *sum, const struct step_report 
         EACH (a, 0, 2)
             sum->impulse[c][a] += part->impulse[c][a];
     }
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    EACH (i, 0, SCENE_ACTUATORS)
         sum->torque[i] = part->torque[i];
     sum->landed = lanes_max(part->landed, sum->landed);
     sum->work += part->work;

@@ -49,14 +49,14 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
     scene_matrix A;
     scene_inertia(&set->body, trig, &A);
     lanes x[SCENE_COORDINATES], work = lanes_of(0);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         x[i] = lanes_of(0);
     EACH (c, 0, SCENE_CONTACTS) {
         lanes response[2][SCENE_COORDINATES], u[2];
         const bool grips = contact_unknowns(c) == 2;
         scene_contact_response(&set->body, &A, false, &it->end, c, response);
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
-        for (int i = 0; i < SCENE_COORDINATES; i++)
+        EACH (i, 0, SCENE_COORDINATES)
             x[i] += grips ? response[0][i] * it->r[c][0] + response[1][i] * it->r[c][1]
                           : response[0][i] * it->r[c][0];
         work += grips ? u[0] * it->r[c][0] + u[1] * it->r[c][1] : u[0] * it->r[c][0];
@@ -156,7 +156,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     const bool impacts = kind == STEP_ANY;
     mask somewhere = MASK_NONE;
     lanes moved[SCENE_COORDINATES], load = none;
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         moved[i] = (SCENE_PUSHES > 0 ? 0.5 : 1) * (it->s1[i] - from->s[i]);
     const lanes middle = from->t + METHOD_THETA * h;
     report->work = scene_work(&set->body, h, middle, &it->end, it->torque, moved);
@@ -164,7 +164,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
         report->work += scene_work(&set->body, h, middle, &from->trig, it->torque, moved);
     report_clear_answers(report);
     report->failure = none;
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    EACH (i, 0, SCENE_ACTUATORS)
         report->torque[i] = it->torque[i];
     EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
@@ -216,7 +216,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
 HOT void step_commit(lanes t, const struct iterate *it, bool all, mask done, mask landed,
                      struct motion *to)
 {
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
+    EACH (i, 0, SCENE_COORDINATES) {
         to->s[i] = choose_unless(all, done, it->s1[i], to->s[i]);
         to->w[i] = choose_unless(all, done, it->w[i], to->w[i]);
     }
@@ -227,7 +227,7 @@ HOT void step_commit(lanes t, const struct iterate *it, bool all, mask done, mas
             to->impulse[c][a] = choose_unless(all, done, choose(landed, lanes_of(0), it->r[c][a]),
                                               to->impulse[c][a]);
     }
-    for (int a = 0; a < SCENE_ANGLES; a++) {
+    EACH (a, 0, SCENE_ANGLES) {
         to->trig.sine[a] = choose_unless(all, done, it->end.sine[a], to->trig.sine[a]);
         to->trig.cosine[a] = choose_unless(all, done, it->end.cosine[a], to->trig.cosine[a]);
     }
@@ -251,9 +251,9 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
     mask impact = MASK_NONE, running = run;
     mask closed[CONTACTS];
     lanes before[CONTACTS][2];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
+    EACH (i, 0, SCENE_COORDINATES)
         it.w[i] = from->w[i];
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    EACH (i, 0, SCENE_ACTUATORS)
         it.torque[i] = torque[i];
     EACH (c, 0, SCENE_CONTACTS) {
         closed[c] = mask_less(lanes_of(0), set->may_touch[c]) &
@@ -263,7 +263,7 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
         it.r[c][0] = it.r[c][1] = lanes_of(0);
         EACH (a, 0, 2) {
             before[c][a] = choose(impact, lanes_of(0), from->impulse[c][a]);
-            for (int i = 0; i < SCENE_COORDINATES; i++)
+            EACH (i, 0, SCENE_COORDINATES)
                 it.response[c][a][i] = lanes_of(0);
         }
     }
@@ -285,7 +285,7 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
         EACH (c, 0, SCENE_CONTACTS) {
             const mask hit = running & LANES_NOT(it.active[c]) &
                              mask_less(lanes_of(0), set->may_touch[c]) &
-                             mask_less_equal(it.gap[c], lanes_of(0));
+                             mask_less_equal(it.gap[c], lanes_of(STEP_CLOSED));
             it.active[c] |= hit;
             news |= hit;
         }
@@ -297,7 +297,7 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
     mask converged = run & LANES_NOT(running);
     if (corner) {
         lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES];
-        for (int i = 0; i < SCENE_COORDINATES; i++) {
+        EACH (i, 0, SCENE_COORDINATES) {
             v[i] = step_velocity(from->w[i], it.w[i]);
             u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
         }

@@ -38,7 +38,11 @@ enum { LANES = STANCE_LANES };
 #else
 #define HOT static inline __attribute__((always_inline))
 #endif
+#ifdef __clang__
 #define COLD static __attribute__((noinline))
+#else
+#define COLD static __attribute__((noinline, noclone))
+#endif
 
 /* for (int i = from; i < to; i++), unrolled so early that arrays of the bodies live in registers,
  * and that what is structure folds. Not where there are very many contacts, nor where the structure

@@ -65,7 +65,7 @@ HOT void bundle_account(struct bundle *b, bool all, mask ok, bool ordinary, cont
     const lanes energy = scene_energy(&b->set.body, b->now.s, b->now.w, &b->now.trig);
 #endif
     account_largest(all, ok, energy - b->energy_bound, &b->answer.energy_gain);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    EACH (i, 0, SCENE_ACTUATORS)
         account_largest(all, ok, lanes_abs(report->torque[i]), &b->answer.peak_torque);
     account_contacts(b, all, ok, touching, report);
     if (ordinary)
@@ -109,7 +109,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     lanes posture[POSTURES], rate[POSTURES], angle = none, speed = none;
     scene_posture(b->now.s, posture);
     scene_posture(b->now.w, rate);
-    for (int i = 0; i < SCENE_POSTURE; i++) {
+    EACH (i, 0, SCENE_POSTURE) {
         angle = lanes_max(lanes_abs(posture[i] - b->set.law.near.target[i]), angle);
         speed = lanes_max(lanes_abs(rate[i]), speed);
     }
@@ -150,8 +150,12 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     const mask at_end = live & last & LANES_NOT(on_way);
     v.stabilised |= at_end & at_target;
     v.rested |= at_end & still;
-    if (mask_any(v.rested | v.stabilised))
-        rest_confirm(b, &v.rested, &v.stabilised);
+    if (mask_any(v.rested | v.stabilised)) {
+        /* With copies: what is passed on by address stays in memory. */
+        mask rested = v.rested, stabilised = v.stabilised;
+        rest_confirm(b, &rested, &stabilised);
+        v.rested = rested, v.stabilised = stabilised;
+    }
     v.captured = MASK_NONE;
     return v;
 }
@@ -172,7 +176,7 @@ static mask bundle_captured(const struct bundle *b, mask live, const mask *loade
     lanes posture[POSTURES], rate[POSTURES];
     scene_posture(b->now.s, posture);
     scene_posture(b->now.w, rate);
-    for (int i = 0; i < SCENE_POSTURE; i++)
+    EACH (i, 0, SCENE_POSTURE)
         posture[i] = posture[i] - b->set.law.near.target[i];
     in &= known_basin_contains(&b->capture, posture, rate);
     if (!mask_any(in))

@@ -144,8 +144,10 @@ COLD void bundle_end_lanes(struct bundle *b, mask over, mask failed, const struc
 HOT void bundle_end(struct bundle *b, mask live, mask failed, const struct verdict *v, mask last)
 {
     const mask over = failed | verdict_any(v) | v->captured | last;
-    if (mask_any(live & over))
-        bundle_end_lanes(b, live & over, failed, v);
+    if (mask_any(live & over)) { /* a copy, as in bundle_judge */
+        const struct verdict copy = *v;
+        bundle_end_lanes(b, live & over, failed, &copy);
+    }
 }
 
 /* Rows due now in any live lane. */
