@@ -3,9 +3,9 @@
  * one.
  *
  * The same regulator, torque limits (joints have none), friction and steps of 1 ms, the same
- * starts: 1 s in flight, on one foot, on both. MuJoCo's settings are its defaults; case by case it
- * does its steps, then the kernels of the two widest instruction sets theirs, round after round, in
- * processor time on one core.
+ * starts: 1 s in flight, on one foot, on both, and on both with feet that leave the ground at
+ * first. MuJoCo's settings are its defaults; case by case it does its steps, then the kernels of
+ * the two widest instruction sets theirs, round after round, in processor time on one core.
  */
 #include "analysis/bench/bench.h"
 #include "mujoco_model.h"
@@ -26,6 +26,13 @@ static const struct regime {
     {"flight", 1000, {NULL}, 0},
     {"one foot", 0, {NULL}, 0},
     {"two feet",
+     0,
+     {"ground.contacts=[foot1, foot2]", "initial.support=[foot1, foot2]",
+      "initial.equilibrium={thigh1: 0.4, shank1: -0.4, shank2: -0.3}", "controller.weights={}",
+      "sweep.grid[0].from=-0.002", "sweep.grid[0].to=0.002", "sweep.grid[1].from=-0.005",
+      "sweep.grid[1].to=0.005"},
+     8},
+    {"stepping", /* from as far off as on one foot: feet leave the ground and come back */
      0,
      {"ground.contacts=[foot1, foot2]", "initial.support=[foot1, foot2]",
       "initial.equilibrium={thigh1: 0.4, shank1: -0.4, shank2: -0.3}", "controller.weights={}"},

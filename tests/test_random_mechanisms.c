@@ -181,17 +181,17 @@ static void hunt(const stance_method *method, int hinged, int sliding)
 static void implicit(void **state)
 {
     (void)state;
-    hunt(stance_method_find("implicit"), trees_of(), 40);
+    hunt(stance_method_find("implicit"), trees_of(), trees_of());
 }
 static void midpoint(void **state)
 {
     (void)state;
-    hunt(stance_method_find("midpoint"), trees_of(), 40);
+    hunt(stance_method_find("midpoint"), trees_of(), trees_of());
 }
 static void capturing(void **state)
 {
     (void)state;
-    hunt(stance_method_find("capturing"), trees_of() / 4, 10);
+    hunt(stance_method_find("capturing"), trees_of() / 4, trees_of() / 4);
 }
 
 int main(void)

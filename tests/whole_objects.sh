@@ -194,6 +194,14 @@ says "... says so" "stance build: --method takes one of .*lagrange"
 expect "... for no instruction set" 2 "$stance" build "$shipped/ball_bounce.yaml" --isa=avx
 says "... says so" "stance build: --isa takes one of .*scalar"
 
+disc=$shipped/mechanisms/rolling_disc.yaml few=(--set 'sweep.grid[0].count=3' --set 'sweep.grid[1].count=2')
+rm -rf "$STANCE_CACHE"
+expect "what takes less time than compiling" 0 "$stance" run --quiet -o built_in.h5 "$disc" "${few[@]}"
+is "... is computed without" test -z "$(others "$STANCE_CACHE")"
+expect "... stance build compiles all the same" 0 "$stance" build "$disc"
+expect "... what is kept then computes" 0 "$stance" run --quiet -o kept.h5 "$disc" "${few[@]}"
+is "... the same bits" cmp <("$stance" table built_in.h5) <("$stance" table kept.h5)
+
 # ---- kills ----------------------------------------------------------------------------------------
 compiler slow 'echo $$ >compiling; exec sleep 60'
 rm -rf "$STANCE_CACHE"

@@ -43,6 +43,7 @@ static bool balance(const stance_scene *scene, const stance_equilibrium_choice *
     for (int k = 0; k < scene->postures; k++)
         c->near.target[k] = equilibrium.position[scene->posture[k]];
     c->has_target = true;
+    c->supports = choice->supports;
     return true;
 }
 

@@ -179,7 +179,9 @@ static bool make(const struct objects_request *request, struct making *making, s
     if (!cache_open(&cache, why))
         return false;
     size_t n = look(&cache, !compiles, making, count, missing);
-    if (n > 0 && compiles) {
+    if (n > 0 && request->brief) {
+        why->text[0] = '\0';
+    } else if (n > 0 && compiles) {
         cache_lock(&cache, number_of(request->tables));
         n = look(&cache, false, making, count, missing); /* another job may have made it */
         if (n > 0)
@@ -326,7 +328,7 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
         parallel_largest(ranks, &code, 1);
         for (size_t i = 0; i < count; i++)
             missing |= making[i].image.size == 0;
-        if (code == EXIT_DONE && missing && ranks->rank == 0)
+        if (code == EXIT_DONE && missing && ranks->rank == 0 && !request->brief)
             cache_say("%s; kernels that are built in compute instead, more slowly", why.text);
     }
     for (size_t i = 0; i < count; i++)

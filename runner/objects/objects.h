@@ -39,6 +39,9 @@ struct objects_request {
     const stance_case *check; /* [checks]; no trajectories */
     size_t checks;
     bool quiet; /* say nothing where all goes well */
+    /* On rank 0: so little is to be computed that compiling would take longer. What is not kept is
+     * then computed by the references. */
+    bool brief;
 };
 
 /* Where a kernel comes from. */

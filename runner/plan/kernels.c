@@ -5,10 +5,14 @@
 
 #include "engine/tree.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { CHECKS = 64, CHECK_STEPS = 50 };
+
+/* Steps that kernels which are built in compute in less time than it takes to compile others. */
+static const double brief_steps = 2e6;
 
 static bool listed(const char *word, const char *const *list, size_t count)
 {
@@ -48,17 +52,19 @@ static size_t list_methods(const struct plan *plan, const struct kernels_choice 
     return count;
 }
 
-/* Some cases, evenly spread, for a moment each. */
-static size_t list_checks(const struct plan *plan, stance_case *check)
+/* Some cases, evenly spread, for a moment each. *steps: about as many as all have. */
+static size_t list_checks(const struct plan *plan, stance_case *check, double *steps)
 {
     const uint64_t tried = plan->rows < CHECKS ? plan->rows : CHECKS;
     size_t count = 0;
+    *steps = 0;
     for (uint64_t i = 0; i < tried; i++) {
         int method;
         const uint64_t row = tried == plan->rows ? i : (uint64_t)((double)plan->rows * i / CHECKS);
         if (plan->design_status[plan_design(plan, plan_case(plan, row))] != STANCE_DONE ||
             !plan_resolve(plan, row, &check[count], &method))
             continue;
+        *steps += (double)plan->rows / (double)tried * (double)check[count].steps;
         if (check[count].steps > CHECK_STEPS)
             check[count].steps = CHECK_STEPS;
         count++;
@@ -80,15 +86,22 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
     stance_case *const check = calloc(CHECKS, sizeof *check);
     if (!check)
         abort(); /* the others wait */
+    double steps = INFINITY;
+    const size_t checks = parallel->rank == 0 ? list_checks(plan, check, &steps) : 0;
+    const size_t count = list_methods(plan, choice, wanted);
+    bool brief = !choice && steps <= brief_steps;
+    for (size_t k = 0; k < count; k++)
+        brief &= wanted[k].reference != NULL;
     stance_tree_text(scene->tree, scenario_law(base)->servos || scenario_far(base)->servos, tables);
     const struct objects_request request = {
         .tables = tables,
         .scene = scene,
         .wanted = wanted,
-        .count = list_methods(plan, choice, wanted),
+        .count = count,
         .check = check,
-        .checks = parallel->rank == 0 ? list_checks(plan, check) : 0,
+        .checks = checks,
         .quiet = quiet,
+        .brief = brief,
     };
     const enum exit_code code = objects_take(parallel, &request, kernels->object, message);
     free(check);

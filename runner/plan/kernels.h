@@ -19,8 +19,9 @@ struct kernels_choice {
     size_t methods, isas;
 };
 
-/* Collective: takes what the plan's methods (choice NULL) need; from then on instruction_set_kernel
- * gives them. Built-in scenes need nothing. quiet: says nothing where all goes well. Needs the
+/* Collective: takes what the plan's methods (choice NULL: without compiling where the plan's cases
+ * take less time than that) need; from then on instruction_set_kernel gives them. Built-in scenes
+ * need nothing. quiet: says nothing where all goes well. Needs the
  * designs. Exit codes and message as objects_take; *kernels is to be given back where it is
  * EXIT_DONE. */
 enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,

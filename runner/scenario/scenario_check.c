@@ -598,9 +598,11 @@ static void check_world(struct reader *r)
             continue;
         scenario_extent(r->s, field->offset, &least, &largest);
         if (least != usual || largest != usual)
-            problem_add(&r->problems, where(r, fixed[i].path),
-                        "%s: the scene %s knows %s alone; a mechanism (scene: mechanism) has any",
-                        fixed[i].path, r->s->scene->name, fixed[i].wanted);
+            problem_add(
+                &r->problems, where(r, fixed[i].path),
+                "%s: the scene %s knows %s alone; a mechanism has any (scene: mechanism, see "
+                "scenarios/mechanisms)",
+                fixed[i].path, r->s->scene->name, fixed[i].wanted);
     }
 }
 

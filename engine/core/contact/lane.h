@@ -132,18 +132,45 @@ static double lane_load(const struct lane_element *e, const double *r)
     return load;
 }
 
-/* Largest violation of a law by r with the velocities u; NAN where they are. */
-static double lane_violation(const struct lane_problem *p, const double *r, const double *u)
+/* fmax, but a call no library is asked for. */
+static double lane_max(double a, double b)
 {
-    double worst = 0, sum = 0;
+    return a > b ? a : b;
+}
+static double lane_min(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+/* Largest violation of a law by the impulses r alone. */
+static double lane_beyond(const struct lane_problem *p, const double *r)
+{
+    double worst = 0;
+    for (int k = 0; k < p->elements; k++) {
+        const struct lane_element *const e = &p->element[k];
+        for (int i = e->first; i < e->end; i++) {
+            const double beyond =
+                p->axis[i] == 0 ? -r[i] : fabs(r[i]) - p->friction * lane_load(e, r);
+            worst = lane_max(beyond * fabs(p->D[i][i]), worst);
+        }
+    }
+    return worst;
+}
+
+/* Largest violation of a law by r, which alone violates `beyond`, with the velocities u; NAN where
+ * they are. */
+static double lane_violation(const struct lane_problem *p, const double *r, const double *u,
+                             double beyond)
+{
+    double worst = beyond, sum = 0;
     for (int k = 0; k < p->elements; k++) {
         const struct lane_element *const e = &p->element[k];
         for (int i = e->first; i < e->end; i++) {
             const double scale = fabs(p->D[i][i]);
             sum += r[i] + u[i];
             if (p->axis[i] == 0) { /* what is apart must not push */
-                worst = fmax(fmax(-u[i], -(r[i] * scale)), worst);
-                worst = fmax(fmin(fabs(u[i]), fabs(r[i] * scale)), worst);
+                worst = lane_max(-u[i], worst);
+                worst = lane_max(lane_min(fabs(u[i]), fabs(r[i] * scale)), worst);
                 continue;
             }
             /* Maximum dissipation: slip means an impulse at the edge of the cone, against it. No
@@ -151,8 +178,7 @@ static double lane_violation(const struct lane_problem *p, const double *r, cons
             const double bound = p->friction * lane_load(e, r);
             const double slip = e->slide != 0 ? LANE_ENDLESS * e->slide : u[i];
             const double room = slip < 0 ? bound - r[i] : bound + r[i];
-            worst = fmax((fabs(r[i]) - bound) * scale, worst);
-            worst = fmax(fmin(fabs(slip), room * scale), worst);
+            worst = lane_max(lane_min(fabs(slip), room * scale), worst);
         }
     }
     return isfinite(sum) ? worst : NAN;
@@ -177,12 +203,17 @@ static double lane_energy(const struct lane_problem *p, const double *r, const d
 static double lane_offer(const struct lane_problem *p, const double *r, struct lane_choice *best)
 {
     double u[LANE_ROWS], apart = 0;
+    /* Most candidates push or pull so wrongly that the velocities do not matter. */
+    const double beyond = lane_beyond(p, r);
+    if (beyond > LANE_ROUNDING * p->tolerance &&
+        (best->violation <= p->tolerance || beyond >= best->violation))
+        return INFINITY;
     lane_velocities(p, r, u);
-    const double violation = lane_violation(p, r, u), energy = lane_energy(p, r, u);
+    const double violation = lane_violation(p, r, u, beyond), energy = lane_energy(p, r, u);
     if (!isfinite(violation) || !isfinite(energy))
         return INFINITY;
     for (int i = 0; i < p->rows; i++)
-        apart = fmax(fabs(u[i] - best->u[i]), apart);
+        apart = lane_max(fabs(u[i] - best->u[i]), apart);
     const bool valid = violation <= p->tolerance, have = best->violation <= p->tolerance;
     const double tie = 1e-12 * (fabs(energy) + fabs(best->energy));
     /* With the same velocities it is the same solution, whatever rounding makes of its energy. */

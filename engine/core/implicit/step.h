@@ -188,7 +188,10 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
         converged &= right | LANES_NOT(somewhere);
     }
     EACH (c, 0, SCENE_CONTACTS) {
-        part[c] = it->active[c] & converged;
+        /* One that has left the ground may move back towards it. */
+        part[c] =
+            it->active[c] & converged &
+            (mask_less(none, it->r[c][0]) | mask_less_equal(it->gap[c], lanes_of(STEP_CLOSED)));
         rebounds |= mask_less(none, set->restitution[c]);
     }
     EACH (c, 0, SCENE_CONTACTS) {
