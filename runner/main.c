@@ -2,6 +2,7 @@
 #include "runner/base/command.h"
 #include "runner/base/words.h"
 #include "runner/plan/instruction_set.h"
+#include "runner/ranks/parallel.h"
 #include "runner/store/build_info.h"
 
 #include <errno.h>
@@ -14,12 +15,13 @@
 extern const struct command command_check, command_design, command_build, command_run,
     command_export, command_status, command_summary, command_plot, command_compare,
     command_describe, command_bench, command_basin, command_merge, command_table,
-    command_sensitivity;
+    command_sensitivity, command_replay;
 
 static const struct command *const commands[] = {
-    &command_check,   &command_design, &command_build,    &command_run,    &command_status,
-    &command_summary, &command_plot,   &command_compare,  &command_basin,  &command_sensitivity,
-    &command_merge,   &command_table,  &command_describe, &command_export, &command_bench,
+    &command_check,   &command_design,   &command_build,       &command_run,
+    &command_status,  &command_summary,  &command_plot,        &command_replay,
+    &command_compare, &command_basin,    &command_sensitivity, &command_merge,
+    &command_table,   &command_describe, &command_export,      &command_bench,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -105,6 +107,9 @@ int main(int argc, char **argv)
         print_version();
         return checked_output(EXIT_DONE);
     }
+    /* Only `run` is for several ranks: of all else the first one speaks. */
+    if (!parallel_is_first() && strcmp(argv[1], command_run.name) != 0)
+        return EXIT_DONE;
     for (size_t i = 0; i < COMMANDS; i++)
         if (strcmp(argv[1], commands[i]->name) == 0)
             return checked_output(commands[i]->run(argc - 1, argv + 1));

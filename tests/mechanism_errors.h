@@ -38,8 +38,8 @@
     {"    rotor: {joint: fixed", "    rotor: {joint: slide, limits: [0.2, 0.1]",
      "10:27: robot.bodies.rotor.limits: 0.2 is not below 0.1"},
     {"rotor: {joint: fixed, parent: trunk, mass: 0.5", "rotor: {joint: slide, parent: trunk",
-     "10:5: robot.bodies.rotor: nothing with mass or inertia resists its joint: give it, or what "
-     "hangs from it, some"},
+     "10:5: robot.bodies.rotor: nothing with mass resists its sliding: give it, or what hangs from "
+     "it, mass"},
     {"parent: thigh1", "parent: tigh1",
      "6:36: robot.bodies.shank1.parent: unknown body 'tigh1'; did you mean 'thigh1'? (known: "
      "trunk, shank1, thigh1, thigh2, shank2, rotor)"},
@@ -121,15 +121,25 @@
     {"joint: free", "joint: {a: {b: {c: {d: 1}}}}",
      "5:20: robot.bodies.trunk.joint: expected one of free, hinge, slide, fixed, found a mapping"},
     {"mass: 0.1, centre: [0, 0.5]", "mass: 0.1",
-     "6:5: robot.bodies.pole: nothing with mass or inertia resists its joint: give it, or what "
-     "hangs from it, some"},
+     "6:5: robot.bodies.pole: nothing resists its turning: give it inertia, or mass off its joint"},
     {"mass: 0.1, centre: [0, 0.5]", "mass: 0",
-     "6:5: robot.bodies.pole: nothing with mass or inertia resists its joint: give it, or what "
-     "hangs from it, some"},
+     "6:5: robot.bodies.pole: nothing resists its turning: give it inertia, or mass off its joint"},
     {"cart: {joint: slide, axis: [1, 0], mass: 1, limits: [-2, 2]}",
      "cart: {joint: slide}\n    hub: {joint: hinge, parent: cart}",
-     "6:5: robot.bodies.hub: nothing with mass or inertia resists its joint: give it, or what "
-     "hangs from it, some"},
+     "6:5: robot.bodies.hub: nothing resists its turning: give it inertia, or mass off its joint"},
+    {"cart: {joint: slide, axis: [1, 0], mass: 1, limits: [-2, 2]}",
+     "cart: {joint: slide, mass: 1}\n    hub: {joint: hinge, parent: cart}\n    leg: {joint: "
+     "hinge, "
+     "parent: hub, mass: 1, centre: [0, -1]}",
+     "6:5: robot.bodies.hub: nothing resists its turning: give it inertia, or mass off its joint"},
+    {"initial: {state: {pole: 0.1}}",
+     "initial: {equilibrium: {pole: 0}}\ncontroller: {kind: state-feedback, design: lqr, model: "
+     "{bodies: {pole: {mass: 0}}}}",
+     "10:66: controller.model.bodies.pole: nothing resists its turning: give it inertia, or mass "
+     "off its joint"},
+    {"head: {body: trunk, at: [0, 0.625]}",
+     "head: {body: trunk, at: [0, 0.625], force: [1, 0], from: 2, to: 1}",
+     "15:65: robot.points.head.to: 1 s is before from, 2 s"},
     {"body: shank1, at", "body: shin1, at",
      "12:19: robot.contacts.foot1.body: unknown body 'shin1'; did you mean 'shank1'? (known: "
      "trunk, shank1, thigh1, thigh2, shank2, rotor)"},

@@ -22,7 +22,7 @@ from drawn import Picture
 
 STANCE, SCENARIOS = sys.argv[1:]
 # By what people are told: blue hues stand, orange falls.
-COLOURS = {"stabilised": "0072b2", "rested": "56b4e9", "fell": "e69f00", "undecided": "cc79a7"}
+COLOURS = {"stabilised": "005a92", "rested": "56b4e9", "fell": "f3bb4c", "undecided": "a45288"}
 HUES = ["0072b2", "d55e00", "009e73"]
 CIVIDIS = np.array([[0x00, 0x22, 0x4e], [0x43, 0x4e, 0x6c], [0x7d, 0x7c, 0x78], [0xbc, 0xae, 0x6c], [0xfe, 0xe8, 0x38]])
 EQUILIBRIUM = ["initial.offset.theta", "initial.offset.vtheta"]
@@ -50,8 +50,21 @@ def close(drawn, wanted, tolerance):
 
 
 def says(picture, *texts):
+    """Each text is one of the picture's, or (of a caption) stands in several of its lines."""
     for text in texts:
-        assert text in picture.said(), (text, picture.said())
+        assert text in picture.said() or len(text) > 90 and text in " ".join(picture.said()), (text, picture.said())
+
+
+def cut(data):
+    """What a caption says of the faces of the box on which starts are stabilised."""
+    inside, faces = names(data) == "stabilised", []
+    for axis, path in enumerate(data.attrs["axes"].decode().split(",")):
+        if path.startswith("initial.offset."):
+            ends = [inside.take(end, axis).any() for end in (0, -1)]
+            at = [f"{data[path][e]:.6g} {data[path].attrs['units'].decode()}" for e, any in zip((0, -1), ends) if any]
+            word = "both ends" if all(ends) else "lower end" if ends[0] else "upper end"
+            faces += [f"{path} = {' and '.join(at)} ({word})"] if at else []
+    return f"; what is stabilised is cut by the box at {', '.join(faces)}: its share is the box's" if faces else ""
 
 
 def names(data):
@@ -112,7 +125,7 @@ def maps():
                "sweep.grid[2].count=7", "record.cases=none")
     stance("plot", "map.h5")
     p, outcome = Picture("map-map.svg"), names(data)
-    says(p, title_of(data), "What became of each of 126 cases; one panel per ground.friction (Coulomb coefficient of friction)",
+    says(p, title_of(data), f"What became of each of 126 cases{cut(data)}; one panel per ground.friction (Coulomb coefficient of friction)",
          "initial.offset.theta (rad)", "initial.offset.vtheta (rad/s)", "friction = 0.1", "friction = 0.8", "equilibrium")
     assert p.legend() == shares(data), (p.legend(), shares(data))
     assert len(p.panels) == 2 and p.panels[0].left < p.panels[1].left
@@ -132,6 +145,49 @@ def maps():
         numbers_shown(p.panels[k], time[k].T, np.nanmin(time), np.nanmax(time))
 
 
+def tables():
+    """Two further axes are rows and columns of panels, each with its share; values left out are told."""
+    grid = "sweep.grid=[{path: ground.friction, values: [0.1, 0.8]}, {path: controller.torque_limit, values: [5, 10, 20]}, " \
+        "{path: initial.offset.theta, from: -0.1, to: 0.05, count: 5}, {path: initial.offset.vtheta, from: -0.5, to: 0.5, count: 4}]"
+    data = run("table", "basin_one_foot.yaml", grid, "record.cases=none")
+    stance("plot", "table.h5")
+    p, outcome = Picture("table-map.svg"), names(data)
+    says(p, "friction = 0.1", "friction = 0.8", "torque_limit = 5 N m", "torque_limit = 20 N m", "%: stabilised")
+    assert sum("friction = 0.1" in t for t in p.said()) == 1
+    assert len(p.panels) == 6
+    for k, panel in enumerate(p.panels):
+        here = outcome[k // 3, k % 3]
+        assert (hexes(image_of(panel)) == np.vectorize(COLOURS.get)(here.T)).all(), k
+        share = [t for x, y, t, _ in p.texts if x is not None and abs(x - panel.right) < 1 and 0 < panel.top - y < 20]
+        assert share == [f"{100 * (here == 'stabilised').mean():.1f} %"], share
+    stance("plot", "table.h5", "--for", "column", "--format", "svg", "-o", "narrow")
+    says(Picture("narrow/table-map.svg"), "torque_limit", "5 N m", "10 N m")
+    run("many", "friction_sweep.yaml", "sweep.grid[0]={path: ground.friction, from: 0.1, to: 0.8, count: 40}",
+        "sweep.grid[1].count=2", "sweep.grid[2].count=2", "stop.time=0.1", "record.cases=none")
+    stance("plot", "many.h5")
+    p = Picture("many-map.svg")
+    assert len(p.panels) == 30 and "30 of the 40 values of ground.friction are drawn" in " ".join(p.said()), p.said()
+
+
+def axes():
+    """A map is over axes of several values, also where those of one come later."""
+    grid = "sweep.grid=[{path: ground.friction, from: 0.1, to: 0.8, count: 4, spacing: log}, {path: controller.torque_limit, values: [5, 10, 20]}, " \
+        "{path: initial.offset.theta, values: [0.01]}, {path: initial.offset.vtheta, values: [0.02]}]"
+    data = run("axes", "basin_one_foot.yaml", grid, "record.cases=none")
+    stance("plot", "axes.h5")
+    p = Picture("axes-map.svg")
+    says(p, "ground.friction", "controller.torque_limit (N m)")
+    assert "at initial.offset.theta = 0.01 rad, initial.offset.vtheta = 0.02 rad/s" in " ".join(p.said())
+    assert (hexes(image_of(p.panels[0])) == np.vectorize(COLOURS.get)(names(data)[:, :, 0, 0].T)).all()
+    spans(p.panels[0], 0, data["ground.friction"][...], log=True)
+
+
+def greys():
+    """Outcomes are told apart without colours."""
+    bright = sorted(sum(w * int(c[i:i + 2], 16) for w, i in ((0.299, 0), (0.587, 2), (0.114, 4))) for c in COLOURS.values())
+    assert min(np.diff(bright)) > 30, bright
+
+
 def answers():
     data = h5py.File("map.h5")
     stance("plot", "map.h5", "--answer", "friction_used", "--of", "fell")
@@ -149,8 +205,10 @@ def curve_of_shares():
     data = h5py.File("map.h5")
     basin = json.loads(stance("basin", "map.h5", "--by", "ground.friction", "--json"))
     p, friction = Picture("map-curve.svg"), data["ground.friction"][...]
-    says(p, title_of(data), "Stabilised cases against ground.friction, 63 cases per value", "share of the box of starts (%)",
-         "ground.friction", "theta (rad)", "vtheta (rad/s)", "band: its bounds")
+    says(p, title_of(data), f"Stabilised cases against ground.friction, 63 cases per value{cut(data)}", "share of the box of starts (%)",
+         "ground.friction", "theta (rad)", "vtheta (rad/s)")
+    assert " ".join(p.said()).endswith("band: likely error (95 %), light: certain bounds below: how far it is stabilised along each axis "
+                                        "through the equilibrium"), p.said()
     assert p.legend() == {"stabilised": COLOURS["stabilised"]}
     panel = p.panels[0]
     marks = panel.marks(COLOURS["stabilised"])
@@ -217,12 +275,13 @@ def samples():
     stance("plot", "sample.h5")
     p = Picture("sample-sample.svg")
     paths = [n for n in data if n.startswith(("ground.", "controller.", "initial.")) and data[n].shape == (40,)]
-    says(p, "200 cases at 40 points of a design, sobol", "controller.torque_limit (N m)", "stabilised (%), bars: 95 % interval")
+    says(p, "200 cases at 40 points of a design, sobol; what is stabilised is cut by the box at initial.offset.theta (lower end)",
+         "controller.torque_limit (N m)", "stabilised (%), bars: 95 % interval")
     panel, marks = p.panels[0], p.panels[0].marks()
     # each point is drawn at its values, in the palette's colour of its share
     axis = names(data).shape.index(40)
     share = (names(data) == "stabilised").mean(axis=1 - axis)
-    where = np.stack([panel.x(marks[:, 0]), panel.y(marks[:, 1])], 1)
+    where = np.stack([panel.x(marks[:, 0], log=True), panel.y(marks[:, 1], log=True)], 1)
     wanted = np.stack([data["ground.friction"][...], data["controller.torque_limit"][...]], 1)
     close(where, wanted, 0.05)
     drawn = np.array([[int(q[2][i:i + 2], 16) for i in (0, 2, 4)] for q in panel.points])
@@ -234,7 +293,7 @@ def samples():
     order = np.argsort(data["ground.friction"][...]).reshape(8, 5)
     marks = below[0].marks(COLOURS["stabilised"])
     close(below[0].y(marks[:, 1]), 100 * share[order].mean(axis=1), 1)
-    close(below[0].x(marks[:, 0]), np.median(data["ground.friction"][...][order], axis=1), 0.02)
+    close(below[0].x(marks[:, 0], log=True), np.median(data["ground.friction"][...][order], axis=1), 0.02)
 
 
 def rays():
@@ -244,7 +303,11 @@ def rays():
     stance("plot", "rays.h5")
     rows = list(csv.DictReader(io.StringIO(stance("basin", "rays.h5", "--boundary"))))
     p = Picture("rays-rays.svg")
-    says(p, "Where 16 rays from the equilibrium cease to be stabilised", "initial.offset.theta (rad)",
+    nearest, = json.loads(stance("basin", "rays.h5", "--descend", "1", "--json"))["rows"]
+    nearest = nearest["nearest"]
+    says(p, "Where 16 rays from the equilibrium cease to be stabilised; nearest end in units of half the ranges: "
+         + ", ".join(f"{path} {x:.2g}" for path, x in nearest["of_ranges"].items()), "initial.offset.theta (rad)",
+         "diamond: the nearest end",
          "initial.offset.vtheta (rad/s)", "dashed: the ray that ends first", "circles: followed no further")
     assert p.legend() == {"stabilised": HUES[0]}
     panel = p.panels[0]
@@ -255,6 +318,8 @@ def rays():
         assert (np.abs(dots - end).max(axis=1) < 0.003).any(), (end, dots)
     circles = [q for q in panel.points if q[3] == 5]
     assert len(circles) == sum(r["end"] == "open" for r in rows)
+    diamonds = np.array([(panel.x(x), panel.y(y)) for x, y, _, kind, _ in panel.points if kind == 12])
+    close(diamonds, [list(nearest["at"].values())] * 2, 0.003)
     # a scatter of rays: every case at its own place, in its outcome's colour
     data, panel = h5py.File("rays.h5"), Picture("rays-sample.svg").panels[0]
     outcome, marks = names(data), panel.marks()
@@ -508,7 +573,7 @@ def speeds():
     assert [t for _, t in panel.words(0)] == ["256²", "512²", "1024²"]
 
 
-for check in (maps, answers, curve_of_shares, lines, tics, samples, rays, case, strip, mechanisms, sensitivities, morris, accuracy, failures,
+for check in (maps, tables, axes, greys, answers, curve_of_shares, lines, tics, samples, rays, case, strip, mechanisms, sensitivities, morris, accuracy, failures,
               speeds):
     count += 1
     try:

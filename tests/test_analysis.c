@@ -715,12 +715,12 @@ static void test_plot_errors(void **state)
                      EXIT_IO);
     assert_one_line(errors);
     assert_int_equal(run_command(&command_plot, sample("bare"), NULL, NULL, NULL), EXIT_USAGE);
-    assert_contains(errors, "--trace");
+    assert_contains(errors, "stance replay");
     assert_int_equal(run_command(&command_plot, sample("basin"), "--case", "99999", NULL),
                      EXIT_USAGE);
     assert_one_line(errors);
     assert_int_equal(run_command(&command_plot, sample("basin"), "--case", "5", NULL), EXIT_USAGE);
-    assert_contains(errors, "--only 5 --trace");
+    assert_contains(errors, "--case 5");
 }
 
 /* ---- scales ------------------------------------------------------------------------------- */

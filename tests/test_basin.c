@@ -490,6 +490,7 @@ static void distances_from_the_equilibrium(void **state)
     static double x[NX], y[NY];
     static uint8_t kind[NX * NY];
     const size_t origin[] = {40, 40}, beyond[] = {75, 40};
+    const double ranges[] = {8, 4}, equal[] = {1, 1}, long_x[] = {4, 1};
     struct basin_distance distance;
     (void)state;
     for (int i = 0; i < NX; i++)
@@ -500,7 +501,7 @@ static void distances_from_the_equilibrium(void **state)
         kind[i] = (uint8_t)in(pow(x[i / NY] / 2.01, 2) + pow(y[i % NY] / 1.001, 2) < 1);
     kind[61 * NY + 40] = RESULTS_FAILED;
     const struct basin_map map = {2, {NX, NY}, {x, y}, NX * NY, kind};
-    basin_map_distance(&map, RESULTS_STABILISED, origin, &distance);
+    assert_true(basin_map_distance(&map, RESULTS_STABILISED, origin, ranges, &distance));
     assert_true(distance.inside);
     assert_near(distance.low[0], -2.05, 1e-9);
     assert_true(isnan(distance.high[0])); /* the next case failed */
@@ -508,9 +509,99 @@ static void distances_from_the_equilibrium(void **state)
     assert_near(distance.high[1], 1.025, 1e-9);
     /* In units of the ranges it is a circle of radius a quarter. */
     assert_near(distance.nearest, 0.25, 0.01);
-    basin_map_distance(&map, RESULTS_STABILISED, beyond, &distance);
+    assert_near(distance.median, 0.25, 0.01);
+    assert_near(distance.clear, 0.2625, 1e-9); /* the failed case at (2.1, 0) */
+    /* Of an ellipse with half-axes 2 and 1 half of all directions end below 2 / sqrt(2.5). */
+    assert_true(basin_map_distance(&map, RESULTS_STABILISED, origin, equal, &distance));
+    assert_near(distance.nearest, 1.001, 0.025);
+    assert_near(distance.median, 2 / sqrt(2.5), 0.03);
+    assert_near(distance.median_least, distance.median, 0);
+    assert_true(distance.leave < 30 && distance.directions == BASIN_DIRECTIONS);
+    assert_near(distance.clear, 2, 1e-9); /* the faces at y = +-2 */
+    /* One of half-axes 1/2 and 1: the other way round. */
+    assert_true(basin_map_distance(&map, RESULTS_STABILISED, origin, long_x, &distance));
+    assert_near(distance.nearest, 0.5125, 0.02);
+    assert_near(distance.at[1], 0, 0.2);
+    assert_near(distance.median, 1 / sqrt(2.5), 0.02);
+    assert_true(basin_map_distance(&map, RESULTS_STABILISED, beyond, equal, &distance));
     assert_false(distance.inside);
-    assert_true(isnan(distance.nearest));
+    assert_true(isnan(distance.nearest) && isnan(distance.median));
+    /* A box that ends at y = +-0.5: what the boundary is like beyond it is not known. */
+    static uint8_t middle[NX * 21];
+    for (int i = 0; i < NX * 21; i++)
+        middle[i] = kind[i / 21 * NY + 30 + i % 21];
+    const struct basin_map cut = {2, {NX, 21}, {x, y + 30}, NX * 21, middle};
+    const size_t centre[] = {40, 10};
+    assert_true(basin_map_distance(&cut, RESULTS_STABILISED, centre, equal, &distance));
+    assert_near(distance.clear, 0.5, 1e-9);
+    assert_true(distance.nearest > 1.6);
+    /* All but those within atan(0.5 / 1.73) of the axis leave. */
+    assert_near((double)distance.leave / (double)distance.directions, 1 - 0.179, 0.02);
+    assert_true(isnan(distance.median));
+    assert_near(distance.median_least, 0.5 * sqrt(2), 0.01);
+}
+
+/* ---- the domain of the equilibrium -------------------------------------------------------- */
+
+/* A disc about the middle, and what it must not be taken for: an island in a corner. */
+static enum results_kind disc_and_island(const double *at)
+{
+    return in(hypot(at[0] - 0.5, at[1] - 0.5) < 0.21 || hypot(at[0], at[1]) < 0.2);
+}
+static enum results_kind two_balls(const double *at)
+{
+    return in(hypot(hypot(at[0] - 0.5, at[1] - 0.5), at[2] - 0.5) < 0.21 || at[2] > 0.9);
+}
+static enum results_kind two_intervals(const double *at)
+{
+    return in(fabs(at[0] - 0.5) < 0.21 || at[0] < 0.2);
+}
+
+static void the_part_about_the_equilibrium(void **state)
+{
+    static const struct {
+        int axes;
+        size_t n;
+        painter colour;
+        double volume, tolerance;
+    } sets[] = {{1, 201, two_intervals, 0.42, 0.005},
+                {2, 201, disc_and_island, M_PI * 0.21 * 0.21, 0.001},
+                {3, 41, two_balls, 4 * M_PI / 3 * 0.21 * 0.21 * 0.21, 0.001}};
+    (void)state;
+    for (size_t k = 0; k < sizeof sets / sizeof sets[0]; k++) {
+        struct drawn d = draw(sets[k].axes, sets[k].n, false, sets[k].colour);
+        const size_t half = sets[k].n / 2, origin[] = {half, half, half}, corner[] = {0, 0, 0};
+        const size_t last[] = {sets[k].n - 1, sets[k].n - 1, sets[k].n - 1};
+        struct basin_part part;
+        struct basin_volume all;
+        assert_true(basin_map_part(&d.map, RESULTS_STABILISED, origin, &part));
+        assert_true(basin_map_volume(&d.map, RESULTS_STABILISED, &all));
+        assert_true(part.inside && !part.unknown);
+        assert_int_equal(part.faces, 0);
+        assert_near(part.volume.estimate, sets[k].volume, sets[k].tolerance);
+        assert_true(part.volume.low <= sets[k].volume && sets[k].volume <= part.volume.high);
+        assert_true(all.estimate > part.volume.estimate + 0.02);
+        /* The other part is cut by the box: at its lower ends in the line and in the plane. */
+        const bool space = sets[k].axes == 3;
+        assert_true(basin_map_part(&d.map, RESULTS_STABILISED, space ? last : corner, &part));
+        assert_int_equal(part.faces, space ? 1 + 2 + 4 + 8 + 32 : sets[k].axes == 1 ? 1 : 1 + 4);
+        /* Unknown cases: one far away does not matter, one beside the part does, one at the
+         * equilibrium leaves all open. */
+        uint64_t stride[SCENARIO_MAX_AXES];
+        basin_strides(&d.map, stride);
+        const uint64_t middle = basin_index(&d.map, stride, origin);
+        d.kind[d.map.cases - 1] = RESULTS_FAILED;
+        assert_true(basin_map_part(&d.map, RESULTS_STABILISED, origin, &part) && !part.unknown);
+        d.kind[middle + (size_t)ceil(0.21 * (double)(sets[k].n - 1))] = RESULTS_PENDING;
+        assert_true(basin_map_part(&d.map, RESULTS_STABILISED, origin, &part) && part.unknown);
+        d.kind[middle] = RESULTS_FAILED;
+        assert_true(basin_map_part(&d.map, RESULTS_STABILISED, origin, &part));
+        assert_true(!part.inside && part.unknown);
+        d.kind[middle] = RESULTS_FELL;
+        assert_true(basin_map_part(&d.map, RESULTS_STABILISED, origin, &part));
+        assert_true(!part.inside && !part.unknown);
+        erase(&d);
+    }
 }
 
 int main(void)
@@ -529,6 +620,7 @@ int main(void)
         cmocka_unit_test(too_small_or_empty_maps_have_none),
         cmocka_unit_test(boundary_points_lie_on_the_boundary),
         cmocka_unit_test(distances_from_the_equilibrium),
+        cmocka_unit_test(the_part_about_the_equilibrium),
     };
     return cmocka_run_group_tests_name("basin", tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 
 #include "cases.h"
 
+#include "analysis/basin/basin.h"
 #include "analysis/statistics/intervals.h"
 #include "runner/scenario/doe.h"
 
@@ -108,6 +109,30 @@ static void intervals_hold_as_often_as_they_say(void **state)
     }
 }
 
+/* Shares of what differs in size from point to point: what is lost of a domain, of those starts
+ * that were in it. E(m) = 32, E(k) = 64 E((0.1 + 0.8 u) (0.2 + 0.6 u v)). */
+static void shares_of_parts_hold(void **state)
+{
+    const double wanted = (0.1 * 0.2 + 0.1 * 0.6 / 4 + 0.8 * 0.2 / 2 + 0.8 * 0.6 / 6) / 0.5;
+    (void)state;
+    for (int count = 32; count <= 128; count *= 4) {
+        int held = 0;
+        for (int seed = 0; seed < 1000; seed++) {
+            struct interval_draws draws = {0};
+            uint64_t random = (uint64_t)seed * 7919 + 3;
+            for (int i = 0; i < count; i++) {
+                const double u = uniform(&random, 0, 1), v = uniform(&random, 0, 1);
+                const double m = CASES * (0.1 + 0.8 * u);
+                interval_add(&draws, m * (0.2 + 0.6 * u * v), m);
+            }
+            const struct interval found = interval_of(&draws, 0.95);
+            held += found.low <= wanted && wanted <= found.high;
+        }
+        print_message("# shares of parts, %d points: %.1f %%\n", count, held / 10.0);
+        assert_true(held >= 930 && held <= 970);
+    }
+}
+
 /* ---- cases of a file ---------------------------------------------------------------------- */
 
 /* Four parts of a sample whose shares differ by less than a case in 32 have intervals of their own,
@@ -156,11 +181,62 @@ static void shares_over_a_grid_are_no_coins(void **state)
     assert_true(isnan(rows[36].low) && isnan(rows[36].high));
 }
 
+/* ---- volumes over a sample of parameters --------------------------------------------------- */
+
+/* Starts on a grid of x, of which those below an edge that a sampled parameter moves are inside. */
+static void volumes_over_sampled_parameters(void **state)
+{
+    enum { GRID = 41, POINTS = 32, SEEDS = 1000 };
+    static uint8_t kind[GRID * POINTS];
+    static double x[GRID], point[POINTS];
+    struct results r = {
+        .axes = 2,
+        .axis =
+            {{.name = "initial.offset.x", .unit = "m", .count = GRID, .value = x, .offset = true},
+             {.name = "sample", .count = POINTS, .value = point}},
+        .sample = 1,
+        .block = 1,
+        .cases = GRID * POINTS,
+        .kind = kind};
+    const struct basin_choice choice = {.of = RESULTS_STABILISED, .side = 5, .level = 0.95};
+    (void)state;
+    for (int i = 0; i < GRID; i++)
+        x[i] = -1 + 2.0 * i / (GRID - 1);
+    for (int narrow = 0; narrow < 2; narrow++) {
+        int held = 0;
+        for (int seed = 0; seed < SEEDS; seed++) {
+            struct basin_sample sample = {.axis = -1, .points = POINTS, .block = 1};
+            struct basin basin;
+            stance_message message;
+            uint64_t random = (uint64_t)seed * 7919 + 1;
+            bool usage;
+            for (int p = 0; p < POINTS; p++) {
+                const double u = uniform(&random, 0, 1),
+                             edge = narrow ? 0.2 + 0.03 * u : 0.9 * u * u - 0.1;
+                for (int i = 0; i < GRID; i++)
+                    kind[i * POINTS + p] = x[i] < edge ? RESULTS_STABILISED : RESULTS_FELL;
+            }
+            assert_true(basin_make(&basin, &r, &choice, &sample, &usage, &message));
+            assert_int_equal(basin.rows, 1);
+            const double wanted = narrow ? 1.215 : 1.2;
+            held += fabs(basin.row[0].volume - wanted) <= basin.row[0].reach;
+            basin_free(&basin);
+        }
+        print_message("# volumes over %d sampled points, %s: %.1f %%\n", POINTS,
+                      narrow ? "within a cell" : "wide", 100.0 * held / SEEDS);
+        /* Within a cell the place of the edge in it is the whole error, and the bound is certain.
+         */
+        assert_true(held >= 930 && (narrow || held <= 970 + 10));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(intervals_hold_as_often_as_they_say),
+        cmocka_unit_test(shares_of_parts_hold),
         cmocka_unit_test(shares_over_a_grid_are_no_coins),
+        cmocka_unit_test(volumes_over_sampled_parameters),
     };
     return cmocka_run_group_tests_name("intervals", tests, NULL, NULL);
 }

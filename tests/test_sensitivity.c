@@ -293,7 +293,7 @@ static struct tally cover(enum doe_method method, const struct function *f, uint
 static void test_coverage(void **state)
 {
     const bool patient = getenv("STANCE_TEST_LONG") != NULL;
-    const int seeds = patient ? 2000 : 300;
+    const int seeds = patient ? 2000 : 1000;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     (void)state;
     for (size_t f = 0; f < FUNCTIONS; f++) {
@@ -319,7 +319,7 @@ static void test_coverage(void **state)
 static void test_coverage_of_bins(void **state)
 {
     const bool patient = getenv("STANCE_TEST_LONG") != NULL;
-    const int seeds = patient ? 1000 : 60;
+    const int seeds = patient ? 1000 : 200;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     (void)state;
     for (size_t f = 0; f < FUNCTIONS; f++) {
@@ -338,7 +338,7 @@ static void test_coverage_of_bins(void **state)
 static void test_coverage_of_effects(void **state)
 {
     enum { TRUTHS = 20000 };
-    const int seeds = getenv("STANCE_TEST_LONG") ? 4000 : 400;
+    const int seeds = getenv("STANCE_TEST_LONG") ? 4000 : 1000;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     const struct function *own = &functions[0];
     struct sensitivity truth;

@@ -221,6 +221,67 @@ assert [x["pending"] for x in r] == [0, 800, 2400] and r[2]["volume"] is None
 assert r[2]["low"] == 0 and abs(r[2]["high"] - 0.216) < 1e-12 and r[1]["high"] > r[1]["volume"] > r[1]["low"]
 assert b["starts"] == ["initial.offset.theta", "initial.offset.vtheta"] and b["unit"] == "rad * rad/s"' >>log 2>&1
 result $? "... to all there is"
+# A box that cuts the domain, one that does not, and what does not depend on it.
+small='[{path: initial.offset.theta, from: -0.03, to: 0.03, count: 31}, {path: initial.offset.vtheta, from: -0.12, to: 0.12, count: 31}]'
+large='[{path: initial.offset.theta, from: -0.2, to: 0.12, count: 161}, {path: initial.offset.vtheta, from: -0.9, to: 1, count: 96}]'
+line='[{path: initial.offset.theta, from: -0.2, to: 0.1, count: 151}]'
+for box in small large line; do
+    "$stance" run map.yaml --quiet -o $box.h5 --set record.cases=none --set ground.friction=0.4 \
+        --set "sweep={grid: ${!box}}" >>log 2>&1
+    "$stance" basin $box.h5 --json >$box.json 2>>log
+    "$stance" summary $box.h5 --json >$box.summary 2>>log
+done
+"$python" - >log 2>&1 <<'END'
+import h5py, json, numpy
+from scipy import ndimage
+for name in ["small", "large", "line"]:
+    b, s, f = json.load(open(name + ".json")), json.load(open(name + ".summary")), h5py.File(name + ".h5")
+    row, = b["rows"]
+    inside = f["outcome"][...] == 1
+    axes = [f[p][...] for p in b["starts"]]
+    cut = [{"path": p, "end": word, "at": axes[a][end]} for a, p in enumerate(b["starts"])
+           for end, word in ((0, "lower"), (-1, "upper")) if inside.take(end, a).any()]
+    assert row["cut"] == cut == s["cut"], (row["cut"], cut)
+    label, _ = ndimage.label(inside)
+    own = label == label[tuple(numpy.abs(x).argmin() for x in axes)]
+    weight = numpy.ones(())
+    for x in axes:
+        edge = numpy.full(len(x), x[1] - x[0])
+        edge[[0, -1]] /= 2
+        weight = numpy.multiply.outer(weight, edge)
+    assert abs((own * weight).sum() - row["connected"]) < 1e-9, row["connected"]
+    assert row["bounded"] == (not any(own.take(e, a).any() for a in range(own.ndim) for e in (0, -1)))
+    assert b["weights"] == {p: 1 for p in b["starts"]}
+small, large, line = (json.load(open(n + ".json"))["rows"][0] for n in ("small", "large", "line"))
+print(small, large, line)
+assert len(small["cut"]) == 4 and small["bounded"] is False and small["share"] > 0.6 > large["share"]
+assert line["bounded"] is True and line["cut"] == [] and line["nearest_least"] == line["nearest"]
+# The nearest point is the same in both boxes, to their cells, and beside the line's.
+assert abs(small["nearest"] - large["nearest"]) < 0.004 and 0 < line["nearest"] - large["nearest"] < 0.004
+assert small["leaving"] > large["leaving"] and (small["median"] is None) == (small["leaving"] > 0.5)
+END
+result $? "the box: faces that cut, the part about the equilibrium, distances"
+expect "... as text" 0 "$stance" basin small.h5
+says "... names the faces" '^  cut by the box at initial.offset.theta = -0.03 rad and 0.03 rad (both ends), initial.offset.vtheta = -0.12'
+says "... and what that means" "the share is the box's"
+expect "... not cut" 0 "$stance" basin line.h5
+says "... says that it is bounded" 'bounded: it ends within the box'
+expect "... in the summary" 0 "$stance" summary small.h5
+says "... which names the faces, too" 'stabilised set cut by the box at initial.offset.theta = -0.03 rad and 0.03 rad (both ends)'
+mkdir scripts
+expect "... and in the caption" 0 env STANCE_SCRIPTS=scripts "$stance" plot small.h5
+expect "... of the map" 0 grep -rq "cut by the box at initial.offset.theta = -0.03 rad and 0.03 rad (both ends)" scripts/small-map
+expect "weights of disturbances" 0 "$stance" basin line.h5 --json --weight initial.offset.theta=0.01
+"$python" -c 'import json; b, one = json.load(open("log")), json.load(open("line.json"))
+assert b["weights"] == {"initial.offset.theta": 0.01}
+for k in "nearest", "nearest_least", "median": assert abs(b["rows"][0][k] - 100 * one["rows"][0][k]) < 1e-9' >>log 2>&1
+result $? "... are the units of distances"
+expect "a box without the equilibrium's domain" 0 "$stance" basin line.h5 --of fell
+says "... has no part of it" 'none: the start nearest to the equilibrium is not fell'
+for wrong in initial.offset.theta initial.offset.theta= initial.offset.theta=0 initial.offset.theta=nan initial.offset.q1=1; do
+    expect "a weight that is none: $wrong" 2 "$stance" basin line.h5 --weight $wrong
+done
+
 expect "the boundary as points" 0 "$stance" basin whole.h5 --boundary
 "$python" - >log2 2>&1 <<'END'
 import csv, h5py, numpy
@@ -240,6 +301,8 @@ for r in rows:
         assert words[outcome[tuple(place)]] == word
 END
 result $? "... midway between neighbours that differ"
+expect "... pending cases" 0 "$stance" basin half1.h5 --of rested
+says "... may be where it is cut" 'not known to be cut by the box'
 expect "... as text" 0 "$stance" basin whole.h5
 says "... which says why there is no alpha" 'no alpha in some rows: fewer than 96 cases along an axis'
 expect "an outcome of one's own" 0 "$stance" basin whole.h5 --of fell --level 0.99 --box 4
@@ -270,6 +333,11 @@ for k, (a, b) in enumerate(zip(sample["rows"], grid["rows"])):
     assert a["low"] < b["volume"] < a["high"] and a["low"] < a["volume"] < a["high"]
 END
 result $? "... with Wilson's interval, in which the grid's volume lies"
+"$python" -c 'import h5py, json; b = json.load(open("log"))["rows"][2]
+near = min((h5py.File("sample.h5")["initial.offset.theta"][...] ** 2 + h5py.File("sample.h5")["initial.offset.vtheta"][...] ** 2)[h5py.File("sample.h5")["outcome"][2] != 1]) ** 0.5
+print(b["cut"], near, b["nearest"]); assert abs(b["nearest"] - near) < 1e-12 and b["nearest_least"] == 0 and b["median"] is None
+assert {c["path"] for c in b["cut"]} >= {"initial.offset.theta"} and b["bounded"] is None' >>log2 2>&1
+result $? "... and the faces that they reach"
 expect "points on a boundary need a grid" 2 "$stance" basin sample.h5 --boundary
 
 # A sample of parameters beside starts on a grid: points of a block share coordinates, blocks do not.
@@ -295,6 +363,146 @@ END
 result $? "... and their error is the scatter of whole blocks"
 expect "... as text" 0 "$stance" basin over.h5
 says "... which says over what" 'averaged over ground.friction, controller.torque_limit'
+
+# ---- single questions --------------------------------------------------------------------------
+expect "where a share is lost" 0 "$stance" run map.yaml --quiet -o delay.h5 --set record.cases=none \
+    --set 'sweep.grid=[{path: controller.sample_time, values: [0.001, 0.02, 0.04, 0.06]},
+        {path: initial.offset.theta, from: -0.12, to: 0.06, count: 37}, {path: initial.offset.vtheta, from: -0.6, to: 0.6, count: 31}]'
+for form in --json --csv; do
+    expect "... is told with $form" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time $form
+    mv log threshold$form
+    expect "... of starts, with $form" 0 "$stance" basin delay.h5 --lost controller.sample_time $form
+    mv log lost$form
+    expect "... numbers, with $form" 0 "$stance" basin delay.h5 --answer settle_time $form
+    mv log answer$form
+done
+"$stance" basin delay.h5 --json >delay.json
+"$stance" basin delay.h5 --within settle_time=1.2 --json >within.json
+"$python" - >log2 2>&1 <<'END'
+import csv, h5py, json, numpy
+f, basin = h5py.File("delay.h5"), json.load(open("delay.json"))
+inside, settle, times = f["outcome"][...] == 1, f["settle_time"][...], f["controller.sample_time"][...]
+row, = json.load(open("threshold--json"))["rows"]
+v = numpy.array([r["volume"] for r in basin["rows"]])
+i = numpy.argmax(v < 0.8 * v[0])
+assert i > 0, v
+at = numpy.interp(0.8 * v[0], [v[i], v[i - 1]], [times[i], times[i - 1]])
+print(row, at)
+assert abs(row["value"] - at) < 1e-6 and [row["before"], row["after"]] == list(times[i - 1:i + 1])
+assert row["low"] < at and (row["high"] is None or at < row["high"])
+one, = csv.DictReader(open("threshold--csv", newline=""))
+assert float(one["value"]) == row["value"]
+lost = json.load(open("lost--json"))
+gone = numpy.array([(inside[0] & ~inside[:k + 1].all(axis=0)).sum() for k in range(4)])
+assert lost["starts"] == inside[0].sum() and [r["lost_so_far"] for r in lost["rows"]] == list(gone)
+k = numpy.argmax(gone > 0)
+assert (lost["kept"], lost["lost"]) == (times[k - 1], times[k]) and lost["unknown"] == 0
+where = numpy.unravel_index(lost["first"], inside.shape)
+assert where[0] == k and inside[0][where[1:]] and not inside[where]
+assert [int(r["lost"]) for r in csv.DictReader(open("lost--csv", newline=""))] == list(numpy.diff(gone, prepend=0))
+for k, r in enumerate(json.load(open("answer--json"))["rows"]):
+    number = settle[k][inside[k]]
+    assert r["cases"] == len(number) and abs(r["median"] - numpy.median(number)) < 1e-12
+    assert abs(r["q90"] - numpy.quantile(number, 0.9)) < 1e-12 and r["largest"] == number.max()
+    assert settle.ravel()[r["largest_case"]] == r["largest"]
+within = json.load(open("within.json"))
+assert within["within"] == "settle_time <= 1.2" and basin["within"] is None
+for k, r in enumerate(within["rows"]):
+    assert r["inside"] == (inside[k] & (settle[k] <= 1.2)).sum() < basin["rows"][k]["inside"]
+END
+result $? "... as the cases say"
+expect "a threshold in words" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time
+says "... with what is asked" 'falls below 80 % of what it is at controller.sample_time = 0.001 s'
+expect "losses from the other end" 0 "$stance" basin delay.h5 --lost controller.sample_time=0.06
+says "... in words" ' starts end as stabilised at controller.sample_time = 0.06 s'
+expect "a threshold within a time" 0 "$stance" basin delay.h5 --threshold 0.8 --of controller.sample_time --within settle_time=1.2
+says "... says so" 'stabilised with settle_time <= 1.2 falls below'
+expect "the best of a sample" 0 "$stance" basin over.h5 --rank 5 --json
+"$python" - >log2 2>&1 <<'END'
+import h5py, json, numpy
+f = h5py.File("over.h5")
+inside = (f["outcome"][...] == 1).astype(float)
+edge = lambda n: numpy.where((numpy.arange(n) % (n - 1)) == 0, 0.5, 1)
+volume = numpy.einsum("ijp,i,j->p", inside, edge(9), edge(8)) * 0.18 / 8 * 1.2 / 7
+rows = json.load(open("log"))["rows"]
+assert numpy.allclose([r["volume"] for r in rows], sorted(volume)[:-6:-1])
+for r in rows:
+    p = r["at"]["sample"]
+    assert abs(volume[int(p)] - r["volume"]) < 1e-12 and r["low"] <= r["volume"] <= r["high"] and r["reach"] > 0
+    assert r["at"]["ground.friction"] == f["ground.friction"][int(p)]
+END
+result $? "... with their values, shares and bounds"
+expect "... in words" 0 "$stance" basin over.h5 --rank 3
+says "... of how many" 'the 3 largest of 32 sampled points'
+while read -r wrong; do
+    # shellcheck disable=SC2086
+    expect "refused: $wrong" 2 "$stance" basin delay.h5 $wrong
+done <<'END'
+--threshold 0.8
+--of controller.sample_time
+--threshold 1 --of controller.sample_time
+--threshold 0.8 --of initial.offset.theta
+--threshold nan --of controller.sample_time
+--lost controller.sample
+--lost controller.sample_time=0.02
+--lost controller.sample_time=
+--rank 3
+--rank 0
+--answer sample_time
+--within settle_time
+--within settle_time=fast
+--within speed=1
+--answer outcome
+--within fall_cause=1
+--threshold 0.8 --of controller.sample_time --rank 3
+END
+
+# What one domain has lost of another: labels side by side.
+for form in --json --csv; do
+    expect "two domains side by side, with $form" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels $form
+    mv log labels$form
+done
+expect "... of an outcome of one's own" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels --of fell --json
+"$python" - >log2 2>&1 <<'END'
+import csv, h5py, json
+a, b = (h5py.File(n)["outcome"][...] for n in ("f0.1.h5", "f0.4.h5"))
+words = {1: "stabilised", 2: "fell", 3: "rested", 4: "undecided"}
+found, rows = json.load(open("labels--json")), list(csv.DictReader(open("labels--csv", newline="")))
+count = {(words[i], words[j]): int(((a == i) & (b == j)).sum()) for i in words for j in words}
+assert {(r["first"], r["second"]): r["cases"] for r in found["became"]} == {k: n for k, n in count.items() if n}
+assert {(r["first"], r["second"]): int(r["cases"]) for r in rows} == {k: n for k, n in count.items() if n}
+for r in found["became"]:
+    assert abs(r["share"] - r["cases"] / a.size) < 1e-12
+    assert abs(r["share_of_first"] - r["cases"] / sum(n for k, n in count.items() if k[0] == r["first"])) < 1e-12
+for d, of in ((found["domain"], 1), (json.load(open("log"))["domain"], 2)):
+    kept, lost, won = ((a == of) & (b == of)).sum(), ((a == of) & (b != of)).sum(), ((a != of) & (b == of)).sum()
+    assert (d["outcome"], d["kept"], d["lost"], d["won"]) == (words[of], kept, lost, won)
+    assert d["neither"] == a.size - kept - lost - won and d["lost_low"] is None
+    assert abs(d["lost_share"] - lost / (kept + lost)) < 1e-12 and abs(d["won_share"] - won / (kept + won)) < 1e-12
+assert found["domain"]["lost"] > 0
+END
+result $? "... count what is kept, lost and won"
+expect "... in words" 1 "$stance" compare f0.1.h5 f0.4.h5 --labels
+says "... with the share that is lost" 'stabilised in both: .*; lost, in f0.1.h5 alone: .* % of its domain);$'
+for limit in 9 11; do
+    "$stance" run map.yaml --quiet -o drawn$limit.h5 --set controller.torque_limit=$limit --set record.cases=none \
+        --set 'sweep={sample: {method: random, count: 500, vary: [{path: initial.offset.theta, from: -0.12, to: 0.06},
+        {path: initial.offset.vtheta, from: -0.6, to: 0.6}]}}' >>log2 2>&1
+done
+expect "domains of a sample" 1 "$stance" compare drawn11.h5 drawn9.h5 --labels --json
+"$python" - >>log2 2>&1 <<'END'
+import h5py, json, math
+a, b = (h5py.File(n)["outcome"][...] == 1 for n in ("drawn11.h5", "drawn9.h5"))
+d, n, p, z = json.load(open("log"))["domain"], a.sum(), (a & ~b).sum() / a.sum(), 1.959963984540054
+centre, half = p + z * z / 2 / n, z * math.sqrt(p * (1 - p) / n + z * z / 4 / n / n)
+assert 0 < p < 1 and abs(d["lost_low"] - (centre - half) / (1 + z * z / n)) < 1e-9
+assert abs(d["lost_high"] - (centre + half) / (1 + z * z / n)) < 1e-9
+END
+result $? "... have Wilson's interval for what is lost"
+expect "domains over other starts" 2 "$stance" compare small.h5 line.h5 --labels
+"$stance" run map.yaml --quiet -o wider.h5 --set record.cases=none --set "sweep={grid: ${small//0.03/0.04}}" >>log2 2>&1
+expect "... at other places" 2 "$stance" compare small.h5 wider.h5 --labels
+says "... are refused" 'the starts of small.h5 and wider.h5 are not the same'
 
 # ---- rays ------------------------------------------------------------------------------------
 cat >rays.sets <<'END'
@@ -332,9 +540,60 @@ for k in range(2):
     assert (r["median"] or numpy.inf) == numpy.median(ends)
 END
 result $? "... as the cases say"
+# Descents end no farther than the shortest ray, on the boundary, where dense rays about it end.
+expect "descents from the shortest ray" 0 "$stance" basin rays.h5 --json --descend 5
+cp log nearest.json
+"$python" - >log2 2>&1 <<'END'
+import json
+sets = []
+for r in json.load(open("nearest.json"))["rows"]:
+    n = r["nearest"]
+    print(n)
+    low, high = n["bracket"]
+    assert low < n["scale"] < high <= low * 1.0002 and n["scale"] <= r["first_bracket"][1] and n["failed"] == 0
+    assert abs(sum(x * x for x in n["of_ranges"].values()) ** 0.5 - n["scale"]) < 1e-9
+    assert n["at"]["initial.offset.theta"] == 0.1 * n["of_ranges"]["initial.offset.theta"]
+    assert n["starts"] == 5 and 1 <= n["agree"] <= 5 and abs(n["unseen"] - (1 - 0.05 ** 0.25)) < 1e-9
+    theta, vtheta = n["at"].values()
+    print(f"sweep={{grid: [{{path: initial.offset.scale, values: [{low / n['scale']}, {high / n['scale']}]}}]}}",
+          f"initial.offset.theta={theta}", f"initial.offset.vtheta={vtheta}",
+          f"ground.friction={r['at']['ground.friction']}", sep="\n", file=open(f"end{len(sets)}.sets", "w"))
+    sets.append(r)
+END
+result $? "... are told with how sure they are"
+for k in 0 1; do
+    mapfile -t sets <end$k.sets
+    "$stance" run map.yaml --quiet -o end$k.h5 --set record.cases=none --set "${sets[0]}" --set "${sets[1]}" \
+        --set "${sets[2]}" --set "${sets[3]}" >>log2 2>&1
+    "$stance" table end$k.h5 --answer outcome >end$k.csv 2>>log2
+    grep -q '^0,.*,stabilised' end$k.csv && grep -q '^1,.*,fell' end$k.csv
+    result $? "... and cases of their own end so"
+done
+"$stance" run map.yaml --quiet -o dense.h5 --set record.cases=none --set "sweep={grid:
+    [{path: ground.friction, values: [0.2, 0.4]}, {path: initial.offset.scale, from: 0.1, to: 0.3, count: 401}],
+    sample: {method: sphere, count: 256, vary: [{path: initial.offset.theta, from: -0.1, to: 0.1},
+    {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}, refine: {start: 16}}" >>log2 2>&1
+"$stance" basin dense.h5 --json >dense.json 2>>log2
+"$python" -c 'import json
+for a, b in zip(json.load(open("nearest.json"))["rows"], json.load(open("dense.json"))["rows"]):
+    print(a["nearest"]["scale"], b["smallest"])
+    assert -0.002 * b["smallest"] < b["smallest"] - a["nearest"]["scale"] < 0.02 * b["smallest"]' >>log2 2>&1
+result $? "... near the shortest of many rays"
+"$stance" run map.yaml --quiet -o ray.h5 --set record.cases=none --set "$(cat rays.sets)" --set 'sweep.grid[0].values=[0.2]' >>log2 2>&1
+expect "... in words" 0 "$stance" basin ray.h5 --descend 3
+says "... with the direction" 'initial.offset.theta .* of half its range'
+expect "... and without" 0 "$stance" basin ray.h5
+says "... that the shortest is an upper bound" 'an upper bound; --descend 8'
+expect "a file without rays" 2 "$stance" basin whole.h5 --descend 3
+expect "no descents" 2 "$stance" basin rays.h5 --descend 0
 expect "pictures of rays" 0 "$stance" plot rays.h5
 says "... show the curve" '^rays-rays.png$'
 expect "--by has no meaning for rays" 2 "$stance" basin rays.h5 --by ground.friction
+for wrong in "--weight initial.offset.theta=1" "--rank 3" "--threshold 0.8 --of ground.friction" "--answer end_time"; do
+    # shellcheck disable=SC2086
+    expect "... nor has $wrong" 2 "$stance" basin rays.h5 $wrong
+    says "... and why" '^stance basin: rays have no use for --'
+done
 expect "pictures of basins" 0 "$stance" plot whole.h5
 expect "a refined map" 0 "$stance" run map.yaml --quiet -o inferred.h5 --set record.cases=none \
     --set 'sweep={grid: [{path: initial.offset.theta, from: -0.12, to: 0.06, count: 33},

@@ -292,7 +292,7 @@ check "export: not described as bodies" exits 2 "$stance" export --mjcf scenario
 check "export: no such scenario" exits 3 "$stance" export --mjcf "$work/nothing.yaml"
 check "export: cannot write" exits 3 "$stance" export --mjcf scenarios/mechanisms/rabbit.yaml -o "$work/nowhere/x.xml"
 
-for command in check design build export run status summary plot compare describe bench; do
+for command in check design build export run status summary plot replay compare describe bench; do
     check "$command -h" "$stance" $command -h
     check "$command rejects nonsense" exits 2 "$stance" $command --nonsense
 done

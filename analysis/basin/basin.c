@@ -15,8 +15,7 @@
 
 static bool is_start(const struct results_axis *axis)
 {
-    return !axis->word && strcmp(axis->name, "initial.offset.scale") != 0 &&
-           (axis->offset || strncmp(axis->name, "initial.state.", 14) == 0);
+    return !axis->word && statistics_is_start(axis->name);
 }
 
 static int find_axis(const struct results *r, const char *name)
@@ -83,6 +82,58 @@ static bool choose_sample(struct basin *b, stance_message *message)
     return true;
 }
 
+size_t basin_starts(const struct basin *basin)
+{
+    return basin->starts == BASIN_GRID ? (size_t)basin->start_axes : basin->sample.factors;
+}
+
+const struct results_axis *basin_start(const struct basin *basin, size_t k)
+{
+    return basin->starts == BASIN_GRID ? &basin->r->axis[basin->start[k]]
+                                       : basin->sample.factor[k].of;
+}
+
+/* Distances are in units of weights. */
+static bool choose_weights(struct basin *b, stance_message *message)
+{
+    bool known = true;
+    for (int k = 0; k < SCENARIO_MAX_AXES; k++)
+        b->weight[k] = 1;
+    for (size_t k = 0; known && k < b->choice.weights; k++) {
+        const struct basin_weight *weight = &b->choice.weight[k];
+        known = false;
+        for (size_t d = 0; b->around && d < basin_starts(b); d++) {
+            if (strcmp(basin_start(b, d)->name, weight->path) == 0) {
+                b->weight[d] = weight->size;
+                known = true;
+            }
+        }
+        if (!known)
+            complain(message,
+                     "stance basin: --weight takes a start about the equilibrium, and '%.60s' is "
+                     "none of %.80s",
+                     weight->path, b->r->file);
+    }
+    return known;
+}
+
+/* The equilibrium is where all offsets are zero. */
+static bool is_around(const struct basin *b)
+{
+    const size_t count = basin_starts(b);
+    for (size_t d = 0; d < count; d++) {
+        const struct results_axis *axis = basin_start(b, d);
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < axis->count; i++) {
+            low = fmin(low, axis->value[i]);
+            high = fmax(high, axis->value[i]);
+        }
+        if (strncmp(axis->name, "initial.offset.", 15) != 0 || low > 0 || high < 0)
+            return false;
+    }
+    return count <= SCENARIO_MAX_AXES;
+}
+
 static bool choose_axes(struct basin *b, stance_message *message)
 {
     const struct results *r = b->r;
@@ -91,24 +142,30 @@ static bool choose_axes(struct basin *b, stance_message *message)
     b->box = 1;
     for (int a = 0; a < r->axes; a++) {
         const struct results_axis *axis = &r->axis[a];
-        const bool by = contains(b->by, b->by_axes, a);
+        const bool by = contains(b->by, b->by_axes, a), sample = strcmp(axis->name, "sample") == 0;
         if (!by && is_start(axis) && axis->count > 1) {
             b->start[b->start_axes++] = a;
             add_unit(b, axis->unit);
-        } else if (!by && strcmp(axis->name, "sample") == 0) {
+        } else if (!by && sample && b->choice.rank == 0) {
             b->averaged = a;
-        } else if (!by && b->choice.by_count == 0 && !is_start(axis) && !r->single) {
+        } else if (!by && (sample || (b->choice.by_count + b->choice.rank == 0 && !is_start(axis) &&
+                                      !r->single))) {
             b->by[b->by_axes++] = a;
         }
     }
-    if (b->sample.axis >= 0)
-        return choose_sample(b, message);
+    if (b->choice.rank > 0 && (r->sample < 0 || b->sample.axis >= 0))
+        return complain(message,
+                        "stance basin: --rank needs a sample of parameters, and %.150s has none",
+                        r->file);
+    if (b->sample.axis >= 0 && !choose_sample(b, message))
+        return false;
     if (b->start_axes == 0)
         return complain(
             message,
             "%.100s: no starts are varied (initial.offset.*, initial.state.*), so there is no "
             "basin to measure",
             r->file);
+    b->around = is_around(b);
     return true;
 }
 
@@ -242,6 +299,37 @@ static size_t blocks_of(const struct basin *b)
     return b->averaged >= 0 ? b->sample.points / b->sample.block : 0;
 }
 
+/* The map's faces as those of the box. */
+static face_set faces_of(const struct basin *b, uint64_t faces)
+{
+    face_set set = 0;
+    for (int d = 0; d < b->start_axes; d++)
+        for (int k = 0; k < b->faces.starts; k++)
+            if (b->faces.start[k].axis == b->start[d])
+                set |= (faces >> 2 * d & 3) << 2 * k;
+    return set;
+}
+
+static bool add_part(const struct basin *b, const struct lattice *lattice, struct basin_row *row)
+{
+    struct basin_part part;
+    if (!basin_map_part(&lattice->map, b->choice.of, lattice->origin, &part))
+        return false;
+    row->part.faces |= faces_of(b, part.faces);
+    row->part.unknown = row->part.unknown || part.unknown;
+    row->part.low += part.volume.low;
+    row->part.high += part.volume.high;
+    if (part.inside || !part.unknown) {
+        row->part.known++;
+        row->part.inside += part.inside;
+        row->part.volume += part.inside ? part.volume.estimate : 0;
+        row->part.reach +=
+            part.inside ? basin_volume_reach(&part.volume, statistics_deviations(b->choice.level))
+                        : 0;
+    }
+    return true;
+}
+
 /* blocks[rows][blocks_of] */
 static bool add_slice(struct basin *b, const struct lattice *lattice, const size_t *point,
                       struct block *blocks)
@@ -261,6 +349,7 @@ static bool add_slice(struct basin *b, const struct lattice *lattice, const size
         row->known++;
         row->volume += volume.estimate;
         row->reach += basin_volume_reach(&volume, statistics_deviations(b->choice.level));
+        row->resolution += statistics_deviations(b->choice.level) * sqrt(volume.variance);
         if (b->averaged >= 0) {
             struct block *block = &blocks[(size_t)(row - b->row) * blocks_of(b) +
                                           point[b->averaged] / b->sample.block];
@@ -273,12 +362,11 @@ static bool add_slice(struct basin *b, const struct lattice *lattice, const size
     basin_map_entropy(&lattice->map, b->choice.side, &row->entropy);
     row->uncertainty.scales = basin_map_scales(&lattice->map);
     basin_map_uncertainty(&lattice->map, &row->uncertainty);
-    row->has_distance = row->slices == 1;
-    for (int d = 0; d < b->start_axes; d++)
-        row->has_distance = row->has_distance && b->r->axis[b->start[d]].offset;
-    if (row->has_distance)
-        basin_map_distance(&lattice->map, b->choice.of, lattice->origin, &row->distance);
-    return true;
+    row->has_distance = row->slices == 1 && b->around;
+    return !b->around ||
+           (add_part(b, lattice, row) &&
+            (!row->has_distance || basin_map_distance(&lattice->map, b->choice.of, lattice->origin,
+                                                      b->weight, &row->distance)));
 }
 
 /* Variance of the mean of blocks, of which *found are known; NAN: fewer than two. */
@@ -306,6 +394,11 @@ static void finish_row(const struct basin *b, struct basin_row *row, const struc
     row->high /= n;
     row->volume /= known;
     row->reach /= known;
+    row->resolution /= known;
+    row->part.low /= n;
+    row->part.high /= n;
+    row->part.volume /= (double)row->part.known;
+    row->part.reach /= (double)row->part.known;
     if (b->averaged >= 0) {
         double found;
         const double variance =
@@ -343,6 +436,24 @@ static void add_sampled(struct basin *b, const struct lattice *lattice, const si
     row->slices++;
 }
 
+/* The nearest point of a sample that is lost in the only slice. */
+static void find_nearest(const struct basin *b, struct basin_row *row, const struct point *own)
+{
+    row->has_distance = b->around && row->slices == 1;
+    row->distance = (struct basin_distance){
+        .inside = true, .nearest = NAN, .clear = 0, .median = NAN, .median_least = NAN};
+    for (size_t i = 0; row->has_distance && i < b->sample.points; i++) {
+        double sum = 0;
+        for (size_t k = 0; k < b->sample.factors; k++)
+            sum += pow(b->sample.factor[k].of->value[i] / b->weight[k], 2);
+        if (own[i].cases == own[i].inside + own[i].unknown || sqrt(sum) >= row->distance.nearest)
+            continue;
+        row->distance.nearest = sqrt(sum);
+        for (size_t k = 0; k < b->sample.factors; k++)
+            row->distance.at[k] = b->sample.factor[k].of->value[i];
+    }
+}
+
 /* A point that counts in several slices, averaged over, is one draw. */
 static void finish_sampled(const struct basin *b, struct basin_row *row, const struct point *points)
 {
@@ -357,6 +468,35 @@ static void finish_sampled(const struct basin *b, struct basin_row *row, const s
     row->low = b->box * interval_of(&least, b->choice.level).low;
     row->high = b->box * interval_of(&most, b->choice.level).high;
     row->reach = (row->high - row->low) / 2;
+    find_nearest(b, row, own);
+}
+
+/* The volumes of the draws of a sample, one by one. */
+static bool keep_draws(struct basin *b, const struct block *blocks, const struct point *points)
+{
+    const bool sampled = b->starts == BASIN_SAMPLE;
+    b->draws = sampled ? b->sample.points : blocks_of(b);
+    b->drawn = malloc((b->rows * b->draws + 1) * sizeof *b->drawn);
+    for (size_t k = 0; b->drawn && k < b->rows * b->draws; k++)
+        if (sampled)
+            b->drawn[k] = points[k].cases > points[k].unknown
+                              ? b->box * points[k].inside / (points[k].cases - points[k].unknown)
+                              : NAN;
+        else
+            b->drawn[k] = blocks[k].slices > 0 ? blocks[k].volume / (double)blocks[k].slices : NAN;
+    return b->drawn != NULL;
+}
+
+/* Every case with the outcome tells on which faces it lies. */
+static void find_cuts(struct basin *b)
+{
+    for (uint64_t i = 0; b->faces.starts > 0 && i < b->r->cases; i++) {
+        if (b->r->kind[i] == b->choice.of) {
+            size_t point[SCENARIO_MAX_AXES];
+            results_point(b->r, i, point);
+            row_of(b, point)->cut |= faces_at(&b->faces, point);
+        }
+    }
 }
 
 static bool make_rows(struct basin *b, stance_message *message)
@@ -389,10 +529,20 @@ static bool make_rows(struct basin *b, stance_message *message)
             finish_row(b, &b->row[k], blocks);
         else
             finish_sampled(b, &b->row[k], points);
+    find_cuts(b);
+    good = good && keep_draws(b, blocks, points);
     free_lattice(&lattice);
     free(blocks);
     free(points);
     return good || statistics_no_memory(b->r, message);
+}
+
+static int by_volume(const void *left, const void *right)
+{
+    const struct basin_row *a = left, *b = right;
+    if (isnan(a->volume) || isnan(b->volume))
+        return isnan(a->volume) - isnan(b->volume);
+    return (a->volume < b->volume) - (a->volume > b->volume);
 }
 
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
@@ -402,10 +552,15 @@ bool basin_make(struct basin *basin, const struct results *r, const struct basin
         .r = r, .choice = *choice, .starts = BASIN_GRID, .sample = *sample, .averaged = -1};
     *sample = (struct basin_sample){.axis = -1};
     *usage = true;
-    bool good = choose_axes(basin, message);
+    bool good = choose_axes(basin, message) && choose_weights(basin, message);
     if (good) {
         *usage = false;
+        faces_make(&basin->faces, r, basin->by, basin->by_axes);
         good = make_rows(basin, message);
+    }
+    if (good && choice->rank > 0) {
+        qsort(basin->row, basin->rows, sizeof *basin->row, by_volume);
+        basin->rows = choice->rank < basin->rows ? choice->rank : basin->rows;
     }
     if (!good)
         basin_free(basin);
@@ -430,6 +585,7 @@ size_t basin_averaged(const struct basin *basin, const char **paths, size_t most
 void basin_free(struct basin *basin)
 {
     free(basin->row);
+    free(basin->drawn);
     basin_sample_free(&basin->sample);
     *basin = (struct basin){0};
 }

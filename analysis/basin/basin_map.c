@@ -4,13 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static bool is_known(uint8_t kind)
-{
-    return kind != RESULTS_PENDING && kind != RESULTS_FAILED && kind != RESULTS_DONE;
-}
-
-/* Moves to the next point of a lattice of these counts; false after the last. */
-static bool next_point(int axes, const size_t *count, size_t *point)
+bool basin_next_point(int axes, const size_t *count, size_t *point)
 {
     for (int a = axes - 1; a >= 0; a--) {
         if (++point[a] < count[a])
@@ -20,7 +14,7 @@ static bool next_point(int axes, const size_t *count, size_t *point)
     return false;
 }
 
-static void find_strides(const struct basin_map *map, uint64_t stride[SCENARIO_MAX_AXES])
+void basin_strides(const struct basin_map *map, uint64_t stride[SCENARIO_MAX_AXES])
 {
     uint64_t product = 1;
     for (int a = map->axes - 1; a >= 0; a--) {
@@ -29,7 +23,7 @@ static void find_strides(const struct basin_map *map, uint64_t stride[SCENARIO_M
     }
 }
 
-static uint64_t index_of(const struct basin_map *map, const uint64_t *stride, const size_t *point)
+uint64_t basin_index(const struct basin_map *map, const uint64_t *stride, const size_t *point)
 {
     uint64_t index = 0;
     for (int a = 0; a < map->axes; a++)
@@ -55,7 +49,7 @@ void basin_map_entropy(const struct basin_map *map, size_t side, struct basin_en
     uint64_t stride[SCENARIO_MAX_AXES];
     size_t boxes[SCENARIO_MAX_AXES] = {0}, box[SCENARIO_MAX_AXES] = {0}, sides[SCENARIO_MAX_AXES];
 
-    find_strides(map, stride);
+    basin_strides(map, stride);
     for (int a = 0; a < map->axes; a++) {
         boxes[a] = map->count[a] / side;
         sides[a] = side;
@@ -64,17 +58,17 @@ void basin_map_entropy(const struct basin_map *map, size_t side, struct basin_en
     }
     do {
         uint64_t counts[RESULTS_KIND_COUNT] = {0}, total = 0;
-        const uint64_t first = side * index_of(map, stride, box);
+        const uint64_t first = side * basin_index(map, stride, box);
         size_t within[SCENARIO_MAX_AXES] = {0};
         do {
-            counts[map->kind[first + index_of(map, stride, within)]]++;
-        } while (next_point(map->axes, sides, within));
+            counts[map->kind[first + basin_index(map, stride, within)]]++;
+        } while (basin_next_point(map->axes, sides, within));
         double sum = 0;
         int colours = 0;
         for (int k = 0; k < RESULTS_KIND_COUNT; k++)
-            total += is_known((uint8_t)k) ? counts[k] : 0;
+            total += basin_is_known((uint8_t)k) ? counts[k] : 0;
         for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
-            if (is_known((uint8_t)k) && counts[k] > 0) {
+            if (basin_is_known((uint8_t)k) && counts[k] > 0) {
                 double p = (double)counts[k] / (double)total;
                 sum -= p * log(p);
                 colours++;
@@ -86,7 +80,7 @@ void basin_map_entropy(const struct basin_map *map, size_t side, struct basin_en
         entropy->sum += colours > 1 ? sum : 0;
         entropy->tile_mixed[tile] += colours > 1;
         entropy->tile_sum[tile] += colours > 1 ? sum : 0;
-    } while (next_point(map->axes, boxes, box));
+    } while (basin_next_point(map->axes, boxes, box));
 }
 
 double basin_entropy(const struct basin_entropy *entropy)
@@ -120,8 +114,8 @@ static bool is_uncertain(const struct basin_map *map, const uint64_t *stride, ui
     for (int a = 0; a < map->axes; a++) {
         const uint64_t step = distance * stride[a];
         const uint8_t below = map->kind[index - step], above = map->kind[index + step];
-        if ((is_known(below) && below != map->kind[index]) ||
-            (is_known(above) && above != map->kind[index]))
+        if ((basin_is_known(below) && below != map->kind[index]) ||
+            (basin_is_known(above) && above != map->kind[index]))
             return true;
     }
     return false;
@@ -134,15 +128,15 @@ void basin_map_uncertainty(const struct basin_map *map, struct basin_uncertainty
            margin[SCENARIO_MAX_AXES];
     if (uncertainty->scales == 0)
         return;
-    find_strides(map, stride);
+    basin_strides(map, stride);
     for (int a = 0; a < map->axes; a++) {
         margin[a] = (size_t)1 << (uncertainty->scales - 1);
         inner[a] = map->count[a] - 2 * margin[a];
     }
-    const uint64_t first = index_of(map, stride, margin);
+    const uint64_t first = basin_index(map, stride, margin);
     do {
-        const uint64_t index = first + index_of(map, stride, point);
-        if (!is_known(map->kind[index]))
+        const uint64_t index = first + basin_index(map, stride, point);
+        if (!basin_is_known(map->kind[index]))
             continue;
         const int tile = tile_of(map->axes, point, inner);
         for (int k = 0; k < uncertainty->scales; k++) {
@@ -151,7 +145,7 @@ void basin_map_uncertainty(const struct basin_map *map, struct basin_uncertainty
             uncertainty->uncertain[k] += uncertain;
             uncertainty->tile[k][tile] += uncertain;
         }
-    } while (next_point(map->axes, inner, point));
+    } while (basin_next_point(map->axes, inner, point));
 }
 
 /* ---- the boundary ------------------------------------------------------------------------- */
@@ -162,15 +156,15 @@ bool basin_map_boundary(const struct basin_map *map,
 {
     struct basin_crossing crossing = {.index = 0};
     uint64_t stride[SCENARIO_MAX_AXES];
-    find_strides(map, stride);
+    basin_strides(map, stride);
     do {
         const uint8_t kind = map->kind[crossing.index];
-        for (int a = 0; is_known(kind) && a < map->axes; a++) {
+        for (int a = 0; basin_is_known(kind) && a < map->axes; a++) {
             const size_t i = crossing.point[a];
             if (i + 1 == map->count[a])
                 continue;
             const uint8_t next = map->kind[crossing.index + stride[a]];
-            if (next == kind || !is_known(next))
+            if (next == kind || !basin_is_known(next))
                 continue;
             crossing.axis = a;
             crossing.from = (enum results_kind)kind;
@@ -181,63 +175,6 @@ bool basin_map_boundary(const struct basin_map *map,
                 return false;
         }
         crossing.index++;
-    } while (next_point(map->axes, map->count, crossing.point));
+    } while (basin_next_point(map->axes, map->count, crossing.point));
     return true;
-}
-
-/* ---- distance ----------------------------------------------------------------------------- */
-
-struct search {
-    const struct basin_map *map;
-    enum results_kind of;
-    struct basin_distance *distance;
-};
-
-static bool look_nearer(void *context, const struct basin_crossing *crossing)
-{
-    const struct search *search = context;
-    const struct basin_map *map = search->map;
-    double at[SCENARIO_MAX_AXES], sum = 0;
-
-    if ((crossing->from == search->of) == (crossing->to == search->of))
-        return true; /* between two others */
-    for (int a = 0; a < map->axes; a++) {
-        at[a] = a == crossing->axis ? crossing->middle : map->place[a][crossing->point[a]];
-        sum += pow(at[a] / (map->place[a][map->count[a] - 1] - map->place[a][0]), 2);
-    }
-    if (!(sqrt(sum) >= search->distance->nearest)) { /* true for the first, against NAN */
-        search->distance->nearest = sqrt(sum);
-        memcpy(search->distance->at, at, sizeof at);
-    }
-    return true;
-}
-
-void basin_map_distance(const struct basin_map *map, enum results_kind of, const size_t *origin,
-                        struct basin_distance *distance)
-{
-    uint64_t stride[SCENARIO_MAX_AXES];
-    find_strides(map, stride);
-    const uint64_t index = index_of(map, stride, origin);
-
-    *distance = (struct basin_distance){.inside = map->kind[index] == of, .nearest = NAN};
-    for (int a = 0; a < map->axes; a++) {
-        const double *place = map->place[a];
-        size_t below = origin[a], above = origin[a];
-        distance->low[a] = distance->high[a] = NAN;
-        while (below > 0 && map->kind[index - (origin[a] - below) * stride[a]] == of)
-            below--;
-        while (above + 1 < map->count[a] &&
-               map->kind[index + (above - origin[a]) * stride[a]] == of)
-            above++;
-        const uint8_t low = map->kind[index - (origin[a] - below) * stride[a]],
-                      high = map->kind[index + (above - origin[a]) * stride[a]];
-        if (distance->inside && low != of && is_known(low))
-            distance->low[a] = 0.5 * (place[below] + place[below + 1]);
-        if (distance->inside && high != of && is_known(high))
-            distance->high[a] = 0.5 * (place[above - 1] + place[above]);
-    }
-    if (distance->inside) {
-        struct search search = {map, of, distance};
-        basin_map_boundary(map, look_nearer, &search);
-    }
 }

@@ -51,6 +51,15 @@ struct basin_map {
     const uint8_t *kind;                    /* [cases] enum results_kind */
 };
 
+static inline bool basin_is_known(uint8_t kind)
+{
+    return kind != RESULTS_PENDING && kind != RESULTS_FAILED && kind != RESULTS_DONE;
+}
+/* Moves to the next point of a lattice of these counts; false after the last. */
+bool basin_next_point(int axes, const size_t *count, size_t *point);
+void basin_strides(const struct basin_map *map, uint64_t stride[SCENARIO_MAX_AXES]);
+uint64_t basin_index(const struct basin_map *map, const uint64_t *stride, const size_t *point);
+
 /* Volumes are in the product of the axes' units. */
 struct basin_volume {
     double box;
@@ -108,7 +117,7 @@ void basin_map_uncertainty(const struct basin_map *map, struct basin_uncertainty
  *   - the scatter of the points about the line;
  *   - the difference of the slopes of the shorter and the longer half of the distances: what the
  *     slope may still change by on the way to zero.
- * tests/test_exponent.c: within two standard errors in 94 % of maps of sixteen fractals of known
+ * tests/test_exponent.c: within two standard errors in 94 % of maps of eighteen fractals of known
  * dimension and in all smooth ones. What it cannot see is roughness that the map has not: Takagi's
  * graph of dimension 1.26 looks like 1.06 on 512 x 512 cases. */
 #define BASIN_BEND 0.1
@@ -153,17 +162,45 @@ bool basin_map_boundary(const struct basin_map *map,
                         bool (*visit)(void *context, const struct basin_crossing *crossing),
                         void *context);
 
-/* Distance of the boundary of one outcome from the case at `origin` (a point of the map). */
+/* ---- the domain of the equilibrium -------------------------------------------------------- */
+
+/* Faces of the map: bit 2 a of the lower end of axis a, bit 2 a + 1 of its upper end (faces.h). */
+
+/* The part of an outcome that hangs together with the case at `origin` (a point of the map), from
+ * neighbour to neighbour along the axes. Unlike the outcome's share of the box it does not change
+ * with the box, once it lies within it: neither on a face nor beside an unknown case. */
+struct basin_part {
+    bool inside; /* the case at the origin has the outcome; else the part is empty */
+    struct basin_volume volume;
+    uint64_t faces;
+    bool unknown; /* a neighbour is not known */
+};
+/* False: no memory. */
+bool basin_map_part(const struct basin_map *map, enum results_kind of, const size_t *origin,
+                    struct basin_part *part);
+
+/* Distance of the boundary of one outcome from the equilibrium, which is at zero, nearest to the
+ * case at `origin` and within the box. Each offset is measured in units of weight[axis] > 0, the
+ * disturbance that weighs as much as one weight of another axis, so that distances do not depend on
+ * the box either. What is beyond a face of the box, or beyond an unknown case, is not known. */
+enum { BASIN_DIRECTIONS = 1024 };
 struct basin_distance {
     bool inside; /* the case at the origin has that outcome */
-    /* On the line along each axis through the origin: where the outcome ends, downwards and upwards
-     * in value; NAN: it reaches the end of the axis, or an unknown case. */
+    /* On the line along each axis through the origin, in units of the axis: where the outcome ends,
+     * downwards and upwards in value; NAN: it reaches the end of the axis, or an unknown case. */
     double low[SCENARIO_MAX_AXES], high[SCENARIO_MAX_AXES];
-    /* The nearest crossing out of the outcome, in units of the axes' ranges, from zero. */
-    double nearest; /* NAN: none */
+    double nearest; /* crossing out of the outcome in the map; NAN: none */
     double at[SCENARIO_MAX_AXES];
+    double clear; /* the nearest face or unknown case: the true distance is at least the smaller */
+    /* Where rays that set out evenly in all directions first lose the outcome, midway between two
+     * cases. `leave` of them reach a face or an unknown case before: in the median they are longer
+     * than all others (NAN: it is one of them), in the least one as long as they could be
+     * followed. */
+    size_t directions, leave;
+    double median, median_least;
 };
-void basin_map_distance(const struct basin_map *map, enum results_kind of, const size_t *origin,
-                        struct basin_distance *distance);
+/* False: no memory. */
+bool basin_map_distance(const struct basin_map *map, enum results_kind of, const size_t *origin,
+                        const double *weight, struct basin_distance *distance);
 
 #endif

@@ -39,36 +39,78 @@ static void add_shape(struct table *t, const struct basin *b, const struct basin
         {{.name = "uncertain", .hidden = TABLE_NO_CSV}, as_tree(shares)});
 }
 
+/* Whether the part that hangs together with the equilibrium is known to end within the box. */
+static const char *bounded_word(const struct basin_row *row)
+{
+    return row->part.faces ? "no" : row->part.unknown ? "unknown" : "yes";
+}
+
+static void add_part(struct table *t, const struct basin *b, const struct basin_row *row)
+{
+    const bool grid = b->around && b->starts == BASIN_GRID, any = grid && row->part.known > 0;
+    const char *bounded = any && row->part.inside > 0 ? bounded_word(row) : NULL;
+    TABLE_FACTS(
+        t,
+        {{"connected", "connected", "%.5g", .width = 11}, as_number(any ? row->part.volume : NAN)},
+        {{"connected_reach", "+-", "%.2g", .width = 9}, as_number(any ? row->part.reach : NAN)},
+        {{"connected_low", "bounds", "%.5g", .width = 25, .left = true, .before = "   "},
+         as_number(grid ? row->part.low : NAN)},
+        {{.name = "connected_high", .format = "%.5g", .joined = true, .before = " ... "},
+         as_number(grid ? row->part.high : NAN)},
+        {{"bounded", "bounded", .width = 7, .left = true, .hidden = TABLE_NO_JSON},
+         as_text(bounded)},
+        {{.name = "is_bounded", .key = "bounded", .hidden = TABLE_NO_CSV},
+         bounded && bounded[0] != 'u' ? as_truth(bounded[0] == 'y') : as_nothing(NULL)},
+        {{.name = "connected_cut", .hidden = TABLE_NO_CSV},
+         as_tree(grid ? faces_json(&b->faces, row->part.faces) : NULL)});
+}
+
 static void add_distance(struct table *t, const struct basin *b, const struct basin_row *row)
 {
     const struct basin_distance *distance = &row->distance;
     const bool any = row->has_distance && distance->inside;
-    json_t *extent = any ? json_object() : NULL;
+    const bool grid = b->starts == BASIN_GRID;
+    json_t *extent = any && grid ? json_object() : NULL;
     json_t *at = any && isfinite(distance->nearest) ? json_object() : NULL;
-    for (int d = 0; any && d < b->start_axes; d++) {
-        const char *name = b->r->axis[b->start[d]].name;
-        json_t *ends = json_array();
-        table_append(ends, as_number(distance->low[d]));
-        table_append(ends, as_number(distance->high[d]));
-        json_object_set_new(extent, name, ends);
+    for (size_t d = 0; any && d < basin_starts(b); d++) {
+        const char *name = basin_start(b, d)->name;
+        if (extent) {
+            json_t *ends = json_array();
+            table_append(ends, as_number(distance->low[d]));
+            table_append(ends, as_number(distance->high[d]));
+            json_object_set_new(extent, name, ends);
+        }
         if (at)
             table_put(at, name, as_number(distance->at[d]));
     }
     TABLE_FACTS(
-        t, {{"nearest", "nearest", "%.4f", .width = 9}, as_number(any ? distance->nearest : NAN)},
+        t, {{"nearest", "nearest", "%.4g", .width = 9}, as_number(any ? distance->nearest : NAN)},
+        {{.name = "nearest_least"},
+         as_number(any ? fmin(distance->nearest, distance->clear) : NAN)},
+        {{"median", "median", "%.4g", .width = 9}, as_number(any ? distance->median : NAN)},
+        {{.name = "median_least"}, as_number(any ? distance->median_least : NAN)},
+        {{"leaving", "leaving", "%.1f %%", .width = 8, .percent = true},
+         as_number(any && grid ? (double)distance->leave / (double)distance->directions : NAN)},
         {{.name = "nearest_at", .hidden = TABLE_NO_CSV}, as_tree(at)},
         {{.name = "extent", .hidden = TABLE_NO_CSV}, as_tree(extent)});
 }
 
 static void make_table(struct table *t, const struct basin *b)
 {
-    char level[32], remark[64];
+    char level[32], remark[64], cut[512];
     snprintf(level, sizeof level, "+- %.4g %%", 100 * b->choice.level);
     for (size_t k = 0; k < b->rows; k++) {
         const struct basin_row *row = &b->row[k];
         snprintf(remark, sizeof remark, "%" PRIu64 " failed, %" PRIu64 " pending", row->failed,
                  row->pending);
+        faces_marks(&b->faces, row->cut, cut, sizeof cut);
         table_axes(t, b->r, b->by, b->by_axes, row->point);
+        for (int v = 0; b->choice.rank > 0 && v < b->r->varied; v++) {
+            const struct results_varied *varied = &b->r->vary[v];
+            const double value = varied->of.value[row->point[b->r->sample]];
+            TABLE_FACTS(t, {{varied->of.name, varied->of.name, .width = 12, .group = "at"},
+                            varied->word ? as_text(varied->word[(int)value]) : as_number(value)});
+        }
         TABLE_FACTS(
             t,
             {{.name = "cases", .before = " of ", .width = 10, .left = true}, as_whole(row->cases)},
@@ -86,9 +128,12 @@ static void make_table(struct table *t, const struct basin *b)
              as_number(row->low)},
             {{.name = "high", .format = "%.5g", .joined = true, .before = " ... "},
              as_number(row->high)},
+            {{"cut_at", "cut at", .left = true, .hidden = TABLE_NO_JSON}, as_text(cut)},
+            {{.name = "cut", .hidden = TABLE_NO_CSV}, as_tree(faces_json(&b->faces, row->cut))},
             {{.name = "cells", .hidden = TABLE_NO_CSV}, as_whole(row->cells)},
             {{.name = "crossed", .hidden = TABLE_NO_CSV}, as_whole(row->crossed)});
         add_shape(t, b, row);
+        add_part(t, b, row);
         add_distance(t, b, row);
         table_end_row(t);
     }
@@ -135,6 +180,15 @@ static void print_averaged(const struct basin *b)
     }
 }
 
+const char *basin_asked(const struct basin *basin)
+{
+    static char text[400];
+    const char *within = basin->choice.within;
+    snprintf(text, sizeof text, "%s%s%s", results_kind_names[basin->choice.of],
+             within ? " with " : "", within ? within : "");
+    return text;
+}
+
 void basin_print_axis(const struct results_axis *axis)
 {
     char first[64], last[64];
@@ -161,8 +215,8 @@ static void print_box(const struct basin *b, double box)
 static void print_sample(const struct basin *b)
 {
     const struct basin_sample *sample = &b->sample;
-    printf("Starts that end as %s, of %zu points (%s) over\n", results_kind_names[b->choice.of],
-           sample->points, doe_words[sample->method]);
+    printf("Starts that end as %s, of %zu points (%s) over\n", basin_asked(b), sample->points,
+           doe_words[sample->method]);
     for (size_t k = 0; k < sample->factors; k++)
         basin_print_factor(&sample->factor[k], " not evenly over a range: no volume, shares alone");
     print_box(b, sample->box);
@@ -188,7 +242,7 @@ static void print_head(const struct basin *b)
         print_sample(b);
         return;
     }
-    printf("Starts that end as %s, on a grid over\n", results_kind_names[b->choice.of]);
+    printf("Starts that end as %s, on a grid over\n", basin_asked(b));
     for (int d = 0; d < b->start_axes; d++) {
         basin_print_axis(&r->axis[b->start[d]]);
         putchar('\n');
@@ -219,15 +273,89 @@ static void print_notes(const struct basin *b)
     }
 }
 
+/* What cuts what: of several rows, of any. */
+static void print_cut(const struct basin *b)
+{
+    char text[2048];
+    face_set cut = 0;
+    uint64_t unknown = 0;
+    for (size_t k = 0; k < b->rows; k++) {
+        cut |= b->row[k].cut;
+        unknown += b->row[k].failed + b->row[k].pending;
+    }
+    faces_text(&b->faces, cut, text, sizeof text);
+    if (cut)
+        printf("  cut by the box at %s%s:\n  %s the box's, and the set goes on beyond it\n", text,
+               b->starts == BASIN_SAMPLE ? ", i.e. within 5 % of it" : "",
+               b->rows > 1 ? "in such rows the share is" : "the share is");
+    else if (b->faces.starts > 0)
+        printf("  %s by the box: no start on its faces is %s\n",
+               unknown > 0 ? "not known to be cut" : "not cut", results_kind_names[b->choice.of]);
+}
+
+static void print_weights(const struct basin *b)
+{
+    printf("  (distances in units of");
+    for (size_t d = 0; d < basin_starts(b); d++) {
+        const struct results_axis *axis = basin_start(b, d);
+        printf("%s %.6g %s of %s", d ? "," : "", b->weight[d], axis->unit, axis->name);
+    }
+    puts(")");
+}
+
+static void print_at(const struct basin *b, const struct basin_distance *distance)
+{
+    printf("%.4g, at", distance->nearest);
+    for (size_t d = 0; d < basin_starts(b); d++) {
+        const struct results_axis *axis = basin_start(b, d);
+        printf("%s %s = %.4g %s", d ? "," : "", axis->name, distance->at[d], axis->unit);
+    }
+    putchar('\n');
+}
+
+/* Of a sample. */
+static void print_bound(const struct basin *b, const struct basin_distance *distance)
+{
+    printf("\nNearest start to the equilibrium that is not %s: ", results_kind_names[b->choice.of]);
+    print_at(b, distance);
+    print_weights(b);
+    puts(
+        "  (an upper bound of the distance, of these points; rays and --descend find the nearest)");
+}
+
+static void print_part(const struct basin *b, const struct basin_row *row)
+{
+    char text[2048];
+    faces_text(&b->faces, row->part.faces, text, sizeof text);
+    if (row->part.inside == 0)
+        printf("  none: the start nearest to the equilibrium is not %s\n",
+               row->part.known > 0 ? results_kind_names[b->choice.of] : "known");
+    else if (row->part.faces)
+        printf("  not known to be bounded: it reaches %s\n", text);
+    else if (row->part.unknown)
+        puts("  not known to be bounded: it ends at cases that failed or are pending");
+    else
+        puts("  bounded: it ends within the box, so none of this changes with the box");
+}
+
 static void print_distance(const struct basin *b, const struct basin_distance *distance)
 {
     struct table ends = {0};
-    if (!distance->inside) {
-        printf("\nThe start nearest to the equilibrium is not %s.\n",
-               results_kind_names[b->choice.of]);
-        return;
+    if (isfinite(distance->nearest)) {
+        printf("  nearest: ");
+        print_at(b, distance);
     }
-    puts("\nFrom the equilibrium to the end of the outcome");
+    if (!(distance->nearest <= distance->clear))
+        printf("  at least %.4g, where the box ends or a case is not known\n", distance->clear);
+    printf("  median of %zu directions: ", distance->directions);
+    if (isfinite(distance->median))
+        printf("%.4g", distance->median);
+    if (!(distance->median_least >= distance->median))
+        printf("%sat least %.4g", isfinite(distance->median) ? ", " : "", distance->median_least);
+    if (distance->leave > 0)
+        printf("; %.3g %% of them leave the box, or come to a case that is not known, before",
+               100 * (double)distance->leave / (double)distance->directions);
+    puts("\n\nFrom the equilibrium to the end of the outcome");
     for (int d = 0; d < b->start_axes; d++) {
         const struct results_axis *axis = &b->r->axis[b->start[d]];
         TABLE_FACTS(
@@ -241,14 +369,6 @@ static void print_distance(const struct basin *b, const struct basin_distance *d
     }
     table_write_text(&ends, stdout, "axis low high unit", 0);
     table_free(&ends);
-    if (isfinite(distance->nearest)) {
-        printf("  nearest, offsets in units of their ranges: %.4g, at", distance->nearest);
-        for (int d = 0; d < b->start_axes; d++) {
-            const struct results_axis *axis = &b->r->axis[b->start[d]];
-            printf("%s %s = %.4g %s", d ? "," : "", axis->name, distance->at[d], axis->unit);
-        }
-        putchar('\n');
-    }
     puts("  (- where the outcome reaches the end of the axis, or a case that is not known)");
 }
 
@@ -256,18 +376,38 @@ static bool print_text(const struct basin *b, const struct table *t)
 {
     print_head(b);
     puts("\nVolume");
-    bool good = table_write_text(t, stdout, "at/ share volume reach low high inside cases remark",
-                                 BASIN_SHOWN);
-    if (b->starts == BASIN_SAMPLE)
+    bool good =
+        table_write_text(t, stdout,
+                         b->rows > 1 ? "at/ share volume reach low high inside cases cut_at remark"
+                                     : "share volume reach low high inside cases remark",
+                         BASIN_SHOWN);
+    print_cut(b);
+    if (b->choice.rank > 0)
+        printf("  (the %zu largest of %zu sampled points)\n", b->rows,
+               b->r->axis[b->r->sample].count);
+    if (b->starts == BASIN_SAMPLE && b->rows == 1 && isfinite(b->row[0].distance.nearest))
+        print_bound(b, &b->row[0].distance);
+    if (b->starts == BASIN_SAMPLE || b->choice.rank > 0)
         return good;
     puts("\nBoundary");
     good = good && table_write_text(t, stdout,
                                     "at/ entropy boundary_entropy star mixed_boxes boxes alpha "
-                                    "alpha_error dimension nearest",
+                                    "alpha_error dimension",
                                     BASIN_SHOWN);
     print_notes(b);
-    if (b->rows == 1 && b->row[0].has_distance)
-        print_distance(b, &b->row[0].distance);
+    if (!b->around)
+        return good;
+    puts("\nDomain of the equilibrium: what hangs together with it, and how far its boundary is");
+    print_weights(b);
+    good = good && table_write_text(t, stdout,
+                                    "at/ connected connected_reach connected_low connected_high "
+                                    "bounded nearest median leaving",
+                                    BASIN_SHOWN);
+    if (b->rows == 1) {
+        print_part(b, &b->row[0]);
+        if (b->row[0].has_distance && b->row[0].distance.inside)
+            print_distance(b, &b->row[0].distance);
+    }
     return good;
 }
 
@@ -289,6 +429,14 @@ json_t *basin_factor_names(const struct basin_sample *sample)
     return list;
 }
 
+static json_t *weights(const struct basin *b)
+{
+    json_t *object = b->around ? json_object() : NULL;
+    for (size_t d = 0; b->around && d < basin_starts(b); d++)
+        table_put(object, basin_start(b, d)->name, as_number(b->weight[d]));
+    return object;
+}
+
 static bool print_json(const struct basin *b, const struct table *t)
 {
     const bool grid = b->starts == BASIN_GRID;
@@ -299,13 +447,15 @@ static bool print_json(const struct basin *b, const struct table *t)
         table_append(averaged, as_text(path[k]));
     return table_write_json(
         TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
-                     {"level", as_number(b->choice.level)}, {"box_side", as_whole(b->choice.side)},
+                     {"within", as_text(b->choice.within)}, {"level", as_number(b->choice.level)},
+                     {"box_side", as_whole(b->choice.side)},
                      {"design", as_text(grid ? "grid" : doe_words[b->sample.method])},
                      {"starts", as_tree(grid ? names(b, b->start, b->start_axes)
                                              : basin_factor_names(&b->sample))},
                      {"parameters", as_tree(names(b, b->by, b->by_axes))},
                      {"averaged", as_tree(averaged)}, {"box", as_number(b->box)},
-                     {"unit", as_text(b->unit)}, {"rows", as_tree(table_json(t, false))}),
+                     {"unit", as_text(b->unit)}, {"weights", as_tree(weights(b))},
+                     {"rows", as_tree(table_json(t, false))}),
         stdout);
 }
 

@@ -5,6 +5,7 @@
 
 #include "basin.h"
 #include "basin_rays.h"
+#include "basin_threshold.h"
 
 #include "analysis/table/table.h"
 
@@ -15,6 +16,22 @@ bool basin_rays_print(const struct basin_rays *rays, enum table_form form);
 /* The points of the boundary, every ray, as CSV. */
 bool basin_print_boundary(const struct basin *basin);
 bool basin_rays_print_boundary(const struct basin_rays *rays);
+
+/* The numbers of an answer that the file stores, freed by the caller; NULL: it stores none of that
+ * name, or words. False: it cannot be read. */
+bool basin_numbers(const struct results *r, const char *answer, double **value,
+                   stance_message *message);
+
+/* Answers to single questions. *usage: it is the request that is at fault; *message says why. */
+bool basin_print_threshold(const struct basin *basin, const char *path, double threshold,
+                           enum table_form form, bool *usage, stance_message *message);
+bool basin_print_loss(const struct results *r, const char *path, enum results_kind of,
+                      enum table_form form, bool *usage, stance_message *message);
+bool basin_print_answer(const struct basin *basin, const char *answer, enum table_form form,
+                        bool *usage, stance_message *message);
+
+/* "stabilised with settle_time <= 2": what starts are asked for, until the next call. */
+const char *basin_asked(const struct basin *basin);
 
 /* What both say of their starts: a line without its end; a line, `otherwise` without a range. */
 void basin_print_axis(const struct results_axis *axis);

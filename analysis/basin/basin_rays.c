@@ -109,7 +109,9 @@ void basin_rays_free(struct basin_rays *rays)
 {
     basin_sample_free(&rays->sample);
     free(rays->ray);
+    free(rays->nearest);
     rays->ray = NULL;
+    rays->nearest = NULL;
 }
 
 static int by_number(const void *left, const void *right)

@@ -28,6 +28,25 @@ static void add_end(struct table *t, const struct basin_rays *rays, size_t point
     }
 }
 
+/* What descents have found, NULL: they found nothing, or were not made. */
+static const struct basin_nearest *nearest_of(const struct basin_rays *rays, size_t row)
+{
+    const struct basin_nearest *nearest = rays->nearest ? &rays->nearest[row] : NULL;
+    return nearest && nearest->end.starts > 0 && isfinite(nearest->end.high) ? nearest : NULL;
+}
+
+static double nearest_scale(const struct basin_nearest *nearest)
+{
+    return nearest ? 0.5 * (nearest->end.low + nearest->end.high) : NAN;
+}
+
+/* The share of directions below which a dip may have been missed: all starts but the shortest ray
+ * are spread evenly. */
+static double unseen(const struct basin_nearest *nearest)
+{
+    return nearest->end.starts > 1 ? basin_descend_unseen(nearest->end.starts - 1) : NAN;
+}
+
 /* ---- the table ---------------------------------------------------------------------------- */
 
 static json_t *at_json(const struct basin_rays *rays, size_t point, const struct basin_ray *ray)
@@ -40,6 +59,22 @@ static json_t *at_json(const struct basin_rays *rays, size_t point, const struct
     return at;
 }
 
+static json_t *nearest_json(const struct basin_rays *rays, const struct basin_nearest *nearest)
+{
+    json_t *at = json_object(), *of = json_object();
+    for (size_t k = 0; k < rays->sample.factors; k++) {
+        const char *name = rays->sample.factor[k].of->name;
+        table_put(at, name, as_number(nearest->at[k]));
+        table_put(of, name, as_number(nearest->of[k]));
+    }
+    return TABLE_OBJECT(
+        {"scale", as_number(nearest_scale(nearest))},
+        {"bracket", as_tree(json_pack("[f,f]", nearest->end.low, nearest->end.high))},
+        {"at", as_tree(at)}, {"of_ranges", as_tree(of)}, {"starts", as_whole(nearest->end.starts)},
+        {"agree", as_whole(nearest->end.agree)}, {"unseen", as_number(unseen(nearest))},
+        {"simulations", as_whole(nearest->end.asked)}, {"failed", as_whole(nearest->failed)});
+}
+
 static bool make_table(struct table *t, const struct basin_rays *rays)
 {
     for (size_t row = 0; row < rays->rows; row++) {
@@ -48,6 +83,7 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
             return false;
         const struct basin_ray *first =
             reach.count[RAY_CROSSES] > 0 ? ray_of(rays, row, reach.first) : NULL;
+        const struct basin_nearest *nearest = nearest_of(rays, row);
         add_parameters(t, rays, row);
         add_end(t, rays, reach.first, first);
         TABLE_FACTS(
@@ -56,6 +92,14 @@ static bool make_table(struct table *t, const struct basin_rays *rays)
             {{"open", "go on", .width = 9}, as_whole(reach.count[RAY_OPEN])},
             {{"outside", "outside", .width = 9},
              as_whole(reach.count[RAY_OUTSIDE] + reach.count[RAY_UNKNOWN])},
+            {{.name = "descended",
+              .hidden = TABLE_NO_JSON,
+              .heading = "nearest",
+              .format = "%.5g",
+              .width = 10},
+             as_number(nearest_scale(nearest))},
+            {{.name = "nearest", .hidden = TABLE_NO_CSV},
+             as_tree(nearest ? nearest_json(rays, nearest) : NULL)},
             {{"smallest", "smallest", "%.5g", .width = 10}, as_number(reach.smallest)},
             {{"median", "median", "%.5g", .width = 10}, as_number(reach.median)},
             {{"largest", "largest", "%.5g", .width = 10}, as_number(reach.largest)},
@@ -106,15 +150,45 @@ static bool print_first(const struct basin_rays *rays, size_t row)
     return true;
 }
 
+static void print_nearest(const struct basin_rays *rays, const struct basin_nearest *nearest)
+{
+    printf("\n  nearest: %.5g +- %.2g, by descent from %zu ray%s (%" PRIu64 " simulations), at\n",
+           nearest_scale(nearest), 0.5 * (nearest->end.high - nearest->end.low),
+           nearest->end.starts, nearest->end.starts == 1 ? "" : "s", nearest->end.asked);
+    for (size_t k = 0; k < rays->sample.factors; k++) {
+        const struct results_axis *of = rays->sample.factor[k].of;
+        printf("    %-24s %.5g %s, %.2g of half its range\n", of->name, nearest->at[k], of->unit,
+               nearest->of[k]);
+    }
+    if (nearest->end.starts > 1) {
+        printf(
+            "  %zu of %zu descents end within 1 %% of it; a nearer end into which %.2g %% of all\n"
+            "  directions lead would have been missed with a probability of 5 %%\n",
+            nearest->end.agree, nearest->end.starts, 100 * unseen(nearest));
+    }
+    if (nearest->failed > 0)
+        printf("  (%" PRIu64 " simulations failed and count as not lost)\n", nearest->failed);
+}
+
 static bool print_text(const struct basin_rays *rays, const struct table *t)
 {
     print_head(rays);
     puts("\nScale at which rays end");
     const bool good = table_write_text(
-        t, stdout, "at/ smallest median largest crossing open outside", BASIN_SHOWN);
+        t, stdout,
+        rays->nearest ? "at/ descended smallest median largest crossing open outside"
+                      : "at/ smallest median largest crossing open outside",
+        BASIN_SHOWN);
     puts("  (go on: to the largest scale, counted as longer than all others; outside: another\n"
          "  outcome at the smallest scale already, or no case known)");
-    return good && (rays->rows > 1 || print_first(rays, 0));
+    if (!rays->nearest)
+        puts(
+            "  (smallest: of these directions, so an upper bound; --descend 8 goes on from there)");
+    if (!good || rays->rows > 1)
+        return good;
+    if (nearest_of(rays, 0))
+        print_nearest(rays, nearest_of(rays, 0));
+    return print_first(rays, 0);
 }
 
 /* ---- all forms ---------------------------------------------------------------------------- */

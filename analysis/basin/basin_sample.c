@@ -1,19 +1,13 @@
 /* basin_sample.c - reads the points of a sample of starts. */
 #include "basin_sample.h"
 
+#include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static bool is_start(const char *path)
-{
-    return (strncmp(path, "initial.offset.", 15) == 0 ||
-            strncmp(path, "initial.state.", 14) == 0) &&
-           strcmp(path, "initial.offset.scale") != 0;
-}
 
 /* The range of a path, where a factor moves it alone and evenly. */
 static void find_range(const struct scenario *s, int path, struct basin_factor *factor)
@@ -33,7 +27,7 @@ static void take_factors(struct basin_sample *sample, const struct results *r,
     sample->box = 1;
     for (int k = 0; k < r->varied; k++) {
         struct basin_factor *factor = &sample->factor[sample->factors];
-        if (!is_start(r->vary[k].of.name)) {
+        if (!statistics_is_start(r->vary[k].of.name)) {
             sample->others = true;
             continue;
         }

@@ -24,11 +24,6 @@ struct corners {
     uint32_t varies; /* axes along which some edge is crossed */
 };
 
-static bool is_known(uint8_t kind)
-{
-    return kind != RESULTS_PENDING && kind != RESULTS_FAILED && kind != RESULTS_DONE;
-}
-
 static void find_point(const struct cells *cells, uint64_t cell, size_t *point)
 {
     for (int a = 0; a < cells->map->axes; a++)
@@ -50,7 +45,7 @@ static struct corners look(const struct cells *cells, const size_t *point)
     for (int c = 0; c < corners; c++) {
         const uint8_t kind = corner_kind(cells, point, c);
         found.inside += kind == cells->of;
-        found.unknown += !is_known(kind);
+        found.unknown += !basin_is_known(kind);
         for (int a = 0; a < cells->map->axes; a++)
             if (!(c >> a & 1) &&
                 (kind == cells->of) != (corner_kind(cells, point, c | 1 << a) == cells->of))

@@ -18,7 +18,8 @@ struct page {
     struct gnuplot g;
     const struct plot *plot;
     const struct basin_rays *rays;
-    size_t curves; /* rows that are drawn, spread over all */
+    size_t curves;                        /* rows that are drawn, spread over all */
+    struct basin_nearest nearest[CURVES]; /* of each; without starts: not sought */
 };
 
 static bool no_memory(stance_message *message)
@@ -44,6 +45,27 @@ static void label_of(const struct page *page, size_t row, char *text, size_t siz
                            sizeof value);
         used += (size_t)snprintf(text + used, size - used, "%s%.100s", k ? ", " : "", value);
     }
+}
+
+/* Descends from the shortest ray of each curve, if cases of the file take so little time that
+ * nobody waits. What cannot be simulated is drawn without. */
+static void seek_nearest(struct page *page)
+{
+    static const double quick = 0.002; /* s a case */
+    double longest, total, cases;
+    size_t ranks;
+    stance_message ignored = {""};
+    if (!results_timing(page->rays->r, &longest, &total, &cases, &ranks) ||
+        !(total < quick * cases))
+        return;
+    for (size_t c = 0; c < page->curves; c++)
+        if (!basin_rays_nearest(page->rays, row_of(page, c), 1, &page->nearest[c], &ignored))
+            page->nearest[c].end.starts = 0;
+}
+
+static bool is_found(const struct basin_nearest *nearest)
+{
+    return nearest->end.starts > 0 && isfinite(nearest->end.high);
 }
 
 /* ---- in the plane ------------------------------------------------------------------------- */
@@ -114,6 +136,11 @@ static bool put_curve(struct page *page, size_t curve, const struct direction *o
     GNUPLOT_ROW(&page->g, 0, 0);
     put_end(page, reach.first, reach.count[RAY_CROSSES] > 0 ? reach.smallest : 0);
     gnuplot_end_block(&page->g);
+    const struct basin_nearest *nearest = &page->nearest[curve];
+    gnuplot_block(&page->g, "nearest%zu", curve + 1);
+    GNUPLOT_ROW(&page->g, is_found(nearest) ? nearest->at[0] : NAN,
+                is_found(nearest) ? nearest->at[1] : NAN);
+    gnuplot_end_block(&page->g);
     return true;
 }
 
@@ -175,12 +202,25 @@ static bool put_distribution(struct page *page, stance_message *message)
         for (size_t i = 0; i < n; i++)
             GNUPLOT_ROW(&page->g, end[i], 100 * (double)(i + 1) / (double)points);
         gnuplot_end_block(&page->g);
+        gnuplot_block(&page->g, "nearest%zu", c + 1);
+        GNUPLOT_ROW(&page->g, is_found(&page->nearest[c]) ? page->nearest[c].end.high : NAN, 0);
+        gnuplot_end_block(&page->g);
     }
     free(end);
     return true;
 }
 
 /* ---- the page ----------------------------------------------------------------------------- */
+
+/* Its direction in units of half the ranges. */
+static void nearest_text(const struct page *page, char *text, size_t size)
+{
+    const struct basin_sample *sample = &page->rays->sample;
+    size_t used = (size_t)snprintf(text, size, "; nearest end in units of half the ranges:");
+    for (size_t k = 0; k < sample->factors && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used, "%s %s %.2g", k ? "," : "",
+                                 sample->factor[k].of->name, page->nearest[0].of[k]);
+}
 
 static void put_legend(struct page *page, bool plane)
 {
@@ -197,21 +237,27 @@ static void put_legend(struct page *page, bool plane)
     for (size_t c = 0; c < page->curves; c++) {
         label_of(page, row_of(page, c), text, sizeof text);
         snprintf(colour, sizeof colour, "hue[%zu]", c + 1);
-        gnuplot_legend(&page->g, colour, text);
+        gnuplot_legend(&page->g, colour, text, "");
     }
     for (size_t k = 0; plane && k < sizeof notes / sizeof notes[0]; k++)
         gnuplot_note(&page->g, notes[k]);
+    if (is_found(&page->nearest[0]))
+        gnuplot_note(&page->g, "diamond: the nearest end");
 }
 
 static bool draw(const struct plot *plot, const struct basin_rays *rays, stance_message *message)
 {
     struct page page = {.plot = plot, .rays = rays};
     const bool plane = rays->sample.factors == 2;
-    char what[160];
+    char what[1200];
 
     page.curves = rays->rows < CURVES ? rays->rows : CURVES;
-    snprintf(what, sizeof what, "Where %zu rays from the equilibrium cease to be %s",
-             rays->sample.points, results_kind_names[rays->of]);
+    seek_nearest(&page);
+    const int used =
+        snprintf(what, sizeof what, "Where %zu rays from the equilibrium cease to be %s",
+                 rays->sample.points, results_kind_names[rays->of]);
+    if (page.curves == 1 && is_found(&page.nearest[0]))
+        nearest_text(&page, what + used, sizeof what - (size_t)used);
     if (!plot_begin(plot, &page.g, plot_rays_gp, what, message))
         return false;
     put_legend(&page, plane);
@@ -235,11 +281,7 @@ bool plot_rays(const struct plot *plot, stance_message *message)
         basin_sample_free(&sample);
         return true;
     }
-    struct statistics_counts counts;
-    statistics_count(plot->r, -1, 0, &counts);
-    const bool rested = counts.kind[RESULTS_STABILISED] == 0 && counts.kind[RESULTS_RESTED] > 0;
-    if (!basin_rays_make(&rays, plot->r, rested ? RESULTS_RESTED : RESULTS_STABILISED, &sample,
-                         message))
+    if (!basin_rays_make(&rays, plot->r, statistics_judged(plot->r), &sample, message))
         return false;
     const bool good = draw(plot, &rays, message);
     basin_rays_free(&rays);

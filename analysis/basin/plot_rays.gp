@@ -1,11 +1,11 @@
 # plot_rays.gp - how far from the equilibrium an outcome reaches: in the plane of two coordinates, or the share
 # of directions that have ended by each scale.
-left = 96
-width = 520
-height = 440
+left = 104
+width = wide(520, 1, left + legend_room)
 
-page_width = left + width + 260
+page_width = left + width + legend_room
 top = title_height(0)
+height = high(440.0*width/520, 1, top + 84)
 page_height = top + height + 84
 load 'page.gp'
 set label axis_label('x', width + 80) at screen X(left + 0.5*width), Y(top + height + 46) center @small front
@@ -18,15 +18,19 @@ load 'panels.gp'
 eval panel(left, top, width, height)
 eval grid
 if (plane) {
-    eval linear_tics('x', -x_most, x_most, 8, 1)
+    eval linear_tics('x', -x_most, x_most, width/72, 1)
     eval linear_tics('y', -y_most, y_most, 8, 1)
     set label '' at 0,0 point pt 1 ps 1.6 lw 2 lc rgb 'black' front
     plot for [k=1:curves] '$curve'.k using 1:2 with linespoints lw 1.6 pt 7 ps 0.3 lc rgb hue[k] notitle, \
         for [k=1:curves] '$open'.k using 1:2 with points pt 6 ps 0.7 lc rgb hue[k] notitle, \
-        for [k=1:curves] '$first'.k using 1:2 with lines lw 1.6 dt 2 lc rgb hue[k] notitle
+        for [k=1:curves] '$first'.k using 1:2 with lines lw 1.6 dt 2 lc rgb hue[k] notitle, \
+        for [k=1:curves] '$nearest'.k using 1:2 with points pt 13 ps 1.8 lc rgb 'black' notitle, \
+        for [k=1:curves] '$nearest'.k using 1:2 with points pt 13 ps 1.2 lc rgb hue[k] notitle
 } else {
     set xrange [0:*]
     set xtics autofreq
     eval linear_tics('y', 0, 100, 5, 1)
-    plot for [k=1:curves] '$curve'.k using 1:2 with steps lw 1.8 lc rgb hue[k] notitle
+    plot for [k=1:curves] '$curve'.k using 1:2 with steps lw 1.8 lc rgb hue[k] notitle, \
+        for [k=1:curves] '$nearest'.k using 1:2 with points pt 13 ps 1.8 lc rgb 'black' notitle, \
+        for [k=1:curves] '$nearest'.k using 1:2 with points pt 13 ps 1.2 lc rgb hue[k] notitle
 }

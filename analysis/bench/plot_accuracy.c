@@ -121,7 +121,7 @@ bool accuracy_plot(const struct accuracy *a, const struct results *r, const char
              truth->method->name, truth->tolerance, (unsigned long long)truth->cases,
              a->labels ? "; open symbols: none unlike, drawn where one cell is."
                        : ". Errors of exactly zero are not drawn.");
-    if (!gnuplot_begin(&g, plot_accuracy_gp, r->title, subtitle, message))
+    if (!gnuplot_begin(&g, NULL, plot_accuracy_gp, r->title, subtitle, message))
         return false;
     while (stance_methods()[methods])
         methods++;

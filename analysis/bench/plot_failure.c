@@ -81,7 +81,7 @@ static bool begin_page(struct gnuplot *g, const struct maps *maps, const char *s
     const size_t ny = maps->up.axis->count;
     struct plot_cells cells = {&maps->across, &maps->up, 0, {ny, 1}};
     char text[64];
-    if (!gnuplot_begin(g, plot_failure_gp, maps->r->title, subtitle, message))
+    if (!gnuplot_begin(g, NULL, plot_failure_gp, maps->r->title, subtitle, message))
         return false;
     plot_axis_write(&maps->across, g, "x");
     plot_axis_write(&maps->up, g, "y");
@@ -140,7 +140,7 @@ static void put_table(struct gnuplot *g, const struct failure *f)
         gnuplot_set(g, "verdict_colour[%d] = %s", v + 1, text);
         if (!occurs(f, v))
             continue;
-        gnuplot_legend(g, text, failure_styles[v].text);
+        gnuplot_legend(g, text, failure_styles[v].text, "");
         for (size_t k = 0; k < f->rows; k++) {
             const double share = 100 * (double)f->row[k].count[v] / (double)f->cells;
             snprintf(text, sizeof text,

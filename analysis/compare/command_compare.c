@@ -158,9 +158,63 @@ static double equal_share(const struct label_comparison *c)
     return c->compared ? (double)c->equal / (double)c->compared : 1;
 }
 
+static double share_of(uint64_t part, uint64_t all)
+{
+    return all ? (double)part / (double)all : NAN;
+}
+
+/* What the labels of the first file have become in the second. */
+static void add_labels(struct table *t, const struct label_comparison *c)
+{
+    for (int from = 0; from < RESULTS_KIND_COUNT; from++) {
+        uint64_t all = 0;
+        for (int to = 0; to < RESULTS_KIND_COUNT; to++)
+            all += c->cases[from][to];
+        for (int to = 0; to < RESULTS_KIND_COUNT; to++) {
+            if (c->cases[from][to] == 0)
+                continue;
+            TABLE_FACTS(
+                t,
+                {{"first", "first", .width = 10, .left = true}, as_text(results_kind_names[from])},
+                {{"second", "second", .width = 10, .left = true}, as_text(results_kind_names[to])},
+                {{"cases", "cases", .width = 12}, as_whole(c->cases[from][to])},
+                {{"share", "of all", "%.3f %%", .width = 9, .percent = true},
+                 as_number(share_of(c->cases[from][to], c->compared))},
+                {{"share_of_first", "of the first", "%.3f %%", .width = 12, .percent = true},
+                 as_number(share_of(c->cases[from][to], all))});
+            table_end_row(t);
+        }
+    }
+}
+
+static json_t *domain_json(const struct label_comparison *c)
+{
+    return TABLE_OBJECT({"outcome", as_text(results_kind_names[c->of])},
+                        {"kept", as_whole(c->kept)}, {"lost", as_whole(c->lost)},
+                        {"won", as_whole(c->won)},
+                        {"neither", as_whole(c->compared - c->kept - c->lost - c->won)},
+                        {"lost_share", as_number(share_of(c->lost, c->kept + c->lost))},
+                        {"lost_low", as_number(c->lost_interval.low)},
+                        {"lost_high", as_number(c->lost_interval.high)},
+                        {"won_share", as_number(share_of(c->won, c->kept + c->won))});
+}
+
+static bool print_labels_csv(const struct label_comparison *c)
+{
+    struct table t = {0};
+    add_labels(&t, c);
+    const bool good = table_write_csv(&t, stdout);
+    table_free(&t);
+    return good;
+}
+
 static bool print_labels_json(const struct results r[2], const struct label_comparison *c)
 {
     json_t *first = json_array();
+    struct table t = {0};
+    add_labels(&t, c);
+    json_t *became = table_json(&t, false);
+    table_free(&t);
     for (int k = 0; k < c->shown; k++) {
         const uint64_t i = c->place[k];
         json_array_append_new(
@@ -173,8 +227,27 @@ static bool print_labels_json(const struct results r[2], const struct label_comp
                      {"compared", as_whole(c->compared)}, {"equal", as_whole(c->equal)},
                      {"equal_share", as_number(equal_share(c))},
                      {"farthest", c->farthest ? as_whole(c->farthest) : as_nothing(NULL)},
+                     {"became", as_tree(became)}, {"domain", as_tree(domain_json(c))},
                      {"first", as_tree(first)}),
         stdout);
+}
+
+static void print_domain(const struct results r[2], const struct label_comparison *c)
+{
+    const char *of = results_kind_names[c->of];
+    if (c->kept + c->lost + c->won == 0)
+        return;
+    printf("\n%s in both: %" PRIu64 "; lost, in %s alone: %" PRIu64, of, c->kept, r[0].file,
+           c->lost);
+    if (c->kept + c->lost > 0)
+        printf(" (%.3f %% of its domain", 100 * share_of(c->lost, c->kept + c->lost));
+    if (isfinite(c->lost_interval.low))
+        printf("; 95 %% interval %.3f ... %.3f %%", 100 * c->lost_interval.low,
+               100 * c->lost_interval.high);
+    printf("%s;\nwon, in %s alone: %" PRIu64, c->kept + c->lost > 0 ? ")" : "", r[1].file, c->won);
+    if (c->kept + c->won > 0)
+        printf(" (%.3f %% of its domain)", 100 * share_of(c->won, c->kept + c->won));
+    putchar('\n');
 }
 
 static void print_labels(const struct results r[2], const struct label_comparison *c)
@@ -195,6 +268,14 @@ static void print_labels(const struct results r[2], const struct label_compariso
         printf("  case %" PRIu64 "%s%s%s: %s | %s\n", c->place[k], where[0] ? " (" : "", where,
                where[0] ? ")" : "", label_at(&r[0], c->place[k]), label_at(&r[1], c->place[k]));
     }
+    struct table t = {0};
+    add_labels(&t, c);
+    if (unequal > 0 && table_rows(&t) > 0) {
+        putchar('\n');
+        table_write_text(&t, stdout, "first second cases share share_of_first", 0);
+    }
+    table_free(&t);
+    print_domain(r, c);
 }
 
 /* ---- the command -------------------------------------------------------------------------- */
@@ -202,7 +283,8 @@ static void print_labels(const struct results r[2], const struct label_compariso
 struct request {
     const char *file[2];
     enum table_form form;
-    bool labels;
+    bool labels, of_given;
+    enum results_kind of;   /* of the labels' domain */
     const char **tolerance; /* as given */
     size_t tolerance_count;
 };
@@ -285,12 +367,14 @@ static int compare_all(const struct results r[2], const struct request *request)
     return written(good) ? code : EXIT_IO;
 }
 
-static int compare_only_labels(const struct results r[2], enum table_form form)
+static int compare_only_labels(const struct results r[2], const struct request *request)
 {
+    const enum table_form form = request->form;
     struct label_comparison comparison;
     stance_message message = {""};
 
-    if (!compare_labels(&comparison, &r[0], &r[1], &message)) {
+    if (!compare_labels(&comparison, &r[0], &r[1],
+                        request->of_given ? request->of : statistics_judged(&r[0]), &message)) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_USAGE;
     }
@@ -298,7 +382,8 @@ static int compare_only_labels(const struct results r[2], enum table_form form)
     if (form == TABLE_AS_TEXT)
         print_labels(r, &comparison);
     else
-        good = print_labels_json(r, &comparison);
+        good = form == TABLE_AS_CSV ? print_labels_csv(&comparison)
+                                    : print_labels_json(r, &comparison);
     return !written(good)                            ? EXIT_IO
            : comparison.equal == comparison.compared ? EXIT_DONE
                                                      : EXIT_CASES_FAILED;
@@ -328,7 +413,7 @@ static int compare(void *context)
     }
     int code = EXIT_IO;
     if (!refuse_damage(&r[0]) && !refuse_damage(&r[1]))
-        code = request->labels ? compare_only_labels(r, request->form) : compare_all(r, request);
+        code = request->labels ? compare_only_labels(r, request) : compare_all(r, request);
     results_close(&r[0]);
     results_close(&r[1]);
     return code;
@@ -336,16 +421,17 @@ static int compare(void *context)
 
 static int run(int argc, char **argv)
 {
-    const char *files[2], *tolerance[COMPARE_TOLERANCES];
-    size_t json = 0, csv = 0, labels = 0, tolerances = 0, operands = 0;
+    const char *files[2], *tolerance[COMPARE_TOLERANCES], *of = NULL;
+    size_t ofs = 0, json = 0, csv = 0, labels = 0, tolerances = 0, operands = 0;
     bool help = false;
     const struct option_spec specs[] = {
         {"--json", false, NULL, 0, &json},
         {"--csv", false, NULL, 0, &csv},
         {"--labels", false, NULL, 0, &labels},
+        {"--of", true, &of, 1, &ofs},
         {"--tolerance", true, tolerance, COMPARE_TOLERANCES, &tolerances}};
 
-    if (!command_options(&command_compare, argc, argv, specs, 4, files, 2, &operands, &help))
+    if (!command_options(&command_compare, argc, argv, specs, 5, files, 2, &operands, &help))
         return EXIT_USAGE;
     if (help)
         return EXIT_DONE;
@@ -354,14 +440,24 @@ static int run(int argc, char **argv)
               stderr);
         return EXIT_USAGE;
     }
-    if ((json && csv) || (labels && (csv || tolerances))) {
+    if ((json && csv) || (labels ? tolerances > 0 : of != NULL)) {
         fprintf(stderr, "stance compare: %s\n",
                 json && csv ? "--json or --csv, not both"
-                            : "--labels goes with neither --tolerance nor --csv");
+                : labels    ? "--labels does not go with --tolerance"
+                            : "--of names the domain of --labels");
         return EXIT_USAGE;
     }
-    struct request request = {
-        {files[0], files[1]}, table_form(json, csv), labels > 0, tolerance, tolerances};
+    const size_t kind =
+        of ? command_word(&command_compare, "--of", of, results_kind_names, RESULTS_OUTCOMES) : 0;
+    if (kind == RESULTS_OUTCOMES)
+        return EXIT_USAGE;
+    struct request request = {{files[0], files[1]},
+                              table_form(json, csv),
+                              labels > 0,
+                              of != NULL,
+                              (enum results_kind)kind,
+                              tolerance,
+                              tolerances};
     char names[2100];
     snprintf(names, sizeof names, "%s or %s", files[0], files[1]);
     return sandbox(compare, &request, names);
@@ -369,7 +465,8 @@ static int run(int argc, char **argv)
 
 const struct command command_compare = {
     "compare",
-    "compare FILE FILE [--tolerance [ANSWER=]RELATIVE[,ABSOLUTE]]... [--labels] [--json | --csv]",
+    "compare FILE FILE [--tolerance [ANSWER=]RELATIVE[,ABSOLUTE]]... [--labels [--of OUTCOME]]\n"
+    "        [--json | --csv]",
     "what differs between two results files, bit for bit, beyond a tolerance, or in their labels",
     run,
     "Prints `identical` (exit code 0), or every variable and attribute that differs with the "
@@ -391,10 +488,20 @@ const struct command command_compare = {
     "           many cells, along refined axes, an unequal one is at most away from a case of\n"
     "           another label than its own in the first file (1: beside it). For a refined map "
     "and\n"
-    "           a full one, or maps of two methods; exit code 2 when the axes differ\n"
+    "           a full one, or maps of two methods; exit code 2 when the axes or the starts "
+    "differ.\n"
+    "           Then a table of what the labels of the first file have become in the second, and\n"
+    "           of the first one's domain the share that is lost in the second (of a sample with "
+    "a\n"
+    "           95 % interval, as in the summary), of the second one's the share that is won\n"
+    "  --of OUTCOME   the domain: stabilised (default; or rested, where nothing else was), "
+    "rested,\n"
+    "           fell or undecided\n"
     "  --csv    a row for each variable or attribute that differs: name, reason, differing, of,\n"
     "           largest, largest_case (without a tolerance the first case that differs), and both\n"
-    "           values there as first and second\n"
+    "           values there as first and second; of --labels a row for each pair of labels: "
+    "first,\n"
+    "           second, cases, share, share_of_first\n"
     "  --json   the same as JSON, with the keys\n"
     "    files         both paths\n"
     "    identical     true or false (false with a tolerance, as not all is compared)\n"
@@ -407,5 +514,8 @@ const struct command command_compare = {
     "           and of --labels with the keys files and\n"
     "    compared, equal, equal_share   cases pending in neither file, those equal, their share\n"
     "    farthest      cells, as above; null where there is nothing to measure\n"
+    "    became        [{first, second, cases, share, share_of_first}]\n"
+    "    domain        {outcome, kept, lost, won, neither, lost_share, lost_low, lost_high (null\n"
+    "                  of a grid), won_share}\n"
     "    first         [{index, at: {path: value}, values: [label, label]}]\n",
 };

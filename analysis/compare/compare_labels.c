@@ -5,6 +5,7 @@
 
 #include "runner/base/message.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -116,13 +117,62 @@ static bool same_axes(const struct results *first, const struct results *second)
     return same;
 }
 
-bool compare_labels(struct label_comparison *comparison, const struct results *first,
-                    const struct results *second, stance_message *message)
+/* Starts at other places are other cases. */
+static bool same_values(const struct results_axis *first, const struct results_axis *second)
 {
-    *comparison = (struct label_comparison){0};
+    bool same = first->count == second->count;
+    for (size_t i = 0; same && i < first->count && statistics_is_start(first->name); i++)
+        same = fabs(first->value[i] - second->value[i]) <=
+               1e-9 * fmax(fabs(first->value[i]), fabs(second->value[i]));
+    return same;
+}
+
+static bool same_starts(const struct results *first, const struct results *second)
+{
+    bool same = first->varied == second->varied;
+    for (int a = 0; same && !first->single && a < first->axes; a++)
+        same = first->axis[a].word || same_values(&first->axis[a], &second->axis[a]);
+    for (int k = 0; same && k < first->varied; k++)
+        same = first->vary[k].word || same_values(&first->vary[k].of, &second->vary[k].of);
+    return same;
+}
+
+/* The share of what was in the domain of the first file at a point of the sample that is not in
+ * that of the second, over the points. */
+static bool find_interval(struct label_comparison *c, const struct results *first,
+                          const struct results *second)
+{
+    enum { LOST, HAD };
+    const size_t points = first->sample < 0 ? 0 : first->axis[first->sample].count;
+    const size_t block = first->block > 0 ? first->block : 1, blocks = (points + block - 1) / block;
+    double *count = calloc(blocks + 1, 2 * sizeof *count);
+    struct interval_draws draws = {0};
+    for (uint64_t i = 0; count && points > 0 && i < first->cases; i++) {
+        if (first->kind[i] == c->of && second->kind[i] != RESULTS_PENDING) {
+            double *own = count + 2 * (i % points / block); /* the sample is the last axis */
+            own[LOST] += second->kind[i] != c->of;
+            own[HAD]++;
+        }
+    }
+    for (size_t b = 0; count && b < blocks; b++)
+        interval_add(&draws, count[2 * b + LOST], count[2 * b + HAD]);
+    c->lost_interval = interval_of(&draws, 0.95);
+    free(count);
+    return count != NULL;
+}
+
+bool compare_labels(struct label_comparison *comparison, const struct results *first,
+                    const struct results *second, enum results_kind of, stance_message *message)
+{
+    *comparison = (struct label_comparison){.of = of};
     if (!same_axes(first, second))
         return complain(message, "stance compare: %.90s and %.90s are not over the same axes",
                         first->file, second->file);
+    if (!same_starts(first, second))
+        return complain(message, "stance compare: the starts of %.80s and %.80s are not the same",
+                        first->file, second->file);
+    if (!find_interval(comparison, first, second))
+        return complain(message, "stance compare: not enough memory");
     uint32_t *distance = malloc(first->cases * sizeof *distance);
     if (!distance)
         return complain(message, "stance compare: not enough memory");
@@ -132,6 +182,10 @@ bool compare_labels(struct label_comparison *comparison, const struct results *f
         if (first->kind[i] == RESULTS_PENDING || second->kind[i] == RESULTS_PENDING)
             continue;
         comparison->compared++;
+        comparison->cases[first->kind[i]][second->kind[i]]++;
+        comparison->kept += first->kind[i] == of && second->kind[i] == of;
+        comparison->lost += first->kind[i] == of && second->kind[i] != of;
+        comparison->won += first->kind[i] != of && second->kind[i] == of;
         if (first->kind[i] == second->kind[i]) {
             comparison->equal++;
             continue;

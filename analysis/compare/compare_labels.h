@@ -6,7 +6,7 @@
 #ifndef STANCE_COMPARE_COMPARE_LABELS_H
 #define STANCE_COMPARE_COMPARE_LABELS_H
 
-#include "runner/store/results.h"
+#include "analysis/statistics/intervals.h"
 
 enum { LABELS_SHOWN = 3 };
 
@@ -16,12 +16,19 @@ struct label_comparison {
      * the first file, along the refined axes (without any: along all axes of numbers): 1 is beside
      * the boundary. 0: there is no unequal case, or no boundary. */
     uint64_t farthest;
+    /* Of those compared, by the label in the first file and that in the second. */
+    uint64_t cases[RESULTS_KIND_COUNT][RESULTS_KIND_COUNT];
+    enum results_kind of; /* the domain that is looked at */
+    uint64_t kept, won,
+        lost; /* cases in the domain of both, of the second and of the first alone */
+    /* Of the share of the first domain that the second has lost, at 95 %, of a sample; else NAN. */
+    struct interval lost_interval;
     int shown;
     uint64_t place[LABELS_SHOWN]; /* the first unequal cases */
 };
 
-/* False: not over the same axes, or not enough memory. */
+/* With the domain of an outcome. False: not over the same axes and starts, or not enough memory. */
 bool compare_labels(struct label_comparison *comparison, const struct results *first,
-                    const struct results *second, stance_message *message);
+                    const struct results *second, enum results_kind of, stance_message *message);
 
 #endif

@@ -1,6 +1,8 @@
 /* gnuplot.c - hands data to gnuplot's scripts, runs gnuplot, fetches the pictures. */
 #include "gnuplot.h"
 
+#include "fonts.h"
+
 #include "runner/store/results.h"
 
 #include <ctype.h>
@@ -17,17 +19,12 @@
 
 extern char **environ;
 
+enum { TOO_SMALL = 3 }; /* exit status of page.gp where the asked size has no room */
+
 GNUPLOT_SCRIPT(style_gp, "analysis/draw/style.gp");
+GNUPLOT_SCRIPT(legend_gp, "analysis/draw/legend.gp");
 GNUPLOT_SCRIPT(page_gp, "analysis/draw/page.gp");
 GNUPLOT_SCRIPT(panels_gp, "analysis/draw/panels.gp");
-
-/* The picture is drawn twice from the same data. */
-static const char script[] = "load 'style.gp'\n"
-                             "load 'data.gp'\n"
-                             "drawing = 'svg'; load 'picture.gp'\n"
-                             "unset multiplot; unset output; reset\n"
-                             "drawing = 'png'; load 'picture.gp'\n"
-                             "unset multiplot; unset output\n";
 
 /* ---- directories --------------------------------------------------------------------------- */
 
@@ -56,9 +53,10 @@ static void scratch_path(const struct gnuplot *g, const char *name, char path[32
 /* Removes the directory of a picture that is over, with what can be in it. */
 static void remove_picture(const char *directory)
 {
-    static const char *const names[] = {"script",    "style.gp",    "page.gp",
-                                        "panels.gp", "picture.gp",  "data.gp",
-                                        "errors",    "picture.svg", "picture.png"};
+    static const char *const names[] = {"script",     "style.gp",    "legend.gp",   "page.gp",
+                                        "panels.gp",  "picture.gp",  "data.gp",     "drawn.gp",
+                                        "errors",     "picture.svg", "picture.png", "picture.pdf",
+                                        "picture.gif"};
     char path[1100];
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         snprintf(path, sizeof path, "%s/%s", directory, names[i]);
@@ -119,12 +117,31 @@ static const char *kept_in(void)
     return directory && directory[0] ? directory : NULL;
 }
 
-bool gnuplot_begin(struct gnuplot *g, const char *picture, const char *title, const char *subtitle,
-                   stance_message *message)
+/* What the scripts must know of the look. A text of 12 pt in gnuplot's sense is 16 px high, so that
+ * a px is 1/16 of the size of the text. */
+static void put_look(struct gnuplot *g, const char *title, const char *subtitle)
 {
+    const struct look *look = g->look;
+    const double points = look->points / 16, px = 72 / 25.4 / points; /* pt a px, px a mm */
+    gnuplot_text(g, look->font, "font_name");
+    gnuplot_set(g, "px_points = %.10g; asked_width = %.10g; asked_height = %.10g", points,
+                look->width * px, look->height * px);
+    gnuplot_set(g, "px_dots = %.10g", look->width > 0 ? 600 * points / 72 : 1.6 * look->points / 9);
+    if (look->grey)
+        gnuplot_set(g, "eval in_grey");
+    gnuplot_text(g, look->title ? look->title : look->bare ? "" : title, "title");
+    gnuplot_text(g, look->bare ? "" : subtitle, "subtitle");
+}
+
+bool gnuplot_begin(struct gnuplot *g, struct look *look, const char *picture, const char *title,
+                   const char *subtitle, stance_message *message)
+{
+    static struct look plain;
     const char *base = kept_in() ? kept_in() : getenv("TMPDIR");
 
-    *g = (struct gnuplot){0};
+    if (!look)
+        look_begin(look = &plain);
+    *g = (struct gnuplot){.look = look};
     snprintf(g->scratch, sizeof g->scratch, "%s/stance-plot-XXXXXX",
              base && base[0] && strlen(base) < 200 ? base : "/tmp");
     g->sink = fopen("/dev/null", "wb");
@@ -135,14 +152,13 @@ bool gnuplot_begin(struct gnuplot *g, const char *picture, const char *title, co
             fclose(g->sink);
         return false;
     }
-    put_script(g, "script", script);
     put_script(g, "style.gp", style_gp);
+    put_script(g, "legend.gp", legend_gp);
     put_script(g, "page.gp", page_gp);
     put_script(g, "panels.gp", panels_gp);
     put_script(g, "picture.gp", picture);
     g->data = open_scratch(g, "data.gp");
-    gnuplot_text(g, title, "title");
-    gnuplot_text(g, subtitle, "subtitle");
+    put_look(g, title, subtitle);
     return true;
 }
 
@@ -239,10 +255,29 @@ FILE *gnuplot_cells(struct gnuplot *g)
     return open_scratch(g, name);
 }
 
-void gnuplot_legend(struct gnuplot *g, const char *colour, const char *text)
+void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name)
 {
-    gnuplot_set(g, "legends = legends + 1; legend_colour[legends] = %s", colour);
+    const char *value = look_colour(g->look, name);
+    if (value)
+        gnuplot_set(g, "%s = 0x%s", colour, value + 1);
+}
+
+void gnuplot_legend_mark(struct gnuplot *g, const char *colour, int dash, int point,
+                         const char *name, const char *more)
+{
+    char text[400];
+    gnuplot_colour(g, colour, name);
+    snprintf(text, sizeof text, "%s%s%s", look_label(g->look, name), more[0] ? "  " : "", more);
+    gnuplot_set(g,
+                "legends = legends + 1; legend_colour[legends] = %s; legend_dash[legends] = %d; "
+                "legend_point[legends] = %d",
+                colour, dash, point);
     gnuplot_text(g, text, "legend_text[legends]");
+}
+
+void gnuplot_legend(struct gnuplot *g, const char *colour, const char *name, const char *more)
+{
+    gnuplot_legend_mark(g, colour, 0, 0, name, more);
 }
 
 void gnuplot_note(struct gnuplot *g, const char *text)
@@ -300,7 +335,7 @@ static void read_complaint(const struct gnuplot *g, char text[120])
         fclose(errors);
 }
 
-/* ---- fetching ----------------------------------------------------------------------------- */
+/* ---- letters ------------------------------------------------------------------------------ */
 
 static char *read_file(const char *path, size_t *size)
 {
@@ -322,18 +357,103 @@ static char *read_file(const char *path, size_t *size)
     return text;
 }
 
-/* Viewers smooth enlarged images unless told not to: a cell is to stay a cell. */
-static bool write_svg(FILE *out, const char *text, size_t size)
+static bool is_ascii(const char *text, size_t size)
 {
-    static const char tag[] = "<image ", instead[] = "<image style='image-rendering:pixelated' ";
-    const char *end = text + size;
-    const char *found;
-    while ((found = memmem(text, (size_t)(end - text), tag, sizeof tag - 1))) {
-        fwrite(text, 1, (size_t)(found - text), out);
-        fwrite(instead, 1, sizeof instead - 1, out);
-        text = found + sizeof tag - 1;
+    for (size_t i = 0; i < size; i++)
+        if ((unsigned char)text[i] >= 0x80)
+            return false;
+    return true;
+}
+
+/* Once in a process. */
+static void say_missing(const struct look *look, const struct fonts *fonts, const char *missing)
+{
+    static bool said_font, said_letters;
+    if (!fonts->family && !said_font) {
+        fprintf(stderr,
+                "no font is called %s: another one takes its place (fc-list : family "
+                "lists fonts)\n",
+                look->font);
+        said_font = true;
     }
-    return fwrite(text, 1, (size_t)(end - text), out) == (size_t)(end - text) && !ferror(out);
+    if (missing[0] && !said_letters) {
+        fprintf(stderr,
+                "no font has %s: boxes stand for them in all but SVG; on Debian: apt-get "
+                "install fonts-noto-cjk, or another font that has them\n",
+                missing);
+        said_letters = true;
+    }
+}
+
+/* drawn.gp: the data without letters that cannot be drawn; SVG is drawn by its readers, with fonts
+ * of their own. Returns whether there is need of it. */
+static bool replace_letters(struct gnuplot *g)
+{
+    char path[320], missing[80] = "", *drawn = NULL;
+    size_t size = 0;
+    struct fonts fonts;
+    scratch_path(g, "data.gp", path);
+    char *text = read_file(path, &size);
+    if (text && (!is_ascii(text, size) || strcmp(g->look->font, LOOK_FONT) != 0)) {
+        fonts_find(&fonts, g->look->font);
+        if (fonts.has) {
+            drawn = fonts_replace(&fonts, text, size, missing, sizeof missing);
+            say_missing(g->look, &fonts, missing);
+            fonts_free(&fonts);
+        }
+    }
+    if (drawn)
+        put_script(g, "drawn.gp", drawn);
+    free(text);
+    free(drawn);
+    return drawn != NULL;
+}
+
+/* The picture is drawn from the same data in each format. */
+static void put_formats(struct gnuplot *g)
+{
+    const bool replaced = replace_letters(g);
+    FILE *file = open_scratch(g, "script");
+    for (int f = 0; f < LOOK_FORMAT_COUNT; f++) {
+        if (!g->look->format[f])
+            continue;
+        fprintf(file,
+                "drawing = '%s'\nload 'style.gp'\nload '%s'\nload 'legend.gp'\n"
+                "load 'picture.gp'\nunset multiplot; unset output; reset\n",
+                look_endings[f], replaced && f != LOOK_SVG ? "drawn.gp" : "data.gp");
+    }
+    gnuplot_close_cells(g, file);
+}
+
+/* ---- fetching ----------------------------------------------------------------------------- */
+
+/* Copies up to `tag`, or to `end` where there is none; returns what comes after it. */
+static const char *copy_to(FILE *out, const char *text, const char *end, const char *tag)
+{
+    const char *found = memmem(text, (size_t)(end - text), tag, strlen(tag));
+    fwrite(text, 1, (size_t)((found ? found : end) - text), out);
+    return found ? found + strlen(tag) : end;
+}
+
+/* Viewers smooth enlarged images unless told not to: a cell is to stay a cell. A page of an asked
+ * size has it in mm. */
+static bool write_svg(FILE *out, const struct look *look, const char *text, size_t size)
+{
+    static const char image[] = "<image ", width[] = " width=\"", height[] = " height=\"";
+    const char *const end = text + size;
+    double px[2];
+    char *rest;
+    if (look->width > 0) {
+        text = copy_to(out, text, end, width);
+        px[0] = strtod(text, &rest);
+        text = strstr(rest, height);
+        px[1] = text ? strtod(text + sizeof height - 1, &rest) : px[0];
+        fprintf(out, "%s%.2fmm\"%s%.2fmm", width, look->width, height, look->width / px[0] * px[1]);
+        text = rest;
+    }
+    while ((text = copy_to(out, text, end, image)) < end)
+        fputs("<image style='image-rendering:pixelated' ", out);
+    return !ferror(out);
 }
 
 static void join_path(const char *directory, const char *name, char *path, size_t size)
@@ -352,42 +472,52 @@ static bool not_written(const char *path, stance_message *message)
 /* One file of a picture: drawn at `from`, belongs to `to`; complete at `part`, beside it, it takes
  * that place at once. No reader ever sees half a picture, and none is left by a full disk. */
 struct product {
+    const struct look *look;
     const char *scratch; /* directory in which it was drawn */
-    char from[320], part[2048], to[2048];
+    int format;
     bool parted; /* there is something at `part` */
+    char from[320], part[2048], to[2048];
 };
 
-static void name_product(struct product *product, const struct gnuplot *g, const char *extension,
+static void name_product(struct product *product, const struct gnuplot *g, int format,
                          const char *directory, const char *stem)
 {
     char drawn[32], name[600];
-    snprintf(drawn, sizeof drawn, "picture.%s", extension);
+    product->look = g->look;
+    product->format = format;
+    snprintf(drawn, sizeof drawn, "picture.%s", look_endings[format]);
     scratch_path(g, drawn, product->from);
-    snprintf(name, sizeof name, "%s.%s", stem, extension);
+    snprintf(name, sizeof name, "%s.%s", stem, look_endings[format]);
     join_path(directory, name, product->to, sizeof product->to);
-    snprintf(name, sizeof name, ".stance-%ld.%s", (long)getpid(), extension);
+    if (g->look->file)
+        snprintf(product->to, sizeof product->to, "%s", g->look->file);
+    snprintf(name, sizeof name, ".stance-%ld.%s", (long)getpid(), look_endings[format]);
     join_path(directory, name, product->part, sizeof product->part);
     product->scratch = g->scratch;
     product->parted = false;
 }
 
 /* gnuplot does not tell when the disk that it draws on is full: the last words of a file do. */
-static bool is_complete(const char *text, size_t size, bool svg)
+static bool is_complete(const char *text, size_t size, int format)
 {
-    static const char last_tag[] = "</svg>", last_chunk[] = "IEND";
-    if (!svg) /* before the four bytes of its checksum */
-        return size >= 8 && memcmp(text + size - 8, last_chunk, sizeof last_chunk - 1) == 0;
-    while (size > 0 && isspace((unsigned char)text[size - 1]))
+    static const struct {
+        const char *words;
+        size_t after; /* bytes: of a checksum */
+    } last[LOOK_FORMAT_COUNT] = {[LOOK_SVG] = {"</svg>", 0},
+                                 [LOOK_PNG] = {"IEND", 4},
+                                 [LOOK_PDF] = {"%%EOF", 0},
+                                 [LOOK_GIF] = {";", 0}};
+    const size_t length = strlen(last[format].words), whole = length + last[format].after;
+    while (format != LOOK_PNG && size > 0 && isspace((unsigned char)text[size - 1]))
         size--;
-    size_t length = sizeof last_tag - 1;
-    return size >= length && memcmp(text + size - length, last_tag, length) == 0;
+    return size >= whole && memcmp(text + size - whole, last[format].words, length) == 0;
 }
 
-static bool copy_product(struct product *product, bool svg, stance_message *message)
+static bool copy_product(struct product *product, stance_message *message)
 {
     size_t size = 0;
     char *text = read_file(product->from, &size);
-    if (!text || !is_complete(text, size, svg)) {
+    if (!text || !is_complete(text, size, product->format)) {
         snprintf(message->text, sizeof message->text,
                  "gnuplot drew %s for %.100s; is there room in %.60s?",
                  text ? "half a picture" : "nothing", product->to, product->scratch);
@@ -397,7 +527,8 @@ static bool copy_product(struct product *product, bool svg, stance_message *mess
     unlink(product->part); /* of a process of that number that was killed */
     FILE *out = fopen(product->part, "wbx");
     product->parted = out != NULL;
-    bool good = out && (svg ? write_svg(out, text, size) : fwrite(text, 1, size, out) == size);
+    bool good = out && (product->format == LOOK_SVG ? write_svg(out, product->look, text, size)
+                                                    : fwrite(text, 1, size, out) == size);
     int error = errno;
     if (out && fclose(out) != 0 && good) {
         error = errno;
@@ -417,17 +548,21 @@ static bool place_product(struct product *product, stance_message *message)
     return true;
 }
 
-/* Brings the pictures to where they belong: both, or where one cannot be written neither. */
+/* Brings the pictures to where they belong: all, or where one cannot be written none. */
 static bool fetch(const struct gnuplot *g, const char *directory, const char *stem,
                   stance_message *message)
 {
-    struct product product[2];
-    name_product(&product[0], g, "svg", directory, stem);
-    name_product(&product[1], g, "png", directory, stem);
-    bool good = copy_product(&product[0], true, message) &&
-                copy_product(&product[1], false, message) && place_product(&product[0], message) &&
-                place_product(&product[1], message);
-    for (int k = 0; k < 2; k++)
+    struct product product[LOOK_FORMAT_COUNT];
+    int count = 0;
+    bool good = true;
+    for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
+        if (g->look->format[f])
+            name_product(&product[count++], g, f, directory, stem);
+    for (int k = 0; k < count; k++)
+        good = good && copy_product(&product[k], message);
+    for (int k = 0; k < count; k++)
+        good = good && place_product(&product[k], message);
+    for (int k = 0; k < count; k++)
         if (product[k].parted)
             unlink(product[k].part);
     return good;
@@ -446,10 +581,16 @@ static bool keep_scratch(const struct gnuplot *g, const char *stem, stance_messa
 bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
                  stance_message *message)
 {
+    const char *dash = strrchr(stem, '-');
     char complaint[120];
     bool good = false;
 
+    if (!look_wants(g->look, dash ? dash + 1 : stem)) {
+        gnuplot_abandon(g);
+        return true;
+    }
     gnuplot_close_cells(g, g->data);
+    put_formats(g);
     if (g->failed) {
         snprintf(message->text, sizeof message->text, "%.100s: cannot be written: %s", g->scratch,
                  strerror(g->error));
@@ -464,7 +605,8 @@ bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
                      strerror(errno));
         } else if (status != 0) {
             read_complaint(g, complaint);
-            snprintf(message->text, sizeof message->text, "gnuplot failed: %s", complaint);
+            snprintf(message->text, sizeof message->text, "%s%s",
+                     status == TOO_SMALL ? "" : "gnuplot failed: ", complaint);
         } else {
             good = fetch(g, directory, stem, message);
         }

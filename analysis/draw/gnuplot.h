@@ -1,18 +1,18 @@
-/* gnuplot.h - a picture, drawn by gnuplot as SVG and PNG.
+/* gnuplot.h - a picture, drawn by gnuplot in the formats and sizes of a look.
  *
  * What a picture looks like stands in a script NAME.gp beside the NAME.c that hands it the data,
- * and what pictures share in style.gp, page.gp and panels.gp here; all are embedded in the program.
- * In a scratch directory gnuplot loads style.gp, the data (variables, data blocks) and the script,
- * so that no path of the user's enters a script; the finished files are copied to where they
- * belong. No text is interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the environment keeps
- * scripts and data in DIR/STEM, where `gnuplot script` draws the picture anew.
+ * and what pictures share in style.gp, legend.gp, page.gp and panels.gp here; all are embedded in
+ * the program. In a scratch directory gnuplot loads style.gp, the data (variables, data blocks),
+ * legend.gp and the script, so that no path of the user's enters a script; the finished files are
+ * copied to where they belong. No text is interpreted: see gnuplot_quote. STANCE_SCRIPTS=DIR in the
+ * environment keeps scripts and data in DIR/STEM, where `gnuplot script` draws the picture anew.
  */
 #ifndef STANCE_DRAW_GNUPLOT_H
 #define STANCE_DRAW_GNUPLOT_H
 
-#include "engine/stance.h"
+#include "look.h"
 
-#include <stdio.h>
+#include "engine/stance.h"
 
 /* Embeds a file of the tree as the constant string `symbol`; the Makefile has objects made anew
  * when the .gp of their name changes. */
@@ -21,6 +21,7 @@
     extern const char symbol[] __attribute__((visibility("hidden")))
 
 struct gnuplot {
+    struct look *look;
     char scratch[256]; /* directory */
     FILE *data;        /* variables and data blocks are appended here */
     FILE *sink;        /* takes what has no file */
@@ -33,12 +34,13 @@ struct gnuplot {
  * nothing can be written there. */
 bool gnuplot_directory(const char *directory);
 
-/* Begins a picture that the script `picture` draws, with `title` and `subtitle`. False: no scratch
- * directory; nothing is left behind. */
-bool gnuplot_begin(struct gnuplot *g, const char *picture, const char *title, const char *subtitle,
-                   stance_message *message);
-/* Runs gnuplot, writes DIRECTORY/STEM.svg and .png and prints both paths. Ends the picture in any
- * case. False: a write failed, gnuplot is missing or complains; the files are as they were. */
+/* Begins a picture that the script `picture` draws, with `title` and `subtitle`; look NULL: as it
+ * comes, for pictures without options. False: no scratch directory; nothing is left behind. */
+bool gnuplot_begin(struct gnuplot *g, struct look *look, const char *picture, const char *title,
+                   const char *subtitle, stance_message *message);
+/* Where the look wants the picture, runs gnuplot, writes the look's file, or DIRECTORY/STEM.svg,
+ * .png ..., and prints the paths. Ends the picture in any case. False: a write failed, gnuplot is
+ * missing or complains; the files are as they were. */
 bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
                  stance_message *message);
 /* Ends a picture without drawing it. */
@@ -64,8 +66,14 @@ void gnuplot_end_block(struct gnuplot *g);
 FILE *gnuplot_cells(struct gnuplot *g);
 void gnuplot_close_cells(struct gnuplot *g, FILE *file);
 
-/* An entry of the legend (a colour as gnuplot's expression), and a line under all of them. */
-void gnuplot_legend(struct gnuplot *g, const char *colour, const char *text);
+/* An entry of the legend: a box of a colour (a variable of style.gp) beside a name and what is said
+ * of it, "" for nothing; and a line under all of them. */
+void gnuplot_legend(struct gnuplot *g, const char *colour, const char *name, const char *more);
+/* The same with a line of a type of dashes and a point of a type, 0: none, in the box's place. */
+void gnuplot_legend_mark(struct gnuplot *g, const char *colour, int dash, int point,
+                         const char *name, const char *more);
+/* Gives a colour of style.gp the value that the look has for a name, if it has. */
+void gnuplot_colour(struct gnuplot *g, const char *colour, const char *name);
 void gnuplot_note(struct gnuplot *g, const char *text);
 
 /* Writes `text` as a string literal: nothing in it is expanded, substituted or formatted, control

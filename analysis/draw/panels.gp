@@ -1,19 +1,15 @@
 # panels.gp - draws title, labels and objects given so far, with the legend at legend_x, legend_y (its
-# first line); panels follow, over it.
-line = legend_y
-if (legend_head ne '') {
-    legend_head = wrap(legend_head, letters(page_width - legend_x - margin, 10))
-    set label legend_head at screen X(legend_x), Y(line) left @small front
-    line = line + 6 + 16*lines(legend_head)
-}
+# first line) or below the panels; panels follow, over it.
+if (legend_below) { legend_x = margin; legend_y = legend_floor + 6 }
+if (legend_head ne '') { set label legend_head at screen X(legend_x), Y(legend_y) left @small front }
 do for [k=1:legends] {
-    eval box(legend_x, line, legend_colour[k])
-    set label legend_text[k] at screen X(legend_x + 22), Y(line) left font ',12' front
-    line = line + legend_step
+    eval mark(k, legend_x + entry_x[k], legend_y + entry_y[k])
+    set label legend_text[k] at screen X(legend_x + entry_x[k] + legend_indent), Y(legend_y + entry_y[k]) left font ',12' front
 }
+line = legend_y + notes_y + 2
 do for [k=1:notes] {
-    set label note[k] at screen X(legend_x), Y(line + 2) left @small front
-    line = line + 17
+    set label note[k] at screen X(legend_x), Y(line) left @small front
+    line = line + 17*lines(note[k])
 }
 eval panel(0, 0, page_width, page_height)
 unset border; unset tics

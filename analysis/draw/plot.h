@@ -7,10 +7,12 @@
 #include "runner/base/command.h"
 #include "runner/store/results.h"
 
-/* What is drawn and where the files go: DIRECTORY/STEM-<picture>.svg and .png. */
+/* What is drawn, how, and where the files go: DIRECTORY/STEM-<picture>.svg and .png, or as the look
+ * has it. */
 struct plot {
     const struct results *r;
     const char *directory, *stem;
+    struct look *look;
 };
 
 /* Begins a picture of the file, under its title; ends it as STEM-picture. */
@@ -64,10 +66,14 @@ void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const v
 
 /* ---- outcomes ----------------------------------------------------------------------------- */
 
+/* "What became of each of 65536 cases" */
+void plot_became_text(const struct results *r, char *text, size_t size);
 /* Adds to a subtitle how many cases have failed, where some have. */
 void plot_failed_text(const struct results *r, char *text, size_t size);
-/* kind_colour[1 + enum results_kind]; with `legend` an entry for each kind that occurs, with its
- * share of all cases. */
+/* Adds by which faces of the box of starts the set of an outcome is cut, where there are starts. */
+void plot_cut_text(const struct results *r, char *text, size_t size);
+/* kind_colour[1 + enum results_kind], in the colours of the look; with `legend` an entry for each
+ * kind that occurs, with its share of all cases. */
 void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend);
 
 /* ---- answers ------------------------------------------------------------------------------ */
@@ -109,9 +115,9 @@ void plot_answer_title(const struct plot_answer *answer, char *text, size_t size
     X(line, "  one axis            NAME-curve: outcome, times and friction used along it\n")       \
     X(shares,                                                                                      \
       "  a first axis that   NAME-curve: the shares of stabilised and rested cases against it,\n"  \
-      "  is not an offset    with 95 % bands of a sample; of starts on a grid the basin's\n"       \
-      "                      volume, between what is inside and what is not outside (stance\n"     \
-      "                      basin -h)\n")
+      "  is not an offset    with bands of their likely error (95 %); of starts on a grid the\n"   \
+      "                      basin's volume, in a lighter band between what is inside for\n"       \
+      "                      certain and what is not outside (stance basin -h)\n")
 #define PLOT_PICTURE(name, help) bool plot_##name(const struct plot *plot, stance_message *message);
 PLOT_PICTURES(PLOT_PICTURE)
 #undef PLOT_PICTURE
@@ -121,8 +127,9 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
                      stance_message *message);
 bool plot_answer_curve(const struct plot *plot, const struct plot_answer *answer,
                        stance_message *message);
-/* STEM-coordinates, -forces, -torques, -gaps and -strip of the case at a place among the recorded
- * ones. */
-bool plot_case(const struct plot *plot, size_t place, uint64_t index, stance_message *message);
+/* STEM-outline of the first of several files: where each has an outcome, RESULTS_KIND_COUNT: the
+ * one that is looked at. */
+bool plot_outline(const struct plot *plots, int files, enum results_kind of,
+                  stance_message *message);
 
 #endif

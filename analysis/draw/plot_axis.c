@@ -1,7 +1,7 @@
 /* plot_axis.c - scales of axes, and what scripts are told of axes and outcomes. */
 #include "plot.h"
 
-#include "analysis/statistics/statistics.h"
+#include "analysis/statistics/faces.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -138,9 +138,11 @@ void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which)
 {
     char path[sizeof axis->name + sizeof axis->unit + 4];
+    const char *label = look_label(g->look, axis->name);
+    const bool own = label != axis->name;
     snprintf(path, sizeof path, axis->unit[0] ? "%s (%s)" : "%s", axis->name, axis->unit);
-    gnuplot_text(g, axis->text, "%s_text", which);
-    gnuplot_text(g, path, "%s_path", which);
+    gnuplot_text(g, own ? "" : axis->text, "%s_text", which);
+    gnuplot_text(g, own ? label : path, "%s_path", which);
 }
 
 void plot_axis_write(const struct plot_axis *along, struct gnuplot *g, const char *which)
@@ -155,6 +157,14 @@ void plot_axis_write(const struct plot_axis *along, struct gnuplot *g, const cha
         put_words(along, g, which);
 }
 
+void plot_became_text(const struct results *r, char *text, size_t size)
+{
+    if (r->cases == 1)
+        snprintf(text, size, "What became of 1 case");
+    else
+        snprintf(text, size, "What became of each of %llu cases", (unsigned long long)r->cases);
+}
+
 void plot_failed_text(const struct results *r, char *text, size_t size)
 {
     struct statistics_counts counts;
@@ -166,6 +176,21 @@ void plot_failed_text(const struct results *r, char *text, size_t size)
     }
 }
 
+void plot_cut_text(const struct results *r, char *text, size_t size)
+{
+    struct faces faces;
+    char at[400];
+    const enum results_kind judged = statistics_judged(r);
+    const size_t used = strlen(text);
+    faces_make(&faces, r, NULL, 0);
+    const face_set cut = faces_cut(&faces, judged);
+    faces_text(&faces, cut, at, sizeof at);
+    if (cut && used < size)
+        snprintf(text + used, size - used,
+                 "; what is %s is cut by the box at %s: its share is the box's",
+                 results_kind_names[judged], at);
+}
+
 void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend)
 {
     struct statistics_counts counts;
@@ -174,12 +199,12 @@ void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend)
     gnuplot_set(g, "array kind_colour[%d]", RESULTS_KIND_COUNT);
     for (int k = 0; k < RESULTS_KIND_COUNT; k++) {
         snprintf(colour, sizeof colour, "colour_%s", results_kind_names[k]);
+        gnuplot_colour(g, colour, results_kind_names[k]);
         gnuplot_set(g, "kind_colour[%d] = %s", k + 1, colour);
         if (legend && counts.kind[k] > 0) {
             double share = 100 * (double)counts.kind[k] / (double)r->cases;
-            snprintf(text, sizeof text, share < 0.05 ? "%s  %.2g %%" : "%s  %.1f %%",
-                     results_kind_names[k], share);
-            gnuplot_legend(g, colour, text);
+            snprintf(text, sizeof text, share < 0.05 ? "%.2g %%" : "%.1f %%", share);
+            gnuplot_legend(g, colour, results_kind_names[k], text);
         }
     }
 }
@@ -208,7 +233,8 @@ bool plot_begin(const struct plot *plot, struct gnuplot *g, const char *script,
                 const char *subtitle, stance_message *message)
 {
     const struct results *r = plot->r;
-    return gnuplot_begin(g, script, r->title[0] ? r->title : r->name, subtitle, message);
+    return gnuplot_begin(g, plot->look, script, r->title[0] ? r->title : r->name, subtitle,
+                         message);
 }
 
 bool plot_end(const struct plot *plot, struct gnuplot *g, const char *picture,

@@ -4,11 +4,12 @@
 set encoding utf8
 
 # ---- colours: after Okabe and Ito (2008), so that readers who do not tell red from green tell these
-# apart; blue hues stand for standing, orange for falling ----
-colour_stabilised = 0x0072b2
+# apart; blue hues stand for standing, orange for falling. Those of outcomes are as far apart in grey: 69, 112,
+# 157, 191 and 228 of 255 ----
+colour_stabilised = 0x005a92
 colour_rested = 0x56b4e9
-colour_fell = 0xe69f00
-colour_undecided = 0xcc79a7
+colour_fell = 0xf3bb4c
+colour_undecided = 0xa45288
 colour_done = 0x009e73
 colour_failed = 0x000000
 colour_pending = 0xe4e4e4
@@ -19,6 +20,9 @@ no_number = 0xd9d9d9
 
 # Numbers: after cividis (Nunez, Anderton, Renslow 2018), even steps for every reader.
 palette = "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c', 1 '#fee838')"
+in_grey = "colour_stabilised = 0x404040; colour_rested = 0x8a8a8a; colour_fell = 0xdcdcdc; colour_undecided = 0xb0b0b0; " \
+    ."colour_done = 0x606060; colour_pending = 0xf6f6f6; array hue[7] = [0x000000, 0x7a7a7a, 0x404040, 0xa6a6a6, 0x202020, " \
+    ."0x909090, 0x5a5a5a]; no_number = 0xffffff; palette = \"set palette defined (0 '#101010', 1 '#f0f0f0')\""
 grid = "set grid lt 1 lc rgb '#e6e6e6' lw 0.8"
 
 # ---- the canvas: page_width x page_height px, from its upper left corner ----
@@ -28,6 +32,11 @@ Y(px) = 1 - 1.0*px/page_height
 panel(left, top, width, height) = sprintf( \
     "set lmargin at screen %.6f; set rmargin at screen %.6f; set tmargin at screen %.6f; set bmargin at screen %.6f", \
     X(left), X(left + width), Y(top), Y(top + height))
+# What is left for each of n panels in a row, or one above the other, of a size that was asked for; else `own` px.
+wide(own, n, others) = asked_width > 0 ? at_least(60, 1.0*(asked_width - others)/n) : own
+high(own, n, others) = asked_height > 0 ? at_least(50, 1.0*(asked_height - legend_height - others)/n) : own
+at_least(a, b) = a > b ? a : b
+at_most(a, b) = a < b ? a : b
 colour_bar(left, top, width, height) = sprintf( \
     "set colorbox %s user origin screen %.6f, screen %.6f size screen %.6f, screen %.6f", \
     width > height ? 'horizontal' : 'vertical', X(left), Y(top + height), X(width), 1 - Y(height))
@@ -43,27 +52,45 @@ blank(s, i) = i < 1 || s[i:i] eq ' ' ? i : blank(s, i - 1)
 wrap(s, n) = strlen(s) <= n ? s : (f_at = blank(s, n + 1), f_at = f_at < 1 ? strstrt(s, ' ') : f_at, \
     f_at < 1 ? s : s[1:f_at-1]."\n".wrap(s[f_at+1:*], n))
 lines(s) = (f_at = strstrt(s, "\n"), f_at < 1 ? 1 : 1 + lines(s[f_at+1:*]))
-lines_height(s, size) = lines(s)*(int(size*1.25) + 3)
+lines_height(s, size) = s eq '' ? 0 : lines(s)*(int(size*1.25) + 3)
+longest_line(s) = (f_at = strstrt(s, "\n"), f_at < 1 ? strlen(s) : at_least(f_at - 1, longest_line(s[f_at+1:*])))
 cut(s, n) = strlen(s) <= n || n < 4 ? s : s[1:n-3].'...'
+# Of "controller.sample_time = 0.002 s" the end, which has the value.
+end_of(s, n) = strlen(s) <= n ? s : strstrt(s, '.') > 0 && strstrt(s, '.') < strstrt(s, ' ') ? end_of(s[strstrt(s, '.')+1:*], n) \
+    : '...'.s[at_least(1, strlen(s) - int(n) + 4):*]
 with_unit(name, unit) = unit eq '' ? name : name.' ('.unit.')'
 # What the title and the line under it take of a page that is page_width wide.
 title_text(s, size) = wrap(s, letters(page_width - 2*margin, size))
 title_height(_) = margin + lines_height(title_text(title, title_size), title_size) \
-    + lines_height(title_text(subtitle, text_size), text_size) + 10
-# Long name and path of an axis, in `px` pixels each.
-axis_label(a, px) = (value(a.'_text') eq '' ? '' : cut(value(a.'_text'), int(px/6.9))."\n") \
+    + lines_height(title_text(subtitle, text_size), text_size) + (title eq '' && subtitle eq '' ? 0 : 10)
+# Long name, where there is room for it, and path of an axis, in `px` pixels each.
+axis_label(a, px) = (value(a.'_text') eq '' || strlen(value(a.'_text')) > int(px/6.9) ? '' : value(a.'_text')."\n") \
     .cut(value(a.'_path'), int(px/6.9))
 
-# ---- legends: filled boxes with texts, and notes under them; the data add theirs ----
+# ---- legends: marks with texts, and notes under them; the data add theirs. A mark is a line where it has a type of
+# dashes, a point where it has a type of points, or a filled box ----
 array legend_text[40]
 array legend_colour[40]
+array legend_dash[40]
+array legend_point[40]
 array note[12]
+bars = 0
 legends = 0
 notes = 0
 legend_step = 24
 legend_head = ''
 box(left, y, colour) = sprintf("set object rectangle from screen %.6f,%.6f to screen %.6f,%.6f fillcolor rgb %d " \
     ."fillstyle solid border lc '#606060' lw 0.5 front", X(left), Y(y + 7), X(left + 14), Y(y - 7), colour)
+line_mark(left, y, colour, dash) = sprintf("set arrow from screen %.6f,%.6f to screen %.6f,%.6f nohead lc rgb %d dt %d " \
+    ."lw 2 front", X(left), Y(y), X(left + legend_indent - 8), Y(y), colour, dash)
+point_mark(left, y, colour, type) = sprintf("set label '' at screen %.6f,%.6f point pt %d ps 1.4 lw 2 lc rgb %d front", \
+    X(left + 0.5*legend_indent - 4), Y(y), type, colour)
+mark(k, left, y) = legend_dash[k] + legend_point[k] == 0 ? box(left, y, legend_colour[k]) \
+    : (legend_dash[k] > 0 ? line_mark(left, y, legend_colour[k], legend_dash[k]) : '').'; ' \
+    .(legend_point[k] > 0 ? point_mark(left, y, legend_colour[k], legend_point[k]) : '')
+# The colour bar of the page: under the legend's entries.
+legend_bar(_) = legend_below ? colour_bar(left, page_height - 80, at_most(280, asked_width - left - 3*margin), 12) \
+    : colour_bar(legend_x, legend_y + 70, 18, 180)
 
 # ---- tics of the axis whose name begins with x or y: at most about n ----
 round_up(x) = (f_power = 10.0**floor(log10(x)), f_digit = x/f_power*(1 - 1e-9), \

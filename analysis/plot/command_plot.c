@@ -1,5 +1,6 @@
 /* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
-#include "analysis/draw/plot.h"
+#include "plot_case.h"
+
 #include "analysis/sensitivity/sensitivity_study.h"
 #include "runner/base/command.h"
 #include "runner/base/sandbox.h"
@@ -9,16 +10,6 @@
 #include <string.h>
 
 extern const struct command command_plot; /* below */
-
-/* The directory of a file, or "." */
-static void directory_of(const char *file, char *directory, size_t size)
-{
-    const char *slash = strrchr(file, '/');
-    if (!slash)
-        snprintf(directory, size, ".");
-    else
-        snprintf(directory, size, "%.*s", slash == file ? 1 : (int)(slash - file), file);
-}
 
 static bool parse_index(const char *text, uint64_t *index)
 {
@@ -34,17 +25,9 @@ static bool parse_index(const char *text, uint64_t *index)
 /* Says how a trajectory comes about. */
 static void explain_recording(const struct results *r, uint64_t index)
 {
-    if (r->single) {
-        fprintf(stderr,
-                "%s: holds one case without a trajectory; run its scenario with "
-                "`--set record.cases=all --set record.every=0.01`, or with `--only %llu --trace`\n",
-                r->file, (unsigned long long)index);
-    } else {
-        fprintf(stderr,
-                "%s: has no trajectory of case %llu; `stance run SCENARIO --only %llu --trace` "
-                "records one\n",
-                r->file, (unsigned long long)index, (unsigned long long)index);
-    }
+    fprintf(stderr,
+            "%s: has no trajectory of case %llu; `stance replay %s --case %llu` computes it\n",
+            r->file, (unsigned long long)index, r->file, (unsigned long long)index);
 }
 
 static int draw_case(const struct plot *plot, uint64_t index, bool given)
@@ -79,11 +62,15 @@ static int draw_case(const struct plot *plot, uint64_t index, bool given)
     struct plot own = *plot;
     snprintf(stem, sizeof stem, "%.300s-case%llu", plot->stem, (unsigned long long)index);
     own.stem = given && !r->single ? stem : plot->stem;
-    if (!plot_case(&own, place, index, &message)) {
-        fprintf(stderr, "%s\n", message.text);
-        return EXIT_IO;
+    struct plot_case c;
+    bool good = plot_case_load(&c, &own, place, index, &message);
+    if (good) {
+        good = plot_case(&c, &message);
+        plot_case_free(&c);
     }
-    return EXIT_DONE;
+    if (!good)
+        fprintf(stderr, "%s\n", message.text);
+    return good ? EXIT_DONE : EXIT_IO;
 }
 
 /* ---- a sweep ------------------------------------------------------------------------------ */
@@ -137,7 +124,8 @@ static int draw_sensitivity(const struct plot *plot, const struct plot_answer *a
     if (code == EXIT_DONE) {
         snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", plot->stem, answer ? "-" : "",
                  answer ? answer->name : "");
-        code = sensitivity_picture(&study, plot->directory, stem, &message) ? EXIT_DONE : EXIT_IO;
+        code = sensitivity_picture(&study, plot->look, plot->directory, stem, &message) ? EXIT_DONE
+                                                                                        : EXIT_IO;
         sensitivity_study_free(&study);
     }
     if (code != EXIT_DONE)
@@ -179,14 +167,48 @@ static int draw_answer(const struct plot *plot, const char *name, const char *of
 
 /* ---- the command -------------------------------------------------------------------------- */
 
+enum { MOST_FILES = 12 };
+
 struct request {
-    const char *file, *directory, *index, *answer, *of;
+    const char *file[MOST_FILES], *index, *answer, *of;
+    size_t files, outline;
+    struct look look;
 };
+
+/* The outlines of all files. */
+static int draw_outlines(struct request *request, const struct plot *first)
+{
+    static struct results r[MOST_FILES]; /* large; the process has but one command */
+    struct plot plots[MOST_FILES] = {*first};
+    stance_message message = {""};
+    size_t opened = 1;
+    enum results_kind of = RESULTS_KIND_COUNT;
+    if (request->of) {
+        of = command_word(&command_plot, "--of", request->of, results_kind_names, RESULTS_OUTCOMES);
+        if (of == RESULTS_OUTCOMES)
+            return EXIT_USAGE;
+    }
+    bool good = true;
+    while (good && opened < request->files) {
+        good = results_open(&r[opened], request->file[opened], &message);
+        if (good) {
+            plots[opened] = *first;
+            plots[opened].r = &r[opened];
+            opened++;
+        }
+    }
+    good = good && plot_outline(plots, (int)request->files, of, &message);
+    while (opened > 1)
+        results_close(&r[--opened]);
+    if (!good)
+        fprintf(stderr, "%s\n", message.text);
+    return good ? EXIT_DONE : EXIT_IO;
+}
 
 static int draw(void *context)
 {
-    const struct request *request = context;
-    const char *directory = request->directory, *index_text = request->index;
+    struct request *request = context;
+    const char *index_text = request->index;
     struct results r;
     stance_message message = {""};
     char own_directory[1024];
@@ -197,17 +219,17 @@ static int draw(void *context)
         fprintf(stderr, "stance plot: --case takes the number of a case, not '%s'\n", index_text);
         return EXIT_USAGE;
     }
-    if (!results_open(&r, request->file, &message)) {
+    if (!results_open(&r, request->file[0], &message)) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_IO;
     }
-    if (!directory) {
-        directory_of(request->file, own_directory, sizeof own_directory);
-        directory = own_directory;
-    }
-    const struct plot plot = {&r, directory, r.name};
+    const char *const directory =
+        look_directory(&request->look, request->file[0], own_directory, sizeof own_directory);
+    const struct plot plot = {&r, directory, r.name, &request->look};
     if (!gnuplot_directory(directory)) {
         code = EXIT_IO;
+    } else if (request->outline) {
+        code = draw_outlines(request, &plot);
     } else if (request->answer) {
         code = draw_answer(&plot, request->answer, request->of);
     } else if (index_text || r.single) {
@@ -218,47 +240,62 @@ static int draw(void *context)
             code = draw_sensitivity(&plot, NULL);
     }
     results_close(&r);
+    if (code == EXIT_DONE && !look_end(&request->look, &command_plot, request->file[0]))
+        code = EXIT_USAGE;
     return code;
+}
+
+/* The names of all files, for messages. */
+static const char *files_text(const struct request *request, char *text, size_t size)
+{
+    size_t used = 0;
+    for (size_t f = 0; f < request->files && used < size; f++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", f ? ", " : "", request->file[f]);
+    return text;
 }
 
 static int run(int argc, char **argv)
 {
-    const char *file = NULL, *directory = NULL, *index = NULL, *answer = NULL, *of = NULL;
-    size_t given[4] = {0}, operands = 0;
-    bool help = false;
+    struct request request = {0};
+    struct look_options options = {0};
+    size_t given[3] = {0};
     const struct option_spec specs[] = {
-        {"-o", true, &directory, 1, &given[0]},
-        {"--case", true, &index, 1, &given[1]},
-        {"--answer", true, &answer, 1, &given[2]},
-        {"--of", true, &of, 1, &given[3]},
+        {"--case", true, &request.index, 1, &given[0]},
+        {"--answer", true, &request.answer, 1, &given[1]},
+        {"--of", true, &request.of, 1, &given[2]},
+        {"--outline", false, NULL, 0, &request.outline},
+        LOOK_SPECS(options),
     };
-
-    if (!command_options(&command_plot, argc, argv, specs, sizeof specs / sizeof specs[0], &file, 1,
-                         &operands, &help))
+    char text[1000];
+    const int begun =
+        command_begin(&command_plot, argc, argv, specs, sizeof specs / sizeof specs[0],
+                      "a results file", request.file, 1, MOST_FILES, &request.files);
+    if (begun != COMMAND_GOES_ON)
+        return begun;
+    if (!look_read(&command_plot, &options, &request.look))
         return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    if (operands == 0 || (directory && !directory[0])) {
-        fprintf(stderr, "stance plot: %s is needed (stance plot -h explains)\n",
-                operands == 0 ? "a results file" : "a directory");
-        return EXIT_USAGE;
-    }
-    if ((index && answer) || (of && !answer)) {
-        fprintf(stderr, "stance plot: %s\n",
-                of && !answer ? "--of belongs to --answer" : "--case or --answer, not both");
-        return EXIT_USAGE;
-    }
-    struct request request = {file, directory, index, answer, of};
-    return sandbox(draw, &request, file);
+    if (request.look.format[LOOK_GIF])
+        return command_usage(&command_plot,
+                             "stance replay draws animations; pictures are svg, png or pdf");
+    if (!!request.index + !!request.answer + (request.outline > 0) > 1)
+        return command_usage(&command_plot, "one of --case, --answer and --outline");
+    if (request.of && !request.answer && !request.outline)
+        return command_usage(&command_plot, "--of belongs to --answer or --outline");
+    if (request.files > 1 && !request.outline)
+        return command_usage(&command_plot, "several files are drawn in one frame by --outline");
+    return sandbox(draw, &request, files_text(&request, text, sizeof text));
 }
 
 const struct command command_plot = {
     "plot",
-    "plot FILE [-o DIR] [--case N | --answer A [--of OUTCOME]]",
-    "pictures (SVG and PNG)",
+    "plot FILE... [--outline [--of OUTCOME] | --answer A [--of OUTCOME] | --case N]\n"
+    "           [-o PLACE] [--format F,...]\n"
+    "           [--picture P] [--for column|page] [--size W[xH]] [--font NAME[,PT]]\n"
+    "           [--title TEXT] [--labels NAME=TEXT]... [--colours NAME=#rrggbb|grey]...",
+    "pictures (SVG, PNG, PDF)",
     run,
-    "Draws with gnuplot what the file calls for, into DIR (made when missing; default: where the\n"
-    "file is), and prints the path of every file written.\n"
+    "Draws with gnuplot what the file calls for, beside the file or where -o says, and prints the\n"
+    "path of every file written.\n"
     "\n"
 #define HELP(name, help) help
     PLOT_PICTURES(HELP)
@@ -268,8 +305,9 @@ const struct command command_plot = {
         "-strip:\n"
         "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
         "\n"
-        "  -o DIR         where the pictures go\n"
-        "  STANCE_SCRIPTS=DIR in the environment keeps each picture's gnuplot script and data\n"
+        "  --outline      NAME-outline instead: where cases were stabilised, a line for each of up "
+        "to\n"
+        "                 12 files and each value of their other axes, in one frame with a legend\n"
         "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
         "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another "
         "number) of "
@@ -277,5 +315,5 @@ const struct command command_plot = {
         "                 case, as a map or along the one axis; sampled factors: "
         "NAME-A-sensitivity\n"
         "  --of OUTCOME   only of the cases that were stabilised, rested, fell or stayed "
-        "undecided\n",
+        "undecided\n" LOOK_HELP,
 };

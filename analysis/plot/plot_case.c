@@ -3,6 +3,7 @@
 #include "plot_case.h"
 
 #include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,13 +23,13 @@ static size_t grounded(const struct plot_case *c)
 
 /* Writes time and `width` columns. More rows than pixels become two per group: the least and the
  * largest of every column, so that no peak is lost. */
-static void put_track(struct gnuplot *g, const struct results_trajectory *t, const double *values,
-                      size_t width)
+static void put_track(struct gnuplot *g, int number, const struct results_trajectory *t,
+                      const double *values, size_t width)
 {
     size_t group = t->rows > MOST_ROWS ? (t->rows + MOST_ROWS / 2 - 1) / (MOST_ROWS / 2) : 1;
     double row[1 + 2 * STANCE_MAX_CONTACTS + STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS];
 
-    gnuplot_block(g, "track");
+    gnuplot_block(g, "track%d", number);
     for (size_t first = 0; first < t->rows; first += group) {
         size_t end = first + group < t->rows ? first + group : t->rows;
         for (int extreme = 0; extreme < (group > 1 ? 2 : 1); extreme++) {
@@ -116,11 +117,53 @@ static struct range range_of(const struct results_trajectory *t, const double *v
 
 /* ---- pages -------------------------------------------------------------------------------- */
 
+/* What a page shows of a trajectory, [rows][width]; NULL: it has none. */
+typedef const double *(*shown)(const struct results_trajectory *t, size_t *width);
+
+static const double *positions(const struct results_trajectory *t, size_t *width)
+{
+    *width = t->coordinates;
+    return t->position;
+}
+static const double *forces(const struct results_trajectory *t, size_t *width)
+{
+    *width = 2 * t->contacts;
+    return t->force;
+}
+static const double *torques(const struct results_trajectory *t, size_t *width)
+{
+    *width = t->actuators;
+    return t->torque;
+}
+static const double *gaps(const struct results_trajectory *t, size_t *width)
+{
+    *width = t->contacts;
+    return t->gap;
+}
+
 struct page {
     struct gnuplot g;
     const struct plot_case *c;
+    shown of;
     int panels, lines, ramps; /* so far */
 };
+
+/* Of all cases: see range_of. */
+static struct range range_of_all(const struct page *page, size_t first, size_t every, size_t end,
+                                 bool robust)
+{
+    struct range all = {INFINITY, -INFINITY, 0, 0};
+    for (const struct plot_case *c = page->c; c; c = c->other) {
+        size_t width;
+        const double *values = page->of(c->t, &width);
+        const struct range own = range_of(c->t, values, width, first, every, end, robust);
+        include(&all, own.low);
+        include(&all, own.high);
+        all.beyond += own.beyond;
+        all.largest = fabs(own.largest) > fabs(all.largest) ? own.largest : all.largest;
+    }
+    return all;
+}
 
 /* Value i of the first path of an axis, for people. */
 static void swept_value(const struct scenario_axis *axis, size_t i, char *text, size_t size)
@@ -191,30 +234,40 @@ static void describe(const struct plot_case *c, char *text, size_t size)
 bool plot_case_begin(const struct plot_case *c, struct gnuplot *g, const char *script,
                      const char *what, stance_message *message)
 {
-    char subtitle[1024], about[800];
+    char subtitle[2048], about[800];
     describe(c, about, sizeof about);
-    snprintf(subtitle, sizeof subtitle, "%s; %s", what, about);
+    const size_t used = (size_t)snprintf(subtitle, sizeof subtitle, "%s; %s", what, about);
+    if (c->other) {
+        describe(c->other, about, sizeof about);
+        snprintf(subtitle + used, sizeof subtitle - used, "; second %s", about);
+    }
     return plot_begin(c->plot, g, script, subtitle, message);
 }
 
-/* A page of panels, all of columns of `values` against time. */
-static bool begin_page(struct page *page, const char *what, const double *values, size_t width,
-                       int panels, int height, stance_message *message)
+/* A page of panels, all of columns of what it shows against time. */
+static bool begin_page(struct page *page, const char *what, int panels, int height,
+                       stance_message *message)
 {
     static const char *const arrays[] = {
         "heading",      "label",       "low",         "high",         "track_panel", "track_column",
         "track_factor", "track_width", "track_dash",  "track_colour", "ramp_panel",  "ramp_start",
-        "ramp_rate",    "ramp_end",    "ramp_colour", "ramp_dash"};
-    const struct results_trajectory *t = page->c->t;
+        "ramp_rate",    "ramp_end",    "ramp_colour", "ramp_dash",    "track_case"};
+    double from = INFINITY, to = -INFINITY;
     struct gnuplot *g = &page->g;
     if (!plot_case_begin(page->c, g, plot_case_gp, what, message))
         return false;
     gnuplot_set(g, "panels = %d; height = %d", panels, height);
     for (size_t k = 0; k < sizeof arrays / sizeof arrays[0]; k++)
         gnuplot_set(g, "array %s[%d]", arrays[k], MOST_LINES);
-    gnuplot_set(g, "from = %#.17g; to = %#.17g", t->time[0],
-                t->rows > 1 ? t->time[t->rows - 1] : t->time[0] + 1);
-    put_track(g, t, values, width);
+    int number = 0;
+    for (const struct plot_case *c = page->c; c; c = c->other) {
+        size_t width;
+        const double *values = page->of(c->t, &width);
+        put_track(g, ++number, c->t, values, width);
+        from = fmin(from, c->t->time[0]);
+        to = fmax(to, c->t->time[c->t->rows - 1]);
+    }
+    gnuplot_set(g, "from = %#.17g; to = %#.17g", from, to > from ? to : from + 1);
     return true;
 }
 
@@ -229,15 +282,20 @@ static void put_panel(struct page *page, const char *heading, const char *label,
     gnuplot_set(&page->g, "low[%d] = %#.17g; high[%d] = %#.17g", p, range->low, p, range->high);
 }
 
-/* A column of the track in the last panel, `factor` times. */
+/* A column of the track in the last panel, `factor` times; of another case dashed. */
 static void put_line(struct page *page, size_t column, double factor, size_t hue, bool dotted)
 {
-    const int k = ++page->lines;
-    gnuplot_set(&page->g,
-                "track_panel[%d] = %d; track_column[%d] = %zu; track_factor[%d] = %#.17g; "
-                "track_colour[%d] = hue[%zu]; track_dash[%d] = %d; track_width[%d] = %g",
-                k, page->panels, k, column + 2, k, factor, k, hue % HUES + 1, k, dotted ? 3 : 1, k,
-                dotted ? 1 : 1.7);
+    int number = 0;
+    for (const struct plot_case *c = page->c; c; c = c->other) {
+        const int k = ++page->lines;
+        number++;
+        gnuplot_set(&page->g,
+                    "track_panel[%d] = %d; track_column[%d] = %zu; track_factor[%d] = %#.17g; "
+                    "track_colour[%d] = hue[%zu]; track_dash[%d] = %d; track_width[%d] = %g; "
+                    "track_case[%d] = %d",
+                    k, page->panels, k, column + 2, k, factor, k, hue % HUES + 1, k,
+                    dotted ? 3 : number, k, dotted ? 1 : 1.7, k, number);
+    }
 }
 
 /* What something aims at, or a limit: start + rate * time until `end`. */
@@ -252,7 +310,9 @@ static void put_ramp(struct page *page, const struct ramp *ramp, const char *col
                 "ramp_panel[%d] = %d; ramp_start[%d] = %#.17g; ramp_rate[%d] = %#.17g; "
                 "ramp_end[%d] = %#.17g; ramp_colour[%d] = %s; ramp_dash[%d] = %d",
                 k, page->panels, k, ramp->start, k, ramp->rate, k, ramp->end, k, colour, k,
-                dashed ? 2 : 1);
+                !dashed          ? 1
+                : page->c->other ? 4
+                                 : 2);
 }
 
 static void put_level(struct page *page, double level, const char *colour, bool dashed)
@@ -262,6 +322,8 @@ static void put_level(struct page *page, double level, const char *colour, bool 
 
 static bool end_page(struct page *page, const char *picture, stance_message *message)
 {
+    if (page->c->other)
+        gnuplot_note(&page->g, "dashed: the second case");
     gnuplot_set(&page->g, "tracks = %d; ramps = %d", page->lines, page->ramps);
     return plot_end(page->c->plot, &page->g, picture, message);
 }
@@ -272,7 +334,7 @@ static void put_names(struct page *page, const char (*names)[SCENARIO_NAME], siz
     char colour[32];
     for (size_t k = 0; k < count; k++) {
         snprintf(colour, sizeof colour, "hue[%zu]", k % HUES + 1);
-        gnuplot_legend(&page->g, colour, names[k]);
+        gnuplot_legend(&page->g, colour, names[k], "");
     }
 }
 
@@ -321,16 +383,14 @@ static bool setpoint_of(const struct plot_case *c, size_t i, struct ramp *setpoi
 static bool draw_coordinates(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
-    struct page page = {.c = c};
+    struct page page = {.c = c, .of = positions};
     bool targets = false, led = false;
 
-    if (!begin_page(&page, "Coordinates", t->position, t->coordinates, (int)t->coordinates, 100,
-                    message))
+    if (!begin_page(&page, "Coordinates", (int)t->coordinates, 100, message))
         return false;
     for (size_t i = 0; i < t->coordinates; i++) {
         const stance_quantity *q = quantity(c, i);
-        struct range range =
-            range_of(t, t->position, t->coordinates, i, t->coordinates, t->coordinates, false);
+        struct range range = range_of_all(&page, i, t->coordinates, t->coordinates, false);
         const double target = target_of(c, i);
         struct ramp setpoint;
         char text[300];
@@ -352,7 +412,9 @@ static bool draw_coordinates(const struct plot_case *c, stance_message *message)
         led = led || leads;
     }
     if (targets || led)
-        gnuplot_note(&page.g, targets ? "dashed: equilibrium" : "dashed: set-point");
+        gnuplot_note(&page.g, !c->other ? (targets ? "dashed: equilibrium" : "dashed: set-point")
+                              : targets ? "dash-dotted: equilibrium"
+                                        : "dash-dotted: set-point");
     return end_page(&page, "coordinates", message);
 }
 
@@ -376,14 +438,13 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
                                              "Tangential force, along +x"};
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
-    struct page page = {.c = c};
+    struct page page = {.c = c, .of = forces};
     char text[300], what[80];
 
-    if (!begin_page(&page, "Forces of the ground on the contacts", t->force, 2 * t->contacts, 2,
-                    220, message))
+    if (!begin_page(&page, "Forces of the ground on the contacts", 2, 220, message))
         return false;
     for (int k = 0; k < 2; k++) {
-        struct range range = range_of(t, t->force, 2 * t->contacts, (size_t)k, 2, 2 * count, true);
+        struct range range = range_of_all(&page, (size_t)k, 2, 2 * count, true);
         snprintf(what, sizeof what, "%s", components[k]);
         if (t->rows > 1) {
             snprintf(what, sizeof what, "%s (means over %.4g s)", components[k],
@@ -441,14 +502,14 @@ static size_t torque_levels(const struct plot_case *c, size_t actuators, double 
 static bool draw_torques(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
-    struct page page = {.c = c};
-    struct range range = range_of(t, t->torque, t->actuators, 0, 1, t->actuators, true);
+    struct page page = {.c = c, .of = torques};
+    struct range range = range_of_all(&page, 0, 1, t->actuators, true);
     const double extent = 4 * fmax(fabs(range.low), fabs(range.high));
     const char *unit, *const label = torque_label(c, &unit);
     double limit[STANCE_MAX_ACTUATORS];
     char text[300];
 
-    if (!begin_page(&page, "What the actuators give", t->torque, t->actuators, 1, 260, message))
+    if (!begin_page(&page, "What the actuators give", 1, 260, message))
         return false;
     heading_of(t, "Applied in the step that ends at each instant", &range, unit, text, sizeof text);
     const size_t limits = torque_levels(c, t->actuators, limit);
@@ -474,11 +535,10 @@ static bool draw_gaps(const struct plot_case *c, stance_message *message)
 {
     const struct results_trajectory *t = c->t;
     const size_t count = grounded(c);
-    struct page page = {.c = c};
-    struct range range = range_of(t, t->gap, t->contacts, 0, 1, count, false);
+    struct page page = {.c = c, .of = gaps};
+    struct range range = range_of_all(&page, 0, 1, count, false);
 
-    if (!begin_page(&page, "Heights of the contact points above the ground", t->gap, t->contacts, 1,
-                    260, message))
+    if (!begin_page(&page, "Heights of the contact points above the ground", 1, 260, message))
         return false;
     include(&range, 0);
     put_panel(&page, "", "gap (m)", &range);
@@ -531,40 +591,52 @@ static void learn(struct plot_case *c)
     }
 }
 
-bool plot_case(const struct plot *plot, size_t place, uint64_t index, stance_message *message)
+bool plot_case_load(struct plot_case *c, const struct plot *plot, size_t place, uint64_t index,
+                    stance_message *message)
 {
-    struct results_trajectory t;
-    struct plot_case *c = calloc(1, sizeof *c);
-    if (!c) {
-        snprintf(message->text, sizeof message->text, "stance plot: not enough memory");
+    *c = (struct plot_case){.plot = plot};
+    if (!results_trajectory(plot->r, place, index, &c->trajectory, message))
         return false;
-    }
-    if (!results_trajectory(plot->r, place, index, &t, message)) {
-        free(c);
-        return false;
-    }
-    c->plot = plot;
-    c->t = &t;
+    c->t = &c->trajectory;
     learn(c);
-    bool good = t.rows > 0;
-    if (!good) {
-        snprintf(message->text, sizeof message->text,
-                 "%.100s: the trajectory of case %llu is empty", plot->r->file,
-                 (unsigned long long)index);
-    }
-    const bool lands = good && grounded(c) > 0;
-    good = good && draw_coordinates(c, message) &&
-           (!t.force || !lands || draw_forces(c, message)) &&
-           (!t.torque || draw_torques(c, message)) && (!t.gap || !lands || draw_gaps(c, message));
-    if (good && c->readable) {
-        good = plot_strip(c, message);
-    } else if (good) {
-        fprintf(stderr, "%s: no stick figures: this version cannot read the file's scenario\n",
-                plot->r->file);
-    }
+    if (c->t->rows > 0)
+        return true;
+    plot_case_free(c);
+    return complain(message, "%.100s: the trajectory of case %llu is empty", plot->r->file,
+                    (unsigned long long)index);
+}
+
+void plot_case_free(struct plot_case *c)
+{
     if (c->readable)
         scenario_free(&c->scenario);
-    results_trajectory_free(&t);
-    free(c);
+    results_trajectory_free(&c->trajectory);
+}
+
+/* Whether cases have the same columns. */
+static bool are_alike(const struct plot_case *c)
+{
+    const struct results_trajectory *a = c->t, *b = c->other ? c->other->t : a;
+    return a->coordinates == b->coordinates && a->contacts == b->contacts &&
+           a->actuators == b->actuators && !a->force == !b->force && !a->torque == !b->torque &&
+           !a->gap == !b->gap && grounded(c) == grounded(c->other ? c->other : c) &&
+           memcmp(a->coordinate, b->coordinate, a->coordinates * sizeof *a->coordinate) == 0;
+}
+
+bool plot_case(const struct plot_case *c, stance_message *message)
+{
+    const struct results_trajectory *t = c->t;
+    if (!are_alike(c))
+        return complain(message, "%.100s: the two cases are of different robots", c->plot->r->file);
+    const bool lands = grounded(c) > 0;
+    const bool good =
+        draw_coordinates(c, message) && (!t->force || !lands || draw_forces(c, message)) &&
+        (!t->torque || draw_torques(c, message)) && (!t->gap || !lands || draw_gaps(c, message));
+    if (good && c->readable)
+        return plot_strip(c, message);
+    if (good) {
+        fprintf(stderr, "%s: no stick figures: this version cannot read the file's scenario\n",
+                c->plot->r->file);
+    }
     return good;
 }

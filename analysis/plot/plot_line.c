@@ -106,8 +106,7 @@ bool plot_line(const struct plot *plot, stance_message *message)
     char what[96];
     if (plot->r->sample >= 0 || plot->r->axes != 1)
         return true;
-    snprintf(what, sizeof what, "What became of each of %llu cases",
-             (unsigned long long)plot->r->cases);
+    plot_became_text(plot->r, what, sizeof what);
     for (int k = 0; k < LINE_PANELS; k++) {
         if (!read_panel(plot->r, &panels[k], message)) {
             while (k-- > 0)

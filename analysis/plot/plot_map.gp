@@ -1,33 +1,38 @@
 # plot_map.gp - a map in each panel, over the axes x and y: what became of every case, or the numbers of
-# one answer (measured), lowest ... highest.
-gap = 28
+# one answer (measured), lowest ... highest. Over a panel stands its title and at the right its share. A table of
+# panels (so many across, 0: none) has titles over its columns and beside its rows.
+gap = asked_width > 0 ? 16 : 28
 head = panels > 1 ? 22 : 0
-
-# Two axes of panels make a table (so many across, 0: none); else the page is a little wider than it is
-# high, and full where it can be.
-columns = panels == 3 ? 3 : int(ceil(sqrt(1.2*panels)))
-if (columns > 2 && panels % columns && panels % (columns - 1) == 0) { columns = columns - 1 }
-if (table >= 1 && table <= 6) { columns = table }
-if (columns > panels) { columns = panels }
-rows = (panels + columns - 1) / columns
-width = panels == 1 ? 560 : panels <= 4 ? 336 : 235
-height = panels == 1 ? 500 : panels <= 4 ? 300 : 210
+row_head = table ? 44 : 0
+column_head = table ? 40 : 0
 
 # Words beside the panels take more room than numbers.
 longest = 6
 if (y_scale eq 'list') { do for [k=1:y_words] { longest = strlen(y_word[k]) > longest ? strlen(y_word[k]) : longest } }
 left = 118 + 9*((longest < 24 ? longest : 24) - 6)
-panel_left(p) = left + (p - 1) % columns*(width + gap)
-panel_top(p) = top + (p - 1)/columns*(height + 34) + head
 
-page_width = left + columns*(width + gap) + 190
+# The page is a little wider than it is high, and full where it can be.
+columns = panels == 3 ? 3 : int(ceil(sqrt(1.2*panels)))
+if (columns > 2 && panels % columns && panels % (columns - 1) == 0) { columns = columns - 1 }
+if (asked_width > 0) { columns = int(at_most(columns, at_least(1, (asked_width - left - legend_room + gap)/(130 + gap)))) }
+if (table) { columns = table }
+if (columns > panels) { columns = panels }
+rows = (panels + columns - 1) / columns
+own_width = panels == 1 ? 560 : panels <= 4 ? 336 : panels <= 16 ? 235 : 170
+own_height = panels == 1 ? 500 : panels <= 4 ? 300 : panels <= 16 ? 210 : 150
+width = wide(own_width, columns, left + (columns - 1)*gap + row_head + legend_room)
+panel_left(p) = left + (p - 1) % columns*(width + gap)
+panel_top(p) = top + column_head + (p - 1)/columns*(height + head + 12) + head
+right = left + columns*(width + gap) - gap
+
+page_width = right + row_head + legend_room
 top = title_height(0)
+height = high(1.0*own_height*width/own_width, rows, top + column_head + rows*head + (rows - 1)*12 + 84)
 bottom = panel_top(panels) + height
 page_height = bottom + 84
 load 'page.gp'
 
-set label axis_label('x', columns*(width + gap) + 50) at screen X(left + 0.5*(columns*(width + gap) - gap)), Y(bottom + 46) \
-    center @small front
+set label axis_label('x', right - left + 50) at screen X(0.5*(left + right)), Y(bottom + 46) center @small front
 # Long names may go on beside the labels under the map, but not into the title.
 set label axis_label('y', bottom - top + 28) at screen X(22), Y(0.5*(top + bottom) + 14) center rotate by 90 @small front
 
@@ -35,20 +40,32 @@ set label axis_label('y', bottom - top + 28) at screen X(22), Y(0.5*(top + botto
 fits_long = 1
 fits_short = 1
 do for [p=1:panels] {
-    fits_long = fits_long && 7*strlen(title_long[p]) < width + 14
-    fits_short = fits_short && 7*strlen(title_short[p]) < width + 14
+    room = width + 4 - 7*strlen(share[p])
+    fits_long = fits_long && 7*strlen(title_long[p]) < room
+    fits_short = fits_short && 7*strlen(title_short[p]) < room
 }
 do for [p=1:panels] {
-    set label fits_long ? title_long[p] : fits_short ? title_short[p] : title_bare[p] \
-        at screen X(panel_left(p) + 0.5*width), Y(panel_top(p) - 11) center @tiny front
+    title_here = table ? '' : fits_long ? title_long[p] : fits_short ? title_short[p] : title_bare[p]
+    set label title_here at screen X(panel_left(p)), Y(panel_top(p) - 11) left @tiny front
+    set label panels > 1 ? share[p] : '' at screen X(panel_left(p) + width), Y(panel_top(p) - 11) right @tiny front
 }
-legend_x = left + columns*(width + gap) + 8
-legend_y = top + head + 10
-if (cross) {
-    line = legend_y + legends*legend_step
-    set label '' at screen X(legend_x + 7), Y(line) point pt 1 ps 1.4 lw 2 lc rgb 'black' front
-    set label 'equilibrium' at screen X(legend_x + 22), Y(line) left font ',12' front
+# Of a table the name stands once where it has no room beside each value.
+fits_columns = 1
+fits_rows = 1
+do for [c=1:table] { fits_columns = fits_columns && 7*strlen(column_long[c]) < width + gap }
+do for [r=1:(table ? rows : 0)] { fits_rows = fits_rows && 7*strlen(row_long[r]) < height + head }
+do for [c=1:table] {
+    set label fits_columns ? column_long[c] : column_bare[c] at screen X(panel_left(c) + 0.5*width), Y(panel_top(c) - 30) \
+        center @tiny front
 }
+do for [r=1:(table ? rows : 0)] {
+    set label fits_rows ? row_long[r] : row_bare[r] at screen X(right + 14), Y(panel_top(r*columns) + 0.5*height) \
+        center rotate by -90 @tiny front
+}
+if (table && !fits_columns) { set label column_name at screen X(0.5*(left + right)), Y(panel_top(1) - 48) center @tiny front }
+if (table && !fits_rows) { set label row_name at screen X(right + 32), Y(0.5*(panel_top(1) + bottom)) center rotate by -90 @tiny front }
+legend_x = right + row_head + 20
+legend_y = panel_top(1) + 10
 load 'panels.gp'
 
 eval cells_of('x')
@@ -59,7 +76,7 @@ if (measured) {
     set cbrange [lowest:highest]
     set cbtics round_step(lowest, highest, 6) nomirror out scale 0
     set cblabel with_unit(measure, measure_unit) offset 0.5,0
-    eval colour_bar(legend_x, legend_y + 70, 18, 180)
+    eval legend_bar(0)
     set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb no_number fillstyle solid noborder
 }
 cell_colour(code) = kind_colour[code+1]
@@ -69,8 +86,8 @@ if (cross) {
 }
 do for [p=1:panels] {
     eval panel(panel_left(p), panel_top(p), width, height)
-    eval axis_tics('x', width/65, p + columns > panels)
-    eval axis_tics('y', height/40, (p - 1) % columns == 0)
+    eval axis_tics('x', at_least(2, width/65), p + columns > panels)
+    eval axis_tics('y', at_least(2, height/45), (p - 1) % columns == 0)
     if (measured) { plot @cells @as_numbers notitle } else { plot @cells @as_colours notitle }
     unset colorbox # one for all
 }

@@ -26,9 +26,10 @@ struct page {
     struct gnuplot g;
     const struct plot *plot;
     enum results_kind judged;
-    int x, y;    /* paths of the scatter, y -1: there is but one factor */
-    int scale;   /* the axis over initial.offset.scale, or -1 */
-    bool shares; /* points stand for several cases */
+    int x, y;          /* paths of the scatter, y -1: there is but one factor */
+    int scale;         /* the axis over initial.offset.scale, or -1 */
+    bool shares;       /* points stand for several cases */
+    bool *logarithmic; /* [varied] */
 };
 
 static bool no_memory(stance_message *message)
@@ -38,15 +39,6 @@ static bool no_memory(stance_message *message)
 }
 
 /* ---- what is drawn ------------------------------------------------------------------------ */
-
-/* Stabilised cases are looked at, or where there are none rested ones. */
-static enum results_kind choose_judged(const struct results *r)
-{
-    struct statistics_counts all;
-    statistics_count(r, -1, 0, &all);
-    return all.kind[RESULTS_STABILISED] == 0 && all.kind[RESULTS_RESTED] > 0 ? RESULTS_RESTED
-                                                                             : RESULTS_STABILISED;
-}
 
 static bool is_offset(const struct results_varied *v)
 {
@@ -71,6 +63,29 @@ static void choose_scatter(struct page *page)
 
 /* ---- places ------------------------------------------------------------------------------- */
 
+/* Whether the values of a path lie more evenly by their logarithms, over a wide range. */
+static bool is_logarithmic(const struct results_varied *v)
+{
+    double low = INFINITY, high = 0, sum = 0, sum_log = 0;
+    for (size_t i = 0; i < v->of.count; i++) {
+        if (v->word || !(v->of.value[i] > 0) || !isfinite(v->of.value[i]))
+            return false;
+        low = fmin(low, v->of.value[i]);
+        high = fmax(high, v->of.value[i]);
+        sum += v->of.value[i];
+        sum_log += log(v->of.value[i]);
+    }
+    const double n = (double)v->of.count;
+    return high > 3 * low && fabs((sum_log / n - log(low)) / log(high / low) - 0.5) <
+                                 fabs((sum / n - low) / (high - low) - 0.5);
+}
+
+/* Where a value of a path stands. */
+static double place_of(const struct page *page, int k, double value)
+{
+    return page->logarithmic[k] ? log10(value) : value;
+}
+
 /* Range of a path, of offsets times the scale; infinite values are beyond it. */
 static void find_range(const struct page *page, int k, double *low, double *high)
 {
@@ -93,6 +108,10 @@ static void find_range(const struct page *page, int k, double *low, double *high
     }
     if (!(*low <= *high))
         *low = *high = 0;
+    if (page->logarithmic[k]) {
+        *low = log10(*low);
+        *high = log10(*high);
+    }
     const double margin = *high > *low ? 0.03 * (*high - *low) : 0.5;
     *low -= margin;
     *high += margin;
@@ -116,7 +135,7 @@ static bool put_axis(struct page *page, int k, const char *which, stance_message
         high = floor(high) + 0.5;
     }
     plot_label_write(&v->of, g, which);
-    gnuplot_text(g, listed ? "list" : "linear", "%s_scale", which);
+    gnuplot_text(g, listed ? "list" : page->logarithmic[k] ? "log" : "linear", "%s_scale", which);
     gnuplot_set(g, "%s_low = %#.17g; %s_high = %#.17g; %s_wordy = %d", which, low, which, high,
                 which, v->word != NULL);
     if (!listed)
@@ -129,7 +148,7 @@ static bool put_axis(struct page *page, int k, const char *which, stance_message
         if (!isfinite(centre))
             continue;
         results_number_text(centre, 0, text, sizeof text);
-        gnuplot_set(g, "%s_at[%zu] = %#.17g", which, ++words, centre);
+        gnuplot_set(g, "%s_at[%zu] = %#.17g", which, ++words, place_of(page, k, centre));
         plot_tic_text(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", which, words);
     }
     gnuplot_set(g, "%s_words = %zu", which, words);
@@ -145,7 +164,8 @@ static double place_at(const struct page *page, int k, size_t point, double scal
     const struct results *r = page->plot->r;
     if (k < 0)
         return fmod(0.5 + 0.6180339887498949 * (double)point, 1);
-    return r->vary[k].of.value[point] * (is_offset(&r->vary[k]) ? scale : 1);
+    return is_offset(&r->vary[k]) ? scale * r->vary[k].of.value[point]
+                                  : place_of(page, k, r->vary[k].of.value[point]);
 }
 
 static bool have_divisor(uint64_t a, uint64_t b)
@@ -199,7 +219,8 @@ static bool put_scatter(struct page *page, stance_message *message)
     if (!put_axis(page, page->x, "x", message) ||
         (page->y >= 0 && !put_axis(page, page->y, "y", message)))
         return false;
-    gnuplot_set(&page->g, "plane = %d; shares = %d; points = %llu; judged_colour = colour_%s",
+    gnuplot_set(&page->g,
+                "plane = %d; shares = bars = %d; points = %llu; judged_colour = colour_%s",
                 page->y >= 0, page->shares,
                 (unsigned long long)(page->shares ? r->axis[r->sample].count : r->cases),
                 results_kind_names[page->judged]);
@@ -235,7 +256,7 @@ static bool put_panel(struct page *page, int k, double *most, stance_message *me
         const struct interval *interval = &bins.bin[b].of_kind[page->judged];
         if (c->done == 0 || !isfinite(bins.bin[b].centre))
             continue;
-        GNUPLOT_ROW(&page->g, bins.bin[b].centre,
+        GNUPLOT_ROW(&page->g, place_of(page, k, bins.bin[b].centre),
                     100 * (double)c->kind[page->judged] / (double)c->done, 100 * interval->low,
                     100 * interval->high);
         *most = fmax(*most, 104 * interval->high);
@@ -249,31 +270,49 @@ static bool put_panel(struct page *page, int k, double *most, stance_message *me
 
 /* ---- the page ----------------------------------------------------------------------------- */
 
+static bool draw(struct page *page, stance_message *message)
+{
+    const struct results *r = page->plot->r;
+    const int panels = r->varied < MOST_PANELS ? r->varied : MOST_PANELS;
+    char what[800];
+    double most = 1;
+
+    choose_scatter(page);
+    snprintf(what, sizeof what, "%llu case%s at %zu point%s of a design, %s",
+             (unsigned long long)r->cases, r->cases == 1 ? "" : "s", r->axis[r->sample].count,
+             r->axis[r->sample].count == 1 ? "" : "s", r->method);
+    plot_failed_text(r, what, sizeof what);
+    plot_cut_text(r, what, sizeof what);
+    if (!plot_begin(page->plot, &page->g, plot_sample_gp, what, message))
+        return false;
+    if (panels < r->varied) {
+        snprintf(what, sizeof what, "%d of the %d paths are drawn", panels, r->varied);
+        gnuplot_note(&page->g, what);
+    }
+    bool good = put_scatter(page, message);
+    for (int k = 0; good && k < panels; k++)
+        good = put_panel(page, k, &most, message);
+    if (!good) {
+        gnuplot_abandon(&page->g);
+        return false;
+    }
+    gnuplot_set(&page->g, "panels = %d; most = %#.10g", panels, fmin(most, 100));
+    return plot_end(page->plot, &page->g, "sample", message);
+}
+
 bool plot_sample(const struct plot *plot, stance_message *message)
 {
     const struct results *r = plot->r;
-    struct page page = {.plot = plot, .judged = choose_judged(r)};
-    const int panels = r->varied < MOST_PANELS ? r->varied : MOST_PANELS;
-    char what[256];
-    double most = 1;
-
     if (r->sample < 0)
         return true;
-    choose_scatter(&page);
-    snprintf(what, sizeof what, "%llu cases at %zu points of a design, %s",
-             (unsigned long long)r->cases, r->axis[r->sample].count, r->method);
-    plot_failed_text(r, what, sizeof what);
-    if (!plot_begin(plot, &page.g, plot_sample_gp, what, message))
-        return false;
-    bool good = put_scatter(&page, message);
-    for (int k = 0; good && k < panels; k++)
-        good = put_panel(&page, k, &most, message);
-    if (!good) {
-        gnuplot_abandon(&page.g);
-        return false;
-    }
-    gnuplot_set(&page.g, "panels = %d; most = %#.10g", panels, fmin(most, 100));
-    if (panels < r->varied)
-        fprintf(stderr, "%s: the picture shows %d of the %d paths\n", r->file, panels, r->varied);
-    return plot_end(plot, &page.g, "sample", message);
+    struct page page = {.plot = plot,
+                        .judged = statistics_judged(r),
+                        .logarithmic = malloc((size_t)r->varied * sizeof *page.logarithmic)};
+    if (!page.logarithmic)
+        return no_memory(message);
+    for (int k = 0; k < r->varied; k++)
+        page.logarithmic[k] = is_logarithmic(&r->vary[k]);
+    const bool good = draw(&page, message);
+    free(page.logarithmic);
+    return good;
 }

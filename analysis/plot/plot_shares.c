@@ -48,48 +48,58 @@ struct share {
     size_t stride;
     char colour[32]; /* an expression of gnuplot's */
     char label[96];
-    /* Shares with both ends, [values][3]; NULL: shares of a grid's cases, which have none. */
-    double *parts;
+    double *parts; /* [values][PARTS]; NULL: shares of a grid's cases, which have no ends */
 };
+/* A share, the ends of its likely error (95 %), and its bounds where there are any. */
+enum { SHARE, LOW, HIGH, LOWEST, HIGHEST, PARTS };
 enum { SHARES = 6 };
 
-static void share_at(const struct share *share, size_t i, double part[3])
+static void share_at(const struct share *share, size_t i, double part[PARTS])
 {
     const struct statistics_counts *c = &share->counts[i * share->stride];
-    part[0] = part[1] = part[2] = NAN;
+    for (int k = 0; k < PARTS; k++)
+        part[k] = NAN;
     if (share->parts)
-        memcpy(part, share->parts + 3 * i, 3 * sizeof *part);
+        memcpy(part, share->parts + PARTS * i, PARTS * sizeof *part);
     else if (c->done > 0)
-        part[0] = part[1] = part[2] = (double)c->kind[share->kind] / (double)c->done;
+        part[SHARE] = part[LOW] = part[HIGH] = (double)c->kind[share->kind] / (double)c->done;
 }
 
 /* Share with its interval, in per cent. */
 static void put_share(struct gnuplot *g, const struct plot_axis *along,
-                      const struct plot_point *points, const struct share *share, int number)
+                      const struct plot_point *points, const struct share *share, int number,
+                      bool apart)
 {
-    double part[3];
+    static const int types[SHARES] = {7, 5, 9, 11, 13, 15}; /* of points */
+    double row[1 + PARTS];
     gnuplot_block(g, "share%d", number);
     for (size_t i = 0; i < along->axis->count; i++) {
-        share_at(share, points[i].index, part);
-        GNUPLOT_ROW(g, points[i].place, 100 * part[0], 100 * part[1], 100 * part[2]);
+        row[0] = points[i].place;
+        share_at(share, points[i].index, row + 1);
+        for (int k = 0; k < PARTS; k++)
+            row[1 + k] *= 100;
+        gnuplot_row(g, row, 1 + PARTS);
     }
     gnuplot_end_block(g);
-    gnuplot_set(g, "share_colour[%d] = %s", number, share->colour);
-    gnuplot_legend(g, share->colour, share->label);
+    const int dash = apart && !along->axis->word ? number : 0, type = apart ? types[number - 1] : 0;
+    gnuplot_legend_mark(g, share->colour, dash, type, share->label, "");
+    gnuplot_set(
+        g, "share_colour[%d] = legend_colour[legends]; share_dash[%d] = %d; share_type[%d] = %d",
+        number, number, apart ? number : 1, number, apart ? type : 7);
 }
 
 /* The end of the axis in per cent: the highest end of a share of more than no case at all, of which
  * there is but the tiny end of an interval. */
 static double find_most(const struct share *shares, int count, size_t values)
 {
-    double most = 0, part[3];
+    double most = 0, part[PARTS];
     for (int k = 0; k < count; k++) {
         double highest = 0;
         bool any = false;
         for (size_t i = 0; i < values; i++) {
             share_at(&shares[k], i, part);
-            any = any || part[0] > 0;
-            highest = part[2] > highest ? part[2] : highest; /* false for NAN */
+            any = any || part[SHARE] > 0;
+            highest = fmax(highest, fmax(part[HIGH], part[HIGHEST])); /* NAN is not looked at */
         }
         most = any ? fmax(most, 100 * highest) : most;
     }
@@ -101,30 +111,31 @@ static bool measure_sample(const struct results *r, int axis, struct share *shar
 {
     const size_t values = r->axis[axis].count;
     struct interval *interval = malloc(values * sizeof *interval);
-    share->parts = malloc(3 * values * sizeof *share->parts);
+    share->parts = malloc(PARTS * values * sizeof *share->parts);
     const bool good =
         interval && share->parts &&
         intervals_find(r, (enum results_kind)share->kind, axis, NULL, values, interval);
     for (size_t i = 0; good && i < values; i++) {
         const struct statistics_counts *c = &share->counts[i * share->stride];
-        share->parts[3 * i] = c->done > 0 ? (double)c->kind[share->kind] / (double)c->done : NAN;
-        share->parts[3 * i + 1] = interval[i].low;
-        share->parts[3 * i + 2] = interval[i].high;
+        double *part = share->parts + PARTS * i;
+        part[SHARE] = c->done > 0 ? (double)c->kind[share->kind] / (double)c->done : NAN;
+        part[LOW] = interval[i].low;
+        part[HIGH] = interval[i].high;
+        part[LOWEST] = part[HIGHEST] = NAN;
     }
     free(interval);
     return good;
 }
 
-/* Ends of a basin's share: certain bounds, or over a sample of parameters the likely error. */
-static void find_ends(const struct basin *basin, const struct basin_row *row, double part[3])
+/* Ends of a basin's share; over a sample of parameters nothing is certain. */
+static void find_ends(const struct basin *basin, const struct basin_row *row, double part[PARTS])
 {
-    part[0] = row->volume / basin->box;
-    part[1] = row->low / basin->box;
-    part[2] = row->high / basin->box;
-    if (basin->averaged >= 0) {
-        part[1] = fmax(0, (row->volume - row->reach) / basin->box);
-        part[2] = fmin(1, (row->volume + row->reach) / basin->box);
-    }
+    const bool certain = basin->averaged < 0;
+    part[SHARE] = row->volume / basin->box;
+    part[LOW] = fmax(0, (row->volume - row->reach) / basin->box);
+    part[HIGH] = fmin(1, (row->volume + row->reach) / basin->box);
+    part[LOWEST] = certain ? row->low / basin->box : NAN;
+    part[HIGHEST] = certain ? row->high / basin->box : NAN;
 }
 
 /* Which row has point i of `axis` and point k of `second`, rows being in the order of the axes. */
@@ -139,7 +150,7 @@ static size_t row_at(const struct results *r, int axis, int second, size_t i, si
  * kind or, with a second axis, of its point k. Of a grid of other things the shares are left as
  * they are. */
 static bool measure_volumes(const struct results *r, int axis, int second, struct share *shares,
-                            int count, bool *sampled, stance_message *message)
+                            int count, bool *bounded, stance_message *message)
 {
     const char *by[] = {r->axis[axis].name, second < 0 ? NULL : r->axis[second].name};
     for (int k = 0; k < count; k++) {
@@ -161,13 +172,13 @@ static bool measure_volumes(const struct results *r, int axis, int second, struc
             continue;
         }
         const size_t values = r->axis[axis].count;
-        shares[k].parts = malloc(3 * values * sizeof *shares[k].parts);
+        shares[k].parts = malloc(PARTS * values * sizeof *shares[k].parts);
         for (size_t i = 0; shares[k].parts && i < values; i++) {
             find_ends(&basin, &basin.row[row_at(r, axis, second, i, (size_t)k)],
-                      shares[k].parts + 3 * i);
+                      shares[k].parts + PARTS * i);
         }
         const bool good = shares[k].parts != NULL;
-        *sampled = basin.averaged >= 0;
+        *bounded = basin.averaged < 0;
         basin_free(&basin);
         if (!good)
             return no_memory(message);
@@ -277,41 +288,59 @@ static int choose_extents(const struct results *r, int *axes)
     return count;
 }
 
+static void put_notes(struct gnuplot *g, bool words, bool ends, bool bounded, int extents)
+{
+    char text[120];
+    snprintf(text, sizeof text, "%s: likely error (95 %%)%s", words ? "bars" : "band",
+             !bounded ? ""
+             : words  ? ", thin: certain bounds"
+                      : ", light: certain bounds");
+    if (ends)
+        gnuplot_note(g, text);
+    if (extents > 0)
+        gnuplot_note(g, "below: how far it is stabilised along each axis through the equilibrium");
+}
+
 /* `second`: the axis whose values have a curve each, or -1. */
 static bool draw_page(const struct plot *plot, const struct plot_axis *along,
                       const struct plot_point *points, const struct share *shares, int count,
-                      int second, bool bounds, stance_message *message)
+                      int second, bool bounded, stance_message *message)
 {
     const struct results *r = plot->r;
     struct gnuplot g;
-    char what[256];
+    char what[900];
     int extents[MAX_EXTENTS], extent_count = choose_extents(r, extents);
-    size_t values = along->axis->count * (second < 0 ? 1 : r->axis[second].count);
+    const size_t values = along->axis->count * (second < 0 ? 1 : r->axis[second].count);
+    const uint64_t each = r->cases / (values ? values : 1);
 
-    snprintf(what, sizeof what, "%s cases against %s%s%s, %llu cases per %s",
+    snprintf(what, sizeof what, "%s cases against %s%s%s, %llu case%s per %s",
              second < 0 && count > 1            ? "Stabilised and rested"
              : shares[0].kind == RESULTS_RESTED ? "Rested"
                                                 : "Stabilised",
              along->axis->name, second < 0 ? "" : " and ", second < 0 ? "" : r->axis[second].name,
-             (unsigned long long)(r->cases / (values ? values : 1)),
+             (unsigned long long)each, each == 1 ? "" : "s",
              second < 0 ? "value" : "pair of values");
     plot_failed_text(r, what, sizeof what);
+    plot_cut_text(r, what, sizeof what);
     if (!plot_begin(plot, &g, plot_shares_gp, what, message))
         return false;
     plot_axis_write(along, &g, "x");
     if (second >= 0)
         gnuplot_text(&g, r->axis[second].name, "legend_head");
-    gnuplot_set(&g, "words = %d; volumes = %d; bounds = %d; most = %#.10g",
-                along->axis->word != NULL, shares[0].parts != NULL, bounds,
+    gnuplot_set(&g, "words = %d; volumes = %d; bounded = %d; most = %#.10g",
+                along->axis->word != NULL, shares[0].parts != NULL, bounded,
                 find_most(shares, count, along->axis->count));
-    gnuplot_set(&g, "shares = %d\narray share_colour[%d]", count, count);
+    gnuplot_set(&g,
+                "shares = %d\narray share_colour[%d]\narray share_dash[%d]\narray share_type[%d]",
+                count, count, count, count);
     for (int k = 0; k < count; k++)
-        put_share(&g, along, points, &shares[k], k + 1);
+        put_share(&g, along, points, &shares[k], k + 1, second >= 0);
     gnuplot_set(&g, "extents = %d\narray extent[%d]\narray extent_name[%d]\narray extent_unit[%d]",
                 extent_count, MAX_EXTENTS, MAX_EXTENTS, MAX_EXTENTS);
     gnuplot_set(&g, "array extent_low[%d]\narray extent_high[%d]", MAX_EXTENTS, MAX_EXTENTS);
     for (int k = 0; k < extent_count; k++)
         put_extent(&g, r, along, points, extents[k], k + 1);
+    put_notes(&g, along->axis->word != NULL, shares[0].parts != NULL, bounded, extent_count);
     return plot_end(plot, &g, "curve", message);
 }
 
@@ -328,7 +357,7 @@ bool plot_shares(const struct plot *plot, stance_message *message)
     struct plot_point *points = plot_points_make(&along, message);
     size_t counted = r->axis[first].count * (second < 0 ? 1 : r->axis[second].count);
     struct statistics_counts *counts = malloc(counted * sizeof *counts);
-    bool good = points && (counts || no_memory(message)), sampled = false;
+    bool good = points && (counts || no_memory(message)), bounded = false;
     if (good) {
         if (second < 0) {
             statistics_count_axis(r, first, counts);
@@ -337,9 +366,8 @@ bool plot_shares(const struct plot *plot, stance_message *message)
             statistics_count_pair(r, first, second, counts);
             count = choose_values(r, first, second, counts, shares);
         }
-        good = measure_volumes(r, first, second, shares, count, &sampled, message) &&
-               draw_page(plot, &along, points, shares, count, second, shares[0].parts && !sampled,
-                         message);
+        good = measure_volumes(r, first, second, shares, count, &bounded, message) &&
+               draw_page(plot, &along, points, shares, count, second, bounded, message);
     }
     for (int k = 0; k < count; k++)
         free(shares[k].parts);

@@ -1,47 +1,47 @@
 # plot_shares.gp - shares of cases against the axis x, with their intervals or bounds: a band, of words bars;
 # under it the extent of what was stabilised along each axis of offsets.
-left = 96
-width = 620
-height = 300
-low_height = 150
+left = 104
+width = wide(620, 1, left + legend_room)
 gap = 14
 panel_top(p) = top + height + gap + (p - 1)*(low_height + gap)
 
-page_width = left + width + 200
+page_width = left + width + legend_room
 top = title_height(0)
+# Of the height two parts are the first panel's, one each that of the others.
+low_height = high(150, 2 + extents, top + gap*extents + 84)
+height = 2*low_height
 bottom = panel_top(extents + 1) - gap
 page_height = bottom + 84
 load 'page.gp'
-set label volumes ? 'share of the box of starts (%)' : 'share of the cases done (%)' \
-    at screen X(24), Y(top + 0.5*height) center rotate by 90 font ',12' front
+set label cut(volumes ? 'share of the box of starts (%)' : 'share of the cases done (%)', height/6.9) \
+    at screen X(24), Y(top + 0.5*height) center rotate by 90 @small front
 set label axis_label('x', width + 80) at screen X(left + 0.5*width), Y(bottom + 46) center @small front
 legend_x = left + width + 20
 legend_y = top + 10
 do for [p=1:extents] {
-    set label with_unit(extent_name[p], extent_unit[p]) at screen X(24), Y(panel_top(p) + 0.5*low_height) \
-        center rotate by 90 font ',12' front
-    set label "stabilised along\n".extent[p]."\nat the equilibrium" at screen X(legend_x), Y(panel_top(p) + 12) \
-        left @small front
+    set label cut(with_unit(extent_name[p], extent_unit[p]), (low_height + gap)/6.9) \
+        at screen X(24), Y(panel_top(p) + 0.5*low_height) center rotate by 90 @small front
 }
-notes = 1
-note[1] = (words ? 'bars: ' : 'band: ').(bounds ? 'its bounds' : '95 % interval')
 load 'panels.gp'
 
 eval panel(left, top, width, height)
-eval axis_tics('x', 10, extents == 0)
+eval axis_tics('x', width/62, extents == 0)
 eval panel_tics(0, most, height)
 eval grid
 if (words) {
-    plot for [k=1:shares] '$share'.k using 1:2:3:4 with yerrorbars lc rgb share_colour[k] pt 7 ps 1.1 lw 1.6 notitle
+    plot for [k=1:bounded*shares] '$share'.k using 1:2:5:6 with yerrorbars lc rgb share_colour[k] pt 0 lw 0.8 notitle, \
+        for [k=1:shares] '$share'.k using 1:2:3:4 with yerrorbars lc rgb share_colour[k] pt share_type[k] ps 1.1 lw 2.4 notitle
 } else {
-    plot for [k=1:shares] '$share'.k using 1:3:4 with filledcurves lc rgb share_colour[k] \
-            fillstyle transparent solid 0.22 notitle, \
-        for [k=1:shares] '$share'.k using 1:2 with linespoints lc rgb share_colour[k] lw 2 pt 7 ps 0.7 notitle
+    plot for [k=1:bounded*shares] '$share'.k using 1:5:6 with filledcurves lc rgb share_colour[k] \
+            fillstyle transparent solid 0.12 notitle, \
+        for [k=1:shares] '$share'.k using 1:3:4 with filledcurves lc rgb share_colour[k] \
+            fillstyle transparent solid 0.35 notitle, \
+        for [k=1:shares] '$share'.k using 1:2 with linespoints lc rgb share_colour[k] lw 2 dt share_dash[k] pt share_type[k] ps 0.8 notitle
 }
 set arrow 1 from graph 0, first 0 to graph 1, first 0 nohead dt 2 lc rgb '#909090'
 do for [p=1:extents] {
     eval panel(left, panel_top(p), width, low_height)
-    eval axis_tics('x', 10, p == extents)
+    eval axis_tics('x', width/62, p == extents)
     eval panel_tics(extent_low[p], extent_high[p], low_height)
     if (words) {
         plot '$extent'.p using 1:2:($1-0.05):($1+0.05):2:3 with boxxyerror lc rgb hue[1] fillstyle solid noborder notitle

@@ -10,50 +10,17 @@ GNUPLOT_SCRIPT(plot_strip_gp, "analysis/plot/plot_strip.gp");
 
 enum { MOST_FIGURES = 14 };
 
-struct figure {
-    double time;
-    int points;
-    double point[STANCE_MAX_POINTS][2];
-    double contact[STANCE_MAX_CONTACTS][2];
-    double centre; /* m, what stands in the middle of its place */
-    double base;   /* m, height of the ground below it */
-};
-
 struct strip {
     const struct plot_case *c;
     int count, contacts;
     struct figure figure[MOST_FIGURES];
-    double fall;               /* of the ground along x: a slope's tangent */
-    double spacing, low, high; /* m: between figures; heights shown */
-    bool follows;              /* places move with the figures */
+    struct figure other[MOST_FIGURES]; /* of the other case, without points from its end on */
+    double fall;                       /* of the ground along x: a slope's tangent */
+    double spacing, low, high;         /* m: between figures; heights shown */
+    bool follows;                      /* places move with the figures */
 };
 
-int plot_case_grounded(const stance_scene *scene)
-{
-    int count = 0;
-    while (count < scene->contacts && !(scene->grip && scene->grip[count] < 0))
-        count++;
-    return count;
-}
-
 /* ---- figures ------------------------------------------------------------------------------ */
-
-static void make_figure(const struct plot_case *c, size_t row, struct figure *figure)
-{
-    const stance_scene *scene = c->scenario.scene;
-    const struct results_trajectory *t = c->t;
-    const double *position = t->position + row * t->coordinates;
-    const double rest[STANCE_MAX_COORDINATES] = {0};
-    double speed[2];
-
-    figure->time = t->time[row];
-    figure->points = scene->figure(scene, c->values.robot, position, figure->point);
-    for (int k = 0; k < plot_case_grounded(scene); k++)
-        scene->contact_point(scene, c->values.robot, position, rest, k, figure->contact[k], speed);
-    figure->centre = 0;
-    for (int p = 0; p < figure->points; p++)
-        figure->centre += figure->point[p][0] / figure->points;
-}
 
 /* Places stay put unless the figures travel further than they are tall. */
 static void centre_figures(struct strip *strip)
@@ -80,6 +47,10 @@ static void measure_heights(struct strip *strip)
             strip->low = fmin(strip->low, figure->point[p][1] - figure->base);
             strip->high = fmax(strip->high, figure->point[p][1] - figure->base);
         }
+        for (int p = 0; p < strip->other[i].points; p++) {
+            strip->low = fmin(strip->low, strip->other[i].point[p][1] - figure->base);
+            strip->high = fmax(strip->high, strip->other[i].point[p][1] - figure->base);
+        }
     }
 }
 
@@ -89,13 +60,28 @@ static void measure(struct strip *strip)
     measure_heights(strip);
     centre_figures(strip);
     measure_heights(strip);
-    for (int i = 0; i < strip->count; i++)
+    for (int i = 0; i < strip->count; i++) {
+        const double centre = strip->figure[i].centre;
         for (int p = 0; p < strip->figure[i].points; p++)
-            half = fmax(half, fabs(strip->figure[i].point[p][0] - strip->figure[i].centre));
+            half = fmax(half, fabs(strip->figure[i].point[p][0] - centre));
+        for (int p = 0; p < strip->other[i].points; p++)
+            half = fmax(half, fabs(strip->other[i].point[p][0] - centre));
+    }
     double tall = strip->high - strip->low;
     strip->spacing = 2.1 * fmax(half, 0.1 * tall);
     strip->low = fmin(strip->low, -0.5 * fabs(strip->fall) * strip->spacing) - 0.05 * tall;
     strip->high += 0.06 * tall;
+}
+
+/* The other case at the same instant. */
+static void make_other(struct strip *strip, int i)
+{
+    const struct plot_case *const c = strip->c->other;
+    const double time = strip->figure[i].time;
+    strip->other[i].points = 0;
+    for (size_t row = 0; c && row < c->t->rows && c->t->time[row] <= time + 1e-9; row++)
+        if (row + 1 == c->t->rows ? c->t->time[row] > time - 0.05 : c->t->time[row + 1] > time)
+            figure_make(&strip->other[i], c, row);
 }
 
 static void make_strip(struct strip *strip)
@@ -104,50 +90,15 @@ static void make_strip(struct strip *strip)
     strip->count = t->rows < MOST_FIGURES ? (int)t->rows : MOST_FIGURES;
     for (int i = 0; i < strip->count; i++) {
         size_t row = strip->count > 1 ? (size_t)i * (t->rows - 1) / (size_t)(strip->count - 1) : 0;
-        make_figure(strip->c, row, &strip->figure[i]);
+        figure_make(&strip->figure[i], strip->c, row);
+        make_other(strip, i);
     }
     measure(strip);
 }
 
 /* ---- drawing ------------------------------------------------------------------------------ */
 
-/* Contact that a point of the figure is, or -1. */
-static int contact_at(const struct strip *strip, const struct figure *figure, int point)
-{
-    for (int k = 0; k < strip->contacts; k++)
-        if (hypot(figure->point[point][0] - figure->contact[k][0],
-                  figure->point[point][1] - figure->contact[k][1]) < 1e-9)
-            return k;
-    return -1;
-}
-
-/* A line that ends where it begins is an outline: its corners are no joints, its sides belong to
- * the body. */
-static bool is_outline(const struct figure *figure)
-{
-    const double *first = figure->point[0], *last = figure->point[figure->points - 1];
-    return figure->points > 1 && hypot(first[0] - last[0], first[1] - last[1]) < 1e-9;
-}
-
-/* Contact whose colour a segment has, or -1: the body's, as between two contacts. */
-static int contact_of_segment(const struct strip *strip, const struct figure *figure, int p)
-{
-    int first = contact_at(strip, figure, p), second = contact_at(strip, figure, p + 1);
-    return is_outline(figure) || (first >= 0 && second >= 0) ? -1 : first >= 0 ? first : second;
-}
-
-/* A point of figure i in the script's plane, in which the figures stand `spacing` apart, and the
- * contact whose colour it has, the number of contacts: the body's. */
-static void put_point(struct gnuplot *g, const struct strip *strip, int i, const double point[2],
-                      int contact)
-{
-    const struct figure *figure = &strip->figure[i];
-    GNUPLOT_ROW(g, (i + 0.5) * strip->spacing + point[0] - figure->centre, point[1] - figure->base,
-                contact < 0 ? strip->contacts : contact);
-}
-
-/* Each segment is a line of its own; joints and contacts are points, corners of outlines are not.
- */
+/* In the script's plane the figures stand `spacing` apart. */
 static void put_figures(struct gnuplot *g, const struct strip *strip)
 {
     gnuplot_block(g, "ground");
@@ -157,26 +108,22 @@ static void put_figures(struct gnuplot *g, const struct strip *strip)
         gnuplot_set(g, "%s", "");
     }
     gnuplot_end_block(g);
-    gnuplot_block(g, "segments");
-    for (int i = 0; i < strip->count; i++) {
-        const struct figure *figure = &strip->figure[i];
-        for (int p = 0; p + 1 < figure->points; p++) {
-            const int contact = contact_of_segment(strip, figure, p);
-            put_point(g, strip, i, figure->point[p], contact);
-            put_point(g, strip, i, figure->point[p + 1], contact);
-            gnuplot_set(g, "%s", "");
+    for (int part = FIGURE_SEGMENTS; part <= FIGURE_POINTS; part++) {
+        gnuplot_block(g, part == FIGURE_SEGMENTS ? "segments" : "points");
+        for (int i = 0; i < strip->count; i++) {
+            const struct figure *figure = &strip->figure[i];
+            figure_put(g, figure, strip->contacts, (enum figure_part)part,
+                       (i + 0.5) * strip->spacing - figure->centre, -figure->base);
         }
+        gnuplot_end_block(g);
     }
-    gnuplot_end_block(g);
-    gnuplot_block(g, "points");
-    for (int i = 0; i < strip->count; i++) {
-        const struct figure *figure = &strip->figure[i];
-        for (int p = 0; p < figure->points && !is_outline(figure); p++)
-            if (contact_at(strip, figure, p) < 0)
-                put_point(g, strip, i, figure->point[p], -1);
-        for (int k = 0; k < strip->contacts; k++)
-            put_point(g, strip, i, figure->contact[k], k);
-    }
+    gnuplot_block(g, "other");
+    for (int i = 0; i < strip->count; i++)
+        if (strip->other[i].points > 0)
+            figure_put(g, &strip->other[i], strip->contacts, FIGURE_SEGMENTS,
+                       (i + 0.5) * strip->spacing - strip->figure[i].centre,
+                       -strip->figure[i].base);
+    GNUPLOT_ROW(g, NAN, NAN, NAN);
     gnuplot_end_block(g);
 }
 
@@ -191,12 +138,15 @@ bool plot_strip(const struct plot_case *c, stance_message *message)
     }
     strip->c = c;
     strip->contacts = plot_case_grounded(scene);
-    strip->fall = scene->mechanism ? tan(c->values.robot[STANCE_ROBOT_SLOPE]) : 0;
+    strip->fall = figure_fall(c);
     make_strip(strip);
     const bool good = plot_case_begin(c, &g, plot_strip_gp, "Stick figures", message);
     if (good) {
-        gnuplot_set(&g, "count = %d; spacing = %#.17g; low = %#.17g; high = %#.17g; travels = %d",
-                    strip->count, strip->spacing, strip->low, strip->high, strip->follows);
+        gnuplot_set(&g,
+                    "count = %d; spacing = %#.17g; low = %#.17g; high = %#.17g; travels = %d; "
+                    "cases = %d",
+                    strip->count, strip->spacing, strip->low, strip->high, strip->follows,
+                    c->other ? 2 : 1);
         gnuplot_set(&g, "contacts = %d\narray contact_name[%d]\narray time[%d]", strip->contacts,
                     STANCE_MAX_CONTACTS, strip->count);
         for (int k = 0; k < strip->contacts; k++)

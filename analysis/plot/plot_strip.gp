@@ -1,11 +1,11 @@
 # plot_strip.gp - stick figures from left to right and row by row, at even intervals of time. Both directions
 # have the same scale. In the plane of $ground, $segments and $points the figures stand `spacing` apart.
-per_row = 7
+per_row = asked_width > 0 && asked_width < 760 ? 5 : 7
 side = 24
 legend_height = 36
 times_height = 30
 
-page_width = 1120
+page_width = wide(1120, 1, 0)
 top = title_height(0)
 columns = count < per_row ? count : per_row
 rows = (count + per_row - 1)/per_row
@@ -24,6 +24,11 @@ do for [k=0:contacts] {
     eval box(left, top + 10, group_colour(k))
     set label name at screen X(left + 22), Y(top + 10) left font ',12' front
     left = left + 50 + 8*strlen(name)
+}
+if (cases > 1) {
+    eval box(left, top + 10, 0xb8b8b8)
+    set label 'the second case' at screen X(left + 22), Y(top + 10) left font ',12' front
+    left = left + 50 + 8*15
 }
 bar = round_step(0, spacing, 3)
 set arrow from screen X(left),Y(top + 10) to screen X(left + bar*scale),Y(top + 10) heads size screen 0.004,90 lw 1.4 \
@@ -48,6 +53,7 @@ do for [row=1:rows] {
     eval panel(side, panel_top(row), scale*spacing*(last - first), height)
     set xrange [first*spacing:last*spacing]
     plot $ground using 1:2 with lines lw 2 lc rgb '#a0a0a0' notitle, \
+        $other using 1:2 with lines lw 2.6 lc rgb '#b8b8b8' notitle, \
         for [k=contacts:0:-1] $segments using 1:($3 == k ? $2 : NaN) with lines lw 2.6 lc rgb group_colour(k) notitle, \
         for [k=contacts:0:-1] $points using 1:($3 == k ? $2 : NaN) with points pt 7 ps (k < contacts ? 0.75 : 0.9) \
             lc rgb group_colour(k) notitle

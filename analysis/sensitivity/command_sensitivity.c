@@ -64,7 +64,7 @@ static bool show(const struct report *report, const struct sensitivity_study *st
     snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", study->r->name, answer ? "-" : "",
              answer ? answer : "");
     return sensitivity_print(study, report->form) &&
-           (!asked->directory || sensitivity_picture(study, asked->directory, stem, message));
+           (!asked->directory || sensitivity_picture(study, NULL, asked->directory, stem, message));
 }
 
 static int work(struct report *report, const struct results *r, stance_message *message)

@@ -157,8 +157,8 @@ static bool has_any(const struct sensitivity_study *study)
     return false;
 }
 
-bool sensitivity_picture(const struct sensitivity_study *study, const char *directory,
-                         const char *stem, stance_message *message)
+bool sensitivity_picture(const struct sensitivity_study *study, struct look *look,
+                         const char *directory, const char *stem, stance_message *message)
 {
     const struct results *r = study->r;
     const char *title = r->title[0] ? r->title : r->name;
@@ -174,18 +174,19 @@ bool sensitivity_picture(const struct sensitivity_study *study, const char *dire
     d.panels = study->response.tables < MOST_PANELS ? study->response.tables : MOST_PANELS;
     measure_ranges(&d);
     subtitle_of(study, subtitle, sizeof subtitle);
-    if (study->response.tables > d.panels) {
-        fprintf(stderr, "the first %zu of %zu tables are drawn; --by chooses fewer\n", d.panels,
-                study->response.tables);
-    }
-    if (!gnuplot_begin(&d.g, plot_sensitivity_gp, title, subtitle, message))
+    if (!gnuplot_begin(&d.g, look, plot_sensitivity_gp, title, subtitle, message))
         return false;
     gnuplot_set(&d.g, "morris = %d; panels = %zu; low = %#.17g; high = %#.17g; high_sigma = %#.17g",
                 d.morris, d.panels, d.low, d.high, d.high_sigma);
+    if (study->response.tables > d.panels) {
+        snprintf(subtitle, sizeof subtitle, "the first %zu of %zu tables are drawn", d.panels,
+                 study->response.tables);
+        gnuplot_note(&d.g, subtitle);
+    }
     put_names(&d);
     for (int k = 0; k < SERIES && !d.morris; k++)
         if (study->table[0].s.measure[series[k].measure])
-            gnuplot_legend(&d.g, series[k].colour, series[k].text);
+            gnuplot_legend(&d.g, series[k].colour, series[k].text, "");
     gnuplot_set(&d.g, "array mu_star[%zu]\narray sigma[%zu]", d.panels * study->factors,
                 d.panels * study->factors);
     for (size_t t = 0; t < d.panels; t++)

@@ -7,23 +7,25 @@ do for [i=1:factors] { longest = strlen(factor[i]) > longest ? strlen(factor[i])
 columns = morris ? 2 : 3
 columns = panels < columns ? panels : columns
 row_height = 30
-width = morris ? 340 : panels == 1 ? 460 : 260
-height = morris ? 340 : row_height*factors + 10
 gap = morris ? 64 : 30
 head = 30
 left = morris ? 84 : letter*longest + 34
+beside = morris ? letter*longest + 40 : legend_room
+if (asked_width > 0) { columns = int(at_least(1, at_most(columns, (asked_width - left - beside)/(120 + gap)))) }
+width = wide(morris ? 340 : panels == 1 ? 460 : 260, columns, left + columns*gap + beside - (morris ? 0 : 20))
+height = morris ? width : row_height*factors + 10
 right = left + columns*(width + gap)
 panel_left(t) = left + (t - 1) % columns*(width + gap)
 panel_top(t) = top + head + (t - 1)/columns*(height + head + 30)
 
-page_width = right + (morris ? letter*longest + 40 : 224)
+page_width = right + (morris ? beside : beside - 20)
 top = title_height(0)
 page_height = panel_top(panels) + height + 62
 list_bottom = panel_top(1) + 20 + 17*factors
 if (morris && list_bottom > page_height) { page_height = list_bottom }
 load 'page.gp'
 do for [t=1:panels] {
-    set label cut(panel_title[t], (width + gap)/letter) at screen X(panel_left(t)), Y(panel_top(t) - 14) left @small front
+    set label end_of(panel_title[t], (width + gap)/letter) at screen X(panel_left(t)), Y(panel_top(t) - 14) left @small front
 }
 do for [i=1:factors] {
     if (morris) {
@@ -48,7 +50,7 @@ if (!morris) {
     set arrow 1 from 0, graph 0 to 0, graph 1 nohead lc rgb grey lw 1 back
     do for [t=1:panels] {
         eval panel(panel_left(t), panel_top(t), width, height)
-        eval linear_tics('x', low, high, panels == 1 ? 8 : 5, 1)
+        eval linear_tics('x', low, high, width/52, 1)
         set yrange [factors - 0.5 + 5.0/row_height:-0.5 - 5.0/row_height]
         set ytics 1 format '' scale 0
         x_title = t + columns > panels ? 'share of the variance' : ''

@@ -68,8 +68,9 @@ void sensitivity_table_text(const struct sensitivity_study *study, size_t table,
 
 /* Prints the results; false: no memory, or the output failed. */
 bool sensitivity_print(const struct sensitivity_study *study, enum table_form form);
-/* DIRECTORY/STEM.svg and .png; prints their paths. */
-bool sensitivity_picture(const struct sensitivity_study *study, const char *directory,
-                         const char *stem, stance_message *message);
+/* DIRECTORY/STEM.svg and .png, or as the look has it (NULL: it has nothing); prints their paths. */
+struct look;
+bool sensitivity_picture(const struct sensitivity_study *study, struct look *look,
+                         const char *directory, const char *stem, stance_message *message);
 
 #endif

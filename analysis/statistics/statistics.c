@@ -8,6 +8,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+bool statistics_is_start(const char *path)
+{
+    return (strncmp(path, "initial.offset.", 15) == 0 ||
+            strncmp(path, "initial.state.", 14) == 0) &&
+           strcmp(path, "initial.offset.scale") != 0;
+}
+
+enum results_kind statistics_judged(const struct results *r)
+{
+    struct statistics_counts counts;
+    statistics_count(r, -1, 0, &counts);
+    return counts.kind[RESULTS_STABILISED] == 0 && counts.kind[RESULTS_RESTED] > 0
+               ? RESULTS_RESTED
+               : RESULTS_STABILISED;
+}
+
 double statistics_deviations(double level)
 {
     return gsl_cdf_ugaussian_Pinv(0.5 + 0.5 * level);

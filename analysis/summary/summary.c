@@ -272,6 +272,8 @@ bool summary_make(struct summary *summary, const struct results *r, stance_messa
     const bool readable = results_scenario(r, &s);
     *summary = (struct summary){.judged = readable ? summary_judged(&s) : RESULTS_STABILISED};
     statistics_count(r, -1, 0, &summary->counts);
+    faces_make(&summary->faces, r, NULL, 0);
+    summary->cut = faces_cut(&summary->faces, summary->judged);
     collect_failures(summary, r);
     bool good = collect_intervals(summary, r, message) && collect_numbers(summary, r, message) &&
                 collect_counts(summary, r, message) && collect_causes(summary, r, message) &&

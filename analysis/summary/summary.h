@@ -3,6 +3,7 @@
 #define STANCE_SUMMARY_SUMMARY_H
 
 #include "analysis/statistics/doe_bins.h"
+#include "analysis/statistics/faces.h"
 #include "analysis/table/table.h"
 #include "runner/store/ancestry.h"
 
@@ -94,6 +95,8 @@ struct summary {
     struct interval of_kind[RESULTS_KIND_COUNT]; /* of their shares */
     /* What the cases are judged by: STABILISED, or where no controller has a target RESTED. */
     enum results_kind judged;
+    struct faces faces;                  /* of the box of starts */
+    face_set cut;                        /* those on which cases of the kind judged by lie */
     uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
     /* By what cases fell, as the file names it: none of them, then the scene's causes. */
     char cause[STANCE_MAX_WORDS][STANCE_NAME];

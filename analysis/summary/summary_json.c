@@ -5,7 +5,7 @@
 
 static struct table_value word(const char *text)
 {
-    return as_text(text[0] ? text : NULL);
+    return as_text(text && text[0] ? text : NULL);
 }
 
 static json_t *released(struct table *t, json_t *json)
@@ -262,6 +262,7 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
                            {"cases", as_tree(cases(summary, r))},
                            {"failures", as_tree(failures(summary))},
                            {"outcomes", as_tree(known ? outcomes(summary) : NULL)},
+                           {"cut", as_tree(faces_json(&summary->faces, summary->cut))},
                            {"fall_causes", as_tree(fall_causes(summary))}));
     if (r->single) {
         json_object_set_new(root, "case", single_case(r));

@@ -95,6 +95,21 @@ static void print_fields(const struct summary *summary)
 
 /* ---- outcomes ----------------------------------------------------------------------- */
 
+/* Whether the share is the box's. */
+static void print_cut(const struct summary *summary)
+{
+    char text[2048];
+    faces_text(&summary->faces, summary->cut, text, sizeof text);
+    if (summary->cut)
+        printf("  %s set cut by the box at %s:\n  its share is the box's (stance basin has what "
+               "does not depend on it)\n",
+               results_kind_names[summary->judged], text);
+    else if (summary->faces.starts > 0 && summary->counts.kind[summary->judged] > 0)
+        printf("  %s set %s by the box: no start on its faces is in it\n",
+               results_kind_names[summary->judged],
+               summary->counts.done < summary->faces.r->cases ? "not known to be cut" : "not cut");
+}
+
 static bool print_outcomes(const struct summary *summary, const struct results *r)
 {
     const struct statistics_counts *counts = &summary->counts;
@@ -116,6 +131,8 @@ static bool print_outcomes(const struct summary *summary, const struct results *
     } else if (r->sample < 0 && counts->done > 1) {
         printf("  (of the grid; one case is %.2g %%)\n", 100 / (double)counts->done);
     }
+    if (summary_has_outcomes(summary))
+        print_cut(summary);
     for (int k = 1; k < STANCE_MAX_WORDS; k++) {
         if (summary->fallen_by[k] > 0)
             printf("  fell by %16" PRIu64 "  %7.3f %%   %s\n", summary->fallen_by[k],

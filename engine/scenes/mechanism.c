@@ -53,7 +53,7 @@ static const struct number_kind body_numbers[] = {
      1, 0, 1e9},
     {"centre", "m", "m", "centre of mass, in the frame, of", BODY(centre), 2, -FAR, FAR},
     {"at", "m", "m", "joint, in the parent's frame, of", BODY(at), 2, -FAR, FAR},
-    {"axis", "m", "m", "direction of the slide of", BODY(axis), 2, -FAR, FAR},
+    {"axis", "1", "1", "direction of the slide of", BODY(axis), 2, -FAR, FAR},
     {"stiffness", "N m/rad", "N/m", "spring at the joint of", BODY(stiffness), 1, 0, 1e12},
     {"damping", "N m s/rad", "N s/m", "damper at the joint of", BODY(damping), 1, 0, 1e12},
     {"rest", "rad", "m", "where the spring pulls nothing, at the joint of", BODY(rest), 1, -FAR,

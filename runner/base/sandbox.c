@@ -3,6 +3,8 @@
 #include "command.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,14 +74,34 @@ static void pass_on(FILE *messages)
     free(line);
 }
 
+/* Waits for the child, the only holder of the other end of `alive`. On a terminal seconds are
+ * counted from the third on, so that who waits sees that something goes on; what is printed next
+ * stands in their place. */
+static void wait_for(pid_t child, int alive, int *status)
+{
+    const bool terminal = alive >= 0 && isatty(STDERR_FILENO) == 1;
+    struct pollfd end = {.fd = alive, .events = POLLIN};
+    int seconds = 0;
+    while (terminal && poll(&end, 1, 1000) <= 0)
+        if (++seconds > 2)
+            fprintf(stderr, "%d s\r", seconds);
+    while (waitpid(child, status, 0) < 0 && errno == EINTR) {
+    }
+    if (seconds > 2)
+        fputs("\033[K", stderr);
+}
+
 int sandbox(int (*work)(void *context), void *context, const char *files)
 {
+    int alive[2] = {-1, -1};
     int status = 0, descriptor = memfd_create("messages", MFD_CLOEXEC);
     FILE *messages = descriptor < 0 ? NULL : fdopen(descriptor, "r");
     pid_t parent = getpid();
 
     fflush(stdout);
     fflush(stderr);
+    if (pipe2(alive, O_CLOEXEC) != 0)
+        alive[0] = alive[1] = -1;
     pid_t child = fork();
     if (child == 0)
         work_and_exit(work, context, messages ? descriptor : -1, parent);
@@ -87,8 +109,12 @@ int sandbox(int (*work)(void *context), void *context, const char *files)
         fprintf(stderr, "stance: no process can be started: %s\n", strerror(errno));
         status = EXIT_IO;
     }
-    while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    if (alive[1] >= 0)
+        close(alive[1]);
+    if (child > 0)
+        wait_for(child, alive[0], &status);
+    if (alive[0] >= 0)
+        close(alive[0]);
     bool crashed = child > 0 && WIFSIGNALED(status) && is_crash(WTERMSIG(status));
     if (crashed)
         fprintf(stderr, "%s: damaged: the HDF5 library cannot cope with it\n", files);

@@ -133,7 +133,7 @@ const struct command command_design = {
     "    scenario, title, scene   strings\n"
     "    robot                    the body that the design believes in: {parameter: value}\n"
     "    equilibrium              support, position {coordinate: value},\n"
-    "                             torque {actuator: N m}, normal_force (N)\n"
+    "                             torque {actuator: N m, N}, normal_force (N)\n"
     "    states, inputs           names, in the order of the matrices' rows and columns\n"
     "    A, B                     rows of the linearisation X' = A X + B u\n"
     "    open_loop_eigenvalues    [[real, imaginary], ...] (1/s)\n"

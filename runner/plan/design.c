@@ -32,18 +32,6 @@ const char *design_supports(const stance_scene *scene, const stance_equilibrium 
     return buffer;
 }
 
-/* Weight of the robot: twice the kinetic energy of a unit of vertical speed, times gravity. */
-static double weight_of(const stance_scene *scene, const double *robot, const double *position)
-{
-    double velocity[STANCE_MAX_COORDINATES] = {0};
-    const double rest = scene->energy(scene, robot, position, velocity);
-    for (int i = 0; i < scene->coordinates; i++)
-        if (strcmp(scene->coordinate[i].name, "z") == 0)
-            velocity[i] = 1;
-    return 2 * (scene->energy(scene, robot, position, velocity) - rest) *
-           robot[STANCE_ROBOT_GRAVITY];
-}
-
 static bool open_loop(struct design_report *r, stance_message *message)
 {
     const stance_scene *scene = r->scenario->scene;
@@ -55,7 +43,9 @@ static bool open_loop(struct design_report *r, stance_message *message)
         return complain(message, "the scene %s has no linearisation", scene->name);
     r->remark = *message;
     r->states = 2 * r->equilibrium.freedoms;
-    r->weight = weight_of(scene, r->model, r->equilibrium.position);
+    r->normal = 0;
+    for (int c = 0; c < scene->contacts; c++)
+        r->normal += r->equilibrium.force[c][0];
     stance_error error = scene->linearise(scene, r->model, &r->equilibrium, r->A, r->B);
     if (error != STANCE_OK)
         return refuse(message, "linearisation", error);
@@ -96,7 +86,9 @@ static stance_error sampled_loop(struct design_report *r)
     const double T = r->scenario->base.sample_time;
     stance_error error = STANCE_OK;
 
-    r->stable = r->critical[0] > 0;
+    r->stable = true;
+    for (int i = 0; i < n; i++)
+        r->stable &= r->closed_re[i] < 0;
     r->sampled = 0;
     if (T > 0) {
         r->sampled = r->delay ? n + m : n;
@@ -187,10 +179,11 @@ static bool confirmed(struct design_report *r, stance_message *message)
     return true;
 }
 
-static bool closed_loop(struct design_report *r, stance_message *message)
+/* Gains, eigenvalues, and whether it is stable as the controller acts. */
+static bool loop(struct design_report *r, stance_message *message)
 {
     const int n = r->states, m = r->inputs;
-    double loop[DESIGN_STATES * DESIGN_STATES];
+    double matrix[DESIGN_STATES * DESIGN_STATES];
 
     r->closed = r->scenario->base.law != 0;
     r->delay = r->scenario->base.delay;
@@ -198,24 +191,34 @@ static bool closed_loop(struct design_report *r, stance_message *message)
         return true;
     if (!gains(r, message))
         return false;
-    stance_error error = resolve_loop(n, m, r->A, r->B, r->K, 0, loop);
+    stance_error error = resolve_loop(n, m, r->A, r->B, r->K, 0, matrix);
     if (error == STANCE_OK)
-        error = stance_eigenvalues(n, loop, r->closed_re, r->closed_im);
-    for (int delay = 0; delay < 2 && error == STANCE_OK; delay++) {
-        error = stance_critical_sample_time(n, m, r->A, r->B, r->K, delay, DESIGN_LONGEST,
-                                            &r->critical[delay]);
-    }
+        error = stance_eigenvalues(n, matrix, r->closed_re, r->closed_im);
     if (error == STANCE_OK)
         error = sampled_loop(r);
+    return error == STANCE_OK || refuse(message, "closed loop", error);
+}
+
+static bool bounds(struct design_report *r, stance_message *message)
+{
+    stance_error error = STANCE_OK;
+    for (int delay = 0; delay < 2 && error == STANCE_OK; delay++)
+        error = stance_critical_sample_time(r->states, r->inputs, r->A, r->B, r->K, delay,
+                                            DESIGN_LONGEST, &r->critical[delay]);
     if (error != STANCE_OK)
         return refuse(message, "closed loop", error);
     return sublevel(r, message) && confirmed(r, message);
 }
 
-bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message)
+bool design_loop(struct design_report *r, const struct scenario *s, stance_message *message)
 {
     *r = (struct design_report){.scenario = s, .inputs = s->scene->actuators};
-    return open_loop(r, message) && closed_loop(r, message);
+    return open_loop(r, message) && loop(r, message);
+}
+
+bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message)
+{
+    return design_loop(r, s, message) && (!r->closed || bounds(r, message));
 }
 
 /* ---- names ----------------------------------------------------------------------------------- */

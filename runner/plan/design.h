@@ -48,7 +48,7 @@ struct design_report {
     double model[STANCE_MAX_ROBOT];
     stance_equilibrium equilibrium;
     stance_message remark; /* on it; empty: none */
-    double weight;         /* N: the normal force */
+    double normal;         /* N: the supports' normal forces together */
     double A[DESIGN_STATES * DESIGN_STATES], B[DESIGN_STATES * DESIGN_INPUTS];
     double open_re[DESIGN_STATES], open_im[DESIGN_STATES];
     double singular[DESIGN_STATES];
@@ -84,7 +84,9 @@ bool design_selections_compute(struct design_selections *d, const struct scenari
 void design_selections_print(const struct design_selections *d);
 json_t *design_selections_json(const struct design_selections *d);
 
-/* false: `message` says what does not exist. */
+/* false: `message` says what does not exist. design_loop: without `critical`, `set` and `capture`,
+ * which take longer. */
+bool design_loop(struct design_report *r, const struct scenario *s, stance_message *message);
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message);
 
 /* Name of state i: a coordinate, or its rate with a "v" before it. */

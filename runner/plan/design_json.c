@@ -45,7 +45,7 @@ static json_t *json_equilibrium(const struct design_report *r)
         json_object_set_new(torque, scene->actuator_name[i], json_real(r->equilibrium.torque[i]));
     return json_pack("{s:s, s:o, s:o, s:f}", "support",
                      design_supports(scene, &r->equilibrium, supports, sizeof supports), "position",
-                     position, "torque", torque, "normal_force", r->weight);
+                     position, "torque", torque, "normal_force", r->normal);
 }
 
 static json_t *json_bounded(double x)

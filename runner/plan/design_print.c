@@ -20,6 +20,44 @@ static double largest(int count, const double *x)
     return most;
 }
 
+/* ---- units ----------------------------------------------------------------------------------- */
+
+static bool slides(const stance_scene *scene, int coordinate)
+{
+    return strcmp(scene->coordinate[coordinate].unit, "m") == 0;
+}
+
+static const char *state_unit(const struct design_report *r, int i)
+{
+    const int p = r->equilibrium.freedoms;
+    const bool slide = slides(r->scenario->scene, r->equilibrium.freedom[i % p]);
+    return i < p ? (slide ? "m" : "rad") : slide ? "m/s" : "rad/s";
+}
+
+static const char *state_units(const struct design_report *r)
+{
+    int some = 0;
+    for (int i = 0; i < r->equilibrium.freedoms; i++)
+        some += slides(r->scenario->scene, r->equilibrium.freedom[i]);
+    return some == 0                         ? "rad, rad/s"
+           : some == r->equilibrium.freedoms ? "m, m/s"
+                                             : "rad, m and their rates";
+}
+
+/* What actuators give, forces on what slides. */
+static const char *input_units(const struct design_report *r)
+{
+    const stance_scene *const scene = r->scenario->scene;
+    int some = 0;
+    for (int i = 0; i < r->inputs; i++)
+        some += slides(scene, scene->actuated[i]);
+    return some == 0           ? "torques (N m)"
+           : some == r->inputs ? "forces (N)"
+                               : "torques (N m) and forces (N)";
+}
+
+/* ---- its parts ------------------------------------------------------------------------------- */
+
 static void print_matrix(const struct design_report *r, const char *name, int rows, int columns,
                          const double *x, bool rows_are_inputs, bool columns_are_inputs)
 {
@@ -63,6 +101,7 @@ static void print_equilibrium(const struct design_report *r)
 {
     const stance_scene *scene = r->scenario->scene;
     const stance_equilibrium *e = &r->equilibrium;
+    const double scale = fmax(r->normal, largest(scene->actuators, e->torque));
     char supports[STANCE_MAX_CONTACTS * 40];
 
     design_supports(scene, e, supports, sizeof supports);
@@ -72,12 +111,13 @@ static void print_equilibrium(const struct design_report *r)
         printf("  %-8s %12.6f %-4s %s\n", c->name, e->position[i] + 0.0, c->unit, c->text);
     }
     for (int i = 0; i < scene->actuators; i++) {
-        printf("  %-8s %12.6f N m  torque that holds it\n", scene->actuator_name[i],
-               dusted(e->torque[i], r->weight));
+        const bool slide = slides(scene, scene->actuated[i]);
+        printf("  %-8s %12.6f %-4s %s that holds it\n", scene->actuator_name[i],
+               dusted(e->torque[i], scale), slide ? "N" : "N m", slide ? "force" : "torque");
     }
     if (e->supports)
-        printf("  %-8s %12.6f N    normal force on %s, the robot's weight\n", "force", r->weight,
-               supports);
+        printf("  %-8s %12.6f N    normal force on %s, the robot's weight%s\n", "force", r->normal,
+               supports, r->model[STANCE_ROBOT_SLOPE] == 0 ? "" : " across the slope");
     if (r->remark.text[0])
         printf("  %s\n", r->remark.text);
 }
@@ -87,10 +127,10 @@ static void print_open_loop(const struct design_report *r)
     const int n = r->states;
     char supports[STANCE_MAX_CONTACTS * 40];
     printf("\nLinearised about it%s%s%s: X' = A X + B u, X the departure from the\n"
-           "equilibrium (rad, rad/s), u that of the torques (N m)\n",
+           "equilibrium (%s), u that of the %s\n",
            r->equilibrium.supports ? " with " : "",
            design_supports(r->scenario->scene, &r->equilibrium, supports, sizeof supports),
-           r->equilibrium.supports ? " pinned" : "");
+           r->equilibrium.supports ? " pinned" : "", state_units(r), input_units(r));
     print_matrix(r, "A", n, n, r->A, false, false);
     putchar('\n');
     print_matrix(r, "B", n, r->inputs, r->B, false, true);
@@ -156,7 +196,7 @@ static void print_set(const struct design_report *r)
     printf("  %-18s %14s %14s\n", "reach", "others 0", "others free");
     for (int i = 0; i < r->states; i++) {
         printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r, i, state), set->alone[i],
-               set->extent[i], i < r->states / 2 ? "rad" : "rad/s");
+               set->extent[i], state_unit(r, i));
     }
 }
 
@@ -184,7 +224,7 @@ static void print_capture(const struct design_report *r)
     printf("  %-18s %14s %14s\n", "reach", "others 0", "others free");
     for (int i = 0; i < r->states; i++) {
         printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r, i, state), r->capture.alone[i],
-               r->capture.extent[i], i < r->states / 2 ? "rad" : "rad/s");
+               r->capture.extent[i], state_unit(r, i));
     }
 }
 
@@ -262,8 +302,9 @@ void design_print(const struct design_report *r)
         width =
             (int)strlen(scene->robot[i].name) > width ? (int)strlen(scene->robot[i].name) : width;
     for (int i = 0; i < scene->robot_count; i++)
-        printf("  %-*s %10.6g %s\n", width, scene->robot[i].name, r->model[i],
-               scene->robot[i].unit);
+        printf("  %-*s %10.6g%s%s\n", width, scene->robot[i].name, r->model[i],
+               strcmp(scene->robot[i].unit, "1") == 0 ? "" : " ",
+               strcmp(scene->robot[i].unit, "1") == 0 ? "" : scene->robot[i].unit);
     print_equilibrium(r);
     print_open_loop(r);
     print_closed_loop(r);

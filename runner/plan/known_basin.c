@@ -55,7 +55,8 @@ stance_error known_basin_bounds(const stance_scene *scene, const struct scenario
         d[2 * i] = limit[i] - equilibrium->torque[i];
         d[2 * i + 1] = limit[i] + equilibrium->torque[i];
     }
-    d[2 * m] = d[2 * m + 1] = values->friction * force[0];
+    d[2 * m] = values->friction * force[0] - force[1];
+    d[2 * m + 1] = values->friction * force[0] + force[1];
     d[2 * m + 2] = force[0];
     return error;
 }
@@ -158,6 +159,8 @@ bool known_basin_prepare(const stance_scene *scene, const struct scenario_values
     if (!resolve_equilibrium(scene, values, model, &equilibrium, message) ||
         !standing_case(scene, values, design, seed, &search->base, message))
         return false;
+    if (!equilibrium.supports)
+        return complain(message, "no captured set: only for a robot that stands on a contact");
     if (equilibrium.freedoms < scene->postures)
         return complain(message, "no captured set: the contacts hold some of the coordinates");
     for (int i = 0; i < scene->actuators * n; i++)

@@ -42,15 +42,33 @@ void parallel_host(char *name, size_t size)
 enum { PIECE = 1 << 28 };
 
 /* Launchers tell a process its rank in one of these. */
+static const char *const rank_told[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
+enum { RANK_TOLD = sizeof rank_told / sizeof rank_told[0] };
+
 static bool was_launched(void)
 {
+    bool told = false;
 #ifdef STANCE_MPI
-    static const char *const variable[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
-    for (size_t i = 0; i < sizeof variable / sizeof variable[0]; i++)
-        if (getenv(variable[i]))
-            return true;
+    for (size_t i = 0; i < RANK_TOLD; i++)
+        told = told || getenv(rank_told[i]);
 #endif
-    return false;
+    return told;
+}
+
+bool parallel_is_first(void)
+{
+    bool first = true;
+    for (size_t i = 0; was_launched() && i < RANK_TOLD; i++) {
+        const char *rank = getenv(rank_told[i]);
+        first = first && (!rank || strcmp(rank, "0") == 0);
+    }
+    return first;
+}
+
+void parallel_leave_launcher(void)
+{
+    for (size_t i = 0; i < RANK_TOLD; i++)
+        unsetenv(rank_told[i]);
 }
 
 /* Within one machine shared memory is all that Open MPI needs; its search for networks takes a

@@ -25,6 +25,10 @@ struct parallel {
 struct parallel parallel_alone(void);
 /* Starts MPI, once in a process, when a launcher (mpirun, srun) started it; else one rank. */
 struct parallel parallel_start(void);
+/* Whether this process is the first or only one of its launcher, before MPI starts. */
+bool parallel_is_first(void);
+/* Programs that this one starts from now on are no ranks of its launcher. */
+void parallel_leave_launcher(void);
 /* Whether srun started this process as one of several (*first: the first of them) without the MPI
  * that would make them ranks. */
 bool parallel_misses_launcher(bool *first);

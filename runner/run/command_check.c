@@ -3,6 +3,7 @@
 
 #include "runner/base/command.h"
 #include "runner/plan/instruction_set.h"
+#include "runner/plan/warnings.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,6 +34,7 @@ static int check(const struct scenario *s, bool json)
     if (plan_compute_designs(&plan, &alone, &error) && plan_check_cases(&plan, &error)) {
         snprintf(file, sizeof file, "results/%s.h5", s->name);
         report_plan(&plan, 1, file, json, stdout);
+        warnings_print(&plan, "stance check", stderr);
     } else {
         code = print_error(s, &error);
     }

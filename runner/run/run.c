@@ -12,6 +12,7 @@
 #include "runner/base/sandbox.h"
 #include "runner/base/units.h"
 #include "runner/plan/instruction_set.h"
+#include "runner/plan/warnings.h"
 #include "runner/ranks/crash.h"
 #include "runner/ranks/deadline.h"
 #include "runner/store/build_info.h"
@@ -381,6 +382,8 @@ static void stage_designs(struct run *run)
         fail_scenario(run, &error);
     else if (run->options.dry_run && run->parallel.rank == 0)
         report_plan(&run->plan, run->parallel.size, run->file, false, stdout);
+    if (good && run->parallel.rank == 0)
+        warnings_print(&run->plan, "stance run", stderr);
 }
 
 /* Of a scene that is described, compiled for it. */

@@ -89,8 +89,8 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         break;
     case FIELD_POLES:
     case FIELD_NUMBERS:
-        snprintf(buffer, size, "list of %s numbers, %s%s%s", count_text(field->items, count[0]),
-                 field->unit, words[0] ? text[FIELD_NUMBER].after : "", words);
+        snprintf(buffer, size, "list of %s numbers%s%s%s%s", count_text(field->items, count[0]),
+                 unit[0] ? ", " : "", unit, words[0] ? text[FIELD_NUMBER].after : "", words);
         break;
     case FIELD_MATRIX:
         snprintf(buffer, size, "%s lists of %s numbers, %s", count_text(field->items, count[0]),

@@ -47,16 +47,41 @@ static bool sole_fault(const stance_mechanism *m, const stance_mechanism_numbers
                  "stands where from does: a sole has a length");
 }
 
+static bool push_fault(const stance_mechanism *m, const stance_mechanism_numbers *number, int p,
+                       struct fault *f)
+{
+    const stance_point_numbers *const point = &number->point[p];
+    return m->point[p].pushed == STANCE_FORCE && point->to < point->from &&
+           FAULT(f, "points", m->point[p].name, ".to", "%.6g s is before from, %.6g s", point->to,
+                 point->from);
+}
+
 /* ---- inertia --------------------------------------------------------------------------------- */
 
+/* The motion that nothing resists: of coordinate i by 1, and of those before it, where Cholesky's
+ * factors of their rows are in A. */
+static void free_motion(int n, int i, const double *A, double *motion)
+{
+    for (int j = i - 1; j >= 0; j--) {
+        motion[j] = -A[i * n + j];
+        for (int k = j + 1; k < i; k++)
+            motion[j] -= A[k * n + j] * motion[k];
+        motion[j] /= A[j * n + j];
+    }
+    motion[i] = 1;
+}
+
 /* Cholesky's factors of the inertia matrix, scaled to unit diagonal, less LEAST_EIGENVALUE times
- * the identity: the first coordinate whose pivot is not positive, or -1. */
-static int unresisted(int n, double *A)
+ * the identity: false where a pivot is not positive; in `motion`, of zeros before, what nothing
+ * resists then. */
+static bool resisted(int n, double *A, double *motion)
 {
     double scale[STANCE_MAX_COORDINATES];
     for (int i = 0; i < n; i++) {
-        if (!(A[i * n + i] > 0))
-            return i;
+        if (!(A[i * n + i] > 0)) {
+            motion[i] = 1;
+            return false;
+        }
         scale[i] = sqrt(A[i * n + i]);
     }
     for (int i = 0; i < n; i++) {
@@ -64,11 +89,24 @@ static int unresisted(int n, double *A)
             double sum = i == j ? 1 - LEAST_EIGENVALUE : A[i * n + j] / (scale[i] * scale[j]);
             for (int k = 0; k < j; k++)
                 sum -= A[i * n + k] * A[j * n + k];
-            if (i == j && !(sum > 0))
-                return i;
+            if (i == j && !(sum > 0)) {
+                free_motion(n, i, A, motion);
+                return false;
+            }
             A[i * n + j] = i == j ? sqrt(sum) : sum / A[j * n + j];
         }
     }
+    return true;
+}
+
+/* Whose motion it is: the first body's that takes part, since those that hang from a body without
+ * inertia turn back what it turns. -1: the robot's as a whole. */
+static int culprit(const stance_scene *scene, const double *motion)
+{
+    for (int i = 0; i < scene->coordinates; i++)
+        if (fabs(motion[i]) > 1e-3 && strcmp(scene->coordinate[i].name, "x") != 0 &&
+            strcmp(scene->coordinate[i].name, "z") != 0)
+            return i;
     return -1;
 }
 
@@ -78,20 +116,22 @@ static bool inertia_fault(const stance_scene *scene, const double *robot, struct
     static const double prime[] = {2, 3, 5, 7, 11, 13, 17, 19, 23};
     _Static_assert(sizeof prime / sizeof *prime >= STANCE_MAX_COORDINATES, "one for each");
     const int n = scene->coordinates;
-    double position[STANCE_MAX_COORDINATES];
+    double position[STANCE_MAX_COORDINATES], motion[STANCE_MAX_COORDINATES] = {0};
     double A[STANCE_MAX_COORDINATES * STANCE_MAX_COORDINATES];
     for (int k = 0; k < POSTURES; k++) {
         for (int i = 0; i < n; i++)
             position[i] = 6.283185307179586 * fmod(k * sqrt(prime[i]), 1);
         scene->inertia(scene, robot, position, A);
-        const int i = unresisted(n, A);
-        if (i < 0)
+        if (resisted(n, A, motion))
             continue;
-        const char *const name = scene->coordinate[i].name;
-        const bool body = strcmp(name, "x") != 0 && strcmp(name, "z") != 0;
-        snprintf(f->path, sizeof f->path, "robot.bodies%s%s", body ? "." : "", body ? name : "");
-        snprintf(f->text, sizeof f->text, "nothing with mass or inertia resists %s",
-                 body ? "its joint: give it, or what hangs from it, some" : "motion");
+        const int i = culprit(scene, motion);
+        snprintf(f->path, sizeof f->path, "robot.bodies%s%s", i < 0 ? "" : ".",
+                 i < 0 ? "" : scene->coordinate[i].name);
+        snprintf(f->text, sizeof f->text, "%s",
+                 i < 0 ? "nothing with mass resists motion"
+                 : strcmp(scene->coordinate[i].unit, "m") == 0
+                     ? "nothing with mass resists its sliding: give it, or what hangs from it, mass"
+                     : "nothing resists its turning: give it inertia, or mass off its joint");
         return true;
     }
     return false;
@@ -108,6 +148,9 @@ static bool find_fault(const stance_scene *scene, const double *robot, struct fa
     for (int e = 0; e < m->elements; e++)
         if (sole_fault(m, &number, e, f))
             return true;
+    for (int p = 0; p < m->points; p++)
+        if (push_fault(m, &number, p, f))
+            return true;
     return inertia_fault(scene, robot, f);
 }
 
@@ -116,7 +159,7 @@ static bool find_fault(const stance_scene *scene, const double *robot, struct fa
 /* Of the key, or of what it stands in. */
 static struct mark mark_of(struct reader *r, const char *path)
 {
-    char around[96];
+    char around[112];
     snprintf(around, sizeof around, "%s", path);
     for (char *dot = around; dot; dot = strrchr(around, '.')) {
         if (dot != around)
@@ -181,6 +224,25 @@ static bool check_axes(struct reader *r, const double *first)
     return any;
 }
 
+/* The robot that the design believes in, where it is another one. */
+static void check_model(struct reader *r, const struct scenario_values *values)
+{
+    double model[STANCE_MAX_ROBOT];
+    struct fault fault;
+    bool other = false;
+    memcpy(model, values->robot, sizeof model);
+    for (int i = 0; i < r->s->scene->robot_count; i++)
+        if (!isnan(values->model[i])) {
+            model[i] = values->model[i];
+            other = true;
+        }
+    if (!other || !find_fault(r->s->scene, model, &fault))
+        return;
+    char path[sizeof fault.path + 16];
+    snprintf(path, sizeof path, "controller.model%.90s", fault.path + strlen("robot"));
+    problem_add(&r->problems, mark_of(r, path), "%s: %s", path, fault.text);
+}
+
 void mechanism_check(struct reader *r)
 {
     struct scenario_values *const values = malloc(sizeof *values);
@@ -195,5 +257,7 @@ void mechanism_check(struct reader *r)
     if ((r->axes_bad || !check_axes(r, values->robot)) &&
         find_fault(r->s->scene, values->robot, &fault))
         problem_add(&r->problems, mark_of(r, fault.path), "%s: %s", fault.path, fault.text);
+    else
+        check_model(r, values);
     free(values);
 }

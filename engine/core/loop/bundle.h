@@ -14,9 +14,17 @@
 
 /* A condition that must hold for a while without its measure growing. */
 struct window {
-    lanes begin;   /* step at which it began; negative: it does not hold */
+    lanes since;   /* step from which on it holds; negative: it does not */
+    lanes begin;   /* step from which on it is watched; negative: it is not */
     lanes measure; /* then */
 };
+
+static inline void window_load(struct window *w, int lane)
+{
+    lane_set(&w->since, lane, -1);
+    lane_set(&w->begin, lane, -1);
+    lane_set(&w->measure, lane, 0);
+}
 
 /* The answers that are gathered over steps, see STANCE_ANSWERS. */
 #define WHERE_GATHERED_END(...)
@@ -180,10 +188,8 @@ static void bundle_clear_answers(struct bundle *b, int lane)
             lane_set(&b->now.impulse[i][a], lane, 0);
         }
     lane_set(&b->struck, lane, -1);
-    lane_set(&b->settled.begin, lane, -1);
-    lane_set(&b->settled.measure, lane, 0);
-    lane_set(&b->resting.begin, lane, -1);
-    lane_set(&b->resting.measure, lane, 0);
+    window_load(&b->settled, lane);
+    window_load(&b->resting, lane);
 }
 
 /* Is there more to its torques than a linear law of the present state? */

@@ -78,12 +78,15 @@ HOT mask window_advance(struct window *w, mask live, mask holds, lanes measure, 
                         lanes length)
 {
     const mask open = mask_less_equal(lanes_of(0), w->begin);
-    if (!mask_any(live & (holds | open)))
+    if (!mask_any(live & (holds | LANES_NOT(mask_less(w->since, lanes_of(0))))))
         return MASK_NONE;
     const mask full = holds & open & mask_less_equal(length, n - w->begin);
     const mask calm = mask_less_equal(measure, lanes_max(w->measure, lanes_of(BUNDLE_ERROR_FLOOR)));
     const mask restart = live & holds & (LANES_NOT(open) | (full & LANES_NOT(calm)));
-    w->begin = choose(restart, n, choose(live & LANES_NOT(holds), lanes_of(-1), w->begin));
+    const mask lost = live & LANES_NOT(holds);
+    w->since =
+        choose(lost, lanes_of(-1), choose(live & mask_less(w->since, lanes_of(0)), n, w->since));
+    w->begin = choose(restart, n, choose(lost, lanes_of(-1), w->begin));
     w->measure = choose(restart, measure, w->measure);
     return live & full & calm;
 }

@@ -71,8 +71,8 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
     const stance_case *const c = b->which[lane];
     const double n = record_number(&b->n, lane), h = c->step;
     double s[SCENE_COORDINATES], w[SCENE_COORDINATES];
-    const double begin = outcome == STANCE_RESTED ? record_number(&b->resting.begin, lane)
-                                                  : record_number(&b->settled.begin, lane);
+    const double since = outcome == STANCE_RESTED ? record_number(&b->resting.since, lane)
+                                                  : record_number(&b->settled.since, lane);
     const bool calm = outcome == STANCE_RESTED || outcome == STANCE_STABILISED;
     *r = (stance_result){
         .status = status,
@@ -80,7 +80,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         .evidence = inferred ? STANCE_INFERRED : STANCE_EVIDENCE_NONE,
         .failure = failure,
         .end_time = n * h,
-        .settle_time = calm && !inferred ? (begin >= 0 ? begin : n) * h : NAN,
+        .settle_time = calm && !inferred ? (since >= 0 ? since : n) * h : NAN,
         .fall_time = outcome == STANCE_FELL ? n * h : NAN,
         .fall_cause = outcome == STANCE_FELL ? bundle_fall_cause(b, lane) : 0,
         .steps = (int64_t)n,

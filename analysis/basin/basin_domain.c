@@ -1,0 +1,265 @@
+/* basin_domain.c - the part of an outcome that the equilibrium lies in, and how far it is to its
+ * boundary; see basin_map.h. */
+#include "basin_map.h"
+
+#include "runner/scenario/doe.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the part that hangs together --------------------------------------------------------- */
+
+/* Cases that are marked as of the part, of which `queued` are to be looked at. */
+struct flood {
+    const struct basin_map *map;
+    uint64_t stride[SCENARIO_MAX_AXES];
+    uint8_t *kind; /* what the map has; the outcome is left to the part alone */
+    uint8_t *seen; /* [cases / 8] */
+    uint64_t *queue, queued, room;
+};
+
+static bool enqueue(struct flood *flood, uint64_t index)
+{
+    if (flood->seen[index / 8] >> index % 8 & 1)
+        return true;
+    if (flood->queued == flood->room) {
+        const uint64_t room = flood->room ? 2 * flood->room : 256;
+        uint64_t *queue = realloc(flood->queue, room * sizeof *queue);
+        if (!queue)
+            return false;
+        flood->queue = queue;
+        flood->room = room;
+    }
+    flood->seen[index / 8] |= (uint8_t)(1 << index % 8);
+    flood->queue[flood->queued++] = index;
+    return true;
+}
+
+static bool spread(struct flood *flood, enum results_kind of, struct basin_part *part)
+{
+    const struct basin_map *map = flood->map;
+    while (flood->queued > 0) {
+        const uint64_t index = flood->queue[--flood->queued];
+        for (int side = 0; side < 2 * map->axes; side++) {
+            const int a = side / 2;
+            const size_t at = index / flood->stride[a] % map->count[a];
+            if (at == (side % 2 ? map->count[a] - 1 : 0)) {
+                part->faces |= (uint64_t)1 << side;
+                continue;
+            }
+            const uint64_t next = side % 2 ? index + flood->stride[a] : index - flood->stride[a];
+            part->unknown = part->unknown || !basin_is_known(map->kind[next]);
+            if (map->kind[next] == of && !enqueue(flood, next))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* The volume of what has been seen: the outcome elsewhere becomes another one. */
+static bool measure(struct flood *flood, enum results_kind of, struct basin_volume *volume)
+{
+    const struct basin_map *map = flood->map;
+    const uint8_t other = of == RESULTS_FELL ? RESULTS_UNDECIDED : RESULTS_FELL;
+    struct basin_map own = *map;
+    for (uint64_t i = 0; i < map->cases; i++) {
+        const bool seen = flood->seen[i / 8] >> i % 8 & 1;
+        flood->kind[i] = map->kind[i] == of && !seen ? other : map->kind[i];
+    }
+    own.kind = flood->kind;
+    return basin_map_volume(&own, of, volume);
+}
+
+bool basin_map_part(const struct basin_map *map, enum results_kind of, const size_t *origin,
+                    struct basin_part *part)
+{
+    struct flood flood = {
+        .map = map, .kind = malloc(map->cases), .seen = calloc(map->cases / 8 + 1, 1)};
+    *part = (struct basin_part){.inside = false};
+    basin_strides(map, flood.stride);
+    const uint64_t first = basin_index(map, flood.stride, origin);
+    part->inside = map->kind[first] == of;
+    part->unknown = !basin_is_known(map->kind[first]);
+    const bool good = flood.kind && flood.seen && (!part->inside || enqueue(&flood, first)) &&
+                      spread(&flood, of, part) && measure(&flood, of, &part->volume);
+    free(flood.kind);
+    free(flood.seen);
+    free(flood.queue);
+    return good;
+}
+
+/* ---- the nearest point of the boundary ---------------------------------------------------- */
+
+struct search {
+    const struct basin_map *map;
+    enum results_kind of;
+    const double *weight;
+    struct basin_distance *distance;
+};
+
+static bool look_nearer(void *context, const struct basin_crossing *crossing)
+{
+    const struct search *search = context;
+    const struct basin_map *map = search->map;
+    double at[SCENARIO_MAX_AXES], sum = 0;
+
+    if ((crossing->from == search->of) == (crossing->to == search->of))
+        return true; /* between two others */
+    for (int a = 0; a < map->axes; a++) {
+        at[a] = a == crossing->axis ? crossing->middle : map->place[a][crossing->point[a]];
+        sum += pow(at[a] / search->weight[a], 2);
+    }
+    if (!(sqrt(sum) >= search->distance->nearest)) { /* true for the first, against NAN */
+        search->distance->nearest = sqrt(sum);
+        memcpy(search->distance->at, at, sizeof at);
+    }
+    return true;
+}
+
+/* Distance of the nearest face or unknown case. */
+static double find_clear(const struct basin_map *map, const double *weight)
+{
+    double least = INFINITY;
+    size_t point[SCENARIO_MAX_AXES] = {0};
+    uint64_t index = 0;
+    for (int a = 0; a < map->axes; a++) {
+        const double *place = map->place[a];
+        least = fmin(least, fmin(-place[0], place[map->count[a] - 1]) / weight[a]);
+    }
+    do {
+        double sum = 0;
+        for (int a = 0; !basin_is_known(map->kind[index]) && a < map->axes; a++)
+            sum += pow(map->place[a][point[a]] / weight[a], 2);
+        least = basin_is_known(map->kind[index]) ? least : fmin(least, sqrt(sum));
+        index++;
+    } while (basin_next_point(map->axes, map->count, point));
+    return least;
+}
+
+/* ---- directions --------------------------------------------------------------------------- */
+
+/* Follows x = t step[] from zero through the map, each case standing for all that is nearer to it
+ * than to its neighbours, along a ray one of them after the other (J. Amanatides, A. Woo, A fast
+ * voxel traversal algorithm, Eurographics 1987). Returns the t at which the outcome is lost;
+ * *leaves: it is not, up to the end of the box or an unknown case. */
+static double follow(const struct basin_map *map, enum results_kind of, const size_t *origin,
+                     const double *step, bool *leaves)
+{
+    uint64_t stride[SCENARIO_MAX_AXES];
+    size_t point[SCENARIO_MAX_AXES];
+    basin_strides(map, stride);
+    memcpy(point, origin, sizeof point[0] * (size_t)map->axes);
+    for (;;) {
+        double first = INFINITY;
+        int along = 0;
+        for (int a = 0; a < map->axes; a++) {
+            const double *place = map->place[a] + point[a];
+            const bool last = point[a] == (step[a] > 0 ? map->count[a] - 1 : 0);
+            const double wall = last          ? place[0]
+                                : step[a] > 0 ? 0.5 * (place[0] + place[1])
+                                              : 0.5 * (place[0] + place[-1]);
+            const double t = step[a] != 0 ? fmax(0, wall / step[a]) : INFINITY;
+            if (t < first) {
+                first = t;
+                along = a;
+            }
+        }
+        *leaves = point[along] == (step[along] > 0 ? map->count[along] - 1 : 0);
+        if (*leaves)
+            return first;
+        point[along] += step[along] > 0 ? 1 : (size_t)-1;
+        const uint8_t kind = map->kind[basin_index(map, stride, point)];
+        *leaves = !basin_is_known(kind);
+        if (kind != of)
+            return first;
+    }
+}
+
+static int by_number(const void *left, const void *right)
+{
+    const double x = *(const double *)left, y = *(const double *)right;
+    return (x > y) - (x < y);
+}
+
+static double median_of(double *value, size_t n)
+{
+    qsort(value, n, sizeof *value, by_number);
+    const double median = 0.5 * (value[(n - 1) / 2] + value[n / 2]);
+    return isfinite(median) ? median : NAN;
+}
+
+static bool follow_all(const struct basin_map *map, enum results_kind of, const size_t *origin,
+                       const double *weight, struct basin_distance *distance)
+{
+    const size_t n = map->axes == 1 ? 2 : BASIN_DIRECTIONS;
+    struct doe sphere = {.method = DOE_SPHERE, .count = n, .factors = (size_t)map->axes, .seed = 1};
+    double *end = malloc(2 * n * sizeof *end), *least = end + n;
+    bool good = end && (map->axes == 1 || doe_begin(&sphere));
+    for (size_t k = 0; good && k < n; k++) {
+        double step[SCENARIO_MAX_AXES] = {k > 0}; /* along one axis: down, and up */
+        bool leaves;
+        if (map->axes > 1)
+            doe_unit(&sphere, k, step);
+        for (int a = 0; a < map->axes; a++)
+            step[a] = (2 * step[a] - 1) * weight[a];
+        least[k] = follow(map, of, origin, step, &leaves);
+        end[k] = leaves ? INFINITY : least[k];
+        distance->leave += leaves;
+    }
+    if (good) {
+        distance->directions = n;
+        distance->median = median_of(end, n);
+        distance->median_least = median_of(least, n);
+    }
+    if (map->axes > 1)
+        doe_end(&sphere);
+    free(end);
+    return good;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+/* Along each axis. */
+static void find_extent(const struct basin_map *map, enum results_kind of, const size_t *origin,
+                        struct basin_distance *distance)
+{
+    uint64_t stride[SCENARIO_MAX_AXES];
+    basin_strides(map, stride);
+    const uint64_t index = basin_index(map, stride, origin);
+    for (int a = 0; a < map->axes; a++) {
+        const double *place = map->place[a];
+        size_t below = origin[a], above = origin[a];
+        distance->low[a] = distance->high[a] = NAN;
+        while (below > 0 && map->kind[index - (origin[a] - below) * stride[a]] == of)
+            below--;
+        while (above + 1 < map->count[a] &&
+               map->kind[index + (above - origin[a]) * stride[a]] == of)
+            above++;
+        const uint8_t low = map->kind[index - (origin[a] - below) * stride[a]],
+                      high = map->kind[index + (above - origin[a]) * stride[a]];
+        if (distance->inside && low != of && basin_is_known(low))
+            distance->low[a] = 0.5 * (place[below] + place[below + 1]);
+        if (distance->inside && high != of && basin_is_known(high))
+            distance->high[a] = 0.5 * (place[above - 1] + place[above]);
+    }
+}
+
+bool basin_map_distance(const struct basin_map *map, enum results_kind of, const size_t *origin,
+                        const double *weight, struct basin_distance *distance)
+{
+    uint64_t stride[SCENARIO_MAX_AXES];
+    basin_strides(map, stride);
+    *distance = (struct basin_distance){.inside = map->kind[basin_index(map, stride, origin)] == of,
+                                        .nearest = NAN,
+                                        .clear = NAN,
+                                        .median = NAN,
+                                        .median_least = NAN};
+    find_extent(map, of, origin, distance);
+    if (!distance->inside)
+        return true;
+    struct search search = {map, of, weight, distance};
+    basin_map_boundary(map, look_nearer, &search);
+    distance->clear = find_clear(map, weight);
+    return follow_all(map, of, origin, weight, distance);
+}

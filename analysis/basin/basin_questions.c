@@ -1,0 +1,298 @@
+/* basin_questions.c - answers of `stance basin` to single questions: where a threshold is crossed,
+ * where the first start is lost, what numbers the cases of a basin have. */
+#include "basin_print.h"
+
+#include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
+#include "runner/store/results_rows.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool write_table(struct table *t, enum table_form form, const char *view, json_t *head)
+{
+    bool good;
+    if (form == TABLE_AS_JSON) {
+        json_object_set_new(head, "rows", table_json(t, false));
+        good = table_write_json(json_incref(head), stdout);
+    } else {
+        good = form == TABLE_AS_CSV ? table_write_csv(t, stdout)
+                                    : table_write_text(t, stdout, view, BASIN_SHOWN);
+    }
+    json_decref(head);
+    table_free(t);
+    return good;
+}
+
+static void print_title(const struct results *r)
+{
+    printf("%s\n%s: %" PRIu64 " cases\n\n", r->title[0] ? r->title : r->name, r->file, r->cases);
+}
+
+/* ---- thresholds --------------------------------------------------------------------------- */
+
+/* Values that rise, or fall, from the first to the last. */
+static bool is_monotone(const struct results_axis *axis)
+{
+    for (size_t i = 1; i < axis->count; i++)
+        if (axis->value[i] == axis->value[i - 1] ||
+            (axis->value[i] > axis->value[i - 1]) != (axis->value[1] > axis->value[0]))
+            return false;
+    return !axis->word && axis->count > 1;
+}
+
+static void add_threshold(struct table *t, const struct basin *b, size_t row, int along,
+                          double threshold)
+{
+    const struct results_axis *axis = &b->r->axis[b->by[along]];
+    const struct basin_threshold found = basin_threshold(b, row, along, threshold);
+    const char *beyond = found.first > 0 ? "beyond" : "-";
+    int others[SCENARIO_MAX_AXES], count = 0;
+    for (int k = 0; k < b->by_axes; k++)
+        if (k != along)
+            others[count++] = b->by[k];
+    table_axes(t, b->r, others, count, b->row[row].point);
+    TABLE_FACTS(
+        t,
+        {{"first_share", "first", "%.3f %%", .width = 9, .percent = true},
+         as_number(found.first / b->box)},
+        {{"last_share", "last", "%.3f %%", .width = 9, .percent = true},
+         as_number(found.last / b->box)},
+        {{"value", "crossed at", "%.5g", .width = 11}, as_number(found.at)},
+        {{"low", "interval", "%.5g", .width = 25, .left = true, .before = "   ", .empty = beyond},
+         as_number(found.low)},
+        {{.name = "high", .format = "%.5g", .joined = true, .before = " ... ", .empty = beyond},
+         as_number(found.high)},
+        {{"before", "between", .width = 20, .left = true},
+         found.crossed ? as_place(axis, found.before) : as_nothing(NULL)},
+        {{.name = "after", .joined = true, .before = " and "},
+         found.crossed ? as_place(axis, found.after) : as_nothing(NULL)});
+    table_end_row(t);
+}
+
+bool basin_print_threshold(const struct basin *b, const char *path, double threshold,
+                           enum table_form form, bool *usage, stance_message *message)
+{
+    struct table t = {0};
+    int along = -1;
+    for (int k = 0; k < b->by_axes; k++)
+        along = strcmp(b->r->axis[b->by[k]].name, path) == 0 ? k : along;
+    *usage = along < 0 || !is_monotone(&b->r->axis[b->by[along]]);
+    if (*usage)
+        return complain(message,
+                        "stance basin: --threshold needs --of PATH of a parameter whose values "
+                        "rise or fall on the grid, not '%.60s'",
+                        path);
+    const struct results_axis *axis = &b->r->axis[b->by[along]];
+    for (size_t row = 0; row < b->rows; row++)
+        if (b->row[row].point[b->by[along]] == 0)
+            add_threshold(&t, b, row, along, threshold);
+    if (form == TABLE_AS_TEXT) {
+        char first[96], last[96];
+        results_value_text(axis, 0, true, first, sizeof first);
+        results_value_text(axis, axis->count - 1, true, last, sizeof last);
+        print_title(b->r);
+        printf("Where the share of starts that end as %s %s %.6g %% of what it is at %s = %s\n"
+               "(up to %s; interval at %.4g %%)\n\n",
+               basin_asked(b), threshold < 1 ? "falls below" : "rises above", 100 * threshold,
+               axis->name, first, last, 100 * b->choice.level);
+    }
+    return write_table(&t, form, "at/ first_share last_share value low high before after",
+                       TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
+                                    {"threshold", as_number(threshold)},
+                                    {"of", as_text(axis->name)}, {"unit", as_text(axis->unit)},
+                                    {"level", as_number(b->choice.level)},
+                                    {"within", as_text(b->choice.within)}));
+}
+
+/* ---- losses ------------------------------------------------------------------------------- */
+
+/* 0: the first value, 1: the last one, 2: none is named, -1: another. */
+static int which_end(const struct results_axis *axis, const char *value)
+{
+    const size_t last = axis->count - 1;
+    for (int end = 0; value && end < 2; end++) {
+        const size_t i = end ? last : 0;
+        char *rest;
+        if (axis->word
+                ? strcmp(axis->word[i], value) == 0
+                : fabs(strtod(value, &rest) - axis->value[i]) <= 1e-9 * fabs(axis->value[i]) &&
+                      rest != value && !*rest)
+            return end;
+    }
+    return value ? -1 : 2;
+}
+
+bool basin_print_loss(const struct results *r, const char *path, enum results_kind of,
+                      enum table_form form, bool *usage, stance_message *message)
+{
+    struct basin_loss loss;
+    struct table t = {0};
+    const char *equals = strchr(path, '=');
+    const size_t length = equals ? (size_t)(equals - path) : strlen(path);
+    int along = -1;
+    for (int a = 0; a < r->axes; a++)
+        if (strncmp(r->axis[a].name, path, length) == 0 && r->axis[a].name[length] == '\0' &&
+            a != r->sample && r->axis[a].count > 1)
+            along = a;
+    const int end = along < 0 ? -1 : which_end(&r->axis[along], equals ? equals + 1 : NULL);
+    *usage = along < 0 || end < 0;
+    if (*usage)
+        return complain(message,
+                        "stance basin: --lost takes PATH or PATH=VALUE of an axis of the grid with "
+                        "several values, VALUE its first or last, not '%.60s'",
+                        path);
+    const bool down = end < 2 ? end == 1 : basin_more_at_last(r, along, of);
+    if (!basin_lose(r, along, down, of, &loss)) {
+        free(loss.lost);
+        return statistics_no_memory(r, message);
+    }
+    const struct results_axis *axis = &r->axis[along];
+    const size_t last = axis->count - 1;
+    uint64_t gone = 0;
+    for (size_t k = 0; k <= last; k++) {
+        gone += loss.lost[k];
+        TABLE_FACTS(&t,
+                    {{.name = "value", .heading = axis->name, .width = 14},
+                     as_place(axis, loss.down ? last - k : k)},
+                    {{"lost", "lost here", .width = 12}, as_whole(loss.lost[k])},
+                    {{"lost_so_far", "so far", .width = 12}, as_whole(gone)},
+                    {{"share", "of all", "%.3f %%", .width = 10, .percent = true},
+                     as_number(loss.starts ? (double)gone / (double)loss.starts : NAN)});
+        table_end_row(&t);
+    }
+    const bool any = loss.at <= last;
+    const size_t after = loss.down ? last - loss.at : loss.at,
+                 before = loss.down ? after + 1 : after - 1;
+    size_t point[SCENARIO_MAX_AXES];
+    if (any)
+        results_point(r, loss.first, point);
+    if (form == TABLE_AS_TEXT) {
+        char from[96], to[96], where[600];
+        results_value_text(axis, loss.down ? last : 0, true, from, sizeof from);
+        print_title(r);
+        printf("%" PRIu64 " starts end as %s at %s = %s", loss.starts, results_kind_names[of],
+               axis->name, from);
+        if (loss.unknown > 0)
+            printf(" (%" PRIu64 " of them come to a case that failed or is pending)", loss.unknown);
+        if (any) {
+            results_value_text(axis, before, true, from, sizeof from);
+            results_value_text(axis, after, true, to, sizeof to);
+            results_case_text(r, loss.first, where, sizeof where);
+            printf(".\nThe first are lost between %s and %s: %" PRIu64 ", one of them case %" PRIu64
+                   "\n  (%s: %s)\n\n",
+                   from, to, loss.lost[loss.at], loss.first, where,
+                   results_kind_names[r->kind[loss.first]]);
+        } else {
+            puts(".\nNone of them is lost.\n");
+        }
+    }
+    const bool good = write_table(
+        &t, form, "value lost lost_so_far share",
+        TABLE_OBJECT({"outcome", as_text(results_kind_names[of])}, {"of", as_text(axis->name)},
+                     {"starts", as_whole(loss.starts)}, {"unknown", as_whole(loss.unknown)},
+                     {"kept", any ? as_place(axis, before) : as_nothing(NULL)},
+                     {"lost", any ? as_place(axis, after) : as_nothing(NULL)},
+                     {"first", any ? as_whole(loss.first) : as_nothing(NULL)},
+                     {"first_at", as_tree(any ? table_at(r, NULL, point) : NULL)}));
+    free(loss.lost);
+    return good;
+}
+
+/* ---- answers ------------------------------------------------------------------------------ */
+
+bool basin_numbers(const struct results *r, const char *answer, double **value,
+                   stance_message *message)
+{
+    struct results_column column = {.id = -1};
+    *value = NULL;
+    if (strpbrk(answer, "./")) /* an axis, or a group: nothing over the cases */
+        return true;
+    bool good = results_column_open(r, answer, &column, message);
+    if (good && column.id >= 0 && !column.words && column.width == 1)
+        good = results_answer(r, answer, value, message);
+    if (good)
+        results_column_close(&column);
+    return good;
+}
+
+static size_t row_of(const struct basin *b, const size_t *point)
+{
+    size_t row = 0;
+    for (int k = 0; k < b->by_axes; k++)
+        row = row * b->r->axis[b->by[k]].count + point[b->by[k]];
+    return row;
+}
+
+/* The numbers of the cases with the outcome, row by row: those of row k are number[begin[k]] up to
+ * number[begin[k + 1]]; largest[k]: a case with the largest. begin[rows + 1], zero at first. */
+static void sort_numbers(const struct basin *b, const double *value, double *number,
+                         uint64_t *begin, uint64_t *largest)
+{
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint64_t i = 0; i < b->r->cases; i++) {
+            size_t point[SCENARIO_MAX_AXES];
+            if (b->r->kind[i] != b->choice.of || isnan(value[i]))
+                continue;
+            results_point(b->r, i, point);
+            const size_t row = row_of(b, point);
+            if (pass == 0) {
+                largest[row] =
+                    begin[row]++ == 0 || value[i] > value[largest[row]] ? i : largest[row];
+            } else {
+                number[--begin[row]] = value[i];
+            }
+        }
+        for (size_t row = 0; pass == 0 && row < b->rows; row++)
+            begin[row + 1] +=
+                begin[row]; /* where each ends, which the second pass goes back from */
+    }
+}
+
+bool basin_print_answer(const struct basin *b, const char *answer, enum table_form form,
+                        bool *usage, stance_message *message)
+{
+    struct table t = {0};
+    double *value = NULL;
+    if (!basin_numbers(b->r, answer, &value, message))
+        return false;
+    double *number = malloc(b->r->cases * sizeof *number);
+    uint64_t *begin = calloc(2 * b->rows + 1, sizeof *begin);
+    *usage = !value;
+    if (!value || !number || !begin) {
+        free(number);
+        free(begin);
+        free(value);
+        return value ? statistics_no_memory(b->r, message)
+                     : complain(message, "stance basin: %.90s stores no number '%.60s'", b->r->file,
+                                answer);
+    }
+    uint64_t *largest = begin + b->rows + 1;
+    sort_numbers(b, value, number, begin, largest);
+    for (size_t row = 0; row < b->rows; row++) {
+        struct statistics_numbers found;
+        statistics_summarise(number + begin[row], begin[row + 1] - begin[row], &found);
+        table_axes(&t, b->r, b->by, b->by_axes, b->row[row].point);
+        TABLE_FACTS(&t, {{"cases", "cases", .width = 10}, as_whole(found.n)},
+                    {{"smallest", "smallest", "%.5g", .width = 11}, as_number(found.low)},
+                    {{"median", "median", "%.5g", .width = 11}, as_number(found.median)},
+                    {{"q90", "90 %", "%.5g", .width = 11}, as_number(found.q90)},
+                    {{"q99", "99 %", "%.5g", .width = 11}, as_number(found.q99)},
+                    {{"largest", "largest", "%.5g", .width = 11}, as_number(found.high)},
+                    {{"largest_case", "in case", .width = 11},
+                     found.n > 0 ? as_whole(largest[row]) : as_nothing(NULL)});
+        table_end_row(&t);
+    }
+    free(number);
+    free(begin);
+    free(value);
+    if (form == TABLE_AS_TEXT) {
+        print_title(b->r);
+        printf("%s of the starts that end as %s\n\n", answer, basin_asked(b));
+    }
+    return write_table(&t, form, "at/ cases smallest median q90 q99 largest largest_case",
+                       TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
+                                    {"answer", as_text(answer)}));
+}

@@ -1,0 +1,383 @@
+/* command_replay.c - `stance replay FILE`: cases of a results file again, with their trajectories
+ * drawn. `stance run --only CASE --trace` computes them, from the scenario inside the file. */
+#include "plot_case.h"
+
+#include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
+#include "runner/base/sandbox.h"
+#include "runner/ranks/parallel.h"
+
+#include <errno.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+extern const struct command command_replay; /* below */
+
+enum { MOST_CASES = 2, MOST_SETS = 32 };
+
+struct request {
+    const char *file, *index[MOST_CASES], *near[MOST_CASES], *set[MOST_SETS];
+    size_t indices, nears, sets;
+    struct look look;
+};
+
+static bool bad(const char *what, const char *text)
+{
+    fprintf(stderr, "stance replay: %s '%.100s' (stance replay -h explains)\n", what, text);
+    return false;
+}
+
+/* ---- which case --------------------------------------------------------------------------- */
+
+/* Whether a path is meant: all of it, or what stands after one of its dots. */
+static bool is_meant(const char *path, const char *name)
+{
+    const size_t length = strlen(path), own = strlen(name);
+    return own <= length && strcmp(path + length - own, name) == 0 &&
+           (own == length || path[length - own - 1] == '.');
+}
+
+/* A point near what was asked for. */
+struct near {
+    size_t point[SCENARIO_MAX_AXES];
+    double *distance; /* [points of the sample] squares, in units of the ranges; NULL: no sample */
+};
+
+/* The value of an axis that a word is, or is nearest to. */
+static bool find_value(const struct results_axis *axis, const char *name, const char *text,
+                       size_t *value)
+{
+    char *end;
+    const double wanted = strtod(text, &end);
+    if (axis->word) {
+        *value =
+            command_word(&command_replay, name, text, (const char *const *)axis->word, axis->count);
+        return *value < axis->count;
+    }
+    if (end == text || *end || !isfinite(wanted))
+        return bad("--near takes NAME=NUMBER, not", text);
+    *value = 0;
+    for (size_t i = 1; i < axis->count; i++)
+        if (fabs(axis->value[i] - wanted) < fabs(axis->value[*value] - wanted))
+            *value = i;
+    return true;
+}
+
+static bool add_distances(const struct results_varied *v, const char *name, const char *text,
+                          double *distance)
+{
+    char *end;
+    const double wanted = strtod(text, &end);
+    double low = INFINITY, high = -INFINITY;
+    if (v->word || end == text || *end || !isfinite(wanted))
+        return bad("--near takes NAME=NUMBER, not", name);
+    for (size_t i = 0; i < v->of.count; i++) {
+        low = fmin(low, v->of.value[i]);
+        high = fmax(high, v->of.value[i]);
+    }
+    for (size_t i = 0; i < v->of.count; i++) {
+        const double off = (v->of.value[i] - wanted) / (high > low ? high - low : 1);
+        distance[i] += off * off;
+    }
+    return true;
+}
+
+/* One NAME=VALUE. */
+static bool take_part(const struct results *r, const char *name, const char *text,
+                      struct near *near)
+{
+    int axis = -1, varied = -1, found = 0;
+    for (int a = 0; a < r->axes; a++)
+        if (a != r->sample && is_meant(r->axis[a].name, name))
+            axis = a, found++;
+    for (int k = 0; k < r->varied; k++)
+        if (is_meant(r->vary[k].of.name, name))
+            varied = k, found++;
+    if (found != 1)
+        return bad(found ? "--near: several paths end with"
+                         : "--near: nothing is varied that ends with",
+                   name);
+    return axis >= 0 ? find_value(&r->axis[axis], name, text, &near->point[axis])
+                     : add_distances(&r->vary[varied], name, text, near->distance);
+}
+
+/* "theta=0.02,vtheta=-0.1": the case nearest to that, offsets that are not named at the
+ * equilibrium, all else at its first value. */
+static bool find_near(const struct results *r, const char *text, uint64_t *index)
+{
+    struct near near = {{0}, NULL};
+    char *const copy = strdup(text), *rest = copy;
+    bool good = copy != NULL;
+    for (int a = 0; a < r->axes; a++)
+        if (r->axis[a].offset)
+            near.point[a] = statistics_nearest_zero(&r->axis[a]);
+    if (r->sample >= 0) {
+        near.distance = calloc(r->axis[r->sample].count, sizeof *near.distance);
+        good = good && near.distance;
+    }
+    for (char *part; good && (part = strsep(&rest, ","));) {
+        char *const equals = strchr(part, '=');
+        if (equals)
+            *equals = '\0';
+        good = equals && equals > part ? take_part(r, part, equals + 1, &near)
+                                       : bad("--near takes NAME=VALUE,..., not", text);
+    }
+    for (size_t i = 1; good && near.distance && i < r->axis[r->sample].count; i++)
+        if (near.distance[i] < near.distance[near.point[r->sample]])
+            near.point[r->sample] = i;
+    *index = 0;
+    for (int a = 0; a < r->axes; a++)
+        *index = *index * r->axis[a].count + near.point[a];
+    free(near.distance);
+    free(copy);
+    return good;
+}
+
+static bool find_case(const struct results *r, const struct request *request, size_t k,
+                      uint64_t *index)
+{
+    char text[600];
+    if (k < request->indices) {
+        char *end;
+        errno = 0;
+        *index = strtoull(request->index[k], &end, 10);
+        if (request->index[k][0] < '0' || request->index[k][0] > '9' || *end || errno)
+            return bad("--case takes the number of a case, not", request->index[k]);
+        if (!r->single && *index >= r->cases)
+            return bad("the file has no case", request->index[k]);
+        return true;
+    }
+    if (r->single) {
+        *index = r->index;
+        return true;
+    }
+    if (!find_near(r, request->near[k - request->indices], index))
+        return false;
+    results_case_text(r, *index, text, sizeof text);
+    fprintf(stderr, "case %llu, %s: %s\n", (unsigned long long)*index, text,
+            results_kind_names[r->kind[*index]]);
+    return true;
+}
+
+/* A case has its own values of what is varied: --set would change nothing. */
+static bool check_sets(const struct results *r, const struct request *request)
+{
+    for (size_t k = 0; k < request->sets; k++) {
+        const char *const set = request->set[k];
+        const size_t length = strcspn(set, "=");
+        bool varied = false;
+        for (int a = 0; a < r->axes; a++)
+            varied =
+                varied || (strncmp(r->axis[a].name, set, length) == 0 && !r->axis[a].name[length]);
+        for (int v = 0; v < r->varied; v++)
+            varied = varied ||
+                     (strncmp(r->vary[v].of.name, set, length) == 0 && !r->vary[v].of.name[length]);
+        if (varied)
+            return bad("--near chooses among the values that the file has; --set cannot", set);
+    }
+    return true;
+}
+
+/* ---- computing it again ------------------------------------------------------------------- */
+
+/* A case that was computed again, in a directory of its own. */
+struct replay {
+    char directory[256], scenario[600], file[600];
+    uint64_t index;
+    struct results r;
+    struct plot_case c;
+    bool opened, loaded;
+};
+
+static bool write_scenario(const char *path, const char *text, stance_message *message)
+{
+    FILE *out = fopen(path, "wx");
+    const bool good = out && fputs(text, out) >= 0;
+    return (out && fclose(out) == 0 && good) ||
+           complain(message, "%.150s: cannot be written: %s", path, strerror(errno));
+}
+
+/* This program again: its exit code, or -1. */
+static int run_again(const struct request *request, const struct replay *replay)
+{
+    char index[32];
+    const char *arguments[16 + 2 * MOST_SETS] = {"stance", "run",        replay->scenario,
+                                                 "--only", index,        "--trace",
+                                                 "-o",     replay->file, "--quiet"};
+    size_t count = 9;
+    pid_t child;
+    int status;
+    parallel_leave_launcher();
+    snprintf(index, sizeof index, "%llu", (unsigned long long)replay->index);
+    for (size_t k = 0; k < request->sets; k++) {
+        arguments[count++] = "--set";
+        arguments[count++] = request->set[k];
+    }
+    if (posix_spawn(&child, "/proc/self/exe", NULL, NULL, (char *const *)arguments, environ) != 0)
+        return -1;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static int compute(const struct results *r, const struct request *request, struct replay *replay,
+                   stance_message *message)
+{
+    const char *base = getenv("TMPDIR");
+    snprintf(replay->directory, sizeof replay->directory, "%s/stance-replay-XXXXXX",
+             base && base[0] && strlen(base) < 200 ? base : "/tmp");
+    if (!mkdtemp(replay->directory)) {
+        replay->directory[0] = '\0';
+        complain(message, "stance replay: cannot make a directory: %s", strerror(errno));
+        return EXIT_IO;
+    }
+    snprintf(replay->scenario, sizeof replay->scenario, "%.250s/%.255s.yaml", replay->directory,
+             r->name);
+    snprintf(replay->file, sizeof replay->file, "%.250s/%.255s.h5", replay->directory, r->name);
+    if (!write_scenario(replay->scenario, r->scenario, message))
+        return EXIT_IO;
+    const int code = run_again(request, replay);
+    if (code != EXIT_DONE && code != EXIT_CASES_FAILED) {
+        complain(message, "%.150s: case %llu cannot be computed again", r->file,
+                 (unsigned long long)replay->index);
+        return code < 0 ? EXIT_IO : code;
+    }
+    if (!results_open(&replay->r, replay->file, message))
+        return EXIT_IO;
+    replay->opened = true;
+    const enum results_kind was = r->kind[r->single ? 0 : replay->index], is = replay->r.kind[0];
+    if (request->sets == 0 && was != RESULTS_PENDING && was != is)
+        fprintf(stderr, "case %llu: was %s in the file, and is %s now\n",
+                (unsigned long long)replay->index, results_kind_names[was], results_kind_names[is]);
+    return EXIT_DONE;
+}
+
+static void clean_up(struct replay *replay)
+{
+    if (replay->loaded)
+        plot_case_free(&replay->c);
+    if (replay->opened)
+        results_close(&replay->r);
+    unlink(replay->scenario);
+    unlink(replay->file);
+    if (replay->directory[0])
+        rmdir(replay->directory);
+}
+
+/* ---- the command -------------------------------------------------------------------------- */
+
+static int draw(const struct request *request, struct replay *replays, size_t count,
+                struct plot *plots, stance_message *message)
+{
+    for (size_t k = count; k-- > 0;) {
+        struct replay *const replay = &replays[k];
+        plots[k].r = &replay->r;
+        if (!plot_case_load(&replay->c, &plots[k], 0, replay->index, message))
+            return EXIT_IO;
+        replay->loaded = true;
+        replay->c.other = k + 1 < count ? &replays[k + 1].c : NULL;
+    }
+    return (request->look.format[LOOK_GIF] ? plot_animation : plot_case)(&replays[0].c, message)
+               ? EXIT_DONE
+               : EXIT_IO;
+}
+
+static int replay(const struct request *request, struct look *look, const struct results *r,
+                  stance_message *message)
+{
+    static struct replay replays[MOST_CASES]; /* large; the process has but one command */
+    struct plot plots[MOST_CASES];
+    char directory[1024], stem[400];
+    const size_t count =
+        request->indices + request->nears > 0 ? request->indices + request->nears : 1;
+    size_t used = (size_t)snprintf(stem, sizeof stem, "%.200s", r->name);
+    int code = EXIT_DONE;
+    if (!check_sets(r, request))
+        return EXIT_USAGE;
+    for (size_t k = 0; k < count; k++) {
+        if (!find_case(r, request, k, &replays[k].index))
+            return EXIT_USAGE;
+        used += (size_t)snprintf(stem + used, sizeof stem - used, "-case%llu",
+                                 (unsigned long long)replays[k].index);
+    }
+    const char *const where = look_directory(look, request->file, directory, sizeof directory);
+    for (size_t k = 0; k < MOST_CASES; k++)
+        plots[k] = (struct plot){NULL, where, stem, look};
+    if (!gnuplot_directory(where))
+        return EXIT_IO;
+    for (size_t k = 0; code == EXIT_DONE && k < count; k++)
+        code = compute(r, request, &replays[k], message);
+    if (code == EXIT_DONE)
+        code = draw(request, replays, count, plots, message);
+    for (size_t k = 0; k < count; k++)
+        clean_up(&replays[k]);
+    return code;
+}
+
+static int work(void *context)
+{
+    struct request *request = context;
+    struct results r;
+    stance_message message = {""};
+    int code = EXIT_IO;
+    if (results_open(&r, request->file, &message)) {
+        if (!r.single && request->indices + request->nears == 0)
+            code = command_usage(&command_replay, "--case N or --near NAME=VALUE,... says which");
+        else
+            code = replay(request, &request->look, &r, &message);
+        results_close(&r);
+    }
+    if (message.text[0])
+        fprintf(stderr, "%s\n", message.text);
+    if (code == EXIT_DONE && !look_end(&request->look, &command_replay, request->file))
+        code = EXIT_USAGE;
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    struct request request = {0};
+    struct look_options options = {0};
+    size_t operands;
+    const struct option_spec specs[] = {
+        {"--case", true, request.index, MOST_CASES, &request.indices},
+        {"--near", true, request.near, MOST_CASES, &request.nears},
+        {"--set", true, request.set, MOST_SETS, &request.sets},
+        LOOK_SPECS(options),
+    };
+    const int begun =
+        command_begin(&command_replay, argc, argv, specs, sizeof specs / sizeof specs[0],
+                      "a results file", &request.file, 1, 1, &operands);
+    if (begun != COMMAND_GOES_ON)
+        return begun;
+    if (request.indices + request.nears > MOST_CASES)
+        return command_usage(&command_replay, "two cases at the most");
+    if (!look_read(&command_replay, &options, &request.look))
+        return EXIT_USAGE;
+    return sandbox(work, &request, request.file);
+}
+
+const struct command command_replay = {
+    "replay",
+    "replay FILE (--case N | --near NAME=VALUE,...)... [--set PATH=VALUE]...\n"
+    "           [-o PLACE] [--format F,...] [--picture P] [--for column|page] ...",
+    "one case of a results file again, drawn: curves, stick figures, animation",
+    run,
+    "Computes a case again, from the scenario inside the file, and draws its coordinates, forces,\n"
+    "torques and gaps against time and its stick figures: NAME-caseN-coordinates ... beside the\n"
+    "file. Two cases are overlaid, the second dashed and grey.\n"
+    "\n"
+    "  --case N       the case with this flat index; of a file of one case that one\n"
+    "  --near NAME=VALUE,...   the case nearest to these values: initial.offset.theta=0.02, or\n"
+    "                 theta=0.02 where no other path ends so. Offsets that are not named are "
+    "those\n"
+    "                 of the equilibrium, all else has its first value\n"
+    "  --set PATH=VALUE   with a value of the scenario replaced, as `run` has it\n"
+    "  -o FILE.gif    an animation in real time instead\n" LOOK_HELP,
+};

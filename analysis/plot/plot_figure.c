@@ -1,0 +1,79 @@
+/* plot_figure.c - a robot as a stick figure. */
+#include "plot_case.h"
+
+#include <math.h>
+
+int plot_case_grounded(const stance_scene *scene)
+{
+    int count = 0;
+    while (count < scene->contacts && !(scene->grip && scene->grip[count] < 0))
+        count++;
+    return count;
+}
+
+double figure_fall(const struct plot_case *c)
+{
+    return c->scenario.scene->mechanism ? tan(c->values.robot[STANCE_ROBOT_SLOPE]) : 0;
+}
+
+void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
+{
+    const stance_scene *scene = c->scenario.scene;
+    const struct results_trajectory *t = c->t;
+    const double *position = t->position + row * t->coordinates;
+    const double rest[STANCE_MAX_COORDINATES] = {0};
+    double speed[2];
+
+    figure->time = t->time[row];
+    figure->points = scene->figure(scene, c->values.robot, position, figure->point);
+    for (int k = 0; k < plot_case_grounded(scene); k++)
+        scene->contact_point(scene, c->values.robot, position, rest, k, figure->contact[k], speed);
+    figure->centre = 0;
+    for (int p = 0; p < figure->points; p++)
+        figure->centre += figure->point[p][0] / figure->points;
+    figure->base = -figure_fall(c) * figure->centre;
+}
+
+/* Contact that a point of the figure is, or -1. */
+static int contact_at(const struct figure *figure, int contacts, int point)
+{
+    for (int k = 0; k < contacts; k++)
+        if (hypot(figure->point[point][0] - figure->contact[k][0],
+                  figure->point[point][1] - figure->contact[k][1]) < 1e-9)
+            return k;
+    return -1;
+}
+
+/* A line that ends where it begins is an outline: its corners are no joints, its sides belong to
+ * the body. */
+static bool is_outline(const struct figure *figure)
+{
+    const double *first = figure->point[0], *last = figure->point[figure->points - 1];
+    return figure->points > 1 && hypot(first[0] - last[0], first[1] - last[1]) < 1e-9;
+}
+
+/* Contact whose colour a segment has; the number of contacts: the body's, as between two contacts.
+ */
+static int contact_of_segment(const struct figure *figure, int contacts, int p)
+{
+    const int first = contact_at(figure, contacts, p), second = contact_at(figure, contacts, p + 1);
+    const bool body =
+        is_outline(figure) || (first >= 0 && second >= 0) || (first < 0 && second < 0);
+    return body ? contacts : first >= 0 ? first : second;
+}
+
+void figure_put(struct gnuplot *g, const struct figure *figure, int contacts, enum figure_part part,
+                double dx, double dz)
+{
+    for (int p = 0; part == FIGURE_SEGMENTS && p + 1 < figure->points; p++) {
+        const int contact = contact_of_segment(figure, contacts, p);
+        for (int end = 0; end < 2; end++)
+            GNUPLOT_ROW(g, figure->point[p + end][0] + dx, figure->point[p + end][1] + dz, contact);
+        gnuplot_set(g, "%s", "");
+    }
+    for (int p = 0; part == FIGURE_POINTS && p < figure->points && !is_outline(figure); p++)
+        if (contact_at(figure, contacts, p) < 0)
+            GNUPLOT_ROW(g, figure->point[p][0] + dx, figure->point[p][1] + dz, contacts);
+    for (int k = 0; part == FIGURE_POINTS && k < contacts; k++)
+        GNUPLOT_ROW(g, figure->contact[k][0] + dx, figure->contact[k][1] + dz, k);
+}

@@ -1,0 +1,172 @@
+/* plot_layout.c - axes of maps, and panels. */
+#include "plot_layout.h"
+
+#include "analysis/statistics/statistics.h"
+
+#include <string.h>
+
+enum { MAX_COLUMNS = 6 }; /* of a table */
+
+/* ---- what is drawn ------------------------------------------------------------------------ */
+
+/* The last two axes of numbers make the map; where there are fewer, axes of words join them, then
+ * those of one value. Words beside numbers stand at the left, where each has a line. */
+static void choose_axes(const struct results *r, struct plot_layout *layout)
+{
+    int chosen[2] = {0, 0}, count = 0;
+    for (int rank = 0; rank < 4 && count < 2; rank++) {
+        for (int a = r->axes - 1; a >= 0 && count < 2; a--)
+            if ((r->axis[a].word != NULL) + 2 * (r->axis[a].count == 1) == rank)
+                chosen[count++] = a;
+    }
+    layout->x = chosen[0] < chosen[1] ? chosen[0] : chosen[1];
+    layout->y = chosen[0] < chosen[1] ? chosen[1] : chosen[0];
+    if (r->axis[layout->x].word && !r->axis[layout->y].word) {
+        int words = layout->x;
+        layout->x = layout->y;
+        layout->y = words;
+    }
+    plot_axis_make(&layout->across, &r->axis[layout->x]);
+    plot_axis_make(&layout->up, &r->axis[layout->y]);
+}
+
+static void choose_panels(const struct results *r, struct plot_layout *layout, int most)
+{
+    layout->panels = 1;
+    layout->others = 0;
+    double product = 1;
+    for (int a = 0; a < r->axes; a++) {
+        if (a != layout->x && a != layout->y && r->axis[a].count > 1) {
+            layout->shown[layout->others] = r->axis[a].count;
+            product *= (double)r->axis[a].count;
+            layout->other[layout->others++] = a;
+        }
+    }
+    /* Too many: the longest axis shows fewer of its points, until all fit. */
+    while (product > most) {
+        int longest = 0;
+        for (int k = 1; k < layout->others; k++)
+            longest = layout->shown[k] > layout->shown[longest] ? k : longest;
+        size_t *shown = &layout->shown[longest];
+        product /= (double)*shown;
+        *shown = *shown > 2 * (size_t)most ? 2 * (size_t)most : *shown - 1;
+        product *= (double)*shown;
+    }
+    for (int k = 0; k < layout->others; k++)
+        layout->panels *= (int)layout->shown[k];
+}
+
+void plot_layout_make(struct plot_layout *layout, const struct results *r, int most)
+{
+    choose_axes(r, layout);
+    choose_panels(r, layout, most);
+}
+
+/* Index of the m-th shown point of an axis of the panels, both ends included. */
+size_t plot_layout_shown(const struct plot_layout *layout, const struct results *r, int k, size_t m)
+{
+    size_t count = r->axis[layout->other[k]].count, shown = layout->shown[k];
+    return shown < 2 ? (count - 1) / 2 : m * (count - 1) / (shown - 1);
+}
+
+/* Coordinates of a panel, 0 along the axes of the map. */
+void plot_layout_point(const struct plot_layout *layout, const struct results *r, int panel,
+                       size_t *point)
+{
+    memset(point, 0, SCENARIO_MAX_AXES * sizeof *point);
+    size_t rest = (size_t)panel;
+    for (int k = layout->others - 1; k >= 0; k--) {
+        point[layout->other[k]] = plot_layout_shown(layout, r, k, rest % layout->shown[k]);
+        rest /= layout->shown[k];
+    }
+}
+
+/* The panel that shows a case, or -1. */
+int plot_layout_panel(const struct plot_layout *layout, const struct results *r, uint64_t index)
+{
+    size_t point[SCENARIO_MAX_AXES];
+    int panel = 0;
+    results_point(r, index, point);
+    for (int k = 0; k < layout->others; k++) {
+        size_t m = 0;
+        while (m < layout->shown[k] &&
+               plot_layout_shown(layout, r, k, m) != point[layout->other[k]])
+            m++;
+        if (m == layout->shown[k])
+            return -1;
+        panel = panel * (int)layout->shown[k] + (int)m;
+    }
+    return panel;
+}
+
+/* In the picture, too: nobody is to take what is drawn for all there is. */
+void plot_layout_note(const struct plot_layout *layout, struct gnuplot *g, const struct results *r)
+{
+    char text[160];
+    for (int k = 0; k < layout->others; k++) {
+        const struct results_axis *axis = &r->axis[layout->other[k]];
+        if (layout->shown[k] == axis->count)
+            continue;
+        snprintf(text, sizeof text, "%zu of the %zu values of %s are drawn", layout->shown[k],
+                 axis->count, axis->name);
+        gnuplot_note(g, text);
+    }
+}
+
+/* Two axes of panels are a table, rows of the first and columns of the second. */
+bool plot_layout_is_table(const struct plot_layout *layout)
+{
+    return layout->others == 2 && layout->shown[0] > 1 && layout->shown[1] > 1 &&
+           layout->shown[1] <= MAX_COLUMNS;
+}
+
+/* Place of zero on an axis of offsets; false when it is not on the map. */
+bool plot_zero_place(const struct plot_axis *along, double *place)
+{
+    if (!along->axis->offset || along->scale == PLOT_LOG)
+        return false;
+    if (along->scale == PLOT_LINEAR) {
+        *place = 0;
+        return along->low < 0 && along->high > 0;
+    }
+    size_t nearest = statistics_nearest_zero(along->axis);
+    *place = (double)nearest;
+    return !along->axis->word && along->axis->value[nearest] == 0;
+}
+
+/* A path as the titles of panels have it. */
+const char *plot_short_name(const char *path, enum plot_naming naming)
+{
+    const char *dot = naming == PLOT_NAMES ? strchr(path, '.') : strrchr(path, '.');
+    return dot ? dot + 1 : path;
+}
+
+/* "friction = 0.25", or what the look has for the path and the value. */
+void plot_value_title(struct gnuplot *g, const struct results_axis *axis, size_t i,
+                      enum plot_naming naming, char *text, size_t size)
+{
+    char value[96];
+    const char *name = look_label(g->look, axis->name);
+    results_value_text(axis, i, true, value, sizeof value);
+    if (name == axis->name)
+        name = plot_short_name(axis->name, naming);
+    if (naming == PLOT_VALUES_ALONE)
+        snprintf(text, size, "%s", look_label(g->look, value));
+    else
+        snprintf(text, size, "%s = %s", name, look_label(g->look, value));
+}
+
+/* "friction = 0.25, noise = 0.1": the page's subtitle has the whole paths in the same order. */
+void plot_panel_title(struct gnuplot *g, const struct results *r, const struct plot_layout *layout,
+                      int panel, enum plot_naming naming, char *text, size_t size)
+{
+    size_t point[SCENARIO_MAX_AXES], used = 0;
+    char one[300];
+    plot_layout_point(layout, r, panel, point);
+    text[0] = '\0';
+    for (int k = 0; k < layout->others && used < size; k++) {
+        const int a = layout->other[k];
+        plot_value_title(g, &r->axis[a], point[a], naming, one, sizeof one);
+        used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "", one);
+    }
+}

@@ -1,0 +1,285 @@
+/* plot_outline.c - the domains of an outcome over the same two axes in one frame: an outline for
+ * each file, and in it for each value of the other axes. */
+#include "boundary.h"
+#include "plot_layout.h"
+#include "plot_points.h"
+
+#include "analysis/statistics/statistics.h"
+#include "runner/base/message.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+GNUPLOT_SCRIPT(plot_outline_gp, "analysis/plot/plot_outline.gp");
+
+enum { MOST_OUTLINES = 14, HUES = 7, DASHES = 5 };
+
+struct page {
+    struct gnuplot g;
+    const struct plot *plots; /* [files] */
+    int files, outlines;
+    enum results_kind of;
+    enum plot_scale scale[2]; /* that all files can have */
+    double low[2], high[2];
+    bool cross;
+};
+
+static const struct results_axis *axis_of(const struct results *r, const struct plot_layout *layout,
+                                          int k)
+{
+    return &r->axis[k == 0 ? layout->x : layout->y];
+}
+
+/* ---- axes --------------------------------------------------------------------------------- */
+
+static bool same_words(const struct results_axis *a, const struct results_axis *b)
+{
+    bool same = a->count == b->count && !a->word == !b->word;
+    for (size_t i = 0; same && a->word && i < a->count; i++)
+        same = strcmp(a->word[i], b->word[i]) == 0;
+    return same;
+}
+
+/* Whether a file has a map, over the axes of the first one. */
+static bool check_file(const struct page *page, int f, const struct plot_layout *first,
+                       stance_message *message)
+{
+    const struct results *const r = page->plots[f].r, *const r0 = page->plots[0].r;
+    struct plot_layout layout;
+    if (r->single || r->axes < 2 || r->sample >= 0)
+        return complain(message, "%.150s: has no outline: it is no sweep over a grid of two axes",
+                        r->file);
+    plot_layout_make(&layout, r, MOST_OUTLINES);
+    for (int k = 0; k < 2; k++) {
+        const struct results_axis *const own = axis_of(r, &layout, k), *const of =
+                                                                           axis_of(r0, first, k);
+        if (strcmp(own->name, of->name) != 0 || ((own->word || of->word) && !same_words(own, of)))
+            return complain(message, "%.70s: its map is over %.30s, that of %.70s over %.30s",
+                            r->file, own->name, r0->file, of->name);
+    }
+    return true;
+}
+
+/* Where value i of a file's axis stands on the page. */
+static double place_of(const struct page *page, const struct results_axis *axis, int k, size_t i)
+{
+    return page->scale[k] == PLOT_LIST  ? (double)i
+           : page->scale[k] == PLOT_LOG ? log10(axis->value[i])
+                                        : axis->value[i];
+}
+
+/* The scales and ranges that hold all maps. */
+static void choose_scales(struct page *page)
+{
+    for (int k = 0; k < 2; k++) {
+        page->scale[k] = PLOT_LOG;
+        for (int f = 0; f < page->files; f++) {
+            struct plot_layout layout;
+            struct plot_axis along;
+            plot_layout_make(&layout, page->plots[f].r, MOST_OUTLINES);
+            plot_axis_make_curve(&along, axis_of(page->plots[f].r, &layout, k));
+            page->scale[k] = along.scale == PLOT_LOG ? page->scale[k] : along.scale;
+        }
+        page->low[k] = INFINITY;
+        page->high[k] = -INFINITY;
+        for (int f = 0; f < page->files; f++) {
+            struct plot_layout layout;
+            plot_layout_make(&layout, page->plots[f].r, MOST_OUTLINES);
+            const struct results_axis *const axis = axis_of(page->plots[f].r, &layout, k);
+            for (size_t i = 0; i < axis->count; i++) {
+                page->low[k] = fmin(page->low[k], place_of(page, axis, k, i));
+                page->high[k] = fmax(page->high[k], place_of(page, axis, k, i));
+            }
+        }
+        if (!(page->low[k] < page->high[k])) {
+            page->low[k] -= 0.5;
+            page->high[k] += 0.5;
+        }
+    }
+}
+
+static void put_axes(struct page *page, const struct plot_layout *layout)
+{
+    const struct results *const r = page->plots[0].r;
+    page->cross = true;
+    for (int k = 0; k < 2; k++) {
+        struct plot_axis along;
+        plot_axis_make_curve(&along, axis_of(r, layout, k));
+        along.scale = page->scale[k];
+        along.low = page->low[k];
+        along.high = page->high[k];
+        plot_axis_write(&along, &page->g, k == 0 ? "x" : "y");
+        page->cross = page->cross && along.axis->offset && along.scale == PLOT_LINEAR &&
+                      along.low < 0 && along.high > 0;
+    }
+}
+
+/* ---- outlines ----------------------------------------------------------------------------- */
+
+/* A place between the values of an axis, from left to right. */
+static double between(const struct plot_point *points, size_t count, double at)
+{
+    const size_t i = at < 0 ? 0 : (size_t)at, next = i + 1 < count ? i + 1 : i;
+    return points[i].place + (at - (double)i) * (points[next].place - points[i].place);
+}
+
+/* The file's axis with its values from left to right; freed by the caller. */
+static struct plot_point *sort_axis(const struct page *page, const struct results_axis *axis, int k,
+                                    stance_message *message)
+{
+    struct plot_axis along;
+    plot_axis_make_curve(&along, axis);
+    along.scale = page->scale[k];
+    return plot_points_make(&along, message);
+}
+
+static void put_lines(struct page *page, const struct boundary *b,
+                      struct plot_point *const points[2], const size_t count[2])
+{
+    gnuplot_block(&page->g, "outline%d", page->outlines);
+    for (size_t l = 0; l < b->lines; l++) {
+        const struct boundary_line *const line = &b->line[l];
+        for (size_t k = 0; k < line->count + line->closed; k++) {
+            const double *const at = b->point[line->first + k % line->count];
+            GNUPLOT_ROW(&page->g, between(points[0], count[0], at[0]),
+                        between(points[1], count[1], at[1]));
+        }
+        gnuplot_set(&page->g, "%s", ""); /* lines are apart */
+    }
+    if (b->lines == 0)
+        GNUPLOT_ROW(&page->g, NAN, NAN);
+    gnuplot_end_block(&page->g);
+}
+
+/* "place, friction = 0.2" or the file's name before it. */
+static void name_outline(struct page *page, int f, const struct plot_layout *layout, int panel,
+                         char *text, size_t size)
+{
+    const struct results *const r = page->plots[f].r;
+    char values[300];
+    plot_panel_title(&page->g, r, layout, panel,
+                     layout->others > 1 ? PLOT_NAMES : PLOT_VALUES_ALONE, values, sizeof values);
+    if (page->files == 1)
+        snprintf(text, size, "%s", values[0] ? values : results_kind_names[page->of]);
+    else
+        snprintf(text, size, "%s%s%s", look_label(page->g.look, r->name), values[0] ? ", " : "",
+                 values);
+}
+
+/* Which cases of a panel are inside, from left to right and from below; freed by the caller. */
+static uint8_t *find_inside(const struct page *page, int f, const struct plot_layout *layout,
+                            int panel, struct plot_point *const points[2], const size_t count[2],
+                            double *share)
+{
+    const struct results *const r = page->plots[f].r;
+    uint8_t *inside = malloc(count[0] * count[1]);
+    size_t point[SCENARIO_MAX_AXES], sum = 0, done = 0;
+    plot_layout_point(layout, r, panel, point);
+    for (size_t j = 0; inside && j < count[1]; j++) {
+        for (size_t i = 0; i < count[0]; i++) {
+            point[layout->x] = points[0][i].index;
+            point[layout->y] = points[1][j].index;
+            uint64_t index = 0;
+            for (int a = 0; a < r->axes; a++)
+                index = index * r->axis[a].count + point[a];
+            inside[j * count[0] + i] = r->kind[index] == page->of;
+            sum += r->kind[index] == page->of;
+            done += r->kind[index] < RESULTS_FAILED;
+        }
+    }
+    *share = done > 0 ? 100 * (double)sum / (double)done : 0;
+    return inside;
+}
+
+static bool put_outline(struct page *page, int f, const struct plot_layout *layout, int panel,
+                        stance_message *message)
+{
+    const struct results *const r = page->plots[f].r;
+    const size_t count[2] = {axis_of(r, layout, 0)->count, axis_of(r, layout, 1)->count};
+    struct plot_point *points[2] = {sort_axis(page, axis_of(r, layout, 0), 0, message),
+                                    sort_axis(page, axis_of(r, layout, 1), 1, message)};
+    struct boundary b = {0};
+    char name[400], more[32], colour[16];
+    double share = 0;
+    uint8_t *inside =
+        points[0] && points[1] ? find_inside(page, f, layout, panel, points, count, &share) : NULL;
+    const bool good =
+        (inside || no_memory(message)) && boundary_trace(&b, inside, count[0], count[1], message);
+    if (good) {
+        page->outlines++;
+        put_lines(page, &b, points, count);
+        name_outline(page, f, layout, panel, name, sizeof name);
+        snprintf(more, sizeof more, "%.1f %%", share);
+        snprintf(colour, sizeof colour, "hue[%d]", (page->outlines - 1) % HUES + 1);
+        gnuplot_legend_mark(&page->g, colour, (page->outlines - 1) % DASHES + 1, 0, name, more);
+    }
+    boundary_free(&b);
+    free(inside);
+    free(points[0]);
+    free(points[1]);
+    return good;
+}
+
+/* ---- the page ----------------------------------------------------------------------------- */
+
+/* The name of the one axis that outlines differ in, above their values. */
+static void put_head(struct page *page, const struct plot_layout *layout)
+{
+    const struct results *const r = page->plots[0].r;
+    const bool one = page->files == 1 && layout->others == 1;
+    gnuplot_text(&page->g, one ? look_label(page->g.look, r->axis[layout->other[0]].name) : "",
+                 "legend_head");
+}
+
+static bool begin(struct page *page, stance_message *message)
+{
+    const struct results *const r = page->plots[0].r;
+    char title[300], what[200];
+    bool same = true;
+    for (int f = 1; f < page->files; f++)
+        same = same && strcmp(page->plots[f].r->title, r->title) == 0;
+    if (same)
+        snprintf(title, sizeof title, "%s", r->title[0] ? r->title : r->name);
+    else
+        snprintf(title, sizeof title, "Domains of %d files", page->files);
+    snprintf(what, sizeof what,
+             "Outlines of where the outcome is: %s; beside them its share of cases",
+             results_kind_names[page->of]);
+    return gnuplot_begin(&page->g, page->plots[0].look, plot_outline_gp, title, what, message);
+}
+
+bool plot_outline(const struct plot *plots, int files, enum results_kind of,
+                  stance_message *message)
+{
+    struct page page = {.plots = plots, .files = files};
+    struct plot_layout layout = {0};
+    bool good = true;
+    if (!plots[0].r->single && plots[0].r->axes >= 2)
+        plot_layout_make(&layout, plots[0].r, MOST_OUTLINES);
+    for (int f = 0; good && f < files; f++)
+        good = check_file(&page, f, &layout, message);
+    if (!good)
+        return false;
+    page.of = of == RESULTS_KIND_COUNT ? statistics_judged(plots[0].r) : of;
+    choose_scales(&page);
+    if (!begin(&page, message))
+        return false;
+    put_axes(&page, &layout);
+    put_head(&page, &layout);
+    const int most = MOST_OUTLINES / files > 1 ? MOST_OUTLINES / files : 1;
+    for (int f = 0; good && f < files; f++) {
+        plot_layout_make(&layout, plots[f].r, most);
+        for (int p = 0; good && p < layout.panels; p++)
+            good = put_outline(&page, f, &layout, p, message);
+        plot_layout_note(&layout, &page.g, plots[f].r);
+    }
+    if (!good) {
+        gnuplot_abandon(&page.g);
+        return false;
+    }
+    gnuplot_set(&page.g, "outlines = %d; cross = %d", page.outlines, page.cross);
+    if (page.cross)
+        gnuplot_legend_mark(&page.g, "0x000000", 0, 1, "equilibrium", "");
+    return plot_end(&plots[0], &page.g, "outline", message);
+}

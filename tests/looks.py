@@ -1,0 +1,311 @@
+#!/usr/bin/python3
+"""What options make of pictures: files, sizes, fonts, names, colours.
+
+    looks.py STANCE SCENARIOS
+
+In the current folder; needs poppler-utils. Speaks TAP.
+"""
+import os
+import pty
+import re
+import shutil
+import subprocess
+import sys
+import traceback
+
+import h5py
+import numpy as np
+
+from drawn import Picture
+
+STANCE, SCENARIOS = sys.argv[1:]
+MAP = ["sweep.grid[0].values=[0.1, 0.8]", "sweep.grid[1].count=9", "sweep.grid[2].count=7", "record.cases=none"]
+count = 0
+
+
+def call(*arguments, code=0, **environment):
+    """Lines of what is printed, and of what is said."""
+    ran = subprocess.run([STANCE, *arguments], capture_output=True, text=True, check=False, env=dict(os.environ, **environment))
+    assert ran.returncode == code, (arguments, ran.returncode, ran.stderr)
+    return ran.stdout.splitlines(), ran.stderr.splitlines()
+
+
+def run(name, scenario, *settings):
+    call("run", f"{SCENARIOS}/{scenario}", *[word for s in settings for word in ("--set", s)], "--quiet", "-o", f"{name}.h5")
+
+
+def text_of(command, *arguments):
+    return subprocess.run([command, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+def is_whole(file, width, height=None):
+    """A page of a width (and height) in mm with all its fonts, all of whose words are on it and apart; those words."""
+    page = [float(x) for x in re.search(r"Page size: +([\d.]+) x ([\d.]+)", text_of("pdfinfo", file)).groups()]
+    assert abs(page[0] - width * 72 / 25.4) < 1 and (not height or abs(page[1] - height * 72 / 25.4) < 1), page
+    fonts = text_of("pdffonts", file).splitlines()[2:]
+    assert fonts and all(f.split()[-5] == "yes" for f in fonts), fonts # embedded
+    words = re.findall(r'<word xMin="(.*?)" yMin="(.*?)" xMax="(.*?)" yMax="(.*?)">(.*?)</word>', text_of("pdftotext", "-bbox", file, "-"))
+    for left, top, right, bottom, word in words:
+        assert 0 <= float(left) and float(right) <= page[0] and 0 <= float(top) and float(bottom) <= page[1], (word, left, right, page)
+    boxes = [[float(x) for x in w[:4]] for w in words]
+    for k, a in enumerate(boxes):
+        for m, b in enumerate(boxes[:k]):
+            apart = max(max(a[0], b[0]) - min(a[2], b[2]), max(a[1], b[1]) - min(a[3], b[3]))
+            assert apart > -2.5, (words[k], words[m]) # pt: letters do not fill their boxes
+    return [w[-1] for w in words]
+
+
+# ---- files, sizes, names -----------------------------------------------------------------------
+
+def one_file():
+    run("map", "friction_sweep.yaml", *MAP)
+    printed, said = call("plot", "map.h5", "--for", "column", "-o", "fig.pdf")
+    assert printed == ["fig.pdf"] and said == ["fig.pdf: --picture draws another one: settle_time, curve"], (printed, said)
+    words = is_whole("fig.pdf", 88)
+    assert "stabilised" in words and "One-foot" not in words, words # the caption has the title
+    for picture in ("settle_time", "curve"):
+        for size, width in (("column", 88), ("page", 180)):
+            printed, said = call("plot", "map.h5", "--for", size, "--picture", picture, "-o", "new/fig.pdf")
+            assert (printed, said) == (["new/fig.pdf"], []), (printed, said)
+            is_whole("new/fig.pdf", width)
+    assert os.listdir("new") == ["fig.pdf"]
+    os.mkdir("directory.pdf")
+    assert call("plot", "map.h5", "--picture", "map", "--format", "pdf", "-o", "directory.pdf")[0] == ["directory.pdf/map-map.pdf"]
+
+
+def sizes():
+    call("plot", "map.h5", "--size", "120x90", "--font", "DejaVu Serif,7", "--format", "svg,pdf", "-o", "sized")
+    assert sorted(os.listdir("sized")) == sorted(f"map-{p}.{f}" for p in ("map", "settle_time", "curve") for f in ("svg", "pdf"))
+    with open("sized/map-map.svg", encoding="utf-8") as file:
+        assert re.search(r'width="120.00mm" height="(89|90)\.\d\dmm"', file.read(2000))
+    assert "One-foot" in is_whole("sized/map-map.pdf", 120, 90)
+    assert all("Serif" in f for f in text_of("pdffonts", "sized/map-map.pdf").splitlines()[2:])
+    is_whole("sized/map-curve.pdf", 120, 90)
+    printed, said = call("plot", "map.h5", "--size", "60x40", "--picture", "map", "-o", "small.pdf", code=3)
+    assert not printed and len(said) == 1 and re.match(r"the picture needs \d+ x \d+ mm with text of this size$", said[0]), said
+    width, height = re.findall(r"\d+", said[0])
+    call("plot", "map.h5", "--size", f"{width}x{height}", "--picture", "map", "-o", "small.pdf")
+    is_whole("small.pdf", float(width), float(height))
+
+
+def names():
+    printed, said = call("plot", "map.h5", "--picture", "map", "--title", "A's title", "--labels", "initial.offset.theta=tilt, rad",
+                         "--labels", "fell=lost it", "--labels", "ground.friction=µ", "--labels", "0.1=a tenth", "--labels", "nothing=x",
+                         "--colours", "fell=#C0FFEE", "-o", "named")
+    assert said == ["stance plot: --labels: nothing is called 'nothing' there"], said
+    p = Picture(printed[0])
+    for text in ("A's title", "tilt, rad", "µ = a tenth", "µ = 0.8"):
+        assert text in p.said(), (text, p.said())
+    assert "initial offset: pitch of the trunk" not in p.said()
+    legend = p.legend()
+    assert [legend[t] for t in legend if t.startswith("lost it  ")] == ["c0ffee"], legend
+    call("plot", "map.h5", "--picture", "map", "--title", "", "--colours", "grey", "-o", "named")
+    p = Picture("named/map-map.svg")
+    assert "What became of each of 126 cases" not in " ".join(p.said())
+    assert all(c[:2] == c[2:4] == c[4:] for c in p.legend().values()), p.legend()
+
+
+def refusals():
+    for arguments in (["--format", "jpg"], ["--format", "pdf,"], ["--size", "5"], ["--size", "88x"], ["--size", "nan"], ["--size", "88x1e9"],
+                      ["--font", "Times,2"], ["--font", "a'b"], ["--for", "poster"], ["--labels", "fell"], ["--labels", "=x"],
+                      ["--colours", "fell=red"], ["--colours", "blue"], ["-o", ""], ["-o", "a.pdf", "--format", "pdf"],
+                      ["--picture", "nonsense"]):
+        printed, said = call("plot", "map.h5", *arguments, code=2)
+        assert not printed and len(said) == 1, (arguments, said)
+
+
+def letters():
+    """Letters that no font has are drawn as boxes, but in SVG, and named once."""
+    run("letters", "basin_one_foot.yaml", "sweep.grid[0].count=3", "sweep.grid[1].count=3", "title=双足 Läufer 双", "record.cases=none")
+    os.mkdir("tools")
+    for ranges, warns in (("20-7e e4 25a1", True), ("20-7e a0-ff 4e00-9fff", False)):
+        with open("tools/fc-list", "w", encoding="utf-8") as file:
+            file.write(f"#!/bin/sh\necho 'DejaVu Sans,Other:charset={ranges}'\n")
+        os.chmod("tools/fc-list", 0o755)
+        os.makedirs("kept", exist_ok=True)
+        _, said = call("plot", "letters.h5", PATH=f"{os.getcwd()}/tools:{os.environ['PATH']}", STANCE_SCRIPTS="kept")
+        said = [line for line in said if "settle_time" not in line]
+        assert len(said) == warns and (not warns or "双足" in said[0] and "ä" not in said[0]), said
+        assert "双足 Läufer 双" in Picture("letters-map.svg").said()
+        drawn = "kept/letters-map/drawn.gp"
+        assert os.path.exists(drawn) == warns
+        if warns:
+            with open(drawn, encoding="utf-8") as file:
+                assert "title = '□□ Läufer □'" in file.read()
+    _, said = call("plot", "letters.h5", "--font", "No Such Font", "--picture", "map")
+    assert len(said) <= 2 and any("no font is called No Such Font" in line for line in said), said
+
+
+def every_kind():
+    """Pictures of all kinds fit a column and a page, with nothing cut."""
+    sample = "sweep={grid: [{path: initial.offset.scale, from: 0.05, to: 1, count: 4}], sample: {method: sphere, " \
+        "count: 8, vary: [{path: initial.offset.theta, from: -0.1, to: 0.1}, {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}}"
+    run("rays", "basin_one_foot.yaml", sample, "record.cases=none")
+    run("sampled", "sampled.yaml", "sweep.sample.count=16", "record.cases=none")
+    run("bounce", "ball_bounce.yaml", "stop.time=1", "record.cases=none")
+    run("case", "balance_recovers.yaml", "stop.time=1")
+    for name, pictures in (("rays", 2), ("sampled", 3), ("bounce", 1), ("case", 5)):
+        for journal, width in (("column", 88), ("page", 180)):
+            printed, _ = call("plot", f"{name}.h5", "--for", journal, "-o", journal)
+            assert len(printed) == pictures, printed
+            for file in printed:
+                assert is_whole(file, width), file
+    words = is_whole("page/sampled-sensitivity.pdf", 180)
+    assert "0.002" in words and "0.08" in words, words # of tables
+
+
+# ---- outlines ----------------------------------------------------------------------------------
+
+def shares_of(name):
+    """Of each value of the first axis the stabilised share, as legends have it."""
+    with h5py.File(f"{name}.h5") as data:
+        meanings = data["outcome"].attrs["flag_meanings"].decode().split()
+        code = data["outcome"].attrs["flag_values"][meanings.index("stabilised")]
+        outcome = data["outcome"][...] == code
+    return [f"{100 * part.mean():.1f} %" for part in (outcome if outcome.ndim > 2 else [outcome])], outcome
+
+
+def outlines():
+    """Every case is on its side of the outline; one outline for each value and file."""
+    printed, said = call("plot", "map.h5", "--outline", "--format", "svg", "-o", "outlined")
+    assert printed == ["outlined/map-outline.svg"] and not said, (printed, said)
+    p, (shares, outcome) = Picture(printed[0]), shares_of("map")
+    for text in ("ground.friction", f"0.1  {shares[0]}", f"0.8  {shares[1]}", "equilibrium", "initial.offset.theta (rad)"):
+        assert text in p.said(), (text, p.said())
+    panel = p.panels[0]
+    with h5py.File("map.h5") as data:
+        theta, rate = data["initial.offset.theta"][...], data["initial.offset.vtheta"][...]
+    assert abs(panel.range(0)[0] - theta[0]) < 1e-3 and abs(panel.range(1)[1] - rate[-1]) < 5e-3
+    dashes = set()
+    for hue, inside in zip(("0072b2", "d55e00"), outcome):
+        lines = [(dashed, np.array(line)) for colour, dashed, line in panel.lines if colour == hue and len(line) > 2]
+        dashes |= {dashed for dashed, _ in lines}
+        crossings = np.vstack([line for _, line in lines])
+        at = np.stack([np.interp(panel.x(crossings[:, 0]), theta, range(len(theta))),
+                       np.interp(panel.y(crossings[:, 1]), rate, range(len(rate)))], 1)
+        for i, j in at: # between two neighbours that differ
+            across = abs(j - round(j)) < abs(i - round(i))
+            ends = (int(i), round(j)), (int(i) + across, round(j) + (0 if across else 1))
+            if not across:
+                ends = (round(i), int(j)), (round(i), int(j) + 1)
+            assert inside[ends[0]] != inside[ends[1]], (i, j)
+    assert dashes == {False, True} # told apart without colours
+    run("finer", "friction_sweep.yaml", "sweep.grid[0].values=[0.1]", "sweep.grid[1].count=21", "sweep.grid[2].count=17",
+        "record.cases=none")
+    call("plot", "map.h5", "finer.h5", "--outline", "--for", "column", "--labels", "finer=a finer grid", "-o", "two.pdf")
+    words = " ".join(is_whole("two.pdf", 88))
+    for text in (f"map, 0.1 {shares[0]}", f"map, 0.8 {shares[1]}", f"a finer grid {shares_of('finer')[0][0]}"):
+        assert text in words, (text, words)
+    call("plot", "map.h5", "--outline", "--of", "fell", "-o", "fell.svg")
+    assert any("outcome is: fell" in t for t in Picture("fell.svg").said())
+    run("line", "ball_bounce.yaml", "stop.time=0.1")
+    run("other", "friction_sweep.yaml", "sweep.grid[1].count=2", "sweep.grid[2]={path: initial.offset.q1, values: [0, 0.01]}",
+        "sweep.grid[0].values=[0.1]", "stop.time=0.1", "record.cases=none")
+    for arguments, code in ((["line.h5", "--outline"], 3), (["map.h5", "other.h5", "--outline"], 3), (["map.h5", "finer.h5"], 2),
+                            (["map.h5", "--outline", "--answer", "steps"], 2), (["map.h5", "missing.h5", "--outline"], 3)):
+        printed, said = call("plot", *arguments, code=code)
+        assert not printed and len(said) == 1, (arguments, said)
+
+
+# ---- replay ------------------------------------------------------------------------------------
+
+def replay():
+    """The case that a run of it draws, by its number or by what it is near to."""
+    call("run", f"{SCENARIOS}/friction_sweep.yaml", *[w for s in MAP for w in ("--set", s)], "--only", "85", "--trace", "--quiet",
+         "-o", "direct.h5")
+    call("plot", "direct.h5", "--format", "svg")
+    os.mkdir("scratch")
+    printed, said = call("replay", "map.h5", "--case", "85", "--format", "svg", "-o", "again", TMPDIR="scratch")
+    assert not said and printed == [f"again/map-case85-{p}.svg" for p in ("coordinates", "forces", "torques", "gaps", "strip")], printed
+    for picture in ("coordinates", "forces", "torques", "gaps", "strip"):
+        with open(f"direct-{picture}.svg", encoding="utf-8") as one, open(f"again/map-case85-{picture}.svg", encoding="utf-8") as other:
+            assert one.read() == other.read(), picture
+    assert not os.listdir("scratch"), "nothing is left behind"
+    with h5py.File("map.h5") as data:
+        near = [np.argmin(abs(data[n][...] - v)) for n, v in
+                (("ground.friction", 0.7), ("initial.offset.theta", 0.02), ("initial.offset.vtheta", -0.1))]
+        shape = data["outcome"].shape
+    case = np.ravel_multi_index(near, shape)
+    printed, said = call("replay", "map.h5", "--near", "friction=0.7,theta=0.02,initial.offset.vtheta=-0.1", "--picture", "strip",
+                         "--format", "svg", "-o", "again")
+    assert printed == [f"again/map-case{case}-strip.svg"] and len(said) == 1 and said[0].startswith(f"case {case}, "), (printed, said)
+    with h5py.File("map.h5") as data: # what is not named: the first value, the equilibrium
+        near = [0, np.argmin(abs(data["initial.offset.theta"][...])), np.argmin(abs(data["initial.offset.vtheta"][...] - 0.3))]
+    case = np.ravel_multi_index(near, shape)
+    assert call("replay", "map.h5", "--near", "vtheta=0.3", "--picture", "strip", "-o", "again/a.svg")[1][0].startswith(f"case {case}, ")
+    call("replay", "map.h5", "--case", "85", "--set", "initial.offset.theta=0", "--picture", "strip", "-o", "x.svg", code=2)
+    call("replay", "map.h5", "--case", "85", "--set", "robot.trunk_mass=2", "--picture", "coordinates", "-o", "heavy.svg")
+    with open("heavy.svg", encoding="utf-8") as one, open("again/map-case85-coordinates.svg", encoding="utf-8") as other:
+        assert one.read() != other.read()
+    with h5py.File("sampled.h5") as data:
+        point = np.argmin(abs(data["ground.friction"][...] - 0.5))
+        outcome = data["outcome"]
+        axis = outcome.shape.index(16)
+        stride = int(np.prod(outcome.shape[axis + 1:]))
+    _, said = call("replay", "sampled.h5", "--near", "friction=0.5", "--picture", "strip", "-o", "x.svg")
+    assert int(re.match(r"case (\d+),", said[0])[1]) // stride % 16 == point, said
+
+
+def two_cases():
+    """Two cases in the same frames, and moving."""
+    printed, _ = call("replay", "map.h5", "--case", "31", "--case", "85", "--format", "svg", "-o", "both")
+    p = Picture("both/map-case31-case85-coordinates.svg")
+    assert "dashed: the second case" in p.said() and re.search(r"case 31,.*second case 85,", " ".join(p.said())), p.said()
+    for panel in p.panels:
+        assert {q[1] for q in panel.lines if q[0] == "0072b2"} == {False, True}
+    strip = Picture("both/map-case31-case85-strip.svg")
+    assert strip.legend()["the second case"] == "b8b8b8" and len(printed) == 5
+    printed, said = call("replay", "map.h5", "--case", "31", "--case", "85", "-o", "both/walk.gif")
+    assert printed == ["both/walk.gif"] and not said, (printed, said)
+    with open("both/walk.gif", "rb") as file:
+        data = file.read()
+    frames = data.count(b"\x21\xf9\x04")
+    with open("both/map-case31-case85-coordinates.svg", encoding="utf-8"):
+        seconds = p.panels[-1].range(0)[1]
+    assert data[:6] == b"GIF89a" and data[-1:] == b";" and abs(frames - seconds / 0.04) < 2.5, (frames, seconds)
+    for arguments, what in ((["map.h5"], "says which"), (["map.h5", "--case", "x"], "number of a case"), (["map.h5", "--case", "99999"], "no case"),
+                            (["map.h5", "--near", "theta"], "NAME=VALUE"), (["map.h5", "--near", "nothing=1"], "nothing is varied"),
+                            (["map.h5", "--near", "offset=1"], "nothing is varied"), (["map.h5", "--near", "theta=a"], "NAME=NUMBER"),
+                            (["map.h5", "--case", "1", "--near", "theta=0", "--near", "theta=1"], "two cases")):
+        printed, said = call("replay", *arguments, code=2)
+        assert not printed and len(said) == 1 and what in said[0], (arguments, said)
+    assert call("replay", "missing.h5", "--case", "1", code=3)[1]
+
+
+def under_mpirun():
+    """What is not for several ranks is done and said once."""
+    if not shutil.which("mpirun"):
+        return
+    for arguments, lines in ((["plot", "map.h5", "--picture", "map", "-o", "ranks"], ["ranks/map-map.svg", "ranks/map-map.png"]),
+                             (["replay", "map.h5", "--case", "85", "--picture", "gaps", "-o", "ranks.svg"], ["ranks.svg"])):
+        ran = subprocess.run(["mpirun", "-n", "2", STANCE, *arguments], capture_output=True, text=True, check=False, timeout=100)
+        assert ran.returncode == 0 and ran.stdout.splitlines() == lines, (ran.stdout, ran.stderr)
+    ran = subprocess.run(["mpirun", "-n", "2", STANCE, "plot", "map.h5", "--nonsense"], capture_output=True, text=True, check=False, timeout=100)
+    assert ran.returncode == 2 and ran.stderr.count("unknown option") == 1, ran.stderr
+
+
+def progress():
+    """Who waits at a terminal sees that something goes on; nobody else does."""
+    os.makedirs("slow", exist_ok=True)
+    with open("slow/gnuplot", "w", encoding="utf-8") as file:
+        file.write("#!/bin/sh\nsleep 4\nexit 1\n")
+    os.chmod("slow/gnuplot", 0o755)
+    environment = dict(os.environ, PATH=f"{os.getcwd()}/slow:{os.environ['PATH']}")
+    ours, theirs = pty.openpty()
+    with subprocess.Popen([STANCE, "plot", "map.h5", "-o", "slow"], stderr=theirs, stdout=subprocess.DEVNULL, env=environment) as ran, \
+            subprocess.Popen([STANCE, "plot", "map.h5", "-o", "slow"], stderr=subprocess.PIPE, env=environment) as heard:
+        assert ran.wait() == 3 and heard.wait() == 3
+        said = os.read(ours, 4000).decode()
+        assert re.fullmatch(r"3 s\r(4 s\r)?\x1b\[K.*gnuplot failed.*\r\n", said), said
+        assert heard.stderr.read().decode().startswith("gnuplot failed")
+
+
+for check in (one_file, sizes, names, refusals, letters, every_kind, outlines, replay, two_cases, under_mpirun, progress):
+    count += 1
+    try:
+        check()
+        print(f"ok {count} - {check.__name__}", flush=True)
+    except Exception: # pylint: disable=broad-except
+        print(f"not ok {count} - {check.__name__}")
+        print("# " + traceback.format_exc().replace("\n", "\n# "), flush=True)
+print(f"1..{count}")
