@@ -20,7 +20,8 @@ PKG_CONFIG ?= pkg-config
 PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
                 libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev libssl-dev \
                 gnuplot-nox fonts-dejavu-core
-PACKAGES_TEST = libcmocka-dev python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin poppler-utils
+PACKAGES_TEST = libcmocka-dev python3-yaml python3-jsonschema man-db python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin \
+                poppler-utils
 PACKAGES_LINT = clang-format clang-tidy cppcheck
 PACKAGES_FUZZ = clang libclang-rt-dev
 PACKAGES_NEON = gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
@@ -95,7 +96,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-schedule profile lint sanitize install clean FORCE
+.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-schedule profile lint sanitize install uninstall clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(archives)
@@ -151,7 +152,7 @@ $(BUILD)/kernels: FORCE
 $(BUILD)/revision: FORCE
 	@mkdir -p $(@D); echo '$(REVISION)' | cmp -s - $@ || echo '$(REVISION)' > $@
 
--include $(shell find $(BUILD) -name '*.d' 2>/dev/null)
+-include $(shell find $(BUILD) -name '*.d' -type f 2>/dev/null)
 
 # ---- tests ---------------------------------------------------------------------------------------
 # Without MuJoCo what compares with it is skipped.
@@ -355,9 +356,12 @@ sanitize:
 	STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g' \
 	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' FUZZ_CC=none check
 
-install: bin/stance
-	install -D -m 755 bin/stance $(DESTDIR)$(PREFIX)/bin/stance
-	for f in scenarios/*.yaml scenarios/*/*.yaml scenarios/*/*.sh; do install -D -m 644 $$f $(DESTDIR)$(PREFIX)/share/stance/$$f; done
+STAGE = $(BUILD)/stage
+install: $(PROGRAM) $(archives)
+	@bash runner/install/stage.sh $(PROGRAM) $(BUILD) $(STAGE) '$(PREFIX)'
+	@bash runner/install/put.sh install $(STAGE) '$(DESTDIR)$(PREFIX)'
+uninstall:
+	@bash runner/install/put.sh uninstall '$(DESTDIR)$(PREFIX)'
 
 clean:
 	rm -rf build bin
@@ -378,5 +382,6 @@ help:
 	@echo 'make lint       format, clang-tidy, cppcheck, symbol prefixes, include rules'
 	@echo 'make sanitize   the tests under the address and undefined-behaviour sanitizers'
 	@echo 'make fuzz       damaged scenarios and results files, FUZZ_SECONDS=30 long or FUZZ_RUNS= many'
-	@echo 'make install    PREFIX=/usr/local DESTDIR='
+	@echo 'make install    program, library, manual pages, completion, schema, scenarios: PREFIX=/usr/local DESTDIR='
+	@echo 'make uninstall  removes what install puts there'
 	@echo 'make MPI=0      a build for one rank, with serial HDF5 and without MPI'

@@ -58,7 +58,13 @@ static int unknown_command(const char *word)
     const char *names[COMMANDS];
     for (size_t i = 0; i < COMMANDS; i++)
         names[i] = commands[i]->name;
-    const char *near = nearest_word(word, names, COMMANDS);
+    const char *near = nearest_word(word, names, COMMANDS), *suffix = strrchr(word, '.');
+    const bool scenario = suffix && (!strcmp(suffix, ".yaml") || !strcmp(suffix, ".yml"));
+    if (scenario || (suffix && strcmp(suffix, ".h5") == 0)) {
+        fprintf(stderr, "stance: a command comes before the file; write stance %s %s\n",
+                scenario ? "run" : "summary", word);
+        return EXIT_USAGE;
+    }
     fprintf(stderr, "stance: unknown command '%s'", word);
     if (near)
         fprintf(stderr, "; did you mean '%s'?\n", near);

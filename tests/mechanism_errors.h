@@ -17,7 +17,7 @@
     {"    trunk: {joint: free, mass: 20, inertia: 2.22, centre: [0, 0.2]}", "    trunk: heavy",
      "5:12: robot.bodies.trunk: expected a mapping, found 'heavy'"},
     {"    head: {body: trunk, at: [0, 0.625]}", "    - head",
-     "15:5: robot.points: expected a mapping of names, found a list"},
+     "15:5: robot.points: expected a mapping of names, without dashes, found a list"},
     {"joint: free", "joint: fre",
      "5:20: robot.bodies.trunk.joint: unknown word 'fre'; did you mean 'free'? (known: free, "
      "hinge, slide, fixed)"},
@@ -65,7 +65,7 @@
      "5:32: robot.bodies.trunk.mass: -20 is out of range (0 ... 1e+09 kg)"},
     {"mass: 20", "mass: 20 kg",
      "5:32: robot.bodies.trunk.mass: expected a number, found '20 kg' (numbers only; mass is in "
-     "kg)"},
+     "kg); write 20"},
     {"mass: 20", "mass: heavy", "5:32: robot.bodies.trunk.mass: expected a number, found 'heavy'"},
     {"mass: 20", "mass: .nan",
      "5:32: robot.bodies.trunk.mass: expected a number, found '.nan'; it must be finite"},
@@ -259,7 +259,7 @@
     {"gravity: 1.62", "gravity: -9.81",
      "19:46: ground.gravity: -9.81 is out of range (0 ... 10000 m/s^2)"},
     {"support: [foot2]", "support: foot2",
-     "20:81: initial.support: expected a list of names, found 'foot2'"},
+     "20:81: initial.support: expected a list of names, found 'foot2'; write [foot2]"},
     {"support: [foot2]", "support: [foot3]",
      "20:82: initial.support: unknown word 'foot3'; did you mean 'foot1'? (known: foot1, foot2)"},
     {"state: {trunk", "state: {z: 1, trunk",

@@ -337,7 +337,7 @@ def case():
     rows = int(np.isfinite(track["position"][0, :, 0]).sum())
     p = Picture("case-coordinates.svg")
     says(p, title_of(data), "time (s)", "x (m)", "z (m)", "theta (rad)", "q1 (rad)", "q2 (rad)", "dashed: equilibrium",
-         "pitch of the trunk")
+         "pitch of the trunk, counter-clockwise")
     assert len(p.panels) == 5
 
     def shown(panel, wanted, hue, low=-np.inf, high=np.inf):

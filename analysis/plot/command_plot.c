@@ -1,5 +1,6 @@
 /* command_plot.c - `stance plot FILE`: chooses the pictures that a file calls for. */
 #include "plot_case.h"
+#include "plot_model.h"
 
 #include "analysis/sensitivity/sensitivity_study.h"
 #include "runner/base/command.h"
@@ -258,12 +259,16 @@ static int run(int argc, char **argv)
 {
     struct request request = {0};
     struct look_options options = {0};
-    size_t given[3] = {0};
+    enum { MAX_SETS = 64 };
+    const char *sets[MAX_SETS];
+    size_t given[3] = {0}, model = 0, set_count = 0;
     const struct option_spec specs[] = {
         {"--case", true, &request.index, 1, &given[0]},
         {"--answer", true, &request.answer, 1, &given[1]},
         {"--of", true, &request.of, 1, &given[2]},
         {"--outline", false, NULL, 0, &request.outline},
+        {"--model", false, NULL, 0, &model},
+        {"--set", true, sets, MAX_SETS, &set_count},
         LOOK_SPECS(options),
     };
     char text[1000];
@@ -274,6 +279,11 @@ static int run(int argc, char **argv)
         return begun;
     if (!look_read(&command_plot, &options, &request.look))
         return EXIT_USAGE;
+    if (set_count > 0 && model == 0)
+        return command_usage(&command_plot, "--set belongs to --model");
+    if (model > 0 && (request.index || request.answer || request.outline || request.files > 1))
+        return command_usage(&command_plot, "--model takes one scenario, and none of --case, "
+                                            "--answer and --outline");
     if (request.look.format[LOOK_GIF])
         return command_usage(&command_plot,
                              "stance replay draws animations; pictures are svg, png or pdf");
@@ -283,6 +293,8 @@ static int run(int argc, char **argv)
         return command_usage(&command_plot, "--of belongs to --answer or --outline");
     if (request.files > 1 && !request.outline)
         return command_usage(&command_plot, "several files are drawn in one frame by --outline");
+    if (model > 0)
+        return plot_model(request.file[0], sets, set_count, &request.look);
     return sandbox(draw, &request, files_text(&request, text, sizeof text));
 }
 
@@ -291,7 +303,8 @@ const struct command command_plot = {
     "plot FILE... [--outline [--of OUTCOME] | --answer A [--of OUTCOME] | --case N]\n"
     "           [-o PLACE] [--format F,...]\n"
     "           [--picture P] [--for column|page] [--size W[xH]] [--font NAME[,PT]]\n"
-    "           [--title TEXT] [--labels NAME=TEXT]... [--colours NAME=#rrggbb|grey]...",
+    "           [--title TEXT] [--labels NAME=TEXT]... [--colours NAME=#rrggbb|grey]...\n"
+    "       stance plot --model SCENARIO [--set PATH=VALUE]... [-o PLACE] [--format F,...]",
     "pictures (SVG, PNG, PDF)",
     run,
     "Draws with gnuplot what the file calls for, beside the file or where -o says, and prints the\n"
@@ -308,6 +321,9 @@ const struct command command_plot = {
         "  --outline      NAME-outline instead: where cases were stabilised, a line for each of up "
         "to\n"
         "                 12 files and each value of their other axes, in one frame with a legend\n"
+        "  --model        of a scenario: NAME-model, the robot where its first case begins, with\n"
+        "                 coordinates and their signs, actuators, contacts; into this directory\n"
+        "  --set          replaces a value of that scenario\n"
         "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
         "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another "
         "number) of "

@@ -1,4 +1,5 @@
-/* biped.c - the planar biped: five point masses on massless links, hinged at the hip.
+/* biped.c - the planar biped: five point masses on massless links, hinged at the hip, of S. Caux
+ * and R. Zapata, Modeling and control of biped robot dynamics, Robotica 17 (1999): "the paper".
  *
  * q = (x, z, theta, q1, q2): position (x, z) of the trunk's mass, pitch theta of the trunk, angles
  * q1, q2 of the legs against the trunk, counter-clockwise. With phi_i = theta + q_i, the hip p and
@@ -74,9 +75,11 @@ static const stance_quantity robot_quantities[ROBOT_COUNT] = {
 static const stance_quantity coordinate_quantities[COORDINATES] = {
     [X] = {"x", "m", "horizontal position of the trunk's mass, forward", 0, -1e6, 1e6},
     [Z] = {"z", "m", "height of the trunk's mass above the ground", 0, -1e6, 1e6},
-    [THETA] = {"theta", "rad", "pitch of the trunk", 0, -1e3, 1e3},
-    [Q1] = {"q1", "rad", "angle of leg 1 against the trunk, 0 when in line with it", 0, -1e3, 1e3},
-    [Q2] = {"q2", "rad", "angle of leg 2 against the trunk, 0 when in line with it", 0, -1e3, 1e3},
+    [THETA] = {"theta", "rad", "pitch of the trunk, counter-clockwise", 0, -1e3, 1e3},
+    [Q1] = {"q1", "rad", "angle of leg 1 against the trunk, counter-clockwise, 0 in line with it",
+            0, -1e3, 1e3},
+    [Q2] = {"q2", "rad", "angle of leg 2 against the trunk, counter-clockwise, 0 in line with it",
+            0, -1e3, 1e3},
 };
 
 static const char *const contact_names[FEET] = {"foot1", "foot2"};

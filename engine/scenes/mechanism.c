@@ -190,13 +190,14 @@ static void add_coordinates(struct described *d)
     if (m->body[0].joint == STANCE_SLIDE)
         add_coordinate(d, root, false, "displacement of", root, " along its axis");
     else
-        add_coordinate(d, root, true, "angle of", root, " against the upright");
+        add_coordinate(d, root, true, "angle of", root, " against the upright, counter-clockwise");
     for (int b = 1; b < m->bodies; b++) {
         const bool turns = m->body[b].joint == STANCE_HINGE;
-        char against[STANCE_NAME + 10];
+        char against[STANCE_NAME + 40];
         if (m->body[b].joint == STANCE_FIXED)
             continue;
-        snprintf(against, sizeof against, " against %s", m->body[m->body[b].parent].name);
+        snprintf(against, sizeof against, " against %s%s", m->body[m->body[b].parent].name,
+                 turns ? ", counter-clockwise" : "");
         add_coordinate(d, m->body[b].name, turns, turns ? "angle of" : "displacement of",
                        m->body[b].name, against);
     }

@@ -26,6 +26,30 @@ static bool bad_use(const struct command *command, const char *text, const char 
     return false;
 }
 
+/* Operands that are one too many where PATH=VALUE of a --set was written in another way. */
+static bool unexpected(const struct command *command, int argc, char **argv, int i,
+                       const struct option_spec *specs, size_t spec_count)
+{
+    bool sets = false;
+    for (size_t k = 0; k < spec_count; k++)
+        sets = sets || strcmp(specs[k].name, "--set") == 0;
+    const char *path = i > 0 ? argv[i - 1] : "";
+    const bool joined = strncmp(path, "--set=", 6) == 0;
+    path += joined ? 6 : 0;
+    if (sets && (joined || (i > 1 && strcmp(argv[i - 2], "--set") == 0)) && !strchr(path, '=')) {
+        const char *value = strcmp(argv[i], "=") == 0 && i + 1 < argc ? argv[i + 1] : argv[i];
+        fprintf(stderr, "stance %s: unexpected argument '%s'; write --set %s=%s\n", command->name,
+                argv[i], path, value + (value[0] == '='));
+        return false;
+    }
+    if (sets && strchr(argv[i], '=')) {
+        fprintf(stderr, "stance %s: unexpected argument '%s'; write --set %s\n", command->name,
+                argv[i], argv[i]);
+        return false;
+    }
+    return bad_use(command, "unexpected argument", argv[i]);
+}
+
 static bool unknown_option(const struct command *command, const char *word,
                            const struct option_spec *specs, size_t spec_count)
 {
@@ -36,7 +60,18 @@ static bool unknown_option(const struct command *command, const char *word,
     char stem[LONGEST_OPTION + 1];
     snprintf(stem, sizeof stem, "%.*s", LONGEST_OPTION, word);
     stem[strcspn(stem, "=")] = '\0';
-    const char *near = nearest_word(stem, names, n);
+    static const char *const other[][2] = {{"--output", "-o"}, {"--out", "-o"}, {"-s", "--set"}};
+    const char *near = strlen(stem) > 2 ? nearest_word(stem, names, n) : NULL;
+    for (size_t k = 0; k < sizeof other / sizeof other[0]; k++)
+        for (size_t i = 0; i < n; i++)
+            near = strcmp(stem, other[k][0]) == 0 && strcmp(names[i], other[k][1]) == 0 ? names[i]
+                                                                                        : near;
+    if (strcmp(stem, "-n") == 0 || strcmp(stem, "-np") == 0) {
+        fprintf(stderr,
+                "stance %s: unknown option '%s'; for several ranks write mpirun -n N stance %s\n",
+                command->name, stem, command->name);
+        return false;
+    }
     if (!near)
         return bad_use(command, "unknown option", stem);
     fprintf(stderr, "stance %s: unknown option '%s'; did you mean '%s'?\n", command->name, stem,
@@ -111,7 +146,7 @@ bool command_options(const struct command *command, int argc, char **argv,
             if (!take_option(command, argc, argv, &i, specs, spec_count))
                 return false;
         } else if (*operands >= max_operands) {
-            return bad_use(command, "unexpected argument", argv[i]);
+            return unexpected(command, argc, argv, i, specs, spec_count);
         } else {
             operand[(*operands)++] = argv[i];
         }

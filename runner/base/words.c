@@ -2,6 +2,7 @@
 #include "words.h"
 
 #include <string.h>
+#include <strings.h>
 
 enum { LONGEST_WORD = 63 };
 
@@ -44,6 +45,8 @@ const char *nearest_word(const char *word, const char *const *known, size_t coun
     size_t admitted = length / 3 > 2 ? length / 3 : 2, best = admitted + 1;
 
     for (size_t i = 0; i < count; i++) {
+        if (strcasecmp(word, known[i]) == 0)
+            return known[i];
         size_t distance = edit_distance(word, known[i]);
         /* As many edits as letters would be another word altogether. */
         if (distance < best && distance < length) {

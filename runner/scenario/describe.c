@@ -89,8 +89,8 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         break;
     case FIELD_POLES:
     case FIELD_NUMBERS:
-        snprintf(buffer, size, "list of %s numbers%s%s%s%s", count_text(field->items, count[0]),
-                 unit[0] ? ", " : "", unit, words[0] ? text[FIELD_NUMBER].after : "", words);
+        snprintf(buffer, size, "list of %s numbers, %s%s%s", count_text(field->items, count[0]),
+                 field->unit, words[0] ? text[FIELD_NUMBER].after : "", words);
         break;
     case FIELD_MATRIX:
         snprintf(buffer, size, "%s lists of %s numbers, %s", count_text(field->items, count[0]),
@@ -436,25 +436,85 @@ static bool print_schema(FILE *out, const struct schema *schemas, size_t count)
 
 /* ---- which of them --------------------------------------------------------------------------- */
 
-/* What a path that no scene has may have meant, or NULL. */
+enum { SHOWN_PATHS = 12 };
+
+/* Paths whose last name is `word` or, where `words`, that admit it as a value, each once. Returns
+ * how many, at most SHOWN_PATHS. */
+static size_t paths_with(const char *word, bool words, const struct schema *schemas, size_t count,
+                         const char *list[SHOWN_PATHS])
+{
+    size_t n = 0;
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < schemas[k].count && n < SHOWN_PATHS; i++) {
+            const struct scenario_field *field = &schemas[k].field[i];
+            bool found = !words && strcmp(schema_last_name(field->path), word) == 0;
+            for (size_t w = 0; words && w < field->word_count; w++)
+                found = found || strcmp(field->words[w], word) == 0;
+            for (size_t l = 0; l < n; l++)
+                found = found && strcmp(list[l], field->path) != 0;
+            if (found)
+                list[n++] = field->path;
+        }
+    }
+    return n;
+}
+
+/* What a path that no scene has may have meant, or NULL; one name is compared with last names. */
 static const char *nearest_path(const char *path, const struct schema *schemas, size_t count)
 {
-    const char **known = malloc(count * SCHEMA_MAX_FIELDS * sizeof *known), *near = NULL;
+    const char **known = malloc(2 * count * SCHEMA_MAX_FIELDS * sizeof *known);
+    const bool whole = strchr(path, '.') != NULL;
+    const char *near = NULL;
     size_t n = 0;
-    for (size_t k = 0; known && k < count; k++)
-        for (size_t i = 0; i < schemas[k].count; i++)
-            known[n++] = schemas[k].field[i].path;
-    if (known)
-        near = nearest_word(path, known, n);
+    if (!known)
+        return NULL;
+    const char **const of = known + count * SCHEMA_MAX_FIELDS;
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < schemas[k].count; i++, n++) {
+            of[n] = schemas[k].field[i].path;
+            known[n] = whole ? of[n] : schema_last_name(of[n]);
+        }
+    }
+    near = nearest_word(path, known, n);
+    for (size_t i = 0; near && i < n; i++)
+        if (known[i] == near) {
+            near = of[i];
+            break;
+        }
     free(known);
     return near;
+}
+
+/* Says what to ask for instead of a path that no scene has. */
+static void explain_path(const char *path, FILE *errors, const struct schema *schemas, size_t count)
+{
+    const char *list[SHOWN_PATHS], *suffix = strrchr(path, '.');
+    char word[SHOWN_SIZE], text[SHOWN_PATHS * sizeof schemas->field->path];
+    const size_t ends = paths_with(path, false, schemas, count, list);
+    const size_t n = ends > 0 ? ends : paths_with(path, true, schemas, count, list);
+    const char *near = n > 0 ? NULL : nearest_path(path, schemas, count);
+
+    shown(word, path);
+    if (suffix && strcmp(suffix, ".yaml") == 0) {
+        fprintf(errors,
+                "stance describe: documents the format, not a file; write stance check %s\n", word);
+    } else if (n > 0) {
+        fprintf(errors, "stance describe: '%s' is %s %s; write stance describe %s\n", word,
+                ends > 1   ? "the end of"
+                : ends > 0 ? "the key"
+                           : "a word of",
+                words_join(text, sizeof text, ", ", list, n), list[0]);
+    } else {
+        fprintf(errors, "stance describe: unknown path '%s'%s%s%s\n", word,
+                near ? "; did you mean '" : "", near ? near : "",
+                near ? "'?" : " (stance describe lists them)");
+    }
 }
 
 /* A path, for every scene where it stands for something else. */
 static bool print_path(const char *path, FILE *out, FILE *errors, const struct schema *schemas,
                        size_t count)
 {
-    char word[SHOWN_SIZE];
     size_t index[2];
     bool found = false;
 
@@ -471,13 +531,9 @@ static bool print_path(const char *path, FILE *out, FILE *errors, const struct s
         if (common)
             break;
     }
-    if (found)
-        return true;
-    const char *near = nearest_path(path, schemas, count);
-    fprintf(errors, "stance describe: unknown path '%s'%s%s%s\n", shown(word, path),
-            near ? "; did you mean '" : "", near ? near : "",
-            near ? "'?" : " (stance describe lists them)");
-    return false;
+    if (!found)
+        explain_path(path, errors, schemas, count);
+    return found;
 }
 
 bool scenario_describe(const char *path, bool json_schema, FILE *out, FILE *errors)

@@ -1,5 +1,6 @@
 /* field.c - one value of a scenario: read from a node, checked against its row of the schema. */
 #include "field.h"
+#include "mend.h"
 
 #include "runner/base/words.h"
 
@@ -90,7 +91,7 @@ bool field_unknown(struct problems *problems, const char *name, const char *what
                    struct mark mark, const char *const *known, size_t count)
 {
     char wrong[SHOWN_SIZE], list[500], hint[2 * SHOWN_SIZE] = "";
-    const char *near = problems_full(problems) ? NULL : nearest_word(word, known, count);
+    const char *near = problems_full(problems) ? NULL : mend_word(word, known, count);
 
     if (near)
         snprintf(hint, sizeof hint, "; did you mean '%.96s'?", near);
@@ -117,13 +118,15 @@ bool field_admits(struct problems *problems, const struct scenario_field *field,
 static bool no_number(struct problems *problems, const struct scenario_field *field,
                       const char *name, const char *wanted, const struct tree_node *node)
 {
-    char what[2 * SHOWN_SIZE];
+    char what[2 * SHOWN_SIZE], mend[MEND_SIZE];
+    const bool quantity = field->unit[0] && strcmp(field->unit, "1") != 0;
     double value;
     bool finite = true;
 
     if (node->kind != TREE_SCALAR)
         return field_mismatch(problems, name, wanted, node);
     found(what, sizeof what, node);
+    const bool known = !node->quoted && mend_number(node->text, field->unit, mend);
     if (node->quoted && number_parse(node->text, &value, &finite)) {
         problem_add(problems, node->mark, "%s: expected %s, found %s; remove the quotes", name,
                     wanted, what);
@@ -135,11 +138,12 @@ static bool no_number(struct problems *problems, const struct scenario_field *fi
         problem_add(problems, node->mark, "%s: expected %s, found %s; it must be finite%s", name,
                     wanted, what, field->type == FIELD_NUMBER && field->words ? ", or none" : "");
     } else if (has_unit(node->text)) {
-        const char *unit = field->unit;
-        problem_add(problems, node->mark, "%s: expected %s, found %s (numbers only; %s %s%s)", name,
-                    wanted, what, schema_last_name(name),
-                    !unit[0] || strcmp(unit, "1") == 0 ? "has no unit" : "is in ",
-                    !unit[0] || strcmp(unit, "1") == 0 ? "" : unit);
+        problem_add(problems, node->mark, "%s: expected %s, found %s (numbers only; %s %s%s)%s%s",
+                    name, wanted, what, schema_last_name(name), quantity ? "is in " : "has no unit",
+                    quantity ? field->unit : "", known ? "; write " : "", known ? mend : "");
+    } else if (known) {
+        problem_add(problems, node->mark, "%s: expected %s, found %s; write %s", name, wanted, what,
+                    mend);
     } else {
         return field_mismatch(problems, name, wanted, node);
     }
@@ -229,22 +233,52 @@ bool field_value(struct problems *problems, const struct scenario_field *field, 
     return good;
 }
 
+/* A mapping or a scalar where a list is wanted: what is in it is probably meant to be an item. */
+static bool no_list(struct problems *problems, const char *name, const char *wanted,
+                    const struct tree_node *node)
+{
+    char what[2 * SHOWN_SIZE], word[SHOWN_SIZE];
+    found(what, sizeof what, node);
+    if (node->kind == TREE_MAP && node->count > 0) {
+        return problem_add(problems, node->mark,
+                           "%s: expected %s, found %s; each item begins with a dash: - %s: ...",
+                           name, wanted, what, shown(word, node->key[0].name));
+    }
+    if (node->kind == TREE_SCALAR && node->text[0] && strlen(node->text) < SHOWN_SIZE / 2) {
+        return problem_add(problems, node->mark, "%s: expected %s, found %s; write [%s]", name,
+                           wanted, what, shown(word, node->text));
+    }
+    return field_mismatch(problems, name, wanted, node);
+}
+
 bool field_items(struct problems *problems, const char *name, const struct tree_node *node,
                  size_t items, const char *what)
 {
     char wanted[64];
     snprintf(wanted, sizeof wanted, "%zu %s", items, what);
-    if (node->kind != TREE_LIST)
+    if (node->kind == TREE_SCALAR && items > 1 && !strpbrk(node->text, ", "))
         return field_mismatch(problems, name, wanted, node);
-    return node->count == items || problem_add(problems, node->mark, "%s: expected %s, found %zu",
-                                               name, wanted, node->count);
+    if (node->kind != TREE_LIST)
+        return no_list(problems, name, wanted, node);
+    if (node->count == items)
+        return true;
+    size_t commas = 0; /* [0,2, 0,4]: whole numbers followed by digits alone */
+    for (size_t i = 1; i < node->count; i++) {
+        const struct tree_node *const left = node->item[i - 1], *const right = node->item[i];
+        commas += left->kind == TREE_SCALAR && right->kind == TREE_SCALAR && left->text[0] &&
+                  right->text[0] && !left->text[strspn(left->text, "+-0123456789")] &&
+                  !right->text[strspn(right->text, "0123456789")];
+    }
+    return problem_add(
+        problems, node->mark, "%s: expected %s, found %zu%s", name, wanted, node->count,
+        node->count > items && commas > 0 ? "; decimals have a point, not a comma" : "");
 }
 
 bool field_list(struct problems *problems, const char *name, const char *wanted,
                 const struct tree_node *node)
 {
     if (node->kind != TREE_LIST)
-        return field_mismatch(problems, name, wanted, node);
+        return no_list(problems, name, wanted, node);
     if (node->count == 0)
         return problem_add(problems, node->mark, "%s: the list is empty", name);
     return true;
@@ -256,6 +290,10 @@ bool field_words(struct problems *problems, const struct scenario_field *field, 
     bool good = true;
     uint32_t bits = 0;
 
+    int one;
+    if (node->kind == TREE_SCALAR && node->text[0] &&
+        !field_word(problems, field, name, node, &one))
+        return false;
     if (!field_list(problems, name, "a list of names", node))
         return false;
     for (size_t i = 0; i < node->count; i++) {

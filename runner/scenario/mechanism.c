@@ -122,7 +122,8 @@ static bool read_names(struct description *d, const struct tree_node *robot, enu
                                                 "robot.bodies is missing: a mechanism is made "
                                                 "of them");
     if (map->kind != TREE_MAP)
-        return field_mismatch(description_problems(d), path, "a mapping of names", map);
+        return field_mismatch(description_problems(d), path, "a mapping of names, without dashes",
+                              map);
     if (map->count == 0 && part == PART_BODY)
         return problem_add(description_problems(d), map->mark, "%s: there is no body", path);
     if (map->count > (size_t)kind->most)

@@ -50,6 +50,13 @@ static inline bool reader_given(const struct seen *seen)
 void reader_check_keys(struct reader *r, const struct tree_node *map, const char *path,
                        const char *name);
 
+/* Reports something else where the mapping of `field` is wanted. */
+void reader_no_mapping(struct reader *r, const struct scenario_field *field,
+                       const struct tree_node *node);
+
+/* What mechanism_read has read: where keys stand is noted by the reader, no more. */
+bool reader_described(const struct reader *r, const char *path);
+
 /* scenario_check.c: what the keys mean for each other; completes the base values. */
 void scenario_cross_check(struct reader *r);
 

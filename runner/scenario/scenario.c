@@ -12,6 +12,7 @@
 #include "runner/base/numbers.h"
 #include "runner/base/words.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/magic.h>
@@ -70,9 +71,15 @@ static char *read_file(struct reader *r, const char *file, size_t *length)
     FILE *in = open_file(file);
 
     if (!in || fstat(fileno(in), &status) != 0) {
-        problem_add(&r->problems, nowhere, "%s",
-                    errno == ETIMEDOUT ? "a named pipe into which nothing is written"
-                                       : strerror(errno));
+        const int error = errno;
+        char with[PATH_SIZE];
+        snprintf(with, sizeof with, "%s.yaml", file);
+        if (error == ENOENT && strlen(file) < sizeof with - 5 && access(with, R_OK) == 0)
+            problem_add(&r->problems, nowhere, "%s; did you mean '%s'?", strerror(error), with);
+        else
+            problem_add(&r->problems, nowhere, "%s",
+                        error == ETIMEDOUT ? "a named pipe into which nothing is written"
+                                           : strerror(error));
     } else if (S_ISDIR(status.st_mode)) {
         problem_add(&r->problems, nowhere, "is a directory, not a scenario file");
     } else if (!(text = malloc(TREE_MAX_BYTES + 2))) {
@@ -83,7 +90,12 @@ static char *read_file(struct reader *r, const char *file, size_t *length)
         const char *wrong = ferror(in) ? strerror(errno) : NULL;
         if (!wrong && *length > TREE_MAX_BYTES)
             wrong = "larger than 1 MiB, the most a scenario may take";
-        if (wrong) {
+        if (!wrong && *length >= 8 && memcmp(text, "\x89HDF\r\n\x1a\n", 8) == 0) {
+            problem_add(&r->problems, nowhere,
+                        "a results file, not a scenario; write stance summary %s", file);
+            free(text);
+            text = NULL;
+        } else if (wrong) {
             problem_add(&r->problems, nowhere, "%s", wrong);
             free(text);
             text = NULL;
@@ -124,75 +136,6 @@ bool reader_value(struct reader *r, const char *path, double *value)
 
     *value = field->fallback;
     return !node || field_value(&r->problems, field, path, node, value);
-}
-
-/* What mechanism_read has read: where keys stand is noted here, no more. */
-static bool is_described(const struct reader *r, const char *path)
-{
-    return r->s->own_scene && strncmp(path, "robot", strcspn(path, ".")) == 0 && path[0];
-}
-
-/* A key that is unknown here but stands elsewhere in the format, or NULL. */
-static const struct scenario_field *elsewhere(const struct reader *r, const char *key)
-{
-    const struct schema *const schema = &r->schema;
-    for (size_t i = 0; i < schema->count; i++)
-        if (!strchr(schema->field[i].path, '[') && !is_described(r, schema->field[i].path) &&
-            !(r->s->own_scene && strncmp(schema->field[i].path, "controller.model.", 17) == 0) &&
-            strcmp(schema_last_name(schema->field[i].path), key) == 0)
-            return &schema->field[i];
-    return NULL;
-}
-
-static void unknown_key(struct reader *r, const struct tree_key *key, const char *path,
-                        const char *name, const char *const *known, size_t count)
-{
-    char near_path[PATH_SIZE], word[SHOWN_SIZE], list[500];
-    if (problems_full(&r->problems)) {
-        field_unknown(&r->problems, name, "key", key->name, key->mark, known, count);
-        return;
-    }
-    const char *near = nearest_word(key->name, known, count);
-    const struct scenario_field *other = elsewhere(r, key->name);
-
-    if (!near && r->s->scene) {
-        snprintf(near_path, sizeof near_path, "%s%s%.64s", path, path[0] ? "." : "", key->name);
-        if (schema_scene_with(near_path)) {
-            problem_add(&r->problems, key->mark, "%s%sthe scene %s has no key '%s' (known: %s)",
-                        name, name[0] ? ": " : "", r->s->scene->name, shown(word, key->name),
-                        word_list(list, sizeof list, known, count));
-            if (strcmp(path, "initial") == 0)
-                reader_seen(r, path)->excused = true; /* that there is no start is said already */
-            return;
-        }
-    }
-    if (!near && other) {
-        problem_add(&r->problems, key->mark, "%s%sunknown key '%s'; did you mean '%s'?", name,
-                    name[0] ? ": " : "", shown(word, key->name), other->path);
-        return;
-    }
-    field_unknown(&r->problems, name, "key", key->name, key->mark, known, count);
-    if (near) {
-        snprintf(near_path, sizeof near_path, "%s%s%s", path, path[0] ? "." : "", near);
-        const struct scenario_field *field = schema_find(&r->schema, near_path);
-        if (field)
-            r->seen[field - r->schema.field].excused = true;
-    }
-}
-
-void reader_check_keys(struct reader *r, const struct tree_node *map, const char *path,
-                       const char *name)
-{
-    const char *known[SCHEMA_MAX_FIELDS];
-    size_t count = schema_children(&r->schema, path, known, SCHEMA_MAX_FIELDS);
-
-    for (size_t i = 0; i < map->count; i++) {
-        bool found = false;
-        for (size_t k = 0; k < count && !found; k++)
-            found = strcmp(map->key[i].name, known[k]) == 0;
-        if (!found)
-            unknown_key(r, &map->key[i], path, name, known, count);
-    }
 }
 
 /* ---- values by themselves -------------------------------------------------------------------- */
@@ -290,17 +233,14 @@ static void read_value(struct reader *r, const struct scenario_field *field,
     const bool map = field->type == FIELD_MAP || field->type == FIELD_MAP_OR_WORD;
     if (map && node->kind == TREE_MAP) {
         read_map(r, node, field->path);
-    } else if (is_described(r, field->path)) {
+    } else if (reader_described(r, field->path)) {
         return;
     } else if (field->type == FIELD_MAP_OR_WORD && node->kind == TREE_SCALAR &&
                strcmp(node->text, field->words[0]) == 0) {
         r->s->base.settle = 0; /* stop.settle is the only one */
     } else if (map) {
         seen->bad = true;
-        field_mismatch(&r->problems, field->path,
-                       field->type == FIELD_MAP ? "a mapping"
-                                                : "off, or a mapping with angle, rate, hold",
-                       node);
+        reader_no_mapping(r, field, node);
     } else if (field->type == FIELD_POLES || field->type == FIELD_NUMBERS ||
                field->type == FIELD_MATRIX) {
         seen->bad = !read_items(r, field, node);
@@ -311,7 +251,7 @@ static void read_value(struct reader *r, const struct scenario_field *field,
 
 static void read_map(struct reader *r, const struct tree_node *map, const char *path)
 {
-    if (!is_described(r, path)) /* else it was checked when it was read */
+    if (!reader_described(r, path)) /* else it was checked when it was read */
         reader_check_keys(r, map, path, path);
     for (size_t i = 0; i < map->count; i++) {
         char below[PATH_SIZE];
@@ -333,7 +273,7 @@ static void set_defaults(struct reader *r)
         base->model[i] = NAN;
     for (size_t i = 0; i < r->schema.count; i++) {
         const struct scenario_field *field = &r->schema.field[i];
-        if (field->offset == NO_OFFSET || is_described(r, field->path))
+        if (field->offset == NO_OFFSET || reader_described(r, field->path))
             continue;
         char *place = (char *)base + field->offset;
         if (field->type == FIELD_NUMBER) {
@@ -390,7 +330,9 @@ static void read_record(struct reader *r)
     const struct tree_node *answers = reader_seen(r, "record.answers")->node;
     int word = 0;
 
-    if (cases && cases->kind == TREE_SCALAR) {
+    if (cases && cases->kind == TREE_SCALAR && isdigit((unsigned char)cases->text[0])) {
+        field_list(&r->problems, "record.cases", "none, all or a list of cases", cases);
+    } else if (cases && cases->kind == TREE_SCALAR) {
         field_word(&r->problems, schema_find(&r->schema, "record.cases"), "record.cases", cases,
                    &word);
         s->record_cases = word ? RECORD_ALL : RECORD_NONE;

@@ -250,7 +250,9 @@ static const struct row rows[] = {
                  "take it into account. Needs sample_time > 0."}},
     {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(torque_limit), .unit = "N m", .fallback = INFINITY, .fallback_text = "none",
-         ABOVE(0, LARGE), WORDS(schema_none), .text = "largest torque of each actuator"}},
+         ABOVE(0, LARGE), WORDS(schema_none), .text = "largest torque of each actuator",
+         .more = "A positive torque turns its leg, or body, counter-clockwise, and what it hangs from "
+                 "the other way: stance plot --model SCENARIO draws it."}},
     {0, {.path = "controller.noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(noise), .unit = "N m", .fallback = 0, RANGE(0, LARGE),
          .text = "half-width of uniform noise on the torques",
@@ -273,8 +275,9 @@ static const struct row rows[] = {
          .text = "longest duration of a run"}},
     {0, {.path = "stop.settle", .type = FIELD_MAP_OR_WORD, BY_HAND, WORDS(settle_words),
          .text = "when a run counts as stabilised or at rest",
-         .more = "off: a run lasts its whole time, unless the robot falls, and is judged at its "
-                 "end."}},
+         .more = "\"off\": a run lasts its whole time, unless the robot falls, and is judged at its "
+                 "end. (In quotes: tools of YAML 1.1 take a bare off for false. Here both are the "
+                 "word.)"}},
     {0, {.path = "stop.settle.angle", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
          VALUE(settle_angle), .unit = "rad", .fallback = 0.05, ABOVE(0, LARGE),
          .text = "largest deviation of an angle that counts as settled"}},

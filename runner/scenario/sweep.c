@@ -1,4 +1,5 @@
 /* sweep.c - the axes of the grid, and the cases that they make. */
+#include "mend.h"
 #include "reader.h"
 
 #include "runner/base/words.h"
@@ -41,7 +42,8 @@ static bool unknown_path(struct axis_reader *a, const struct tree_node *node)
         known[n] = path[n];
         n++;
     }
-    near = nearest_word(node->text, known, n);
+    near = mend_path(node->text, known, n);
+    near = near ? near : nearest_word(node->text, known, n);
     shown(word, node->text);
     if (schema->scene && schema_scene_with(node->text)) {
         problem_add(&a->r->problems, node->mark,

@@ -4,6 +4,7 @@
  * blocks, so that no error path has anything to release.
  */
 #include "tree.h"
+#include "mend.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -115,6 +116,8 @@ struct parse {
     struct problems *problems;
     yaml_parser_t parser;
     yaml_event_t event; /* the one being looked at; deleted by `next` */
+    const char *text;
+    size_t length;
     int set;
     size_t anchors;
     struct {
@@ -123,14 +126,10 @@ struct parse {
     } anchor[TREE_MAX_ANCHORS];
 };
 
-static struct mark mark_of(const struct parse *parse, yaml_mark_t at)
-{
-    return (struct mark){parse->set, (int)at.line + 1, (int)at.column + 1};
-}
-
 static struct mark event_mark(const struct parse *parse)
 {
-    return mark_of(parse, parse->event.start_mark);
+    const yaml_mark_t at = parse->event.start_mark;
+    return (struct mark){parse->set, (int)at.line + 1, (int)at.column + 1};
 }
 
 static bool next(struct parse *parse)
@@ -141,11 +140,22 @@ static bool next(struct parse *parse)
     memset(&parse->event, 0, sizeof parse->event);
     if (parse->parser.error == YAML_MEMORY_ERROR)
         return problem_no_memory(parse->problems);
-    bool has_mark = parse->parser.problem_mark.index || parse->parser.problem_mark.line;
-    return problem_add(
-        parse->problems,
-        mark_of(parse, has_mark ? parse->parser.problem_mark : parse->parser.context_mark),
-        "not YAML: %s", parse->parser.problem ? parse->parser.problem : "malformed");
+    const yaml_parser_t *parser = &parse->parser;
+    const bool has_mark = parser->problem_mark.index || parser->problem_mark.line;
+    const yaml_mark_t at = has_mark ? parser->problem_mark : parser->context_mark;
+    struct misread misread = {
+        .text = parse->text,
+        .length = parse->length,
+        .problem = parser->problem ? parser->problem : "malformed",
+        .line = at.line,
+        .column = at.column,
+        .context_line = parser->context_mark.line,
+        .context_column = parser->context_mark.column,
+    };
+    char mend[MEND_SIZE];
+    const bool mended = mend_yaml(&misread, mend);
+    const struct mark mark = {parse->set, (int)misread.line + 1, (int)misread.column + 1};
+    return problem_add(parse->problems, mark, "not YAML: %s", mended ? mend : misread.problem);
 }
 
 static bool too_deep(struct problems *problems, struct mark mark)
@@ -194,8 +204,10 @@ static bool read_alias(struct parse *parse, int depth, struct tree_node **out)
         }
         return copy_node(parse, parse->anchor[i].node, depth, mark, out);
     }
-    return problem_add(parse->problems, mark, "no anchor &%s stands before this alias",
-                       shown(word, name));
+    return problem_add(
+        parse->problems, mark,
+        "no anchor &%s stands before this alias; text that begins with * stands in quotes",
+        shown(word, name));
 }
 
 /* Notes the anchor of the event, if it has one; *index is then where. Tags are refused. */
@@ -360,6 +372,8 @@ static bool parse_text(struct tree *tree, const char *text, size_t length, int s
     parse->tree = tree;
     parse->problems = problems;
     parse->set = set;
+    parse->text = text;
+    parse->length = length;
     yaml_parser_set_encoding(&parse->parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&parse->parser, (const unsigned char *)text, length);
     bool good = read_document(parse, root);
@@ -472,8 +486,14 @@ bool tree_set(struct tree *tree, const char *path_and_value, int set, struct pro
 {
     struct mark mark = {set, 1, 1};
     const char *equals = strchr(path_and_value, '=');
-    if (!equals)
-        return problem_add(problems, mark, "a value must follow, as in PATH=VALUE");
+    if (!equals) {
+        const size_t path = strcspn(path_and_value, ": ");
+        const char *value = path_and_value + path + strspn(path_and_value + path, ": ");
+        char name[SHOWN_SIZE], word[SHOWN_SIZE], start[SHOWN_SIZE];
+        snprintf(start, sizeof start, "%.*s", (int)(path < 44 ? path : 44), path_and_value);
+        return problem_add(problems, mark, "a value must follow; write %s=%s", shown(name, start),
+                           *value ? shown(word, value) : "VALUE");
+    }
     size_t length = strlen(equals + 1);
     struct tree_node *value = NULL;
     if (strlen(path_and_value) > TREE_MAX_BYTES)

@@ -42,7 +42,16 @@ static herr_t find_reason(unsigned n, const H5E_error2_t *error, void *unused)
 {
     (void)n, (void)unused;
     const char *system = error->desc ? strstr(error->desc, "error message = '") : NULL;
-    if (system && !reason.system) {
+    unsigned long long there, meant;
+    if (error->desc &&
+        sscanf(error->desc,
+               "truncated file: eof = %llu, sblock->base_addr = %*u, stored_eof = %llu", &there,
+               &meant) == 2) {
+        snprintf(reason.text, sizeof reason.text,
+                 "only %llu of its %llu bytes are there; copy it again, or compute it anew", there,
+                 meant);
+        reason.system = true;
+    } else if (system && !reason.system) {
         system += strlen("error message = '");
         snprintf(reason.text, sizeof reason.text, "%.*s", (int)strcspn(system, "'"), system);
         reason.system = true;
@@ -78,7 +87,7 @@ bool store_failed(stance_message *message, const char *file, const char *what)
 hid_t hdf_open_to_read(const char *file, stance_message *message)
 {
     struct stat information;
-    const char *wrong = NULL;
+    const char *wrong = NULL, *suffix = strrchr(file, '.');
     hid_t id = -1;
 
     hdf_remember();
@@ -87,7 +96,10 @@ hid_t hdf_open_to_read(const char *file, stance_message *message)
     else if (!S_ISREG(information.st_mode))
         wrong = S_ISDIR(information.st_mode) ? strerror(EISDIR) : "not a file";
     else if (H5Fis_hdf5(file) <= 0)
-        wrong = "not an HDF5 file";
+        wrong = suffix && (!strcmp(suffix, ".yaml") || !strcmp(suffix, ".yml"))
+                    ? "a scenario, not a results file; stance run makes one of it"
+                : information.st_size == 0 ? "an empty file, not an HDF5 file"
+                                           : "not an HDF5 file";
     if (wrong) {
         complain(message, "%.100s: %s", file, wrong);
         return -1;

@@ -1,0 +1,422 @@
+/* plot_model.c - the robot of a scenario in its first posture: coordinates with their names, zeros
+ * and signs, actuators, contacts, which way is positive.
+ *
+ * Nothing here knows a scene. What a coordinate does is seen from what it moves: points p of the
+ * stick figure with velocities v at its unit rate, about p + (-v_z, v_x) if they turn, along v if
+ * they slide. Its own link is the one that the fewest other coordinates move.
+ */
+#include "plot_model.h"
+#include "plot_case.h"
+
+#include "runner/plan/plan.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+GNUPLOT_SCRIPT(plot_model_gp, "analysis/plot/plot_model.gp");
+
+enum { MOST_LABELS = 40, ARC_STEPS = 24 };
+
+/* Whose colour something has in the script. */
+enum ink { INK_COORDINATE, INK_ACTUATOR, INK_CONTACT };
+
+/* How one coordinate moves the figure. */
+struct moved {
+    bool turns, all;  /* an angle; moves every point */
+    double centre[2]; /* m, of the turn */
+    double along[2];  /* of a slide, of length 1 */
+    double point[2];  /* m, where its link ends */
+    double direction; /* rad, from the centre to that point, counter-clockwise from +x */
+};
+
+struct model {
+    const stance_scene *scene;
+    const stance_case *c;
+    int points;
+    double point[STANCE_MAX_POINTS][2];
+    double velocity[STANCE_MAX_COORDINATES][STANCE_MAX_POINTS][2]; /* at unit rates */
+    struct moved moved[STANCE_MAX_COORDINATES];
+    double low[2], high[2], size; /* m: of the figure */
+    struct gnuplot *g;
+    int labels;
+};
+
+/* ---- what coordinates move ---------------------------------------------------------------- */
+
+static bool is_still(const double v[2])
+{
+    return hypot(v[0], v[1]) < 1e-6;
+}
+
+static void differentiate(struct model *m, int k)
+{
+    static const double step = 1e-6;
+    double position[STANCE_MAX_COORDINATES], ahead[STANCE_MAX_POINTS][2];
+    memcpy(position, m->c->position, sizeof position);
+    position[k] += step;
+    m->scene->figure(m->scene, m->c->robot, position, ahead);
+    for (int p = 0; p < m->points; p++)
+        for (int i = 0; i < 2; i++)
+            m->velocity[k][p][i] = (ahead[p][i] - m->point[p][i]) / step;
+}
+
+/* Of the points that coordinate k moves the one that the fewest others do; among them the nearest
+ * to the centre of its turn that is not there. -1: none. */
+static int own_point(const struct model *m, int k)
+{
+    int own = -1, fewest = 0;
+    double nearest = 0;
+    for (int p = 0; p < m->points; p++) {
+        int others = 0;
+        const double away = m->moved[k].turns ? hypot(m->point[p][0] - m->moved[k].centre[0],
+                                                      m->point[p][1] - m->moved[k].centre[1])
+                                              : 0;
+        if (is_still(m->velocity[k][p]) || (m->moved[k].turns && away < 1e-3 * m->size))
+            continue;
+        for (int other = 0; other < m->scene->coordinates; other++)
+            others += !is_still(m->velocity[other][p]);
+        if (own < 0 || others < fewest || (others == fewest && away < nearest + 1e-9 * m->size)) {
+            own = p;
+            fewest = others;
+            nearest = away;
+        }
+    }
+    return own;
+}
+
+static void find_motion(struct model *m, int k)
+{
+    struct moved *const moved = &m->moved[k];
+    int fastest = 0, still = 0;
+    for (int p = 0; p < m->points; p++) {
+        const double *v = m->velocity[k][p], *most = m->velocity[k][fastest];
+        still += is_still(v);
+        if (hypot(v[0], v[1]) > hypot(most[0], most[1]))
+            fastest = p;
+    }
+    const double *v = m->velocity[k][fastest], speed = fmax(hypot(v[0], v[1]), 1e-300);
+    moved->turns = strcmp(m->scene->coordinate[k].unit, "rad") == 0;
+    moved->all = still == 0;
+    moved->centre[0] = m->point[fastest][0] - v[1];
+    moved->centre[1] = m->point[fastest][1] + v[0];
+    moved->along[0] = v[0] / speed;
+    moved->along[1] = v[1] / speed;
+    const int own = own_point(m, k);
+    memcpy(moved->point, m->point[own < 0 ? 0 : own], sizeof moved->point);
+    moved->direction =
+        atan2(moved->point[1] - moved->centre[1], moved->point[0] - moved->centre[0]);
+}
+
+static void make_model(struct model *m)
+{
+    m->points = m->scene->figure(m->scene, m->c->robot, m->c->position, m->point);
+    for (int i = 0; i < 2; i++) {
+        m->low[i] = INFINITY;
+        m->high[i] = -INFINITY;
+        for (int p = 0; p < m->points; p++) {
+            m->low[i] = fmin(m->low[i], m->point[p][i]);
+            m->high[i] = fmax(m->high[i], m->point[p][i]);
+        }
+    }
+    m->size = fmax(fmax(m->high[0] - m->low[0], m->high[1] - m->low[1]), 1e-6);
+    for (int k = 0; k < m->scene->coordinates; k++)
+        differentiate(m, k);
+    for (int k = 0; k < m->scene->coordinates; k++)
+        find_motion(m, k);
+}
+
+/* ---- drawing ------------------------------------------------------------------------------ */
+
+static void label(struct model *m, enum ink ink, double x, double z, const char *text)
+{
+    if (m->labels == MOST_LABELS)
+        return;
+    m->labels++;
+    gnuplot_text(m->g, text, "label_text[%d]", m->labels);
+    gnuplot_set(m->g, "label_x[%d] = %#.9g; label_y[%d] = %#.9g; label_ink[%d] = %d", m->labels, x,
+                m->labels, z, m->labels, ink);
+}
+
+/* Around the centre of coordinate k, from one angle to another; its last piece has
+ * a head. Rows: where it begins, how far it goes, its ink, whether it has a head. */
+static void arc(struct model *m, int k, enum ink ink, double radius, double from, double to)
+{
+    const double *const centre = m->moved[k].centre;
+    for (int i = 0; i < ARC_STEPS; i++) {
+        const double a = from + (to - from) * i / ARC_STEPS,
+                     b = from + (to - from) * (i + 1) / ARC_STEPS;
+        GNUPLOT_ROW(m->g, centre[0] + radius * cos(a), centre[1] + radius * sin(a),
+                    radius * (cos(b) - cos(a)), radius * (sin(b) - sin(a)), ink,
+                    i + 1 == ARC_STEPS);
+    }
+}
+
+/* How many earlier coordinates turn about the same place: each has a radius of its own. */
+static int rank_of(const struct model *m, int k)
+{
+    int rank = 0;
+    for (int other = 0; other < k; other++)
+        rank += m->moved[other].turns &&
+                hypot(m->moved[other].centre[0] - m->moved[k].centre[0],
+                      m->moved[other].centre[1] - m->moved[k].centre[1]) < 1e-3 * m->size;
+    return rank;
+}
+
+/* An angle goes from where its link would be at 0 to where it is; near 0 the arc shows the sign. */
+static double shown_angle(const struct model *m, int k)
+{
+    const double angle = remainder(m->c->position[k], 2 * M_PI);
+    return fabs(angle) < 0.1 ? 0 : angle;
+}
+
+/* In proportion to its link, as far as that is short. */
+static double reach_of(const struct model *m, int k)
+{
+    const struct moved *const moved = &m->moved[k];
+    return fmin(m->size, 2.2 * hypot(moved->point[0] - moved->centre[0],
+                                     moved->point[1] - moved->centre[1]));
+}
+
+static double radius_of(const struct model *m, int k)
+{
+    return reach_of(m, k) * (0.15 + 0.08 * rank_of(m, k));
+}
+
+static double torque_radius(const struct model *m, int k)
+{
+    return reach_of(m, k) * (0.33 + 0.05 * rank_of(m, k));
+}
+
+/* A rail's coordinate is far from where it is 0, perhaps: an arrow shows its sign. */
+static bool is_place(const struct model *m, int k)
+{
+    const struct moved *const moved = m->moved;
+    return k < 2 && m->scene->coordinates > 1 && moved[0].all && moved[1].all && !moved[0].turns &&
+           !moved[1].turns;
+}
+
+/* How far the arrow of a slide goes, and from where. */
+static double slide_of(const struct model *m, int k, double from[2])
+{
+    const struct moved *const moved = &m->moved[k];
+    const double q = m->c->position[k], side = 0.05 * m->size;
+    const bool sign = moved->all || fabs(q) < 0.02 * m->size;
+    for (int i = 0; i < 2; i++)
+        from[i] = moved->point[i] - (sign ? 0 : q * moved->along[i]) +
+                  side * (i ? moved->along[0] : -moved->along[1]);
+    return sign ? 0.18 * m->size : q;
+}
+
+static void put_arrows(struct model *m)
+{
+    gnuplot_block(m->g, "arrows");
+    for (int k = 0; k < m->scene->coordinates; k++) {
+        const struct moved *const moved = &m->moved[k];
+        const double angle = shown_angle(m, k);
+        if (moved->turns) {
+            arc(m, k, INK_COORDINATE, radius_of(m, k), moved->direction - angle,
+                moved->direction + (angle == 0 ? 0.6 : 0));
+        } else if (!is_place(m, k)) {
+            double from[2];
+            const double far = slide_of(m, k, from);
+            GNUPLOT_ROW(m->g, from[0], from[1], far * moved->along[0], far * moved->along[1],
+                        INK_COORDINATE, 1);
+        }
+    }
+    for (int a = 0; a < m->scene->actuators; a++) {
+        const int k = m->scene->actuated[a];
+        const struct moved *const moved = &m->moved[k];
+        if (moved->turns)
+            arc(m, k, INK_ACTUATOR, torque_radius(m, k), moved->direction + 0.12,
+                moved->direction + 0.7);
+        else
+            GNUPLOT_ROW(m->g, moved->point[0], moved->point[1], 0.18 * m->size * moved->along[0],
+                        0.18 * m->size * moved->along[1], INK_ACTUATOR, 1);
+    }
+    const double slope = m->scene->mechanism ? m->c->robot[STANCE_ROBOT_SLOPE] : 0;
+    const double rest[STANCE_MAX_COORDINATES] = {0}, length = 0.13 * m->size;
+    for (int k = 0; k < plot_case_grounded(m->scene); k++) {
+        double point[2], speed[2];
+        m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, point, speed);
+        GNUPLOT_ROW(m->g, point[0], point[1], length * sin(slope), length * cos(slope), INK_CONTACT,
+                    1);
+        GNUPLOT_ROW(m->g, point[0], point[1], length * cos(slope), -length * sin(slope),
+                    INK_CONTACT, 1);
+    }
+    gnuplot_end_block(m->g);
+}
+
+static void put_lines(struct model *m)
+{
+    gnuplot_block(m->g, "segments");
+    for (int p = 0; p < m->points; p++)
+        GNUPLOT_ROW(m->g, m->point[p][0], m->point[p][1]);
+    gnuplot_end_block(m->g);
+    gnuplot_block(m->g, "zeros");
+    GNUPLOT_ROW(m->g, NAN, NAN);
+    for (int k = 0; k < m->scene->coordinates; k++) {
+        const struct moved *const moved = &m->moved[k];
+        const double zero = moved->direction - shown_angle(m, k), length = 1.25 * radius_of(m, k);
+        if (!moved->turns)
+            continue;
+        gnuplot_set(m->g, "%s", "");
+        GNUPLOT_ROW(m->g, moved->centre[0], moved->centre[1]);
+        GNUPLOT_ROW(m->g, moved->centre[0] + length * cos(zero),
+                    moved->centre[1] + length * sin(zero));
+    }
+    gnuplot_end_block(m->g);
+}
+
+static void put_labels(struct model *m)
+{
+    gnuplot_set(m->g,
+                "array label_text[%d]; array label_x[%d]; array label_y[%d]; array label_ink[%d]",
+                MOST_LABELS, MOST_LABELS, MOST_LABELS, MOST_LABELS);
+    for (int k = 0; k < m->scene->coordinates; k++) {
+        const struct moved *const moved = &m->moved[k];
+        /* Beside the arc, beyond where the angle is 0; an arc that only shows the sign: at its end.
+         */
+        const double angle = shown_angle(m, k), radius = radius_of(m, k),
+                     gap = 0.06 * m->size / radius;
+        const double middle = moved->direction + (angle == 0  ? 0.6 + gap
+                                                  : angle > 0 ? -angle - gap
+                                                              : -angle + gap);
+        if (moved->turns)
+            label(m, INK_COORDINATE, moved->centre[0] + radius * cos(middle),
+                  moved->centre[1] + radius * sin(middle), m->scene->coordinate[k].name);
+        if (!moved->turns && !is_place(m, k)) {
+            double from[2];
+            const double half = 0.5 * slide_of(m, k, from), side = 0.05 * m->size;
+            label(m, INK_COORDINATE, from[0] + half * moved->along[0] - side * moved->along[1],
+                  from[1] + half * moved->along[1] + side * moved->along[0],
+                  m->scene->coordinate[k].name);
+        }
+    }
+    for (int a = 0; a < m->scene->actuators; a++) {
+        const int k = m->scene->actuated[a];
+        const struct moved *const moved = &m->moved[k];
+        const double radius = torque_radius(m, k) + 0.05 * m->size, at = moved->direction + 0.6;
+        label(m, INK_ACTUATOR,
+              moved->turns ? moved->centre[0] + radius * cos(at)
+                           : moved->point[0] + 0.22 * m->size * moved->along[0],
+              moved->turns ? moved->centre[1] + radius * sin(at)
+                           : moved->point[1] + 0.22 * m->size * moved->along[1],
+              m->scene->actuator_name[a]);
+    }
+    const double rest[STANCE_MAX_COORDINATES] = {0};
+    const int grounded = plot_case_grounded(m->scene);
+    for (int k = 0; k < grounded; k++) {
+        double point[2], speed[2];
+        m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, point, speed);
+        label(m, INK_CONTACT, point[0] - 0.05 * m->size,
+              point[1] - m->size * (0.06 + (grounded > 2 ? 0.045 * k : 0)),
+              m->scene->contact_name[k]);
+    }
+    gnuplot_set(m->g, "labels = %d", m->labels);
+}
+
+static const char *directory_of(const struct look *look)
+{
+    return look->directory ? look->directory : ".";
+}
+
+/* What stands beside the figure: each coordinate's value and meaning. */
+static void put_words(struct model *m)
+{
+    int words = 0;
+    char text[240];
+    gnuplot_set(m->g, "array word_text[%d]; array word_ink[%d]",
+                STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS + 2,
+                STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS + 2);
+    for (int k = 0; k < m->scene->coordinates; k++) {
+        const stance_quantity *const q = &m->scene->coordinate[k];
+        snprintf(text, sizeof text, "%.40s = %.4g %.20s: %.120s", q->name, m->c->position[k] + 0.0,
+                 q->unit, q->text);
+        gnuplot_text(m->g, text, "word_text[%d]", ++words);
+        gnuplot_set(m->g, "word_ink[%d] = %d", words, INK_COORDINATE);
+    }
+    for (int a = 0; a < m->scene->actuators; a++) {
+        const stance_quantity *const q = &m->scene->coordinate[m->scene->actuated[a]];
+        snprintf(text, sizeof text, "%.40s: positive raises %.40s", m->scene->actuator_name[a],
+                 q->name);
+        gnuplot_text(m->g, text, "word_text[%d]", ++words);
+        gnuplot_set(m->g, "word_ink[%d] = %d", words, INK_ACTUATOR);
+    }
+    if (plot_case_grounded(m->scene) > 0) {
+        gnuplot_text(m->g, "contacts: positive forces of the ground, normal and tangential",
+                     "word_text[%d]", ++words);
+        gnuplot_set(m->g, "word_ink[%d] = %d", words, INK_CONTACT);
+    }
+    gnuplot_set(m->g, "words_shown = %d", words);
+}
+
+static bool draw_model(const struct scenario *s, const stance_case *c, struct look *look,
+                       stance_message *message)
+{
+    struct gnuplot g;
+    struct model *const m = calloc(1, sizeof *m);
+    char subtitle[160], stem[300];
+    if (!m) {
+        snprintf(message->text, sizeof message->text, "stance plot: not enough memory");
+        return false;
+    }
+    m->scene = s->scene;
+    m->c = c;
+    m->g = &g;
+    make_model(m);
+    const double fall = s->scene->mechanism ? tan(c->robot[STANCE_ROBOT_SLOPE]) : 0;
+    snprintf(subtitle, sizeof subtitle, "The model in its first posture, scene %.60s",
+             s->scene->name);
+    bool good =
+        gnuplot_begin(&g, look, plot_model_gp, s->title[0] ? s->title : s->name, subtitle, message);
+    if (good) {
+        gnuplot_set(&g,
+                    "low_x = %#.9g; high_x = %#.9g; low_y = %#.9g; high_y = %#.9g; size = %#.9g",
+                    m->low[0], m->high[0], m->low[1], m->high[1], m->size);
+        gnuplot_set(&g, "has_place = %d; place_x = %#.9g; place_y = %#.9g", is_place(m, 0),
+                    c->position[0], c->position[1]);
+        put_lines(m);
+        gnuplot_set(&g, "fall = %#.9g", fall);
+        put_arrows(m);
+        put_labels(m);
+        put_words(m);
+        snprintf(stem, sizeof stem, "%.250s-model", s->name);
+        good = gnuplot_end(&g, directory_of(look), stem, message);
+    }
+    free(m);
+    return good;
+}
+
+int plot_model(const char *file, const char *const *sets, size_t set_count, struct look *look)
+{
+    const struct parallel alone = parallel_alone();
+    struct scenario s;
+    struct plan plan;
+    struct plan_error error = {0};
+    stance_message message = {""};
+    int method, code = EXIT_USAGE;
+    stance_case *const c = calloc(1, sizeof *c);
+    if (!c || !scenario_read(&s, file, NULL, sets, set_count, stderr)) {
+        free(c);
+        return EXIT_USAGE;
+    }
+    if (!plan_make(&plan, &s, true, 0, false, &error)) {
+        fprintf(stderr, "stance plot: %s\n", error.message.text);
+    } else {
+        if (!plan_compute_designs(&plan, &alone, &error) || !plan_check_cases(&plan, &error))
+            fprintf(stderr, "stance plot: %s\n", error.message.text);
+        else if (!plan_resolve(&plan, 0, c, &method))
+            fprintf(stderr, "stance plot: the first case does not exist\n");
+        else if (!look->file && !gnuplot_directory(directory_of(look)))
+            code = EXIT_IO;
+        else
+            code = draw_model(&s, c, look, &message) ? EXIT_DONE : EXIT_IO;
+        plan_free(&plan);
+    }
+    if (message.text[0])
+        fprintf(stderr, "%s\n", message.text);
+    scenario_free(&s);
+    free(c);
+    return code;
+}

@@ -1,0 +1,232 @@
+#!/usr/bin/env bash
+# Mistakes on the command line, and the line that mends each: the wrong one is told in one line what to
+# write instead, and what it says then works. Mistakes in scenario files: tests/mistakes.txt.
+# Speaks TAP.
+set -u
+. "$(dirname "$0")/scratch.sh"
+cp "$shipped"/{ball_bounce,balance_falls}.yaml .
+cp "$shipped"/mechanisms/hopper.yaml .
+"$stance" run ball_bounce.yaml --quiet
+"$stance" run balance_falls.yaml --quiet
+"$stance" run "$shipped/basin_one_foot.yaml" --quiet -o map.h5 --set 'sweep.grid[0].count=12' --set 'sweep.grid[1].count=12' \
+    --set controller.sample_time=0.01 --set method.step=0.01
+mv results/ball_bounce.h5 ball.h5 && mv results/balance_falls.h5 robot.h5
+head -c 5000 ball.h5 >cut.h5
+: >empty.h5
+
+# Three lines for each: the wrong command, the right one, what the one line on standard error says.
+mend() { # wrong, right, said
+    local status lines
+    eval "timeout $patience $1" >/dev/null 2>log </dev/null
+    status=$?
+    lines=$(wc -l <log)
+    ((status == 2 || status == 3)) && [ "$lines" = 1 ] && grep -qF -- "$3" log
+    result $? "$1"
+    eval "timeout $patience $2" >log 2>&1 </dev/null
+    result $? "... mended: $2"
+}
+while read -r wrong && read -r right && read -r said; do
+    mend "${wrong/#stance/\"\$stance\"}" "${right/#stance/\"\$stance\"}" "$said"
+    read -r _
+done <<'END'
+stance check ball_bounce.yaml --set ground.friction 0.2
+stance check ball_bounce.yaml --set ground.friction=0.2
+unexpected argument '0.2'; write --set ground.friction=0.2
+
+stance check ball_bounce.yaml --set=ground.friction 0.2
+stance check ball_bounce.yaml --set=ground.friction=0.2
+write --set ground.friction=0.2
+
+stance check ball_bounce.yaml --set ground.friction = 0.2
+stance check ball_bounce.yaml --set ground.friction=0.2
+write --set ground.friction=0.2
+
+stance check ball_bounce.yaml ground.friction=0.2
+stance check ball_bounce.yaml --set ground.friction=0.2
+unexpected argument 'ground.friction=0.2'; write --set ground.friction=0.2
+
+stance check ball_bounce.yaml --set ground.friction:0.2
+stance check ball_bounce.yaml --set ground.friction=0.2
+write ground.friction=0.2
+
+stance check ball_bounce.yaml --set ground.friction
+stance check ball_bounce.yaml --set ground.friction=0.2
+write ground.friction=VALUE
+
+stance check ball_bounce.yaml --set friction=0.2
+stance check ball_bounce.yaml --set ground.friction=0.2
+did you mean 'ground.friction'?
+
+stance check ball_bounce.yaml --set ground.friction=0,2
+stance check ball_bounce.yaml --set ground.friction=0.2
+found '0,2'; write 0.2
+
+stance check ball_bounce.yaml --set stop.time=5s
+stance check ball_bounce.yaml --set stop.time=5
+stop.time: expected a number, found '5s' (numbers only; time is in s); write 5
+
+stance check hopper.yaml --set robot.shoe.mass=0.6
+stance check hopper.yaml --set robot.bodies.shoe.mass=0.6
+robot: unknown key 'shoe'
+
+stance check ball_bounce
+stance check ball_bounce.yaml
+did you mean 'ball_bounce.yaml'?
+
+stance check ball.h5
+stance summary ball.h5
+a results file, not a scenario; write stance summary ball.h5
+
+stance run ball.h5
+stance summary ball.h5
+a results file, not a scenario; write stance summary ball.h5
+
+stance design robot.h5
+stance summary robot.h5
+a results file, not a scenario; write stance summary robot.h5
+
+stance summary ball_bounce.yaml
+stance summary ball.h5
+a scenario, not a results file; stance run makes one of it
+
+stance plot ball_bounce.yaml
+stance plot ball.h5 -o .
+a scenario, not a results file; stance run makes one of it
+
+stance basin ball_bounce.yaml
+stance run ball_bounce.yaml --quiet --force
+a scenario, not a results file; stance run makes one of it
+
+stance table ball_bounce.yaml
+stance table ball.h5
+a scenario, not a results file; stance run makes one of it
+
+stance compare ball_bounce.yaml ball.h5
+stance compare ball.h5 ball.h5
+a scenario, not a results file; stance run makes one of it
+
+stance summary cut.h5
+stance summary ball.h5
+bytes are there; copy it again, or compute it anew
+
+stance status cut.h5
+stance status ball.h5
+only 5000 of its
+
+stance run ball_bounce.yaml --resume -o cut.h5
+stance run ball_bounce.yaml --force -o cut.h5
+bytes are there; copy it again, or compute it anew
+
+stance summary empty.h5
+stance summary ball.h5
+an empty file
+
+stance summary ball
+stance summary ball.h5
+No such file or directory
+
+stance describe friction
+stance describe ground.friction
+write stance describe ground.friction
+
+stance describe slope
+stance describe ground.slope
+'slope' is the end of ground.slope, controller.model.slope, robot.slope
+
+stance describe lqr
+stance describe controller.design
+'lqr' is a word of controller.design; write stance describe controller.design
+
+stance describe sample_tim
+stance describe controller.sample_time
+did you mean 'controller.sample_time'?
+
+stance describe ball_bounce.yaml
+stance check ball_bounce.yaml
+write stance check ball_bounce.yaml
+
+stance ball_bounce.yaml
+stance run ball_bounce.yaml --force
+write stance run ball_bounce.yaml
+
+stance ball.h5
+stance summary ball.h5
+write stance summary ball.h5
+
+stance chek ball_bounce.yaml
+stance check ball_bounce.yaml
+did you mean 'check'?
+
+stance run ball_bounce.yaml -n 2
+mpirun -n 2 "$stance" run ball_bounce.yaml --force --quiet
+for several ranks write mpirun -n N stance run
+
+stance run ball_bounce.yaml --output new.h5
+stance run ball_bounce.yaml -o new.h5
+did you mean '-o'?
+
+stance run ball_bounce.yaml --forse
+stance run ball_bounce.yaml --force
+did you mean '--force'?
+
+stance run ball_bounce.yaml
+stance run ball_bounce.yaml --force
+--force
+
+stance run ball_bounce.yaml --only
+stance run ball_bounce.yaml --only 3 --quiet
+a value must follow '--only'
+
+stance plot ball.h5 --answer freinds
+stance plot ball.h5 --answer energy_gain -o .
+--answer
+
+stance plot robot.h5 --case one
+stance plot robot.h5 --case 0 -o .
+--case takes the number of a case, not 'one'
+
+stance plot map.h5 --answer settle-time
+stance plot map.h5 --answer settle_time -o .
+did you mean 'settle_time'?
+
+stance basin map.h5 --of stabilized
+stance basin map.h5 --of stabilised
+takes one of stabilised, rested, fell, undecided, not 'stabilized'
+
+stance basin map.h5 --level 95
+stance basin map.h5 --level 0.95
+--level takes a number from 0.5 to 0.999999, not '95'
+
+stance basin map.h5 --box 2.5
+stance basin map.h5 --box 3
+--box takes a whole number from 2 to 1000, not '2.5'
+
+stance table map.h5 --answer outcomes
+stance table map.h5 --answer outcome
+did you mean 'outcome'?
+
+stance table map.h5 --of stable
+stance table map.h5 --of stabilised
+takes one of stabilised, rested, fell
+
+stance compare ball.h5 ball.h5 --tolerance 1%
+stance compare ball.h5 ball.h5 --tolerance 0.01
+--tolerance takes RELATIVE[,ABSOLUTE]
+
+stance sensitivity map.h5
+stance summary map.h5
+its scenario needs sweep.sample (stance describe sweep.sample)
+
+stance run ball_bounce.yaml --only 19
+stance run ball_bounce.yaml --only 18 --force --quiet
+--only 19: the scenario's cases are 0 ... 18
+
+stance check
+stance check ball_bounce.yaml
+a scenario file must be given
+
+stance summary
+stance summary ball.h5
+a results file is needed
+END
+echo "1..$count"
