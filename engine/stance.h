@@ -21,6 +21,7 @@ enum {
     STANCE_MAX_ANGLES = 7,  /* joints of a mechanism; a rail is none, a free root one */
     STANCE_MAX_NAMED = 8,   /* points of a mechanism that have a name */
     STANCE_MAX_PUSHES = 4,
+    STANCE_MAX_DELAY = 16,                       /* samples */
     STANCE_MAX_WORDS = 32,                       /* that an answer may be, if it is a code */
     STANCE_ROBOT_GRAVITY = STANCE_MAX_ROBOT - 2, /* m/s^2 */
     STANCE_ROBOT_SLOPE = STANCE_MAX_ROBOT - 1,   /* rad, of the ground; positive: +x is downhill */
@@ -177,9 +178,10 @@ _Static_assert(STANCE_MAX_COORDINATES <= 9, "room for all selections");
 
 /* The robot that a scene has by default, and the world's numbers. robot[STANCE_MAX_ROBOT]. */
 void stance_robot_fallback(const stance_scene *scene, double *robot);
-/* What each actuator gives at most, in its unit: its own limit or `most`, whichever is smaller. */
+/* What each actuator gives at most, in its unit: the robot's limit, `most` or its own of
+ * `limits`[actuators], whichever is smallest. */
 void stance_torque_limits(const stance_scene *scene, const double *robot, double most,
-                          double limit[STANCE_MAX_ACTUATORS]);
+                          const double *limits, double limit[STANCE_MAX_ACTUATORS]);
 
 /* The scenes there are, NULL-terminated; and one by name, or NULL. */
 const stance_scene *const *stance_scenes(void);
@@ -360,9 +362,16 @@ typedef struct stance_case {
     stance_servo servo[STANCE_MAX_ACTUATORS];
     double switch_axis[2 * STANCE_MAX_POSTURE]; /* rad, rad/s, > 0 */
     double torque_limit; /* N m, > 0, may be INFINITY; of an actuator, `body.limit` where smaller */
-    double noise;        /* N m, half-width of uniform noise, 0 when continuous */
+    double torque_limits[STANCE_MAX_ACTUATORS]; /* ... or this one; 0: none */
     int64_t sample_every; /* steps per sample, held between; 0: acts continuously inside the step */
-    int64_t delay;        /* whole samples between measuring and acting: 0, or 1 when sampled */
+    /* Only of laws that sample, 0: none. Measured posture and rates are off by uniform noise of
+     * these half-widths (rad, rad/s; of a slide m, m/s), the torques that follow by `noise` (N m).
+     * Limited, they are commanded `delay` samples later, and actuators come up to what is commanded
+     * as core/loop/actuator.h says. */
+    double angle_noise, rate_noise, noise;
+    int64_t delay;      /* whole samples between measuring and acting, <= STANCE_MAX_DELAY */
+    double lag;         /* s, time constant of the actuators */
+    double torque_rate; /* N m/s, how fast a torque changes at most */
 
     double step;   /* s */
     int64_t steps; /* length of the run */
@@ -425,6 +434,7 @@ typedef struct stance_case {
     X(max_penetration, double, MAX, own, "m", "deepest penetration at the end of a step")          \
     X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
     X(footfalls, int64_t, SUM, own, "1", "landings of another foot than the one that landed last") \
+    X(excursion, double, MAX, own, "rad", "largest angle off its target on the way")               \
     X(peak_torque, double, MAX, own, "N m", "largest torque applied")                              \
     X(friction_used, double, MAX, touching, "1", "largest ratio |rT|/rN of a contact")             \
     X(least_normal_force, double, MIN, own, "N", "smallest normal force on the support foot")      \

@@ -27,6 +27,12 @@ static inline void hunt_law(uint64_t *seed, bool extreme, double moment, double 
         c->torque_limit = moment * spread(seed, 1e-2, 1e2);
     if (kind > 0.9 && c->sample_every > 0)
         c->noise = 0.01 * moment;
+    if (c->sample_every > 0 && uniform(seed, 0, 1) < 0.3) { /* actuators and sensors */
+        c->delay = (int64_t)uniform(seed, 0, 4);
+        c->lag = uniform(seed, 0, 1) < 0.5 ? 0 : time * spread(seed, 1e-3, 1);
+        c->torque_rate = uniform(seed, 0, 1) < 0.5 ? 0 : moment / time * spread(seed, 1e-2, 1e2);
+        c->angle_noise = uniform(seed, 0, 1) < 0.5 ? 0 : spread(seed, 1e-6, 1e-2);
+    }
 }
 
 /* A robot near the ground: on one foot, on both (`kind` of state), or above. */

@@ -12,12 +12,14 @@ import shutil
 import subprocess
 import sys
 import traceback
+import xml.etree.ElementTree
 
 import h5py
 import numpy as np
 
 from drawn import Picture
 
+SVG = "{http://www.w3.org/2000/svg}"
 STANCE, SCENARIOS = sys.argv[1:]
 MAP = ["sweep.grid[0].values=[0.1, 0.8]", "sweep.grid[1].count=9", "sweep.grid[2].count=7", "record.cases=none"]
 count = 0
@@ -131,7 +133,10 @@ def letters():
         assert os.path.exists(drawn) == warns
         if warns:
             with open(drawn, encoding="utf-8") as file:
-                assert "title = '□□ Läufer □'" in file.read()
+                assert "title = '□□ Läufer □'" in file.read().replace("\u200b", "")
+    call("plot", "letters.h5", "--picture", "map", "--title", "双足步行机器人的稳定域" * 12, "--size", "90", "-o", "wide.svg")
+    lines = [text for text in Picture("wide.svg").said() if set(text) <= set("双足步行机器人的稳定域")]
+    assert "".join(lines) == "双足步行机器人的稳定域" * 12 and len(lines) > 3 and max(map(len, lines)) < 30, lines
     _, said = call("plot", "letters.h5", "--font", "No Such Font", "--picture", "map")
     assert len(said) <= 2 and any("no font is called No Such Font" in line for line in said), said
 
@@ -263,13 +268,51 @@ def two_cases():
     with open("both/map-case31-case85-coordinates.svg", encoding="utf-8"):
         seconds = p.panels[-1].range(0)[1]
     assert data[:6] == b"GIF89a" and data[-1:] == b";" and abs(frames - seconds / 0.04) < 2.5, (frames, seconds)
-    for arguments, what in ((["map.h5"], "says which"), (["map.h5", "--case", "x"], "number of a case"), (["map.h5", "--case", "99999"], "no case"),
+    printed, said = call("replay", "map.h5", "--case", "31", "--case", "85", "--picture", "animation", "-o", "both/walk.svg")
+    assert printed == ["both/walk.svg"] and not said, (printed, said)
+    shown = [g for g in xml.etree.ElementTree.parse("both/walk.svg").iter(SVG + "g") if g.find(SVG + "animate") is not None]
+    assert len(shown) in (frames, frames + 1, frames - 1), (len(shown), frames)
+    assert [g.get("visibility") for g in shown] == ["visible"] + ["hidden"] * (len(shown) - 1)
+    for k, g in enumerate(shown): # one after the other, each with its time and the two figures
+        begin, end = [float(t) for t in g.find(SVG + "animate").get("keyTimes").split(";")[1:]]
+        assert abs(begin * len(shown) - k) < 1e-3 and abs(end * len(shown) - k - 1) < 1e-3, (k, begin, end)
+        assert f"{0.04 * k:.2f} s" in "".join(g.itertext()), k
+    for arguments, what in ((["map.h5"], "says which"), (["map.h5", "--case", "1", "--picture", "animation", "-o", "a.pdf"], "svg or gif"), (["map.h5", "--case", "x"], "number of a case"), (["map.h5", "--case", "99999"], "no case"),
                             (["map.h5", "--near", "theta"], "NAME=VALUE"), (["map.h5", "--near", "nothing=1"], "nothing is varied"),
                             (["map.h5", "--near", "offset=1"], "nothing is varied"), (["map.h5", "--near", "theta=a"], "NAME=NUMBER"),
                             (["map.h5", "--case", "1", "--near", "theta=0", "--near", "theta=1"], "two cases")):
         printed, said = call("replay", *arguments, code=2)
         assert not printed and len(said) == 1 and what in said[0], (arguments, said)
     assert call("replay", "missing.h5", "--case", "1", code=3)[1]
+
+
+def other_commands():
+    """What is drawn of samples, models and benchmarks takes the same options."""
+    run("many", "basin_one_foot.yaml", "record.cases=none", "sweep={grid: [{path: initial.offset.theta, from: -0.05, to: 0.02, count: 8}], "
+        "sample: {method: saltelli, count: 32, vary: [{path: ground.friction, from: 0.1, to: 0.8}, "
+        "{path: controller.torque_limit, from: 8, to: 12}]}}")
+    printed, said = call("sensitivity", "many.h5", "--for", "column", "-o", "many.pdf", "--labels", "ground.friction=floor")
+    assert printed[-1] == "many.pdf" and not any("called" in line for line in said) and "floor" in is_whole("many.pdf", 88), (printed, said)
+    assert "pictures" in call("sensitivity", "many.h5", "--size", "100", "--json", code=2)[1][0]
+    assert "nothing is called 'x'" in call("sensitivity", "many.h5", "--labels", "x=y")[1][-1]
+    for size, width in ("page", 180), ("column", 88):
+        for robot in "basin_one_foot", "mechanisms/flat_feet", "mechanisms/cart_pole":
+            call("plot", "--model", f"{SCENARIOS}/{robot}.yaml", "--for", size, "-o", "model.pdf")
+            is_whole("model.pdf", width)
+    with open("speed.csv", "w", encoding="utf-8") as file:
+        file.write("\n".join(call("bench", "--csv", "--repeats", "1", "--cases", "1", "--method", "implicit")[0]) + "\n")
+    call("bench", "plot", "speed.csv", "--for", "page", "-o", "speed.pdf")
+    assert "nanoseconds" in is_whole("speed.pdf", 180)
+    call("bench", "plot", "speed.csv", "--title", "Steps", "--format", "svg", "-o", "new")
+    assert "Steps" in Picture("new/speed.svg").said()
+    run("reach", "basin_one_foot.yaml", "record.cases=none", "sweep={grid: [{path: controller.torque_limit, values: [9, 10, 12]}, "
+        "{path: initial.offset.scale, from: 0.05, to: 1, count: 20}], sample: {method: sphere, count: 16, vary: "
+        "[{path: initial.offset.theta, from: -0.1, to: 0.1}, {path: initial.offset.vtheta, from: -0.5, to: 0.5}]}}")
+    call("plot", "reach.h5", "--picture", "rays", "--for", "column", "-o", "reach.pdf", STANCE_SCRIPTS="kept")
+    is_whole("reach.pdf", 88)
+    with open("kept/reach-rays/data.gp", encoding="utf-8") as file:
+        marks = re.findall(r"legend_point\[legends\] = (\d+)", file.read())
+    assert len(set(marks)) == 3 and "0" not in marks, marks # not by colour alone
 
 
 def under_mpirun():
@@ -300,7 +343,8 @@ def progress():
         assert heard.stderr.read().decode().startswith("gnuplot failed")
 
 
-for check in (one_file, sizes, names, refusals, letters, every_kind, outlines, replay, two_cases, under_mpirun, progress):
+for check in (one_file, sizes, names, refusals, letters, every_kind, outlines, replay, two_cases, other_commands,
+              under_mpirun, progress):
     count += 1
     try:
         check()

@@ -270,7 +270,7 @@ static const struct shape shapes[] = {
 };
 
 static const struct shape *drawn_shape;
-static double drawn_at[4];
+static double drawn_at[5];
 
 static enum results_kind drawn(const double *at)
 {
@@ -287,7 +287,8 @@ static void likely_errors_hold(void **state)
         const int tries = (patient ? 2000 : 300) / (shapes[k].axes == 3 ? 3 : 1);
         for (size_t n = 17; n <= (shapes[k].axes == 3 ? 17 : 65); n = 2 * n - 1) {
             uint64_t random = 7;
-            double held = 0, reach = 0;
+            static const double levels[] = {0.5, 0.68, 0.8, 0.9, 0.99};
+            double held = 0, reach = 0, at_level[5] = {0};
             for (int t = 0; t < tries; t++) {
                 struct basin_volume v;
                 drawn_shape = &shapes[k];
@@ -298,6 +299,9 @@ static void likely_errors_hold(void **state)
                 assert_true(basin_map_volume(&d.map, RESULTS_STABILISED, &v));
                 const double own = basin_volume_reach(&v, 1.959964);
                 held += fabs(v.estimate - wanted) <= own + 1e-9;
+                for (int l = 0; l < 5; l++)
+                    at_level[l] += fabs(v.estimate - wanted) <=
+                                   basin_volume_reach(&v, basin_map_deviations(levels[l])) + 1e-9;
                 reach += own * (double)(n - 1) / tries;
                 assert_true(own <= fmax(v.high - v.estimate, v.estimate - v.low) + 1e-12);
                 erase(&d);
@@ -305,6 +309,11 @@ static void likely_errors_hold(void **state)
             print_message("# %s, %zu places along %d: %.1f %% held, +- %.3f cells\n",
                           shapes[k].name, n, shapes[k].axes, 100 * held / tries, reach);
             assert_true(held / tries > 0.95 - 3 * sqrt(0.95 * 0.05 / tries));
+            for (int l = 0; l < 5; l++) {
+                const double level = levels[l];
+                print_message("#   at %.0f %%: %.1f %%\n", 100 * level, 100 * at_level[l] / tries);
+                assert_true(at_level[l] / tries > level - 3 * sqrt(level * (1 - level) / tries));
+            }
         }
     }
 }
@@ -604,6 +613,47 @@ static void the_part_about_the_equilibrium(void **state)
     }
 }
 
+/* A ball at any place about the middle, and an island in a corner; how often its likely error holds
+ * and its bounds. */
+static enum results_kind ball_and_island(const double *at)
+{
+    double near = 0, far = 0;
+    for (int a = 0; a < (int)drawn_at[0]; a++) {
+        near += pow(at[a] - 0.45 - 0.1 * drawn_at[1 + a], 2);
+        far += pow(at[a], 2);
+    }
+    return in(sqrt(near) < drawn_at[4] || sqrt(far) < 0.05);
+}
+
+static void likely_errors_of_the_part_hold(void **state)
+{
+    static const double unit_ball[] = {2, M_PI, 4 * M_PI / 3};
+    (void)state;
+    for (int axes = 1; axes <= 3; axes++) {
+        const int tries = axes == 3 ? 100 : 1000;
+        const size_t n = axes == 3 ? 25 : 49, origin[] = {n / 2, n / 2, n / 2};
+        uint64_t random = 11;
+        int held = 0, bounded = 0;
+        drawn_at[0] = axes;
+        for (int t = 0; t < tries; t++) {
+            struct basin_part part;
+            for (int i = 1; i < 4; i++)
+                drawn_at[i] = uniform(&random, 0, 1);
+            drawn_at[4] = uniform(&random, 0.2, 0.3);
+            struct drawn d = draw(axes, n, false, ball_and_island);
+            const double wanted = unit_ball[axes - 1] * pow(drawn_at[4], axes);
+            assert_true(basin_map_part(&d.map, RESULTS_STABILISED, origin, &part));
+            const double own = basin_volume_reach(&part.volume, basin_map_deviations(0.95));
+            held += fabs(part.volume.estimate - wanted) <= own + 1e-9;
+            bounded += part.volume.low <= wanted && wanted <= part.volume.high;
+            erase(&d);
+        }
+        print_message("# part about the equilibrium, %d axes: %.1f %%, bounds %.1f %%\n", axes,
+                      100.0 * held / tries, 100.0 * bounded / tries);
+        assert_true(held >= 0.93 * tries && bounded == tries);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -621,6 +671,7 @@ int main(void)
         cmocka_unit_test(boundary_points_lie_on_the_boundary),
         cmocka_unit_test(distances_from_the_equilibrium),
         cmocka_unit_test(the_part_about_the_equilibrium),
+        cmocka_unit_test(likely_errors_of_the_part_hold),
     };
     return cmocka_run_group_tests_name("basin", tests, NULL, NULL);
 }

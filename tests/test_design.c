@@ -352,7 +352,9 @@ static void critical_sample_times(void **state)
     for_each_record(check_critical);
 }
 
-/* x' = u = -k x: z = 1 - kT, lost at kT = 2; a sample late, z^2 - z + kT = 0, lost at kT = 1. */
+/* x' = u = -k x: z = 1 - kT, lost at kT = 2; a sample late, z^2 - z + kT = 0, lost at kT = 1; d
+ * samples late, z^(d + 1) - z^d + kT = 0, where z = exp(i a) asks for kT = 2 sin(a / 2) at a = pi /
+ * (2d + 1). */
 static void delayed_integrator(void **state)
 {
     (void)state;
@@ -365,7 +367,41 @@ static void delayed_integrator(void **state)
     assert_int_equal(stance_sampled_loop(1, 1, &a, &b, &k, 0.125, 1, re, im), STANCE_OK);
     assert_near(re[0], 0.5, 1e-14, "real part");
     assert_near(im[0], -0.5, 1e-14, "imaginary part");
-    assert_int_equal(stance_sampled_loop(1, 1, &a, &b, &k, 0.125, 2, re, im), STANCE_BAD_ARGUMENT);
+    assert_int_equal(stance_sampled_loop(1, 1, &a, &b, &k, 0.125, -1, re, im), STANCE_BAD_ARGUMENT);
+    for (int d = 0; d <= STANCE_MAX_DELAY; d++) {
+        assert_int_equal(stance_critical_sample_time(1, 1, &a, &b, &k, d, 10, &T), STANCE_OK);
+        assert_near(T, 2 * sin(M_PI / (4 * d + 2)) / k, 1e-10, "samples late");
+    }
+}
+
+/* The integrator behind an actuator, lag s^2 + s + k = 0 in continuous time; and what noise of
+ * variance v does to it, sampled: x+ = (1 - kT) x - kT n has the variance v kT / (2 - kT), one of a
+ * command T v / (k (2 - kT)); a sample late, of x+ = x + T u, u+ = -k (x + n), by hand:
+ * with g = kT the variance v g (1 + g) / ((1 - g) (2 + g)). */
+static void integrator_with_actuator_and_noise(void **state)
+{
+    (void)state;
+    const double a = 0, b = 1, k = 4, T = 0.1, none = 0, v = 0.3, g = k * T;
+    double A[4], B[2], K[2], loop[4], re[2], im[2], rms;
+    for (double lag = 1e-3; lag < 1; lag *= 3) {
+        stance_lagged(1, 1, &a, &b, &k, lag, A, B, K);
+        closed_loop(2, 1, A, B, K, loop);
+        assert_int_equal(stance_eigenvalues(2, loop, re, im), STANCE_OK);
+        for (int i = 0; i < 2; i++) {
+            assert_near(lag * (re[i] * re[i] - im[i] * im[i]) + re[i] + k, 0, 1e-9, "real");
+            assert_near(im[i] * (2 * lag * re[i] + 1), 0, 1e-9, "imaginary");
+        }
+    }
+    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, T, 0, &v, 0, &rms), STANCE_OK);
+    assert_near(rms * rms, v * g / (2 - g), 1e-14, "measured");
+    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, T, 0, &none, v, &rms), STANCE_OK);
+    assert_near(rms * rms, T * v / (k * (2 - g)), 1e-14, "commanded");
+    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, T, 1, &v, 0, &rms), STANCE_OK);
+    assert_near(rms * rms, v * g * (1 + g) / ((1 - g) * (2 + g)), 1e-14, "a sample late");
+    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, 0.6, 0, &v, 0, &rms),
+                     STANCE_NUMERICAL);
+    assert_int_equal(stance_sampled_wander(1, 1, &a, &b, &k, 0.5, 0, &v, 0, &rms),
+                     STANCE_NUMERICAL);
 }
 
 /* ---- Lyapunov functions and sublevel sets ---------------------------------------------------- */
@@ -558,6 +594,7 @@ int main(void)
         cmocka_unit_test(uncontrollable_equilibrium),
         cmocka_unit_test(critical_sample_times),
         cmocka_unit_test(delayed_integrator),
+        cmocka_unit_test(integrator_with_actuator_and_noise),
         cmocka_unit_test(lyapunov_functions),
         cmocka_unit_test(lyapunov_messages),
         cmocka_unit_test(sublevel_sets),

@@ -277,6 +277,7 @@ static void alphas_are_within_their_errors(void **state)
                           maps[k].name, maps[k].c, n, alpha, mean / own, error / own, inside, own,
                           far, refused[BASIN_WIDE], refused[BASIN_BENT],
                           refused[BASIN_SMALL] + refused[BASIN_NONE] + refused[BASIN_FEW], stars);
+            assert_true(inside >= 0.85 * own - 1);
             held[smooth] += inside;
             given[smooth] += own;
             assert_true(!smooth || stars == 0);

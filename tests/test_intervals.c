@@ -4,6 +4,8 @@
 #include "cases.h"
 
 #include "analysis/basin/basin.h"
+#include "analysis/compare/compare_labels.h"
+#include "analysis/statistics/doe_bins.h"
 #include "analysis/statistics/intervals.h"
 #include "runner/scenario/doe.h"
 
@@ -139,34 +141,34 @@ static void shares_of_parts_hold(void **state)
  * and narrow ones: what scatters are the points, not their cases. */
 static void shares_over_a_grid_are_no_coins(void **state)
 {
-    enum { PARTS = 4, EACH = 32, POINTS = PARTS * EACH, GRID = 200 };
-    static uint8_t kind[GRID * POINTS];
+    enum { PARTS = 4, EACH = 32, POINTS = PARTS * EACH, PLACES = 200 };
+    static uint8_t kind[PLACES * POINTS];
     uint32_t part[POINTS];
 
     struct results r = {.axes = 2,
-                        .axis = {{.count = GRID}, {.count = POINTS}},
-                        .cases = GRID * POINTS,
+                        .axis = {{.count = PLACES}, {.count = POINTS}},
+                        .cases = PLACES * POINTS,
                         .kind = kind,
                         .sample = 1,
                         .block = 1};
-    struct interval interval[PARTS], rows[GRID];
+    struct interval interval[PARTS], rows[PLACES];
     (void)state;
     for (int p = 0; p < POINTS; p++) {
         part[p] = (uint32_t)(p / EACH);
-        for (int g = 0; g < GRID; g++)
+        for (int g = 0; g < PLACES; g++)
             kind[g * POINTS + p] = g < 34 + p / EACH + p % 3 ? RESULTS_STABILISED : RESULTS_FELL;
     }
     assert_true(intervals_find(&r, RESULTS_STABILISED, -1, part, PARTS, interval));
     for (int b = 0; b < PARTS; b++) {
         double share = 0;
         for (int p = b * EACH; p < (b + 1) * EACH; p++)
-            share += (34.0 + b + p % 3) / GRID / EACH;
+            share += (34.0 + b + p % 3) / PLACES / EACH;
         assert_true(interval[b].low < share && share < interval[b].high);
         assert_true(interval[b].high - interval[b].low < 0.005);
         assert_true(b == 0 || interval[b].low > interval[b - 1].low);
     }
     /* At one place of the grid points are in or out: Wilson's of 128. */
-    assert_true(intervals_find(&r, RESULTS_STABILISED, 0, NULL, GRID, rows));
+    assert_true(intervals_find(&r, RESULTS_STABILISED, 0, NULL, PLACES, rows));
     uint64_t inside = 0;
     double low, high;
     for (int p = 0; p < POINTS; p++)
@@ -177,56 +179,253 @@ static void shares_over_a_grid_are_no_coins(void **state)
     assert_true(rows[0].high == 1 && rows[0].low > 0.95);
     /* A grid alone has none. */
     r.sample = -1;
-    assert_true(intervals_find(&r, RESULTS_STABILISED, 0, NULL, GRID, rows));
+    assert_true(intervals_find(&r, RESULTS_STABILISED, 0, NULL, PLACES, rows));
     assert_true(isnan(rows[36].low) && isnan(rows[36].high));
 }
 
-/* ---- volumes over a sample of parameters --------------------------------------------------- */
+/* ---- basins over samples ------------------------------------------------------------------- */
 
-/* Starts on a grid of x, of which those below an edge that a sampled parameter moves are inside. */
+enum { SEEDS = 1000, GRID = 41, MOST_POINTS = 32 * (FACTORS + 2) };
+static uint8_t kind_of[GRID * MOST_POINTS];
+static double grid_place[GRID], point_place[MOST_POINTS];
+
+static uint8_t in(bool inside)
+{
+    return inside ? RESULTS_STABILISED : RESULTS_FELL;
+}
+
+/* One row of a file with `axes` axes, the last one its sample. */
+static struct basin_row measure_basin(const struct results *r, const struct basin_sample *sample,
+                                      double level)
+{
+    const struct basin_choice choice = {.of = RESULTS_STABILISED, .side = 5, .level = level};
+    struct basin_sample own = *sample;
+    struct basin basin;
+    stance_message message;
+    bool usage;
+    assert_true(basin_make(&basin, r, &choice, &own, &usage, &message));
+    assert_int_equal(basin.rows, 1);
+    const struct basin_row row = basin.row[0];
+    basin_free(&basin);
+    return row;
+}
+
+/* Starts on a grid of x from -1 to 1, of which those below an edge are inside. */
+static double within_a_cell(const double *u)
+{
+    return 0.2 + 0.03 * u[0];
+}
+static double wide_edge(const double *u)
+{
+    return 0.9 * u[0] * u[0] - 0.1;
+}
+static double rarely(const double *u)
+{
+    return u[0] < 0.2 ? 0.9 * u[1] : -1.1;
+}
+static double all_or_nothing(const double *u)
+{
+    return u[0] < 0.1 ? 1.1 : -1.1;
+}
+
+/* Within a cell the place of the edge in it is the whole error, and the bound is certain; points of
+ * designs are more even than independent ones; what few points have is told by a wide end. */
 static void volumes_over_sampled_parameters(void **state)
 {
-    enum { GRID = 41, POINTS = 32, SEEDS = 1000 };
-    static uint8_t kind[GRID * POINTS];
-    static double x[GRID], point[POINTS];
-    struct results r = {
-        .axes = 2,
-        .axis =
-            {{.name = "initial.offset.x", .unit = "m", .count = GRID, .value = x, .offset = true},
-             {.name = "sample", .count = POINTS, .value = point}},
-        .sample = 1,
-        .block = 1,
-        .cases = GRID * POINTS,
-        .kind = kind};
-    const struct basin_choice choice = {.of = RESULTS_STABILISED, .side = 5, .level = 0.95};
+    static const struct {
+        const char *name;
+        double (*edge)(const double *u);
+        double volume;
+        bool conservative;
+    } kinds[] = {{"within a cell", within_a_cell, 1.215, true},
+                 {"wide", wide_edge, 1.2, false},
+                 {"rarely", rarely, 0.2 * 1.45, false},
+                 {"all or nothing", all_or_nothing, 0.2, true}};
+    static const enum doe_method methods[] = {DOE_RANDOM, DOE_LHS, DOE_SOBOL, DOE_SALTELLI};
+    static const double levels[] = {0.95, 0.8, 0.99};
     (void)state;
     for (int i = 0; i < GRID; i++)
-        x[i] = -1 + 2.0 * i / (GRID - 1);
-    for (int narrow = 0; narrow < 2; narrow++) {
+        grid_place[i] = -1 + 2.0 * i / (GRID - 1);
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+        for (size_t m = 0; m < 6; m++) {
+            const double level = m < 4 ? 0.95 : levels[m - 3];
+            const enum doe_method method = m < 4 ? methods[m] : DOE_RANDOM;
+            int held = 0;
+            for (int seed = 0; seed < SEEDS; seed++) {
+                struct doe s = {
+                    .method = method, .count = 32, .factors = FACTORS, .seed = (uint64_t)seed};
+                assert_true(doe_begin(&s));
+                const size_t points = (size_t)doe_points(&s);
+                for (size_t p = 0; p < points; p++) {
+                    double u[FACTORS];
+                    doe_unit(&s, p, u);
+                    for (size_t i = 0; i < GRID; i++)
+                        kind_of[i * points + p] = in(grid_place[i] < kinds[k].edge(u));
+                }
+                const struct results r = {
+                    .axes = 2,
+                    .axis = {{.name = "initial.offset.x",
+                              .unit = "m",
+                              .count = GRID,
+                              .value = grid_place,
+                              .offset = true},
+                             {.name = "sample", .count = points, .value = point_place}},
+                    .sample = 1,
+                    .block = (size_t)doe_block(&s),
+                    .cases = GRID * points,
+                    .kind = kind_of};
+                const struct basin_row row = measure_basin(
+                    &r, &(struct basin_sample){.axis = -1, .points = points, .block = r.block},
+                    level);
+                held += fabs(row.volume - kinds[k].volume) <= row.reach;
+                doe_end(&s);
+            }
+            const double share = (double)held / SEEDS,
+                         slack = 3.5 * sqrt(level * (1 - level) / SEEDS);
+            print_message("# volumes over 32 blocks of %s, %s: %.1f %% at %.0f %%\n",
+                          doe_words[method], kinds[k].name, 100 * share, 100 * level);
+            assert_true(share > level - 0.02 - slack);
+            if (method == DOE_RANDOM && !kinds[k].conservative)
+                assert_true(share < level + 0.02 + slack);
+        }
+    }
+}
+
+/* Sampled starts of which any share is inside, from nearly none to nearly all: the interval, and
+ * the likely error either way. */
+static void volumes_over_sampled_starts(void **state)
+{
+    enum { POINTS = 64 };
+    static const double shares[][2] = {{0.005, 0.05}, {0.05, 0.3}, {0.3, 0.7}, {0.95, 0.995}};
+    static const double levels[] = {0.95, 0.8, 0.99};
+    (void)state;
+    for (size_t k = 0; k < 4; k++) {
+        for (size_t l = 0; l < 3; l++) {
+            int held = 0, either = 0;
+            for (int seed = 0; seed < SEEDS; seed++) {
+                uint64_t random = (uint64_t)seed * 7919 + 1;
+                const double edge = uniform(&random, shares[k][0], shares[k][1]);
+                for (int p = 0; p < POINTS; p++) {
+                    point_place[p] = uniform(&random, 0, 1);
+                    kind_of[p] = in(point_place[p] < edge);
+                }
+                const struct results_axis x = {.name = "initial.offset.x",
+                                               .count = POINTS,
+                                               .value = point_place,
+                                               .offset = true};
+                const struct results r = {
+                    .axes = 1,
+                    .axis = {{.name = "sample", .count = POINTS, .value = point_place}},
+                    .sample = 0,
+                    .block = 1,
+                    .cases = POINTS,
+                    .kind = kind_of};
+                struct basin_sample sample = {.axis = 0,
+                                              .points = POINTS,
+                                              .block = 1,
+                                              .factors = 1,
+                                              .factor = malloc(sizeof *sample.factor),
+                                              .box = 1};
+                assert_non_null(sample.factor);
+                sample.factor[0] = (struct basin_factor){&x, 0, 1};
+                const struct basin_row row = measure_basin(&r, &sample, levels[l]);
+                held += row.low <= edge && edge <= row.high;
+                either += fabs(row.volume - edge) <= row.reach;
+            }
+            const double level = levels[l], slack = 3.5 * sqrt(level * (1 - level) / SEEDS);
+            print_message(
+                "# %d sampled starts, %.1f to %.1f %% inside: interval %.1f %%, +- %.1f %% "
+                "at %.0f %%\n",
+                POINTS, 100 * shares[k][0], 100 * shares[k][1], 100.0 * held / SEEDS,
+                100.0 * either / SEEDS, 100 * level);
+            assert_true(fabs((double)held / SEEDS - level) < 0.02 + slack);
+            assert_true(either >= held);
+        }
+    }
+}
+
+/* ---- shares along a path, and losses ------------------------------------------------------- */
+
+/* Bins of 32 points along a factor, of which other factors decide. */
+static void bins_of_a_sample(void **state)
+{
+    enum { BINS = 8, POINTS = 32 * BINS };
+    static uint8_t kind[POINTS];
+    static double value[POINTS];
+    struct results_varied vary = {
+        .of = {.name = "ground.friction", .count = POINTS, .value = value}};
+    const struct results r = {.axes = 1,
+                              .axis = {{.name = "sample", .count = POINTS, .value = value}},
+                              .sample = 0,
+                              .block = 1,
+                              .varied = 1,
+                              .vary = &vary,
+                              .cases = POINTS,
+                              .kind = kind};
+    double held = 0;
+    (void)state;
+    for (int seed = 0; seed < SEEDS; seed++) {
+        struct doe_bins bins;
+        stance_message message;
+        uint64_t random = (uint64_t)seed * 7919 + 1;
+        for (int p = 0; p < POINTS; p++) {
+            value[p] = uniform(&random, 0, 1);
+            kind[p] = in(uniform(&random, 0, 1) < 0.1 + 0.8 * value[p]);
+        }
+        assert_true(doe_bins_make(&bins, &r, 0, BINS, &message));
+        assert_int_equal(bins.count, BINS);
+        for (size_t b = 0; b < bins.count; b++) {
+            const struct interval *found = &bins.bin[b].of_kind[RESULTS_STABILISED];
+            const double share = 0.1 + 0.4 * (bins.bin[b].low + bins.bin[b].high);
+            held += found->low <= share && share <= found->high;
+        }
+    }
+    print_message("# bins of 32 points: %.1f %%\n", 100 * held / SEEDS / BINS);
+    assert_true(held / SEEDS / BINS > 0.93 && held / SEEDS / BINS < 0.97);
+}
+
+/* What the domain of one file has lost in another one: little of much, and of single starts. */
+static void losses_of_a_domain(void **state)
+{
+    enum { POINTS = 128 };
+    static uint8_t kind[2][GRID * POINTS];
+    static char none[] = "";
+    (void)state;
+    for (int gridded = 0; gridded < 2; gridded++) {
+        struct results r[2];
+        const size_t places = gridded ? GRID : 1;
+        for (int f = 0; f < 2; f++)
+            r[f] = (struct results){
+                .axes = 2,
+                .axis = {{.name = "initial.offset.x", .count = places, .value = grid_place},
+                         {.name = "sample", .count = POINTS, .value = point_place}},
+                .sample = 1,
+                .block = 1,
+                .scenario = none,
+                .cases = places * POINTS,
+                .kind = kind[f]};
         int held = 0;
         for (int seed = 0; seed < SEEDS; seed++) {
-            struct basin_sample sample = {.axis = -1, .points = POINTS, .block = 1};
-            struct basin basin;
+            struct label_comparison found;
             stance_message message;
             uint64_t random = (uint64_t)seed * 7919 + 1;
-            bool usage;
-            for (int p = 0; p < POINTS; p++) {
-                const double u = uniform(&random, 0, 1),
-                             edge = narrow ? 0.2 + 0.03 * u : 0.9 * u * u - 0.1;
-                for (int i = 0; i < GRID; i++)
-                    kind[i * POINTS + p] = x[i] < edge ? RESULTS_STABILISED : RESULTS_FELL;
+            for (size_t p = 0; p < POINTS; p++) {
+                const double u = uniform(&random, 0, 1), v = uniform(&random, 0, 1);
+                /* Of m of the grid a part with the mean 0.05 is lost. */
+                const size_t m = gridded ? 10 + (size_t)(20 * u) : 1;
+                const double part = 0.1 * v * (double)m;
+                size_t lost = (size_t)part;
+                lost += uniform(&random, 0, 1) < part - (double)lost;
+                for (size_t i = 0; i < places; i++) {
+                    kind[0][i * POINTS + p] = in(i < m);
+                    kind[1][i * POINTS + p] = in(i + lost < m);
+                }
             }
-            assert_true(basin_make(&basin, &r, &choice, &sample, &usage, &message));
-            assert_int_equal(basin.rows, 1);
-            const double wanted = narrow ? 1.215 : 1.2;
-            held += fabs(basin.row[0].volume - wanted) <= basin.row[0].reach;
-            basin_free(&basin);
+            assert_true(compare_labels(&found, &r[0], &r[1], RESULTS_STABILISED, &message));
+            held += found.lost_interval.low <= 0.05 && 0.05 <= found.lost_interval.high;
         }
-        print_message("# volumes over %d sampled points, %s: %.1f %%\n", POINTS,
-                      narrow ? "within a cell" : "wide", 100.0 * held / SEEDS);
-        /* Within a cell the place of the edge in it is the whole error, and the bound is certain.
-         */
-        assert_true(held >= 930 && (narrow || held <= 970 + 10));
+        print_message("# losses of %s: %.1f %%\n", gridded ? "maps" : "single starts", held / 10.0);
+        assert_true(held >= 930 && held <= 970 + 10);
     }
 }
 
@@ -237,6 +436,9 @@ int main(void)
         cmocka_unit_test(shares_of_parts_hold),
         cmocka_unit_test(shares_over_a_grid_are_no_coins),
         cmocka_unit_test(volumes_over_sampled_parameters),
+        cmocka_unit_test(volumes_over_sampled_starts),
+        cmocka_unit_test(bins_of_a_sample),
+        cmocka_unit_test(losses_of_a_domain),
     };
     return cmocka_run_group_tests_name("intervals", tests, NULL, NULL);
 }

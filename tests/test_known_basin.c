@@ -229,9 +229,15 @@ static void stops_only_where_it_may(void **state)
     assert_int_equal(r.evidence, STANCE_INFERRED);
     assert_int_equal(r.steps, 10); /* the first sampling instant */
     assert_true(isnan(r.settle_time) && r.end_time == 0.01);
-    for (int k = 0; k < 9; k++) {
+    for (int k = 0; k < 11; k++) {
         other = c;
         switch (k) {
+        case 9:
+            other.lag = 1e-3;
+            break;
+        case 10:
+            other.torque_rate = 1e3;
+            break;
         case 0:
             other.basin_known = false;
             break;

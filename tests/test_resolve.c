@@ -31,6 +31,8 @@ static struct scenario_values balance_values(void)
         .offset_scale = 1,
         .sample_time = 0.001,
         .torque_limit = 10,
+        .torque_limits = {INFINITY, INFINITY},
+        .torque_rate = INFINITY,
         .step = 0.001,
         .stop_time = 8,
         .settle = 1,
@@ -276,6 +278,13 @@ static void refusals(void **state)
     v.sample_time = 0;
     v.noise = 0.1;
     assert_refused(&v, "controller.noise needs a controller.sample_time above 0");
+    v.noise = 0, v.lag = 0.1;
+    assert_refused(&v, "controller.lag needs a controller.sample_time above 0");
+    v.lag = 0, v.torque_rate = 10;
+    assert_refused(&v, "controller.torque_rate needs a controller.sample_time above 0");
+    v.torque_rate = INFINITY, v.sample_time = 0.001, v.delay = STANCE_MAX_DELAY + 1;
+    assert_refused(&v, "controller.delay must be 0 to 16 samples, controller.lag not negative, "
+                       "controller.torque_rate positive");
     v = balance_values();
     v.step = 0;
     assert_refused(&v, "method.step must be positive");

@@ -178,7 +178,11 @@ static stance_case soft_case(uint64_t *seed)
     c.friction = 0.01 * exp(uniform(seed, 0, 5));
     c.torque_limit = uniform(seed, 0, 1) < 0.5 ? 1.5 * exp(uniform(seed, 0, 2.3)) : INFINITY;
     c.sample_every = (int64_t)uniform(seed, 0, 2) * (1 + (int64_t)uniform(seed, 0, 20));
-    c.delay = c.sample_every > 0 && uniform(seed, 0, 1) < 0.2;
+    c.delay = c.sample_every > 0 && uniform(seed, 0, 1) < 0.2 ? (int64_t)uniform(seed, 1, 5) : 0;
+    if (c.sample_every > 0 && uniform(seed, 0, 1) < 0.3)
+        c.lag = 2e-3 * exp(uniform(seed, 0, 4));
+    if (c.sample_every > 0 && uniform(seed, 0, 1) < 0.2)
+        c.torque_rate = 10 * exp(uniform(seed, 0, 5));
     c.step = 2e-3;
     c.steps = 5000;
     c.tolerance = 1e-6;

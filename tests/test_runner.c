@@ -70,6 +70,9 @@ static void test_nearest_word(void **state)
     assert_string_equal(nearest_word("sampletime", known, 6), "sample_time");
     assert_string_equal(nearest_word("ru", known, 6), "run");
     assert_null(nearest_word("xyz", known, 6));
+    const char *const axes[] = {"z", "vz", "gain"};
+    assert_null(nearest_word("zzz", axes, 3)); /* two of three letters are too many */
+    assert_string_equal(nearest_word("gian", axes, 3), "gain");
     assert_null(nearest_word("", known, 6));
     assert_null(nearest_word("telescope", known, 6));
 }

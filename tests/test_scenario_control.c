@@ -61,10 +61,10 @@ static void captured_sets_are_designs(void **state)
         {"controller.far=hold",
          "stop.capture estimated has no meaning with controller.far: another "
          "law acts outside"},
-        {"controller.delay=1", "controller.delay 1 has no meaning with stop.capture estimated: the "
+        {"controller.delay=1", "controller.delay has no meaning with stop.capture estimated: the "
                                "torques under way belong to the state"},
         {"sweep.grid=[{path: controller.delay, values: [0, 1]}]",
-         "controller.delay 1 has no meaning with stop.capture estimated: the torques under way "
+         "controller.delay has no meaning with stop.capture estimated: the torques under way "
          "belong to the state"},
         {"stop.capture=proven", "stop.capture: unknown word 'proven' (known: off, estimated)"},
     };
@@ -302,10 +302,10 @@ static void sets_keep_within_bounds(void **state)
 static void sampled_loop_grows_as_reported(void **state)
 {
     (void)state;
-    for (int delay = 0; delay < 2; delay++) {
+    for (int delay = 0; delay < 4; delay++) {
         struct scenario s;
         char keys[128];
-        double Ad[N * N], Bd[N * M], X[N] = {1, 0, 0, 0, 0, 0}, u[M] = {0}, size = 0;
+        double Ad[N * N], Bd[N * M], X[N] = {1, 0, 0, 0, 0, 0}, u[4][M] = {{0}}, size = 0;
         snprintf(keys, sizeof keys, "design: lqr, sample_time: 0.06, delay: %d", delay);
         const struct design_report *r = report(&s, keys);
         assert_int_equal(stance_discretise(N, M, r->A, r->B, 0.06, Ad, Bd), STANCE_OK);
@@ -323,19 +323,23 @@ static void sampled_loop_grows_as_reported(void **state)
                 for (int j = 0; j < N; j++)
                     next[i] += Ad[i * N + j] * X[j];
                 for (int j = 0; j < M; j++)
-                    next[i] += Bd[i * M + j] * (delay ? u[j] : late[j]);
+                    next[i] += Bd[i * M + j] * (delay ? u[0][j] : late[j]);
                 size = fmax(size, fabs(next[i]));
             }
             for (int i = 0; i < N; i++)
                 X[i] = next[i] / size;
-            for (int i = 0; i < M; i++)
-                u[i] = late[i] / size;
+            for (int i = 0; i < M; i++) {
+                for (int d = 0; d + 1 < delay; d++)
+                    u[d][i] = u[d + 1][i] / size;
+                u[delay ? delay - 1 : 0][i] = late[i] / size;
+            }
             logarithm += k >= 2000 ? log(size) : 0;
         }
         assert_true(fabs(exp(logarithm / 2000) - r->radius) < 1e-3);
-        assert_int_equal(r->sampled, delay ? N + M : N);
+        assert_int_equal(r->sampled, N + delay * M);
         assert_true(r->stable == (r->radius < 1));
-        assert_true(r->stable == (0.06 < r->critical[delay]));
+        assert_true(r->stable == (0.06 < r->critical[delay > 0]));
+        assert_true(!r->stable || r->delay_margin >= delay);
         assert_true(r->set.exists == (r->stable && !delay));
         scenario_free(&s);
     }

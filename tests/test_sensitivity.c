@@ -314,6 +314,48 @@ static void test_coverage(void **state)
     }
 }
 
+/* What two factors share, Ishigami's 1 and 3 and pairs of the g-function's; f: 0 or 1. */
+static double pair(size_t f, const double *first, const double *total, size_t i, size_t j)
+{
+    double variance = 1;
+    for (size_t g = 0; g < G; g++)
+        variance *= 1 + 1 / (3 * (1 + weights[g]) * (1 + weights[g]));
+    return f == 1 ? first[i] * first[j] * (variance - 1) : i == 0 && j == 2 ? total[2] : 0;
+}
+
+/* The sum of the first-order indices, and indices of second order. */
+static void test_coverage_of_sums_and_pairs(void **state)
+{
+    enum { SEEDS = 1000, BLOCKS = 256 };
+    const double slack = 3.5 * sqrt(0.95 * 0.05 / SEEDS);
+    (void)state;
+    for (size_t f = 0; f < FUNCTIONS; f++) {
+        const struct function *own = &functions[f];
+        const size_t k = own->factors;
+        double first[MOST], total[MOST], sum = 0, held = 0, pairs[MOST * MOST] = {0}, least = 1;
+        own->indices(first, total);
+        for (size_t j = 0; j < k; j++)
+            sum += first[j];
+        for (int seed = 0; seed < SEEDS; seed++) {
+            struct sensitivity s;
+            struct data d = make(DOE_SALTELLI, own, BLOCKS, (uint64_t)seed, f < 2, false);
+            analyse(&s, &d, &usual);
+            held += holds(&s.first_sum, sum) / (double)SEEDS;
+            for (size_t i = 0; f < 2 && i < k; i++)
+                for (size_t j = i + 1; j < k; j++)
+                    pairs[i * k + j] +=
+                        holds(&s.second[i * k + j], pair(f, first, total, i, j)) / (double)SEEDS;
+            sensitivity_free(&s);
+            release(&d);
+        }
+        for (size_t i = 0; f < 2 && i < k; i++)
+            for (size_t j = i + 1; j < k; j++)
+                least = fmin(least, pairs[i * k + j]);
+        printf("# %s: sum %.1f %%, worst pair %.1f %%\n", own->name, 100 * held, 100 * least);
+        assert_true(held > 0.93 - slack && least > 0.93 - slack);
+    }
+}
+
 /* First-order indices from bins, of independent points and Latin hypercubes from 93 % on; those of
  * a Sobol' sequence are conservative. */
 static void test_coverage_of_bins(void **state)
@@ -404,14 +446,9 @@ static void test_pairs(void **state)
         const size_t k = d.factors;
         analyse(&s, &d, &wide);
         functions[f].indices(first, total);
-        double variance = 1;
-        for (size_t j = 0; j < G; j++)
-            variance *= 1 + 1 / (3 * (1 + weights[j]) * (1 + weights[j]));
         for (size_t i = 0; i < k; i++) {
             for (size_t j = i + 1; j < k; j++) {
-                const double truth = f == 1             ? first[i] * first[j] * (variance - 1)
-                                     : i == 0 && j == 2 ? total[2]
-                                                        : 0;
+                const double truth = pair(f, first, total, i, j);
                 assert_float_equal(s.second[i * k + j].estimate, truth, 0.02);
                 assert_true(holds(&s.second[i * k + j], truth));
             }
@@ -562,6 +599,7 @@ int main(void)
         cmocka_unit_test(test_listed),
         cmocka_unit_test(test_nothing),
         cmocka_unit_test(test_coverage),
+        cmocka_unit_test(test_coverage_of_sums_and_pairs),
         cmocka_unit_test(test_coverage_of_bins),
         cmocka_unit_test(test_coverage_of_effects),
     };

@@ -51,7 +51,7 @@ is "the cache has eight objects, a lock and nothing else" test "$(others "$STANC
 is "... and is the user's alone" test "$(stat -c %a "$STANCE_CACHE" "$STANCE_CACHE"/*.so | sort -u | tr '\n' ' ')" = "600 700 "
 fastest=$(timeout "$patience" "$stance" --version | sed -n 's/.*in use: //p')
 for isa in $(timeout "$patience" "$stance" --version | sed -n 's/instruction sets \(.*\); in use.*/\1/p' | tr -d ,); do
-    expect "rod, $isa" 0 "$job" rod lagrange "$isa"
+    expect "rod, $isa" 0 "$job" ball lagrange "$isa"
     says "... the same bits" 'the same bits'
 done
 isa=scalar
@@ -63,19 +63,19 @@ is "... or XDG_CACHE_HOME's" test -e xdg/stance/lock
 
 # ---- several at once ------------------------------------------------------------------------------
 rm -rf "$STANCE_CACHE"
-for k in 1 2 3; do timeout "$patience" "$job" rod lagrange $isa >"log$k" 2>&1 & done
+for k in 1 2 3; do timeout "$patience" "$job" ball lagrange $isa >"log$k" 2>&1 & done
 wait
 cat log[123] >log
 is "of three jobs at once one compiles" test "$(grep -c 'compiled, the same bits' log)$(grep -c 'kept, the same bits' log)" = 12
 rm -rf "$STANCE_CACHE"
-expect "two ranks" 0 mpirun -n 2 "$job" rod lagrange,capturing $isa
+expect "two ranks" 0 mpirun -n 2 "$job" ball lagrange,capturing $isa
 is "... compile once" test "$(grep -c '^stance: compiling' log)" = 1
 is "... and both have the right bits" test "$(grep -c 'compiled, the same bits' log)" = 4
-expect "two ranks, kept" 0 mpirun -n 2 "$job" rod lagrange,capturing $isa
+expect "two ranks, kept" 0 mpirun -n 2 "$job" ball lagrange,capturing $isa
 is "... and both have the right bits" test "$(grep -c 'kept, the same bits' log)" = 4
 
 rm -rf "$STANCE_CACHE"
-expect "two ranks on different processors" 0 mpirun -n 1 "$job" rod lagrange,capturing scalar : -n 1 "$job" rod lagrange "$fastest"
+expect "two ranks on different processors" 0 mpirun -n 1 "$job" ball lagrange,capturing scalar : -n 1 "$job" ball lagrange "$fastest"
 is "... have each its own, with the right bits" test "$(grep -Ec "(0: lagrange scalar|1: lagrange $fastest): compiled, the same bits" log)" = 2
 
 # ---- files that are not what they should be -------------------------------------------------------
@@ -83,9 +83,9 @@ spoilt() { # name, what is said, command that spoils a file
     local file # of the command
     file=$(object lagrange-$isa)
     eval "$3" || echo "cannot be made: $3" >&2
-    compiles "$1: compiled anew" 1 rod lagrange $isa
+    compiles "$1: compiled anew" 1 ball lagrange $isa
     says "... and said" "$2: thrown away"
-    expect "... and kept" 0 "$job" rod lagrange $isa
+    expect "... and kept" 0 "$job" ball lagrange $isa
     says "... whole" 'kept, the same bits'
 }
 {
@@ -106,7 +106,7 @@ spoilt() { # name, what is said, command that spoils a file
 
 # ---- directories that cannot be trusted -----------------------------------------------------------
 distrusted() { # name, what is said
-    expect "$1 is refused" 3 "$job" rod lagrange $isa
+    expect "$1 is refused" 3 "$job" ball lagrange $isa
     says "... and said, with the mend" "$2"
     is "... in one line" test "$(wc -l <log)" = 1
 }
@@ -126,18 +126,18 @@ fi
 
 # ---- no room --------------------------------------------------------------------------------------
 export TMPDIR=$scratch/tmp && mkdir tmp
-STANCE_CACHE=/sys/stance compiles "a home that nothing can be written to" 1 rod lagrange $isa
+STANCE_CACHE=/sys/stance compiles "a home that nothing can be written to" 1 ball lagrange $isa
 says "... and said" "compiled in $TMPDIR, for this run alone"
-env -u STANCE_CACHE -u HOME "$job" rod lagrange $isa >log 2>&1
+env -u STANCE_CACHE -u HOME "$job" ball lagrange $isa >log 2>&1
 says "no home" "neither STANCE_CACHE nor HOME names a directory; compiled in $TMPDIR, for this run alone"
 if ((UID == 0)) && mount -t tmpfs -o size=1m none "$disk" 2>/dev/null; then
     mkdir -m 700 "$disk/cache"
-    STANCE_CACHE=$disk/cache compiles "a full disk" 1 rod lagrange $isa
+    STANCE_CACHE=$disk/cache compiles "a full disk" 1 ball lagrange $isa
     says "... is said" 'No space left on device; compiled in'
     is "... and left as it was" test -z "$(others "$disk/cache")"
     cp "$(object lagrange-$isa)" "$disk/cache"
     mount -o remount,ro "$disk"
-    STANCE_CACHE=$disk/cache expect "an object on a disk that can only be read" 0 "$job" rod lagrange $isa
+    STANCE_CACHE=$disk/cache expect "an object on a disk that can only be read" 0 "$job" ball lagrange $isa
     says "... is taken" 'kept, the same bits'
     STANCE_CACHE=$disk/cache compiles "another one" 1 rod capturing $isa
     says "... is not kept" 'Read-only file system; compiled in'
@@ -146,14 +146,14 @@ else
     skip "a full disk" "no tmpfs can be mounted"
 fi
 rm -rf "$STANCE_CACHE"
-expect "files that may not be larger than 200 kB" 0 bash -c "trap '' XFSZ; ulimit -f 200; '$job' rod lagrange $isa | cat"
+expect "files that may not be larger than 200 kB" 0 bash -c "trap '' XFSZ; ulimit -f 200; '$job' ball lagrange $isa | cat"
 says "... is said" 'File too large; kernels that are built in compute instead'
 is "nothing is left in the directory for temporary files" test -z "$(ls tmp)"
 unset TMPDIR
 
 # ---- compilers ------------------------------------------------------------------------------------
 refused() { # name, what is said, what the job is started with
-    expect "$1: the kernel that is built in computes" 0 env "${@:3}" "$job" rod lagrange $isa
+    expect "$1: the kernel that is built in computes" 0 env "${@:3}" "$job" ball lagrange $isa
     says "... with the right bits" 'built in, the same bits'
     says "... and that is said" "$2.*kernels that are built in compute instead, more slowly"
     is "... and nothing kept" test -z "$(others "$STANCE_CACHE")"
@@ -164,7 +164,7 @@ CC=./fusing expect "... whose results are others indeed" 1 "$job" ball lagrange 
 rm -rf "$STANCE_CACHE"
 compiler failing 'echo "x.c:1:2: note: before" >&2; echo "x.c:3:4: error: no such thing" >&2; echo "  3 | here" >&2; exit 1'
 refused "a compiler that fails" 'failing does not compile lagrange for scalar (exit code 1): x.c:3:4: error: no such thing|  3 | here' CC=./failing
-CC=./failing expect "... and no kernel built in" 2 "$job" rod lagrange $isa alone
+CC=./failing expect "... and no kernel built in" 2 "$job" ball lagrange $isa alone
 is "... is said in one line" test "$(grep -vc '^stance: compiling' log)" = 1
 compiler dying 'kill -9 $$'
 refused "a compiler that is killed" 'dying does not compile lagrange for scalar (signal 9): and does not say why' CC=./dying
@@ -174,15 +174,15 @@ compiler other 'while [ "$1" != -o ]; do shift; done; echo text >"$2"'
 refused "a compiler that makes no object" 'a compiled kernel cannot be loaded' CC=./other
 refused "a compiler that is not there" "the compiler CC='/nowhere/cc' does not run" CC=/nowhere/cc
 refused "no compiler" 'there is no compiler here' PATH="$scratch"
-CC=/nowhere/cc expect "no compiler, and no kernel built in" 2 "$job" rod lagrange $isa alone
+CC=/nowhere/cc expect "no compiler, and no kernel built in" 2 "$job" ball lagrange $isa alone
 says "... says what to do" '`stance build` where there is one, and copy '"$STANCE_CACHE/lagrange-$isa-"
 if command -v clang >/dev/null; then
-    CC=clang compiles "clang" 0 rod lagrange "$fastest"
+    CC=clang compiles "clang" 0 ball lagrange "$fastest"
 else
     skip "clang" "not installed"
 fi
-CC="cc -DUNUSED" compiles "CC may have options" 0 rod lagrange $isa
-CC=/nowhere/cc expect "an object serves where there is no compiler, whoever compiled it" 0 "$job" rod lagrange $isa alone
+CC="cc -DUNUSED" compiles "CC may have options" 0 ball lagrange $isa
+CC=/nowhere/cc expect "an object serves where there is no compiler, whoever compiled it" 0 "$job" ball lagrange $isa alone
 says "... with the right bits" 'kept, the same bits'
 
 # ---- the command ----------------------------------------------------------------------------------
@@ -194,18 +194,18 @@ says "... says so" "stance build: --method takes one of .*lagrange"
 expect "... for no instruction set" 2 "$stance" build "$shipped/ball_bounce.yaml" --isa=avx
 says "... says so" "stance build: --isa takes one of .*scalar"
 
-disc=$shipped/mechanisms/rolling_disc.yaml few=(--set 'sweep.grid[0].count=3' --set 'sweep.grid[1].count=2')
+pole=$shipped/mechanisms/cart_pole.yaml few=(--set 'sweep.grid[0].count=2' --set 'sweep.grid[1].count=2')
 rm -rf "$STANCE_CACHE"
-expect "what takes less time than compiling" 0 "$stance" run --quiet -o built_in.h5 "$disc" "${few[@]}"
+expect "what takes less time than compiling" 0 "$stance" run --quiet -o built_in.h5 "$pole" "${few[@]}"
 is "... is computed without" test -z "$(others "$STANCE_CACHE")"
-expect "... stance build compiles all the same" 0 "$stance" build "$disc"
-expect "... what is kept then computes" 0 "$stance" run --quiet -o kept.h5 "$disc" "${few[@]}"
-is "... the same bits" cmp <("$stance" table built_in.h5) <("$stance" table kept.h5)
+expect "... stance build compiles all the same" 0 "$stance" build "$pole"
+expect "... what is kept then computes" 0 "$stance" run --quiet -o kept.h5 "$pole" "${few[@]}"
+is "... the same bits, beside cases at the other stop, too" cmp <("$stance" table built_in.h5) <("$stance" table kept.h5)
 
 # ---- kills ----------------------------------------------------------------------------------------
 compiler slow 'echo $$ >compiling; exec sleep 60'
 rm -rf "$STANCE_CACHE"
-CC=./slow "$job" rod lagrange $isa >/dev/null 2>&1 &
+CC=./slow "$job" ball lagrange $isa >/dev/null 2>&1 &
 victim=$!
 until [ -s "$(echo "$STANCE_CACHE"/compile-*/compiling)" ]; do sleep 0.1; done
 kill -9 $victim "$(cat "$STANCE_CACHE"/compile-*/compiling)"
@@ -213,13 +213,13 @@ wait $victim 2>/dev/null
 is "a job that is killed leaves a directory" test -n "$(ls -d "$STANCE_CACHE"/compile-*)"
 touch -d '100 days ago' "$STANCE_CACHE/forgotten-scalar-0.so"
 touch -d '80 days ago' "$STANCE_CACHE/remembered-scalar-0.so"
-compiles "the next one compiles" 0 rod lagrange $isa
+compiles "the next one compiles" 0 ball lagrange $isa
 is "... and removes it, and what nobody used for 90 days" \
     test "$(cd "$STANCE_CACHE" && echo *)" = "$(basename "$(object lagrange)") lock remembered-scalar-0.so"
 truncate -s 200M "$STANCE_CACHE/large-scalar-0.so" "$STANCE_CACHE/larger-scalar-0.so"
 touch -d '30 days ago' "$STANCE_CACHE/large-scalar-0.so"
 rm "$(object lagrange)"
-compiles "another one" 0 rod lagrange $isa
+compiles "another one" 0 ball lagrange $isa
 is "... removes, beyond 256 MiB, what nobody used for longest" \
     test "$(cd "$STANCE_CACHE" && echo *)" = "$(basename "$(object lagrange)") larger-scalar-0.so lock"
 

@@ -39,9 +39,9 @@ for scenario in scenarios/*.yaml scenarios/controllers/*.yaml; do
         reduce=(--set 'sweep.grid[1].count=9' --set 'sweep.grid[2].count=9') ;;
     gain_choice_sampled | walk_gains)
         reduce=(--set 'sweep.grid[2].count=5' --set 'sweep.grid[3].count=5') ;;
-    friction | noise | torque_limit | friction_needed)
+    friction | noise | torque_limit | torque_rate | friction_needed)
         reduce=(--set 'sweep.grid[0].count=13' --set 'sweep.grid[1].count=13') ;;
-    delay) reduce=(--set 'sweep.grid[1].count=13' --set 'sweep.grid[2].count=13') ;;
+    delay | lag | sensors) reduce=(--set 'sweep.grid[1].count=13' --set 'sweep.grid[2].count=13') ;;
     sampled) reduce=(--set sweep.sample.count=100) ;;
     what_decides)
         reduce=(--set 'sweep.grid[0].count=4' --set 'sweep.grid[1].count=4' --set sweep.sample.count=8) ;;

@@ -19,14 +19,40 @@ warns "a torque limit below the equilibrium's" "the equilibrium takes [0-9.]* of
 warns "friction below what standing takes" "standing on foot1 takes friction 0.3[0-9]*, there is 0.1" "$shipped/mechanisms/pushed.yaml" --set ground.slope=0.3 --set ground.friction=0.1
 warns "degrees" "theta begins at -23.54 rad, more than a turn.*angles are in radians" "$shipped/balance_recovers.yaml" --set initial.equilibrium='{theta: -23.5, q2: 47}' --set controller.torque_limit=100
 warns "some of many cases" ".*case [0-9]*; so it is in [0-9]* of 64 cases, evenly spread" "$shipped/sample_time_sweep.yaml"
-for sound in basin_one_foot balance_recovers mechanisms/rabbit mechanisms/cart_pole mechanisms/pushed; do
+warns "an axis that leaves out the equilibrium" "the 64 points of initial.offset.vtheta leave out the equilibrium, at 0; write count: 65" "$map" --set 'sweep.grid[1].count=64'
+expect "with that count" 0 "$stance" check "$map" --set 'sweep.grid[1].count=65'
+! grep -q warning log
+result $? "... it has it"
+inside=(--set 'sweep.grid[0]={path: initial.offset.theta, from: -0.01, to: 0.01, count: 11}'
+    --set 'sweep.grid[1]={path: initial.offset.vtheta, from: -0.03, to: 0.03, count: 11}')
+outside=(--set 'sweep.grid[0]={path: initial.offset.theta, from: 0.1, to: 0.3, count: 11}'
+    --set 'sweep.grid[1]={path: initial.offset.vtheta, from: 0.3, to: 0.6, count: 11}')
+warns "ranges within the domain" "9 of 121 cases tried: all are stabilised: the ranges end within the domain; stance ranges $map finds" "$map" "${inside[@]}"
+warns "ranges beside the domain" "9 of 121 cases tried: all fell: the ranges do not meet a domain; stance ranges $map finds" "$map" "${outside[@]}"
+for where in inside outside; do
+    declare -n box=$where
+    expect "a run $where" 0 mpirun -n 2 "$stance" run -o "$where.h5" "$map" "${box[@]}"
+    grep -c 'stance run: warning: all cases \(are stabilised: the ranges end within\|fell: the ranges do not meet\)' log | grep -qx 1
+    result $? "... is told for sure"
+    expect "its summary" 0 "$stance" summary "$where.h5"
+    says "... tells it, too" "^  the ranges \(end within the domain\|do not meet a domain\): stance ranges SCENARIO finds"
+done
+for sound in basin_one_foot basin_both_feet topple friction_sweep controllers/gain_choice balance_falls rod_fall walk_attempt balance_recovers mechanisms/rabbit mechanisms/cart_pole mechanisms/pushed; do
     expect "$sound" 0 "$stance" check "$shipped/$sound.yaml"
     ! grep -q warning log
     result $? "... has nothing to be warned of"
 done
-expect "run" 0 mpirun -n 2 "$stance" run --quiet -o run.h5 "$map" --set controller.sample_time=0.2 --set 'sweep.grid[0].count=2' --set 'sweep.grid[1].count=2'
+expect "run" 0 mpirun -n 2 "$stance" run --quiet -o run.h5 "$map" --set controller.sample_time=0.2 --set 'sweep.grid[0].count=4' --set 'sweep.grid[1].count=3'
 [ "$(grep -c 'stance run: warning' log)" = 1 ]
 result $? "... warns once, whatever the ranks"
+
+# What a design stands on, where it is not level earth.
+expect "the design on a slope of the moon" 0 "$stance" design "$shipped/mechanisms/pushed.yaml" --set ground.slope=0.1 --set ground.gravity=1.62
+says "... tells the slope" "^  slope  *0.10* rad  of the ground"
+says "... and gravity" "^  gravity  *1.620* m/s^2"
+expect "on level earth" 0 "$stance" design "$shipped/mechanisms/pushed.yaml"
+! grep -q '^  slope\|^  gravity' log
+result $? "... it tells neither"
 
 # Starts at rest on a line through the equilibrium. What never leaves the window has settled at 0; beyond, the
 # time jumps once, where a motion touches the window's edge, and is continuous from there.

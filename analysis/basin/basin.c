@@ -5,7 +5,6 @@
 #include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
 
-#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +14,7 @@
 
 static bool is_start(const struct results_axis *axis)
 {
-    return !axis->word && statistics_is_start(axis->name);
+    return !axis->word && scenario_is_start(axis->name);
 }
 
 static int find_axis(const struct results *r, const char *name)
@@ -287,6 +286,12 @@ static void count_cases(const struct lattice *lattice, enum results_kind of, str
     row->cases += lattice->map.cases;
 }
 
+/* Of an interval about an estimate, which need not lie in its middle. */
+static double longer_side(double estimate, struct interval interval)
+{
+    return fmax(interval.high - estimate, estimate - interval.low);
+}
+
 /* What the slices of one block of a sample of parameters add up to. The points of a block share
  * coordinates (saltelli, morris): independent of each other are blocks. */
 struct block {
@@ -319,13 +324,12 @@ static bool add_part(const struct basin *b, const struct lattice *lattice, struc
     row->part.unknown = row->part.unknown || part.unknown;
     row->part.low += part.volume.low;
     row->part.high += part.volume.high;
+    const double deviations = basin_map_deviations(b->choice.level);
     if (part.inside || !part.unknown) {
         row->part.known++;
         row->part.inside += part.inside;
         row->part.volume += part.inside ? part.volume.estimate : 0;
-        row->part.reach +=
-            part.inside ? basin_volume_reach(&part.volume, statistics_deviations(b->choice.level))
-                        : 0;
+        row->part.reach += part.inside ? basin_volume_reach(&part.volume, deviations) : 0;
     }
     return true;
 }
@@ -336,6 +340,7 @@ static bool add_slice(struct basin *b, const struct lattice *lattice, const size
 {
     struct basin_row *row = row_of(b, point);
     struct basin_volume volume;
+    const double deviations = basin_map_deviations(b->choice.level);
     for (int k = 0; k < b->by_axes; k++)
         row->point[b->by[k]] = point[b->by[k]];
     count_cases(lattice, b->choice.of, row);
@@ -348,8 +353,8 @@ static bool add_slice(struct basin *b, const struct lattice *lattice, const size
     if (isfinite(volume.estimate)) {
         row->known++;
         row->volume += volume.estimate;
-        row->reach += basin_volume_reach(&volume, statistics_deviations(b->choice.level));
-        row->resolution += statistics_deviations(b->choice.level) * sqrt(volume.variance);
+        row->reach += basin_volume_reach(&volume, deviations);
+        row->resolution += deviations * sqrt(volume.variance);
         if (b->averaged >= 0) {
             struct block *block = &blocks[(size_t)(row - b->row) * blocks_of(b) +
                                           point[b->averaged] / b->sample.block];
@@ -369,19 +374,16 @@ static bool add_slice(struct basin *b, const struct lattice *lattice, const size
                                                       b->weight, &row->distance)));
 }
 
-/* Variance of the mean of blocks, of which *found are known; NAN: fewer than two. */
-static double scatter(const struct block *blocks, size_t count, double *found)
+/* How far the mean over blocks may be off, as far as they scatter: the longer side of its interval,
+ * which where few blocks differ from the others has two that do. NAN: fewer than two blocks. */
+static double scatter(const struct basin *b, const struct block *blocks)
 {
-    double mean = 0, squares = 0, n = 0;
-    for (size_t k = 0; k < count; k++) {
-        if (blocks[k].slices > 0) {
-            const double step = blocks[k].volume / (double)blocks[k].slices - mean;
-            mean += step / ++n; /* Welford's recurrence */
-            squares += step * step * (n - 1) / n;
-        }
-    }
-    *found = fmax(n, 2);
-    return n > 1 ? squares / (n - 1) / n : NAN;
+    struct interval_draws draws = {0};
+    for (size_t k = 0; k < blocks_of(b); k++)
+        interval_add(&draws, blocks[k].volume / b->box, (double)blocks[k].slices);
+    const double mean = draws.k / draws.m;
+    const struct interval found = interval_of(&draws, b->choice.level);
+    return draws.blocks > 1 ? b->box * longer_side(mean, found) : NAN;
 }
 
 /* From sums over slices to means. The boundaries of slices next to each other lie alike, and so may
@@ -399,13 +401,8 @@ static void finish_row(const struct basin *b, struct basin_row *row, const struc
     row->part.high /= n;
     row->part.volume /= (double)row->part.known;
     row->part.reach /= (double)row->part.known;
-    if (b->averaged >= 0) {
-        double found;
-        const double variance =
-            scatter(blocks + (size_t)(row - b->row) * blocks_of(b), blocks_of(b), &found);
-        const double student = gsl_cdf_tdist_Pinv(0.5 + 0.5 * b->choice.level, found - 1);
-        row->reach = hypot(row->reach, student * sqrt(variance));
-    }
+    if (b->averaged >= 0)
+        row->reach = hypot(row->reach, scatter(b, blocks + (size_t)(row - b->row) * blocks_of(b)));
 }
 
 /* What became of a sampled point in the slices of a row. */
@@ -465,9 +462,11 @@ static void finish_sampled(const struct basin *b, struct basin_row *row, const s
         interval_add(&most, own[i].inside + own[i].unknown, own[i].cases);
     }
     row->volume = known > 0 ? b->box * (double)row->inside / (double)known : NAN;
-    row->low = b->box * interval_of(&least, b->choice.level).low;
-    row->high = b->box * interval_of(&most, b->choice.level).high;
-    row->reach = (row->high - row->low) / 2;
+    const struct interval ends = {b->box * interval_of(&least, b->choice.level).low,
+                                  b->box * interval_of(&most, b->choice.level).high};
+    row->low = ends.low;
+    row->high = ends.high;
+    row->reach = longer_side(row->volume, ends);
     find_nearest(b, row, own);
 }
 

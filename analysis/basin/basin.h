@@ -19,7 +19,8 @@ enum basin_starts {
 };
 
 /* A row of the table. Of a sample, volumes come from the share and its interval (intervals.h):
- * `low` with every unknown case outside, `high` with all of them inside, `reach` half of that. */
+ * `low` with every unknown case outside, `high` with all of them inside, `reach` the longer side.
+ */
 struct basin_row {
     size_t point[SCENARIO_MAX_AXES]; /* of the axes that rows are made by; 0 elsewhere */
     uint64_t slices, cases, inside, failed, pending;

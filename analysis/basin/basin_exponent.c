@@ -115,7 +115,8 @@ struct basin_exponent basin_exponent(const struct basin_uncertainty *u)
                 exponent.refusal = BASIN_FEW;
                 continue;
             }
-            const double own = hypot(scatter_of(&line, slope), drift_of(&line));
+            const double own = hypot(hypot(scatter_of(&line, slope), 2 * drift_of(&line)),
+                                     BASIN_WAVE * fmax(0, 1 - slope));
             return (struct basin_exponent){slope, hypot(tiles, own), n, BASIN_FITTED};
         }
     }

@@ -298,7 +298,9 @@ static void print_weights(const struct basin *b)
     printf("  (distances in units of");
     for (size_t d = 0; d < basin_starts(b); d++) {
         const struct results_axis *axis = basin_start(b, d);
-        printf("%s %.6g %s of %s", d ? "," : "", b->weight[d], axis->unit, axis->name);
+        const char *with = strstr(axis->text, "; with "); /* paths that move along */
+        printf("%s %.6g %s of %s%s", d ? "," : "", b->weight[d], axis->unit, axis->name,
+               with ? with + 1 : "");
     }
     puts(")");
 }

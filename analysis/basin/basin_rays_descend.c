@@ -1,11 +1,10 @@
 /* basin_rays_descend.c - simulates what descents from rays ask for: cases of the file's scenario
  * with other offsets than the file has. */
 #include "basin_rays.h"
+#include "basin_starts.h"
 
 #include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
-#include "runner/plan/instruction_set.h"
-#include "runner/plan/resolve.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -13,49 +12,33 @@
 
 struct simulator {
     struct scenario s;
-    struct scenario_values values;
-    struct resolved_design design;
-    const stance_kernel *kernel;
-    stance_outcome of;
-    uint64_t index; /* of the case that it is like, for its random numbers */
+    struct starts starts;
+    uint8_t of; /* outcome */
     int n;
     size_t offset[DESCEND_DIMENSIONS]; /* of each factor in the values */
     double half[DESCEND_DIMENSIONS];   /* of its range */
-    uint64_t failed;
 };
 
+/* Starts whose simulation fails count as inside: a shorter distance is not made up. */
 static bool simulate(void *context, size_t count, const double *z, bool *inside)
 {
     struct simulator *own = context;
-    stance_case *cases = calloc(count, sizeof *cases);
-    stance_result *results = calloc(count, sizeof *results);
-    stance_message message;
-    bool good = cases && results;
-    for (size_t i = 0; good && i < count; i++) {
-        for (int k = 0; k < own->n; k++) {
-            const double value = z[i * (size_t)own->n + (size_t)k] * own->half[k];
-            memcpy((char *)&own->values + own->offset[k], &value, sizeof value);
-        }
-        good = resolve_case(own->s.scene, &own->values, &own->design, own->s.seed, own->index,
-                            &cases[i], &message);
-        scenario_case_keys(&own->s, own->index, &cases[i].grid_index, &cases[i].sample_index);
-    }
-    if (good)
-        own->kernel->run(cases, results, count);
-    for (size_t i = 0; good && i < count; i++) {
-        const bool failed = results[i].status != STANCE_DONE;
-        own->failed += failed;
-        inside[i] = failed || results[i].outcome == own->of;
-    }
-    free(cases);
-    free(results);
+    const size_t n = (size_t)own->n;
+    double *value = malloc((count * n + 1) * sizeof *value);
+    uint8_t *end = malloc(count + 1);
+    for (size_t i = 0; value && i < count * n; i++)
+        value[i] = z[i] * own->half[i % n];
+    const bool good = value && end && starts_run(&own->starts, n, own->offset, count, value, end);
+    for (size_t i = 0; good && i < count; i++)
+        inside[i] = end[i] == STARTS_FAILED || end[i] == own->of;
+    free(value);
+    free(end);
     return good;
 }
 
-/* Where the paths of the rays stand in the values, and the scale at 1. */
+/* Where the paths of the rays stand in the values. */
 static bool find_paths(struct simulator *own, const struct basin_rays *rays)
 {
-    static const double one = 1;
     const struct scenario_axis *axis = &own->s.axis[rays->sample.axis];
     for (int j = 0; j < own->n; j++) {
         const struct basin_factor *factor = &rays->sample.factor[j];
@@ -66,7 +49,6 @@ static bool find_paths(struct simulator *own, const struct basin_rays *rays)
         if (!(own->half[j] > 0) || own->offset[j] == 0)
             return false; /* not by a factor of its own, over a range */
     }
-    memcpy((char *)&own->values + own->s.axis[rays->scale].offset[0], &one, sizeof one);
     return true;
 }
 
@@ -83,27 +65,22 @@ static bool begin(struct simulator *own, const struct basin_rays *rays, size_t r
     if (own->n > DESCEND_DIMENSIONS || !results_scenario(r, &own->s))
         return complain(message, "%.150s: its scenario cannot be simulated by this version",
                         r->file);
+    uint64_t index = 0;
     for (int a = 0; a < r->axes; a++) {
         size_t at = 0;
         for (int k = 0; k < rays->by_axes; k++)
             at = rays->by[k] == a ? basin_rays_point(rays, row, k) : at;
-        own->index = own->index * r->axis[a].count + at;
+        index = index * r->axis[a].count + at;
     }
-    scenario_case_values(&own->s, own->index, &own->values);
-    const char *isa = instruction_set();
-    own->kernel =
-        isa ? instruction_set_kernel(own->s.scene, stance_methods()[own->values.method]) : NULL;
-    if (!own->kernel || !find_paths(own, rays)) {
+    const bool good =
+        find_paths(own, rays)
+            ? starts_begin(&own->starts, &own->s, index, message)
+            : complain(message,
+                       "%.150s: descents need a factor with a range of its own for every offset",
+                       r->file);
+    if (!good)
         scenario_free(&own->s);
-        return complain(message,
-                        "%.150s: descents need a factor with a range of its own for every offset",
-                        r->file);
-    }
-    if (!resolve_design(own->s.scene, &own->values, &own->design, message)) {
-        scenario_free(&own->s);
-        return false;
-    }
-    return true;
+    return good;
 }
 
 /* Unit vectors along the shortest ray and others that end, and their ends. */
@@ -157,7 +134,7 @@ bool basin_rays_nearest(const struct basin_rays *rays, size_t row, size_t starts
     const struct descend_set set = {own->n, 4 * most, simulate, own};
     const bool good = chosen == 0 || basin_descend(&set, start, r, chosen, &nearest->end) ||
                       statistics_no_memory(rays->r, message);
-    nearest->failed = own->failed;
+    nearest->failed = own->starts.failed;
     for (int k = 0; k < own->n; k++) {
         nearest->of[k] = nearest->end.u[k] * 0.5 * (nearest->end.low + nearest->end.high);
         nearest->at[k] = nearest->of[k] * own->half[k];

@@ -27,7 +27,7 @@ static void take_factors(struct basin_sample *sample, const struct results *r,
     sample->box = 1;
     for (int k = 0; k < r->varied; k++) {
         struct basin_factor *factor = &sample->factor[sample->factors];
-        if (!statistics_is_start(r->vary[k].of.name)) {
+        if (!scenario_is_start(r->vary[k].of.name)) {
             sample->others = true;
             continue;
         }

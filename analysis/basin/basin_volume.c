@@ -2,6 +2,8 @@
  * in basin_map.h. */
 #include "basin_map.h"
 
+#include "analysis/statistics/statistics.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -265,6 +267,11 @@ bool basin_map_volume(const struct basin_map *map, enum results_kind of,
     free(cells.seen);
     free(cells.queue);
     return good;
+}
+
+double basin_map_deviations(double level)
+{
+    return fmax(statistics_deviations(level), sqrt(3) * level);
 }
 
 double basin_volume_reach(const struct basin_volume *volume, double deviations)

@@ -226,6 +226,7 @@ static void put_legend(struct page *page, bool plane)
 {
     static const char *const notes[] = {"cross: the equilibrium", "dashed: the ray that ends first",
                                         "circles: followed no further"};
+    static const int types[CURVES] = {7, 5, 9, 11, 15, 13}; /* of points */
     const struct basin_rays *rays = page->rays;
     char text[400] = "", colour[32];
     size_t used = 0;
@@ -237,7 +238,8 @@ static void put_legend(struct page *page, bool plane)
     for (size_t c = 0; c < page->curves; c++) {
         label_of(page, row_of(page, c), text, sizeof text);
         snprintf(colour, sizeof colour, "hue[%zu]", c + 1);
-        gnuplot_legend(&page->g, colour, text, "");
+        gnuplot_legend_mark(&page->g, colour, page->curves > 1, page->curves > 1 ? types[c] : 0,
+                            text, "");
     }
     for (size_t k = 0; plane && k < sizeof notes / sizeof notes[0]; k++)
         gnuplot_note(&page->g, notes[k]);

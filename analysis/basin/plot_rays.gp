@@ -21,7 +21,9 @@ if (plane) {
     eval linear_tics('x', -x_most, x_most, width/72, 1)
     eval linear_tics('y', -y_most, y_most, 8, 1)
     set label '' at 0,0 point pt 1 ps 1.6 lw 2 lc rgb 'black' front
-    plot for [k=1:curves] '$curve'.k using 1:2 with linespoints lw 1.6 pt 7 ps 0.3 lc rgb hue[k] notitle, \
+    plot for [k=1:curves] '$curve'.k using 1:2 with lines lw 1.6 lc rgb hue[k] notitle, \
+        for [k=1:curves] '$curve'.k using 1:2 every (curves > 1 ? 8 : 1) with points pt (curves > 1 ? legend_point[k] : 7) \
+            ps (curves > 1 ? 0.9 : 0.3) lc rgb hue[k] notitle, \
         for [k=1:curves] '$open'.k using 1:2 with points pt 6 ps 0.7 lc rgb hue[k] notitle, \
         for [k=1:curves] '$first'.k using 1:2 with lines lw 1.6 dt 2 lc rgb hue[k] notitle, \
         for [k=1:curves] '$nearest'.k using 1:2 with points pt 13 ps 1.8 lc rgb 'black' notitle, \
@@ -31,6 +33,7 @@ if (plane) {
     set xtics autofreq
     eval linear_tics('y', 0, 100, 5, 1)
     plot for [k=1:curves] '$curve'.k using 1:2 with steps lw 1.8 lc rgb hue[k] notitle, \
+        for [k=1:(curves > 1 ? curves : 0)] '$curve'.k using 1:2 every 40::12*k with points pt legend_point[k] ps 0.9 lc rgb hue[k] notitle, \
         for [k=1:curves] '$nearest'.k using 1:2 with points pt 13 ps 1.8 lc rgb 'black' notitle, \
         for [k=1:curves] '$nearest'.k using 1:2 with points pt 13 ps 1.2 lc rgb hue[k] notitle
 }

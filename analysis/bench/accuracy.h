@@ -8,6 +8,7 @@
 #ifndef STANCE_BENCH_ACCURACY_H
 #define STANCE_BENCH_ACCURACY_H
 
+#include "analysis/draw/look.h"
 #include "measure.h"
 
 #include "runner/store/results.h"
@@ -54,7 +55,7 @@ bool accuracy_make(struct accuracy *a, const struct results *r, double budget,
 void accuracy_free(struct accuracy *a);
 
 /* DIRECTORY/STEM.svg and .png: error against cost, a line for each method. */
-bool accuracy_plot(const struct accuracy *a, const struct results *r, const char *directory,
-                   const char *stem, stance_message *message);
+bool accuracy_plot(const struct accuracy *a, const struct results *r, struct look *look,
+                   const char *directory, const char *stem, stance_message *message);
 
 #endif

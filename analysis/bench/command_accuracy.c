@@ -106,8 +106,8 @@ static json_t *study_json(const struct accuracy *a, const struct results *r, con
 
 /* ---- the command --------------------------------------------------------------------------- */
 
-static bool study(const struct results *r, const char *directory, const char *stem, json_t **object,
-                  stance_message *message)
+static bool study(const struct results *r, struct look *look, const char *directory,
+                  const char *stem, json_t **object, stance_message *message)
 {
     struct accuracy a;
     if (!accuracy_make(&a, r, measuring_budget, message))
@@ -120,7 +120,7 @@ static bool study(const struct results *r, const char *directory, const char *st
         *object = study_json(&a, r, &t);
     else
         good = print_text(&a, r, &t) && fflush(stdout) == 0 &&
-               accuracy_plot(&a, r, directory, stem, message);
+               accuracy_plot(&a, r, look, directory, stem, message);
     table_free(&t);
     accuracy_free(&a);
     return good;
@@ -133,7 +133,8 @@ static int run(int argc, char **argv)
 
 const struct command command_accuracy = {
     "bench accuracy",
-    "bench accuracy [SCENARIO]... [-o DIR] [--reuse] [--json]",
+    "bench accuracy [SCENARIO]... [-o DIR] [--reuse] [--json]\n"
+    "           [--format F,...] [--for column|page] ...",
     "error against cost of every method, on scenes with known answers",
     run,
     "Runs studies of methods and steps, by default those of scenarios/accuracy, like any other\n"
@@ -146,7 +147,7 @@ const struct command command_accuracy = {
     "the median of at least three repetitions.\n"
     "\n"
     "  -o DIR     where the results files and pictures go, default results/accuracy\n"
-    "  --reuse    take results files that are there as they are\n"
+    "  --reuse    take results files that are there as they are\n" LOOK_HELP_DRAWN
     "  --json     the same as JSON, without pictures: a list `studies` of\n"
     "    name, title, file         strings\n"
     "    rows                      method, step, tolerance, reference, cases, failed,\n"

@@ -145,8 +145,8 @@ static json_t *study_json(const struct failure *f, const struct results *r)
 
 /* ---- the command --------------------------------------------------------------------------- */
 
-static bool study(const struct results *r, const char *directory, const char *stem, json_t **object,
-                  stance_message *message)
+static bool study(const struct results *r, struct look *look, const char *directory,
+                  const char *stem, json_t **object, stance_message *message)
 {
     struct failure f;
     if (!failure_make(&f, r, message))
@@ -156,7 +156,7 @@ static bool study(const struct results *r, const char *directory, const char *st
         *object = study_json(&f, r);
     else
         good = print_text(&f, r) && fflush(stdout) == 0 &&
-               failure_plot(&f, r, directory, stem, message);
+               failure_plot(&f, r, look, directory, stem, message);
     failure_free(&f);
     return good;
 }
@@ -168,7 +168,8 @@ static int run(int argc, char **argv)
 
 const struct command command_failure = {
     "bench failure",
-    "bench failure [SCENARIO]... [-o DIR] [--reuse] [--json]",
+    "bench failure [SCENARIO]... [-o DIR] [--reuse] [--json]\n"
+    "           [--format F,...] [--for column|page] ...",
     "where each method fails, as maps with the lines of theory",
     run,
     "Runs studies, by default those of scenarios/failure, like any other scenario. The first axis\n"
@@ -191,7 +192,7 @@ const struct command command_failure = {
     "second picture shows the energy that discretisation created.\n"
     "\n"
     "  -o DIR     where the results files and pictures go, default results/failure\n"
-    "  --reuse    take results files that are there as they are\n"
+    "  --reuse    take results files that are there as they are\n" LOOK_HELP_DRAWN
     "  --json     the same as JSON, without pictures: a list `studies` of\n"
     "    name, title, file   strings\n"
     "    axes                the two of the map: name, unit, values\n"

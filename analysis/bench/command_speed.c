@@ -11,43 +11,43 @@ extern const struct command command_speed; /* below */
 
 static int run(int argc, char **argv)
 {
-    bool help;
-    const char *operand[1], *directory = NULL;
-    size_t operands, count;
-    const struct option_spec specs[] = {{"-o", true, &directory, 1, &count}};
+    const char *file;
+    struct look_options options = {0};
+    struct look look;
+    size_t operands;
+    const struct option_spec specs[] = {LOOK_SPECS(options)};
     struct speed_table table;
     stance_message message;
 
-    if (!command_options(&command_speed, argc, argv, specs, 1, operand, 1, &operands, &help))
+    const int begun =
+        command_begin(&command_speed, argc, argv, specs, sizeof specs / sizeof specs[0], "a table",
+                      &file, 1, 1, &operands);
+    if (begun != COMMAND_GOES_ON)
+        return begun;
+    if (!look_read(&command_speed, &options, &look))
         return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    if (operands != 1) {
-        fprintf(stderr, "stance bench plot: one table is needed (stance bench plot -h explains)\n");
-        return EXIT_USAGE;
-    }
-    if (!speed_read(operand[0], &table, &message)) {
+    if (!speed_read(file, &table, &message)) {
         fprintf(stderr, "stance bench plot: %s\n", message.text);
         return EXIT_IO;
     }
-    const char *slash = strrchr(operand[0], '/');
-    const char *name = slash ? slash + 1 : operand[0];
-    char stem[128], beside[256];
+    const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
+    char stem[128], own[1024];
     snprintf(stem, sizeof stem, "%.*s", (int)strcspn(name, "."), name);
-    snprintf(beside, sizeof beside, "%.*s", slash ? (int)(slash - operand[0]) : 1,
-             slash ? operand[0] : ".");
-    const bool good = speed_plot(&table, directory ? directory : beside, stem, &message);
-    if (!good)
+    const char *const directory = look_directory(&look, file, own, sizeof own);
+    const bool there = gnuplot_directory(directory);
+    const bool good = there && speed_plot(&table, &look, directory, stem, &message);
+    if (there && !good)
         fprintf(stderr, "stance bench plot: %s\n", message.text);
     speed_free(&table);
-    return good ? EXIT_DONE : EXIT_IO;
+    return !good ? EXIT_IO : look_end(&look, &command_speed, file) ? EXIT_DONE : EXIT_USAGE;
 }
 
 const struct command command_speed = {
-    "bench plot", "stance bench plot FILE.csv [-o DIRECTORY]", "picture of the speed benchmarks",
-    run,
-    "Draws a table of `make bench` or `stance bench --csv` as SVG and PNG beside the file, or in\n"
-    "DIRECTORY: the biped's step in every instruction set beside the step written by hand and\n"
+    "bench plot", "stance bench plot FILE.csv [-o PLACE] [--format F,...] [--for column|page] ...",
+    "picture of the speed benchmarks", run,
+    "Draws a table of `make bench` or `stance bench --csv` as SVG and PNG beside the file: the\n"
+    "biped's step in every instruction set beside the step written by hand and\n"
     "MuJoCo's, every method in every scene, and the wall time of the shipped map. Marks are "
     "medians,\n"
-    "bars go from the lowest to the highest. What the table does not have is left out.\n"};
+    "bars go from the lowest to the highest. What the table does not have is left out.\n"
+    "\n" LOOK_HELP};

@@ -8,6 +8,7 @@
 #ifndef STANCE_BENCH_FAILURE_H
 #define STANCE_BENCH_FAILURE_H
 
+#include "analysis/draw/look.h"
 #include "runner/store/results.h"
 
 /* Worst first; a cell gets the first that applies. */
@@ -85,7 +86,7 @@ void failure_free(struct failure *f);
 bool failure_theory(struct failure_line *line, const struct scenario *s, stance_message *message);
 
 /* DIRECTORY/STEM.svg and .png: a map for each row. DIRECTORY/STEM-energy: the energy gained. */
-bool failure_plot(const struct failure *f, const struct results *r, const char *directory,
-                  const char *stem, stance_message *message);
+bool failure_plot(const struct failure *f, const struct results *r, struct look *look,
+                  const char *directory, const char *stem, stance_message *message);
 
 #endif

@@ -105,8 +105,8 @@ static void put_legend(struct gnuplot *g, const struct accuracy *a, const stance
     gnuplot_set(g, "about_lines[%zu] = %d", m, line);
 }
 
-bool accuracy_plot(const struct accuracy *a, const struct results *r, const char *directory,
-                   const char *stem, stance_message *message)
+bool accuracy_plot(const struct accuracy *a, const struct results *r, struct look *look,
+                   const char *directory, const char *stem, stance_message *message)
 {
     const int panels = a->labels ? 1 : 2;
     const struct accuracy_row *truth = &a->row[a->truth];
@@ -121,7 +121,7 @@ bool accuracy_plot(const struct accuracy *a, const struct results *r, const char
              truth->method->name, truth->tolerance, (unsigned long long)truth->cases,
              a->labels ? "; open symbols: none unlike, drawn where one cell is."
                        : ". Errors of exactly zero are not drawn.");
-    if (!gnuplot_begin(&g, NULL, plot_accuracy_gp, r->title, subtitle, message))
+    if (!gnuplot_begin(&g, look, plot_accuracy_gp, r->title, subtitle, message))
         return false;
     while (stance_methods()[methods])
         methods++;

@@ -1,16 +1,16 @@
 # plot_accuracy.gp - error against cost, a line for each method with $errors<method>_<panel>: cost, error,
 # whether it is more than none, cases given up.
 left = 108
-width = 400
-height = 380
 gap = 108
 legend = 300
+width = wide(400, panels, left + (panels - 1)*gap + legend)
 panel_left(p) = left + (p - 1)*(width + gap)
 array what[2] = ['largest error of a coordinate (m, rad)', 'mean over time of the velocity error (m/s, rad/s)']
 array marker[7] = [7, 5, 9, 11, 13, 15, 2] # filled; one less is the open one
 
 page_width = panel_left(panels) + width + legend
 top = title_height(0)
+height = high(380, 1, top + 78)
 page_height = top + height + 78
 load 'page.gp'
 line = top + 10
@@ -29,7 +29,8 @@ load 'panels.gp'
 eval grid
 set xtics @tiny
 set ytics @tiny
-set xlabel 'cost: microseconds of one core per simulated second' @tiny
+x_title = width < 380 ? 'cost: µs of one core per simulated s' : 'cost: microseconds of one core per simulated second'
+set xlabel x_title @tiny
 do for [p=1:panels] {
     eval panel(panel_left(p), top, width, height)
     y_title = labels ? 'share of cells unlike the reference' : what[p]

@@ -53,6 +53,7 @@ static double place_of(const struct plot_axis *along, double value)
 struct maps {
     const struct failure *f;
     const struct results *r;
+    struct look *look;
     struct plot_axis across, up;
 };
 
@@ -81,7 +82,7 @@ static bool begin_page(struct gnuplot *g, const struct maps *maps, const char *s
     const size_t ny = maps->up.axis->count;
     struct plot_cells cells = {&maps->across, &maps->up, 0, {ny, 1}};
     char text[64];
-    if (!gnuplot_begin(g, NULL, plot_failure_gp, maps->r->title, subtitle, message))
+    if (!gnuplot_begin(g, maps->look, plot_failure_gp, maps->r->title, subtitle, message))
         return false;
     plot_axis_write(&maps->across, g, "x");
     plot_axis_write(&maps->up, g, "y");
@@ -214,10 +215,10 @@ static bool draw_energy(const struct maps *maps, const char *directory, const ch
     return gnuplot_end(&g, directory, path, message);
 }
 
-bool failure_plot(const struct failure *f, const struct results *r, const char *directory,
-                  const char *stem, stance_message *message)
+bool failure_plot(const struct failure *f, const struct results *r, struct look *look,
+                  const char *directory, const char *stem, stance_message *message)
 {
-    struct maps maps = {.f = f, .r = r};
+    struct maps maps = {.f = f, .r = r, .look = look};
     make_axis(&maps.across, &r->axis[1]);
     make_axis(&maps.up, &r->axis[2]);
     return draw_verdicts(&maps, directory, stem, message) &&

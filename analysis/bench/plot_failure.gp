@@ -1,14 +1,14 @@
 # plot_failure.gp - a map for each method: the verdicts with a table of their shares under the maps, or the
 # energy that was created (energy), whose decimal logarithms go from lowest to highest.
 left = 122
-width = 300
-height = 240
 head = 24
 gap = 46
-row_height = 22 # of the table under the maps
+row_height = 24 # of the table under the maps, as of legends
 names_width = 264
-column_width = 152
+column_width = asked_width > 0 ? at_most(152, (asked_width - left - 24 - names_width)/panels) : 152
 columns = panels < 3 ? panels : 3
+width = wide(300, columns, left + (columns - 1)*gap + 24)
+height = int(0.8*width)
 rows = (panels + columns - 1)/columns
 maps_width = columns*(width + gap) - gap
 panel_left(p) = left + (p - 1) % columns*(width + gap)
@@ -23,7 +23,8 @@ page_height = table_top + (energy ? 116 : row_height*(legends + (theory ? 4 : 3)
 load 'page.gp'
 do for [p=1:panels] {
     set label name[p] at screen X(panel_left(p) + 0.5*width), Y(panel_top(p) - 11) center font ',12' front
-    set label name[p] at screen X(column_left(p)), Y(table_top + (energy ? 62 : 0)) left @small front
+    set label wrap(name[p], column_width/8) at screen X(column_left(p)), Y(table_top + (energy ? 62 : 0) - 8*(lines(wrap(name[p], column_width/8)) - 1)) \
+        left @small front
     if (energy) {
         set label largest[p] at screen X(column_left(p)), Y(table_top + 84) left @small front
     } else {

@@ -208,8 +208,8 @@ static void put_map(struct gnuplot *g, const struct speed_table *table)
     gnuplot_text(g, text, "efficiency");
 }
 
-bool speed_plot(const struct speed_table *table, const char *directory, const char *stem,
-                stance_message *message)
+bool speed_plot(const struct speed_table *table, struct look *look, const char *directory,
+                const char *stem, stance_message *message)
 {
     struct chart rivals, methods;
     struct gnuplot g;
@@ -220,7 +220,7 @@ bool speed_plot(const struct speed_table *table, const char *directory, const ch
         subtitle, sizeof subtitle,
         "Steps of 1 ms. Medians; bars from the lowest to the highest. %s, %s, revision %s, %s.",
         row->processor, row->compiler, row->revision, row->date);
-    if (!gnuplot_begin(&g, NULL, plot_speed_gp, "Speed of the stepping kernels", subtitle, message))
+    if (!gnuplot_begin(&g, look, plot_speed_gp, "Speed of the stepping kernels", subtitle, message))
         return false;
     make_rivals(table, &rivals);
     make_methods(table, &methods);

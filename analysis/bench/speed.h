@@ -2,6 +2,7 @@
 #ifndef STANCE_BENCH_SPEED_H
 #define STANCE_BENCH_SPEED_H
 
+#include "analysis/draw/look.h"
 #include "engine/stance.h"
 
 /* A line; texts point into the table's. */
@@ -29,7 +30,7 @@ const struct speed_row *speed_find(const struct speed_table *table, const char *
                                    const char *isa, const char *quantity);
 
 /* Writes DIRECTORY/STEM.svg and .png. */
-bool speed_plot(const struct speed_table *table, const char *directory, const char *stem,
-                stance_message *message);
+bool speed_plot(const struct speed_table *table, struct look *look, const char *directory,
+                const char *stem, stance_message *message);
 
 #endif

@@ -79,6 +79,7 @@ struct request {
     const struct command *command;
     study_function study;
     const char *directory;
+    struct look *look;
     bool json, reuse;
 };
 
@@ -90,8 +91,8 @@ static bool evaluate(const struct request *request, const char *file, const char
     json_t *object = NULL;
     if (!results_open(&r, file, message))
         return false;
-    const bool good =
-        request->study(&r, request->directory, stem, request->json ? &object : NULL, message);
+    const bool good = request->study(&r, request->look, request->directory, stem,
+                                     request->json ? &object : NULL, message);
     if (good && object)
         json_array_append_new(all, object);
     fflush(stdout);
@@ -141,29 +142,45 @@ static bool make_directory(const char *path)
     return false;
 }
 
+/* Names that no picture had are said. */
+static int end(const struct request *request, int code)
+{
+    return code == EXIT_DONE && !request->json &&
+                   !look_end(request->look, request->command, request->directory)
+               ? EXIT_USAGE
+               : code;
+}
+
 int studies_run(const struct command *command, const char *kind, study_function study, int argc,
                 char **argv)
 {
-    const char *directory = NULL, *given[MAX_STUDIES];
+    const char *given[MAX_STUDIES];
+    struct look_options options = {0};
+    struct look look;
     char *found[MAX_STUDIES], fallback[64];
-    size_t directories = 0, json = 0, reuse = 0, operands;
+    size_t json = 0, reuse = 0, operands;
     bool help;
-    const struct option_spec specs[] = {{"-o", true, &directory, 1, &directories},
-                                        {"--json", false, NULL, 0, &json},
-                                        {"--reuse", false, NULL, 0, &reuse}};
-    if (!command_options(command, argc, argv, specs, 3, given, MAX_STUDIES, &operands, &help))
+    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
+                                        {"--reuse", false, NULL, 0, &reuse},
+                                        LOOK_SPECS(options)};
+    if (!command_options(command, argc, argv, specs, sizeof specs / sizeof specs[0], given,
+                         MAX_STUDIES, &operands, &help))
         return EXIT_USAGE;
     if (help)
         return EXIT_DONE;
     if (!instruction_set_usable(command->name))
         return EXIT_USAGE;
+    if (!look_read(command, &options, &look))
+        return EXIT_USAGE;
+    if (look.file)
+        return command_usage(command, "-o takes a directory: there are several files");
     snprintf(fallback, sizeof fallback, "results/%s", kind);
-    const struct request request = {command, study, directories ? directory : fallback, json > 0,
-                                    reuse > 0};
-    if ((!directories && !make_directory("results")) || !make_directory(request.directory))
+    const struct request request = {command, study,    look.directory ? look.directory : fallback,
+                                    &look,   json > 0, reuse > 0};
+    if ((!look.directory && !make_directory("results")) || !make_directory(request.directory))
         return EXIT_IO;
     if (operands > 0)
-        return all_studies(&request, (char *const *)given, operands);
+        return end(&request, all_studies(&request, (char *const *)given, operands));
     const size_t count = find_studies(kind, found);
     if (count == 0) {
         fprintf(stderr,
@@ -174,5 +191,5 @@ int studies_run(const struct command *command, const char *kind, study_function 
     const int code = all_studies(&request, found, count);
     for (size_t i = 0; i < count; i++)
         free(found[i]);
-    return code;
+    return end(&request, code);
 }

@@ -6,15 +6,17 @@
 #ifndef STANCE_BENCH_STUDIES_H
 #define STANCE_BENCH_STUDIES_H
 
+#include "analysis/draw/look.h"
 #include "analysis/table/table.h"
 #include "runner/base/command.h"
 
 /* Evaluates one results file. With `object` NULL prints text and writes pictures into `directory`,
  * their names beginning with `stem`; else gives the same as JSON. false: one line in *message. */
-typedef bool (*study_function)(const struct results *r, const char *directory, const char *stem,
-                               json_t **object, stance_message *message);
+typedef bool (*study_function)(const struct results *r, struct look *look, const char *directory,
+                               const char *stem, json_t **object, stance_message *message);
 
-/* The whole of `stance bench KIND [SCENARIO]... [-o DIR] [--reuse] [--json]`: runs the scenarios
+/* The whole of `stance bench KIND [SCENARIO]... [-o DIR] [--reuse] [--json]`, with the
+ * options of pictures but for --picture: runs the scenarios
  * given, by default all of scenarios/KIND, into DIR (default results/KIND) and evaluates each.
  * Returns an exit code; numerical failures of cases are what such studies are about, no error. */
 int studies_run(const struct command *command, const char *kind, study_function study, int argc,

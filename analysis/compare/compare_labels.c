@@ -121,7 +121,7 @@ static bool same_axes(const struct results *first, const struct results *second)
 static bool same_values(const struct results_axis *first, const struct results_axis *second)
 {
     bool same = first->count == second->count;
-    for (size_t i = 0; same && i < first->count && statistics_is_start(first->name); i++)
+    for (size_t i = 0; same && i < first->count && scenario_is_start(first->name); i++)
         same = fabs(first->value[i] - second->value[i]) <=
                1e-9 * fmax(fabs(first->value[i]), fabs(second->value[i]));
     return same;

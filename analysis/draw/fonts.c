@@ -66,7 +66,9 @@ void fonts_free(struct fonts *fonts)
 
 bool fonts_has(const struct fonts *fonts, uint32_t letter)
 {
-    return letter < 0x80 || (letter < FONTS_LETTERS && fonts->has[letter / 8] >> letter % 8 & 1);
+    enum { SEAM = 0x200b }; /* marks, and is not drawn */
+    return letter < 0x80 || letter == SEAM ||
+           (letter < FONTS_LETTERS && fonts->has[letter / 8] >> letter % 8 & 1);
 }
 
 char *fonts_replace(const struct fonts *fonts, const char *text, size_t length, char *missing,

@@ -3,6 +3,8 @@
 
 #include "fonts.h"
 
+#include "runner/base/words.h"
+
 #include "runner/store/results.h"
 
 #include <ctype.h>
@@ -117,6 +119,33 @@ static const char *kept_in(void)
     return directory && directory[0] ? directory : NULL;
 }
 
+/* Letters that are as wide as high, between any two of which a line may end (Unicode TR 11 and 14).
+ */
+static bool is_wide(uint32_t letter)
+{
+    return (letter >= 0x2e80 && letter <= 0xa4cf) || (letter >= 0xac00 && letter <= 0xd7a3) ||
+           (letter >= 0xf900 && letter <= 0xfaff) || (letter >= 0xff00 && letter <= 0xff60) ||
+           (letter >= 0x20000 && letter <= 0x3fffd);
+}
+
+/* A text with a mark (style.gp's `seam`) after each wide letter, which so counts as two. */
+static void put_prose(struct gnuplot *g, const char *text, const char *name)
+{
+    char *marked = malloc(4 * strlen(text) + 1), *out = marked;
+    for (size_t n; marked && *text; text += n) {
+        uint32_t letter = 0;
+        const size_t bytes = utf8_letter(text, strlen(text), &letter);
+        n = bytes ? bytes : 1;
+        out = (char *)memcpy(out, text, n) + n;
+        if (bytes && is_wide(letter))
+            out = stpcpy(out, "\u200b");
+    }
+    if (marked)
+        *out = '\0';
+    gnuplot_text(g, marked ? marked : "", "%s", name);
+    free(marked);
+}
+
 /* What the scripts must know of the look. A text of 12 pt in gnuplot's sense is 16 px high, so that
  * a px is 1/16 of the size of the text. */
 static void put_look(struct gnuplot *g, const char *title, const char *subtitle)
@@ -129,8 +158,8 @@ static void put_look(struct gnuplot *g, const char *title, const char *subtitle)
     gnuplot_set(g, "px_dots = %.10g", look->width > 0 ? 600 * points / 72 : 1.6 * look->points / 9);
     if (look->grey)
         gnuplot_set(g, "eval in_grey");
-    gnuplot_text(g, look->title ? look->title : look->bare ? "" : title, "title");
-    gnuplot_text(g, look->bare ? "" : subtitle, "subtitle");
+    put_prose(g, look->title ? look->title : look->bare ? "" : title, "title");
+    put_prose(g, look->bare ? "" : subtitle, "subtitle");
 }
 
 bool gnuplot_begin(struct gnuplot *g, struct look *look, const char *picture, const char *title,
@@ -435,6 +464,39 @@ static const char *copy_to(FILE *out, const char *text, const char *end, const c
     return found ? found + strlen(tag) : end;
 }
 
+/* Groups the frames of a picture that moves, each from its first curve to that of the next one, but
+ * for the first plot, which stays, and shows one after the other (SMIL); where nothing moves the
+ * first is seen. */
+static void write_frames(FILE *out, const struct look *look, const char *text, const char *end)
+{
+    static const char curve[] = "<g id=\"gnuplot_plot_1", last[] = "</g>\n</svg>";
+    const char *const tail = memmem(text, (size_t)(end - text), last, sizeof last - 1);
+    const char *at[LOOK_MOST_FRAMES + 1] = {0}, *from = text;
+    int frames = -1;
+    for (const char *found; tail && frames < LOOK_MOST_FRAMES; from = found + 1) {
+        found = memmem(from, (size_t)(tail - from), curve, sizeof curve - 1);
+        if (!found)
+            break;
+        if (++frames > 0)
+            at[frames - 1] = found;
+    }
+    frames = frames < 0 ? 0 : frames;
+    fwrite(text, 1, (size_t)((frames ? at[0] : end) - text), out);
+    at[frames] = tail;
+    for (int f = 0; f < frames; f++) {
+        fprintf(out,
+                "<g visibility=\"%s\"><animate attributeName=\"visibility\" calcMode=\"discrete\" "
+                "values=\"hidden;visible;hidden\" keyTimes=\"0;%.6f;%.6f\" dur=\"%.4gs\" "
+                "repeatCount=\"indefinite\"/>\n",
+                f ? "hidden" : "visible", (double)f / frames, (f + 1.0) / frames,
+                look->animated * frames);
+        fwrite(at[f], 1, (size_t)(at[f + 1] - at[f]), out);
+        fputs("</g>\n", out);
+    }
+    if (frames)
+        fwrite(tail, 1, (size_t)(end - tail), out);
+}
+
 /* Viewers smooth enlarged images unless told not to: a cell is to stay a cell. A page of an asked
  * size has it in mm. */
 static bool write_svg(FILE *out, const struct look *look, const char *text, size_t size)
@@ -451,8 +513,11 @@ static bool write_svg(FILE *out, const struct look *look, const char *text, size
         fprintf(out, "%s%.2fmm\"%s%.2fmm", width, look->width, height, look->width / px[0] * px[1]);
         text = rest;
     }
-    while ((text = copy_to(out, text, end, image)) < end)
-        fputs("<image style='image-rendering:pixelated' ", out);
+    if (look->animated > 0)
+        write_frames(out, look, text, end);
+    else
+        while ((text = copy_to(out, text, end, image)) < end)
+            fputs("<image style='image-rendering:pixelated' ", out);
     return !ferror(out);
 }
 

@@ -144,6 +144,14 @@ static bool read_names(const struct command *command, const struct look_options 
     return true;
 }
 
+bool look_given(const struct look_options *o)
+{
+    size_t given = o->label_count + o->colour_count;
+    for (int k = 0; k < LOOK_WORDS; k++)
+        given += o->given[k];
+    return given > 0;
+}
+
 bool look_read(const struct command *command, const struct look_options *o, struct look *look)
 {
     look_begin(look);

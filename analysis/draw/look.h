@@ -17,7 +17,7 @@ enum look_format {
 };
 extern const char *const look_endings[LOOK_FORMAT_COUNT];
 
-enum { LOOK_MOST_NAMES = 32 };
+enum { LOOK_MOST_NAMES = 32, LOOK_WORDS = 7, LOOK_MOST_FRAMES = 400 };
 #define LOOK_FONT "DejaVu Sans"
 
 /* NAME=VALUE, and whether a picture has had that name. */
@@ -34,6 +34,7 @@ struct look {
     double width, height;     /* mm; 0: what the picture needs */
     double points;            /* size of its text, pt */
     const char *font, *title; /* title NULL: that of the file */
+    double animated;          /* s a frame of a picture that moves; 0: it stands still */
     bool bare;                /* neither title nor the line under it */
     bool grey;
     struct look_pair label[LOOK_MOST_NAMES], colour[LOOK_MOST_NAMES];
@@ -49,7 +50,7 @@ void look_begin(struct look *look);
 struct look_options {
     const char *place, *format, *picture, *size, *font, *title, *journal;
     const char *labels[LOOK_MOST_NAMES], *colours[LOOK_MOST_NAMES];
-    size_t given[7], label_count, colour_count;
+    size_t given[LOOK_WORDS], label_count, colour_count;
 };
 /* Rows of the command's `struct option_spec specs[]`. */
 #define LOOK_SPECS(o)                                                                              \
@@ -63,10 +64,11 @@ struct look_options {
     {                                                                                              \
         "--colours", true, (o).colours, LOOK_MOST_NAMES, &(o).colour_count                         \
     }
-/* The options' lines of a command's help. */
+/* The options' lines of a command's help, and those without -o. */
 #define LOOK_HELP                                                                                  \
     "  -o PLACE       where the pictures go: a directory (made when missing), or a file whose\n"   \
-    "                 ending says what it is: fig.pdf, fig.svg, fig.png\n"                         \
+    "                 ending says what it is: fig.pdf, fig.svg, fig.png\n" LOOK_HELP_DRAWN
+#define LOOK_HELP_DRAWN                                                                            \
     "  --format F,... files of each picture: svg, png, pdf; default svg,png\n"                     \
     "  --picture P    of all pictures only NAME-P\n"                                               \
     "  --for JOURNAL  column: 88 mm wide, page: 180 mm; text of 8 pt, no title (the caption has\n" \
@@ -82,6 +84,8 @@ struct look_options {
     "  --colours grey  all in grey\n"                                                              \
     "  STANCE_SCRIPTS=DIR in the environment keeps each picture's gnuplot script and data\n"
 
+/* Whether any was. */
+bool look_given(const struct look_options *options);
 /* False with a line on standard error: bad use. `options` must outlive the look. */
 bool look_read(const struct command *command, const struct look_options *options,
                struct look *look);

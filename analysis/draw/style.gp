@@ -20,9 +20,12 @@ no_number = 0xd9d9d9
 
 # Numbers: after cividis (Nunez, Anderton, Renslow 2018), even steps for every reader.
 palette = "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c', 1 '#fee838')"
-in_grey = "colour_stabilised = 0x404040; colour_rested = 0x8a8a8a; colour_fell = 0xdcdcdc; colour_undecided = 0xb0b0b0; " \
+all_grey = 0
+in_grey = "all_grey = 1; colour_stabilised = 0x404040; colour_rested = 0x8a8a8a; colour_fell = 0xdcdcdc; colour_undecided = 0xb0b0b0; " \
     ."colour_done = 0x606060; colour_pending = 0xf6f6f6; array hue[7] = [0x000000, 0x7a7a7a, 0x404040, 0xa6a6a6, 0x202020, " \
     ."0x909090, 0x5a5a5a]; no_number = 0xffffff; palette = \"set palette defined (0 '#101010', 1 '#f0f0f0')\""
+# Of a colour that stands for one thing alone.
+shade(c) = all_grey ? 0x010101*int(0.3*(c>>16&255) + 0.59*(c>>8&255) + 0.11*(c&255)) : c
 grid = "set grid lt 1 lc rgb '#e6e6e6' lw 0.8"
 
 # ---- the canvas: page_width x page_height px, from its upper left corner ----
@@ -47,10 +50,13 @@ text_size = 12
 small = "font ',11'"
 tiny = "font ',10'"
 letters(px, size) = int(px/(0.69*size))
-# Up to n letters a line, broken at blanks; a word that is longer has a line of its own.
-blank(s, i) = i < 1 || s[i:i] eq ' ' ? i : blank(s, i - 1)
-wrap(s, n) = strlen(s) <= n ? s : (f_at = blank(s, n + 1), f_at = f_at < 1 ? strstrt(s, ' ') : f_at, \
-    f_at < 1 ? s : s[1:f_at-1]."\n".wrap(s[f_at+1:*], n))
+# Up to n letters a line, broken at blanks and seams, zero-width spaces between wide letters; a word that is longer
+# has a line of its own.
+seam = "\342\200\213"
+bare(s) = strstrt(s, seam) < 1 ? s : strlen(s) < 2 ? '' : bare(s[1:strlen(s)/2]).bare(s[strlen(s)/2+1:*])
+blank(s, i) = i < 1 || s[i:i] eq ' ' || s[i:i] eq seam ? i : blank(s, i - 1)
+wrap(s, n) = strlen(s) <= n ? bare(s) : (f_at = blank(s, n + 1), f_at = f_at < 1 ? strstrt(s, ' ') : f_at, \
+    f_at < 1 ? bare(s) : bare(s[1:f_at-1])."\n".wrap(s[f_at+1:*], n))
 lines(s) = (f_at = strstrt(s, "\n"), f_at < 1 ? 1 : 1 + lines(s[f_at+1:*]))
 lines_height(s, size) = s eq '' ? 0 : lines(s)*(int(size*1.25) + 3)
 longest_line(s) = (f_at = strstrt(s, "\n"), f_at < 1 ? strlen(s) : at_least(f_at - 1, longest_line(s[f_at+1:*])))

@@ -272,6 +272,12 @@ static void clean_up(struct replay *replay)
 
 /* ---- the command -------------------------------------------------------------------------- */
 
+/* One file each of GIF and SVG; what prints does not move. */
+static bool is_animated(const struct look *look)
+{
+    return look->format[LOOK_GIF] || (look->picture && strcmp(look->picture, "animation") == 0);
+}
+
 static int draw(const struct request *request, struct replay *replays, size_t count,
                 struct plot *plots, stance_message *message)
 {
@@ -283,7 +289,7 @@ static int draw(const struct request *request, struct replay *replays, size_t co
         replay->loaded = true;
         replay->c.other = k + 1 < count ? &replays[k + 1].c : NULL;
     }
-    return (request->look.format[LOOK_GIF] ? plot_animation : plot_case)(&replays[0].c, message)
+    return (is_animated(&request->look) ? plot_animation : plot_case)(&replays[0].c, message)
                ? EXIT_DONE
                : EXIT_IO;
 }
@@ -360,6 +366,12 @@ static int run(int argc, char **argv)
         return command_usage(&command_replay, "two cases at the most");
     if (!look_read(&command_replay, &options, &request.look))
         return EXIT_USAGE;
+    if (is_animated(&request.look)) {
+        if (!options.format && !options.place)
+            request.look.format[LOOK_PNG] = request.look.format[LOOK_PDF] = false;
+        if (request.look.format[LOOK_PNG] || request.look.format[LOOK_PDF])
+            return command_usage(&command_replay, "an animation is svg or gif");
+    }
     return sandbox(work, &request, request.file);
 }
 
@@ -379,5 +391,6 @@ const struct command command_replay = {
     "those\n"
     "                 of the equilibrium, all else has its first value\n"
     "  --set PATH=VALUE   with a value of the scenario replaced, as `run` has it\n"
-    "  -o FILE.gif    an animation in real time instead\n" LOOK_HELP,
+    "  -o FILE.gif    an animation in real time instead; --picture animation draws it as SVG, for\n"
+    "                 browsers\n" LOOK_HELP,
 };

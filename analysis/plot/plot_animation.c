@@ -8,7 +8,6 @@
 
 GNUPLOT_SCRIPT(plot_animation_gp, "analysis/plot/plot_animation.gp");
 
-enum { MOST_FRAMES = 400 };
 static const double frame_time = 0.04; /* s, at the least */
 
 /* What is seen. */
@@ -98,9 +97,10 @@ bool plot_animation(const struct plot_case *c, stance_message *message)
         return complain(message, "%.150s: no stick figures: this version cannot read its scenario",
                         c->plot->r->file);
     const stance_scene *scene = c->scenario.scene;
-    const double step = fmax(frame_time, ceil(100 * end_of(c) / MOST_FRAMES) / 100);
+    const double step = fmax(frame_time, ceil(100 * end_of(c) / LOOK_MOST_FRAMES) / 100);
     const int frames = (int)(end_of(c) / step + 1e-9) + 1;
     choose_view(c, frames, step, &view);
+    c->plot->look->animated = step;
     if (!plot_case_begin(c, &g, plot_animation_gp, "Stick figures", message))
         return false;
     gnuplot_set(&g, "frames = %d; step = %.10g; fall = %#.17g; follows = %d; cases = %d", frames,

@@ -1,7 +1,7 @@
 # plot_animation.gp - frames of stick figures, `step` seconds apart; a second case is grey. Both directions have the
 # same scale.
 left = 70
-page_width = 720
+page_width = asked_width > 0 ? at_least(300, asked_width) : 720
 top = title_height(0) + 34
 width = page_width - left - margin
 scale = at_most(width/(high_x - low_x), 480.0/(high_z - low_z))
@@ -24,11 +24,18 @@ if (cases > 1) {
 }
 set label 'm' at screen X(left + width), Y(top + height + 44) right @small
 eval panel(left + 0.5*(width - scale*(high_x - low_x)), top, scale*(high_x - low_x), height)
-tic_step = round_step(0, high_x - low_x, 6)
-set xtics tic_step nomirror out scale 0.6
-set ytics round_step(0, high_z - low_z, 5) nomirror out scale 0.6
-set border 3 lw 0.8 lc '#404040'
-set label 1000 '' at screen X(left + width), Y(top - 16) right font ',12' # not that of another text
+set label 1000 '' at screen X(left + width), Y(top - 16) right font ',12' front # not that of another text
+axes = sprintf("set border 3 front lw 0.8 lc '#404040'; set tics front; set xtics %g nomirror out scale 0.6; " \
+    ."set ytics %g nomirror out scale 0.6", round_step(0, high_x - low_x, 6), round_step(0, high_z - low_z, 5))
+no_axes = 'unset border; unset xtics; unset ytics'
+# In SVG what follows the first curve of a plot, all that is in front, is a frame; what stands still, a plot before.
+if (drawing eq 'svg') {
+    set xrange [low_x:high_x]
+    set yrange [low_z:high_z]
+    eval (follows ? no_axes : axes)
+    plot NaN notitle
+}
+eval (drawing eq 'svg' && !follows ? no_axes : axes)
 do for [f=1:frames] {
     set xrange [centre[f] + low_x:centre[f] + high_x]
     set yrange [base[f] + low_z:base[f] + high_z]

@@ -469,33 +469,55 @@ static bool draw_forces(const struct plot_case *c, stance_message *message)
 
 /* ---- torques and gaps --------------------------------------------------------------------- */
 
-/* What the actuators give: forces on what slides, torques on what turns. */
+/* Of what actuator k gives: a force on what slides, a torque on what turns. */
+static const char *unit_of(const stance_scene *scene, size_t k)
+{
+    return strcmp(scene->coordinate[scene->actuated[k]].unit, "m") == 0 ? "N" : "N m";
+}
+
+/* What the actuators give. */
 static const char *torque_label(const struct plot_case *c, const char **unit)
 {
     const stance_scene *const scene = c->readable ? c->scenario.scene : NULL;
     int slides = 0;
     for (int k = 0; scene && k < scene->actuators; k++)
-        slides += strcmp(scene->coordinate[scene->actuated[k]].unit, "m") == 0;
+        slides += strcmp(unit_of(scene, (size_t)k), "N") == 0;
     const bool all = slides > 0 && slides == scene->actuators;
     *unit = all ? "N" : slides > 0 ? "N m, N" : "N m";
     return all ? "force (N)" : slides > 0 ? "torque (N m), force (N)" : "torque (N m)";
 }
 
-/* The limits that actuators have, each once; returns how many. */
-static size_t torque_levels(const struct plot_case *c, size_t actuators, double *level)
+/* A limit that actuators have, with the names of those that do where others have another. */
+struct torque_level {
+    double limit;
+    const char *unit;
+    char of[200];
+};
+
+/* Each once; returns how many. */
+static size_t torque_levels(const struct plot_case *c, size_t actuators, struct torque_level *level)
 {
     double limit[STANCE_MAX_ACTUATORS];
-    size_t count = 0;
+    size_t count = 0, alike = 0;
     if (!c->readable)
         return 0;
-    stance_torque_limits(c->scenario.scene, c->values.robot, c->values.torque_limit, limit);
+    stance_torque_limits(c->scenario.scene, c->values.robot, c->values.torque_limit,
+                         c->values.torque_limits, limit);
     for (size_t i = 0; i < actuators; i++) {
-        bool listed = !isfinite(limit[i]);
-        for (size_t k = 0; k < count; k++)
-            listed = listed || level[k] == limit[i];
-        if (!listed)
-            level[count++] = limit[i];
+        size_t k = 0;
+        alike += limit[i] == limit[0];
+        while (k < count && level[k].limit != limit[i])
+            k++;
+        if (!isfinite(limit[i]))
+            continue;
+        if (k == count)
+            level[count++] = (struct torque_level){limit[i], unit_of(c->scenario.scene, i), ""};
+        const size_t used = strlen(level[k].of);
+        snprintf(level[k].of + used, sizeof level[k].of - used, "%s %.40s", used ? "," : " of",
+                 c->t->actuator[i]);
     }
+    if (alike == actuators && count == 1)
+        level[0].of[0] = '\0';
     return count;
 }
 
@@ -506,26 +528,26 @@ static bool draw_torques(const struct plot_case *c, stance_message *message)
     struct range range = range_of_all(&page, 0, 1, t->actuators, true);
     const double extent = 4 * fmax(fabs(range.low), fabs(range.high));
     const char *unit, *const label = torque_label(c, &unit);
-    double limit[STANCE_MAX_ACTUATORS];
+    struct torque_level level[STANCE_MAX_ACTUATORS];
     char text[300];
 
     if (!begin_page(&page, "What the actuators give", 1, 260, message))
         return false;
     heading_of(t, "Applied in the step that ends at each instant", &range, unit, text, sizeof text);
-    const size_t limits = torque_levels(c, t->actuators, limit);
+    const size_t limits = torque_levels(c, t->actuators, level);
     for (size_t k = 0; k < limits; k++)
-        for (int sign = -1; limit[k] < extent && sign <= 1; sign += 2)
-            include(&range, sign * limit[k]);
+        for (int sign = -1; level[k].limit < extent && sign <= 1; sign += 2)
+            include(&range, sign * level[k].limit);
     put_panel(&page, text, label, &range);
     for (size_t k = 0; k < t->actuators; k++)
         put_line(&page, k, 1, k, false);
     for (size_t k = 0; k < limits; k++)
-        for (int sign = -1; limit[k] < extent && sign <= 1; sign += 2)
-            put_level(&page, sign * limit[k], "0x606060", true);
+        for (int sign = -1; level[k].limit < extent && sign <= 1; sign += 2)
+            put_level(&page, sign * level[k].limit, "0x606060", true);
     put_names(&page, t->actuator, t->actuators);
     for (size_t k = 0; k < limits; k++) {
-        snprintf(text, sizeof text, "%slimit %.4g %s", limit[k] < extent ? "dashed: " : "",
-                 limit[k], unit);
+        snprintf(text, sizeof text, "%slimit %.4g %s%s", level[k].limit < extent ? "dashed: " : "",
+                 level[k].limit, level[k].unit, level[k].of);
         gnuplot_note(&page.g, text);
     }
     return end_page(&page, "torques", message);

@@ -128,14 +128,25 @@ static void make_model(struct model *m)
 
 /* ---- drawing ------------------------------------------------------------------------------ */
 
-static void label(struct model *m, enum ink ink, double x, double z, const char *text)
+/* At a place, of what is at `of`, both in m. */
+static void label(struct model *m, enum ink ink, double x, double z, const double of[2],
+                  const char *text)
 {
     if (m->labels == MOST_LABELS)
         return;
     m->labels++;
-    gnuplot_text(m->g, text, "label_text[%d]", m->labels);
-    gnuplot_set(m->g, "label_x[%d] = %#.9g; label_y[%d] = %#.9g; label_ink[%d] = %d", m->labels, x,
-                m->labels, z, m->labels, ink);
+    gnuplot_text(m->g, look_label(m->g->look, text), "label_text[%d]", m->labels);
+    gnuplot_set(m->g,
+                "label_x[%d] = %#.9g; label_y[%d] = %#.9g; label_ink[%d] = %d; of_x[%d] = %#.9g; "
+                "of_y[%d] = %#.9g",
+                m->labels, x, m->labels, z, m->labels, ink, m->labels, of[0], m->labels, of[1]);
+}
+
+/* At a radius about the centre of coordinate k, at an angle. */
+static void place_at(const struct model *m, int k, double radius, double angle, double place[2])
+{
+    place[0] = m->moved[k].centre[0] + radius * cos(angle);
+    place[1] = m->moved[k].centre[1] + radius * sin(angle);
 }
 
 /* Around the centre of coordinate k, from one angle to another; its last piece has
@@ -271,8 +282,9 @@ static void put_lines(struct model *m)
 static void put_labels(struct model *m)
 {
     gnuplot_set(m->g,
-                "array label_text[%d]; array label_x[%d]; array label_y[%d]; array label_ink[%d]",
-                MOST_LABELS, MOST_LABELS, MOST_LABELS, MOST_LABELS);
+                "array label_text[%d]; array label_x[%d]; array label_y[%d]; array label_ink[%d]; "
+                "array of_x[%d]; array of_y[%d]",
+                MOST_LABELS, MOST_LABELS, MOST_LABELS, MOST_LABELS, MOST_LABELS, MOST_LABELS);
     for (int k = 0; k < m->scene->coordinates; k++) {
         const struct moved *const moved = &m->moved[k];
         /* Beside the arc, beyond where the angle is 0; an arc that only shows the sign: at its end.
@@ -282,27 +294,34 @@ static void put_labels(struct model *m)
         const double middle = moved->direction + (angle == 0  ? 0.6 + gap
                                                   : angle > 0 ? -angle - gap
                                                               : -angle + gap);
-        if (moved->turns)
-            label(m, INK_COORDINATE, moved->centre[0] + radius * cos(middle),
-                  moved->centre[1] + radius * sin(middle), m->scene->coordinate[k].name);
+        if (moved->turns) {
+            double at[2], of[2];
+            place_at(m, k, radius, middle, at);
+            place_at(m, k, radius, moved->direction + (angle == 0 ? 0.3 : -0.5 * angle), of);
+            label(m, INK_COORDINATE, at[0], at[1], of, m->scene->coordinate[k].name);
+        }
         if (!moved->turns && !is_place(m, k)) {
             double from[2];
             const double half = 0.5 * slide_of(m, k, from), side = 0.05 * m->size;
-            label(m, INK_COORDINATE, from[0] + half * moved->along[0] - side * moved->along[1],
-                  from[1] + half * moved->along[1] + side * moved->along[0],
-                  m->scene->coordinate[k].name);
+            const double of[2] = {from[0] + half * moved->along[0],
+                                  from[1] + half * moved->along[1]};
+            label(m, INK_COORDINATE, of[0] - side * moved->along[1], of[1] + side * moved->along[0],
+                  of, m->scene->coordinate[k].name);
         }
     }
     for (int a = 0; a < m->scene->actuators; a++) {
         const int k = m->scene->actuated[a];
         const struct moved *const moved = &m->moved[k];
-        const double radius = torque_radius(m, k) + 0.05 * m->size, at = moved->direction + 0.6;
-        label(m, INK_ACTUATOR,
-              moved->turns ? moved->centre[0] + radius * cos(at)
-                           : moved->point[0] + 0.22 * m->size * moved->along[0],
-              moved->turns ? moved->centre[1] + radius * sin(at)
-                           : moved->point[1] + 0.22 * m->size * moved->along[1],
-              m->scene->actuator_name[a]);
+        const double far = 0.22 * m->size;
+        double at[2] = {moved->point[0] + far * moved->along[0],
+                        moved->point[1] + far * moved->along[1]};
+        double of[2] = {moved->point[0] + 0.5 * far * moved->along[0],
+                        moved->point[1] + 0.5 * far * moved->along[1]};
+        if (moved->turns) {
+            place_at(m, k, torque_radius(m, k) + 0.05 * m->size, moved->direction + 0.6, at);
+            place_at(m, k, torque_radius(m, k), moved->direction + 0.5, of);
+        }
+        label(m, INK_ACTUATOR, at[0], at[1], of, m->scene->actuator_name[a]);
     }
     const double rest[STANCE_MAX_COORDINATES] = {0};
     const int grounded = plot_case_grounded(m->scene);
@@ -310,7 +329,7 @@ static void put_labels(struct model *m)
         double point[2], speed[2];
         m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, point, speed);
         label(m, INK_CONTACT, point[0] - 0.05 * m->size,
-              point[1] - m->size * (0.06 + (grounded > 2 ? 0.045 * k : 0)),
+              point[1] - m->size * (0.06 + (grounded > 2 ? 0.045 * k : 0)), point,
               m->scene->contact_name[k]);
     }
     gnuplot_set(m->g, "labels = %d", m->labels);

@@ -13,7 +13,8 @@ extern const struct command command_sensitivity; /* below */
 enum { MOST_BY = SCENARIO_MAX_AXES };
 
 struct asked {
-    const char *directory; /* NULL: no picture */
+    bool draws;
+    struct look look;
     struct sensitivity_request request;
 };
 
@@ -55,25 +56,27 @@ static bool read_seed(const char *text, struct sensitivity_request *request)
 
 /* ---- the work ----------------------------------------------------------------------------- */
 
-static bool show(const struct report *report, const struct sensitivity_study *study,
-                 stance_message *message)
+static bool draw(struct look *look, const struct sensitivity_study *study, stance_message *message)
 {
-    const struct asked *asked = report->request;
     const char *answer = study->request.answer;
-    char stem[400];
+    char stem[400], own[1024];
     snprintf(stem, sizeof stem, "%.300s%s%s-sensitivity", study->r->name, answer ? "-" : "",
              answer ? answer : "");
-    return sensitivity_print(study, report->form) &&
-           (!asked->directory || sensitivity_picture(study, NULL, asked->directory, stem, message));
+    return sensitivity_picture(study, look, look_directory(look, study->r->file, own, sizeof own),
+                               stem, message);
 }
 
 static int work(struct report *report, const struct results *r, stance_message *message)
 {
-    const struct asked *asked = report->request;
+    struct asked *asked = report->request;
     struct sensitivity_study study;
     int code = sensitivity_study_make(&study, r, &asked->request, message);
     if (code == EXIT_DONE) {
-        code = show(report, &study, message) ? EXIT_DONE : EXIT_IO;
+        if (!sensitivity_print(&study, report->form) ||
+            (asked->draws && !draw(&asked->look, &study, message)))
+            code = EXIT_IO;
+        else if (asked->draws && !look_end(&asked->look, &command_sensitivity, r->file))
+            code = EXIT_USAGE;
         sensitivity_study_free(&study);
     }
     return code;
@@ -83,7 +86,9 @@ static int run(int argc, char **argv)
 {
     const char *answer = NULL, *of = NULL, *resamples = NULL, *level = NULL, *seed = NULL;
     const char *failed = "drop", *by[MOST_BY];
-    size_t given[7] = {0};
+    struct look_options options = {0};
+    char directory[1024];
+    size_t given[6] = {0};
     int code;
     struct asked asked = {
         .request = {
@@ -99,12 +104,15 @@ static int run(int argc, char **argv)
         {"--level", true, &level, 1, &given[3]},
         {"--seed", true, &seed, 1, &given[4]},
         {"--failed", true, &failed, 1, &given[5]},
-        {"-o", true, &asked.directory, 1, &given[6]},
+        LOOK_SPECS(options),
     };
     if (!report_options(&report, argc, argv, specs, sizeof specs / sizeof specs[0], &code))
         return code;
-    const char *wrong = given[6] && report.form != TABLE_AS_TEXT
-                            ? "-o belongs to the text: --json and --csv print nothing else"
+    asked.draws = look_given(&options);
+    if (asked.draws && !look_read(&command_sensitivity, &options, &asked.look))
+        return EXIT_USAGE;
+    const char *wrong = asked.draws && report.form != TABLE_AS_TEXT
+                            ? "pictures belong to the text: --json and --csv print nothing else"
                         : answer && strcmp(failed, "fallen") == 0
                             ? "--failed fallen has no meaning with --answer: a failed case has none"
                             : NULL;
@@ -119,13 +127,17 @@ static int run(int argc, char **argv)
           (!seed || read_seed(seed, request))))
         return EXIT_USAGE;
     request->bootstrap.resamples = (size_t)drawn;
-    return asked.directory && !gnuplot_directory(asked.directory) ? EXIT_IO : report_run(&report);
+    return asked.draws && !gnuplot_directory(
+                              look_directory(&asked.look, report.file, directory, sizeof directory))
+               ? EXIT_IO
+               : report_run(&report);
 }
 
 const struct command command_sensitivity = {
     "sensitivity",
     "sensitivity FILE [--answer A] [--of OUTCOME] [--by PATH]... [--failed drop|fallen]\n"
-    "           [--resamples N] [--level L] [--seed N] [--json | --csv | -o DIR]",
+    "           [--resamples N] [--level L] [--seed N]\n"
+    "           [--json | --csv | -o PLACE] [--format F,...] [--for column|page] ...",
     "which factor of a sampled study decides its result",
     run,
     "For files of a scenario with sweep.sample. The response of a sample point is the share of\n"
@@ -160,8 +172,10 @@ const struct command command_sensitivity = {
     "  --resamples N   quarters that are drawn, default 1000; --seed N: other ones, default 0\n"
     "                  (both without effect on saltelli and morris)\n"
     "  --level L       of the intervals, default 0.95\n"
-    "  -o DIR          draws NAME-sensitivity.svg and .png into DIR, too, with --answer\n"
-    "                  NAME-A-sensitivity (stance plot FILE draws these as well)\n"
+    "With an option of pictures NAME-sensitivity, too, with --answer NAME-A-sensitivity (stance "
+    "plot\n"
+    "FILE draws these as well):\n"
+    "\n" LOOK_HELP "\n"
     "  --csv           a row for each table and factor: values of the axes kept apart, factor "
     "(its\n"
     "                  first path), estimate, _low and _high of each measure, response,\n"

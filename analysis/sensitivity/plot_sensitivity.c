@@ -100,7 +100,7 @@ static void put_names(struct drawing *d)
     gnuplot_set(&d->g, "factors = %zu\narray factor[%zu]", d->study->factors, d->study->factors);
     for (size_t i = 0; i < d->study->factors; i++) {
         sensitivity_factor_text(d->study, d->study->order[i], text, 128);
-        gnuplot_text(&d->g, text, "factor[%zu]", i + 1);
+        gnuplot_text(&d->g, look_label(d->g.look, text), "factor[%zu]", i + 1);
     }
 }
 

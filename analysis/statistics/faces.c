@@ -28,7 +28,7 @@ void faces_make(struct faces *faces, const struct results *r, const int *without
     bool scaled = false;
     *faces = (struct faces){.r = r};
     for (int a = 0; !r->single && a < r->axes; a++) {
-        bool wanted = statistics_is_start(r->axis[a].name) || is_scale(r->axis[a].name);
+        bool wanted = scenario_is_start(r->axis[a].name) || is_scale(r->axis[a].name);
         for (int k = 0; k < count; k++)
             wanted = wanted && without[k] != a;
         if (wanted && !r->axis[a].word)
@@ -36,7 +36,7 @@ void faces_make(struct faces *faces, const struct results *r, const int *without
         scaled = scaled || (is_scale(r->axis[a].name) && r->axis[a].count > 1);
     }
     for (int k = 0; k < r->varied && !scaled && strcmp(r->method, "sphere") != 0; k++)
-        if (statistics_is_start(r->vary[k].of.name) && !r->vary[k].word)
+        if (scenario_is_start(r->vary[k].of.name) && !r->vary[k].word)
             add(faces, &r->vary[k].of, r->sample, true);
 }
 

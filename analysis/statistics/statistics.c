@@ -8,13 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool statistics_is_start(const char *path)
-{
-    return (strncmp(path, "initial.offset.", 15) == 0 ||
-            strncmp(path, "initial.state.", 14) == 0) &&
-           strcmp(path, "initial.offset.scale") != 0;
-}
-
 enum results_kind statistics_judged(const struct results *r)
 {
     struct statistics_counts counts;

@@ -10,8 +10,6 @@
 /* Says of the file that there is not enough memory. Returns false. */
 bool statistics_no_memory(const struct results *r, stance_message *message);
 
-/* Whether a path is a coordinate of the start: initial.offset.* but its scale, initial.state.*. */
-bool statistics_is_start(const char *path);
 /* What a file's cases are looked for where nobody says: stabilised, or rested where nothing was
  * stabilised but something rested. */
 enum results_kind statistics_judged(const struct results *r);

@@ -13,6 +13,7 @@
     X(settle_time, RESULTS_STABILISED, "s")                                                        \
     X(friction_used, RESULTS_STABILISED, "")                                                       \
     X(least_normal_force, RESULTS_STABILISED, "N")                                                 \
+    X(excursion, RESULTS_STABILISED, "rad")                                                        \
     X(slip_distance, RESULTS_STABILISED, "m")                                                      \
     X(fall_time, RESULTS_FELL, "s")                                                                \
     X(peak_torque, RESULTS_KIND_COUNT, "N m")                                                      \

@@ -181,8 +181,18 @@ static void add_controller(struct collection *c, const struct scenario_values *v
     add_law(c, v, scenario_law(v));
     add_law(c, v, scenario_far(v));
     add_entry(c, "controller.sample_time", v, ALWAYS);
-    add_entry(c, "controller.delay", v, WHERE_GIVEN);
+    static const char *const given[] = {"controller.delay", "controller.lag",
+                                        "controller.torque_rate", "controller.angle_noise",
+                                        "controller.rate_noise"};
+    char path[96];
+    for (size_t k = 0; k < sizeof given / sizeof *given; k++)
+        add_entry(c, given[k], v, WHERE_GIVEN);
     add_entry(c, "controller.torque_limit", v, ALWAYS);
+    for (int i = 0; i < c->s->scene->actuators; i++) {
+        snprintf(path, sizeof path, "controller.torque_limits[%d]", i);
+        if (isfinite(v->torque_limits[i]))
+            add_number(c, path, v->torque_limits[i], "N m");
+    }
     add_entry(c, "controller.noise", v, ALWAYS);
 }
 

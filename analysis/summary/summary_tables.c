@@ -198,8 +198,8 @@ void summary_answers(struct table *t, const struct summary *summary, enum table_
         const struct statistics_numbers *n = &row->numbers;
         char label[64];
         if (!row->stored || (text && n->n == 0) ||
-            (text && k == SUMMARY_peak_torque && n->high == 0)) /* nothing is actuated */
-            continue;
+            (text && (k == SUMMARY_peak_torque || k == SUMMARY_excursion) && n->high == 0))
+            continue; /* nothing is actuated, there is no target */
         snprintf(label, sizeof label, "  %s%s%s%s", row->name, row->unit[0] ? " (" : "", row->unit,
                  row->unit[0] ? ")" : "");
         TABLE_FACTS(t, {{"answer", .hidden = TABLE_NO_JSON}, as_text(row->name)},

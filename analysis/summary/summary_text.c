@@ -110,6 +110,19 @@ static void print_cut(const struct summary *summary)
                summary->counts.done < summary->faces.r->cases ? "not known to be cut" : "not cut");
 }
 
+/* Where there is no boundary to be seen. */
+static void print_no_boundary(const struct summary *summary)
+{
+    const struct statistics_counts *counts = &summary->counts;
+    const uint64_t held = counts->kind[RESULTS_STABILISED], fell = counts->kind[RESULTS_FELL];
+    if (summary->faces.starts == 0 || counts->done < 2)
+        return;
+    if (held == counts->done)
+        puts("  the ranges end within the domain: stance ranges SCENARIO finds how far it goes");
+    else if (fell == counts->done)
+        puts("  the ranges do not meet a domain: stance ranges SCENARIO finds where one is");
+}
+
 static bool print_outcomes(const struct summary *summary, const struct results *r)
 {
     const struct statistics_counts *counts = &summary->counts;
@@ -133,6 +146,7 @@ static bool print_outcomes(const struct summary *summary, const struct results *
     }
     if (summary_has_outcomes(summary))
         print_cut(summary);
+    print_no_boundary(summary);
     for (int k = 1; k < STANCE_MAX_WORDS; k++) {
         if (summary->fallen_by[k] > 0)
             printf("  fell by %16" PRIu64 "  %7.3f %%   %s\n", summary->fallen_by[k],

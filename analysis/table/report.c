@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OPTIONS = 16 };
+enum { MOST_OPTIONS = 24 };
 
 bool report_options(struct report *report, int argc, char **argv, const struct option_spec *specs,
                     size_t count, int *code)

@@ -195,13 +195,19 @@ static bool seen_text(const struct table *t, const struct seen *seen, size_t row
         return false;
     if (row == HEAD)
         snprintf(text, CELL, "%s", column->heading);
-    else if (!print_value(t, column, cell_at(t, row, seen->column[k]), text, CELL))
+    const bool any =
+        row == HEAD || print_value(t, column, cell_at(t, row, seen->column[k]), text, CELL);
+    if (!any)
         snprintf(text, CELL, "%s", column->empty ? column->empty : "-");
     while (row != HEAD && ++k < seen->count && t->column[seen->column[k]].joined) {
         char more[CELL];
         const size_t used = strlen(text);
         column = &t->column[seen->column[k]];
-        if (print_value(t, column, cell_at(t, row, seen->column[k]), more, sizeof more))
+        const bool has =
+            print_value(t, column, cell_at(t, row, seen->column[k]), more, sizeof more);
+        if (!has && any && column->empty)
+            snprintf(more, sizeof more, "%s", column->empty);
+        if (has || (any && column->empty))
             snprintf(text + used, CELL - used, "%s%s", column->before ? column->before : "", more);
     }
     return true;

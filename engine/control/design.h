@@ -75,15 +75,26 @@ stance_error stance_eigenvalues(int n, const double *A, double *re, double *im);
 stance_error stance_discretise(int n, int m, const double *A, const double *B, double T, double *Ad,
                                double *Bd);
 
-/* Eigenvalues z of the loop that samples every T seconds and holds, sorted as by
- * stance_eigenvalues: of Ad(T) - Bd(T) K, n of them (delay 0), or with the torques of a sample
- * acting one sample later (delay 1) of [Ad Bd; -K 0], n + m of them. */
+/* Eigenvalues z of the loop that samples every T seconds and holds, the torques of a sample acting
+ * `delay` samples later, sorted as by stance_eigenvalues: of Ad(T) - Bd(T) K, n of them, and with a
+ * delay of [Ad Bd 0; 0 0 1; -K 0 0], n + delay m of them. */
 stance_error stance_sampled_loop(int n, int m, const double *A, const double *B, const double *K,
                                  double T, int delay, double *re, double *im);
 
-/* Smallest sample time T* at which the sampled loop, with `delay` 0 or 1 samples, leaves the unit
- * circle; 0 when the continuous loop is unstable, INFINITY when none is found up to `longest`
- * seconds. */
+/* By how much the states of that loop wander about zero, rms[n] at the samples, under white noise
+ * of variances measured[n] on what is measured and `commanded` on each torque. T > 0. NUMERICAL
+ * when the loop is not stable. */
+stance_error stance_sampled_wander(int n, int m, const double *A, const double *B, const double *K,
+                                   double T, int delay, const double *measured, double commanded,
+                                   double *rms);
+
+/* The plant x' = A x + B u behind actuators u' = (command - u) / lag, lag > 0, as one of n + m
+ * states (x, u): A1[n + m][n + m], B1[n + m][m], and K1[m][n + m] that sees x alone. */
+void stance_lagged(int n, int m, const double *A, const double *B, const double *K, double lag,
+                   double *A1, double *B1, double *K1);
+
+/* Smallest sample time T* at which the sampled loop, with `delay` samples, leaves the unit circle;
+ * 0 when the continuous loop is unstable, INFINITY when none is found up to `longest` seconds. */
 stance_error stance_critical_sample_time(int n, int m, const double *A, const double *B,
                                          const double *K, int delay, double longest, double *T);
 

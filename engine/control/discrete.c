@@ -4,7 +4,13 @@
  * Bd = (integral of exp(A t) over 0 ... T) B. SLICOT's MB05ND computes both by Pade approximation
  * with scaling and squaring. A gain K designed for continuous time keeps the sampled loop stable
  * as long as the spectral radius of Ad(T) - Bd(T) K stays below 1. Where the torques computed from
- * a sample act one sample later, (x, u) moves as [Ad Bd; -K 0], and its spectral radius counts.
+ * a sample act d samples later, those under way belong to the state, the next one first: (x, u1,
+ * ... ud) moves as [Ad Bd 0; 0 0 1; -K 0 0], and its spectral radius counts.
+ *
+ * White noise w on the commands, of covariance W, makes the state z of that loop, z+ = L z + G w,
+ * wander with the covariance P = L P L' + G W G'; P is the sum of L^k G W G' L'^k, doubled:
+ * P <- P + L P L', L <- L^2 (Smith, SIAM J. Appl. Math. 16(1), 1968). Noise n of what is measured
+ * is -K n on the commands.
  *
  * The spectral radius has corners where eigenvalues meet, and may exceed 1 in windows of T as
  * narrow as one likes. The search therefore watches three smooth functions of T made of the
@@ -49,7 +55,7 @@ stance_error stance_exponential(int n, const double *A, double T, double *E, dou
 /* Room for one pair (n, m), so that a scan over T allocates once. */
 typedef struct sampled {
     int n, m;
-    int side; /* of the loop: n, or n + m with a delay */
+    int side; /* of the loop: n + delay m */
     const double *A, *B, *K;
     double *Ad, *Bd, *integral, *loop, *re, *im, *work;
     int *integers;
@@ -64,12 +70,12 @@ static void sampled_free(sampled *s)
 static stance_error sampled_make(sampled *s, int n, int m, const double *A, const double *B,
                                  const double *K, int delay)
 {
-    if (n < 1 || m < 1 || delay < 0 || delay > 1 || (delay && !K))
+    if (n < 1 || m < 1 || delay < 0 || (delay && !K))
         return STANCE_BAD_ARGUMENT;
     const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
     if (!matrix_finite(nn, A) || !matrix_finite(nm, B) || (K && !matrix_finite(nm, K)))
         return STANCE_BAD_ARGUMENT;
-    *s = (sampled){.n = n, .m = m, .side = delay ? n + m : n, .A = A, .B = B, .K = K};
+    *s = (sampled){.n = n, .m = m, .side = n + delay * m, .A = A, .B = B, .K = K};
     const size_t side = (size_t)s->side;
     double *room = matrix_room(4 * nn + side * side + nm + 2 * side);
     s->Ad = room;
@@ -120,8 +126,8 @@ stance_error stance_discretise(int n, int m, const double *A, const double *B, d
     return error;
 }
 
-/* Of the loop at T, into s->re and s->im. */
-static stance_error sampled_eigenvalues(sampled *s, double T)
+/* The loop at T, s->loop. */
+static stance_error sampled_close(sampled *s, double T)
 {
     const int n = s->n, m = s->m, side = s->side;
     const stance_error error = sampled_discretise(s, T);
@@ -129,16 +135,25 @@ static stance_error sampled_eigenvalues(sampled *s, double T)
         return error;
     if (side == n) {
         matrix_close(n, m, s->Ad, s->Bd, s->K, s->loop);
-    } else {
-        memset(s->loop, 0, (size_t)side * (size_t)side * sizeof *s->loop);
-        for (int i = 0; i < n; i++) {
-            memcpy(s->loop + i * side, s->Ad + i * n, (size_t)n * sizeof *s->Ad);
-            memcpy(s->loop + i * side + n, s->Bd + i * m, (size_t)m * sizeof *s->Bd);
-            for (int j = 0; j < m; j++)
-                s->loop[(n + j) * side + i] = -s->K[j * n + i];
-        }
+        return STANCE_OK;
     }
-    return stance_eigenvalues(side, s->loop, s->re, s->im);
+    memset(s->loop, 0, (size_t)side * (size_t)side * sizeof *s->loop);
+    for (int i = 0; i < n; i++) {
+        memcpy(s->loop + i * side, s->Ad + i * n, (size_t)n * sizeof *s->Ad);
+        memcpy(s->loop + i * side + n, s->Bd + i * m, (size_t)m * sizeof *s->Bd);
+        for (int j = 0; j < m; j++)
+            s->loop[(side - m + j) * side + i] = -s->K[j * n + i];
+    }
+    for (int i = n; i < side - m; i++)
+        s->loop[i * side + i + m] = 1;
+    return STANCE_OK;
+}
+
+/* Its eigenvalues, into s->re and s->im. */
+static stance_error sampled_eigenvalues(sampled *s, double T)
+{
+    const stance_error error = sampled_close(s, T);
+    return error == STANCE_OK ? stance_eigenvalues(s->side, s->loop, s->re, s->im) : error;
 }
 
 stance_error stance_sampled_loop(int n, int m, const double *A, const double *B, const double *K,
@@ -157,6 +172,80 @@ stance_error stance_sampled_loop(int n, int m, const double *A, const double *B,
     }
     sampled_free(&s);
     return error;
+}
+
+stance_error stance_sampled_wander(int n, int m, const double *A, const double *B, const double *K,
+                                   double T, int delay, const double *measured, double commanded,
+                                   double *rms)
+{
+    sampled s;
+    if (!isfinite(T) || T <= 0 || !K)
+        return STANCE_BAD_ARGUMENT;
+    stance_error error = sampled_make(&s, n, m, A, B, K, delay);
+    if (error != STANCE_OK)
+        return error;
+    const int side = s.side;
+    const size_t whole = (size_t)side * (size_t)side;
+    double *const P = matrix_room(3 * whole), *const half = P + whole, *const next = half + whole;
+    error = P ? sampled_close(&s, T) : STANCE_NO_MEMORY;
+    /* What one sample's noise on the commands does to the state. */
+    for (int i = 0; i < side && error == STANCE_OK; i++)
+        for (int j = 0; j < side; j++) {
+            P[i * side + j] = 0;
+            for (int a = 0; a < m; a++)
+                for (int b = 0; b < m; b++) {
+                    double W = a == b ? commanded : 0;
+                    for (int k = 0; k < n; k++)
+                        W += K[a * n + k] * measured[k] * K[b * n + k];
+                    const double Gi = delay ? i == side - m + a : s.Bd[i * m + a];
+                    const double Gj = delay ? j == side - m + b : s.Bd[j * m + b];
+                    P[i * side + j] += Gi * W * Gj;
+                }
+        }
+    double largest = 1;
+    for (int round = 0; round < 64 && error == STANCE_OK && largest > 0x1p-60; round++) {
+        matrix_multiply(side, side, side, s.loop, P, half);
+        for (int i = 0; i < side; i++)
+            for (int j = 0; j < side; j++) {
+                next[i * side + j] = 0;
+                for (int k = 0; k < side; k++)
+                    next[i * side + j] += half[i * side + k] * s.loop[j * side + k];
+            }
+        for (size_t i = 0; i < whole; i++)
+            P[i] += next[i];
+        matrix_multiply(side, side, side, s.loop, s.loop, half);
+        memcpy(s.loop, half, whole * sizeof *half);
+        largest = 0;
+        for (size_t i = 0; i < whole; i++)
+            largest = fmax(largest, fabs(s.loop[i]));
+        if (!matrix_finite(whole, P))
+            error = STANCE_NUMERICAL; /* not stable */
+    }
+    if (error == STANCE_OK && largest > 0x1p-60)
+        error = STANCE_NUMERICAL;
+    for (int i = 0; i < n && error == STANCE_OK; i++)
+        rms[i] = sqrt(fmax(0, P[i * side + i]));
+    free(P);
+    sampled_free(&s);
+    return error;
+}
+
+void stance_lagged(int n, int m, const double *A, const double *B, const double *K, double lag,
+                   double *A1, double *B1, double *K1)
+{
+    const int side = n + m;
+    memset(A1, 0, (size_t)side * (size_t)side * sizeof *A1);
+    memset(B1, 0, (size_t)side * (size_t)m * sizeof *B1);
+    memset(K1, 0, (size_t)m * (size_t)side * sizeof *K1);
+    for (int i = 0; i < n; i++) {
+        memcpy(A1 + i * side, A + i * n, (size_t)n * sizeof *A);
+        memcpy(A1 + i * side + n, B + i * m, (size_t)m * sizeof *B);
+    }
+    for (int j = 0; j < m; j++) {
+        A1[(n + j) * side + n + j] = -1 / lag;
+        B1[(n + j) * m + j] = 1 / lag;
+        memcpy(K1 + j * side, K + j * n, (size_t)n * sizeof *K);
+    }
 }
 
 enum { GUARDS = 3 };
@@ -186,13 +275,22 @@ static stance_error sampled_look(sampled *s, double T, sample *look)
     return STANCE_OK;
 }
 
-/* Largest |eigenvalue| and largest real part of a matrix. */
-static stance_error spectrum(sampled *s, const double *matrix, double *size, double *growth)
+/* Modes that only decay count up to this many times the slowest mode: they alone make no windows,
+ * and may be those of actuators that are all but instant. */
+#define DECAYS_COUNT 1e3
+
+/* Sizes of a matrix's eigenvalues: the largest of those that decay without swinging, the largest of
+ * the others, the smallest; and the largest real part. */
+static stance_error spectrum(sampled *s, const double *matrix, double *decay, double *size,
+                             double *slow, double *growth)
 {
     const stance_error error = stance_eigenvalues(s->n, matrix, s->re, s->im);
     *growth = -INFINITY;
     for (int i = 0; error == STANCE_OK && i < s->n; i++) {
-        *size = fmax(*size, hypot(s->re[i], s->im[i]));
+        const double own = hypot(s->re[i], s->im[i]);
+        double *const of = s->im[i] == 0 && s->re[i] < 0 ? decay : size;
+        *of = fmax(*of, own);
+        *slow = own > 0 ? fmin(*slow, own) : *slow;
         *growth = fmax(*growth, s->re[i]);
     }
     return error;
@@ -292,12 +390,13 @@ stance_error stance_critical_sample_time(int n, int m, const double *A, const do
     stance_error error = sampled_make(&s, n, m, A, B, K, delay);
     if (error != STANCE_OK)
         return error;
-    double fastest = 0, growth;
-    error = spectrum(&s, A, &fastest, &growth);
+    double decay = 0, size = 0, slow = INFINITY, growth;
+    error = spectrum(&s, A, &decay, &size, &slow, &growth);
     if (error == STANCE_OK) {
         matrix_close(n, m, A, B, K, s.loop);
-        error = spectrum(&s, s.loop, &fastest, &growth);
+        error = spectrum(&s, s.loop, &decay, &size, &slow, &growth);
     }
+    const double fastest = fmax(size, fmin(decay, DECAYS_COUNT * slow));
     if (error == STANCE_OK && growth >= 0) {
         *T = 0;
     } else if (error == STANCE_OK) {

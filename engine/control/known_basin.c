@@ -214,7 +214,8 @@ static bool makes_sense(const stance_known_basin_search *ask)
            (ask->kernel->scene == ask->scene || ask->scene->mechanism) && ask->scene->stand &&
            ask->scene->postures > 0 && ask->shapes >= 1 && ask->shapes <= STANCE_MAX_SHAPES &&
            ask->boundary >= 1 && ask->interior >= 0 && c->settle && c->has_target && c->supports &&
-           !(c->supports >> ask->scene->contacts) && c->delay == 0 && !c->decouples && !c->switches;
+           !(c->supports >> ask->scene->contacts) && c->delay == 0 && c->lag == 0 &&
+           c->torque_rate == 0 && !c->decouples && !c->switches;
 }
 
 /* Sets are tried until one passes, and how many that takes is not known beforehand: 0.05 / m for

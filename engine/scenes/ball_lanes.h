@@ -77,6 +77,10 @@ static inline void scene_posture(const lanes *s, lanes *posture)
 {
     (void)s, (void)posture;
 }
+static inline void scene_of_posture(const lanes *posture, lanes *s)
+{
+    (void)posture, (void)s;
+}
 
 /* residual = A change - h (forces without contact). */
 static inline void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *place,

@@ -137,6 +137,15 @@ static inline void scene_posture(const lanes *s, lanes *posture)
     posture[2] = s[4] - s[2];
 }
 
+/* Coordinates that have this posture, all else zero. */
+static inline void scene_of_posture(const lanes *posture, lanes *s)
+{
+    s[0] = s[1] = lanes_of(0);
+    s[2] = posture[0];
+    s[3] = posture[0] + posture[1];
+    s[4] = posture[0] + posture[2];
+}
+
 /* The paper's q and its rates: what scene_leave gives, without sines of its own. */
 static inline void scene_coordinates(const scene_body *b, const scene_trig *trig, const lanes *s,
                                      const lanes *w, lanes *q, lanes *v)

@@ -14,13 +14,13 @@ void stance_mechanism_expand(const stance_mechanism *m, const double *robot,
 }
 
 void stance_torque_limits(const stance_scene *scene, const double *robot, double most,
-                          double limit[STANCE_MAX_ACTUATORS])
+                          const double *limits, double limit[STANCE_MAX_ACTUATORS])
 {
     stance_mechanism_numbers number;
     if (scene->mechanism)
         stance_mechanism_expand(scene->mechanism, robot, &number);
     for (int i = 0; i < scene->actuators; i++)
-        limit[i] = scene->mechanism ? fmin(number.limit[i], most) : most;
+        limit[i] = fmin(fmin(most, limits[i]), scene->mechanism ? number.limit[i] : INFINITY);
 }
 
 static double along(const double a[2], const double b[2])

@@ -387,6 +387,20 @@ HOT void scene_posture(const lanes *s, lanes *posture)
     for (int i = 0; i < tree_angles; i++)
         posture[tree_rail + i] = tree_joint(s, i);
 }
+/* Coordinates that have this posture, all else zero. */
+HOT void scene_of_posture(const lanes *posture, lanes *s)
+{
+    for (int i = 0; i < SCENE_COORDINATES; i++)
+        s[i] = lanes_of(0);
+    if (tree_rail)
+        s[0] = posture[0];
+    TREE_UNROLL
+    for (int i = 0; i < tree_angles; i++) { /* a joint comes after what it is measured against */
+        s[TREE_BASE + i] = posture[tree_rail + i];
+        if (tree_against(i) >= 0)
+            s[TREE_BASE + i] = s[TREE_BASE + i] + s[TREE_BASE + tree_against(i)];
+    }
+}
 /* What the user's posture is to be raised by for that. */
 static inline double scene_posture_origin(const stance_tree_numbers *number, int i)
 {

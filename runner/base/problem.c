@@ -93,11 +93,19 @@ const char *shown(char buffer[SHOWN_SIZE], const char *text)
 const char *words_join(char *buffer, size_t size, const char *separator, const char *const *words,
                        size_t count)
 {
-    size_t used = 0;
+    enum { REST = 32 }; /* for how many more there are */
+    size_t used = 0, whole = 0;
     buffer[0] = '\0';
+    for (size_t i = 0; i < count; i++)
+        whole += strlen(separator) + strlen(words[i]);
     for (size_t i = 0; i < count && used < size; i++) {
-        int n = snprintf(buffer + used, size - used, "%s%s", i ? separator : "", words[i]);
+        const char *const before = i ? separator : "";
+        const bool fits = whole < size || used + strlen(before) + strlen(words[i]) + REST < size;
+        int n = fits ? snprintf(buffer + used, size - used, "%s%s", before, words[i])
+                     : snprintf(buffer + used, size - used, "%s... %zu more", before, count - i);
         used += n > 0 ? (size_t)n : 0;
+        if (!fits)
+            break;
     }
     return buffer;
 }

@@ -55,7 +55,8 @@ void problems_print(struct problems *problems, const char *file, const char *con
  * shown as '?'. Returns `buffer`. */
 const char *shown(char buffer[SHOWN_SIZE], const char *text);
 
-/* `count` words with a separator between them; cut at `size`. Returns `buffer`. */
+/* `count` words with a separator between them; of those that do not fit, how many more there are.
+ * Returns `buffer`. */
 const char *words_join(char *buffer, size_t size, const char *separator, const char *const *words,
                        size_t count);
 /* "a, b, c". */

@@ -42,14 +42,15 @@ const char *nearest_word(const char *word, const char *const *known, size_t coun
 {
     const char *nearest = NULL;
     size_t length = minimum(strlen(word), LONGEST_WORD);
-    size_t admitted = length / 3 > 2 ? length / 3 : 2, best = admitted + 1;
+    const size_t third = length / 3, admitted = third > 2 ? third : length > 3 ? 2 : 1;
+    size_t best = admitted + 1;
 
     for (size_t i = 0; i < count; i++) {
         if (strcasecmp(word, known[i]) == 0)
             return known[i];
         size_t distance = edit_distance(word, known[i]);
-        /* As many edits as letters would be another word altogether. */
-        if (distance < best && distance < length) {
+        /* As many edits as letters, of either word, would be another word altogether. */
+        if (distance < best && distance < minimum(length, strlen(known[i]))) {
             best = distance;
             nearest = known[i];
         }

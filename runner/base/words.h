@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 /* The known word nearest to `word` (Damerau-Levenshtein, at most 2 edits or a third of its
- * length), or NULL. */
+ * length, one where it has three letters or less), or NULL. */
 const char *nearest_word(const char *word, const char *const *known, size_t count);
 
 /* Decodes one letter of UTF-8 of at most `left` bytes; returns its length, 0 when it is malformed.

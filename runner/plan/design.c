@@ -79,27 +79,134 @@ static bool gains(struct design_report *r, stance_message *message)
     return true;
 }
 
+/* The plant behind its actuators, as torques are commanded. */
+struct acting {
+    int n;
+    double A[DESIGN_PLANT * DESIGN_PLANT], B[DESIGN_PLANT * DESIGN_INPUTS];
+    double K[DESIGN_INPUTS * DESIGN_PLANT];
+};
+
+static void act(const struct design_report *r, double lag, struct acting *p)
+{
+    const size_t n = (size_t)r->states, m = (size_t)r->inputs;
+    p->n = r->states + (lag > 0 ? r->inputs : 0);
+    if (lag > 0) {
+        stance_lagged(r->states, r->inputs, r->A, r->B, r->K, lag, p->A, p->B, p->K);
+        return;
+    }
+    memcpy(p->A, r->A, n * n * sizeof *p->A);
+    memcpy(p->B, r->B, n * m * sizeof *p->B);
+    memcpy(p->K, r->K, m * n * sizeof *p->K);
+}
+
+/* Its spectral radius, with the eigenvalues in re and im. */
+static stance_error radius_of(const struct design_report *r, double lag, int delay, double *radius,
+                              double *re, double *im)
+{
+    struct acting p;
+    act(r, lag, &p);
+    *radius = 0;
+    const stance_error error = stance_sampled_loop(p.n, r->inputs, p.A, p.B, p.K,
+                                                   r->scenario->base.sample_time, delay, re, im);
+    for (int i = 0; error == STANCE_OK && i < p.n + delay * r->inputs; i++)
+        *radius = fmax(*radius, hypot(re[i], im[i]));
+    return error;
+}
+
 /* The loop as the controller acts. */
 static stance_error sampled_loop(struct design_report *r)
 {
-    const int n = r->states, m = r->inputs;
-    const double T = r->scenario->base.sample_time;
     stance_error error = STANCE_OK;
-
     r->stable = true;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < r->states; i++)
         r->stable &= r->closed_re[i] < 0;
     r->sampled = 0;
-    if (T > 0) {
-        r->sampled = r->delay ? n + m : n;
-        r->radius = 0;
-        error =
-            stance_sampled_loop(n, m, r->A, r->B, r->K, T, r->delay, r->sampled_re, r->sampled_im);
-        for (int i = 0; error == STANCE_OK && i < r->sampled; i++)
-            r->radius = fmax(r->radius, hypot(r->sampled_re[i], r->sampled_im[i]));
+    if (r->scenario->base.sample_time > 0) {
+        r->sampled = r->states + (r->delay + (r->lag > 0 ? 1 : 0)) * r->inputs;
+        error = radius_of(r, r->lag, r->delay, &r->radius, r->sampled_re, r->sampled_im);
         r->stable = r->radius < 1;
     }
     return error;
+}
+
+/* ---- how late and how slowly it may act, and what noise does -----------------------------------
+ */
+
+#define MARGIN_LEAST 1e-3 /* of the sample time: the shortest lag that is looked at */
+#define MARGIN_RATIO 1.1  /* of neighbouring lags */
+
+static stance_error find_delay_margin(struct design_report *r)
+{
+    double re[DESIGN_LOOP], im[DESIGN_LOOP], radius = 0;
+    stance_error error = STANCE_OK;
+    for (int d = 0; d <= STANCE_MAX_DELAY && error == STANCE_OK && radius < 1; d++) {
+        error = radius_of(r, r->lag, d, &radius, re, im);
+        r->delay_margin = radius < 1 ? d : r->delay_margin;
+    }
+    return error;
+}
+
+static stance_error find_lag_margin(struct design_report *r)
+{
+    const double least = MARGIN_LEAST * r->scenario->base.sample_time;
+    double re[DESIGN_LOOP], im[DESIGN_LOOP], radius = 0, below = 0, above = least;
+    stance_error error = STANCE_OK;
+    for (; above < DESIGN_LONGEST && error == STANCE_OK; above *= MARGIN_RATIO) {
+        error = radius_of(r, above, r->delay, &radius, re, im);
+        if (radius >= 1)
+            break;
+        below = above;
+    }
+    r->lag_margin = radius >= 1 ? above : INFINITY;
+    for (double lag = 0.5 * (below + above);
+         radius >= 1 && error == STANCE_OK && lag > below && lag < r->lag_margin;
+         lag = 0.5 * (below + r->lag_margin)) {
+        double of;
+        error = radius_of(r, lag, r->delay, &of, re, im);
+        if (of < 1)
+            below = lag;
+        else
+            r->lag_margin = lag;
+    }
+    return error;
+}
+
+/* Uniform noise of half-width a has the variance a^2 / 3. */
+static stance_error find_wander(struct design_report *r)
+{
+    const struct scenario_values *const values = &r->scenario->base;
+    double measured[DESIGN_PLANT] = {0}, rms[DESIGN_PLANT];
+    struct acting p;
+    r->noisy = values->noise > 0 || values->angle_noise > 0 || values->rate_noise > 0;
+    if (!r->noisy)
+        return STANCE_OK;
+    for (int i = 0; i < r->states; i++) {
+        const double half = i < r->states / 2 ? values->angle_noise : values->rate_noise;
+        measured[i] = half * half / 3;
+    }
+    act(r, r->lag, &p);
+    const stance_error error =
+        stance_sampled_wander(p.n, r->inputs, p.A, p.B, p.K, values->sample_time, r->delay,
+                              measured, values->noise * values->noise / 3, rms);
+    memcpy(r->wander, rms, sizeof r->wander);
+    return error;
+}
+
+static stance_error margins(struct design_report *r)
+{
+    stance_error error = STANCE_OK;
+    struct acting p;
+    act(r, r->lag, &p);
+    for (int late = 0; late < 2 && error == STANCE_OK; late++)
+        error = stance_critical_sample_time(p.n, r->inputs, p.A, p.B, p.K,
+                                            late ? (r->delay > 1 ? r->delay : 1) : 0,
+                                            DESIGN_LONGEST, &r->critical[late]);
+    if (error != STANCE_OK || !r->sampled || !r->stable)
+        return error;
+    error = find_delay_margin(r);
+    if (error == STANCE_OK)
+        error = find_lag_margin(r);
+    return error == STANCE_OK ? find_wander(r) : error;
 }
 
 /* ---- the sublevel set ------------------------------------------------------------------------ */
@@ -113,6 +220,8 @@ static const char *why_no_set(const struct design_report *r)
         return "only for a robot that stands on one contact";
     if (r->delay)
         return "not for a loop with a delay";
+    if (r->lag > 0 || isfinite(r->scenario->base.torque_rate))
+        return "not for actuators with a lag or a limited rate";
     return r->stable ? NULL : "the loop is not stable";
 }
 
@@ -187,6 +296,7 @@ static bool loop(struct design_report *r, stance_message *message)
 
     r->closed = r->scenario->base.law != 0;
     r->delay = r->scenario->base.delay;
+    r->lag = r->scenario->base.lag;
     if (!r->closed)
         return true;
     if (!gains(r, message))
@@ -201,10 +311,7 @@ static bool loop(struct design_report *r, stance_message *message)
 
 static bool bounds(struct design_report *r, stance_message *message)
 {
-    stance_error error = STANCE_OK;
-    for (int delay = 0; delay < 2 && error == STANCE_OK; delay++)
-        error = stance_critical_sample_time(r->states, r->inputs, r->A, r->B, r->K, delay,
-                                            DESIGN_LONGEST, &r->critical[delay]);
+    const stance_error error = margins(r);
     if (error != STANCE_OK)
         return refuse(message, "closed loop", error);
     return sublevel(r, message) && confirmed(r, message);

@@ -13,6 +13,8 @@ enum {
     DESIGN_STATES = 2 * STANCE_MAX_POSTURE,
     DESIGN_INPUTS = STANCE_MAX_ACTUATORS,
     DESIGN_BOUNDS = 2 * DESIGN_INPUTS + 3, /* each torque up and down, the cone twice, lift-off */
+    DESIGN_PLANT = DESIGN_STATES + DESIGN_INPUTS,                  /* with torques that lag */
+    DESIGN_LOOP = DESIGN_PLANT + STANCE_MAX_DELAY * DESIGN_INPUTS, /* and those under way */
 };
 
 #define DESIGN_LONGEST 10.0 /* s: up to where the critical sample time is searched */
@@ -58,11 +60,20 @@ struct design_report {
     double closed_re[DESIGN_STATES], closed_im[DESIGN_STATES];
     struct resolved_gains how;
     int delay, sampled; /* delay of the scenario; number of sampled eigenvalues, 0: continuous */
-    double sampled_re[DESIGN_STATES + DESIGN_INPUTS], sampled_im[DESIGN_STATES + DESIGN_INPUTS];
-    double radius;      /* largest of their moduli */
-    bool stable;        /* as the controller acts: sampled and late, or continuously */
-    double critical[2]; /* s, without and with a sample's delay; 0: the continuous loop is unstable,
-                         * INFINITY: none found */
+    double lag;         /* s, of the scenario's actuators */
+    double sampled_re[DESIGN_LOOP], sampled_im[DESIGN_LOOP];
+    double radius; /* largest of their moduli */
+    bool stable;   /* as the controller acts: sampled, late and with a lag, or continuously */
+    /* s, with that lag, without a delay and with the scenario's, or of one sample; 0: the
+     * continuous loop is unstable, INFINITY: none found. */
+    double critical[2];
+    /* Of a loop that is sampled and stable: up to how many samples late it is, of at most
+     * STANCE_MAX_DELAY; from which lag on it is not, INFINITY: none found; by how much the noise of
+     * the scenario makes states wander, rms at samples. */
+    int delay_margin;
+    double lag_margin;
+    bool noisy;
+    double wander[DESIGN_STATES];
     struct design_set set;
     struct design_capture capture;
 };
@@ -97,6 +108,9 @@ static inline double design_weight(const struct design_report *r, int i)
 {
     return r->scenario->base.state_weights[resolve_state(r->scenario->scene, &r->equilibrium, i)];
 }
+
+/* ", `verb`2 samples late", or nothing. Returns buffer. */
+const char *design_late(int delay, const char *verb, char buffer[64]);
 
 /* What a bound of the set is. */
 const char *design_bound_name(const struct design_report *r, int bound, char name[64]);

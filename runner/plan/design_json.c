@@ -92,12 +92,18 @@ static json_t *json_capture(const struct design_report *r)
 
 static json_t *json_sampled(const struct design_report *r)
 {
+    const bool margins = r->sampled && r->stable;
     if (!r->sampled)
         return json_null();
-    return json_pack("{s:f, s:i, s:o, s:f}", "sample_time", r->scenario->base.sample_time, "delay",
-                     r->delay, "eigenvalues",
+    return json_pack("{s:f, s:i, s:f, s:o, s:f, s:o, s:o, s:o}", "sample_time",
+                     r->scenario->base.sample_time, "delay", r->delay, "lag", r->lag, "eigenvalues",
                      json_complex(r->sampled, r->sampled_re, r->sampled_im), "spectral_radius",
-                     r->radius);
+                     r->radius, "critical_delay",
+                     margins && r->delay_margin < STANCE_MAX_DELAY
+                         ? json_integer(r->delay_margin + 1)
+                         : json_null(),
+                     "critical_lag", margins ? json_bounded(r->lag_margin) : json_null(), "wander",
+                     margins && r->noisy ? json_states(r, r->wander) : json_null());
 }
 
 /* What there is to say of a state-feedback law and its design. */
@@ -164,10 +170,12 @@ json_t *design_json(const struct design_report *r)
     for (int i = 0; i < r->inputs; i++)
         json_array_append_new(inputs, json_string(scene->actuator_name[i]));
     return json_pack(
-        "{s:s, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:i, s:i, s:o}, s:o}", "scenario",
-        r->scenario->file, "title", r->scenario->title, "scene", scene->name, "robot", robot,
-        "equilibrium", json_equilibrium(r), "states", states, "inputs", inputs, "A",
-        json_matrix(n, n, r->A), "B", json_matrix(n, r->inputs, r->B), "open_loop_eigenvalues",
-        json_complex(n, r->open_re, r->open_im), "kalman", "rank", r->rank, "states", n,
-        "singular_values", json_vector(n, r->singular), "controller", json_controller(r));
+        "{s:s, s:s, s:s, s:o, s:{s:f, s:f}, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:i, s:i, s:o}, s:o}",
+        "scenario", r->scenario->file, "title", r->scenario->title, "scene", scene->name, "robot",
+        robot, "ground", "slope", r->model[STANCE_ROBOT_SLOPE], "gravity",
+        r->model[STANCE_ROBOT_GRAVITY], "equilibrium", json_equilibrium(r), "states", states,
+        "inputs", inputs, "A", json_matrix(n, n, r->A), "B", json_matrix(n, r->inputs, r->B),
+        "open_loop_eigenvalues", json_complex(n, r->open_re, r->open_im), "kalman", "rank", r->rank,
+        "states", n, "singular_values", json_vector(n, r->singular), "controller",
+        json_controller(r));
 }

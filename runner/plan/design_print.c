@@ -97,6 +97,16 @@ static void print_complex(const char *label, int n, const double *re, const doub
     putchar('\n');
 }
 
+/* The ground's slope and gravity that the design believes in, where they are not the usual ones. */
+static void print_world(const struct design_report *r)
+{
+    const double slope = r->model[STANCE_ROBOT_SLOPE], gravity = r->model[STANCE_ROBOT_GRAVITY];
+    if (slope != 0)
+        printf("  %-8s %12.6f rad  of the ground, positive: +x is downhill\n", "slope", slope);
+    if (gravity != STANCE_GRAVITY)
+        printf("  %-8s %12.6f m/s^2, of the world\n", "gravity", gravity);
+}
+
 static void print_equilibrium(const struct design_report *r)
 {
     const stance_scene *scene = r->scenario->scene;
@@ -118,6 +128,7 @@ static void print_equilibrium(const struct design_report *r)
     if (e->supports)
         printf("  %-8s %12.6f N    normal force on %s, the robot's weight%s\n", "force", r->normal,
                supports, r->model[STANCE_ROBOT_SLOPE] == 0 ? "" : " across the slope");
+    print_world(r);
     if (r->remark.text[0])
         printf("  %s\n", r->remark.text);
 }
@@ -145,23 +156,56 @@ static void print_open_loop(const struct design_report *r)
         printf(" %.4g%s", r->singular[i], i + 1 < n ? "," : "\n");
 }
 
-static void print_critical(const struct design_report *r, int delay)
+static void print_critical(const char *what, double T)
 {
-    const double T = r->critical[delay];
-    const char *what = delay ? "..., a sample late" : "T*";
     if (isinf(T))
         printf("  %-18s above %g s\n", what, DESIGN_LONGEST);
     else
         printf("  %-18s %.6g s\n", what, T);
 }
 
+/* ", acting 2 samples late", or nothing. Returns buffer. */
+const char *design_late(int delay, const char *verb, char buffer[64])
+{
+    if (delay == 0)
+        buffer[0] = '\0';
+    else if (delay == 1)
+        snprintf(buffer, 64, ", %sa sample late", verb);
+    else
+        snprintf(buffer, 64, ", %s%d samples late", verb, delay);
+    return buffer;
+}
+
+/* How much worse actuators may be, and what noise does. */
+static void print_margins(const struct design_report *r)
+{
+    char state[SCENARIO_NAME];
+    if (r->delay_margin >= STANCE_MAX_DELAY)
+        printf("  %-18s above %d samples at this sample time\n", "critical delay",
+               STANCE_MAX_DELAY);
+    else
+        printf("  %-18s %d samples at this sample time\n", "critical delay", r->delay_margin + 1);
+    print_critical("critical lag", r->lag_margin);
+    if (!r->noisy)
+        return;
+    puts("  noise makes states wander by (rms, to first order, without limits)");
+    for (int i = 0; i < r->states; i++)
+        printf("    %-16s %.4g %s\n", design_state_name(r, i, state), r->wander[i],
+               state_unit(r, i));
+}
+
 /* The loop as it is sampled, and how slowly it may be. */
 static void print_sampled(const struct design_report *r)
 {
-    const double interval = r->scenario->base.sample_time;
+    const struct scenario_values *const values = &r->scenario->base;
+    char text[64], late[72];
     if (r->sampled) {
-        printf("\nSampled every %g s, torques held in between%s\n", interval,
-               r->delay ? ", acting one sample late" : "");
+        printf("\nSampled every %g s, torques held in between%s\n", values->sample_time,
+               design_late(r->delay, "acting ", text));
+        if (r->lag > 0)
+            printf("  %-18s %g s\n", "lag of actuators", r->lag);
+        if (isfinite(values->torque_rate))
+            puts("  the limit of the torques' rate has no part in linear theory");
         print_complex("eigenvalues z", r->sampled, r->sampled_re, r->sampled_im);
         printf("  %-16s %.6g: %s\n", "spectral radius", r->radius,
                r->stable ? "stable" : "NOT stable");
@@ -173,8 +217,11 @@ static void print_sampled(const struct design_report *r)
         return;
     }
     puts("  critical sample time of these gains: held longer, the torques no longer balance");
-    print_critical(r, 0);
-    print_critical(r, 1);
+    print_critical("T*", r->critical[0]);
+    snprintf(late, sizeof late, "...%s", design_late(r->delay > 1 ? r->delay : 1, "", text));
+    print_critical(late, r->critical[1]);
+    if (r->sampled && r->stable)
+        print_margins(r);
 }
 
 static void print_set(const struct design_report *r)

@@ -50,7 +50,7 @@ stance_error known_basin_bounds(const stance_scene *scene, const struct scenario
         a[(2 * m + 1) * n + j] = -loop[1] - values->friction * loop[0];
         a[(2 * m + 2) * n + j] = -loop[0];
     }
-    stance_torque_limits(scene, values->robot, values->torque_limit, limit);
+    stance_torque_limits(scene, values->robot, values->torque_limit, values->torque_limits, limit);
     for (int i = 0; i < m; i++) {
         d[2 * i] = limit[i] - equilibrium->torque[i];
         d[2 * i + 1] = limit[i] + equilibrium->torque[i];

@@ -176,7 +176,10 @@ static void body(struct model *o, int b)
 static void actuators(struct model *o)
 {
     for (int a = 0; a < o->m->actuators; a++) {
-        const double limit = fmin(o->number.limit[a], o->c->torque_limit);
+        const double limit =
+            fmin(o->number.limit[a],
+                 fmin(o->c->torque_limit,
+                      o->c->torque_limits[a] > 0 ? o->c->torque_limits[a] : INFINITY));
         fprintf(line(o), "<motor name='%s' joint='%s' gear='1'", o->scene->actuator_name[a],
                 o->scene->coordinate[o->scene->actuated[a]].name);
         if (isfinite(limit)) {

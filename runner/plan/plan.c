@@ -3,6 +3,7 @@
 #include "instruction_set.h"
 #include "known_basin.h"
 
+#include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/numbers.h"
 #include "runner/base/units.h"
@@ -98,6 +99,15 @@ static bool methods_run(struct plan *plan, struct plan_error *error)
         }
     }
     return plan->methods_swept || method_runs(s, s->base.method, error);
+}
+
+int plan_error_print(const struct scenario *s, const struct plan_error *error)
+{
+    if (error->line > 0)
+        fprintf(stderr, "%s:%d:%d: %s\n", s->file, error->line, error->column, error->message.text);
+    else
+        fprintf(stderr, "%s: %s\n", s->file, error->message.text);
+    return EXIT_USAGE;
 }
 
 bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,

@@ -47,6 +47,9 @@ struct plan_error {
     int line, column; /* 0: nowhere in particular */
 };
 
+/* One line on standard error. Returns EXIT_USAGE. */
+int plan_error_print(const struct scenario *s, const struct plan_error *error);
+
 /* The whole scenario, or (single) one case of it, with its trajectory if `trace`. Sets everything
  * but the designs. false: no memory, or a method without a kernel for this scene. */
 bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,

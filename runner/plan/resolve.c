@@ -458,7 +458,8 @@ static bool set_laws(const stance_scene *scene, const struct scenario_values *va
 
 static bool check_law(const stance_scene *scene, const stance_case *out, stance_message *message)
 {
-    bool finite = isfinite(out->noise);
+    bool finite = isfinite(out->noise) && isfinite(out->angle_noise) && isfinite(out->rate_noise) &&
+                  isfinite(out->lag) && isfinite(out->torque_rate);
     for (int i = 0; i < scene->actuators; i++) {
         finite = finite && isfinite(out->near.feedforward[i]);
         for (int j = 0; j < 2 * scene->postures; j++)
@@ -467,15 +468,31 @@ static bool check_law(const stance_scene *scene, const stance_case *out, stance_
     for (int k = 0; k < scene->postures; k++)
         finite = finite && isfinite(out->near.target[k]);
     if (!finite)
-        return complain(message, "a gain, a target or the noise of the controller is not finite");
+        return complain(message,
+                        "a gain, a target, the noise or a lag of the controller is not finite");
     if (!(out->torque_limit > 0))
         return complain(message, "controller.torque_limit must be positive");
-    if (out->noise != 0 && out->sample_every == 0)
-        return complain(message, "controller.noise needs a controller.sample_time above 0");
-    if (out->switches && out->sample_every == 0)
-        return complain(message, "controller.far needs a controller.sample_time above 0");
-    if (out->delay != 0 && out->sample_every == 0)
-        return complain(message, "controller.delay needs a controller.sample_time above 0");
+    const struct {
+        const char *path;
+        bool on;
+    } sampled[] = {
+        {"controller.noise", out->noise != 0},
+        {"controller.angle_noise", out->angle_noise != 0},
+        {"controller.rate_noise", out->rate_noise != 0},
+        {"controller.far", out->switches},
+        {"controller.delay", out->delay != 0},
+        {"controller.lag", out->lag != 0},
+        {"controller.torque_rate", out->torque_rate != 0},
+    };
+    for (size_t k = 0; k < sizeof sampled / sizeof *sampled; k++)
+        if (sampled[k].on && out->sample_every == 0)
+            return complain(message, "%s needs a controller.sample_time above 0", sampled[k].path);
+    if (!(out->delay >= 0 && out->delay <= STANCE_MAX_DELAY && out->lag >= 0 &&
+          out->torque_rate >= 0))
+        return complain(message,
+                        "controller.delay must be 0 to %d samples, controller.lag not negative, "
+                        "controller.torque_rate positive",
+                        STANCE_MAX_DELAY);
     return true;
 }
 
@@ -548,8 +565,12 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .lands_ahead = values->lands != 0,
         .contacts = (uint32_t)values->contacts,
         .torque_limit = values->torque_limit,
+        .angle_noise = values->angle_noise,
+        .rate_noise = values->rate_noise,
         .noise = values->noise,
         .delay = values->law == 0 ? 0 : values->delay,
+        .lag = values->law == 0 ? 0 : values->lag,
+        .torque_rate = values->law == 0 || isinf(values->torque_rate) ? 0 : values->torque_rate,
         .settle = values->settle != 0,
         .settle_angle = values->settle_angle,
         .settle_rate = values->settle_rate,
@@ -559,6 +580,8 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .grid_index = index,
     };
     memcpy(out->robot, values->robot, sizeof out->robot);
+    for (int i = 0; i < scene->actuators; i++)
+        out->torque_limits[i] = isinf(values->torque_limits[i]) ? 0 : values->torque_limits[i];
     if (scene->mechanism) {
         stance_tree_numbers_make(scene->tree, scene->mechanism, out->robot, &out->body);
         out->tree = scene->tree;

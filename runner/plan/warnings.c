@@ -2,6 +2,9 @@
 #include "warnings.h"
 
 #include "design.h"
+#include "instruction_set.h"
+
+#include "runner/base/units.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -10,6 +13,8 @@
 #include <string.h>
 
 enum { TRIED = 64 }; /* cases, evenly spread */
+#define MUCH 0.005   /* of the range: that far the equilibrium may be from the nearest start */
+static const double moment = 0.5; /* s */
 
 enum trouble { UNSTABLE, WEAK, SLIPPERY, TROUBLES };
 
@@ -32,7 +37,8 @@ static void look_at_torques(const struct design_report *r, uint64_t index, struc
 {
     const stance_scene *const scene = r->scenario->scene;
     double limit[STANCE_MAX_ACTUATORS];
-    stance_torque_limits(scene, r->scenario->base.robot, r->scenario->base.torque_limit, limit);
+    stance_torque_limits(scene, r->scenario->base.robot, r->scenario->base.torque_limit,
+                         r->scenario->base.torque_limits, limit);
     for (int i = 0; i < scene->actuators; i++) {
         const double needed = fabs(r->equilibrium.torque[i]);
         if (needed > limit[i] && first_of(t, WEAK, index))
@@ -76,14 +82,17 @@ static void look_at(const struct scenario *s, uint64_t index, struct troubles *t
     struct scenario *const at = malloc(sizeof *at);
     struct design_report *const r = malloc(sizeof *r);
     stance_message message = {""};
+    char late[64];
     if (at && r) {
         *at = *s;
         scenario_case_values(s, index, &at->base);
         if (scenario_law(&at->base)->designed && design_loop(r, at, &message)) {
             if (!r->stable && first_of(t, UNSTABLE, index) && r->sampled > 0)
-                snprintf(t->what[UNSTABLE], sizeof t->what[UNSTABLE],
-                         "the loop is unstable: spectral radius %.3g at a sample time of %.3g s%s",
-                         r->radius, at->base.sample_time, r->delay ? ", a sample late" : "");
+                snprintf(
+                    t->what[UNSTABLE], sizeof t->what[UNSTABLE],
+                    "the loop is unstable: spectral radius %.3g at a sample time of %.3g s%s%s",
+                    r->radius, at->base.sample_time, design_late(r->delay, "", late),
+                    r->lag > 0 ? ", with the lag of its actuators" : "");
             else if (!r->stable && !t->what[UNSTABLE][0])
                 snprintf(t->what[UNSTABLE], sizeof t->what[UNSTABLE],
                          "the loop is unstable: an eigenvalue is not on the left");
@@ -96,7 +105,7 @@ static void look_at(const struct scenario *s, uint64_t index, struct troubles *t
 }
 
 /* Initial angles of the first and the last case that are more than a turn. */
-static void look_at_angles(const struct plan *plan, const char *who, FILE *out)
+static bool look_at_angles(const struct plan *plan, const char *who, FILE *out)
 {
     const stance_scene *const scene = plan->scenario->scene;
     stance_case *const c = malloc(sizeof *c);
@@ -115,9 +124,73 @@ static void look_at_angles(const struct plan *plan, const char *who, FILE *out)
         }
     }
     free(c);
+    return said;
 }
 
-void warnings_print(const struct plan *plan, const char *who, FILE *out)
+/* Of a sample of parameters shares are wanted, to which the equilibrium is a start as any other. */
+static bool is_map(const struct scenario *s)
+{
+    for (int a = 0; a < s->axes; a++)
+        for (int k = 0; k < s->axis[a].paths && s->axis[a].sample; k++)
+            if (!scenario_is_start(s->axis[a].path[k]))
+                return false;
+    return true;
+}
+
+/* How far, in cells, 0 lies from the nearest of so many points of an axis. */
+static double missed(const struct scenario_axis *axis, size_t count)
+{
+    const double place = -axis->from / (axis->to - axis->from) * (double)(count - 1);
+    return fabs(place - round(place));
+}
+
+/* Axes of offsets from below 0 to above it none of whose points is there. */
+static void look_at_counts(const struct scenario *s, const char *who, FILE *out)
+{
+    for (int a = 0; a < s->axes && is_map(s); a++) {
+        const struct scenario_axis *axis = &s->axis[a];
+        size_t better = axis->count;
+        if (axis->count < 2 || axis->from * axis->to >= 0 ||
+            strncmp(axis->path[0], "initial.offset.", 15) != 0 ||
+            !scenario_is_start(axis->path[0]) ||
+            missed(axis, axis->count) <= MUCH * (double)(axis->count - 1))
+            continue;
+        while (missed(axis, better) > 1e-6 && better < 2 * axis->count)
+            better++;
+        fprintf(out, "%s: warning: the %zu points of %s leave out the equilibrium, at 0; write ",
+                who, axis->count, axis->path[0]);
+        if (better < 2 * axis->count)
+            fprintf(out, "count: %zu\n", better);
+        else
+            fprintf(out, "whole multiples of a step as from and to\n");
+    }
+}
+
+/* Axes along whose line several paths move, which is beside the equilibrium. */
+static void look_at_lines(const struct scenario *s, const char *who, FILE *out)
+{
+    for (int a = 0; a < s->axes; a++) {
+        const struct scenario_axis *axis = &s->axis[a];
+        const size_t last = axis->count - 1;
+        if (axis->sample || axis->from * axis->to >= 0 ||
+            strncmp(axis->path[0], "initial.offset.", 15) != 0)
+            continue;
+        for (int k = 1; k < axis->paths; k++) {
+            const double from = scenario_axis_value(axis, 0, k),
+                         to = scenario_axis_value(axis, last, k),
+                         at = from - axis->from / (axis->to - axis->from) * (to - from);
+            if (!scenario_is_start(axis->path[k]) || fabs(at) <= 1e-6 * fabs(to - from))
+                continue;
+            fprintf(out,
+                    "%s: warning: the line of %s misses the equilibrium: it has %s = %.3g where "
+                    "that is 0, and distances begin there\n",
+                    who, axis->path[0], axis->path[k], at);
+            break;
+        }
+    }
+}
+
+bool warnings_print(const struct plan *plan, const char *who, FILE *out)
 {
     const uint64_t tried = plan->rows < TRIED ? plan->rows : TRIED;
     struct troubles t = {{0}, {0}, {""}};
@@ -128,14 +201,105 @@ void warnings_print(const struct plan *plan, const char *who, FILE *out)
         if (plan->design_status[plan_design(plan, index)] == STANCE_DONE)
             look_at(plan->scenario, index, &t);
     }
+    bool any = false;
     for (int k = 0; k < TROUBLES; k++) {
         if (t.count[k] == 0)
             continue;
+        any = true;
         fprintf(out, "%s: warning: %s", who, t.what[k]);
         if (tried > 1 && t.count[k] < tried)
             fprintf(out, " (case %" PRIu64 "; so it is in %zu of %" PRIu64 " cases%s)", t.first[k],
                     t.count[k], tried, tried < plan->rows ? ", evenly spread" : "");
         fputc('\n', out);
     }
-    look_at_angles(plan, who, out);
+    if (!plan->single) {
+        look_at_counts(plan->scenario, who, out);
+        look_at_lines(plan->scenario, who, out);
+    }
+    return look_at_angles(plan, who, out) || any;
+}
+
+/* ---- ranges ------------------------------------------------------------------------------- */
+
+static bool moves_starts(const struct scenario *s)
+{
+    for (int a = 0; a < s->axes; a++)
+        for (int k = 0; k < s->axis[a].paths; k++)
+            if (scenario_is_start(s->axis[a].path[k]))
+                return true;
+    return false;
+}
+
+void warnings_of_ends(const struct scenario *s, const uint64_t *outcome, uint64_t cases, bool tried,
+                      const char *who, FILE *out)
+{
+    const bool held = cases > 0 && outcome[STANCE_STABILISED] == cases && moves_starts(s),
+               lost = cases > 1 && outcome[STANCE_FELL] == cases && s->base.settle &&
+                      scenario_law(&s->base)->designed;
+    char all[80];
+    snprintf(all, sizeof all, tried ? "%" PRIu64 " of %" PRIu64 " cases tried: all" : "all cases",
+             cases, s->cases);
+    if (held)
+        fprintf(out,
+                "%s: warning: %s are stabilised: the ranges end within the domain; stance ranges "
+                "%.300s finds how far it goes\n",
+                who, all, s->file);
+    else if (lost)
+        fprintf(out,
+                "%s: warning: %s fell: the ranges do not meet a domain; stance ranges %.300s finds "
+                "where one is\n",
+                who, all, s->file);
+}
+
+/* The point of an axis nearest to the equilibrium; of others than ranges of offsets the middle. */
+static size_t middle_point(const struct scenario_axis *axis)
+{
+    const double last = (double)(axis->count - 1);
+    if (axis->value || strncmp(axis->path[0], "initial.offset.", 15) != 0)
+        return axis->count / 2;
+    return (size_t)fmin(last, fmax(0, round(-axis->from / (axis->to - axis->from) * last)));
+}
+
+/* Case k of the lattice {middle, first, last} of all axes, and how many cases it has. */
+static uint64_t lattice_case(const struct scenario *s, uint64_t k, uint64_t *cases)
+{
+    uint64_t index = 0, stride = 1;
+    *cases = 1;
+    for (int a = s->axes - 1; a >= 0; a--) {
+        const uint64_t count = s->axis[a].count, here = count < 3 ? count : 3;
+        const uint64_t place[] = {here < 3 ? 0 : middle_point(&s->axis[a]), count - 1, 0};
+        index += stride * place[k % here];
+        k /= here;
+        stride *= count;
+        *cases *= *cases < WARNINGS_TRIED ? here : 1;
+    }
+    return index;
+}
+
+void warnings_try(const struct plan *plan, const char *who, FILE *out)
+{
+    const struct scenario *s = plan->scenario;
+    const double begin = clock_seconds();
+    stance_case *c = calloc(1, sizeof *c);
+    stance_result result;
+    uint64_t outcome[STANCE_OUTCOME_COUNT] = {0}, count, ended = 0;
+    lattice_case(s, 0, &count);
+    bool whole = c && s->axes > 0;
+    for (uint64_t k = 0; k < count && whole; k++) {
+        int method;
+        uint64_t all;
+        if (!plan_resolve(plan, lattice_case(s, k, &all), c, &method))
+            continue;
+        const stance_kernel *kernel = instruction_set_kernel(s->scene, stance_methods()[method]);
+        whole = kernel && clock_seconds() - begin < moment;
+        if (!whole)
+            break;
+        kernel->run(c, &result, 1);
+        ended++;
+        if (result.status == STANCE_DONE)
+            outcome[result.outcome]++;
+    }
+    if (whole)
+        warnings_of_ends(s, outcome, ended, ended < s->cases, who, out);
+    free(c);
 }

@@ -11,15 +11,6 @@
 
 extern const struct command command_check; /* below */
 
-static int print_error(const struct scenario *s, const struct plan_error *error)
-{
-    if (error->line > 0)
-        fprintf(stderr, "%s:%d:%d: %s\n", s->file, error->line, error->column, error->message.text);
-    else
-        fprintf(stderr, "%s: %s\n", s->file, error->message.text);
-    return EXIT_USAGE;
-}
-
 static int check(const struct scenario *s, bool json)
 {
     struct parallel alone = parallel_alone();
@@ -29,14 +20,15 @@ static int check(const struct scenario *s, bool json)
     int code = EXIT_DONE;
 
     if (!plan_make(&plan, s, false, 0, false, &error))
-        return print_error(s, &error);
+        return plan_error_print(s, &error);
     plan.patience = PLAN_PATIENCE_DESIGNS;
     if (plan_compute_designs(&plan, &alone, &error) && plan_check_cases(&plan, &error)) {
         snprintf(file, sizeof file, "results/%s.h5", s->name);
         report_plan(&plan, 1, file, json, stdout);
-        warnings_print(&plan, "stance check", stderr);
+        if (!warnings_print(&plan, "stance check", stderr))
+            warnings_try(&plan, "stance check", stderr);
     } else {
-        code = print_error(s, &error);
+        code = plan_error_print(s, &error);
     }
     plan_free(&plan);
     return code;

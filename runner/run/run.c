@@ -383,7 +383,7 @@ static void stage_designs(struct run *run)
     else if (run->options.dry_run && run->parallel.rank == 0)
         report_plan(&run->plan, run->parallel.size, run->file, false, stdout);
     if (good && run->parallel.rank == 0)
-        warnings_print(&run->plan, "stance run", stderr);
+        run->warned = warnings_print(&run->plan, "stance run", stderr);
 }
 
 /* Of a scene that is described, compiled for it. */

@@ -36,6 +36,7 @@ struct run {
     struct scenario *scenario;
     char file[1024];
     bool resume, replace;       /* the file exists and is gone on with, or replaced */
+    bool warned;                /* something was wrong with the designs; on rank 0 */
     bool succeed;               /* ... gone on with by this scenario, which is not its own */
     struct store_origin origin; /* of a file that is gone on with; on rank 0 */
     struct lock lock;

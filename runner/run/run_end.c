@@ -4,6 +4,7 @@
 #include "runner/base/command.h"
 #include "runner/base/numbers.h"
 #include "runner/base/units.h"
+#include "runner/plan/warnings.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -132,6 +133,9 @@ int run_conclude(struct run *run)
                     " case%s failed; the variable `failure` in %s says why\n",
                     sums.failed, sums.failed == 1 ? "" : "s", run->file);
         }
+        if (complete && !run->warned && !run->plan.single)
+            warnings_of_ends(run->scenario, sums.outcome, sums.finished, false, "stance run",
+                             stderr);
     }
     return !complete ? EXIT_INTERRUPTED : sums.failed > 0 ? EXIT_CASES_FAILED : EXIT_DONE;
 }

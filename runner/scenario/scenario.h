@@ -72,9 +72,10 @@ struct scenario_values {
     int far;                      /* what acts far from the target, see scenario_far; 0: none */
     double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
     double sample_time;           /* 0: continuous */
-    int delay;                    /* whole samples between measuring and acting, 0 or 1 */
-    double torque_limit;          /* INFINITY: none */
-    double noise;
+    int delay;                    /* whole samples between measuring and acting */
+    double torque_limit, torque_limits[STANCE_MAX_ACTUATORS], torque_rate; /* INFINITY: none */
+    double lag;                                                            /* of the actuators */
+    double angle_noise, rate_noise, noise;
 
     int method;             /* index into stance_methods() */
     double step, tolerance; /* tolerance: NAN: the method's own */
@@ -205,6 +206,9 @@ void scenario_case_keys(const struct scenario *s, uint64_t index, uint64_t *grid
 
 /* Fields of case `index` (flat, row-major in the order of the axes): base, then the axes. */
 void scenario_case_values(const struct scenario *s, uint64_t index, struct scenario_values *values);
+
+/* Whether a path is a coordinate of the start: initial.offset.* but its scale, initial.state.*. */
+bool scenario_is_start(const char *path);
 
 /* Whether two scenarios have the same scene, but for the numbers of a mechanism. */
 bool scenario_same_scene(const struct scenario *a, const struct scenario *b);

@@ -390,27 +390,46 @@ static struct mark where(struct reader *r, const char *path)
     return seen->swept ? seen->sweep : seen->node ? seen->key : r->tree.root->mark;
 }
 
+/* Is a number of the controller other than without an effect (zero, or no limit) in some case? */
+static bool is_on(struct reader *r, const char *path)
+{
+    const struct scenario_field *const field = schema_find(&r->schema, path);
+    double least, largest;
+    int whole, k;
+    if (!field) /* a scene without actuators */
+        return false;
+    scenario_extent(r->s, field->offset, &least, &largest);
+    if (field->type == FIELD_INTEGER && !scenario_axis_of(r->s, field->offset, &k)) {
+        memcpy(&whole, (const char *)&r->s->base + field->offset, sizeof whole);
+        least = largest = whole;
+    }
+    return isfinite(field->fallback) ? largest > field->fallback : least < field->fallback;
+}
+
 /* What has a meaning only where the controller samples. */
 static void check_sampling(struct reader *r, const struct situation *is)
 {
-    double quiet, loud, shortest, longest;
+    double shortest, longest;
     const struct seen *time = reader_seen(r, "controller.sample_time");
+    static const char every[] = "it is new at each sample", acts[] = "it acts on what is sampled";
+    static const struct {
+        const char *path, *because;
+    } sampled[] = {
+        {"controller.noise", every},      {"controller.angle_noise", every},
+        {"controller.rate_noise", every}, {"controller.delay", "it counts samples"},
+        {"controller.lag", acts},         {"controller.torque_rate", acts},
+    };
 
     if (!is->law_known || is->law == stance_laws()[0] || r->axes_bad || time->bad || time->excused)
         return;
     scenario_extent(r->s, offsetof(struct scenario_values, sample_time), &shortest, &longest);
     if (shortest > 0)
         return;
-    scenario_extent(r->s, offsetof(struct scenario_values, noise), &quiet, &loud);
-    if (loud > 0 && !reader_seen(r, "controller.noise")->bad) {
-        problem_add(&r->problems, where(r, "controller.noise"),
-                    "controller.noise needs controller.sample_time > 0: it is new at each sample");
-    }
-    if (takes_word(r, offsetof(struct scenario_values, delay), 1) &&
-        !reader_seen(r, "controller.delay")->bad) {
-        problem_add(&r->problems, where(r, "controller.delay"),
-                    "controller.delay needs controller.sample_time > 0: it counts samples");
-    }
+    for (size_t k = 0; k < sizeof sampled / sizeof *sampled; k++)
+        if (is_on(r, sampled[k].path) && !reader_seen(r, sampled[k].path)->bad)
+            problem_add(&r->problems, where(r, sampled[k].path),
+                        "%s needs controller.sample_time > 0: %s", sampled[k].path,
+                        sampled[k].because);
     if (samples_in_design(r, is) && !reader_seen(r, "controller.design_time")->bad) {
         problem_add(&r->problems, where(r, "controller.design_time"),
                     "controller.design_time sampled needs controller.sample_time > 0");
@@ -500,12 +519,14 @@ static void check_capture(struct reader *r, const struct situation *is)
                     "stop.capture estimated has no meaning with stop.settle off: runs last their "
                     "whole time");
     }
-    if (!r->axes_bad && !reader_seen(r, "controller.delay")->bad &&
-        takes_word(r, offsetof(struct scenario_values, delay), 1)) {
-        problem_add(&r->problems, where(r, "controller.delay"),
-                    "controller.delay 1 has no meaning with stop.capture estimated: the torques "
-                    "under way belong to the state");
-    }
+    static const char *const late[] = {"controller.delay", "controller.lag",
+                                       "controller.torque_rate"};
+    for (size_t k = 0; k < sizeof late / sizeof *late && !r->axes_bad; k++)
+        if (!reader_seen(r, late[k])->bad && is_on(r, late[k]))
+            problem_add(&r->problems, where(r, late[k]),
+                        "%s has no meaning with stop.capture estimated: the torques under way "
+                        "belong to the state",
+                        late[k]);
     for (int a = 0; a < r->s->axes; a++) {
         struct scenario_axis *axis = &r->s->axis[a];
         for (int k = 0; k < axis->paths; k++)

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MOST_CASES 0x1p53   /* exact as a double, and within what HDF5 can address */
-#define MOST_LOG_POINTS 1e7 /* these are computed beforehand */
+#define MOST_CASES 0x1p53    /* exact as a double, and within what HDF5 can address */
+#define MOST_KEPT_POINTS 1e7 /* that are computed beforehand */
 
 const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME])
 {
@@ -242,68 +242,79 @@ bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log)
     return good;
 }
 
-static bool compute_log_points(struct axis_reader *a, struct mark mark)
+/* The points of a range that is logarithmic, or along which several paths move: from[paths] to
+ * to[paths]. */
+static bool compute_points(struct axis_reader *a, const double *from, const double *to)
 {
     struct scenario_axis *axis = a->axis;
-    if (axis->from <= 0 || axis->to <= 0) {
-        return problem_add(&a->r->problems, mark, "%s: spacing log needs from and to above 0",
-                           a->name);
+    const size_t paths = (size_t)axis->paths;
+    for (size_t k = 0; k < paths && axis->log; k++)
+        if (from[k] <= 0 || to[k] <= 0)
+            return problem_add(&a->r->problems, tree_find(a->node, "spacing")->mark,
+                               "%s: spacing log needs from and to above 0", a->name);
+    if ((double)axis->count * (double)paths > MOST_KEPT_POINTS) {
+        return problem_add(&a->r->problems,
+                           axis->log ? tree_find(a->node, "spacing")->mark : a->node->mark,
+                           "%s: %s has at most %.0f points", a->name,
+                           paths > 1 ? "a range of several paths" : "spacing log",
+                           MOST_KEPT_POINTS / (double)paths);
     }
-    if ((double)axis->count > MOST_LOG_POINTS) {
-        return problem_add(&a->r->problems, mark, "%s: spacing log has at most %.0f points",
-                           a->name, MOST_LOG_POINTS);
-    }
-    axis->value = malloc(axis->count * sizeof *axis->value);
+    axis->value = malloc(axis->count * paths * sizeof *axis->value);
     if (!axis->value)
         return problem_no_memory(&a->r->problems);
     for (size_t i = 0; i < axis->count; i++) {
-        axis->value[i] =
-            i == 0 ? axis->from
-                   : axis->from * pow(axis->to / axis->from, (double)i / (double)(axis->count - 1));
+        const double part = axis->count > 1 ? (double)i / (double)(axis->count - 1) : 0;
+        for (size_t k = 0; k < paths; k++)
+            axis->value[i * paths + k] = i == 0                 ? from[k]
+                                         : i + 1 == axis->count ? to[k]
+                                         : axis->log ? from[k] * pow(to[k] / from[k], part)
+                                                     : from[k] + part * (to[k] - from[k]);
     }
-    if (axis->count > 1)
-        axis->value[axis->count - 1] = axis->to;
     return true;
 }
 
-/* What `from`, `to` and `count` must be to each other. */
-static bool check_range(struct axis_reader *a, bool has_to)
+/* What `from`, `to` and `count` must be to each other, of path k. */
+static bool check_range(struct axis_reader *a, int k, double from, double to)
 {
-    struct scenario_axis *axis = a->axis;
+    const size_t count = a->axis->count;
     const char *wrong = NULL;
 
-    if (axis->count > 1 && !has_to)
+    if (count > 1 && !tree_find(a->node, "to"))
         wrong = "to is missing";
-    else if (axis->count > 1 && axis->from == axis->to)
-        wrong = "from and to are equal: use count 1";
-    else if (axis->count == 1 && axis->from != axis->to)
+    else if (count > 1 && k == 0 && from == to)
+        wrong = a->axis->paths > 1 ? "from and to are equal in the first path, whose values name "
+                                     "the points"
+                                   : "from and to are equal: use count 1";
+    else if (count == 1 && from != to)
         wrong = "count 1 leaves no room for to";
-    else if (axis->integer[0] && axis->count > 1 &&
-             fmod(axis->to - axis->from, (double)(axis->count - 1)) != 0)
+    else if (a->axis->integer[k] && count > 1 && fmod(to - from, (double)(count - 1)) != 0)
         wrong = "this count leads to values that are not whole numbers";
     if (wrong)
         axis_complain(a, wrong);
     return !wrong;
 }
 
-static bool read_range(struct axis_reader *a)
+static bool read_range(struct axis_reader *a, bool rows)
 {
     struct scenario_axis *axis = a->axis;
     const struct tree_node *from = tree_find(a->node, "from"), *to = tree_find(a->node, "to"),
                            *count = tree_find(a->node, "count");
+    double first[SCENARIO_MAX_PATHS] = {0}, last[SCENARIO_MAX_PATHS] = {0};
     char text[160];
     double number = 0;
 
-    if (axis->enumeration[0]) {
-        snprintf(text, sizeof text, "%s takes words: list them as values", axis->path[0]);
-        return axis_complain(a, text);
+    for (int k = 0; k < axis->paths; k++) {
+        if (axis->enumeration[k]) {
+            snprintf(text, sizeof text, "%s takes words: list them as values", axis->path[k]);
+            return axis_complain(a, text);
+        }
     }
     if (!from)
         return axis_complain(a, count || to ? "from is missing"
                                             : "give from, to and count, or values");
-    bool good = read_one(a, "from", from, 0, &axis->from);
-    axis->to = axis->from;
-    good = (!to || read_one(a, "to", to, 0, &axis->to)) && good;
+    bool good = axis_read_row(a, "from", from, 0, rows, first);
+    memcpy(last, first, sizeof last);
+    good = (!to || axis_read_row(a, "to", to, 0, rows, last)) && good;
     if (!count)
         return axis_complain(a, "count is missing");
     snprintf(text, sizeof text, "%s.count", a->name);
@@ -314,8 +325,12 @@ static bool read_range(struct axis_reader *a)
     if (!good)
         return false;
     axis->count = (size_t)number;
-    return check_range(a, to != NULL) &&
-           (!axis->log || compute_log_points(a, tree_find(a->node, "spacing")->mark));
+    axis->from = first[0];
+    axis->to = last[0];
+    for (int k = 0; k < axis->paths; k++)
+        if (!check_range(a, k, first[k], last[k]))
+            return false;
+    return (!axis->log && axis->paths == 1) || compute_points(a, first, last);
 }
 
 /* ---- axes ------------------------------------------------------------------------------------ */
@@ -344,7 +359,6 @@ bool axis_begin(struct axis_reader *a, const char *path, const char *wanted)
 static bool read_axis(struct axis_reader *a)
 {
     struct scenario_axis *axis = a->axis;
-    const struct tree_node *paths, *values;
 
     axis->line = a->node->mark.line;
     axis->column = a->node->mark.column;
@@ -352,11 +366,14 @@ static bool read_axis(struct axis_reader *a)
         return false;
     snprintf(axis->name, sizeof axis->name, "%s", axis->path[0]);
     axis_describe(a, 0, axis->unit, axis->text);
-    paths = tree_find(a->node, "paths");
-    values = tree_find(a->node, "values");
-    if (paths && !values)
-        return axis_complain(a, "paths needs values, a list for each point");
-    return axis_check_alone(a) && (values ? read_values(a, values, paths != NULL) : read_range(a));
+    for (int k = 1; k < axis->paths; k++) {
+        const size_t used = strlen(axis->text);
+        snprintf(axis->text + used, sizeof axis->text - used, "%s %s", k > 1 ? "," : "; with",
+                 axis->path[k]);
+    }
+    const bool rows = tree_find(a->node, "paths") != NULL;
+    const struct tree_node *values = tree_find(a->node, "values");
+    return axis_check_alone(a) && (values ? read_values(a, values, rows) : read_range(a, rows));
 }
 
 void sweep_read(struct reader *r, const struct tree_node *grid)
@@ -472,6 +489,13 @@ double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k)
     if (i + 1 == axis->count)
         return axis->to;
     return axis->from + (double)i * (axis->to - axis->from) / (double)(axis->count - 1);
+}
+
+bool scenario_is_start(const char *path)
+{
+    return (strncmp(path, "initial.offset.", 15) == 0 ||
+            strncmp(path, "initial.state.", 14) == 0) &&
+           strcmp(path, "initial.offset.scale") != 0;
 }
 
 const struct scenario_axis *scenario_axis_of(const struct scenario *s, size_t offset, int *k)

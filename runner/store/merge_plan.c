@@ -578,10 +578,13 @@ static bool open_parts(struct merge *m, const char *const *files, size_t count,
  * probes. */
 static bool has_random_numbers(const struct scenario *s)
 {
-    bool noise = s->base.noise > 0 || s->base.capture || (s->refine.given && s->refine.probes > 0);
+    bool noise = s->base.noise > 0 || s->base.angle_noise > 0 || s->base.rate_noise > 0 ||
+                 s->base.capture || (s->refine.given && s->refine.probes > 0);
     for (int a = 0; a < s->axes; a++)
         for (int k = 0; k < s->axis[a].paths; k++)
-            noise = noise || strcmp(s->axis[a].path[k], "controller.noise") == 0;
+            noise = noise || strcmp(s->axis[a].path[k], "controller.noise") == 0 ||
+                    strcmp(s->axis[a].path[k], "controller.angle_noise") == 0 ||
+                    strcmp(s->axis[a].path[k], "controller.rate_noise") == 0;
     return noise;
 }
 

@@ -502,7 +502,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     const contact_set points = touching;
     if (rule->indefinite) {
         unsure = any;
-    } else if (points && (points & (points - 1)) == 0) {
+    } else if (points && (points & (points - 1)) == 0 && !mask_any(many)) { /* no stop */
         EACH (c, 0, SCENE_CONTACTS) {
             if (!(touching >> c & 1) || !contact_is_point(c))
                 continue;
@@ -512,7 +512,6 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
             EACH (a, 0, 2)
                 r[c][a] = choose(one, alone[a], none);
         }
-        unsure |= many; /* a stop */
     } else {
         if (mask_any(one)) {
             lanes D1[2][2], uf1[2], sliding1 = none, alone[2];

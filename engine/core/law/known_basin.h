@@ -26,7 +26,7 @@ struct known_basin {
 static bool known_basin_applies(const stance_case *c)
 {
     return c->basin_known && c->settle && c->has_target && c->supports && c->delay == 0 &&
-           !c->decouples && !c->switches && SCENE_POSTURE > 0;
+           c->lag == 0 && c->torque_rate == 0 && !c->decouples && !c->switches && SCENE_POSTURE > 0;
 }
 
 /* Where a state of the kernel stands among the case's; -1: it is none of them. */

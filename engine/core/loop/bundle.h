@@ -4,6 +4,7 @@
 #ifndef STANCE_CORE_LOOP_BUNDLE_H
 #define STANCE_CORE_LOOP_BUNDLE_H
 
+#include "actuator.h"
 #include "engine/core/law/known_basin.h"
 #include "engine/core/mode/between_events.h"
 
@@ -47,18 +48,18 @@ struct bundle {
     mask live;                                /* lanes that are not idle */
     int filled;                               /* how many */
     int recorded, capturing, unusual, choosy; /* of these: see bundle_count */
-    double target_key[sizeof(struct setting) / sizeof(lanes) + 6 + CONTACTS]; /* see rest_target */
+    double target_key[sizeof(struct setting) / sizeof(lanes) + 8 + CONTACTS]; /* see rest_target */
     bool target_known, target_holds;
     /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
     _Alignas(sizeof(lanes)) const stance_case *which[LANES]; /* NULL: idle */
     stance_result *result[LANES];
     struct setting set;
     struct motion now;
-    lanes torque[ACTUATORS];  /* in force */
-    lanes pending[ACTUATORS]; /* computed at the last sample, in force from the next one on ... */
-    lanes delayed;            /* ... where this is 1 */
-    lanes h, n, steps;        /* step length, steps done, steps wanted */
-    lanes most_work;          /* evaluations, see BUNDLE_WORK */
+    lanes torque[ACTUATORS]; /* in force */
+    lanes delay;             /* samples until a command is in force */
+    lanes lags;              /* 1: actuators come up to what is commanded, see actuator.h */
+    lanes h, n, steps;       /* step length, steps done, steps wanted */
+    lanes most_work;         /* evaluations, see BUNDLE_WORK */
     lanes sample_every, next_sample;
     lanes next_record; /* step of the next row of the trajectory; INFINITY: none */
     int64_t row[LANES];
@@ -84,6 +85,8 @@ struct bundle {
     lanes energy_bound; /* J, initial energy and the work since */
     lanes failure;
     struct advance advance;
+    struct actuators actuators;
+    lanes pending[STANCE_MAX_DELAY][ACTUATORS]; /* commands under way, the next one first */
 };
 
 /* Is there any case of a kind that is counted? A hint, as mask_any. */
@@ -151,7 +154,8 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
         lane_set(&servo->ki, lane, from->ki);
         lane_set(&servo->kd, lane, from->kd);
         lane_set(&servo->integral_limit, lane, from->integral_limit);
-        lane_set(&law->limit[i], lane, fmin(SCENE_TORQUE_LIMIT(c, i), c->torque_limit));
+        const double own = c->torque_limits[i] > 0 ? c->torque_limits[i] : INFINITY;
+        lane_set(&law->limit[i], lane, fmin(fmin(SCENE_TORQUE_LIMIT(c, i), c->torque_limit), own));
     }
     lane_set(&law->decouples, lane, c->decouples);
     lane_set(&law->switches, lane, c->switches);
@@ -195,7 +199,8 @@ static void bundle_clear_answers(struct bundle *b, int lane)
 /* Is there more to its torques than a linear law of the present state? */
 static bool case_is_unusual(const stance_case *c)
 {
-    return c->noise != 0 || c->delay > 0 || c->decouples || c->switches;
+    return c->noise != 0 || c->angle_noise != 0 || c->rate_noise != 0 || c->delay > 0 ||
+           actuators_lag(c) || c->decouples || c->switches;
 }
 
 /* Counts a case among those that cost more, or (-1) no longer. */
@@ -224,10 +229,15 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     for (int i = 0; i < SCENE_ACTUATORS; i++) {
         lane_set(&b->torque[i], lane, 0);
         const double limit = lane_get(&b->set.law.limit[i], lane);
-        lane_set(&b->pending[i], lane, fmax(fmin(c->near.feedforward[i], limit), -limit));
+        const double rest = fmax(fmin(c->near.feedforward[i], limit), -limit);
+        for (int k = 0; k < STANCE_MAX_DELAY; k++)
+            lane_set(&b->pending[k][i], lane, rest);
+        lane_set(&b->actuators.torque[i], lane, rest);
         lane_set(&b->now.integral[i], lane, 0);
     }
-    lane_set(&b->delayed, lane, c->delay > 0);
+    lane_set(&b->delay, lane, (double)c->delay);
+    lane_set(&b->lags, lane, actuators_lag(c));
+    actuators_load(&b->actuators, lane, c);
     bundle_clear_answers(b, lane);
     advance_load(&b->advance, lane, c);
     lane_set(&b->h, lane, c->step);

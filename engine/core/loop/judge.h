@@ -116,6 +116,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
         angle = lanes_max(lanes_abs(posture[i] - b->set.law.near.target[i]), angle);
         speed = lanes_max(lanes_abs(rate[i]), speed);
     }
+    account_largest(false, live & mask_less(none, b->has_target), angle, &b->answer.excursion);
     angle = angle * b->angle_scale;
     speed = speed * b->rate_scale;
     mask alone = mask_less(none, b->has_target);

@@ -10,9 +10,20 @@
 
 #define MATRIX_RANK 1e-9 /* of the largest: what is smaller is nothing */
 
-/* Places and rates, integrals, torques. */
-enum { MATRIX_ROOM = 2 * SCENE_COORDINATES + 2 * SCENE_ACTUATORS };
+/* Places and rates, integrals, torques, commands under way. */
+enum { MATRIX_ROOM = 2 * SCENE_COORDINATES + (2 + STANCE_MAX_DELAY) * SCENE_ACTUATORS };
 typedef double small_matrix[MATRIX_ROOM][MATRIX_ROOM];
+
+static void matrix_clear(int n, small_matrix A)
+{
+    for (int i = 0; i < n; i++)
+        memset(A[i], 0, sizeof(double) * (size_t)n);
+}
+static void matrix_copy(int n, small_matrix from, small_matrix to)
+{
+    for (int i = 0; i < n; i++)
+        memcpy(to[i], from[i], sizeof(double) * (size_t)n);
+}
 
 /* Solves M x = b by elimination with complete pivoting; unknowns that nothing determines are zero.
  */
@@ -58,12 +69,13 @@ COLD void matrix_solve(int n, small_matrix M, double *b, double *x)
 
 COLD void matrix_times(int n, small_matrix A, small_matrix B, small_matrix out)
 {
-    small_matrix product = {{0}};
+    small_matrix product;
+    matrix_clear(n, product);
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++)
             for (int k = 0; k < n; k++)
                 product[i][j] += A[i][k] * B[k][j];
-    memcpy(out, product, sizeof product);
+    matrix_copy(n, product, out);
 }
 
 static double matrix_largest(int n, small_matrix A)
@@ -83,8 +95,8 @@ COLD void matrix_exponential(int n, small_matrix A, double T)
     double size = n * matrix_largest(n, A) * T;
     for (; size > 0.5 && squarings < 60; squarings++)
         size *= 0.5, T *= 0.5;
-    memset(sum, 0, sizeof sum);
-    memset(term, 0, sizeof term);
+    matrix_clear(n, sum);
+    matrix_clear(n, term);
     for (int i = 0; i < n; i++)
         sum[i][i] = term[i][i] = 1;
     for (int order = 1; order <= 14; order++) { /* 0.5^15 / 15! = 2e-17 */
@@ -97,7 +109,7 @@ COLD void matrix_exponential(int n, small_matrix A, double T)
     }
     for (int k = 0; k < squarings; k++)
         matrix_times(n, sum, sum, sum);
-    memcpy(A, sum, sizeof sum);
+    matrix_copy(n, sum, A);
 }
 
 #endif

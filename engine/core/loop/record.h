@@ -88,6 +88,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
 #define FINISH(name, type, how, told, unit, text)                                                  \
     WHERE_GATHERED_##how(r->name = (type)record_finite(&b->answer.name, lane);)
     STANCE_ANSWERS(FINISH)
+    r->excursion = c->has_target ? r->excursion : NAN;
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
     scene_leave(SCENE_NUMBERS(c), s, w, r->position, r->velocity);

@@ -1,5 +1,5 @@
 /* sample.h - what a bundle's controllers command at their sampling instants: the law, its noise,
- * the torque limit, the delay.
+ * the torque limit, the delay; and what comes of it.
  */
 #ifndef STANCE_CORE_LOOP_SAMPLE_H
 #define STANCE_CORE_LOOP_SAMPLE_H
@@ -8,65 +8,140 @@
 
 #include <Random123/philox.h>
 
-/* Uniform in [-1, 1): actuator i of sampling instant k, keyed as stance.h says. */
+/* Uniform in [-1, 1), keyed as stance.h says: of sampling instant k the `count` numbers of a
+ * stream; the noise of torques is stream 0, that of measurements 1. */
 static inline double noise_value(uint64_t bits)
 {
     return (double)(int64_t)(bits >> 11) * 0x1p-52 - 1;
 }
-static void bundle_noise(const stance_case *c, double instant, double noise[ACTUATORS])
+static void bundle_noise(const stance_case *c, double instant, uint64_t stream, int count,
+                         double *noise)
 {
-    const philox4x64_key_t key = {{c->seed, 0}};
+    const philox4x64_key_t key = {{c->seed, stream}};
     philox4x64_ctr_t random = {{0}};
-    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+    for (int i = 0; i < count; i++) {
         const philox4x64_ctr_t counter = {
             {c->grid_index, c->sample_index, (uint64_t)instant, (uint64_t)i / 4}};
         if (i % 4 == 0)
             random = philox4x64(counter, key);
-        noise[i] = c->noise * noise_value(random.v[i % 4]);
+        noise[i] = noise_value(random.v[i % 4]);
     }
 }
 
-/* What a law that is not linear commands at a sampling instant, in the lanes of `due`; the errors
- * that it sums count for the interval that begins. */
-static void bundle_decouple(struct bundle *b, mask due, lanes *command)
+/* Adds the noise of torques in the lanes of `due`. */
+COLD void bundle_shake(const struct bundle *b, mask due, lanes *torque)
+{
+    double noise[ACTUATORS];
+    for (int lane = 0; lane < LANES; lane++) {
+        const stance_case *const c = b->which[lane];
+        if (!c || c->noise == 0 || !mask_get(due, lane))
+            continue;
+        bundle_noise(c, lane_get(&b->n, lane) / (double)c->sample_every, 0, SCENE_ACTUATORS, noise);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            lane_set(&torque[i], lane, lane_get(&torque[i], lane) + c->noise * noise[i]);
+    }
+}
+
+/* What is measured of the present state; noise is on the user's posture and its rates. */
+COLD void bundle_measure(const struct bundle *b, mask due, lanes *s, lanes *w, scene_trig *trig)
+{
+    lanes error[2][POSTURES], shift[2][SCENE_COORDINATES];
+    double noise[2 * POSTURES];
+    mask noisy = MASK_NONE;
+    scene_trig seen;
+    memcpy(s, b->now.s, sizeof b->now.s);
+    memcpy(w, b->now.w, sizeof b->now.w);
+    *trig = b->now.trig;
+    memset(error, 0, sizeof error);
+    for (int lane = 0; lane < LANES; lane++) {
+        const stance_case *const c = b->which[lane];
+        if (!c || (c->angle_noise == 0 && c->rate_noise == 0) || !mask_get(due, lane))
+            continue;
+        SCENE_BEGIN(c);
+        noisy |= mask_of_lane(lane);
+        bundle_noise(c, lane_get(&b->n, lane) / (double)c->sample_every, 1, 2 * OWN_POSTURE, noise);
+        for (int j = 0; j < OWN_POSTURE; j++) {
+            lane_set(&error[0][j], lane, c->angle_noise * noise[j]);
+            lane_set(&error[1][j], lane, c->rate_noise * noise[OWN_POSTURE + j]);
+        }
+    }
+    if (!mask_any(noisy))
+        return;
+    for (int kind = 0; kind < 2; kind++)
+        scene_of_posture(error[kind], shift[kind]);
+    for (int i = 0; i < SCENE_COORDINATES; i++) {
+        s[i] = choose(noisy, s[i] + shift[0][i], s[i]);
+        w[i] = choose(noisy, w[i] + shift[1][i], w[i]);
+    }
+    scene_trigonometry(s, &seen);
+    choose_all(noisy, &seen, trig, sizeof seen);
+}
+
+/* What a law that is not linear commands for what was measured, in the lanes of `due`; the errors
+ * that it sums count for the interval that begins. Feet feel what they do. */
+static void bundle_decouple(struct bundle *b, mask due, const lanes *s, const lanes *w,
+                            const scene_trig *trig, lanes *command)
 {
     struct dynamics e;
-    e.trig = b->now.trig;
+    struct contact_state contact;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, e.u[c]);
+        e.gap[c] = scene_gap(&b->set.body, b->now.s, &b->now.trig, c);
+    }
+    decoupling_contacts(&b->set, &e, &contact);
+    e.trig = *trig;
     const mask servos =
-        law_command(&b->set, due, b->now.t, b->now.s, b->now.w, b->now.integral, NULL, &e, command);
+        law_command(&b->set, due, b->now.t, s, w, b->now.integral, &contact, &e, command);
     law_integrate(&b->set.law, servos, b->sample_every * b->h, e.integral_rate, b->now.integral);
     b->answer.degraded_samples += choose(servos, e.degraded, lanes_of(0));
     b->answer.ambiguous_steps += choose(servos, e.several, lanes_of(0));
 }
 
-/* New torques in the lanes whose sampling instant it is. */
+/* Commands of cases that ask for more than a linear law of the present state. */
+COLD void bundle_sample_unusual(struct bundle *b, mask due, lanes *torque)
+{
+    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    scene_trig trig;
+    const mask delayed = due & mask_less(lanes_of(0), b->delay);
+    bundle_measure(b, due, s, w, &trig);
+    law_torque(&b->set.law, s, w, torque);
+    if (mask_any(due & mask_less(lanes_of(0), b->set.law.decouples + b->set.law.switches)))
+        bundle_decouple(b, due, s, w, &trig, torque);
+    bundle_shake(b, due, torque);
+    law_clip(&b->set.law, torque);
+    for (int i = 0; i < SCENE_ACTUATORS && mask_any(delayed); i++) {
+        const lanes now = torque[i];
+        torque[i] = choose(delayed, b->pending[0][i], now);
+        for (int k = 0; k < STANCE_MAX_DELAY; k++) {
+            const mask last = mask_less_equal(lanes_abs(b->delay - (k + 1)), lanes_of(0));
+            const lanes next = k + 1 < STANCE_MAX_DELAY ? b->pending[k + 1][i] : now;
+            b->pending[k][i] = choose(delayed, choose(last, now, next), b->pending[k][i]);
+        }
+    }
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        b->actuators.command[i] = choose(due, torque[i], b->actuators.command[i]);
+}
+
+/* New torques in the lanes whose sampling instant it is, or whose actuators lag. */
 HOT void bundle_sample(struct bundle *b, mask live)
 {
+    const bool unusual = SCENE_ACTUATORS > 0 && bundle_some(b->unusual);
     const mask due = live & mask_less_equal(b->next_sample, b->n);
-    if (!mask_any(due))
-        return;
-    lanes torque[ACTUATORS];
-    law_torque(&b->set.law, b->now.s, b->now.w, torque);
-    if (SCENE_ACTUATORS > 0 && bundle_some(b->unusual) &&
-        mask_any(due & mask_less(lanes_of(0), b->set.law.decouples + b->set.law.switches)))
-        bundle_decouple(b, due, torque);
-    for (int lane = 0; lane < LANES && bundle_some(b->unusual); lane++) {
-        const stance_case *const c = b->which[lane];
-        if (!c || c->noise == 0 || !mask_get(due, lane))
-            continue;
-        double noise[ACTUATORS];
-        bundle_noise(c, lane_get(&b->n, lane) / (double)c->sample_every, noise);
+    if (mask_any(due)) {
+        lanes torque[ACTUATORS];
+        if (unusual) {
+            bundle_sample_unusual(b, due, torque);
+        } else {
+            law_torque(&b->set.law, b->now.s, b->now.w, torque);
+            law_clip(&b->set.law, torque);
+        }
         for (int i = 0; i < SCENE_ACTUATORS; i++)
-            lane_set(&torque[i], lane, lane_get(&torque[i], lane) + noise[i]);
+            b->torque[i] = choose(due, torque[i], b->torque[i]);
+        b->next_sample = choose(due, b->next_sample + b->sample_every, b->next_sample);
     }
-    law_clip(&b->set.law, torque);
-    /* With a delay the command of the sample before comes into force, at the start that of rest. */
-    const mask late = due & mask_less(lanes_of(0), b->delayed);
-    for (int i = 0; i < SCENE_ACTUATORS; i++) {
-        b->torque[i] = choose(due, choose(late, b->pending[i], torque[i]), b->torque[i]);
-        b->pending[i] = choose(due, torque[i], b->pending[i]);
-    }
-    b->next_sample = choose(due, b->next_sample + b->sample_every, b->next_sample);
+    const mask lag = live & mask_less(lanes_of(0), b->lags);
+    if (unusual && mask_any(lag))
+        actuators_follow(&b->actuators, lag, b->n, b->h, b->torque);
 }
 
 #endif

@@ -307,8 +307,8 @@ static inline void decoupling_apply(const struct setting *set, mask where, conta
 #endif
 
 /* What a law that is not linear commands in the lanes of `due`, in place of the linear law's
- * command; e->trig: at s. contact: what the contacts do, NULL: as it follows from the state.
- * Returns the lanes where servos act, and *e says how. */
+ * command; e->trig: at s. contact: what the contacts do. Returns the lanes where servos act, and *e
+ * says how. */
 static inline mask law_command(const struct setting *set, mask due, lanes t, const lanes *s,
                                const lanes *w, const lanes *integral,
                                const struct contact_state *contact, struct dynamics *e,
@@ -331,13 +331,8 @@ static inline mask law_command(const struct setting *set, mask due, lanes t, con
     e->degraded = e->several = lanes_of(0);
     if (!mask_any(servos))
         return servos;
-    struct contact_state now;
     const contact_set all = CONTACT_ALL;
     dynamics_evaluate(set, t, s, w, none, all, true, e);
-    if (!contact) {
-        decoupling_contacts(set, e, &now);
-        contact = &now;
-    }
     decouple(set, servos, t, s, w, integral, all, contact, e);
     for (int i = 0; i < OWN_ACTUATORS; i++)
         command[i] = choose(servos, e->command[i], command[i]);

@@ -1,0 +1,71 @@
+/* basin_starts.c - see basin_starts.h. */
+#include "basin_starts.h"
+
+#include "runner/base/message.h"
+#include "runner/plan/instruction_set.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool starts_begin(struct starts *starts, const struct scenario *s, uint64_t index,
+                  stance_message *message)
+{
+    *starts = (struct starts){.s = s, .index = index};
+    scenario_case_values(s, index, &starts->values);
+    starts->values.offset_scale = 1;
+    if (instruction_set())
+        starts->kernel = instruction_set_kernel(s->scene, stance_methods()[starts->values.method]);
+    if (!starts->kernel)
+        return complain(message, "this version has no method %s for the scene %s",
+                        stance_methods()[starts->values.method]->name, s->scene->name);
+    return resolve_design(s->scene, &starts->values, &starts->design, message);
+}
+
+/* Makes the case of a start; false: there is none. */
+static bool place(struct starts *starts, size_t n, const size_t *offset, const double *value,
+                  stance_case *out)
+{
+    const struct scenario *s = starts->s;
+    for (size_t k = 0; k < n; k++)
+        memcpy((char *)&starts->values + offset[k], &value[k], sizeof *value);
+    const bool good = resolve_case(s->scene, &starts->values, &starts->design, s->seed,
+                                   starts->index, out, &starts->why);
+    scenario_case_keys(s, starts->index, &out->grid_index, &out->sample_index);
+    return good;
+}
+
+bool starts_possible(struct starts *starts, size_t n, const size_t *offset, const double *value)
+{
+    stance_case *out = malloc(sizeof *out);
+    const bool good = out && place(starts, n, offset, value, out);
+    free(out);
+    return good;
+}
+
+bool starts_run(struct starts *starts, size_t n, const size_t *offset, size_t count,
+                const double *value, uint8_t *end)
+{
+    stance_case *cases = calloc(count + 1, sizeof *cases);
+    stance_result *results = calloc(count + 1, sizeof *results);
+    const bool good = cases && results;
+    size_t possible = 0;
+    for (size_t i = 0; good && i < count; i++) {
+        const bool made = place(starts, n, offset, value + i * n, &cases[possible]);
+        end[i] = made ? STANCE_NONE : STARTS_IMPOSSIBLE;
+        possible += made;
+    }
+    if (good && possible > 0)
+        starts->kernel->run(cases, results, possible);
+    for (size_t i = 0, k = 0; good && i < count; i++) {
+        if (end[i] == STARTS_IMPOSSIBLE)
+            continue;
+        const bool failed = results[k].status != STANCE_DONE;
+        starts->failed += failed;
+        end[i] = failed ? STARTS_FAILED : results[k].outcome;
+        k++;
+    }
+    starts->simulated += possible;
+    free(cases);
+    free(results);
+    return good;
+}

@@ -1,0 +1,33 @@
+/* basin_starts.h - other starts of a case of a scenario, simulated: not from a results file. */
+#ifndef STANCE_BASIN_BASIN_STARTS_H
+#define STANCE_BASIN_BASIN_STARTS_H
+
+#include "runner/plan/resolve.h"
+
+enum { STARTS_MOST = 18 }; /* coordinates of a start that vary: angles and rates */
+
+/* What becomes of a start: an outcome, or one of these. */
+enum { STARTS_FAILED = STANCE_OUTCOME_COUNT, STARTS_IMPOSSIBLE };
+
+struct starts {
+    const struct scenario *s;
+    uint64_t index; /* of the case that all are like, for its random numbers */
+    struct scenario_values values;
+    struct resolved_design design;
+    const stance_kernel *kernel;
+    uint64_t simulated, failed;
+    stance_message why; /* the last STARTS_IMPOSSIBLE is none */
+};
+
+/* The case `index` of the sweep, with offsets not scaled. False: it has no design, or its method no
+ * kernel on this machine; `message` says so. */
+bool starts_begin(struct starts *starts, const struct scenario *s, uint64_t index,
+                  stance_message *message);
+/* Simulates `count` starts; of start i number k of value[count][n] stands at offset[k] of struct
+ * scenario_values. end[count]: what became of each. False: no memory. */
+bool starts_run(struct starts *starts, size_t n, const size_t *offset, size_t count,
+                const double *value, uint8_t *end);
+/* Whether there is that start, value[n]. */
+bool starts_possible(struct starts *starts, size_t n, const size_t *offset, const double *value);
+
+#endif
