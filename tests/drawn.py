@@ -49,6 +49,45 @@ def png(data):
     return pixels if channels == 4 else np.dstack([pixels, np.full((height, width), 255)])
 
 
+def gif(data):
+    """Colours [row][column][rgb] of the first frame of a GIF, which fills it."""
+    width, height, flags = struct.unpack("<HHB", data[6:11])
+    place = 13 + 3 * (2 << (flags & 7))
+    colours = np.frombuffer(data, np.uint8, place - 13, 13).reshape(-1, 3)
+    while data[place] == 0x21: # extensions
+        place += 2
+        while data[place]:
+            place += data[place] + 1
+        place += 1
+    assert data[place] == 0x2c and struct.unpack("<4H", data[place + 1:place + 9]) == (0, 0, width, height)
+    if data[place + 9] & 0x80:
+        count = 2 << (data[place + 9] & 7)
+        colours = np.frombuffer(data, np.uint8, 3 * count, place + 10).reshape(-1, 3)
+        place += 3 * count
+    least, place, packed = data[place + 10], place + 11, b""
+    while data[place]:
+        packed += data[place + 1:place + 1 + data[place]]
+        place += data[place] + 1
+    bits, held, at, pixels, clear = 0, 0, 0, bytearray(), 1 << least
+    table, size, last = [], least + 1, b""
+    while len(pixels) < width * height: # LZW: codes of growing width, least significant bits first
+        while held < size:
+            bits |= packed[at] << held
+            held, at = held + 8, at + 1
+        code, bits, held = bits & ((1 << size) - 1), bits >> size, held - size
+        if code == clear:
+            table, size, last = [bytes([k]) for k in range(clear)] + [b"", b""], least + 1, b""
+            continue
+        word = table[code] if code < len(table) else last + last[:1]
+        if last:
+            table.append(last + word[:1])
+        if len(table) == 1 << size and size < 12:
+            size += 1
+        pixels += word
+        last = word
+    return colours[np.frombuffer(bytes(pixels), np.uint8)].reshape(height, width, 3)
+
+
 class Panel:
     """A frame with what was drawn since; `x` and `y` turn px into values."""
 

@@ -17,7 +17,7 @@ import xml.etree.ElementTree
 import h5py
 import numpy as np
 
-from drawn import Picture
+from drawn import Picture, gif
 
 SVG = "{http://www.w3.org/2000/svg}"
 STANCE, SCENARIOS = sys.argv[1:]
@@ -62,7 +62,7 @@ def is_whole(file, width, height=None):
 def one_file():
     run("map", "friction_sweep.yaml", *MAP)
     printed, said = call("plot", "map.h5", "--for", "column", "-o", "fig.pdf")
-    assert printed == ["fig.pdf"] and said == ["fig.pdf: --picture draws another one: settle_time, curve"], (printed, said)
+    assert printed == ["fig.pdf"] and said == ["fig.pdf: the picture map; others by --picture: settle_time, curve"], (printed, said)
     words = is_whole("fig.pdf", 88)
     assert "stabilised" in words and "One-foot" not in words, words # the caption has the title
     for picture in ("settle_time", "curve"):
@@ -212,6 +212,59 @@ def outlines():
         assert not printed and len(said) == 1, (arguments, said)
 
 
+def many_values():
+    """Axes of several coordinates, many values: every line is its own, every text whole, every axis has a scale."""
+    run("carts", "mechanisms/cart_pole.yaml", "record.cases=none", "stop.time=1", "controller.sample_time=0.01", "sweep.grid=["
+        "{path: robot.actuators.push.limit, from: 30, to: 8, count: 12}, "
+        "{paths: [initial.offset.pole, initial.offset.vpole], from: [-0.3, -1], to: [0.2, 0.6], count: 6}, "
+        "{paths: [initial.offset.cart, robot.bodies.pole.damping], from: [-0.3, 0.1], to: [0.2, 0], count: 5}]")
+    call("plot", "carts.h5", "--outline", "--for", "column", "-o", "carts.pdf", STANCE_SCRIPTS="kept")
+    words = " ".join(is_whole("carts.pdf", 88))
+    assert "pole against cart, counter-clockwise" in words and "initial.offset.pole (rad), with vpole" in words, words
+    assert "(m), with robot.bodies.pole.damping" in words, words
+    with open("kept/carts-outline/data.gp", encoding="utf-8") as file:
+        marks = re.findall(r"legend_dash\[legends\] = (\d+); legend_point\[legends\] = (\d+)", file.read())
+    assert len(marks) == len(set(marks)) == 13, marks # 12 lines and the cross
+    run("slow", "mechanisms/cart_pole.yaml", "record.cases=none", "stop.time=1", "controller.sample_time=0.02", "sweep.grid=["
+        "{path: robot.actuators.push.limit, from: 30, to: 20, count: 2}, "
+        "{paths: [initial.offset.pole, initial.offset.vpole], from: [-0.3, -1], to: [0.2, 0.6], count: 6}, "
+        "{paths: [initial.offset.cart, robot.bodies.pole.damping], from: [-0.3, 0.1], to: [0.2, 0], count: 5}]")
+    call("plot", "carts.h5", "slow.h5", "--outline", "-o", "carts.svg")
+    assert "file, robot.actuators.push.limit" in Picture("carts.svg").said(), Picture("carts.svg").said()
+    for size, width in ("page", 180), ("column", 88):
+        for form in "svg", "pdf":
+            call("plot", "carts.h5", "--for", size, "--picture", "map", "-o", f"carts.{form}")
+        assert "vpole" in is_whole("carts.pdf", width)
+        p = Picture("carts.svg")
+        for axis in 0, 1:
+            for edge in {round(t[2]) for t in p.tics if t[0] == axis and t[3]}:
+                for panel in p.panels:
+                    if abs((panel.bottom, panel.left)[axis] - edge) < 1:
+                        low, high = ((panel.left, panel.right), (panel.top, panel.bottom))[axis]
+                        at = [t for t in p.tics if t[0] == axis and t[3] and abs(t[2] - edge) < 1 and low - 1 < t[1] < high + 1]
+                        assert len(at) >= 2, (size, axis, at)
+    run("tabled", "mechanisms/cart_pole.yaml", "record.cases=none", "stop.time=0.1", "controller.sample_time=0.01", "sweep.grid=["
+        "{path: controller.lag, from: 0, to: 0.06, count: 3}, {path: robot.bodies.pole.damping, values: [0, 0.1, 0.2, 0.3]}, "
+        "{path: initial.offset.pole, from: -0.3, to: 0.2, count: 5}, {path: initial.offset.vpole, from: -1, to: 0.6, count: 5}]")
+    call("plot", "tabled.h5", "--picture", "map", "--for", "column", "-o", "tabled.pdf")
+    words = " ".join(is_whole("tabled.pdf", 88))
+    assert "bodies.pole.damping (N m s/rad)" in words and "lag (s)" in words and "0.1 N m" not in words, words
+    run("varied", "mechanisms/cart_pole.yaml", "record.cases=none", "stop.time=0.1", "sweep={sample: {method: sobol, count: 8, vary: ["
+        "{path: robot.bodies.pole.inertia, from: 0.004, to: 0.01}, {path: robot.actuators.push.limit, from: 10, to: 30}]}}")
+    call("plot", "varied.h5", "--picture", "sample", "--for", "column", "-o", "varied.pdf")
+    words = " ".join(is_whole("varied.pdf", 88))
+    assert words.count("inertia (kg m^2)") == 2 and words.count("limit (N)") == 2, words # of the scatter and of the panels
+    call("run", f"{SCENARIOS}/mechanisms/cart_pole.yaml", *[w for s in ("record.cases=none", "stop.time=0.1", "controller.sample_time=0.01",
+         "sweep.grid=[{path: controller.lag, from: 0, to: 0.1, count: 3}, {path: initial.offset.pole, from: -0.1, to: 0.1, count: 3}]")
+         for w in ("--set", s)], "--quiet", "-o", "lag.h5")
+    run("edge", "mechanisms/cart_pole.yaml", "record.cases=none", "stop.time=0.1", "controller.sample_time=0.01",
+        "sweep.grid=[{path: controller.lag, values: [0, 0.01]}, {path: initial.offset.pole, values: [0, 0.1]}]")
+    call("plot", "edge.h5", "--picture", "map", "--for", "column", "-o", "edge.pdf")
+    assert "0.015" in is_whole("edge.pdf", 88) # at the end of the axis
+    call("plot", "lag.h5", "--picture", "curve", "-o", "lag.svg")
+    assert abs(Picture("lag.svg").panels[-1].range(0)[0]) < 1e-3 # no time is negative
+
+
 # ---- replay ------------------------------------------------------------------------------------
 
 def replay():
@@ -258,6 +311,10 @@ def two_cases():
     assert "dashed: the second case" in p.said() and re.search(r"case 31,.*second case 85,", " ".join(p.said())), p.said()
     for panel in p.panels:
         assert {q[1] for q in panel.lines if q[0] == "0072b2"} == {False, True}
+    for size, width in ("page", 180), ("column", 88):
+        call("replay", "map.h5", "--case", "31", "--case", "85", "--for", size, "-o", "fitted")
+        for picture in "strip", "torques", "forces":
+            is_whole(f"fitted/map-case31-case85-{picture}.pdf", width)
     strip = Picture("both/map-case31-case85-strip.svg")
     assert strip.legend()["the second case"] == "b8b8b8" and len(printed) == 5
     printed, said = call("replay", "map.h5", "--case", "31", "--case", "85", "-o", "both/walk.gif")
@@ -267,6 +324,7 @@ def two_cases():
     frames = data.count(b"\x21\xf9\x04")
     with open("both/map-case31-case85-coordinates.svg", encoding="utf-8"):
         seconds = p.panels[-1].range(0)[1]
+    assert (gif(data)[:, -12:] == 255).all(), "texts end within the frame"
     assert data[:6] == b"GIF89a" and data[-1:] == b";" and abs(frames - seconds / 0.04) < 2.5, (frames, seconds)
     printed, said = call("replay", "map.h5", "--case", "31", "--case", "85", "--picture", "animation", "-o", "both/walk.svg")
     assert printed == ["both/walk.svg"] and not said, (printed, said)
@@ -299,6 +357,25 @@ def other_commands():
         for robot in "basin_one_foot", "mechanisms/flat_feet", "mechanisms/cart_pole":
             call("plot", "--model", f"{SCENARIOS}/{robot}.yaml", "--for", size, "-o", "model.pdf")
             is_whole("model.pdf", width)
+    with open("own.yaml", "w", encoding="utf-8") as file:
+        file.write("{stance: 1, scene: mechanism, robot: {bodies: {foot: {joint: free, mass: 2, inertia: 0.01, centre: [0.04, 0.03]}, body: "
+                   "{joint: hinge, parent: foot, at: [0, 0.08], mass: 70, inertia: 10, centre: [0, 0.9]}}, contacts: {sole: {body: foot, "
+                   "from: [-0.06, 0], to: [0.18, 0]}}, points: {head: {body: body, at: [0, 1.6], lowest: 1}}, actuators: {ankle: {body: "
+                   "body, limit: 120}}}, initial: {equilibrium: {body: -0.05}, support: [sole], offset: {body: -1.2}}, controller: "
+                   "{kind: state-feedback, design: lqr}, stop: {time: 6}}")
+    for robot, labels in ("own.yaml", 6), (f"{SCENARIOS}/mechanisms/cart_pole.yaml", 3), (f"{SCENARIOS}/mechanisms/hopper.yaml", 5):
+        for size in ["--for", "column"], ["--for", "page"], []:
+            call("plot", "--model", robot, *size, "-o", "model.svg")
+            with open("model.svg", encoding="utf-8") as file:
+                svg = file.read()
+            heads = [np.fromstring(head.replace(",", " "), sep=" ").reshape(-1, 2) for head in re.findall(r"points = '((?:[\d.]+,[\d.]+ ){5})'", svg)]
+            named = {(float(x), float(y), text) for x, y, text in re.findall(
+                r'translate\(([\d.]+),([\d.]+)\)"[^>]*font-size="17.33"[^>]*middle"[^>]*>\s*<text>(.*?)</text>', svg)}
+            assert len(named) == labels and len(heads) > 3, (robot, named, len(heads))
+            for x, y, text in named: # no label covers the head of an arrow
+                for head in heads:
+                    assert not (np.hypot(*(head - (x, y - 4)).T / [[4 * len(text)], [9]]) < 1).any(), (robot, size, text, head)
+            assert not re.search(r"= -?[\d.]+e-", svg), "dust is 0"
     with open("speed.csv", "w", encoding="utf-8") as file:
         file.write("\n".join(call("bench", "--csv", "--repeats", "1", "--cases", "1", "--method", "implicit")[0]) + "\n")
     call("bench", "plot", "speed.csv", "--for", "page", "-o", "speed.pdf")
@@ -343,7 +420,7 @@ def progress():
         assert heard.stderr.read().decode().startswith("gnuplot failed")
 
 
-for check in (one_file, sizes, names, refusals, letters, every_kind, outlines, replay, two_cases, other_commands,
+for check in (one_file, sizes, names, refusals, letters, every_kind, outlines, many_values, replay, two_cases, other_commands,
               under_mpirun, progress):
     count += 1
     try:

@@ -55,16 +55,16 @@ def says(picture, *texts):
         assert text in picture.said() or len(text) > 90 and text in " ".join(picture.said()), (text, picture.said())
 
 
-def cut(data):
-    """What a caption says of the faces of the box on which starts are stabilised."""
-    inside, faces = names(data) == "stabilised", []
+def cut(data, of="stabilised"):
+    """What a caption says of the faces of the box on which starts have an outcome."""
+    inside, faces = names(data) == of, []
     for axis, path in enumerate(data.attrs["axes"].decode().split(",")):
         if path.startswith("initial.offset."):
             ends = [inside.take(end, axis).any() for end in (0, -1)]
             at = [f"{data[path][e]:.6g} {data[path].attrs['units'].decode()}" for e, any in zip((0, -1), ends) if any]
             word = "both ends" if all(ends) else "lower end" if ends[0] else "upper end"
             faces += [f"{path} = {' and '.join(at)} ({word})"] if at else []
-    return f"; what is stabilised is cut by the box at {', '.join(faces)}: its share is the box's" if faces else ""
+    return f"; what is {of} is cut by the box at {', '.join(faces)}: its share is the box's" if faces else ""
 
 
 def names(data):
@@ -161,7 +161,7 @@ def tables():
         share = [t for x, y, t, _ in p.texts if x is not None and abs(x - panel.right) < 1 and 0 < panel.top - y < 20]
         assert share == [f"{100 * (here == 'stabilised').mean():.1f} %"], share
     stance("plot", "table.h5", "--for", "column", "--format", "svg", "-o", "narrow")
-    says(Picture("narrow/table-map.svg"), "torque_limit", "5 N m", "10 N m")
+    says(Picture("narrow/table-map.svg"), "torque_limit (N m)", "5", "10")
     run("many", "friction_sweep.yaml", "sweep.grid[0]={path: ground.friction, from: 0.1, to: 0.8, count: 40}",
         "sweep.grid[1].count=2", "sweep.grid[2].count=2", "stop.time=0.1", "record.cases=none")
     stance("plot", "many.h5")
@@ -195,7 +195,8 @@ def answers():
     used = np.where(names(data) == "fell", used, np.nan)
     says(p, "friction_used", title_of(data))
     assert p.legend() == {"not fell": "d9d9d9"}
-    assert any(t.startswith("friction_used: ") and "of the fell cases" in t for t in p.said())
+    says(p, f"friction_used: largest ratio |rT|/rN of a contact, of the fell cases{cut(data, 'fell').partition(': its')[0]}")
+    assert cut(data, "fell")
     close(p.bar(), [np.nanmin(used), np.nanmax(used)], 0.03)
     for k in range(2):
         numbers_shown(p.panels[k], used[k].T, np.nanmin(used), np.nanmax(used))
@@ -494,7 +495,7 @@ def failures():
     study = json.loads(stance("bench", "failure", "--reuse", "--json", "failure.local.yaml", "-o", "."))["studies"][0]
     p = Picture("failure.local.svg")
     x, y = (np.array(a["values"]) for a in study["axes"])
-    says(p, study["title"], "method.step (s)", "controller.kp (N m/rad)", "reasons of failures", study["theory"]["text"])
+    says(p, study["title"], "method.step (s)", "controller.kp (N m/rad), with kd", "reasons of failures", study["theory"]["text"])
     words = {"gave_up": "gave up", "ran_away": "ran away", "broke_law": "broke a contact law", "wrong_outcome": "wrong outcome",
              "inaccurate": "right outcome, inaccurate", "unjudged": "kept the laws, no reference",
              "right_other": "right: fell, or still moves", "right_stands": "right: came to stand or rest"}

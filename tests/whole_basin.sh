@@ -455,7 +455,16 @@ done <<'END'
 --answer outcome
 --within fall_cause=1
 --threshold 0.8 --of controller.sample_time --rank 3
+--allowed --answer settle_time
+--allowed --boundary
 END
+expect "what linear theory allows" 0 "$stance" basin delay.h5 --allowed --json
+"$python" - <<'END'
+import json
+for r in json.load(open("log"))["rows"]:
+    assert 0 < r["allowed"] <= 1 and 0 <= r["used"] <= 1 and 0 <= r["outside"] < 0.1, r
+END
+result $? "... is a share of the starts, and what is recovered one of that"
 
 # What one domain has lost of another: labels side by side.
 for form in --json --csv; do

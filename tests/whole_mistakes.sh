@@ -11,6 +11,10 @@ cp "$shipped"/mechanisms/hopper.yaml .
 "$stance" run "$shipped/basin_one_foot.yaml" --quiet -o map.h5 --set 'sweep.grid[0].count=12' --set 'sweep.grid[1].count=12' \
     --set controller.sample_time=0.01 --set method.step=0.01
 mv results/ball_bounce.h5 ball.h5 && mv results/balance_falls.h5 robot.h5
+"$stance" run "$shipped/basin_one_foot.yaml" --quiet -o lag.h5 --set 'sweep.grid[1]={path: controller.lag, values: [0.001, 0.02]}' \
+    --set 'sweep.grid[0].count=13' --set controller.sample_time=0.01 --set method.step=0.01
+cp "$shipped/mechanisms/cart_pole.yaml" cart.yaml
+{ cat map.h5 && head -c 2000000 /dev/zero; } >large.h5
 head -c 5000 ball.h5 >cut.h5
 : >empty.h5
 
@@ -221,6 +225,54 @@ stance run ball_bounce.yaml --only 19
 stance run ball_bounce.yaml --only 18 --force --quiet
 --only 19: the scenario's cases are 0 ... 18
 
+stance replay map.h5 --near theta=0.1 vtheta=0.2 -o near.svg
+stance replay map.h5 --near theta=0.1,vtheta=0.2 -o near.svg
+write --near theta=0.1,vtheta=0.2
+
+stance check ball_bounce.yaml --set --set ground.friction=0.2
+stance check ball_bounce.yaml --set ground.friction=0.2
+write --set ground.friction=0.2
+
+stance basin lag.h5 --threshold 0.8 --of lag
+stance basin lag.h5 --threshold 0.8 --of controller.lag
+not 'lag'; did you mean 'controller.lag'?
+
+stance basin lag.h5 --lost lag
+stance basin lag.h5 --lost controller.lag
+not 'lag'; did you mean 'controller.lag'?
+
+stance basin lag.h5 --by lag
+stance basin lag.h5 --by controller.lag
+did you mean 'controller.lag'?
+
+stance basin map.h5 --weight theta=0.1
+stance basin map.h5 --weight initial.offset.theta=0.1
+did you mean 'initial.offset.theta'?
+
+stance check large.h5
+stance check ball_bounce.yaml
+a results file, not a scenario; write stance summary large.h5
+
+stance plot map.h5 -o film.mp4
+stance plot map.h5 -o film
+-o draws svg, png and pdf, replay animations as gif, too, not 'film.mp4'
+
+stance plot map.h5 --picture map -o map.EPS
+stance plot map.h5 --picture map -o map.pdf
+not 'map.EPS'
+
+stance run ball_bounce.yaml -o foo.pdf --quiet
+stance run ball_bounce.yaml -o foo.h5 --quiet
+-o names the results, FILE.h5
+
+stance check cart.yaml --set initial.equilibrium.pole=180
+stance check cart.yaml --set initial.equilibrium.pole=3.141592653589793
+no equilibrium at pole = 180 rad, more than a turn: angles are in radians (are these degrees?)
+
+stance check cart.yaml --set initial.equilibrium.pole=3.14159
+stance check cart.yaml --set initial.equilibrium.pole=3.141592653589793
+pole cannot be balanced: 1.3e-06 N m are left on it
+
 stance check
 stance check ball_bounce.yaml
 a scenario file must be given
@@ -229,4 +281,10 @@ stance summary
 stance summary ball.h5
 a results file is needed
 END
+# A lone case that has no length.
+expect "a start that has fallen" 0 "$stance" check cart.yaml --set 'sweep.grid=[{path: initial.offset.pole, values: [0]}]' --set robot.points.tip.lowest=2
+says "... has a cost" "^cost *\(at most \)\?about"
+sed '/^sweep:/,$d' cart.yaml >lone.yaml
+expect "alone" 0 "$stance" check lone.yaml --set robot.points.tip.lowest=2
+says "... is said" "warning: the robot has fallen where it begins, by its tip"
 echo "1..$count"

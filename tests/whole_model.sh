@@ -65,6 +65,8 @@ draws mechanisms/rabbit.yaml trunk,thigh1,shank1,thigh2,shank2,hip1,knee1,hip2,k
 draws mechanisms/hopper.yaml body,shoe,sole_heel,sole_toe
 draws mechanisms/cart_pole.yaml cart,pole,push
 draws mechanisms/acrobot.yaml arms,legs,waist
+cp scripts/cart_pole-model/data.gp log
+says "the way of a force on a slide" "push: positive pushes cart along its axis, to the right"
 draws mechanisms/rolling_disc.yaml disc,rim
 draws mechanisms/compass_gait.yaml leg1,leg2,foot1,foot2
 expect "a results file is no model" 2 "$stance" plot --model "$scratch/scripts"

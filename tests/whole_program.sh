@@ -233,6 +233,11 @@ assert c[\"design\"] == \"place\" and c[\"design_time\"] == \"sampled\" and c[\"
 assert len(c[\"sampled_loop\"][\"eigenvalues\"]) == 8 and c[\"sampled_loop\"][\"delay\"] == 1
 assert 0.9 < c[\"sampled_loop\"][\"spectral_radius\"] < 1 and c[\"lyapunov\"] is None
 assert c[\"critical_sample_time_delayed\"] < c[\"critical_sample_time\"]'"
+check "design --json: what any controller is allowed" sh -c "'$stance' design --json scenarios/balance_recovers.yaml | '$python' -c '
+import json, sys
+a = json.load(sys.stdin)[\"allowed\"]
+assert abs(a[\"low\"][\"theta\"] + 0.20485) < 1e-5 and abs(a[\"high\"][\"theta\"] - 0.11614) < 1e-5
+assert [round(re, 3) for re, im in a[\"unstable_modes\"]] == [5.616, 3.601]'"
 check "design --json: the set within bounds" sh -c "'$stance' design --json scenarios/balance_recovers.yaml | '$python' -c '
 import json, sys
 s = json.load(sys.stdin)[\"controller\"][\"lyapunov\"]

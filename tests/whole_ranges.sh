@@ -30,8 +30,8 @@ YAML
 # What is printed, put into the scenario in place of its sweep: the domain is bounded there, not empty, and the
 # equilibrium is a case.
 pasted() { # name, scenario
-    expect "ranges of $1" 0 "$stance" ranges "$2"
-    cp log "$1.txt"
+    "$stance" ranges "$2" >"$1.txt" 2>log # where a kernel is compiled, that is said
+    result $? "ranges of $1"
     sed '/^sweep:/,/^seed:/d' "$2" | cat - "$1.txt" >"$1.yaml"
     expect "... are a sweep" 0 "$stance" run --quiet -o "$1.h5" "$1.yaml"
     "$stance" basin --json "$1.h5" >"$1.json"
@@ -97,8 +97,10 @@ expect "... is told in the summary" 0 "$stance" summary line.h5
 says "... with the other path" "initial.offset.theta  -1.5 ... 1.5 rad, 65 values.*; with initial.offset.vtheta"
 expect "... and by basin" 0 "$stance" basin line.h5
 says "... whose distances are along it" "distances in units of 1 rad of initial.offset.theta with initial.offset.vtheta"
+expect "a start by the other path" 0 "$stance" replay line.h5 --near vtheta=2.6,q1=0 -o line.svg
+says "... is the point of the line" "initial.offset.theta = -0.75 rad"
 expect "its picture" 0 "$stance" plot line.h5 --picture map
-grep -q "with initial.offset.vtheta" line-map.svg
+grep -q "with vtheta" line-map.svg
 result $? "... names both"
 "$stance" basin --json line.h5 >line.json
 # The same cases one by one.
@@ -125,6 +127,29 @@ says "... is told" "from and to are equal in the first path, whose values name t
 expect "a logarithmic line" 0 "$stance" check line.yaml --set 'sweep.grid[0]={paths: [ground.friction, controller.torque_limit], from: [0.1, 5], to: [1, 20], count: 5, spacing: log}'
 expect "... of numbers below 0" 2 "$stance" check line.yaml --set 'sweep.grid[0].spacing=log'
 says "... is told" "spacing log needs from and to above 0"
+
+# ---- what cuts the domain -----------------------------------------------------------------------
+expect "a rail that ends" 0 "$stance" ranges "$shipped/mechanisms/cart_pole.yaml"
+says "... cuts the domain" "^# These ranges cut the domain: about"
+for side in -1 1; do says "... at $side.97 m" "^#   cut at initial.offset.cart = $side.9[0-9]* m: where starts cease to exist"; done
+! grep -q "hold the domain" log
+result $? "... which the ranges do not hold"
+expect "a rail without ends" 0 "$stance" ranges "$shipped/mechanisms/cart_pole.yaml" --set 'robot.bodies.cart.limits=[none, none]'
+says "... is followed so far" "^#   cut at initial.offset.cart = [0-9.]* m: rays were followed no further"
+! grep -q "hold the domain" log
+result $? "... and no further"
+"$stance" ranges --json "$map" | "$python" -c 'import json, sys; assert [a["cut"] for a in json.load(sys.stdin)["axes"]] == [[False, False]] * 2'
+result $? "JSON: what is held"
+
+# ---- samples ------------------------------------------------------------------------------------
+for sample in topple sampled; do
+    expect "a sample, $sample" 0 "$stance" ranges "$shipped/$sample.yaml"
+    says "... with its method" "^    method: "
+    [ "$sample" != topple ] || says "... with the scale along its rays" "^    - {path: initial.offset.scale, from: 0, to: 1, count: 257}"
+    "$stance" ranges "$shipped/$sample.yaml" >lines 2>ignored
+    sed '/^sweep:/,/^[a-rt-z]/{/^[a-rt-z]/!d}' "$shipped/$sample.yaml" | cat - lines >pasted.yaml
+    expect "... that is whole" 0 "$stance" check pasted.yaml
+done
 
 expect "nothing that stands" 2 "$stance" ranges "$shipped/ball_bounce.yaml"
 says "... is said" "the scene ball has no posture to depart from"

@@ -15,6 +15,10 @@ warns() { # name, what is said, check's arguments: exactly one line
 }
 warns "a loop that is unstable as it is sampled" "the loop is unstable: spectral radius [0-9.]* at a sample time of 0.2 s" "$map" --set controller.sample_time=0.2
 warns "a loop that is unstable a sample late" "the loop is unstable: spectral radius [0-9.]* at a sample time of 0.1 s, a sample late" "$map" --set controller.sample_time=0.1 --set controller.delay=1
+expect "a loop that is hardly unstable" 0 "$stance" check "$shipped/mechanisms/cart_pole.yaml" --set controller.sample_time=0.02 --set controller.delay=2 --set controller.lag=0.0601743
+says "... is told as far as it is" "spectral radius 1.0*[1-9][0-9]* at"
+warns "noise that does not let it settle" "noise makes .* wander by [0-9.]* rms, more than settle.rate, 0.01" "$map" --set controller.rate_noise=0.03 --set stop.settle.rate=0.01
+warns "noise beyond the torque limit" "noise on the command of hip[12] is [0-9.]* rms, more than the [0-9.]* that its limit leaves" "$map" --set controller.noise=4.6
 warns "a torque limit below the equilibrium's" "the equilibrium takes [0-9.]* of hip[12], which gives 0.5 at most" "$map" --set controller.torque_limit=0.5
 warns "friction below what standing takes" "standing on foot1 takes friction 0.3[0-9]*, there is 0.1" "$shipped/mechanisms/pushed.yaml" --set ground.slope=0.3 --set ground.friction=0.1
 warns "degrees" "theta begins at -23.54 rad, more than a turn.*angles are in radians" "$shipped/balance_recovers.yaml" --set initial.equilibrium='{theta: -23.5, q2: 47}' --set controller.torque_limit=100
@@ -45,6 +49,9 @@ done
 expect "run" 0 mpirun -n 2 "$stance" run --quiet -o run.h5 "$map" --set controller.sample_time=0.2 --set 'sweep.grid[0].count=4' --set 'sweep.grid[1].count=3'
 [ "$(grep -c 'stance run: warning' log)" = 1 ]
 result $? "... warns once, whatever the ranks"
+
+expect "the cost of a robot of one's own" 0 "$stance" check "$shipped/mechanisms/cart_pole.yaml"
+says "... is without the kernel that is compiled" "^cost *at most about .* that run compiles for this robot"
 
 # What a design stands on, where it is not level earth.
 expect "the design on a slope of the moon" 0 "$stance" design "$shipped/mechanisms/pushed.yaml" --set ground.slope=0.1 --set ground.gravity=1.62

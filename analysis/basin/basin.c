@@ -4,6 +4,7 @@
 #include "analysis/statistics/intervals.h"
 #include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
+#include "runner/scenario/mend.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,6 +26,22 @@ static int find_axis(const struct results *r, const char *name)
     return -1;
 }
 
+const char *basin_meant(const struct results *r, const char *word, char text[128])
+{
+    enum { MOST = SCENARIO_MAX_AXES + 256 };
+    const char *known[MOST], *found;
+    size_t n = 0;
+    for (int a = 0; a < r->axes; a++)
+        known[n++] = r->axis[a].name;
+    for (int k = 0; k < r->varied && n < MOST; k++)
+        known[n++] = r->vary[k].of.name;
+    found = mend_path(word, known, n);
+    text[0] = '\0';
+    if (found && strcmp(found, word) != 0)
+        snprintf(text, 128, "; did you mean '%s'?", found);
+    return text;
+}
+
 static bool contains(const int *list, int count, int axis)
 {
     for (int k = 0; k < count; k++)
@@ -40,11 +57,12 @@ static bool choose_by(struct basin *b, stance_message *message)
     bool wanted[SCENARIO_MAX_AXES] = {false};
     for (size_t k = 0; k < b->choice.by_count; k++) {
         const int a = find_axis(r, b->choice.by[k]);
+        char meant[128];
         if (a < 0 || strcmp(r->axis[a].name, "sample") == 0)
             return complain(
                 message,
-                "stance basin: --by takes an axis of the grid, and '%.60s' is none of %.90s",
-                b->choice.by[k], r->file);
+                "stance basin: --by takes an axis of the grid, and '%.40s' is none of %.60s%s",
+                b->choice.by[k], r->file, basin_meant(r, b->choice.by[k], meant));
         wanted[a] = true;
     }
     for (int a = 0; a < r->axes; a++)
@@ -107,11 +125,12 @@ static bool choose_weights(struct basin *b, stance_message *message)
                 known = true;
             }
         }
+        char meant[128];
         if (!known)
             complain(message,
-                     "stance basin: --weight takes a start about the equilibrium, and '%.60s' is "
-                     "none of %.80s",
-                     weight->path, b->r->file);
+                     "stance basin: --weight takes a start about the equilibrium, and '%.40s' is "
+                     "none of %.60s%s",
+                     weight->path, b->r->file, basin_meant(b->r, weight->path, meant));
     }
     return known;
 }
@@ -564,6 +583,14 @@ bool basin_make(struct basin *basin, const struct results *r, const struct basin
     if (!good)
         basin_free(basin);
     return good;
+}
+
+size_t basin_row_of(const struct basin *b, const size_t *point)
+{
+    size_t row = 0;
+    for (int k = 0; k < b->by_axes; k++)
+        row = row * b->r->axis[b->by[k]].count + point[b->by[k]];
+    return row;
 }
 
 size_t basin_averaged(const struct basin *basin, const char **paths, size_t most)

@@ -86,6 +86,10 @@ struct basin {
     double *drawn;         /* [rows][draws]: the volume of each alone; NAN: none is known */
 };
 
+/* "; did you mean 'initial.offset.pole'?" where a word is the end of one path of the file's axes
+ * and sample; else "". */
+const char *basin_meant(const struct results *r, const char *word, char text[128]);
+
 /* Takes over the file's sample. False: one line in *message. `*usage`: it is the request or the
  * file's kind that is at fault. Nothing is left allocated then. */
 bool basin_make(struct basin *basin, const struct results *r, const struct basin_choice *choice,
@@ -94,6 +98,8 @@ void basin_free(struct basin *basin);
 /* How many coordinates starts have, and which: axes of the grid, or what is sampled. */
 size_t basin_starts(const struct basin *basin);
 const struct results_axis *basin_start(const struct basin *basin, size_t k);
+/* The row that a point of the axes belongs to. */
+size_t basin_row_of(const struct basin *basin, const size_t *point);
 /* The paths of parameters that rows are averaged over, in paths[most]; how many there are. */
 size_t basin_averaged(const struct basin *basin, const char **paths, size_t most);
 

@@ -109,7 +109,7 @@ static void make_table(struct table *t, const struct basin *b)
             const struct results_varied *varied = &b->r->vary[v];
             const double value = varied->of.value[row->point[b->r->sample]];
             TABLE_FACTS(t, {{varied->of.name, varied->of.name, .width = 12, .group = "at"},
-                            varied->word ? as_text(varied->word[(int)value]) : as_number(value)});
+                            as_varied(varied, value)});
         }
         TABLE_FACTS(
             t,

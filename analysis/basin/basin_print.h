@@ -30,6 +30,11 @@ bool basin_print_loss(const struct results *r, const char *path, enum results_ki
 bool basin_print_answer(const struct basin *basin, const char *answer, enum table_form form,
                         bool *usage, stance_message *message);
 
+bool basin_print_allowed(const struct basin *basin, enum table_form form, bool *usage,
+                         stance_message *message);
+/* Their tables; takes the head's reference. */
+bool basin_table_write(struct table *t, enum table_form form, const char *view, json_t *head);
+
 /* "stabilised with settle_time <= 2": what starts are asked for, until the next call. */
 const char *basin_asked(const struct basin *basin);
 

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool write_table(struct table *t, enum table_form form, const char *view, json_t *head)
+bool basin_table_write(struct table *t, enum table_form form, const char *view, json_t *head)
 {
     bool good;
     if (form == TABLE_AS_JSON) {
@@ -76,6 +76,7 @@ bool basin_print_threshold(const struct basin *b, const char *path, double thres
                            enum table_form form, bool *usage, stance_message *message)
 {
     struct table t = {0};
+    char meant[128];
     int along = -1;
     for (int k = 0; k < b->by_axes; k++)
         along = strcmp(b->r->axis[b->by[k]].name, path) == 0 ? k : along;
@@ -83,8 +84,8 @@ bool basin_print_threshold(const struct basin *b, const char *path, double thres
     if (*usage)
         return complain(message,
                         "stance basin: --threshold needs --of PATH of a parameter whose values "
-                        "rise or fall on the grid, not '%.60s'",
-                        path);
+                        "rise or fall on the grid, not '%.40s'%s",
+                        path, basin_meant(b->r, path, meant));
     const struct results_axis *axis = &b->r->axis[b->by[along]];
     for (size_t row = 0; row < b->rows; row++)
         if (b->row[row].point[b->by[along]] == 0)
@@ -99,12 +100,12 @@ bool basin_print_threshold(const struct basin *b, const char *path, double thres
                basin_asked(b), threshold < 1 ? "falls below" : "rises above", 100 * threshold,
                axis->name, first, last, 100 * b->choice.level);
     }
-    return write_table(&t, form, "at/ first_share last_share value low high before after",
-                       TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
-                                    {"threshold", as_number(threshold)},
-                                    {"of", as_text(axis->name)}, {"unit", as_text(axis->unit)},
-                                    {"level", as_number(b->choice.level)},
-                                    {"within", as_text(b->choice.within)}));
+    return basin_table_write(
+        &t, form, "at/ first_share last_share value low high before after",
+        TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
+                     {"threshold", as_number(threshold)}, {"of", as_text(axis->name)},
+                     {"unit", as_text(axis->unit)}, {"level", as_number(b->choice.level)},
+                     {"within", as_text(b->choice.within)}));
 }
 
 /* ---- losses ------------------------------------------------------------------------------- */
@@ -131,6 +132,7 @@ bool basin_print_loss(const struct results *r, const char *path, enum results_ki
     struct basin_loss loss;
     struct table t = {0};
     const char *equals = strchr(path, '=');
+    char meant[128];
     const size_t length = equals ? (size_t)(equals - path) : strlen(path);
     int along = -1;
     for (int a = 0; a < r->axes; a++)
@@ -142,8 +144,8 @@ bool basin_print_loss(const struct results *r, const char *path, enum results_ki
     if (*usage)
         return complain(message,
                         "stance basin: --lost takes PATH or PATH=VALUE of an axis of the grid with "
-                        "several values, VALUE its first or last, not '%.60s'",
-                        path);
+                        "several values, VALUE its first or last, not '%.40s'%s",
+                        path, along < 0 ? basin_meant(r, path, meant) : "");
     const bool down = end < 2 ? end == 1 : basin_more_at_last(r, along, of);
     if (!basin_lose(r, along, down, of, &loss)) {
         free(loss.lost);
@@ -189,7 +191,7 @@ bool basin_print_loss(const struct results *r, const char *path, enum results_ki
             puts(".\nNone of them is lost.\n");
         }
     }
-    const bool good = write_table(
+    const bool good = basin_table_write(
         &t, form, "value lost lost_so_far share",
         TABLE_OBJECT({"outcome", as_text(results_kind_names[of])}, {"of", as_text(axis->name)},
                      {"starts", as_whole(loss.starts)}, {"unknown", as_whole(loss.unknown)},
@@ -218,14 +220,6 @@ bool basin_numbers(const struct results *r, const char *answer, double **value,
     return good;
 }
 
-static size_t row_of(const struct basin *b, const size_t *point)
-{
-    size_t row = 0;
-    for (int k = 0; k < b->by_axes; k++)
-        row = row * b->r->axis[b->by[k]].count + point[b->by[k]];
-    return row;
-}
-
 /* The numbers of the cases with the outcome, row by row: those of row k are number[begin[k]] up to
  * number[begin[k + 1]]; largest[k]: a case with the largest. begin[rows + 1], zero at first. */
 static void sort_numbers(const struct basin *b, const double *value, double *number,
@@ -237,7 +231,7 @@ static void sort_numbers(const struct basin *b, const double *value, double *num
             if (b->r->kind[i] != b->choice.of || isnan(value[i]))
                 continue;
             results_point(b->r, i, point);
-            const size_t row = row_of(b, point);
+            const size_t row = basin_row_of(b, point);
             if (pass == 0) {
                 largest[row] =
                     begin[row]++ == 0 || value[i] > value[largest[row]] ? i : largest[row];
@@ -292,7 +286,7 @@ bool basin_print_answer(const struct basin *b, const char *answer, enum table_fo
         print_title(b->r);
         printf("%s of the starts that end as %s\n\n", answer, basin_asked(b));
     }
-    return write_table(&t, form, "at/ cases smallest median q90 q99 largest largest_case",
-                       TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
-                                    {"answer", as_text(answer)}));
+    return basin_table_write(&t, form, "at/ cases smallest median q90 q99 largest largest_case",
+                             TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])},
+                                          {"answer", as_text(answer)}));
 }

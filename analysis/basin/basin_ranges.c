@@ -389,6 +389,17 @@ bool ranges_resolve(const struct ranges *r)
     return true;
 }
 
+enum ranges_cut ranges_cut(const struct ranges_axis *axis, int up)
+{
+    const double end = up ? axis->whole.to : -axis->whole.from,
+                 reach = up ? axis->reach[1] : -axis->reach[0];
+    if (axis->open[up])
+        return RANGES_NOT_FOLLOWED;
+    return end >= reach                       ? RANGES_HELD
+           : axis->possible[up] < axis->limit ? RANGES_NO_START
+                                              : RANGES_NOT_FOLLOWED;
+}
+
 /* Of the whole ranges at one point of the other axes. */
 static bool measure_share(struct ranges *r, struct starts *starts)
 {

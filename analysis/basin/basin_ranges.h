@@ -85,4 +85,9 @@ bool ranges_resolve(const struct ranges *ranges);
 /* "fell", "no start", "not lost", ...: what becomes of starts beyond an end. */
 const char *ranges_end(uint8_t end);
 
+/* Whether the whole range of an axis, down or up, ends where the domain may go on: starts cease to
+ * exist there, or rays were followed no further. */
+enum ranges_cut { RANGES_HELD, RANGES_NO_START, RANGES_NOT_FOLLOWED };
+enum ranges_cut ranges_cut(const struct ranges_axis *axis, int up);
+
 #endif

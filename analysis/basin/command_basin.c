@@ -16,7 +16,7 @@ extern const struct command command_basin; /* below */
 enum { MOST_WITHIN = 8, MOST_BY = SCENARIO_MAX_AXES, MOST_SIDE = 1000 };
 
 struct request {
-    bool of_given, boundary;
+    bool of_given, boundary, allowed;
     size_t descents;                   /* of rays */
     double threshold;                  /* 0: none */
     const char *along, *lost, *answer; /* paths, an answer; NULL: not asked for */
@@ -36,6 +36,7 @@ static int show_rays(const struct report *report, const struct results *r,
                         : request->choice.rank > 0    ? "--rank: what they sample are directions"
                         : request->threshold > 0      ? "--threshold: they have no share"
                         : request->answer             ? "--answer: they have no cases inside"
+                        : request->allowed            ? "--allowed: they have no share"
                                                       : NULL;
     if (wrong) {
         basin_sample_free(sample);
@@ -74,6 +75,7 @@ static int show_basin(const struct report *report, const struct results *r,
     const bool good =
         request->threshold > 0 ? basin_print_threshold(&basin, request->along, request->threshold,
                                                        report->form, &usage, message)
+        : request->allowed     ? basin_print_allowed(&basin, report->form, &usage, message)
         : request->answer
             ? basin_print_answer(&basin, request->answer, report->form, &usage, message)
         : usage             ? complain(message,
@@ -192,21 +194,27 @@ static bool read_weights(const char *const *text, struct basin_choice *choice)
 }
 
 /* Of what --of names the path (with --threshold), and the outcome, NULL where none is. */
-static const char *take_path(const char *const *of, size_t count, const char **path)
+static const char *take_path(const char *const *of, size_t count, bool threshold, const char **path)
 {
     const char *outcome = NULL;
-    for (size_t k = 0; k < count; k++)
-        *(strchr(of[k], '.') ? path : &outcome) = of[k];
+    for (size_t k = 0; k < count; k++) {
+        bool is_path = threshold;
+        for (int i = 0; i < RESULTS_OUTCOMES; i++)
+            is_path = is_path && strcmp(of[k], results_kind_names[i]) != 0;
+        *(is_path || strchr(of[k], '.') ? path : &outcome) = of[k];
+    }
     return outcome;
 }
 
 static bool is_consistent(const struct request *request, bool threshold)
 {
     const int asked = threshold + (request->lost != NULL) + (request->answer != NULL) +
-                      (request->choice.rank > 0) + (request->descents > 0) + request->boundary;
+                      (request->choice.rank > 0) + (request->descents > 0) + request->boundary +
+                      request->allowed;
     const char *wrong =
-        asked > 1
-            ? "--threshold, --lost, --rank, --answer, --descend and --boundary are one at a time"
+        asked > 1 ? "--threshold, --lost, --rank, --answer, --allowed, --descend and --boundary "
+                    "are one at a "
+                    "time"
         : threshold && !request->along ? "--threshold needs --of PATH, along which it is crossed"
         : !threshold && request->along ? "--of PATH goes with --threshold; else it names an outcome"
         : threshold && request->threshold == 1
@@ -221,7 +229,7 @@ static int run(int argc, char **argv)
 {
     const char *by[MOST_BY], *of[2] = {NULL}, *level = NULL, *side = NULL, *weight[BASIN_WEIGHTS],
                              *descend = NULL, *threshold = NULL, *rank = NULL;
-    size_t ofs = 0, given[7] = {0}, boundary = 0;
+    size_t ofs = 0, given[7] = {0}, boundary = 0, allowed = 0;
     double cases = 5, descents = 0, ranks = 0;
     int code;
     struct request request = {.choice = {.by = by, .level = 0.95}};
@@ -233,6 +241,7 @@ static int run(int argc, char **argv)
         {"--level", true, &level, 1, &given[1]},
         {"--box", true, &side, 1, &given[2]},
         {"--boundary", false, NULL, 0, &boundary},
+        {"--allowed", false, NULL, 0, &allowed},
         {"--descend", true, &descend, 1, &given[3]},
         {"--threshold", true, &threshold, 1, &given[4]},
         {"--lost", true, &request.lost, 1, &given[0]},
@@ -248,7 +257,7 @@ static int run(int argc, char **argv)
         fputs("stance basin: --boundary prints CSV, not JSON\n", stderr);
         return EXIT_USAGE;
     }
-    const char *outcome = take_path(of, ofs, &request.along);
+    const char *outcome = take_path(of, ofs, threshold != NULL, &request.along);
     if (!report_outcome(&report, outcome, &choice->of) ||
         !report_number(&report, "--threshold", threshold, 1e-6, 1e6, false, &request.threshold) ||
         !report_number(&report, "--rank", rank, 1, 1e9, true, &ranks) ||
@@ -260,6 +269,7 @@ static int run(int argc, char **argv)
     request.of_given = outcome != NULL;
     choice->rank = (size_t)ranks;
     request.boundary = boundary > 0;
+    request.allowed = allowed > 0;
     request.descents = (size_t)descents;
     if (!is_consistent(&request, threshold != NULL))
         return EXIT_USAGE;
@@ -271,7 +281,7 @@ const struct command command_basin = {
     "basin",
     "basin FILE [--by PATH]... [--of OUTCOME] [--within ANSWER=MOST]... [--level L] [--box N]\n"
     "           [--weight PATH=SIZE]... [--threshold T --of PATH | --lost PATH | --rank N |\n"
-    "           --answer A | --descend N | --boundary] [--json | --csv]",
+    "           --answer A | --allowed | --descend N | --boundary] [--json | --csv]",
     "how large a basin is, how sure that is, and what its boundary is like",
     run,
     "The starts are the axes initial.offset.* and initial.state.*, or a sample of these; every\n"
@@ -363,6 +373,12 @@ const struct command command_basin = {
     "                 its values, share and bounds\n"
     "  --answer A     smallest, median, 90 and 99 %, and largest of a stored number (settle_time,\n"
     "                 peak_torque ...) over the starts with the outcome, and in which case\n"
+    "\n"
+    "  --allowed      the share of starts from which linear theory allows some controller to\n"
+    "                 recover with these torques, while the contacts stand (stance design has its\n"
+    "                 reach); of these the share with the outcome; and the share of starts with\n"
+    "                 the outcome outside of it: a robot that slips, or is far from where it is\n"
+    "                 linear, may do what linear theory does not allow\n"
     "\n"
     "  --within A=MOST   counts as the outcome only where the number A is at most MOST, in all of\n"
     "                 the above: settle_time=2 is the domain of stability within 2 s; may be\n"

@@ -9,6 +9,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -72,6 +73,26 @@ static void print_axis(const struct ranges *r, const struct ranges_axis *axis,
     printf("} # %s\n", axis->unit);
 }
 
+/* The head of the scenario's sample: the axes are its factors. */
+static void print_sample(const struct doe *design, const char *before)
+{
+    printf("%s  sample:\n%s    method: %s\n%s    count: %" PRIu64 "\n", before, before,
+           doe_words[design->method], before, design->count);
+    if (design->method == DOE_MORRIS)
+        printf("%s    levels: %d\n", before, design->levels);
+    if (design->second_order)
+        printf("%s    second_order: true\n", before);
+    printf("%s    vary:\n", before);
+}
+
+/* The axis along which the scenario goes out on rays. */
+static void print_scale(const struct scenario_axis *axis, const char *before)
+{
+    printf("%s    - {path: %s, from: %.9g, to: %.9g, count: %zu}\n", before, axis->path[0],
+           scenario_axis_value(axis, 0, 0), scenario_axis_value(axis, axis->count - 1, 0),
+           axis->count);
+}
+
 /* The sweep, of the grid before those of the sample; where it does not count as a comment. */
 static void print_axes(const struct ranges *r, bool counts, bool close)
 {
@@ -79,11 +100,20 @@ static void print_axes(const struct ranges *r, bool counts, bool close)
     printf("%ssweep:\n", before);
     for (int sampled = 0; sampled < 2; sampled++) {
         bool any = false;
+        for (int a = 0; !sampled && a < r->s->axes; a++) {
+            if (r->s->axis[a].offset[0] != offsetof(struct scenario_values, offset_scale))
+                continue;
+            printf("%s  grid:\n", before);
+            print_scale(&r->s->axis[a], before);
+            any = true;
+        }
         for (int a = 0; a < r->axes; a++) {
             if (r->axis[a].sampled != sampled)
                 continue;
-            if (!any)
-                printf(sampled ? "%s  sample:\n%s    vary:\n" : "%s  grid:\n", before, before);
+            if (!any && sampled)
+                print_sample(&r->s->sample.design, before);
+            else if (!any)
+                printf("%s  grid:\n", before);
             any = true;
             printf("%s%s", before, sampled ? "  " : "");
             print_axis(r, &r->axis[a], close ? &r->axis[a].close : &r->axis[a].whole);
@@ -155,6 +185,10 @@ static void add_axis(struct table *t, const struct ranges *r, const struct range
         {{.name = "beyond"},
          as_tree(table_texts(ranges_end(axis->beyond[0]), ranges_end(axis->beyond[1])))},
         {{.name = "reach"}, as_tree(json_pack("[f,f]", least, most))},
+        {{.name = "cut"},
+         as_tree(chosen ? json_pack("[b,b]", ranges_cut(axis, 0) != RANGES_HELD,
+                                    ranges_cut(axis, 1) != RANGES_HELD)
+                        : NULL)},
         {{.name = "lost"}, as_tree(json_pack("[b,b]", !axis->open[0], !axis->open[1]))});
     table_end_row(t);
 }
@@ -176,7 +210,25 @@ static void print_open(const struct ranges *r)
             any = true;
         }
     }
-    puts("\n# (a share of these ranges is theirs, too, and no property of the domain).");
+    puts(".");
+}
+
+/* At which ends the ranges cut the domain, and why they go no further. False: at none. */
+static bool print_cuts(const struct ranges *r, bool print)
+{
+    static const char *const why[] = {[RANGES_NO_START] = "where starts cease to exist",
+                                      [RANGES_NOT_FOLLOWED] = "rays were followed no further"};
+    bool any = false;
+    for (int k = 0; k < 2 * r->axes; k++) {
+        const struct ranges_axis *axis = &r->axis[k / 2];
+        const enum ranges_cut cut = ranges_cut(axis, k % 2);
+        any = any || cut;
+        if (cut && print)
+            printf("#   cut at %s = %.9g %s: %s\n", r->field[axis->first].path,
+                   value_at(&r->field[axis->first], k % 2 ? axis->whole.to : axis->whole.from),
+                   axis->unit, why[cut]);
+    }
+    return any;
 }
 
 /* A part of a scenario: what is not that is a comment. */
@@ -197,11 +249,12 @@ static bool print_text(const struct ranges *r, const struct table *t)
     if (r->failed > 0)
         printf("# %" PRIu64 " simulations failed and count as lost.\n", r->failed);
     print_open(r);
-    printf("# These ranges hold the domain%s: about %.*f %%",
+    printf("# These ranges %s the domain%s: about %.*f %%", print_cuts(r, false) ? "cut" : "hold",
            seen ? "" : ", with too few points to show it", r->share[0] < 0.1, 100 * r->share[0]);
     if (r->share[1] - r->share[0] >= 0.01)
         printf(" to %.0f %%", 100 * r->share[1]);
     printf(" of the starts in them are %s.\n", of);
+    print_cuts(r, true);
     if (r->impossible > 0)
         puts("# Some of these starts cannot be, and a run says so: narrow the ranges there.");
     if (!r->chosen)
@@ -342,7 +395,9 @@ const struct command command_ranges = {
     "of settling. Of the sweep's other axes up to 3 points are looked at, evenly spread: the\n"
     "ranges hold the domains of all. A ray ends where the outcome is lost first: islands beyond "
     "do\n"
-    "not count. Angles are followed up to 3.14 rad, places to 10 m, rates to 100 rad/s or m/s.\n"
+    "not count. Angles are followed up to 3.14 rad, places to 10 m, rates to 100 rad/s or m/s, "
+    "and\n"
+    "ranges end where starts cease to exist: at which ends they cut the domain is said.\n"
     "\n"
     "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
     "  --of OUTCOME       look for another outcome than stabilised\n"
@@ -361,5 +416,6 @@ const struct command command_ranges = {
     "                              of a sample)}, close: the same about the equilibrium; of the\n"
     "                              first path alone: [low, high] along this axis, beyond: [what\n"
     "                              becomes of starts there], reach: [least, most] along all rays,\n"
+    "                              cut: [below, above] whether the whole range cuts the domain,\n"
     "                              lost: [below, above]}]\n",
 };

@@ -8,7 +8,7 @@ top = title_height(0)
 height = high(440.0*width/520, 1, top + 84)
 page_height = top + height + 84
 load 'page.gp'
-set label axis_label('x', width + 80) at screen X(left + 0.5*width), Y(top + height + 46) center @small front
+eval x_label(left + 0.5*width, top + height + 46)
 set label plane ? axis_label('y', height) : 'directions that have ended (%)' \
     at screen X(plane ? 16 : 24), Y(top + 0.5*height) center rotate by 90 @small front
 legend_x = left + width + 20

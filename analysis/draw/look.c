@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 const char *const look_endings[LOOK_FORMAT_COUNT] = {
@@ -54,6 +55,17 @@ static bool read_formats(const struct command *command, const char *text, struct
     return true;
 }
 
+/* Whether an ending is that of a file of another program's format. */
+static bool is_other_format(const char *ending)
+{
+    static const char *const other[] = {"eps",  "ps",  "jpg", "jpeg", "tif", "tiff", "bmp",
+                                        "webp", "mp4", "mov", "avi",  "mkv", "webm", "emf"};
+    for (size_t k = 0; k < sizeof other / sizeof other[0]; k++)
+        if (strcasecmp(ending, other[k]) == 0)
+            return true;
+    return false;
+}
+
 /* A place that ends like a picture is a file, unless there is a directory of that name. */
 static bool read_place(const struct command *command, const char *place, bool formatted,
                        struct look *look)
@@ -63,8 +75,10 @@ static bool read_place(const struct command *command, const char *place, bool fo
     const char *dot = strrchr(name, '.');
     const enum look_format format =
         dot && dot > name ? format_of(dot + 1, strlen(dot + 1)) : LOOK_FORMAT_COUNT;
-    if (format == LOOK_FORMAT_COUNT ||
-        (stat(place, &information) == 0 && S_ISDIR(information.st_mode))) {
+    const bool exists = stat(place, &information) == 0 && S_ISDIR(information.st_mode);
+    if (!exists && format == LOOK_FORMAT_COUNT && dot && dot > name && is_other_format(dot + 1))
+        return wrong(command, "-o", "draws svg, png and pdf, replay animations as gif, too", place);
+    if (format == LOOK_FORMAT_COUNT || exists) {
         look->directory = place;
         return place[0] || wrong(command, "-o", "takes a directory or a file", place);
     }
@@ -216,9 +230,9 @@ bool look_wants(struct look *look, const char *picture)
     const bool wanted =
         look->picture ? strcmp(look->picture, picture) == 0 : !look->file || look->drawn == 0;
     const size_t used = strlen(look->others);
-    if (wanted)
-        look->drawn++;
-    else
+    if (wanted && look->drawn++ == 0)
+        snprintf(look->first, sizeof look->first, "%s", picture);
+    if (!wanted)
         snprintf(look->others + used, sizeof look->others - used, "%s%s", used ? ", " : "",
                  picture);
     return wanted;
@@ -241,7 +255,8 @@ bool look_end(const struct look *look, const struct command *command, const char
         return false;
     }
     if (!look->picture && look->others[0])
-        fprintf(stderr, "%s: --picture draws another one: %s\n", look->file, look->others);
+        fprintf(stderr, "%s: the picture %s; others by --picture: %s\n", look->file, look->first,
+                look->others);
     say_unmet(command, "--labels", look->label, look->labels);
     say_unmet(command, "--colours", look->colour, look->colours);
     return true;

@@ -40,6 +40,7 @@ struct look {
     struct look_pair label[LOOK_MOST_NAMES], colour[LOOK_MOST_NAMES];
     size_t labels, colours;
     size_t drawn;     /* pictures so far */
+    char first[64];   /* name of the first of them */
     char others[256]; /* names of those that were left out, "map, curve" */
 };
 

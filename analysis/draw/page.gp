@@ -22,7 +22,7 @@ if (drawing eq 'pdf') {
 }
 if (drawing eq 'gif') {
     set terminal gif animate delay delay size page_width,page_height font font_name.',12' \
-        fontscale 1.25 background '#ffffff' noenhanced
+        fontscale 1 background '#ffffff' noenhanced
 }
 set output 'picture.'.drawing
 if (drawing ne 'gif') { set multiplot } # each plot is a frame of its own

@@ -70,8 +70,10 @@ void plot_cells_write(struct gnuplot *g, const struct plot_cells *cells, const v
 void plot_became_text(const struct results *r, char *text, size_t size);
 /* Adds to a subtitle how many cases have failed, where some have. */
 void plot_failed_text(const struct results *r, char *text, size_t size);
-/* Adds by which faces of the box of starts the set of an outcome is cut, where there are starts. */
-void plot_cut_text(const struct results *r, char *text, size_t size);
+/* Adds by which faces of the box of starts the set of an outcome is cut, where there are starts,
+ * and what that means for its share, where that is `shown`; RESULTS_KIND_COUNT: of none. */
+void plot_cut_text(const struct results *r, enum results_kind of, bool shown, char *text,
+                   size_t size);
 /* kind_colour[1 + enum results_kind], in the colours of the look; with `legend` an entry for each
  * kind that occurs, with its share of all cases. */
 void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend);

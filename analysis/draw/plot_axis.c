@@ -73,7 +73,15 @@ static double unevenness(const struct results_axis *axis, bool logarithm)
     return sum > 0 ? sqrt(fmax(0, squares / n - sum * sum / (n * n))) / (sum / n) : 0;
 }
 
-void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *axis)
+static double lowest_of(const struct results_axis *axis)
+{
+    double lowest = INFINITY;
+    for (size_t i = 0; i < axis->count; i++)
+        lowest = fmin(lowest, axis->value[i]);
+    return lowest;
+}
+
+static void make_curve(struct plot_axis *along, const struct results_axis *axis)
 {
     plot_axis_make(along, axis);
     if (along->scale != PLOT_LIST || axis->word || axis->count < 2)
@@ -88,6 +96,14 @@ void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *ax
     double margin = high > low ? 0.03 * (high - low) : 0.5;
     along->low = low - margin;
     along->high = high + margin;
+}
+
+void plot_axis_make_curve(struct plot_axis *along, const struct results_axis *axis)
+{
+    make_curve(along, axis);
+    /* A time is not negative, nor has an axis of times room for that. */
+    if (along->scale == PLOT_LINEAR && along->low < 0 && lowest_of(axis) >= 0)
+        along->low = 0;
 }
 
 double plot_axis_place(const struct plot_axis *along, size_t i)
@@ -135,13 +151,33 @@ void plot_tic_text(struct gnuplot *g, const char *text, const char *name, ...)
     gnuplot_text(g, escaped, "%s", whole);
 }
 
+/* "vpole" of initial.offset.vpole beside initial.offset.pole. */
+static const char *without_prefix(const char *path, const char *beside)
+{
+    const char *dot = strrchr(beside, '.');
+    const size_t prefix = dot ? (size_t)(dot + 1 - beside) : 0;
+    return strncmp(path, beside, prefix) == 0 ? path + prefix : path;
+}
+
 void plot_label_write(const struct results_axis *axis, struct gnuplot *g, const char *which)
 {
-    char path[sizeof axis->name + sizeof axis->unit + 4];
+    static const char with[] = "; with ";
+    char text[sizeof axis->text], path[sizeof axis->name + sizeof axis->unit + sizeof text + 16];
     const char *label = look_label(g->look, axis->name);
     const bool own = label != axis->name;
+    snprintf(text, sizeof text, "%s", axis->text);
+    char *others = strstr(text, with);
     snprintf(path, sizeof path, axis->unit[0] ? "%s (%s)" : "%s", axis->name, axis->unit);
-    gnuplot_text(g, own ? "" : axis->text, "%s_text", which);
+    if (others) { /* are said where there is room for the path alone, too */
+        const size_t used = strlen(path);
+        char *const second = strstr(others + strlen(with), ", ");
+        *others = '\0';
+        if (second)
+            *second = '\0';
+        snprintf(path + used, sizeof path - used, ", with %s%s",
+                 without_prefix(others + strlen(with), axis->name), second ? " and others" : "");
+    }
+    gnuplot_text(g, own ? "" : text, "%s_text", which);
     gnuplot_text(g, own ? label : path, "%s_path", which);
 }
 
@@ -176,19 +212,20 @@ void plot_failed_text(const struct results *r, char *text, size_t size)
     }
 }
 
-void plot_cut_text(const struct results *r, char *text, size_t size)
+void plot_cut_text(const struct results *r, enum results_kind of, bool shown, char *text,
+                   size_t size)
 {
     struct faces faces;
     char at[400];
-    const enum results_kind judged = statistics_judged(r);
     const size_t used = strlen(text);
+    if (of == RESULTS_KIND_COUNT)
+        return;
     faces_make(&faces, r, NULL, 0);
-    const face_set cut = faces_cut(&faces, judged);
+    const face_set cut = faces_cut(&faces, of);
     faces_text(&faces, cut, at, sizeof at);
     if (cut && used < size)
-        snprintf(text + used, size - used,
-                 "; what is %s is cut by the box at %s: its share is the box's",
-                 results_kind_names[judged], at);
+        snprintf(text + used, size - used, "; what is %s is cut by the box at %s%s",
+                 results_kind_names[of], at, shown ? ": its share is the box's" : "");
 }
 
 void plot_kinds_write(const struct results *r, struct gnuplot *g, bool legend)

@@ -69,9 +69,14 @@ with_unit(name, unit) = unit eq '' ? name : name.' ('.unit.')'
 title_text(s, size) = wrap(s, letters(page_width - 2*margin, size))
 title_height(_) = margin + lines_height(title_text(title, title_size), title_size) \
     + lines_height(title_text(subtitle, text_size), text_size) + (title eq '' && subtitle eq '' ? 0 : 10)
-# Long name, where there is room for it, and path of an axis, in `px` pixels each.
-axis_label(a, px) = (value(a.'_text') eq '' || strlen(value(a.'_text')) > int(px/6.9) ? '' : value(a.'_text')."\n") \
-    .cut(value(a.'_path'), int(px/6.9))
+# Long name, where there is room for it, if need be without the "initial offset: " that paths say, too, and path of an
+# axis, in `px` pixels each; as the label of x, set under `middle` or as near to it as the page has room.
+long_name(s, n) = strlen(s) <= n ? s : strstrt(s, ': ') > 0 ? long_name(s[strstrt(s, ': ')+2:*], n) : ''
+axis_label(a, px) = (f_name = long_name(value(a.'_text'), int(px/6.9)), f_name eq '' ? '' : f_name."\n") \
+    .end_of(value(a.'_path'), int(px/6.9))
+x_label(middle, y) = (f_label = axis_label('x', page_width - 2*margin), f_half = 3.6*longest_line(f_label) + 4, \
+    sprintf("set label f_label at screen %.6f,%.6f center %s front", \
+        X(at_least(f_half, at_most(middle, page_width - f_half))), Y(y), small))
 
 # ---- legends: marks with texts, and notes under them; the data add theirs. A mark is a line where it has a type of
 # dashes, a point where it has a type of points, or a filled box ----
@@ -98,26 +103,35 @@ mark(k, left, y) = legend_dash[k] + legend_point[k] == 0 ? box(left, y, legend_c
 legend_bar(_) = legend_below ? colour_bar(left, page_height - 80, at_most(280, asked_width - left - 3*margin), 12) \
     : colour_bar(legend_x, legend_y + 70, 18, 180)
 
-# ---- tics of the axis whose name begins with x or y: at most about n ----
+# ---- tics of the axis whose name begins with x or y: about n, two at least ----
 round_up(x) = (f_power = 10.0**floor(log10(x)), f_digit = x/f_power*(1 - 1e-9), \
     (f_digit <= 1 ? 1 : f_digit <= 2 ? 2 : f_digit <= 5 ? 5 : 10)*f_power)
 round_step(low, high, n) = high > low ? round_up(1.0*(high - low)/(n > 1 ? n : 1)) : 1.0
 tic(text, place) = sprintf(", '%s' %.17g", text, place)
 range(a, low, high) = sprintf("set %srange [%.17g:%.17g]; set %stics ", a[1:1], low, high, a[1:1])
-linear_tics(a, low, high, n, labelled) = range(a, low, high).sprintf("%.10g; set format %s '%s'", \
-    round_step(low, high, n), a[1:1], labelled ? '%.10g' : '')
+# Of a step that leaves fewer than two in sight, the first and the last of the next one that does not.
+tic_first(low, step) = step*ceil(low/step - 1e-9)
+tic_last(high, step) = step*floor(high/step + 1e-9)
+two_step(low, high, n) = (f_step = round_step(low, high, n), \
+    n < 20 && tic_last(high, f_step) - tic_first(low, f_step) < 0.5*f_step ? two_step(low, high, n + 1) : f_step)
+linear_tics(a, low, high, n, labelled) = (f_round = round_step(low, high, n), f_two = two_step(low, high, n), \
+    range(a, low, high).(f_two == f_round ? sprintf('%.10g', f_round) : (f_from = tic_first(low, f_two), \
+        f_to = tic_last(high, f_two), sprintf('%.10g,%.10g,%.10g', f_from, f_to - f_from, f_to))) \
+    .sprintf("; set format %s '%s'", a[1:1], labelled ? '%.10g' : ''))
 panel_tics(low, high, height) = linear_tics('y', low, high, height < 160 ? 4 : int(height/36), 1)
 # Places are decimal logarithms, low and high too; on an axis that is logarithmic itself they are not.
 # Less than a decade has round steps, more the mantissas for which there is room.
 log_place(real, power) = real ? 10**power : power
-round_tics(low, high, n, labelled, real) = (f_tics = '', f_step = round_step(10**low, 10**high, n), \
-    sum [f_i=int(ceil(10**low/f_step - 1e-9)):int(floor(10**high/f_step + 1e-9))] (f_tics = f_tics \
-        .tic(labelled ? sprintf('%g', f_i*f_step) : '', log_place(real, log10(f_i*f_step))), 0), f_tics[3:*])
-digit_tics(low, high, n, labelled, real) = (f_tics = '', f_every = int(ceil((high - low)/n)), \
+round_tics(low, high, n, labelled, real) = (f_tics = '', f_count = 0, f_step = round_step(10**low, 10**high, n), \
+    sum [f_i=int(ceil(10**low/f_step - 1e-9)):int(floor(10**high/f_step + 1e-9))] (f_count = f_count + 1, f_tics = f_tics \
+        .tic(labelled ? sprintf('%g', f_i*f_step) : '', log_place(real, log10(f_i*f_step))), 0), \
+    f_count < 2 && n < 20 ? round_tics(low, high, n + 1, labelled, real) : f_tics[3:*])
+digit_tics(low, high, n, labelled, real) = (f_tics = '', f_count = 0, f_every = int(ceil((high - low)/n)), \
     f_digits = n >= 3*(high - low) ? '1 2 5' : n >= 2*(high - low) ? '1 3' : '1', \
     sum [f_i=int(floor(low)):int(ceil(high))] sum [f_k=1:words(f_digits)] (f_place = f_i + log10(word(f_digits, f_k) + 0), \
-        f_place > low - 1e-9 && f_place < high + 1e-9 && f_i % f_every == 0 ? (f_tics = f_tics \
-            .tic(labelled ? sprintf('%g', 10**f_place) : '', log_place(real, f_place)), 0) : 0), f_tics[3:*])
+        f_place > low - 1e-9 && f_place < high + 1e-9 && f_i % f_every == 0 ? (f_count = f_count + 1, f_tics = f_tics \
+            .tic(labelled ? sprintf('%g', 10**f_place) : '', log_place(real, f_place)), 0) : 0), \
+    f_count < 2 && n < 20 ? digit_tics(low, high, n + 1, labelled, real) : f_tics[3:*])
 log_tics(a, low, high, n, labelled, real) = range(a, log_place(real, low), log_place(real, high)).'(' \
     .(high - low < 0.8 ? round_tics(low, high, n, labelled, real) : digit_tics(low, high, n, labelled, real)).')'
 # Words, and numbers without an even spacing: every so-manieth of those that the data name.
@@ -125,9 +139,10 @@ list_tics(a, low, high, n, labelled) = value(a.'_words') < 1 ? range(a, low, hig
     sum [f_i=0:(value(a.'_words') - 1)/f_every] (f_tics = f_tics.sprintf(', %s %s_at[%d]', \
         labelled ? sprintf('%s_word[%d]', a, f_i*f_every + 1) : "''", a, f_i*f_every + 1), 0), range(a, low, high).'('.f_tics[3:*].')')
 # Range and tics of the axis that the data describe.
-axis_tics(a, n, labelled) = value(a.'_scale') eq 'linear' ? linear_tics(a, value(a.'_low'), value(a.'_high'), n, labelled) \
-    : value(a.'_scale') eq 'log' ? log_tics(a, value(a.'_low'), value(a.'_high'), n, labelled, 0) \
-    : list_tics(a, value(a.'_low'), value(a.'_high'), n, labelled)
+axis_tics(a, n, labelled) = (f_n = at_least(2, n), \
+    value(a.'_scale') eq 'linear' ? linear_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled) \
+    : value(a.'_scale') eq 'log' ? log_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled, 0) \
+    : list_tics(a, value(a.'_low'), value(a.'_high'), f_n, labelled))
 
 # ---- maps: the cells of panel p over the axes x and y, see plot_cells_write ----
 cells_of(a) = (f_half = value(a.'_count') == 1 ? 2 : 1, sprintf('%s_cells = %d; %s_size = %.17g; %s_first = %.17g', \

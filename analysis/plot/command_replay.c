@@ -87,6 +87,32 @@ static bool add_distances(const struct results_varied *v, const char *name, cons
     return true;
 }
 
+/* The point of an axis by a further path, which moves along with its first one; the file's scenario
+ * has its numbers. How many such paths there are; *good: of one, that it has been taken. */
+static int find_along(const struct results *r, const char *name, const char *text,
+                      struct near *near, bool *good)
+{
+    struct scenario *s = malloc(sizeof *s);
+    if (!s || !results_scenario(r, s)) {
+        free(s);
+        return 0;
+    }
+    int at = 0, path = 0, found = 0;
+    for (int a = 0; a < s->axes && a < r->axes; a++)
+        for (int k = 1; k < s->axis[a].paths; k++)
+            if (a != r->sample && !s->axis[a].enumeration[k] && is_meant(s->axis[a].path[k], name))
+                at = a, path = k, found++;
+    struct results_axis along = {.count = found == 1 ? r->axis[at].count : 0};
+    along.value = along.count > 0 ? malloc(along.count * sizeof *along.value) : NULL;
+    for (size_t i = 0; along.value && i < along.count; i++)
+        along.value[i] = scenario_axis_value(&s->axis[at], i % s->axis[at].count, path);
+    *good = along.value && find_value(&along, name, text, &near->point[at]);
+    free(along.value);
+    scenario_free(s);
+    free(s);
+    return found;
+}
+
 /* One NAME=VALUE. */
 static bool take_part(const struct results *r, const char *name, const char *text,
                       struct near *near)
@@ -98,6 +124,9 @@ static bool take_part(const struct results *r, const char *name, const char *tex
     for (int k = 0; k < r->varied; k++)
         if (is_meant(r->vary[k].of.name, name))
             varied = k, found++;
+    bool good = false;
+    if (found == 0 && (found = find_along(r, name, text, near, &good)) == 1)
+        return good;
     if (found != 1)
         return bad(found ? "--near: several paths end with"
                          : "--near: nothing is varied that ends with",
@@ -383,13 +412,13 @@ const struct command command_replay = {
     run,
     "Computes a case again, from the scenario inside the file, and draws its coordinates, forces,\n"
     "torques and gaps against time and its stick figures: NAME-caseN-coordinates ... beside the\n"
-    "file. Two cases are overlaid, the second dashed and grey.\n"
+    "file. Two cases are overlaid, the second dashed, its stick figures grey.\n"
     "\n"
     "  --case N       the case with this flat index; of a file of one case that one\n"
     "  --near NAME=VALUE,...   the case nearest to these values: initial.offset.theta=0.02, or\n"
-    "                 theta=0.02 where no other path ends so. Offsets that are not named are "
-    "those\n"
-    "                 of the equilibrium, all else has its first value\n"
+    "                 theta=0.02 where no other path ends so; paths that move along an axis are\n"
+    "                 names, too. Offsets that are not named are those of the equilibrium, all\n"
+    "                 else has its first value\n"
     "  --set PATH=VALUE   with a value of the scenario replaced, as `run` has it\n"
     "  -o FILE.gif    an animation in real time instead; --picture animation draws it as SVG, for\n"
     "                 browsers\n" LOOK_HELP,

@@ -12,7 +12,7 @@ page_height = panel_top(panels + 1) - heading_height + 56
 load 'page.gp'
 do for [p=1:panels] {
     set label cut(heading[p], (width + legend_room)/7.1) at screen X(left), Y(panel_top(p) - 9) left @small front
-    set label cut(label[p], (height + heading_height)/6.9) at screen X(22), Y(panel_top(p) + 0.5*height) center rotate by 90 @small front
+    set label end_of(label[p], (height + heading_height)/6.9) at screen X(22), Y(panel_top(p) + 0.5*height) center rotate by 90 @small front
 }
 set label 'time (s)' at screen X(left + 0.5*width), Y(panel_top(panels) + height + 42) center font ',12' front
 legend_x = left + width + 14

@@ -150,10 +150,13 @@ void plot_value_title(struct gnuplot *g, const struct results_axis *axis, size_t
     results_value_text(axis, i, true, value, sizeof value);
     if (name == axis->name)
         name = plot_short_name(axis->name, naming);
-    if (naming == PLOT_VALUES_ALONE)
-        snprintf(text, size, "%s", look_label(g->look, value));
+    const char *const label = look_label(g->look, value);
+    if (naming == PLOT_NUMBERS && label == value)
+        results_value_text(axis, i, false, text, size);
+    else if (naming >= PLOT_VALUES_ALONE)
+        snprintf(text, size, "%s", label);
     else
-        snprintf(text, size, "%s = %s", name, look_label(g->look, value));
+        snprintf(text, size, "%s = %s", name, label);
 }
 
 /* "friction = 0.25, noise = 0.1": the page's subtitle has the whole paths in the same order. */

@@ -10,6 +10,7 @@ enum plot_naming {
     PLOT_NAMES,      /* "proportional.x = 25" */
     PLOT_LAST_WORDS, /* "x = 25" */
     PLOT_VALUES_ALONE,
+    PLOT_NUMBERS, /* values without their units */
 };
 
 /* Which axes are drawn, and which of the points of the others. */

@@ -14,10 +14,10 @@ page_height = bottom + 84
 load 'page.gp'
 set label 'outcome' at screen X(left - 10), Y(top + 0.5*strip) right font ',12' front
 do for [p=1:panels] {
-    set label cut(with_unit(answer[p], answer_unit[p]), (height + gap)/6.9) at screen X(24), Y(panel_top(p) + 0.5*height) \
+    set label end_of(with_unit(answer[p], answer_unit[p]), (height + gap)/6.9) at screen X(24), Y(panel_top(p) + 0.5*height) \
         center rotate by 90 @small front
 }
-set label axis_label('x', width + 80) at screen X(left + 0.5*width), Y(bottom + 46) center @small front
+eval x_label(left + 0.5*width, bottom + 46)
 legend_x = left + width + 20
 legend_y = top + 10
 load 'panels.gp'

@@ -30,15 +30,19 @@ static void put_titles(struct gnuplot *g, const struct results *r, const struct 
     for (int k = 0; table && k < 2; k++) {
         const struct results_axis *axis = &r->axis[layout->other[k]];
         const char *const line = k ? "column" : "row", *name = look_label(g->look, axis->name);
-        gnuplot_text(g, name == axis->name ? plot_short_name(name, PLOT_NAMES) : name, "%s_name",
-                     line);
+        if (name == axis->name)
+            snprintf(text, sizeof text, axis->unit[0] ? "%s (%s)" : "%s",
+                     plot_short_name(name, PLOT_NAMES), axis->unit);
+        else
+            snprintf(text, sizeof text, "%s", name);
+        gnuplot_text(g, text, "%s_name", line);
         gnuplot_set(g, "array %s_long[%zu]\narray %s_bare[%zu]", line, layout->shown[k], line,
                     layout->shown[k]);
         for (size_t m = 0; m < layout->shown[k]; m++) {
             const size_t i = plot_layout_shown(layout, r, k, m);
             plot_value_title(g, axis, i, PLOT_NAMES, text, sizeof text);
             gnuplot_text(g, text, "%s_long[%zu]", line, m + 1);
-            plot_value_title(g, axis, i, PLOT_VALUES_ALONE, text, sizeof text);
+            plot_value_title(g, axis, i, PLOT_NUMBERS, text, sizeof text);
             gnuplot_text(g, text, "%s_bare[%zu]", line, m + 1);
         }
     }
@@ -160,7 +164,7 @@ static bool draw_outcomes(const struct plot *plot, const struct plot_layout *lay
                  "; %llu of them inferred from neighbours that agree",
                  (unsigned long long)inferred);
     }
-    plot_cut_text(plot->r, what, sizeof what);
+    plot_cut_text(plot->r, statistics_judged(plot->r), true, what, sizeof what);
     if (!begin_page(&g, plot, layout, what, plot->r->kind, sizeof *plot->r->kind, "", message))
         return false;
     return plot_end(plot, &g, "map", message);
@@ -235,7 +239,7 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
                      stance_message *message)
 {
     struct plot_layout layout;
-    char what[256], none[64];
+    char what[700], none[64];
     uint64_t inferred;
     struct measure m = {.name = answer->name, .unit = answer->unit, .what = what, .none = none};
 
@@ -243,6 +247,7 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
         !plot_answer_numbers(plot, answer, &m.values, &m.low, &m.high, message))
         return false;
     plot_answer_title(answer, what, sizeof what);
+    plot_cut_text(plot->r, answer->of, false, what, sizeof what);
     snprintf(none, sizeof none,
              inferred > 0                       ? "none or inferred"
              : answer->of == RESULTS_KIND_COUNT ? "no number"

@@ -32,7 +32,7 @@ bottom = panel_top(panels) + height
 page_height = bottom + 84
 load 'page.gp'
 
-set label axis_label('x', right - left + 50) at screen X(0.5*(left + right)), Y(bottom + 46) center @small front
+eval x_label(0.5*(left + right), bottom + 46)
 # Long names may go on beside the labels under the map, but not into the title.
 set label axis_label('y', bottom - top + 28) at screen X(22), Y(0.5*(top + bottom) + 14) center rotate by 90 @small front
 
@@ -86,8 +86,8 @@ if (cross) {
 }
 do for [p=1:panels] {
     eval panel(panel_left(p), panel_top(p), width, height)
-    eval axis_tics('x', at_least(2, width/65), p + columns > panels)
-    eval axis_tics('y', at_least(2, height/45), (p - 1) % columns == 0)
+    eval axis_tics('x', width/65, p + columns > panels)
+    eval axis_tics('y', height/45, (p - 1) % columns == 0)
     if (measured) { plot @cells @as_numbers notitle } else { plot @cells @as_colours notitle }
     unset colorbox # one for all
 }

@@ -328,8 +328,7 @@ static void put_labels(struct model *m)
     for (int k = 0; k < grounded; k++) {
         double point[2], speed[2];
         m->scene->contact_point(m->scene, m->c->robot, m->c->position, rest, k, point, speed);
-        label(m, INK_CONTACT, point[0] - 0.05 * m->size,
-              point[1] - m->size * (0.06 + (grounded > 2 ? 0.045 * k : 0)), point,
+        label(m, INK_CONTACT, point[0], point[1] - 0.06 * m->size, point,
               m->scene->contact_name[k]);
     }
     gnuplot_set(m->g, "labels = %d", m->labels);
@@ -340,9 +339,17 @@ static const char *directory_of(const struct look *look)
     return look->directory ? look->directory : ".";
 }
 
+/* Which way a slide goes, seen from where the robot stands. */
+static const char *way_of(const struct moved *moved)
+{
+    const double x = moved->along[0], z = moved->along[1];
+    return fabs(x) > fabs(z) ? (x > 0 ? "to the right" : "to the left") : z > 0 ? "up" : "down";
+}
+
 /* What stands beside the figure: each coordinate's value and meaning. */
 static void put_words(struct model *m)
 {
+    static const double dust = 1e-12; /* m, rad: what equilibria leave of a 0 */
     int words = 0;
     char text[240];
     gnuplot_set(m->g, "array word_text[%d]; array word_ink[%d]",
@@ -350,15 +357,20 @@ static void put_words(struct model *m)
                 STANCE_MAX_COORDINATES + STANCE_MAX_ACTUATORS + 2);
     for (int k = 0; k < m->scene->coordinates; k++) {
         const stance_quantity *const q = &m->scene->coordinate[k];
-        snprintf(text, sizeof text, "%.40s = %.4g %.20s: %.120s", q->name, m->c->position[k] + 0.0,
-                 q->unit, q->text);
+        const double at = fabs(m->c->position[k]) < dust ? 0 : m->c->position[k];
+        snprintf(text, sizeof text, "%.40s = %.4g %.20s: %.120s", q->name, at, q->unit, q->text);
         gnuplot_text(m->g, text, "word_text[%d]", ++words);
         gnuplot_set(m->g, "word_ink[%d] = %d", words, INK_COORDINATE);
     }
     for (int a = 0; a < m->scene->actuators; a++) {
-        const stance_quantity *const q = &m->scene->coordinate[m->scene->actuated[a]];
-        snprintf(text, sizeof text, "%.40s: positive raises %.40s", m->scene->actuator_name[a],
-                 q->name);
+        const int k = m->scene->actuated[a];
+        const char *const name = m->scene->coordinate[k].name;
+        if (m->moved[k].turns)
+            snprintf(text, sizeof text, "%.40s: positive raises %.40s", m->scene->actuator_name[a],
+                     name);
+        else
+            snprintf(text, sizeof text, "%.40s: positive pushes %.40s along its axis, %s",
+                     m->scene->actuator_name[a], name, way_of(&m->moved[k]));
         gnuplot_text(m->g, text, "word_text[%d]", ++words);
         gnuplot_set(m->g, "word_ink[%d] = %d", words, INK_ACTUATOR);
     }

@@ -47,44 +47,86 @@ middle_x = 0.5*(low_x + high_x)
 middle_y = 0.5*(low_y + high_y)
 set xrange [middle_x - 0.5*side/scale:middle_x + 0.5*side/scale]
 set yrange [middle_y - 0.5*height/scale:middle_y + 0.5*height/scale]
-# Labels that would cover each other part, up and down or to the sides, whichever is less. Many stand in two columns
-# beside the figure, coordinates on the left, with lines to where they belong. Places in px from the middle of the panel.
+# Labels stand where they are wanted, or as near to it as they cover neither each other nor lines and arrows; those
+# that end far away have a line to what they name. Many stand in two columns beside the figure, coordinates on the left,
+# parted up and down, each with its line. Places in px from the middle of the panel.
 if (has_place) {
     labels = labels + 1
     label_text[labels] = '(x, z)'; label_x[labels] = place_x + 0.07*size; label_y[labels] = place_y + 0.03*size; label_ink[labels] = 0
     of_x[labels] = place_x; of_y[labels] = place_y
 }
-array at_x[40]; array at_y[40]; array half_width[40]
+array at_x[40]; array at_y[40]; array half_width[40]; array placed[40]
 half_height = 9
 crowded = labels > 9
 column = 0.5*scale*(high_x - low_x) + 110
 do for [i=1:labels] {
+    placed[i] = 0
     at_x[i] = scale*(label_x[i] - middle_x)
     at_y[i] = scale*((crowded ? of_y[i] : label_y[i]) - middle_y)
     half_width[i] = 4.2*strlen(label_text[i]) + 4
     if (crowded) { at_x[i] = (label_ink[i] == 0 ? -1 : 1)*at_most(column + half_width[i], 0.5*side - half_width[i]) }
 }
+# What is not to be covered: places on lines, 10 px apart, and the heads of arrows.
+array taken_x[2000]; array taken_y[2000]
+taken = 0
+take(x, y) = taken < 2000 ? (taken = taken + 1, taken_x[taken] = scale*(x - middle_x), taken_y[taken] = scale*(y - middle_y), 0) : 0
+take_line(x, y, dx, dy) = (f_n = int(1 + scale*sqrt(dx*dx + dy*dy)/10), f_n < 200 ? \
+    sum [f_i=0:f_n] take(x + dx*f_i/f_n, y + dy*f_i/f_n) : 0)
+number(line, k) = real(word(line, k))
+do for [i=1:(crowded ? 0 : |$segments| - 1)] {
+    if (words($segments[i]) == 2 && words($segments[i+1]) == 2) {
+        dummy = take_line(number($segments[i], 1), number($segments[i], 2), number($segments[i+1], 1) - number($segments[i], 1), \
+            number($segments[i+1], 2) - number($segments[i], 2))
+    }
+}
+do for [i=1:(crowded ? 0 : |$arrows|)] {
+    dummy = take_line(number($arrows[i], 1), number($arrows[i], 2), number($arrows[i], 3), number($arrows[i], 4))
+}
+if (has_place) { do for [i=-1:1] { dummy = take(place_x + 9*i/scale, place_y + 9*(1 - abs(i))/scale) } }
+covers(x, y, i, k) = abs(taken_x[k] - x) < half_width[i] + 3 && abs(taken_y[k] - y) < half_height + 4
+hides(x, y, i, j) = abs(at_x[j] - x) < half_width[i] + half_width[j] + 2 && abs(at_y[j] - y) < 2*half_height + 2
+outside(x, y, i) = abs(x) > 0.5*side - half_width[i] || abs(y) > 0.5*height - half_height
+cost(x, y, i) = 1000*outside(x, y, i) + sum [f_j=1:labels] (placed[f_j] ? 400*hides(x, y, i, f_j) : 0) \
+    + (taken > 0 ? sum [f_k=1:taken] 40*covers(x, y, i, f_k) : 0)
+# Contacts first, which have the least room.
+do for [which=2:0:-1] {
+    do for [i=1:(crowded ? 0 : labels)] {
+        if (label_ink[i] == which) {
+            wanted_x = at_x[i]; wanted_y = at_y[i]
+            least = cost(wanted_x, wanted_y, i)
+            do for [k=0:83] {
+                away = 13*(1 + k/12)
+                x_try = wanted_x + away*cos(pi*(k % 12)/6); y_try = wanted_y + away*sin(pi*(k % 12)/6)
+                now = away < least ? away + cost(x_try, y_try, i) : least
+                if (now < least) { least = now; at_x[i] = x_try; at_y[i] = y_try }
+            }
+            placed[i] = 1
+        }
+    }
+}
 over_x(i, j) = half_width[i] + half_width[j] - abs(at_x[i] - at_x[j])
 over_y(i, j) = 2*half_height - abs(at_y[i] - at_y[j])
-do for [round=1:80] {
+do for [round=1:(crowded ? 80 : 0)] {
     do for [i=2:labels] {
         do for [j=1:i-1] {
             if (over_x(i, j) > 0 && over_y(i, j) > 0) {
-                sideways = !crowded && over_x(i, j) < over_y(i, j)
-                push = 0.25 + 0.5*(sideways ? over_x(i, j) : over_y(i, j))
-                push = (sideways ? at_x[i] < at_x[j] : at_y[i] < at_y[j]) ? -push : push
-                at_x[i] = at_x[i] + (sideways ? push : 0); at_x[j] = at_x[j] - (sideways ? push : 0)
-                at_y[i] = at_y[i] + (sideways ? 0 : push); at_y[j] = at_y[j] - (sideways ? 0 : push)
+                push = (0.25 + 0.5*over_y(i, j))*(at_y[i] < at_y[j] ? -1 : 1)
+                at_y[i] = at_y[i] + push; at_y[j] = at_y[j] - push
             }
         }
     }
 }
+# From the nearest place of a label's edge to what it names.
+edge(at, of, half) = at + (of > at + half ? half : of < at - half ? -half : of - at)
 set style textbox opaque noborder margins 0.3,0.1
 do for [i=1:labels] {
     x_at = middle_x + at_x[i]/scale
     y_at = middle_y + at_y[i]/scale
-    if (crowded) {
-        set arrow from x_at - sgn(at_x[i])*half_width[i]/scale, y_at to of_x[i], of_y[i] nohead lw 0.7 lc rgb ink[label_ink[i]+1] front
+    edge_x = edge(at_x[i], scale*(of_x[i] - middle_x), half_width[i])
+    edge_y = crowded ? at_y[i] : edge(at_y[i], scale*(of_y[i] - middle_y), half_height)
+    if (crowded || sqrt((edge_x - scale*(of_x[i] - middle_x))**2 + (edge_y - scale*(of_y[i] - middle_y))**2) > 34) {
+        set arrow from middle_x + edge_x/scale, middle_y + edge_y/scale to of_x[i], of_y[i] nohead lw 0.7 \
+            lc rgb ink[label_ink[i]+1] front
     }
     set label label_text[i] at x_at, y_at center font ',13' textcolor rgb ink[label_ink[i]+1] boxed front
 }

@@ -13,7 +13,10 @@
 
 GNUPLOT_SCRIPT(plot_outline_gp, "analysis/plot/plot_outline.gp");
 
+/* Each has a pair of dashes and marks of its own. */
 enum { MOST_OUTLINES = 14, HUES = 7, DASHES = 5 };
+static const int marks[] = {0, 7, 4}; /* types of gnuplot's points: none, discs, squares */
+_Static_assert(MOST_OUTLINES <= DASHES * sizeof marks / sizeof marks[0], "outlines look alike");
 
 struct page {
     struct gnuplot g;
@@ -23,6 +26,7 @@ struct page {
     enum plot_scale scale[2]; /* that all files can have */
     double low[2], high[2];
     bool cross;
+    const char *swept; /* the one axis that outlines differ in, beside files; NULL: none, several */
 };
 
 static const struct results_axis *axis_of(const struct results *r, const struct plot_layout *layout,
@@ -158,8 +162,8 @@ static void name_outline(struct page *page, int f, const struct plot_layout *lay
 {
     const struct results *const r = page->plots[f].r;
     char values[300];
-    plot_panel_title(&page->g, r, layout, panel,
-                     layout->others > 1 ? PLOT_NAMES : PLOT_VALUES_ALONE, values, sizeof values);
+    plot_panel_title(&page->g, r, layout, panel, page->swept ? PLOT_VALUES_ALONE : PLOT_NAMES,
+                     values, sizeof values);
     if (page->files == 1)
         snprintf(text, size, "%s", values[0] ? values : results_kind_names[page->of]);
     else
@@ -211,8 +215,9 @@ static bool put_outline(struct page *page, int f, const struct plot_layout *layo
         put_lines(page, &b, points, count);
         name_outline(page, f, layout, panel, name, sizeof name);
         snprintf(more, sizeof more, "%.1f %%", share);
-        snprintf(colour, sizeof colour, "hue[%d]", (page->outlines - 1) % HUES + 1);
-        gnuplot_legend_mark(&page->g, colour, (page->outlines - 1) % DASHES + 1, 0, name, more);
+        const int k = page->outlines - 1;
+        snprintf(colour, sizeof colour, "hue[%d]", k % HUES + 1);
+        gnuplot_legend_mark(&page->g, colour, k % DASHES + 1, marks[k / DASHES], name, more);
     }
     boundary_free(&b);
     free(inside);
@@ -223,13 +228,29 @@ static bool put_outline(struct page *page, int f, const struct plot_layout *layo
 
 /* ---- the page ----------------------------------------------------------------------------- */
 
-/* The name of the one axis that outlines differ in, above their values. */
-static void put_head(struct page *page, const struct plot_layout *layout)
+static const char *find_swept(const struct page *page)
 {
-    const struct results *const r = page->plots[0].r;
-    const bool one = page->files == 1 && layout->others == 1;
-    gnuplot_text(&page->g, one ? look_label(page->g.look, r->axis[layout->other[0]].name) : "",
-                 "legend_head");
+    const char *swept = NULL;
+    for (int f = 0; f < page->files; f++) {
+        const struct results *const r = page->plots[f].r;
+        struct plot_layout layout;
+        plot_layout_make(&layout, r, MOST_OUTLINES);
+        const char *const own = layout.others > 0 ? r->axis[layout.other[0]].name : NULL;
+        if (layout.others > 1 || (swept && own && strcmp(swept, own) != 0))
+            return NULL;
+        swept = own ? own : swept;
+    }
+    return swept;
+}
+
+/* What the values in the legend are of. */
+static void put_head(struct page *page)
+{
+    char text[200];
+    page->swept = find_swept(page);
+    snprintf(text, sizeof text, "%s%s", page->swept && page->files > 1 ? "file, " : "",
+             page->swept ? look_label(page->g.look, page->swept) : "");
+    gnuplot_text(&page->g, text, "legend_head");
 }
 
 static bool begin(struct page *page, stance_message *message)
@@ -266,8 +287,8 @@ bool plot_outline(const struct plot *plots, int files, enum results_kind of,
     if (!begin(&page, message))
         return false;
     put_axes(&page, &layout);
-    put_head(&page, &layout);
-    const int most = MOST_OUTLINES / files > 1 ? MOST_OUTLINES / files : 1;
+    put_head(&page);
+    const int most = MOST_OUTLINES / files; /* files are fewer: command_plot.c */
     for (int f = 0; good && f < files; f++) {
         plot_layout_make(&layout, plots[f].r, most);
         for (int p = 0; good && p < layout.panels; p++)

@@ -1,4 +1,4 @@
-# plot_outline.gp - outlines over the axes x and y in one frame, told apart by colour and by dashes.
+# plot_outline.gp - outlines over the axes x and y in one frame, told apart by colours, and by dashes and marks.
 left = 118
 width = wide(560, 1, left + legend_room)
 
@@ -7,7 +7,7 @@ top = title_height(0)
 height = high(500.0*width/560, 1, top + 84)
 page_height = top + height + 84
 load 'page.gp'
-set label axis_label('x', width + 80) at screen X(left + 0.5*width), Y(top + height + 46) center @small front
+eval x_label(left + 0.5*width, top + height + 46)
 set label axis_label('y', height + 28) at screen X(22), Y(top + 0.5*height) center rotate by 90 @small front
 legend_x = left + width + 20
 legend_y = top + 10
@@ -15,9 +15,10 @@ load 'panels.gp'
 
 eval panel(left, top, width, height)
 eval grid
-eval axis_tics('x', at_least(2, width/65), 1)
-eval axis_tics('y', at_least(2, height/45), 1)
+eval axis_tics('x', width/65, 1)
+eval axis_tics('y', height/45, 1)
 if (cross) {
     set label 1 '' at 0,0 point pt 1 ps 1.4 lw 2 lc rgb 'black' front
 }
-plot for [k=1:outlines] '$outline'.k using 1:2 with lines lw 2.2 dt legend_dash[k] lc rgb legend_colour[k] notitle
+plot for [k=1:outlines] '$outline'.k using 1:2 with linespoints lw 2.2 dt legend_dash[k] lc rgb legend_colour[k] \
+    pt (legend_point[k] > 0 ? legend_point[k] : -1) pn 12 ps 1.1 notitle

@@ -22,6 +22,13 @@ enum {
     MOST_DRAWN = 50000, /* points of the scatter: more make files that no viewer opens */
 };
 
+/* What is drawn of the axis of a path, as values stand there. */
+struct span {
+    bool logarithmic;
+    bool none[2]; /* some values are -infinity, infinity: limits that there are not */
+    double low, high, absent[2]; /* the places of these */
+};
+
 struct page {
     struct gnuplot g;
     const struct plot *plot;
@@ -29,7 +36,7 @@ struct page {
     int x, y;          /* paths of the scatter, y -1: there is but one factor */
     int scale;         /* the axis over initial.offset.scale, or -1 */
     bool shares;       /* points stand for several cases */
-    bool *logarithmic; /* [varied] */
+    struct span *span; /* [varied] */
 };
 
 static bool no_memory(stance_message *message)
@@ -63,90 +70,94 @@ static void choose_scatter(struct page *page)
 
 /* ---- places ------------------------------------------------------------------------------- */
 
-/* Whether the values of a path lie more evenly by their logarithms, over a wide range. */
-static bool is_logarithmic(const struct results_varied *v)
-{
-    double low = INFINITY, high = 0, sum = 0, sum_log = 0;
-    for (size_t i = 0; i < v->of.count; i++) {
-        if (v->word || !(v->of.value[i] > 0) || !isfinite(v->of.value[i]))
-            return false;
-        low = fmin(low, v->of.value[i]);
-        high = fmax(high, v->of.value[i]);
-        sum += v->of.value[i];
-        sum_log += log(v->of.value[i]);
-    }
-    const double n = (double)v->of.count;
-    return high > 3 * low && fabs((sum_log / n - log(low)) / log(high / low) - 0.5) <
-                                 fabs((sum / n - low) / (high - low) - 0.5);
-}
-
-/* Where a value of a path stands. */
-static double place_of(const struct page *page, int k, double value)
-{
-    return page->logarithmic[k] ? log10(value) : value;
-}
-
-/* Range of a path, of offsets times the scale; infinite values are beyond it. */
-static void find_range(const struct page *page, int k, double *low, double *high)
+/* Finds the span of a path: its values stand by their logarithms where these lie more evenly over a
+ * wide range; offsets are multiplied by the scale. */
+static void find_span(const struct page *page, int k)
 {
     const struct results *r = page->plot->r;
     const struct results_varied *v = &r->vary[k];
-    double factor[2] = {1, 1};
+    struct span *const span = &page->span[k];
+    double low = INFINITY, high = -INFINITY, sum = 0, sum_log = 0, n = 0;
 
+    *span = (struct span){0};
+    for (size_t i = 0; i < v->of.count; i++) {
+        const double value = v->of.value[i];
+        if (isinf(value)) {
+            span->none[value > 0] = true;
+            continue;
+        }
+        low = fmin(low, value);
+        high = fmax(high, value);
+        sum += value;
+        sum_log += value > 0 ? log(value) : 0;
+        n++;
+    }
+    if (n == 0)
+        low = high = 0;
+    span->logarithmic = !v->word && low > 0 && high > 3 * low &&
+                        fabs((sum_log / n - log(low)) / log(high / low) - 0.5) <
+                            fabs((sum / n - low) / (high - low) - 0.5);
     if (page->scale >= 0 && is_offset(v)) {
         const struct results_axis *axis = &r->axis[page->scale];
-        factor[0] = fmin(axis->value[0], axis->value[axis->count - 1]);
-        factor[1] = fmax(axis->value[0], axis->value[axis->count - 1]);
+        const double first = axis->value[0], last = axis->value[axis->count - 1],
+                     least = fmin(first, last), most = fmax(first, last), from = low, to = high;
+        low = fmin(least * from, most * from);
+        high = fmax(least * to, most * to);
     }
-    *low = INFINITY;
-    *high = -INFINITY;
-    for (size_t i = 0; i < v->of.count; i++) {
-        for (int f = 0; f < 2 && isfinite(v->of.value[i]); f++) {
-            *low = fmin(*low, factor[f] * v->of.value[i]);
-            *high = fmax(*high, factor[f] * v->of.value[i]);
-        }
+    if (span->logarithmic) {
+        low = log10(low);
+        high = log10(high);
     }
-    if (!(*low <= *high))
-        *low = *high = 0;
-    if (page->logarithmic[k]) {
-        *low = log10(*low);
-        *high = log10(*high);
-    }
-    const double margin = *high > *low ? 0.03 * (*high - *low) : 0.5;
-    *low -= margin;
-    *high += margin;
+    const double width = high > low ? high - low : 1;
+    span->absent[0] = low - 0.3 * width;
+    span->absent[1] = high + 0.3 * width;
+    span->low = span->none[0] ? span->absent[0] : low;
+    span->high = span->none[1] ? span->absent[1] : high;
+    const double margin = span->high > span->low ? 0.03 * (span->high - span->low) : 0.5;
+    span->low -= margin;
+    span->high += margin;
 }
 
-/* Tells the script of path k as an axis: words, and numbers that are few, are a list. */
+/* Where a value of a path stands; what is infinite, an absent limit, beside all others. */
+static double place_of(const struct page *page, int k, double value)
+{
+    const struct span *span = &page->span[k];
+    return isinf(value) ? span->absent[value > 0] : span->logarithmic ? log10(value) : value;
+}
+
+/* Tells the script of path k as an axis: words, and numbers that are few or among which some are
+ * none, are a list. */
 static bool put_axis(struct page *page, int k, const char *which, stance_message *message)
 {
     const struct results_varied *v = &page->plot->r->vary[k];
     struct gnuplot *g = &page->g;
     struct doe_bins bins;
-    double low, high;
+    const struct span *span = &page->span[k];
+    double low = span->low, high = span->high;
     size_t words = 0;
 
     if (!doe_bins_make(&bins, page->plot->r, k, TICS, message))
         return false;
-    const bool listed = bins.listed && !(page->scale >= 0 && is_offset(v));
-    find_range(page, k, &low, &high);
+    const bool absent = span->none[0] || span->none[1],
+               listed = absent || (bins.listed && !(page->scale >= 0 && is_offset(v)));
     if (v->word) {
         low = ceil(low) - 0.5;
         high = floor(high) + 0.5;
     }
     plot_label_write(&v->of, g, which);
-    gnuplot_text(g, listed ? "list" : page->logarithmic[k] ? "log" : "linear", "%s_scale", which);
+    gnuplot_text(g, listed ? "list" : span->logarithmic ? "log" : "linear", "%s_scale", which);
     gnuplot_set(g, "%s_low = %#.17g; %s_high = %#.17g; %s_wordy = %d", which, low, which, high,
                 which, v->word != NULL);
     if (!listed)
         return true;
-    gnuplot_set(g, "array %s_word[%zu]\narray %s_at[%zu]", which, bins.count + 1, which,
-                bins.count + 1);
-    for (size_t b = 0; b < bins.count; b++) {
-        const double centre = bins.bin[b].centre;
-        char text[40];
-        if (!isfinite(centre))
+    gnuplot_set(g, "array %s_word[%zu]\narray %s_at[%zu]", which, bins.count + 2, which,
+                bins.count + 2);
+    for (size_t b = 0; b < bins.count + 2; b++) {
+        const bool beside = b >= bins.count, up = b > bins.count;
+        if (beside && (!span->none[up] || isinf(bins.bin[up ? bins.count - 1 : 0].centre)))
             continue;
+        const double centre = !beside ? bins.bin[b].centre : up ? INFINITY : -INFINITY;
+        char text[40];
         results_number_text(centre, 0, text, sizeof text);
         gnuplot_set(g, "%s_at[%zu] = %#.17g", which, ++words, place_of(page, k, centre));
         plot_tic_text(g, v->word ? v->word[(int)centre] : text, "%s_word[%zu]", which, words);
@@ -254,7 +265,7 @@ static bool put_panel(struct page *page, int k, double *most, stance_message *me
     for (size_t b = 0; b < bins.count; b++) {
         const struct statistics_counts *c = &bins.bin[b].counts;
         const struct interval *interval = &bins.bin[b].of_kind[page->judged];
-        if (c->done == 0 || !isfinite(bins.bin[b].centre))
+        if (c->done == 0)
             continue;
         GNUPLOT_ROW(&page->g, place_of(page, k, bins.bin[b].centre),
                     100 * (double)c->kind[page->judged] / (double)c->done, 100 * interval->low,
@@ -278,11 +289,13 @@ static bool draw(struct page *page, stance_message *message)
     double most = 1;
 
     choose_scatter(page);
+    for (int k = 0; k < r->varied; k++)
+        find_span(page, k);
     snprintf(what, sizeof what, "%llu case%s at %zu point%s of a design, %s",
              (unsigned long long)r->cases, r->cases == 1 ? "" : "s", r->axis[r->sample].count,
              r->axis[r->sample].count == 1 ? "" : "s", r->method);
     plot_failed_text(r, what, sizeof what);
-    plot_cut_text(r, what, sizeof what);
+    plot_cut_text(r, page->judged, true, what, sizeof what);
     if (!plot_begin(page->plot, &page->g, plot_sample_gp, what, message))
         return false;
     if (panels < r->varied) {
@@ -307,12 +320,10 @@ bool plot_sample(const struct plot *plot, stance_message *message)
         return true;
     struct page page = {.plot = plot,
                         .judged = statistics_judged(r),
-                        .logarithmic = malloc((size_t)r->varied * sizeof *page.logarithmic)};
-    if (!page.logarithmic)
+                        .span = calloc((size_t)r->varied, sizeof *page.span)};
+    if (!page.span)
         return no_memory(message);
-    for (int k = 0; k < r->varied; k++)
-        page.logarithmic[k] = is_logarithmic(&r->vary[k]);
     const bool good = draw(&page, message);
-    free(page.logarithmic);
+    free(page.span);
     return good;
 }

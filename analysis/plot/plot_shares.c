@@ -321,7 +321,7 @@ static bool draw_page(const struct plot *plot, const struct plot_axis *along,
              (unsigned long long)each, each == 1 ? "" : "s",
              second < 0 ? "value" : "pair of values");
     plot_failed_text(r, what, sizeof what);
-    plot_cut_text(r, what, sizeof what);
+    plot_cut_text(r, statistics_judged(r), true, what, sizeof what);
     if (!plot_begin(plot, &g, plot_shares_gp, what, message))
         return false;
     plot_axis_write(along, &g, "x");

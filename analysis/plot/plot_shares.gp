@@ -15,11 +15,11 @@ page_height = bottom + 84
 load 'page.gp'
 set label cut(volumes ? 'share of the box of starts (%)' : 'share of the cases done (%)', height/6.9) \
     at screen X(24), Y(top + 0.5*height) center rotate by 90 @small front
-set label axis_label('x', width + 80) at screen X(left + 0.5*width), Y(bottom + 46) center @small front
+eval x_label(left + 0.5*width, bottom + 46)
 legend_x = left + width + 20
 legend_y = top + 10
 do for [p=1:extents] {
-    set label cut(with_unit(extent_name[p], extent_unit[p]), (low_height + gap)/6.9) \
+    set label end_of(with_unit(extent_name[p], extent_unit[p]), (low_height + gap)/6.9) \
         at screen X(24), Y(panel_top(p) + 0.5*low_height) center rotate by 90 @small front
 }
 load 'panels.gp'

@@ -162,7 +162,6 @@ void summary_outcomes(struct table *t, const struct summary *summary);
 void summary_values(struct table *t, const struct summary *summary, const struct results *r,
                     int axis, enum table_form form);
 void summary_parts(struct table *t, const struct summary *summary, const struct results *r, int k);
-struct table_value summary_sampled(const struct results_varied *v, double value);
 void summary_answers(struct table *t, const struct summary *summary, enum table_form form);
 
 /* The state in which a file of one case ends: name[], state[]; how many, 0 if that is not known. */

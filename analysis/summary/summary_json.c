@@ -153,8 +153,7 @@ static json_t *rays(const struct summary *summary, const struct results *r)
     const struct statistics_numbers *n = &rays->numbers;
     json_t *at = json_object();
     for (int k = 0; n->n > 0 && k < r->varied; k++)
-        table_put(at, r->vary[k].of.name,
-                  summary_sampled(&r->vary[k], summary_nearest(rays, r, k)));
+        table_put(at, r->vary[k].of.name, as_varied(&r->vary[k], summary_nearest(rays, r, k)));
     return TABLE_OBJECT({"path", as_text(r->axis[summary->ray_axis].name)},
                         {"points", as_whole(n->n)}, {"smallest", as_number(n->low)},
                         {"median", as_number(n->median)}, {"largest", as_number(n->high)},

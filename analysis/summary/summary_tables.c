@@ -141,13 +141,6 @@ bool summary_print_csv(const struct summary *summary, const struct results *r)
 
 /* ---- samples ------------------------------------------------------------------------------ */
 
-struct table_value summary_sampled(const struct results_varied *v, double value)
-{
-    return v->word        ? as_text(v->word[(int)value])
-           : isinf(value) ? as_text("none")
-                          : as_number(value);
-}
-
 /* "0.1 ... 0.3", a value or a word. */
 static void part_text(const struct results_varied *v, const struct doe_bins *bins,
                       const struct doe_bin *bin, char *text, size_t size)
@@ -174,8 +167,7 @@ void summary_parts(struct table *t, const struct summary *summary, const struct 
             {{"path", "", .hidden = TABLE_VIEW_ONLY, .width = 32, .left = true},
              as_text(b ? "" : v->of.name)},
             {{"values", "values", .hidden = TABLE_VIEW_ONLY, .width = 24}, as_text(text)},
-            {{.name = "from"}, summary_sampled(v, bin->low)},
-            {{.name = "to"}, summary_sampled(v, bin->high)},
+            {{.name = "from"}, as_varied(v, bin->low)}, {{.name = "to"}, as_varied(v, bin->high)},
             {{"done", "done", .width = 9}, as_whole(bin->counts.done)},
             {{"share", "share", "%.3f %%", .width = 10, .percent = true},
              as_number(summary_share(summary, &bin->counts))},

@@ -138,7 +138,7 @@ static void add_columns(struct listing *t)
     }
 }
 
-/* The word that a flag stands for, or its number. */
+/* The word that a flag stands for, or its number, or "none" of an absent limit. */
 static void put_flag(struct table *rows, const char *words, double value)
 {
     char word[64];
@@ -147,7 +147,7 @@ static void put_flag(struct table *rows, const char *words, double value)
         words = words ? words + 1 : NULL;
     }
     snprintf(word, sizeof word, "%.*s", words ? (int)strcspn(words, " ") : 0, words ? words : "");
-    TABLE_VALUES(rows, words ? as_text(word) : as_number(value));
+    TABLE_VALUES(rows, words ? as_text(word) : isinf(value) ? as_text("none") : as_number(value));
 }
 
 static void put_point(struct listing *t, uint64_t index)
@@ -162,8 +162,7 @@ static void put_point(struct listing *t, uint64_t index)
         TABLE_VALUES(&t->rows, as_number(t->parameter[k].value[point[t->parameter[k].axis]]));
     for (int k = 0; k < r->varied; k++) {
         const struct results_varied *v = &r->vary[k];
-        const double value = v->of.value[point[r->sample]];
-        TABLE_VALUES(&t->rows, v->word ? as_text(v->word[(int)value]) : as_number(value));
+        TABLE_VALUES(&t->rows, as_varied(v, v->of.value[point[r->sample]]));
     }
 }
 

@@ -10,6 +10,7 @@
 #include "runner/store/results.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 
 /* What a command is asked for, with --json, --csv or neither. */
@@ -58,6 +59,13 @@ static inline struct table_value as_whole(uint64_t whole)
 static inline struct table_value as_place(const struct results_axis *axis, size_t i)
 {
     return (struct table_value){.kind = TABLE_PLACE, .whole = i, .axis = axis};
+}
+/* A value of what is varied; an absent limit, which is infinite, is "none". */
+static inline struct table_value as_varied(const struct results_varied *v, double value)
+{
+    return v->word        ? as_text(v->word[(int)value])
+           : isinf(value) ? as_text("none")
+                          : as_number(value);
 }
 /* NULL: nothing. */
 static inline struct table_value as_tree(json_t *tree)

@@ -540,7 +540,13 @@ static stance_error none(const struct search *s, const struct trial *t, bool con
                          stance_message *message)
 {
     int worst = 0;
-    char what[80];
+    char what[160];
+    for (int i = 0; i < s->coordinates; i++)
+        if (s->turns[i] && fabs(s->given[i]) > 2 * M_PI) /* false of NAN */
+            return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
+                                 "no equilibrium at %s = %.6g rad, more than a turn: angles are in "
+                                 "radians (are these degrees?)",
+                                 s->scene->coordinate[i].name, s->given[i]);
     for (int i = 1; i < t->conditions; i++)
         if (fabs(t->c[i]) > fabs(t->c[worst]))
             worst = i;
@@ -553,7 +559,10 @@ static stance_error none(const struct search *s, const struct trial *t, bool con
     } else if (s->scene->mechanism->body[0].joint == STANCE_FREE && worst < 2) {
         snprintf(what, sizeof what, "the weight cannot be carried");
     } else {
-        snprintf(what, sizeof what, "%s cannot be balanced", s->scene->coordinate[worst].name);
+        const bool turns = s->turns[worst];
+        snprintf(what, sizeof what, "%s cannot be balanced: %.3g %s are left on it",
+                 s->scene->coordinate[worst].name, t->c[worst] * s->weight * (turns ? s->size : 1),
+                 turns ? "N m" : "N");
     }
     return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
                          contradict ? "the conditions on the equilibrium contradict each other: %s"

@@ -26,7 +26,8 @@ static bool bad_use(const struct command *command, const char *text, const char 
     return false;
 }
 
-/* Operands that are one too many where PATH=VALUE of a --set was written in another way. */
+/* Operands that are one too many where PATH=VALUE of a --set or --near was written in another way.
+ */
 static bool unexpected(const struct command *command, int argc, char **argv, int i,
                        const struct option_spec *specs, size_t spec_count)
 {
@@ -36,7 +37,14 @@ static bool unexpected(const struct command *command, int argc, char **argv, int
     const char *path = i > 0 ? argv[i - 1] : "";
     const bool joined = strncmp(path, "--set=", 6) == 0;
     path += joined ? 6 : 0;
-    if (sets && (joined || (i > 1 && strcmp(argv[i - 2], "--set") == 0)) && !strchr(path, '=')) {
+    const bool near = i > 1 && strcmp(argv[i - 2], "--near") == 0;
+    if ((near || strncmp(path, "--near=", 7) == 0) && strchr(argv[i], '=')) {
+        fprintf(stderr, "stance %s: unexpected argument '%s'; write --near %s,%s\n", command->name,
+                argv[i], near ? path : path + 7, argv[i]);
+        return false;
+    }
+    if (sets && path[0] != '-' && (joined || (i > 1 && strcmp(argv[i - 2], "--set") == 0)) &&
+        !strchr(path, '=')) {
         const char *value = strcmp(argv[i], "=") == 0 && i + 1 < argc ? argv[i + 1] : argv[i];
         fprintf(stderr, "stance %s: unexpected argument '%s'; write --set %s=%s\n", command->name,
                 argv[i], path, value + (value[0] == '='));

@@ -55,6 +55,42 @@ static bool open_loop(struct design_report *r, stance_message *message)
     return error == STANCE_OK || refuse(message, "eigenvalues and Kalman rank", error);
 }
 
+/* ---- what any controller could do -------------------------------------------------------------
+ */
+
+stance_null_set *design_null_set(const struct design_report *r, stance_message *message)
+{
+    const struct scenario_values *const values = &r->scenario->base;
+    double limit[STANCE_MAX_ACTUATORS], low[STANCE_MAX_ACTUATORS], high[STANCE_MAX_ACTUATORS];
+    stance_null_set *set = NULL;
+    stance_torque_limits(r->scenario->scene, r->model, values->torque_limit, values->torque_limits,
+                         limit);
+    for (int i = 0; i < r->inputs; i++) {
+        low[i] = -limit[i] - r->equilibrium.torque[i];
+        high[i] = limit[i] - r->equilibrium.torque[i];
+    }
+    stance_null_set_make(r->states, r->inputs, r->A, r->B, low, high, &set, message);
+    return set;
+}
+
+static void find_allowed(struct design_report *r)
+{
+    struct design_allowed *const allowed = &r->allowed;
+    stance_null_set *const set = design_null_set(r, &allowed->absent);
+    allowed->exists = set != NULL;
+    if (!set)
+        return;
+    allowed->modes = stance_null_set_modes(set, allowed->re, allowed->im);
+    for (int i = 0; i < r->states; i++)
+        for (int side = 0; side < 2; side++) {
+            double x[DESIGN_STATES] = {0};
+            x[i] = side ? 1 : -1;
+            const double gauge = stance_null_set_gauge(set, x);
+            allowed->reach[side][i] = gauge > 0 ? x[i] / gauge : x[i] * INFINITY;
+        }
+    stance_null_set_free(set);
+}
+
 /* ---- the loop -------------------------------------------------------------------------------- */
 
 /* K, of a law that is not designed too: what it is as a gain matrix. */
@@ -171,13 +207,15 @@ static stance_error find_lag_margin(struct design_report *r)
     return error;
 }
 
-/* Uniform noise of half-width a has the variance a^2 / 3. */
+/* Uniform noise of half-width a has the variance a^2 / 3. A command has at least that of what is
+ * measured, K x, beside that of the states, which wander. */
 static stance_error find_wander(struct design_report *r)
 {
     const struct scenario_values *const values = &r->scenario->base;
     double measured[DESIGN_PLANT] = {0}, rms[DESIGN_PLANT];
     struct acting p;
-    r->noisy = values->noise > 0 || values->angle_noise > 0 || values->rate_noise > 0;
+    r->noisy = r->sampled && r->stable &&
+               (values->noise > 0 || values->angle_noise > 0 || values->rate_noise > 0);
     if (!r->noisy)
         return STANCE_OK;
     for (int i = 0; i < r->states; i++) {
@@ -189,6 +227,12 @@ static stance_error find_wander(struct design_report *r)
         stance_sampled_wander(p.n, r->inputs, p.A, p.B, p.K, values->sample_time, r->delay,
                               measured, values->noise * values->noise / 3, rms);
     memcpy(r->wander, rms, sizeof r->wander);
+    for (int k = 0; k < r->inputs; k++) {
+        double variance = values->noise * values->noise / 3;
+        for (int i = 0; i < r->states; i++)
+            variance += r->K[k * r->states + i] * r->K[k * r->states + i] * measured[i];
+        r->command_noise[k] = sqrt(variance);
+    }
     return error;
 }
 
@@ -204,9 +248,7 @@ static stance_error margins(struct design_report *r)
     if (error != STANCE_OK || !r->sampled || !r->stable)
         return error;
     error = find_delay_margin(r);
-    if (error == STANCE_OK)
-        error = find_lag_margin(r);
-    return error == STANCE_OK ? find_wander(r) : error;
+    return error == STANCE_OK ? find_lag_margin(r) : error;
 }
 
 /* ---- the sublevel set ------------------------------------------------------------------------ */
@@ -306,6 +348,8 @@ static bool loop(struct design_report *r, stance_message *message)
         error = stance_eigenvalues(n, matrix, r->closed_re, r->closed_im);
     if (error == STANCE_OK)
         error = sampled_loop(r);
+    if (error == STANCE_OK)
+        error = find_wander(r);
     return error == STANCE_OK || refuse(message, "closed loop", error);
 }
 
@@ -325,7 +369,10 @@ bool design_loop(struct design_report *r, const struct scenario *s, stance_messa
 
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message)
 {
-    return design_loop(r, s, message) && (!r->closed || bounds(r, message));
+    if (!design_loop(r, s, message))
+        return false;
+    find_allowed(r);
+    return !r->closed || bounds(r, message);
 }
 
 /* ---- names ----------------------------------------------------------------------------------- */
@@ -336,6 +383,14 @@ const char *design_state_name(const struct design_report *r, int i, char name[SC
     const char *coordinate = r->scenario->scene->coordinate[r->equilibrium.freedom[i % p]].name;
     snprintf(name, SCENARIO_NAME, "%s%s", i < p ? "" : "v", coordinate);
     return name;
+}
+
+const char *design_radius(const struct design_report *r, int digits, char text[32])
+{
+    do {
+        snprintf(text, 32, "%.*g", digits, r->radius);
+    } while (r->radius != 1 && strtod(text, NULL) == 1 && digits++ < 17);
+    return text;
 }
 
 const char *design_bound_name(const struct design_report *r, int bound, char name[64])

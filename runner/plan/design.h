@@ -39,6 +39,16 @@ struct design_capture {
     double alone[DESIGN_STATES], extent[DESIGN_STATES];
 };
 
+/* The states from which linear theory allows any controller to recover, while the contacts stand:
+ * null_controllable.c. */
+struct design_allowed {
+    bool exists;
+    stance_message absent; /* why not */
+    int modes;             /* that are unstable, with their eigenvalues */
+    double re[STANCE_NULL_MODES], im[STANCE_NULL_MODES];
+    double reach[2][DESIGN_STATES]; /* of each state alone, down and up; INFINITY */
+};
+
 /* "foot1", "foot1, foot2": what an equilibrium stands on. Returns buffer. */
 const char *design_supports(const stance_scene *scene, const stance_equilibrium *equilibrium,
                             char *buffer, size_t size);
@@ -55,6 +65,7 @@ struct design_report {
     double open_re[DESIGN_STATES], open_im[DESIGN_STATES];
     double singular[DESIGN_STATES];
     int rank;
+    struct design_allowed allowed;
     bool closed; /* there is a law: the rest is valid */
     double K[DESIGN_INPUTS * DESIGN_STATES];
     double closed_re[DESIGN_STATES], closed_im[DESIGN_STATES];
@@ -69,11 +80,11 @@ struct design_report {
     double critical[2];
     /* Of a loop that is sampled and stable: up to how many samples late it is, of at most
      * STANCE_MAX_DELAY; from which lag on it is not, INFINITY: none found; by how much the noise of
-     * the scenario makes states wander, rms at samples. */
+     * the scenario makes states wander, rms at samples, and, N m or N, commands at least. */
     int delay_margin;
     double lag_margin;
     bool noisy;
-    double wander[DESIGN_STATES];
+    double wander[DESIGN_STATES], command_noise[DESIGN_INPUTS];
     struct design_set set;
     struct design_capture capture;
 };
@@ -100,8 +111,14 @@ json_t *design_selections_json(const struct design_selections *d);
 bool design_loop(struct design_report *r, const struct scenario *s, stance_message *message);
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message);
 
+/* The set itself, of the report's linearisation and limits; NULL: `message` says why not. */
+stance_null_set *design_null_set(const struct design_report *r, stance_message *message);
+
 /* Name of state i: a coordinate, or its rate with a "v" before it. */
 const char *design_state_name(const struct design_report *r, int i, char name[SCENARIO_NAME]);
+
+/* The spectral radius, in so many digits, or as many as tell it from 1. */
+const char *design_radius(const struct design_report *r, int digits, char text[32]);
 
 /* Its weight in a quadratic cost. */
 static inline double design_weight(const struct design_report *r, int i)

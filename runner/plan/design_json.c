@@ -90,6 +90,16 @@ static json_t *json_capture(const struct design_report *r)
                      json_states(r, r->capture.extent));
 }
 
+static json_t *json_allowed(const struct design_report *r)
+{
+    const struct design_allowed *const allowed = &r->allowed;
+    if (!allowed->exists)
+        return json_null();
+    return json_pack("{s:o, s:o, s:o}", "unstable_modes",
+                     json_complex(allowed->modes, allowed->re, allowed->im), "low",
+                     json_states(r, allowed->reach[0]), "high", json_states(r, allowed->reach[1]));
+}
+
 static json_t *json_sampled(const struct design_report *r)
 {
     const bool margins = r->sampled && r->stable;
@@ -170,12 +180,13 @@ json_t *design_json(const struct design_report *r)
     for (int i = 0; i < r->inputs; i++)
         json_array_append_new(inputs, json_string(scene->actuator_name[i]));
     return json_pack(
-        "{s:s, s:s, s:s, s:o, s:{s:f, s:f}, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:i, s:i, s:o}, s:o}",
+        "{s:s, s:s, s:s, s:o, s:{s:f, s:f}, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:i, s:i, s:o}, s:o, "
+        "s:o}",
         "scenario", r->scenario->file, "title", r->scenario->title, "scene", scene->name, "robot",
         robot, "ground", "slope", r->model[STANCE_ROBOT_SLOPE], "gravity",
         r->model[STANCE_ROBOT_GRAVITY], "equilibrium", json_equilibrium(r), "states", states,
         "inputs", inputs, "A", json_matrix(n, n, r->A), "B", json_matrix(n, r->inputs, r->B),
         "open_loop_eigenvalues", json_complex(n, r->open_re, r->open_im), "kalman", "rank", r->rank,
-        "states", n, "singular_values", json_vector(n, r->singular), "controller",
-        json_controller(r));
+        "states", n, "singular_values", json_vector(n, r->singular), "allowed", json_allowed(r),
+        "controller", json_controller(r));
 }

@@ -156,6 +156,29 @@ static void print_open_loop(const struct design_report *r)
         printf(" %.4g%s", r->singular[i], i + 1 < n ? "," : "\n");
 }
 
+static void print_allowed(const struct design_report *r)
+{
+    const struct design_allowed *const allowed = &r->allowed;
+    char state[SCENARIO_NAME];
+    puts("\nWhat linear theory allows any controller with these torques, while the contacts stand");
+    if (!allowed->exists) {
+        printf("  not known: %s\n", allowed->absent.text);
+        return;
+    }
+    if (allowed->modes == 0) {
+        puts("  everything: no mode is unstable");
+        return;
+    }
+    print_complex("unstable modes", allowed->modes, allowed->re, allowed->im);
+    printf("  %-18s %14s %14s\n", "reach", "down to", "up to");
+    for (int i = 0; i < r->states; i++)
+        if (isinf(allowed->reach[1][i]))
+            printf("  %-18s %14s %14s\n", design_state_name(r, i, state), "no end", "no end");
+        else
+            printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r, i, state),
+                   allowed->reach[0][i], allowed->reach[1][i], state_unit(r, i));
+}
+
 static void print_critical(const char *what, double T)
 {
     if (isinf(T))
@@ -207,7 +230,7 @@ static void print_sampled(const struct design_report *r)
         if (isfinite(values->torque_rate))
             puts("  the limit of the torques' rate has no part in linear theory");
         print_complex("eigenvalues z", r->sampled, r->sampled_re, r->sampled_im);
-        printf("  %-16s %.6g: %s\n", "spectral radius", r->radius,
+        printf("  %-16s %s: %s\n", "spectral radius", design_radius(r, 6, late),
                r->stable ? "stable" : "NOT stable");
     } else {
         puts("\nThe controller acts continuously (controller.sample_time 0).");
@@ -354,5 +377,6 @@ void design_print(const struct design_report *r)
                strcmp(scene->robot[i].unit, "1") == 0 ? "" : scene->robot[i].unit);
     print_equilibrium(r);
     print_open_loop(r);
+    print_allowed(r);
     print_closed_loop(r);
 }

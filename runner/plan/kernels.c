@@ -72,6 +72,17 @@ static size_t list_checks(const struct plan *plan, stance_case *check, double *s
     return count;
 }
 
+bool kernels_compiled(const struct plan *plan)
+{
+    stance_case *const check =
+        plan->scenario->scene->mechanism ? calloc(CHECKS, sizeof *check) : NULL;
+    double steps = 0;
+    if (check)
+        list_checks(plan, check, &steps);
+    free(check);
+    return steps > brief_steps;
+}
+
 enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
                             const struct kernels_choice *choice, const struct parallel *parallel,
                             bool quiet, stance_message *message)

@@ -27,6 +27,9 @@ struct kernels_choice {
 enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
                             const struct kernels_choice *choice, const struct parallel *parallel,
                             bool quiet, stance_message *message);
+/* Whether `run` computes the plan with compiled kernels, which take a fraction of the time of those
+ * that read a described scene as they go. Needs the designs. */
+bool kernels_compiled(const struct plan *plan);
 void kernels_give_back(struct kernels *kernels);
 
 #endif

@@ -507,11 +507,11 @@ static bool copies_leave(void *context)
 }
 
 struct trial {
-    double seconds;       /* spent */
-    uint64_t steps;       /* taken */
-    uint64_t steps_asked; /* that the cases would take to their ends */
-    uint64_t cases;
-    bool late; /* the last one was given up, at steps that are not known */
+    double seconds;        /* spent */
+    uint64_t steps;        /* taken */
+    uint64_t steps_asked;  /* that the cases would take to their ends */
+    uint64_t cases, begun; /* tried; of these, that have a start */
+    bool late;             /* the last one was given up, at steps that are not known */
 };
 
 /* Runs number i of COST_CASES, at most `steps` long, until the clock says `until`. */
@@ -526,6 +526,7 @@ static void try_case(const struct plan *plan, uint64_t i, int64_t steps, double 
     trial->cases++;
     if (!plan_resolve(plan, row, &input, &method))
         return;
+    trial->begun++;
     trial->steps_asked += (uint64_t)input.steps;
     input.steps = input.steps < steps ? input.steps : steps;
     const stance_kernel *kernel =
@@ -585,9 +586,10 @@ double plan_cost(const struct plan *plan, double budget, bool *bound)
     /* Beginnings first, to learn what whole cases would take. */
     for (uint64_t i = 0; i < FIRST && !beginnings.late; i++)
         try_case(plan, i, COST_STEPS, until, &beginnings);
-    if (beginnings.steps == 0)
+    if (beginnings.begun == 0 || (beginnings.late && beginnings.steps == 0))
         return beginnings.late ? NAN : -1;
-    double per_step = beginnings.seconds / (double)beginnings.steps;
+    const double per_step = /* cases that end where they begin take none */
+        beginnings.steps > 0 ? beginnings.seconds / (double)beginnings.steps : 0;
     double per_case = per_step * (double)beginnings.steps_asked / (double)beginnings.cases;
     if (beginnings.late || per_case * WIDEST * FIRST > budget) {
         *bound = true;

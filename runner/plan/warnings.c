@@ -16,7 +16,7 @@ enum { TRIED = 64 }; /* cases, evenly spread */
 #define MUCH 0.005   /* of the range: that far the equilibrium may be from the nearest start */
 static const double moment = 0.5; /* s */
 
-enum trouble { UNSTABLE, WEAK, SLIPPERY, TROUBLES };
+enum trouble { UNSTABLE, WEAK, SLIPPERY, UNSETTLED, NOISY, TROUBLES };
 
 /* Of each trouble: how many cases have it, and of the first one the case and what is wrong. */
 struct troubles {
@@ -77,27 +77,57 @@ static void look_at_friction(const struct design_report *r, uint64_t index, stru
     }
 }
 
+/* What the linear loop makes of noise, beside the window of settling and the torque limits. */
+static void look_at_noise(const struct design_report *r, uint64_t index, struct troubles *t)
+{
+    const stance_scene *const scene = r->scenario->scene;
+    const struct scenario_values *const values = &r->scenario->base;
+    double limit[STANCE_MAX_ACTUATORS];
+    bool unsettled = false, noisy = false;
+    for (int i = 0; r->noisy && values->settle && i < r->states && !unsettled; i++) {
+        const bool rate = i >= r->states / 2;
+        char name[SCENARIO_NAME];
+        unsettled = r->wander[i] > (rate ? values->settle_rate : values->settle_angle);
+        if (unsettled && first_of(t, UNSETTLED, index))
+            snprintf(t->what[UNSETTLED], sizeof t->what[UNSETTLED],
+                     "noise makes %.40s wander by %.3g rms, more than settle.%s, %.3g",
+                     design_state_name(r, i, name), r->wander[i], rate ? "rate" : "angle",
+                     rate ? values->settle_rate : values->settle_angle);
+    }
+    stance_torque_limits(scene, values->robot, values->torque_limit, values->torque_limits, limit);
+    for (int k = 0; r->noisy && k < r->inputs && !noisy; k++) {
+        const double reserve = limit[k] - fabs(r->equilibrium.torque[k]);
+        noisy = reserve > 0 && r->command_noise[k] > reserve;
+        if (noisy && first_of(t, NOISY, index))
+            snprintf(t->what[NOISY], sizeof t->what[NOISY],
+                     "noise on the command of %.40s is %.3g rms, more than the %.3g that its limit "
+                     "leaves beside the equilibrium's",
+                     scene->actuator_name[k], r->command_noise[k], reserve);
+    }
+}
+
 static void look_at(const struct scenario *s, uint64_t index, struct troubles *t)
 {
     struct scenario *const at = malloc(sizeof *at);
     struct design_report *const r = malloc(sizeof *r);
     stance_message message = {""};
-    char late[64];
+    char late[64], radius[32];
     if (at && r) {
         *at = *s;
         scenario_case_values(s, index, &at->base);
         if (scenario_law(&at->base)->designed && design_loop(r, at, &message)) {
             if (!r->stable && first_of(t, UNSTABLE, index) && r->sampled > 0)
-                snprintf(
-                    t->what[UNSTABLE], sizeof t->what[UNSTABLE],
-                    "the loop is unstable: spectral radius %.3g at a sample time of %.3g s%s%s",
-                    r->radius, at->base.sample_time, design_late(r->delay, "", late),
-                    r->lag > 0 ? ", with the lag of its actuators" : "");
+                snprintf(t->what[UNSTABLE], sizeof t->what[UNSTABLE],
+                         "the loop is unstable: spectral radius %s at a sample time of %.3g s%s%s",
+                         design_radius(r, 3, radius), at->base.sample_time,
+                         design_late(r->delay, "", late),
+                         r->lag > 0 ? ", with the lag of its actuators" : "");
             else if (!r->stable && !t->what[UNSTABLE][0])
                 snprintf(t->what[UNSTABLE], sizeof t->what[UNSTABLE],
                          "the loop is unstable: an eigenvalue is not on the left");
             look_at_torques(r, index, t);
             look_at_friction(r, index, t);
+            look_at_noise(r, index, t);
         }
     }
     free(at);
@@ -276,6 +306,28 @@ static uint64_t lattice_case(const struct scenario *s, uint64_t k, uint64_t *cas
     return index;
 }
 
+/* A lone case that is over where it begins: taken one step, not more. */
+static void look_at_beginning(const struct plan *plan, const char *who, FILE *out)
+{
+    const stance_scene *const scene = plan->scenario->scene;
+    const char *word[STANCE_MAX_WORDS];
+    stance_case *const c = malloc(sizeof *c);
+    stance_result result;
+    int method;
+    if (c && plan_resolve(plan, 0, c, &method)) {
+        const stance_kernel *kernel = instruction_set_kernel(scene, stance_methods()[method]);
+        const int words = stance_answer_words(scene, STANCE_ANSWER_fall_cause, word);
+        c->steps = c->steps < 1 ? c->steps : 1;
+        if (kernel)
+            kernel->run(c, &result, 1);
+        if (kernel && result.status == STANCE_DONE && result.outcome == STANCE_FELL &&
+            result.steps == 0)
+            fprintf(out, "%s: warning: the robot has fallen where it begins, by its %s\n", who,
+                    result.fall_cause < words ? word[result.fall_cause] : "posture");
+    }
+    free(c);
+}
+
 void warnings_try(const struct plan *plan, const char *who, FILE *out)
 {
     const struct scenario *s = plan->scenario;
@@ -285,6 +337,8 @@ void warnings_try(const struct plan *plan, const char *who, FILE *out)
     uint64_t outcome[STANCE_OUTCOME_COUNT] = {0}, count, ended = 0;
     lattice_case(s, 0, &count);
     bool whole = c && s->axes > 0;
+    if (s->axes == 0)
+        look_at_beginning(plan, who, out);
     for (uint64_t k = 0; k < count && whole; k++) {
         int method;
         uint64_t all;

@@ -6,15 +6,15 @@
 
 /* One line to `out` for each thing that is wrong with some case of the plan, whose designs are
  * computed: a loop that is unstable as it is sampled, a torque that the equilibrium needs and the
- * actuators do not give, friction that is less than standing takes, angles that look like degrees,
- * an axis of starts whose points leave out the equilibrium by more than 1/200 of the range.
- * Of many cases some are looked at, evenly spread. `who`: whose lines these are. True: some
- * cannot work. */
+ * actuators do not give, friction that is less than standing takes, noise that keeps states out of
+ * the window of settling or is more than torque limits leave, angles that look like degrees, an
+ * axis of starts whose points leave out the equilibrium by more than 1/200 of the range. Of many
+ * cases some are looked at, evenly spread. `who`: whose lines these are. True: some cannot work. */
 bool warnings_print(const struct plan *plan, const char *who, FILE *out);
 
 /* Simulates the middle of the sweep and its corners, edges and faces, at most WARNINGS_TRIED cases
  * for a moment, and says what warnings_of_ends has to say of them; nothing where that takes longer.
- */
+ * Of a lone case: that it has fallen where it begins. */
 enum { WARNINGS_TRIED = 81 };
 void warnings_try(const struct plan *plan, const char *who, FILE *out);
 

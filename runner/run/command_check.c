@@ -89,7 +89,7 @@ const struct command command_check = {
     "    seconds_on_one_rank       estimate; null when no case could be tried, or for too\n"
     "                              short a time to tell\n"
     "    seconds_is_upper_bound    whole cases took too long to try, or may be\n"
-    "                              captured: it is a bound\n"
+    "                              captured, or run compiles kernels: it is a bound\n"
     "    capture_seconds_on_one_rank   estimate for the captured sets of stop.capture; 0: none,\n"
     "                              null: too slow to tell\n"
     "    refine                    null, or with sweep.refine {coarse_cases, probes (expected),\n"

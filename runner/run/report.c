@@ -2,6 +2,7 @@
 #include "report.h"
 
 #include "runner/base/units.h"
+#include "runner/plan/kernels.h"
 #include "runner/plan/refine.h"
 #include "runner/store/store.h"
 
@@ -14,7 +15,7 @@ struct estimate {
     size_t designs_failed;
     uint64_t size;
     double seconds; /* on one rank; negative: no case can be tried, NAN: these take too long */
-    bool bound;
+    bool bound, compiled; /* run compiles kernels, check tries cases without */
     double capture;  /* s on one rank for the captured sets; 0: none is asked for, NAN: unknown */
     uint64_t coarse; /* points of the coarse lattice; 0: the map is not refined */
     double probes;   /* expected number beyond these */
@@ -28,7 +29,8 @@ static struct estimate estimate(const struct plan *plan, int ranks)
     e.seconds = plan_cost(plan, PLAN_PATIENCE_COST, &e.bound);
     e.seconds += e.seconds >= 0 ? plan->design_seconds : 0;
     e.capture = plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
-    e.bound = e.bound || e.capture != 0; /* captured cases cost less */
+    e.compiled = kernels_compiled(plan);
+    e.bound = e.bound || e.compiled || e.capture != 0; /* captured cases cost less */
     if (plan->scenario->refine.given && !plan->single) {
         const struct refine_map map = refine_map_of(plan->scenario);
         e.coarse = refine_coarse(&map);
@@ -232,8 +234,9 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
         return;
     }
     text_of_seconds(text, sizeof text, e->seconds / ranks);
-    fprintf(out, "cost        %s %s on %d rank%s\n", e->bound ? "at most about" : "about", text,
-            ranks, ranks == 1 ? "" : "s");
+    fprintf(out, "cost        %s %s on %d rank%s%s\n", e->bound ? "at most about" : "about", text,
+            ranks, ranks == 1 ? "" : "s",
+            e->compiled ? ", and much less with the kernel that run compiles for this robot" : "");
 }
 
 void report_plan(const struct plan *plan, int ranks, const char *file, bool json, FILE *out)

@@ -57,8 +57,24 @@ static bool check_extend(struct options *o, const char *extend, const char *only
     return true;
 }
 
+/* Results are not drawn or tabled by `run`, though a file's ending says so. */
+static bool check_output(const char *output)
+{
+    static const char *const other[] = {".pdf", ".svg", ".png", ".gif", ".eps",
+                                        ".jpg", ".mp4", ".csv", ".json"};
+    const char *const dot = output ? strrchr(output, '.') : NULL;
+    for (size_t k = 0; dot && k < sizeof other / sizeof other[0]; k++)
+        if (strcmp(dot, other[k]) == 0)
+            return usage("-o names the results, FILE.h5, of which stance plot draws pictures and "
+                         "stance table makes tables; not",
+                         output);
+    return true;
+}
+
 static bool check_options(struct options *o, const char *only, const char *limit)
 {
+    if (!check_output(o->output))
+        return false;
     if (o->force && o->resume)
         return usage("--force and --resume exclude each other", NULL);
     if (o->force_scenario && !o->resume)

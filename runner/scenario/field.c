@@ -255,9 +255,17 @@ bool field_items(struct problems *problems, const char *name, const struct tree_
                  size_t items, const char *what)
 {
     char wanted[64];
-    snprintf(wanted, sizeof wanted, "%zu %s", items, what);
+    const size_t letters = strlen(what);
+    snprintf(wanted, sizeof wanted, "%zu %.*s", items,
+             (int)(items == 1 && what[letters - 1] == 's' ? letters - 1 : letters), what);
     if (node->kind == TREE_SCALAR && items > 1 && !strpbrk(node->text, ", "))
         return field_mismatch(problems, name, wanted, node);
+    if (node->kind == TREE_MAP && items == 1 && node->count == 1 &&
+        node->item[0]->kind == TREE_SCALAR) { /* under the name that it has elsewhere */
+        char word[SHOWN_SIZE];
+        return problem_add(problems, node->mark, "%s: expected %s, found a mapping; write [%s]",
+                           name, wanted, shown(word, node->item[0]->text));
+    }
     if (node->kind != TREE_LIST)
         return no_list(problems, name, wanted, node);
     if (node->count == items)

@@ -253,12 +253,19 @@ static bool no_comma(struct misread *m, const struct line *line, char out[MEND_S
     }
     /* Back from the colon to its key, and to what stands before it. */
     size_t word = place_in(line, m->column);
+    const size_t bracket = word;
     while (word > 0 && (name_letter(line->text[word - 1]) || line->text[word - 1] == '.'))
         word--;
     size_t before = word;
     while (before > 0 && strchr(" ;", line->text[before - 1]))
         before--;
     m->column = line->indent + before;
+    if (word < bracket && line->text[bracket] == '[') { /* an element of a list, in a path */
+        const char *path = line->text + word;
+        const size_t size = strcspn(path, ",} ");
+        m->column = line->indent + word;
+        return SAY("a path with brackets stands in quotes here; write '%.*s'", (int)size, path);
+    }
     return before > 0 &&
            SAY("a comma is missing; write %.*s, %s", (int)before, line->text, line->text + word);
 }
@@ -374,6 +381,11 @@ const char *mend_word(const char *word, const char *const *known, size_t count)
         {"every", "all"},
         {"bullet", "ball"},
         {"robot", "biped"},
+        {"rate_limit", "torque_rate"},
+        {"slew_rate", "torque_rate"},
+        {"latency", "delay"},
+        {"dead_time", "delay"},
+        {"time_constant", "lag"},
     };
     const char *const dash = strchr(word, '-');
     const size_t length = strlen(word);

@@ -90,7 +90,7 @@ static char *read_file(struct reader *r, const char *file, size_t *length)
         const char *wrong = ferror(in) ? strerror(errno) : NULL;
         if (!wrong && *length > TREE_MAX_BYTES)
             wrong = "larger than 1 MiB, the most a scenario may take";
-        if (!wrong && *length >= 8 && memcmp(text, "\x89HDF\r\n\x1a\n", 8) == 0) {
+        if (*length >= 8 && memcmp(text, "\x89HDF\r\n\x1a\n", 8) == 0) {
             problem_add(&r->problems, nowhere,
                         "a results file, not a scenario; write stance summary %s", file);
             free(text);

@@ -256,13 +256,14 @@ static const struct row rows[] = {
     {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(torque_limit), .unit = "N m", .fallback = INFINITY, .fallback_text = "none",
          ABOVE(0, LARGE), WORDS(schema_none), .text = "largest torque of each actuator",
-         .more = "A positive torque turns its leg, or body, counter-clockwise, and what it hangs from "
-                 "the other way: stance plot --model SCENARIO draws it."}},
+         .more = "Of a slide a force, in N. A positive torque turns its leg, or body, "
+                 "counter-clockwise, and what it hangs from the other way: stance plot --model "
+                 "SCENARIO draws it."}},
     {FAMILY_ACTUATORS, {.path = "controller.torque_limits", .type = FIELD_NUMBERS,
          .by_scene = true, .use = USE_CONTROL, BY_HAND, .unit = "N m", .fallback_text = "none",
          .text = "largest torque of each actuator by itself",
-         .more = "Each is limited by this, by torque_limit and by what the robot's description "
-                 "says, whichever is smallest."}},
+         .more = "Of a slide in N. Each is limited by this, by torque_limit and by what the robot's "
+                 "description says, whichever is smallest."}},
     {FAMILY_ACTUATORS, {.path = "controller.torque_limits[]", .type = FIELD_NUMBER,
          .by_scene = true, .use = USE_CONTROL, .sweep = true, VALUE(torque_limits),
          .unit = "N m", .fallback = INFINITY, .fallback_text = "none", ABOVE(0, LARGE),
@@ -270,11 +271,13 @@ static const struct row rows[] = {
     {0, {.path = "controller.torque_rate", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(torque_rate), .unit = "N m/s", .fallback = INFINITY, .fallback_text = "none",
          ABOVE(0, LARGE), WORDS(schema_none), .text = "how fast a torque changes at most",
-         .more = "With a lag, too, torques come up no faster than this. Needs sample_time > 0."}},
+         .more = "Of a slide N/s. With a lag, too, torques come up no faster than this. Needs "
+                 "sample_time > 0."}},
     {0, {.path = "controller.noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(noise), .unit = "N m", .fallback = 0, RANGE(0, LARGE),
          .text = "half-width of uniform noise on the torques",
-         .more = "White, new at each sample, added before the limit; needs sample_time > 0."}},
+         .more = "Of a slide in N. White, new at each sample, added before the limit; needs "
+                 "sample_time > 0."}},
     {0, {.path = "controller.angle_noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(angle_noise), .unit = "rad", .fallback = 0, RANGE(0, LARGE),
          .text = "half-width of noise on measured angles",

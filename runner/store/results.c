@@ -149,6 +149,26 @@ size_t results_words(const struct results *r, const char *path, char word[][SCEN
 
 /* ---- the axes ----------------------------------------------------------------------------- */
 
+/* Makes of numbers among which there is an absent limit, which is infinite, words: they have no
+ * distances. */
+static bool list_values(struct results_axis *axis)
+{
+    char **word = calloc(axis->count, sizeof *word), text[128];
+    bool good = word != NULL;
+    for (size_t i = 0; good && i < axis->count; i++) {
+        results_value_text(axis, i, false, text, sizeof text);
+        word[i] = strdup(text);
+        good = word[i] != NULL;
+    }
+    for (size_t i = 0; good && i < axis->count; i++)
+        axis->value[i] = (double)i;
+    if (good)
+        axis->word = word;
+    else
+        hdf_free_words(word, word ? axis->count : 0);
+    return good;
+}
+
 static bool read_axis_values(const struct results *r, hid_t dataset, struct results_axis *axis,
                              stance_message *message)
 {
@@ -163,10 +183,13 @@ static bool read_axis_values(const struct results *r, hid_t dataset, struct resu
     }
     if (!results_is_number(dataset) || !hdf_read(dataset, KIND_double, axis->value))
         return results_failed(r, axis->name, message);
-    for (size_t i = 0; i < axis->count; i++)
-        if (!isfinite(axis->value[i]))
-            return results_damaged(r, "an axis has values that are not finite", message);
-    return true;
+    bool finite = true;
+    for (size_t i = 0; i < axis->count; i++) {
+        if (isnan(axis->value[i]))
+            return results_damaged(r, "an axis has values that are no numbers", message);
+        finite = finite && isfinite(axis->value[i]);
+    }
+    return finite || list_values(axis) || results_no_memory(r, message);
 }
 
 void results_describe(hid_t dataset, const char *name, struct results_axis *axis)

@@ -36,7 +36,8 @@ struct results_axis {
     char text[RESULTS_TEXT]; /* long name, "" where it has none */
     size_t count;
     double *value; /* [count]; for words 0, 1, 2 ... */
-    char **word;   /* [count], or NULL: the axis lists numbers */
+    char **word;   /* [count], or NULL: the axis lists numbers, finite ones; numbers among which a
+                      limit is "none" are words, too */
     bool offset;   /* initial.offset.*: zero is the equilibrium */
 };
 
@@ -101,7 +102,7 @@ bool results_timing(const struct results *r, double *longest, double *total, dou
 /* Coordinates of a case: point[axes]. */
 void results_point(const struct results *r, uint64_t index, size_t *point);
 /* A number for people: six significant digits, more only where `gap`, the distance from the nearest
- * number that it must not be taken for (0: there is none), asks for them. */
+ * number that it must not be taken for (0: there is none), asks for them; "none" where infinite. */
 void results_number_text(double value, double gap, char *buffer, size_t size);
 /* Text of a value of an axis, with its unit when `unit`; no other of the axis has the same. */
 void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,

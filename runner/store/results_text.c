@@ -44,6 +44,10 @@ void results_point(const struct results *r, uint64_t index, size_t *point)
 void results_number_text(double value, double gap, char *buffer, size_t size)
 {
     int digits = DIGITS;
+    if (isinf(value)) { /* an absent limit */
+        snprintf(buffer, size, "none");
+        return;
+    }
     do { /* the text is nearer to this value than to its neighbours */
         snprintf(buffer, size, "%.*g", digits, value);
     } while (gap > 0 && fabs(strtod(buffer, NULL) - value) > gap / 4 && digits++ < MOST_DIGITS);
@@ -76,12 +80,10 @@ void results_varied_text(const struct results_varied *v, size_t i, bool unit, ch
     char number[32];
     if (v->word) {
         snprintf(buffer, size, "%s", v->word[(int)v->of.value[i]]);
-    } else if (isinf(v->of.value[i])) {
-        snprintf(buffer, size, "none");
     } else {
         results_number_text(v->of.value[i], 0, number, sizeof number);
-        snprintf(buffer, size, "%s%s%s", number, unit && v->of.unit[0] ? " " : "",
-                 unit ? v->of.unit : "");
+        unit = unit && v->of.unit[0] && isfinite(v->of.value[i]);
+        snprintf(buffer, size, "%s%s%s", number, unit ? " " : "", unit ? v->of.unit : "");
     }
 }
 

@@ -79,7 +79,7 @@ static bool rest_straight(const struct rest *r, const double *x, const lanes *to
 static bool rest_keeps_up(const struct rest *r, const double *x, lanes *torque)
 {
     const double *const own = x + 2 * r->ways + REST_INPUTS, *const queue = own + REST_INPUTS;
-    const double most = fmax(r->rate * r->lag, REST_BENT * r->rate * r->T);
+    const double most = fmax(r->rate * r->lag, REST_RAMP * r->rate * r->T);
     bool keeps = true;
     for (int i = 0; i < REST_INPUTS && r->lags; i++) {
         const double command = r->delay ? queue[i] : lane_get(&torque[i], r->lane) - r->torque[i];
@@ -344,7 +344,11 @@ COLD void rest_confirm(struct bundle *b, mask *rested, mask *stabilised)
             *rested &= LANES_NOT(mask_of_lane(lane));
             lane_set(&b->resting.begin, lane, -1);
         }
-        if (mask_get(*stabilised, lane) && !rest_target(b, lane)) {
+        /* What a limited rate makes of a motion no map about the target tells. */
+        const bool ramps = lane_get(&b->actuators.rate, lane) < INFINITY;
+        if (mask_get(*stabilised, lane) &&
+            !(rest_target(b, lane) &&
+              (!ramps || rest_holds(b, lane, b->now.s, b->now.w, b->now.integral)))) {
             *stabilised &= LANES_NOT(mask_of_lane(lane));
             lane_set(&b->settled.begin, lane, -1);
         }

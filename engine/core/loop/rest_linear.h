@@ -17,6 +17,7 @@
 #define REST_FINE 32    /* of settle.hold: how closely the way to the equilibrium is looked at */
 #define REST_GONE 1e-3  /* of settle.angle and settle.rate: a deviation that is none */
 #define REST_BENT 0.05  /* of what a law adds to the torques: how far from linear that may be */
+#define REST_RAMP 0.5   /* of a sample: how long a torque of limited rate may take to come up */
 #define REST_ENDLESS 1e100
 
 enum { REST_INPUTS = SCENE_ACTUATORS, REST_STATES = MATRIX_ROOM };

@@ -1,0 +1,526 @@
+/* null_controllable.c - from which states bounded torques can bring a linear robot back.
+ *
+ * x' = A x + B u, low <= u <= high. Modes that decay need no torque, undamped ones no more than is
+ * left over, however little; what counts are the unstable ones. With real left eigenvectors W,
+ * z = W x moves as z' = L z + G u, L = diag(lambda) or, of a pair a +- ib, the blocks [a -b; b a].
+ * z can be brought to 0 when -z is some integral of exp(-L t) G u (Hu and Lin, Control Systems with
+ * Actuator Saturation, Birkhaeuser 2001, ch. 2): the closure of these z is a convex set with the
+ * support function
+ *
+ *   h(eta) = integral over 0 ... infinity of  sum over j of max(s_j low_j, s_j high_j),
+ *   s_j(t) = -eta' exp(-L t) g_j = sum over modes of exp(-a t) (p cos b t + q sin b t),
+ *
+ * and its point that eta touches, the gradient of h, is minus the integral of exp(-L t) G u with u
+ * at the bound that s_j asks for. Both are integrals of exponentials between the sign changes of
+ * s_j, which are looked for on a grid that resolves the modes still alive, with their derivatives,
+ * so that two changes within an interval are seen, too. n real modes have n - 1 changes at most
+ * (one mode: none; two: one, at a time that is a logarithm).
+ *
+ * The gauge of z, 1 on the boundary, is the least sum of mu >= 0 with z = sum of mu_i p_i over
+ * points of the set: a linear programme whose columns are the set's points. The simplex method
+ * finds it; which column comes in next the support function knows, for the point farthest along the
+ * present prices eta is the one that eta touches. Each step bounds the gauge: eta' z / h(eta)
+ * below, the sum of mu above.
+ */
+#include "control.h"
+
+#include <lapacke.h>
+#include <string.h>
+
+#define MODE_GROWS 1e-9 /* of the largest eigenvalue: a real part that is not zero */
+#define LOOK 0.1        /* of 1 / |lambda|: how closely sign changes are looked for */
+#define ALIVE 34.0      /* a mode that has fallen by exp(-34) against the slowest counts no more */
+#define SWINGS 1e3      /* a mode's |lambda| against its growth, at most */
+#define DIRECTIONS 64   /* whose points are the first columns, for two modes ... */
+#define DIRECTIONS_ALL 1024 /* and for more */
+#define TINY 1e-12          /* a first point, in the set for certain */
+#define TOGETHER 1e-12      /* bounds of the gauge that are one */
+#define ROUNDS 1000
+
+enum { MOST = STANCE_NULL_MODES };
+
+struct stance_null_set {
+    int n, m, k; /* states, inputs, real coordinates of unstable modes */
+    double *W;   /* [k][n], scaled so that the set touches 1 along each coordinate */
+    double *G;   /* [k][m] */
+    double *low, *high;
+    double re[MOST], im[MOST]; /* of coordinate i; a pair stands in two places, im > 0 first */
+    double slowest;            /* least re */
+    int directions;            /* of the table: */
+    double *eta, *point;       /* [directions][k], scaled to h = 1; where they touch the set */
+};
+
+/* ---- the support function -------------------------------------------------------------------- */
+
+/* s_j at t and its derivative: amplitudes p and, of a pair in its second place, q. */
+static double signal(const stance_null_set *s, const double *amplitude, double t, double *slope)
+{
+    double sum = 0;
+    *slope = 0;
+    for (int i = 0; i < s->k; i++) {
+        const double a = s->re[i], b = s->im[i], decay = exp(-a * t), p = amplitude[i];
+        if (b > 0) {
+            const double q = amplitude[++i], c = cos(b * t), d = sin(b * t);
+            sum += decay * (p * c + q * d);
+            *slope += decay * ((b * q - a * p) * c - (b * p + a * q) * d);
+        } else {
+            sum += decay * p;
+            *slope -= a * decay * p;
+        }
+    }
+    return sum;
+}
+
+/* out[k] += factor times the integral of exp(-L t) g_j from `from` to `to`. A pair's block is
+ * multiplication by a + ib. */
+static void add_integral(const stance_null_set *s, int j, double from, double to, double factor,
+                         double *out)
+{
+    for (int i = 0; i < s->k; i++) {
+        const double complex rate = CMPLX(s->re[i], s->im[i]);
+        const double complex end = isinf(to) ? 0 : cexp(-rate * to);
+        const double complex whole = factor * (cexp(-rate * from) - end) / rate;
+        const bool pair = s->im[i] > 0;
+        const double complex y =
+            whole * CMPLX(s->G[i * s->m + j], pair ? s->G[(i + 1) * s->m + j] : 0);
+        out[i] += creal(y);
+        if (pair)
+            out[++i] += cimag(y);
+    }
+}
+
+/* Where s_j, or (bend) its derivative, changes its sign between t0 and t1. */
+static double change_between(const stance_null_set *s, const double *amplitude, bool bend,
+                             double t0, double t1)
+{
+    double slope;
+    double at = signal(s, amplitude, t0, &slope);
+    const bool negative = (bend ? slope : at) < 0;
+    for (;;) {
+        const double middle = t0 + 0.5 * (t1 - t0);
+        if (!(middle > t0 && middle < t1))
+            return middle;
+        at = signal(s, amplitude, middle, &slope);
+        if (((bend ? slope : at) < 0) == negative)
+            t0 = middle;
+        else
+            t1 = middle;
+    }
+}
+
+/* How long a look may reach at t: the fastest mode that is alive is resolved. */
+static double reach_at(const stance_null_set *s, double t)
+{
+    double fastest = 0;
+    for (int i = 0; i < s->k; i++)
+        if ((s->re[i] - s->slowest) * t <= ALIVE)
+            fastest = fmax(fastest, hypot(s->re[i], s->im[i]));
+    return LOOK / fastest;
+}
+
+/* Sign changes of s_j between t and t + step, at most two, in order. */
+static int changes_between(const stance_null_set *s, const double *amplitude, double t, double step,
+                           double *change)
+{
+    double slope[2], ignored;
+    const double at[2] = {signal(s, amplitude, t, &slope[0]),
+                          signal(s, amplitude, t + step, &slope[1])};
+    if ((at[0] < 0) != (at[1] < 0)) {
+        change[0] = change_between(s, amplitude, false, t, t + step);
+        return 1;
+    }
+    if ((slope[0] < 0) == (slope[1] < 0) || (slope[0] < 0) == (at[0] < 0))
+        return 0; /* it does not turn, or away from zero */
+    const double turn = change_between(s, amplitude, true, t, t + step);
+    if ((signal(s, amplitude, turn, &ignored) < 0) == (at[0] < 0))
+        return 0;
+    change[0] = change_between(s, amplitude, false, t, turn);
+    change[1] = change_between(s, amplitude, false, turn, t + step);
+    return 2;
+}
+
+/* point[k] += what input j adds to the point that eta touches. */
+static void add_input(const stance_null_set *s, int j, const double *eta, double *point)
+{
+    double amplitude[MOST] = {0}, slope, from = 0;
+    for (int i = 0; i < s->k; i++) {
+        const double g = s->G[i * s->m + j];
+        amplitude[i] = -eta[i] * g;
+        if (s->im[i] > 0) {
+            const double g2 = s->G[(i + 1) * s->m + j];
+            amplitude[i] -= eta[i + 1] * g2;
+            amplitude[i + 1] = eta[i + 1] * g - eta[i] * g2;
+            i++;
+        }
+    }
+    const double begin = 1e-9 * reach_at(s, 0); /* at 0 itself s_j may be zero */
+    bool up = !(signal(s, amplitude, begin, &slope) < 0);
+    for (double t = begin, step; t * s->slowest < ALIVE; t += step) {
+        double change[2];
+        step = reach_at(s, t);
+        const int changes = changes_between(s, amplitude, t, step, change);
+        for (int c = 0; c < changes; c++) {
+            add_integral(s, j, from, change[c], up ? -s->high[j] : -s->low[j], point);
+            from = change[c];
+            up = !up;
+        }
+    }
+    add_integral(s, j, from, INFINITY, up ? -s->high[j] : -s->low[j], point);
+}
+
+double stance_null_set_support(const stance_null_set *s, const double *eta, double *point)
+{
+    double h = 0;
+    for (int i = 0; i < s->k; i++)
+        point[i] = 0;
+    for (int j = 0; j < s->m; j++)
+        add_input(s, j, eta, point);
+    for (int i = 0; i < s->k; i++)
+        h += eta[i] * point[i];
+    return h;
+}
+
+/* ---- the set --------------------------------------------------------------------------------- */
+
+/* Left eigenvectors of the unstable modes, as rows of W. */
+static stance_error find_modes(stance_null_set *s, const double *A, stance_message *message)
+{
+    const int n = s->n;
+    const size_t nn = (size_t)n * (size_t)n;
+    double *room = matrix_room(2 * nn + 2 * (size_t)n);
+    if (!room)
+        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
+    double *const copy = room, *const V = copy + nn, *const re = V + nn, *const im = re + n;
+    double largest = 0;
+    memcpy(copy, A, nn * sizeof *A); /* read by columns: the transpose, whose right ones they are */
+    int info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, copy, n, re, im, NULL, 1, V, n);
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, hypot(re[i], im[i]));
+    s->slowest = INFINITY;
+    stance_error error = info == 0 ? STANCE_OK : STANCE_NUMERICAL;
+    for (int i = 0; i < n && error == STANCE_OK; i++) {
+        if (!(re[i] > MODE_GROWS * largest))
+            continue;
+        if (s->k == MOST) {
+            error =
+                stance_refuse(message, STANCE_BAD_ARGUMENT, "more than %d unstable modes", MOST);
+            break;
+        }
+        if (hypot(re[i], im[i]) > SWINGS * re[i])
+            error = stance_refuse(message, STANCE_NUMERICAL,
+                                  "an unstable mode swings too often while it grows");
+        /* Of a pair the columns are real and imaginary part, im > 0 first. */
+        memcpy(s->W + s->k * n, V + i * n, (size_t)n * sizeof *V);
+        s->re[s->k] = re[i];
+        s->im[s->k++] = im[i];
+        s->slowest = fmin(s->slowest, re[i]);
+    }
+    if (info != 0)
+        stance_refuse(message, error, "no eigenvectors");
+    free(room);
+    return error;
+}
+
+/* Rows of W and G so that the set reaches 1 along each coordinate, of a pair along the farther. */
+static stance_error scale(stance_null_set *s, stance_message *message)
+{
+    double reach[MOST] = {0}, eta[MOST], point[MOST] = {0};
+    for (int i = 0; i < s->k; i++) {
+        reach[i] = 0;
+        for (int sign = -1; sign <= 1; sign += 2) {
+            memset(eta, 0, sizeof eta);
+            eta[i] = sign;
+            reach[i] = fmax(reach[i], stance_null_set_support(s, eta, point));
+        }
+        if (s->im[i] < 0)
+            reach[i] = reach[i - 1] = fmax(reach[i], reach[i - 1]);
+    }
+    for (int i = 0; i < s->k; i++) {
+        if (!(reach[i] > 0) || !isfinite(reach[i]))
+            return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                                 "no torque reaches the unstable mode %.6g 1/s", s->re[i]);
+        for (int j = 0; j < s->n; j++)
+            s->W[i * s->n + j] /= reach[i];
+        for (int j = 0; j < s->m; j++)
+            s->G[i * s->m + j] /= reach[i];
+    }
+    return STANCE_OK;
+}
+
+/* Direction d of the table, of any length: two, a circle, or normal numbers from Halton's points.
+ */
+static void direction_of(const stance_null_set *s, int d, double *eta)
+{
+    static const int prime[MOST] = {2, 3, 5, 7, 11, 13, 17, 19};
+    if (s->k == 1) {
+        eta[0] = d ? -1 : 1;
+    } else if (s->k == 2) {
+        const double angle = 2 * M_PI * d / s->directions;
+        eta[0] = cos(angle), eta[1] = sin(angle);
+    } else {
+        for (int i = 0; i < s->k; i++) {
+            double u = 0, part = 1;
+            for (int at = d + 1; at > 0; at /= prime[i]) {
+                part /= prime[i];
+                u += part * (at % prime[i]);
+            }
+            eta[i] = log(u / (1 - u)); /* as good as normal for a direction */
+        }
+    }
+}
+
+/* Directions that are spread evenly once the set is about round: eta becomes R eta with R R' the
+ * inverse of the points' second moments. */
+static stance_error spread_out(stance_null_set *s)
+{
+    const int k = s->k;
+    double P[MOST * MOST] = {0};
+    for (int d = 0; d < s->directions; d++)
+        for (int i = 0; i < k; i++)
+            for (int j = 0; j <= i; j++)
+                P[i * k + j] += s->point[d * k + i] * s->point[d * k + j] / s->directions;
+    if (LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', k, P, k) != 0)
+        return STANCE_NUMERICAL;
+    for (int d = 0; d < s->directions; d++) { /* L' eta = direction */
+        double *const eta = s->eta + d * k;
+        direction_of(s, d, eta);
+        for (int i = k - 1; i >= 0; i--) {
+            for (int j = i + 1; j < k; j++)
+                eta[i] -= P[j * k + i] * eta[j];
+            eta[i] /= P[i * k + i];
+        }
+    }
+    return STANCE_OK;
+}
+
+static stance_error make_table(stance_null_set *s, stance_message *message)
+{
+    s->directions = s->k == 1 ? 2 : s->k == 2 ? DIRECTIONS : DIRECTIONS_ALL;
+    const size_t count = (size_t)s->directions * (size_t)s->k;
+    s->eta = matrix_room(2 * count);
+    s->point = s->eta ? s->eta + count : NULL;
+    if (!s->eta)
+        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
+    for (int d = 0; d < s->directions; d++) {
+        direction_of(s, d, s->eta + d * s->k);
+        stance_null_set_support(s, s->eta + d * s->k, s->point + d * s->k);
+    }
+    if (spread_out(s) != STANCE_OK)
+        return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                             "the torques do not reach all unstable modes");
+    for (int d = 0; d < s->directions; d++) {
+        double *const eta = s->eta + d * s->k;
+        const double h = stance_null_set_support(s, eta, s->point + d * s->k);
+        if (!(h > 0))
+            return stance_refuse(message, STANCE_UNCONTROLLABLE,
+                                 "the torques do not reach all unstable modes");
+        for (int i = 0; i < s->k; i++)
+            eta[i] /= h;
+    }
+    return STANCE_OK;
+}
+
+void stance_null_set_free(stance_null_set *s)
+{
+    if (!s)
+        return;
+    free(s->W);
+    free(s->eta);
+    free(s);
+}
+
+stance_error stance_null_set_make(int n, int m, const double *A, const double *B, const double *low,
+                                  const double *high, stance_null_set **set,
+                                  stance_message *message)
+{
+    *set = NULL;
+    if (n < 1 || m < 1 || !matrix_finite((size_t)n * (size_t)n, A) ||
+        !matrix_finite((size_t)n * (size_t)m, B))
+        return stance_refuse(message, STANCE_BAD_ARGUMENT, "numbers that are not finite");
+    for (int j = 0; j < m; j++)
+        if (!(low[j] < 0 && high[j] > 0) || isinf(low[j]) || isinf(high[j]))
+            return stance_refuse(message, STANCE_BAD_ARGUMENT, "%s",
+                                 isinf(low[j]) || isinf(high[j])
+                                     ? "a torque has no limit"
+                                     : "the equilibrium takes more torque than there is");
+    stance_null_set *const s = calloc(1, sizeof *s);
+    if (!s)
+        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
+    s->n = n, s->m = m;
+    s->W = matrix_room(MOST * ((size_t)n + (size_t)m) + 2 * (size_t)m);
+    if (!s->W) {
+        stance_null_set_free(s);
+        return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
+    }
+    s->G = s->W + MOST * n;
+    s->low = s->G + MOST * m;
+    s->high = s->low + m;
+    memcpy(s->low, low, (size_t)m * sizeof *low);
+    memcpy(s->high, high, (size_t)m * sizeof *high);
+    stance_error error = find_modes(s, A, message);
+    if (error == STANCE_OK && s->k > 0) {
+        matrix_multiply(s->k, n, m, s->W, B, s->G);
+        error = scale(s, message);
+        if (error == STANCE_OK)
+            error = make_table(s, message);
+    }
+    if (error != STANCE_OK)
+        stance_null_set_free(s);
+    else
+        *set = s;
+    return error;
+}
+
+int stance_null_set_modes(const stance_null_set *s, double *re, double *im)
+{
+    for (int i = 0; i < s->k && re; i++)
+        re[i] = s->re[i], im[i] = s->im[i];
+    return s->k;
+}
+
+/* ---- the gauge ------------------------------------------------------------------------------- */
+
+static double dot(int n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+        sum += a[i] * b[i];
+    return sum;
+}
+
+/* z as a sum of k points of the set, mu >= 0 of each: its gauge is at most the sum of mu. */
+struct hull {
+    double z[MOST], point[MOST][MOST], mu[MOST];
+};
+
+/* x of M x = b (by_points: M' x = b), M the points as rows; false: they depend on each other. */
+static bool hull_solve(const struct hull *hull, int k, bool by_points, const double *b, double *x)
+{
+    double M[MOST][MOST + 1] = {{0}};
+    for (int i = 0; i < k; i++) {
+        for (int j = 0; j < k; j++)
+            M[i][j] = by_points ? hull->point[j][i] : hull->point[i][j];
+        M[i][k] = b[i];
+    }
+    for (int c = 0; c < k; c++) {
+        int row = c;
+        for (int i = c + 1; i < k; i++)
+            row = fabs(M[i][c]) > fabs(M[row][c]) ? i : row;
+        if (M[row][c] == 0)
+            return false;
+        for (int j = c; j <= k; j++) {
+            const double swap = M[c][j];
+            M[c][j] = M[row][j], M[row][j] = swap;
+        }
+        for (int i = c + 1; i < k; i++)
+            for (int j = k; j >= c; j--)
+                M[i][j] -= M[i][c] / M[c][c] * M[c][j];
+    }
+    for (int i = k - 1; i >= 0; i--) {
+        x[i] = M[i][k];
+        for (int j = i + 1; j < k; j++)
+            x[i] -= M[i][j] * x[j];
+        x[i] /= M[i][i];
+    }
+    return true;
+}
+
+static double hull_sum(const struct hull *hull, int k)
+{
+    double sum = 0;
+    for (int i = 0; i < k; i++)
+        sum += hull->mu[i];
+    return sum;
+}
+
+/* The direction in which all points of the hull reach 1. */
+static bool hull_normal(const struct hull *hull, int k, double *eta)
+{
+    double one[MOST];
+    for (int i = 0; i < k; i++)
+        one[i] = 1;
+    return hull_solve(hull, k, false, one, eta);
+}
+
+/* Takes a point in for the one that leaves first. */
+static bool hull_take(struct hull *hull, int k, const double *point)
+{
+    double share[MOST];
+    int leaves = -1;
+    if (!hull_solve(hull, k, true, point, share))
+        return false;
+    for (int i = 0; i < k; i++)
+        if (share[i] > 0 &&
+            (leaves < 0 || hull->mu[i] * share[leaves] < hull->mu[leaves] * share[i]))
+            leaves = i;
+    if (leaves < 0)
+        return false;
+    memcpy(hull->point[leaves], point, sizeof(double) * (size_t)k);
+    if (!hull_solve(hull, k, true, hull->z, hull->mu))
+        return false;
+    for (int i = 0; i < k; i++)
+        hull->mu[i] = fmax(0, hull->mu[i]);
+    return true;
+}
+
+/* The table's point farthest along eta, if it is beyond 1 by more than rounding. */
+static const double *table_farthest(const stance_null_set *s, const double *eta)
+{
+    const double *farthest = NULL;
+    double most = 1 + 1e-9;
+    for (int d = 0; d < s->directions; d++) {
+        const double along = dot(s->k, eta, s->point + d * s->k);
+        if (along > most)
+            most = along, farthest = s->point + d * s->k;
+    }
+    return farthest;
+}
+
+/* Bounds of the gauge of x, until they are together or (decide) on one side of 1. */
+static void gauge_bounds(const stance_null_set *s, const double *x, bool decide, double bound[2])
+{
+    const int k = s->k;
+    struct hull hull;
+    double eta[MOST] = {0}, point[MOST] = {0};
+    bound[0] = bound[1] = 0;
+    memset(&hull, 0, sizeof hull);
+    for (int i = 0; i < k; i++) {
+        hull.z[i] = dot(s->n, s->W + i * s->n, x);
+        hull.point[i][i] = hull.z[i] < 0 ? -TINY : TINY;
+        hull.mu[i] = fabs(hull.z[i]) / TINY;
+    }
+    if (hull_sum(&hull, k) == 0)
+        return;
+    const double *next;
+    for (int round = 0; round < ROUNDS && hull_normal(&hull, k, eta) &&
+                        (next = table_farthest(s, eta)) && hull_take(&hull, k, next);
+         round++)
+        ;
+    for (int d = 0; d < s->directions; d++)
+        bound[0] = fmax(bound[0], dot(k, s->eta + d * k, hull.z));
+    bound[1] = hull_sum(&hull, k);
+    if (decide && (bound[0] >= 1 || bound[1] < 1))
+        return;
+    for (int round = 0; round < ROUNDS && hull_normal(&hull, k, eta); round++) {
+        const double h = stance_null_set_support(s, eta, point);
+        bound[0] = fmax(bound[0], dot(k, eta, hull.z) / h);
+        bound[1] = fmin(bound[1], hull_sum(&hull, k));
+        if (bound[1] - bound[0] <= TOGETHER * bound[1] ||
+            (decide && (bound[0] >= 1 || bound[1] < 1)) || !hull_take(&hull, k, point))
+            return;
+    }
+}
+
+double stance_null_set_gauge(const stance_null_set *s, const double *x)
+{
+    double bound[2];
+    gauge_bounds(s, x, false, bound);
+    return bound[1];
+}
+
+bool stance_null_set_holds(const stance_null_set *s, const double *x)
+{
+    double bound[2];
+    gauge_bounds(s, x, true, bound);
+    return bound[1] < 1;
+}
