@@ -11,18 +11,17 @@ import re
 import shutil
 import subprocess
 import sys
-import traceback
 import xml.etree.ElementTree
 
 import h5py
 import numpy as np
 
 from drawn import Picture, gif
+from tap import tap
 
 SVG = "{http://www.w3.org/2000/svg}"
 STANCE, SCENARIOS = sys.argv[1:]
 MAP = ["sweep.grid[0].values=[0.1, 0.8]", "sweep.grid[1].count=9", "sweep.grid[2].count=7", "record.cases=none"]
-count = 0
 
 
 def call(*arguments, code=0, **environment):
@@ -420,13 +419,5 @@ def progress():
         assert heard.stderr.read().decode().startswith("gnuplot failed")
 
 
-for check in (one_file, sizes, names, refusals, letters, every_kind, outlines, many_values, replay, two_cases, other_commands,
-              under_mpirun, progress):
-    count += 1
-    try:
-        check()
-        print(f"ok {count} - {check.__name__}", flush=True)
-    except Exception: # pylint: disable=broad-except
-        print(f"not ok {count} - {check.__name__}")
-        print("# " + traceback.format_exc().replace("\n", "\n# "), flush=True)
-print(f"1..{count}")
+tap([one_file, sizes, names, refusals, letters, every_kind, outlines, many_values, replay, two_cases, other_commands,
+     under_mpirun, progress])

@@ -13,12 +13,12 @@ import math
 import re
 import subprocess
 import sys
-import traceback
 
 import h5py
 import numpy as np
 
 from drawn import Picture
+from tap import tap
 
 STANCE, SCENARIOS = sys.argv[1:]
 # By what people are told: blue hues stand, orange falls.
@@ -26,7 +26,6 @@ COLOURS = {"stabilised": "005a92", "rested": "56b4e9", "fell": "f3bb4c", "undeci
 HUES = ["0072b2", "d55e00", "009e73"]
 CIVIDIS = np.array([[0x00, 0x22, 0x4e], [0x43, 0x4e, 0x6c], [0x7d, 0x7c, 0x78], [0xbc, 0xae, 0x6c], [0xfe, 0xe8, 0x38]])
 EQUILIBRIUM = ["initial.offset.theta", "initial.offset.vtheta"]
-count = 0
 
 
 def stance(*arguments):
@@ -574,13 +573,5 @@ def speeds():
     assert [t for _, t in panel.words(0)] == ["256²", "512²", "1024²"]
 
 
-for check in (maps, tables, axes, greys, answers, curve_of_shares, lines, tics, samples, rays, case, strip, mechanisms, sensitivities, morris, accuracy, failures,
-              speeds):
-    count += 1
-    try:
-        check()
-        print(f"ok {count} - {check.__name__}", flush=True)
-    except Exception: # pylint: disable=broad-except
-        print(f"not ok {count} - {check.__name__}")
-        print("# " + traceback.format_exc().replace("\n", "\n# "), flush=True)
-print(f"1..{count}")
+tap([maps, tables, axes, greys, answers, curve_of_shares, lines, tics, samples, rays, case, strip, mechanisms, sensitivities, morris, accuracy, failures,
+     speeds])
