@@ -55,8 +55,7 @@ static bool open_loop(struct design_report *r, stance_message *message)
     return error == STANCE_OK || refuse(message, "eigenvalues and Kalman rank", error);
 }
 
-/* ---- what any controller could do -------------------------------------------------------------
- */
+/* ---- what any controller could do ------------------------------------------------------------ */
 
 stance_null_set *design_null_set(const struct design_report *r, stance_message *message)
 {
@@ -165,8 +164,7 @@ static stance_error sampled_loop(struct design_report *r)
     return error;
 }
 
-/* ---- how late and how slowly it may act, and what noise does -----------------------------------
- */
+/* ---- how late and how slowly it may act, and what noise does --------------------------------- */
 
 #define MARGIN_LEAST 1e-3 /* of the sample time: the shortest lag that is looked at */
 #define MARGIN_RATIO 1.1  /* of neighbouring lags */
