@@ -15,13 +15,13 @@
 extern const struct command command_check, command_design, command_build, command_run,
     command_export, command_status, command_summary, command_plot, command_compare,
     command_describe, command_bench, command_basin, command_merge, command_table,
-    command_sensitivity, command_replay, command_ranges;
+    command_sensitivity, command_replay, command_ranges, command_optimise;
 
 static const struct command *const commands[] = {
-    &command_check,  &command_ranges,      &command_design, &command_build,  &command_run,
-    &command_status, &command_summary,     &command_plot,   &command_replay, &command_compare,
-    &command_basin,  &command_sensitivity, &command_merge,  &command_table,  &command_describe,
-    &command_export, &command_bench,
+    &command_check,    &command_ranges, &command_design,      &command_build, &command_run,
+    &command_optimise, &command_status, &command_summary,     &command_plot,  &command_replay,
+    &command_compare,  &command_basin,  &command_sensitivity, &command_merge, &command_table,
+    &command_describe, &command_export, &command_bench,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -113,8 +113,9 @@ int main(int argc, char **argv)
         print_version();
         return checked_output(EXIT_DONE);
     }
-    /* Only `run` is for several ranks: of all else the first one speaks. */
-    if (!parallel_is_first() && strcmp(argv[1], command_run.name) != 0)
+    /* Of commands that are not for several ranks the first one speaks. */
+    if (!parallel_is_first() && strcmp(argv[1], command_run.name) != 0 &&
+        strcmp(argv[1], command_optimise.name) != 0)
         return EXIT_DONE;
     for (size_t i = 0; i < COMMANDS; i++)
         if (strcmp(argv[1], commands[i]->name) == 0)

@@ -2,7 +2,7 @@
 # The rooms of the program: a file may include what stands in its own room and in those that its room may
 # use, and from the top, by "room/file.h". Prints every include that does not; exit code 1 if there is one.
 cd "$(dirname "$0")/.."
-runner='engine engine/control runner/base runner/ranks runner/objects runner/scenario runner/plan runner/store runner/run'
+runner='engine engine/control runner/base runner/ranks runner/objects runner/scenario runner/plan runner/store runner/run runner/optimise'
 numbers="engine $runner analysis/statistics analysis/table"
 rooms="engine:
 engine/core/lanes: engine
@@ -22,6 +22,7 @@ runner/scenario: engine runner/base
 runner/plan: engine engine/control runner/base runner/ranks runner/objects runner/scenario
 runner/store: engine runner/base runner/ranks runner/scenario runner/plan
 runner/run: engine runner/base runner/ranks runner/scenario runner/plan runner/store
+runner/optimise: engine engine/control runner/base runner/ranks runner/objects runner/scenario runner/plan runner/store runner/run
 analysis/statistics: $runner
 analysis/table: $runner analysis/statistics
 analysis/draw: $numbers

@@ -14,7 +14,7 @@ static char errors[1 << 12];
 /* ---- documentation ----------------------------------------------------------------------------
  */
 
-static char described[1 << 18];
+static char described[1 << 19];
 
 static bool describe(const char *path, bool json_schema)
 {

@@ -94,34 +94,19 @@ static bool read_scenario(struct run *run)
 static void stage_scenario(struct run *run)
 {
     struct options *o = &run->options;
-    uint64_t length = 0;
+    bool read = false;
 
     run->scenario = calloc(1, sizeof *run->scenario);
     if (run->parallel.rank == 0 && run->scenario) {
-        if (read_scenario(run)) {
-            length = strlen(run->scenario->text) + 1;
-        } else if (run->failure.code == EXIT_DONE) {
-            /* The reader has printed why. */
+        read = read_scenario(run);
+        if (!read && run->failure.code == EXIT_DONE) /* the reader has printed why */
             run->failure.code = access(o->scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
-        }
     }
-    parallel_broadcast(&run->parallel, &length, sizeof length);
-    if (run->parallel.rank != 0 && length > 0) {
-        char *text = malloc(length);
-        if (!text)
-            abort(); /* the others wait in the broadcast: MPI ends the job */
-        parallel_broadcast(&run->parallel, text, length);
-        if (!run->scenario || !scenario_read(run->scenario, o->scenario, text, NULL, 0, NULL)) {
-            free(run->scenario);
-            run->scenario = NULL;
-            run_fail(run, EXIT_IO, "stance run: a rank cannot read the scenario that rank 0 reads");
-        }
-        free(text);
-    } else if (length > 0) {
-        parallel_broadcast(&run->parallel, run->scenario->text, length);
-    } else {
+    if (!claim_scenario(&run->parallel, run->scenario, o->scenario, read, &run->message)) {
         free(run->scenario);
         run->scenario = NULL;
+        if (run->message.text[0])
+            run_fail_io(run);
     }
     if (run->scenario && o->single && o->single_case >= run->scenario->cases) {
         run_fail(run, EXIT_USAGE,
@@ -235,30 +220,13 @@ static void look_into_file(struct run *run)
 }
 
 /* Rank 0: where the results go, whether they may, and nobody else writes there. */
-static void claim_file(struct run *run)
+static void take_file(struct run *run)
 {
     const struct options *o = &run->options;
-    struct stat information;
-    bool exists = lstat(run->file, &information) == 0;
+    bool exists;
 
-    if (exists && !o->force && !o->resume) {
-        run_fail(run, EXIT_IO,
-                 "stance run: %.400s exists; --force replaces it, --resume goes on with it",
-                 run->file);
-        return;
-    }
-    if (exists && !S_ISREG(information.st_mode) && !S_ISLNK(information.st_mode)) {
-        run_fail(run, EXIT_IO, "stance run: %.200s: not a regular file", run->file);
-        return;
-    }
-    if (!o->output && mkdir("results", 0777) != 0 && errno != EEXIST) {
-        run_fail(run, EXIT_IO, "stance run: cannot make the directory results: %s",
-                 strerror(errno));
-        return;
-    }
-    /* A link that is replaced is a file of its own; through others the file they name is written.
-     */
-    if (!(o->force ? lock_take : lock_take_through)(&run->lock, run->file, &run->message)) {
+    if (!claim_file(run->file, o->force, o->resume, !o->output, &run->lock, &exists,
+                    &run->message)) {
         run_fail_io(run);
         return;
     }
@@ -278,7 +246,7 @@ static void stage_claim(struct run *run)
 {
     name_file(run);
     if (run->parallel.rank == 0 && !run->options.dry_run && run->failure.code == EXIT_DONE)
-        claim_file(run);
+        take_file(run);
     parallel_broadcast(&run->parallel, &run->resume, sizeof run->resume);
     parallel_broadcast(&run->parallel, &run->succeed, sizeof run->succeed);
 }

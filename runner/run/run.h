@@ -3,6 +3,7 @@
 #ifndef STANCE_RUN_RUN_H
 #define STANCE_RUN_RUN_H
 
+#include "claim.h"
 #include "work.h"
 
 #include "runner/base/command.h"

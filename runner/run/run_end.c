@@ -12,39 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void print_word(FILE *to, const char *word)
-{
-    if (word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                          "_-+./,:=@%")] == '\0' &&
-        word[0]) {
-        fprintf(to, " %s", word);
-        return;
-    }
-    fputs(" '", to);
-    for (; *word; word++)
-        fputs(*word == '\'' ? "'\\''" : (const char[]){*word, '\0'}, to);
-    fputc('\'', to);
-}
-
 void run_say_stopped(const struct run *run, const char *what)
 {
-    char *line = NULL; /* in one piece: a launcher mixes what ranks write in pieces */
-    size_t size = 0;
-    FILE *to = run->parallel.rank == 0 ? open_memstream(&line, &size) : NULL;
-    if (!to)
-        return;
-    fprintf(to, "stance run: %s; go on with:", what);
-    if (run->parallel.size > 1)
-        fprintf(to, " mpirun -n %d", run->parallel.size);
-    print_word(to, program_invocation_name);
-    fputs(" run", to);
-    for (int i = 1; i < run->argc; i++)
-        if (strcmp(run->argv[i], "--force") != 0 && strcmp(run->argv[i], "--resume") != 0)
-            print_word(to, run->argv[i]);
-    fputs(run->options.single ? " --force\n" : " --resume\n", to);
-    if (fclose(to) == 0)
-        fputs(line, stderr);
-    free(line);
+    claim_say_stopped(&run->parallel, run->argc, run->argv,
+                      run->options.single ? "--force" : "--resume", what);
 }
 
 /* What came out, over all ranks. */

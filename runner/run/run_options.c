@@ -10,24 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Seconds from "90", "90s", "55m", "1h30m", "2d"; negative when it is none of these. */
-static double parse_duration(const char *text)
-{
-    double total = 0;
-    while (*text) {
-        static const char letters[] = "smhd";
-        static const double seconds[] = {1, 60, 3600, 86400};
-        char *end;
-        const double value = strtod(text, &end);
-        const char *letter = *end ? strchr(letters, *end) : letters;
-        if (end == text || !(value >= 0) || !isfinite(value) || !letter)
-            return -1;
-        total += value * seconds[letter - letters];
-        text = *end ? end + 1 : end;
-    }
-    return total;
-}
-
 static bool usage(const char *text, const char *word)
 {
     fprintf(stderr, "stance run: %s%s%s (stance run -h explains)\n", text, word ? " " : "",
@@ -83,7 +65,7 @@ static bool check_options(struct options *o, const char *only, const char *limit
         return usage("--trace needs --only CASE; `record` in the scenario records a sweep", NULL);
     if (o->resume && only)
         return usage("--only computes one case: there is nothing to resume", NULL);
-    if (limit && (o->time_limit = parse_duration(limit)) < 0)
+    if (limit && (o->time_limit = claim_duration(limit)) < 0)
         return usage("--time-limit takes a duration such as 90s, 55m or 1h30m, not", limit);
     if (only) {
         if (!parse_number(only, &o->single_case))

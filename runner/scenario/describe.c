@@ -72,6 +72,7 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         [FIELD_CASES] = {"one of: ", "; or a list of cases"},
         [FIELD_AXES] = {"list of mappings", ""},
         [FIELD_FACTORS] = {"list of mappings", ""},
+        [FIELD_VARIED] = {"one of: ", "; or a list of these and of mappings"},
         [FIELD_ENDS] = {"number, or list of numbers", ""},
         [FIELD_PATH] = {"path", ""},
         [FIELD_VALUES] = {"list of numbers, words or lists of these", ""},
@@ -309,6 +310,11 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
         return varied_schema(schema, "sweep.grid[]", SCENARIO_MAX_AXES);
     case FIELD_FACTORS:
         return varied_schema(schema, "sweep.sample.vary[]", DOE_MAX_FACTORS);
+    case FIELD_VARIED:
+        return json_pack("{s:[o,o]}", "anyOf", words_schema(field),
+                         list_schema(json_pack("{s:[o,o]}", "anyOf", words_schema(field),
+                                               map_schema(schema, "optimise.vary[]")),
+                                     0));
     case FIELD_ENDS:
         return ends_schema();
     case FIELD_PATHS: {

@@ -61,6 +61,16 @@ static bool make_values(struct scenario *s, struct scenario_axis *axis)
     return good;
 }
 
+bool scenario_resample(struct scenario *s, uint64_t count, uint64_t seed)
+{
+    struct scenario_axis *axis = &s->axis[s->axes - 1];
+    s->cases = s->cases / axis->count * count;
+    free(axis->value);
+    s->sample.design.count = axis->count = count;
+    s->sample.design.seed = seed;
+    return make_values(s, axis);
+}
+
 /* ---- factors --------------------------------------------------------------------------------- */
 
 static bool read_listed(struct axis_reader *a, struct scenario_factor *f,

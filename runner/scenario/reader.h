@@ -30,7 +30,8 @@ struct reader {
     struct seen seen[SCHEMA_MAX_FIELDS];
     struct seen nothing; /* of paths that the scene lacks */
     struct swept_field swept[SCENARIO_MAX_AXES][SCENARIO_MAX_PATHS];
-    bool axes_bad; /* the number of cases is not known */
+    struct swept_field sought[SCENARIO_MAX_PATHS]; /* of optimise */
+    bool axes_bad;                                 /* the number of cases is not known */
 };
 
 /* What is known of the field at a path of the schema ("[]" for indices); never NULL, for a path
@@ -68,12 +69,14 @@ struct axis_reader {
     struct swept_field *swept;    /* [axis->paths] */
     const struct tree_node *node; /* the mapping */
     int number;                   /* of the axis */
-    char name[AXIS_NAME];         /* sweep.grid[0], sweep.sample.vary[0] */
+    char name[AXIS_NAME];         /* sweep.grid[0], sweep.sample.vary[0], optimise.vary[0] */
 };
 
 /* sweep.c: the mapping itself, its keys those of the schema below `path`, and its path or paths,
  * behind those that the axis has. False: a problem. */
 bool axis_begin(struct axis_reader *a, const char *path, const char *wanted);
+/* sweep.c: one more path of the axis, from a node. False: a problem. */
+bool axis_read_path(struct axis_reader *a, const struct tree_node *node);
 /* sweep.c: `values`, where it stands, stands alone. */
 bool axis_check_alone(struct axis_reader *a);
 /* sweep.c: values of the paths from `first` on of one point; of several (`rows`) a list. `key`, not
@@ -95,6 +98,11 @@ const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME]);
 /* doe_scenario.c: the last axis from sweep.sample, after the others. */
 void doe_read(struct reader *r);
 void doe_free(struct scenario_sample *sample);
+
+/* search_scenario.c: the section optimise, after all axes; and what it means for the rest, once the
+ * base values are whole. */
+void search_read(struct reader *r);
+void search_check(struct reader *r);
 
 /* sweep.c: the axes from the value of sweep.grid, into r->s. */
 void sweep_read(struct reader *r, const struct tree_node *grid);

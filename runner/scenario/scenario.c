@@ -241,8 +241,9 @@ static void read_value(struct reader *r, const struct scenario_field *field,
     } else if (map) {
         seen->bad = true;
         reader_no_mapping(r, field, node);
-    } else if (field->type == FIELD_POLES || field->type == FIELD_NUMBERS ||
-               field->type == FIELD_MATRIX) {
+    } else if ((field->type == FIELD_POLES || field->type == FIELD_NUMBERS ||
+                field->type == FIELD_MATRIX) &&
+               field->items > 0) {
         seen->bad = !read_items(r, field, node);
     } else if (field->offset != NO_OFFSET) {
         seen->bad = !read_bound(r, field, node);
@@ -366,6 +367,7 @@ static void read_by_hand(struct reader *r)
     if (grid && r->s->scene)
         sweep_read(r, grid);
     doe_read(r);
+    search_read(r);
     read_record(r);
     sweep_read_refine(r);
 }
@@ -560,6 +562,7 @@ void scenario_free(struct scenario *s)
     for (int a = 0; a < s->axes; a++)
         sweep_free(&s->axis[a]);
     doe_free(&s->sample);
+    sweep_free(&s->search.axis);
     free(s->record_list);
     free(s->text);
     free(s->place);

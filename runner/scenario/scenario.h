@@ -1,7 +1,7 @@
 /* scenario.h - a scenario file, read, checked and resolved.
  *
  * scenario text -> tree of nodes with line and column (libyaml) -> checked against one table of
- * keys (schema.c: path, type, unit, default, range, documentation) -> struct scenario.
+ * keys (schema_rows.c: path, type, unit, default, range, documentation) -> struct scenario.
  * Nothing here runs a simulation.
  */
 #ifndef STANCE_SCENARIO_SCENARIO_H
@@ -16,6 +16,7 @@
 enum {
     SCENARIO_MAX_AXES = 24,
     SCENARIO_MAX_PATHS = 48, /* paths of one axis */
+    SCENARIO_MAX_STAGES = 8, /* of a search, each with more starts */
     SCENARIO_MAX_STATES = 2 * STANCE_MAX_COORDINATES,
     SCENARIO_MAX_GAINS = STANCE_MAX_ACTUATORS * 2 * STANCE_MAX_POSTURE,
     SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
@@ -145,6 +146,33 @@ struct scenario_refine {
     double probes;
 };
 
+/* How a number that a search varies is moved: evenly, or by equal ratios. */
+enum scenario_scale { SCALE_EVEN, SCALE_RATIO, SCALE_NEGATIVE_RATIO };
+enum scenario_aim { AIM_SHARE, AIM_NEAREST, AIM_ANSWER };
+
+/* optimise: what a search for a better controller varies, and what counts as better; the first
+ * candidate is the scenario as it is. See runner/optimise. */
+struct scenario_search {
+    bool given;
+    bool designed_gains;       /* gains are varied that the scenario's design is to give first */
+    struct scenario_axis axis; /* what is varied: its paths, without points */
+    struct scenario_varied {
+        enum scenario_scale scale;
+        double low, high; /* INFINITY: none */
+        double unit;      /* of the number or, with ratios, of its logarithm; NAN: a gain's own */
+        bool bounded;     /* by `from` and `to` */
+    } varied[SCENARIO_MAX_PATHS];
+    enum scenario_aim aim;
+    int answer;                                    /* AIM_ANSWER: which */
+    double price[STANCE_ANSWER_COUNT], gain_price; /* of a unit of an answer, of the gains' norm */
+    bool normal;                                   /* starts near the middle count more */
+    bool worst;                                    /* over circumstances; false: the mean */
+    double critical;                               /* s; NAN: twice the sample time */
+    uint64_t candidates, grow[SCENARIO_MAX_STAGES], confirm;
+    int stages, restarts;
+    double step; /* of the first generation, in units */
+};
+
 struct scenario_place {
     char path[96];
     int line, column;
@@ -164,6 +192,7 @@ struct scenario {
     uint64_t cases; /* product of the counts; 1 without a sweep */
     struct scenario_sample sample;
     struct scenario_refine refine;
+    struct scenario_search search;
 
     double record_every; /* s; 0: not given, and no trajectories */
     enum scenario_record record_cases;
@@ -186,6 +215,11 @@ bool scenario_read(struct scenario *s, const char *file, const char *text, const
                    size_t set_count, FILE *errors);
 void scenario_free(struct scenario *s);
 
+/* A scenario's text with `set` (PATH=VALUE) and without the keys `drop`, paths of mappings' keys;
+ * what is not there need not be dropped. Freed by the caller. NULL: no memory, or no such path. */
+char *scenario_rewrite(const char *text, const char *const *drop, size_t drops,
+                       const char *const *set, size_t sets);
+
 /* Where the key stands that a message begins with ("controller.poles: ..."), or the nearest mapping
  * around it. False: it does not begin with a key that is given; line and column stay. */
 bool scenario_place(const struct scenario *s, const char *text, int *line, int *column);
@@ -196,6 +230,9 @@ double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);
 const struct scenario_axis *scenario_axis_of(const struct scenario *s, size_t offset, int *k);
 /* Least and largest value that a number takes, base or swept. */
 void scenario_extent(const struct scenario *s, size_t offset, double *least, double *largest);
+/* Gives the last axis the first `count` points of the design that sweep.sample describes, made with
+ * another seed. False: no memory. */
+bool scenario_resample(struct scenario *s, uint64_t count, uint64_t seed);
 /* Text of that value, for messages and pictures; of an infinite one "none". */
 void scenario_axis_text(const struct scenario_axis *axis, size_t i, int k, char *buffer,
                         size_t size);

@@ -183,14 +183,17 @@ static void check_uses(struct reader *r, const struct situation *is)
                         field->path, needed, instead);
         }
     }
-    for (int a = 0; a < r->s->axes; a++) {
-        for (int k = 0; k < r->s->axis[a].paths; k++) {
-            const struct swept_field *swept = &r->swept[a][k];
+    for (int a = 0; a <= r->s->axes; a++) {
+        const bool sought = a == r->s->axes;
+        const struct scenario_axis *const axis = sought ? &r->s->search.axis : &r->s->axis[a];
+        for (int k = 0; k < axis->paths; k++) {
+            const struct swept_field *swept = sought ? &r->sought[k] : &r->swept[a][k];
             needed = obstacle(r, is, swept->field, &instead);
             if (needed) {
                 char name[AXIS_NAME];
                 problem_add(&r->problems, swept->mark, "%s: %s is used only with %s (here: %s)",
-                            axis_key(r->s, a, name), r->s->axis[a].path[k], needed, instead);
+                            sought ? "optimise.vary" : axis_key(r->s, a, name), axis->path[k],
+                            needed, instead);
             }
         }
     }
@@ -651,4 +654,5 @@ void scenario_cross_check(struct reader *r)
         check_world(r);
     }
     check_lands(r);
+    search_check(r);
 }

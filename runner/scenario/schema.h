@@ -26,6 +26,7 @@ enum field_type {
     FIELD_CASES,   /* a word or a list of case indices */
     FIELD_AXES,    /* a list of mappings */
     FIELD_FACTORS, /* the same, of sweep.sample */
+    FIELD_VARIED,  /* a word, or a list of words and mappings: of optimise */
     FIELD_ENDS,    /* a number, or a list of as many as there are paths */
     FIELD_PATH,    /* path of a field that may be swept */
     FIELD_PATHS,

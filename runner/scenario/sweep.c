@@ -77,15 +77,22 @@ static bool beyond_end(struct axis_reader *a, const struct tree_node *node,
     return true;
 }
 
+static bool is_sought(const struct axis_reader *a)
+{
+    return a->axis == &a->r->s->search.axis;
+}
+
 static bool swept_before(struct axis_reader *a, const struct tree_node *node)
 {
-    for (int i = 0; i <= a->number; i++) {
-        const struct scenario_axis *axis = &a->r->s->axis[i];
+    for (int i = 0; i <= a->number + is_sought(a); i++) {
+        const bool other = i <= a->number;
+        const struct scenario_axis *axis = other ? &a->r->s->axis[i] : a->axis;
         for (int k = 0; k < axis->paths; k++) {
             if (strcmp(axis->path[k], node->text) == 0) {
                 char first[AXIS_NAME];
-                problem_add(&a->r->problems, node->mark, "%s: %s is swept twice (first in %s)",
-                            a->name, node->text, axis_key(a->r->s, i, first));
+                problem_add(&a->r->problems, node->mark, "%s: %s is %s twice (first in %s)",
+                            a->name, node->text, other && !is_sought(a) ? "swept" : "varied",
+                            other ? axis_key(a->r->s, i, first) : "optimise.vary");
                 return true;
             }
         }
@@ -93,8 +100,7 @@ static bool swept_before(struct axis_reader *a, const struct tree_node *node)
     return false;
 }
 
-/* One more path of the axis. */
-static bool read_path(struct axis_reader *a, const struct tree_node *node)
+bool axis_read_path(struct axis_reader *a, const struct tree_node *node)
 {
     struct scenario_axis *axis = a->axis;
     struct swept_field swept = {.mark = node->mark};
@@ -106,8 +112,8 @@ static bool read_path(struct axis_reader *a, const struct tree_node *node)
     if (!swept.field)
         return unknown_path(a, node);
     if (!swept.field->sweep) {
-        return problem_add(&a->r->problems, node->mark, "%s: %s cannot be swept", a->name,
-                           shown(word, node->text));
+        return problem_add(&a->r->problems, node->mark, "%s: %s cannot be %s", a->name,
+                           shown(word, node->text), is_sought(a) ? "varied" : "swept");
     }
     if (beyond_end(a, node, &swept) || swept_before(a, node))
         return false;
@@ -126,9 +132,11 @@ static bool read_path(struct axis_reader *a, const struct tree_node *node)
     axis->words = axis->words || axis->enumeration[k];
     axis->design = axis->design || swept.field->design;
 
-    struct seen *seen = &a->r->seen[swept.field - a->r->schema.field];
-    seen->swept = true;
-    seen->sweep = node->mark;
+    if (!is_sought(a)) {
+        struct seen *seen = &a->r->seen[swept.field - a->r->schema.field];
+        seen->swept = true;
+        seen->sweep = node->mark;
+    }
     return true;
 }
 
@@ -140,7 +148,7 @@ static bool read_paths(struct axis_reader *a)
     if (path && paths)
         return axis_complain(a, "path and paths exclude each other");
     if (path)
-        return read_path(a, path);
+        return axis_read_path(a, path);
     if (!field_list(&a->r->problems, a->name, "a list of paths", paths))
         return false;
     if (paths->count > SCENARIO_MAX_PATHS - (size_t)a->axis->paths) {
@@ -149,7 +157,7 @@ static bool read_paths(struct axis_reader *a)
     }
     bool good = true;
     for (size_t k = 0; k < paths->count; k++)
-        good = read_path(a, paths->item[k]) && good;
+        good = axis_read_path(a, paths->item[k]) && good;
     return good;
 }
 

@@ -528,7 +528,7 @@ uint64_t store_size(const struct plan *plan, int ranks)
            plan->designs * sizeof(struct resolved_design);
 }
 
-static hid_t create_file(const char *file)
+hid_t store_create_hdf(const char *file)
 {
     hid_t access = store_serial_access(), properties = H5Pcreate(H5P_FILE_CREATE), id = -1;
     if (access >= 0 && H5Pset_obj_track_times(properties, false) >= 0 &&
@@ -554,7 +554,7 @@ bool store_create(const char *file, const struct plan *plan, int ranks, const ch
     unlink(part); /* of a creation that was killed */
     if (!store_fits(file, store_size(plan, ranks), message))
         return false;
-    layout.file = create_file(part);
+    layout.file = store_create_hdf(part);
     if (layout.file < 0)
         return store_failed(message, file, "create");
     bool good = put_axes(&layout) && put_answers(&layout) && put_designs(&layout) &&

@@ -53,6 +53,9 @@ size_t store_column_width(const struct scenario *scenario, int column);
 /* Elements per row of a trajectory; 0: the variable is left out. */
 size_t store_trajectory_width(const stance_scene *scene, int variable);
 
+/* A new HDF5 file that netCDF-4 reads; HDF5 identifier, or -1. */
+hid_t store_create_hdf(const char *file);
+
 /* Lengths of the dimensions of the cases; returns how many (>= 1). */
 int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]);
 

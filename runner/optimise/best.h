@@ -1,0 +1,17 @@
+/* best.h - scenarios that a search makes of one: its first candidate, and its best. */
+#ifndef STANCE_OPTIMISE_BEST_H
+#define STANCE_OPTIMISE_BEST_H
+
+#include "runner/store/search_file.h"
+
+#include "runner/scenario/scenario.h"
+
+/* The text of the scenario with the gains of its design written out, where the search varies them;
+ * freed by the caller. NULL: *message says why, such as that no design exists. */
+char *best_first(const struct scenario *s, stance_message *message);
+
+/* Writes the scenario with the chosen candidate's numbers and without its section optimise, an
+ * ordinary one. */
+bool best_write(const struct search_file *f, const char *file, stance_message *message);
+
+#endif

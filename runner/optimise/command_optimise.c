@@ -1,0 +1,550 @@
+/* command_optimise.c - `stance optimise`: from a scenario with a section optimise to the file of a
+ * search and the scenario of its best candidate, on one rank or many.
+ */
+#include "best.h"
+#include "search.h"
+
+#include "runner/base/command.h"
+#include "runner/base/message.h"
+#include "runner/base/sandbox.h"
+#include "runner/base/units.h"
+#include "runner/plan/instruction_set.h"
+#include "runner/ranks/crash.h"
+#include "runner/ranks/deadline.h"
+#include "runner/run/claim.h"
+#include "runner/run/work.h"
+#include "runner/store/build_info.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+extern const struct command command_optimise; /* below */
+
+#define SAVE_INTERVAL 1.0 /* s */
+static const double progress_terminal = 0.5, progress_elsewhere = 60;
+static const double most_undecided = 1e-3;
+
+struct options {
+    const char *scenario, *output, **sets;
+    size_t set_count;
+    bool force, resume, quiet, help;
+    double time_limit; /* s, INFINITY: none */
+};
+
+struct optimise {
+    int argc;
+    char **argv;
+    struct parallel parallel;
+    struct options options;
+    struct scenario *asked, *first; /* as it was read, on rank 0; the first candidate */
+    char file[1024], best[1024];
+    struct lock lock;
+    struct heartbeat heartbeat;
+    struct search_file origin; /* of a search that is gone on with, on rank 0 */
+    bool resumes;
+    struct search search;
+    bool made;
+    double start, before; /* of clock_seconds(); s that earlier parts of the search took */
+    double save_at, show_at;
+    bool terminal;
+    char doing[40];
+    stance_message message;
+    int code; /* of this rank's failure */
+    bool printed;
+};
+
+static bool fail(struct optimise *o, enum exit_code code)
+{
+    o->code = code;
+    return false;
+}
+
+/* ---- options ----------------------------------------------------------------------------------
+ */
+
+static bool usage(struct optimise *o, const char *text)
+{
+    command_usage(&command_optimise, text);
+    o->printed = true;
+    return fail(o, EXIT_USAGE);
+}
+
+static bool read_options(struct optimise *o)
+{
+    struct options *const options = &o->options;
+    const char *limit = NULL;
+    size_t outputs, limits, force, resume, quiet, operands;
+    const struct option_spec specs[] = {
+        {"-o", true, &options->output, 1, &outputs},
+        {"--set", true, options->sets, (size_t)o->argc, &options->set_count},
+        {"--force", false, NULL, 0, &force},
+        {"--resume", false, NULL, 0, &resume},
+        {"--time-limit", true, &limit, 1, &limits},
+        {"--quiet", false, NULL, 0, &quiet},
+    };
+    options->time_limit = INFINITY;
+    if (!command_options(&command_optimise, o->argc, o->argv, specs, sizeof specs / sizeof *specs,
+                         &options->scenario, 1, &operands, &options->help)) {
+        o->printed = true;
+        return fail(o, EXIT_USAGE);
+    }
+    options->force = force > 0;
+    options->resume = resume > 0;
+    options->quiet = quiet > 0;
+    if (options->help)
+        return true;
+    if (operands != 1)
+        return usage(o, "a scenario file must be given");
+    if (options->force && options->resume)
+        return usage(o, "--force and --resume exclude each other");
+    if (limit && (options->time_limit = claim_duration(limit)) < 0)
+        return usage(o, "--time-limit takes a duration such as 90s, 55m or 1h30m");
+    return true;
+}
+
+/* Rank 0 first: it says what is wrong, and the others need not. */
+static bool stage_options(struct optimise *o)
+{
+    bool good = true;
+    o->options.sets = malloc((size_t)o->argc * sizeof *o->options.sets);
+    if (!o->options.sets)
+        return no_memory(&o->message) || fail(o, EXIT_IO);
+    if (o->parallel.rank == 0)
+        good = read_options(o);
+    parallel_broadcast(&o->parallel, &good, sizeof good);
+    bool help = o->options.help;
+    parallel_broadcast(&o->parallel, &help, sizeof help);
+    if (good && !help && o->parallel.rank != 0)
+        read_options(o);
+    o->options.help = help;
+    if (!good) {
+        o->printed = true;
+        return fail(o, EXIT_USAGE);
+    }
+    deadline_limit(o->options.time_limit - (clock_seconds() - o->start));
+    return help || instruction_set_check(&o->message) || fail(o, EXIT_USAGE);
+}
+
+/* ---- the scenario -----------------------------------------------------------------------------
+ */
+
+static bool say_place(struct optimise *o, const char *key, const char *text)
+{
+    int line = 1, column = 1;
+    scenario_place(o->asked, key, &line, &column);
+    fprintf(stderr, "%s:%d:%d: %s\n", o->asked->file, line, column, text);
+    o->printed = true;
+    return fail(o, EXIT_USAGE);
+}
+
+/* Rank 0: the scenario, and of it the first candidate. */
+static bool read_scenario(struct optimise *o)
+{
+    const struct options *const options = &o->options;
+    if (!scenario_read(o->asked, options->scenario, NULL, options->sets, options->set_count,
+                       stderr)) {
+        o->printed = true;
+        return fail(o, access(options->scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO);
+    }
+    if (!o->asked->search.given)
+        return say_place(o, "stance:",
+                         "no section optimise, which says what to vary (stance describe optimise)");
+    char *const text = best_first(o->asked, &o->message);
+    if (!text)
+        return say_place(o, "controller:", o->message.text);
+    const bool good = scenario_read(o->first, options->scenario, text, NULL, 0, stderr);
+    free(text);
+    o->printed = !good;
+    return good || fail(o, EXIT_USAGE);
+}
+
+static bool stage_scenario(struct optimise *o)
+{
+    o->asked = calloc(1, sizeof *o->asked);
+    o->first = calloc(1, sizeof *o->first);
+    if (!o->asked || !o->first)
+        abort(); /* the others wait in the broadcast: MPI ends the job */
+    const bool read = o->parallel.rank == 0 && read_scenario(o);
+    if (claim_scenario(&o->parallel, o->first, o->options.scenario, read, &o->message))
+        return true;
+    return o->code != EXIT_DONE || o->parallel.rank != 0 ? false : fail(o, EXIT_IO);
+}
+
+/* ---- the file ---------------------------------------------------------------------------------
+ */
+
+static bool name_files(struct optimise *o)
+{
+    const char *const output = o->options.output;
+    const size_t size = sizeof o->file;
+    const int length = output ? snprintf(o->file, size, "%s", output)
+                              : snprintf(o->file, size, "results/%s-search.h5", o->first->name);
+    if (length < 0 || (size_t)length >= size - 16)
+        return complain(&o->message, "the name of the file is too long") || fail(o, EXIT_IO);
+    size_t stem = (size_t)length;
+    if (stem > 3 && strcmp(o->file + stem - 3, ".h5") == 0)
+        stem -= 3;
+    if (stem > 7 && strncmp(o->file + stem - 7, "-search", 7) == 0)
+        stem -= 7;
+    snprintf(o->best, sizeof o->best, "%.*s-best.yaml", (int)stem, o->file);
+    return true;
+}
+
+/* In a process of its own: a damaged file may do anything. */
+static int check_file(void *file)
+{
+    struct search_file f;
+    stance_message message = {""};
+    sandbox_limit(true);
+    const bool good = search_file_read(&f, file, &message);
+    sandbox_limit(false);
+    if (good)
+        search_file_free(&f);
+    else
+        fprintf(stderr, "stance optimise: %s\n", message.text);
+    return good ? EXIT_DONE : EXIT_IO;
+}
+
+static bool look_into_file(struct optimise *o)
+{
+    const int code = sandbox(check_file, o->file, o->file);
+    if (code != EXIT_DONE) {
+        o->printed = true;
+        return fail(o, (enum exit_code)code);
+    }
+    if (!search_file_read(&o->origin, o->file, &o->message))
+        return fail(o, EXIT_IO);
+    if (strcmp(o->origin.scenario, o->asked->text) != 0)
+        return complain(&o->message,
+                        "%.150s is a search of another scenario: --force replaces it, -o names "
+                        "another file",
+                        o->file) ||
+               fail(o, EXIT_USAGE);
+    if (strcmp(o->origin.revision, build_revision()) != 0)
+        fprintf(stderr,
+                "stance optimise: warning: %s was begun by revision %s, this is %s: results may "
+                "differ\n",
+                o->file, o->origin.revision, build_revision());
+    o->resumes = true;
+    return true;
+}
+
+static bool take_file(struct optimise *o)
+{
+    bool exists;
+    if (!claim_file(o->file, o->options.force, o->options.resume, !o->options.output, &o->lock,
+                    &exists, &o->message) ||
+        (!heartbeat_begin(&o->heartbeat, &o->lock, &o->parallel, "starting") &&
+         !no_memory(&o->message)))
+        return fail(o, EXIT_IO);
+    return !exists || !o->options.resume || look_into_file(o);
+}
+
+static bool stage_claim(struct optimise *o)
+{
+    return name_files(o) && (o->parallel.rank != 0 || take_file(o));
+}
+
+/* ---- signs of life ----------------------------------------------------------------------------
+ */
+
+static void describe_work(struct optimise *o, char *text, size_t size)
+{
+    const struct search_file *const f = &o->search.record;
+    const size_t g = f->length[SEARCH_GENERATION];
+    if (f->length[SEARCH_CONFIRMED] > 0 && o->search.confirming)
+        snprintf(text, size, "fresh starts");
+    else if (g == 0)
+        snprintf(text, size, "first generation");
+    else
+        snprintf(text, size, "generation %zu of %zu, best %.4g", g + 1, o->search.generations,
+                 f->objective[f->best[g - 1]]);
+}
+
+static void show_progress(struct optimise *o, double now)
+{
+    if (o->options.quiet || now < o->show_at)
+        return;
+    char text[80], left[32] = "?";
+    describe_work(o, text, sizeof text);
+    const double part = (double)o->search.trials.cases / o->search.cases;
+    if (part > 0.01 && part < 1)
+        text_of_seconds(left, sizeof left, (now - o->start) * (1 - part) / part);
+    fprintf(stderr, "%s%s; about %s left%s", o->terminal ? "\r" : "", text, left,
+            o->terminal ? "\033[K" : "\n");
+    fflush(stderr);
+    o->show_at = now + (o->terminal ? progress_terminal : progress_elsewhere);
+}
+
+/* Rank 0, about every millisecond. */
+static bool attend(void *context, double now)
+{
+    struct optimise *const o = context;
+    const uint64_t candidates = o->search.record.length[SEARCH_CANDIDATE];
+    if (now >= o->heartbeat.due) {
+        describe_work(o, o->doing, sizeof o->doing);
+        o->heartbeat.doing = o->doing;
+        if (!heartbeat_beat(&o->heartbeat, now, candidates, candidates, 0, &o->message))
+            return !fail(o, EXIT_IO);
+    }
+    show_progress(o, now);
+    return false;
+}
+
+static bool save(void *context, bool last, stance_message *message)
+{
+    struct optimise *const o = context;
+    const double now = clock_seconds();
+    if (!last && now < o->save_at)
+        return true;
+    o->search.record.seconds = o->before + now - o->start;
+    if (!search_file_write(&o->search.record, o->file, message))
+        return false;
+    heartbeat_guard(&o->heartbeat, o->file);
+    o->save_at = clock_seconds() + SAVE_INTERVAL;
+    return true;
+}
+
+/* ---- the search -------------------------------------------------------------------------------
+ */
+
+static bool stage_make(struct optimise *o)
+{
+    if (!parallel_share(&o->parallel))
+        return no_memory(&o->message) || fail(o, EXIT_IO);
+    const char *const text = o->parallel.rank == 0 ? o->asked->text : "";
+    if (!search_make(&o->search, o->first, text, &o->parallel, o->resumes ? &o->origin : NULL,
+                     &o->message))
+        return fail(o, EXIT_IO);
+    o->made = true;
+    struct trials *const trials = &o->search.trials;
+    trials->quiet = o->options.quiet;
+    trials->until = o->start + o->options.time_limit;
+    trials->attend = attend;
+    trials->context = o;
+    o->search.save = save;
+    o->search.context = o;
+    o->before = o->search.record.seconds;
+    o->terminal = isatty(STDERR_FILENO) == 1;
+    o->show_at = o->start + (o->terminal ? progress_terminal : progress_elsewhere);
+    if (o->parallel.rank == 0 &&
+        o->first->search.candidates < (uint64_t)search_lambda(&o->search)) {
+        char line[120];
+        snprintf(line, sizeof line,
+                 "optimise.candidates: %" PRIu64 " are less than one generation, %d",
+                 o->first->search.candidates, search_lambda(&o->search));
+        return say_place(o, line, line);
+    }
+    return true;
+}
+
+static bool stage_search(struct optimise *o)
+{
+    const enum trials_end end = search_run(&o->search, &o->message);
+    if (o->terminal && !o->options.quiet && o->parallel.rank == 0)
+        fputs("\r\033[K", stderr);
+    if (o->code != EXIT_DONE) /* the file is not ours any more */
+        return false;
+    if (end == TRIALS_BROKEN)
+        return fail(o, EXIT_IO);
+    if (end == TRIALS_DONE && o->parallel.rank == 0 &&
+        !best_write(&o->search.record, o->best, &o->message))
+        return fail(o, EXIT_IO);
+    if (end == TRIALS_STOPPED)
+        o->code = EXIT_INTERRUPTED;
+    o->printed = o->code == EXIT_INTERRUPTED;
+    return o->code == EXIT_DONE;
+}
+
+/* ---- what came out ----------------------------------------------------------------------------
+ */
+
+static double undecided(const struct search_file *f)
+{
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    const int64_t *const count =
+        &f->confirmed_count[(size_t)f->chosen * circumstances * TRIAL_LABELS];
+    double most = 0;
+    for (size_t c = 0; c < circumstances; c++)
+        most = fmax(most, (double)count[c * TRIAL_LABELS + STANCE_UNDECIDED + 1] /
+                              (double)f->length[SEARCH_START]);
+    return most;
+}
+
+/* What linear theory and the counts say against the best. */
+static void warn(const struct optimise *o)
+{
+    const struct search *const search = &o->search;
+    const struct search_file *const f = &search->record;
+    const struct space *const space = &search->space;
+    const size_t n = (size_t)space->n;
+    const double *const value = &f->confirmed_value[(size_t)f->chosen * n];
+    static const char who[] = "stance optimise: warning:";
+    for (size_t k = 0; k < n; k++) {
+        const struct scenario_varied *const v = &space->search->varied[space->path[k]];
+        const double edge = 0.01 * (v->high - v->low);
+        const bool low = value[k] <= v->low + edge, high = value[k] >= v->high - edge;
+        if (v->bounded && (low || high))
+            fprintf(stderr,
+                    "%s %s of the best is at its %s bound, %g: better ones may lie beyond\n", who,
+                    f->parameter[k], low ? "lower" : "upper", value[k]);
+    }
+    for (size_t e = 0; e < f->length[SEARCH_ELSEWHERE]; e++)
+        if (f->elsewhere_chosen[e] < f->elsewhere_first[e] ||
+            f->elsewhere_chosen[e] < 0.5 * f->confirmed_objective[f->chosen])
+            fprintf(stderr, "%s %s the best recovers %.1f %% of the starts, the first %.1f %%\n",
+                    who, f->elsewhere[e], 100 * f->elsewhere_chosen[e],
+                    100 * f->elsewhere_first[e]);
+    if (undecided(f) > most_undecided)
+        fprintf(stderr,
+                "%s %.2f %% of the best one's starts are undecided when stop.time is up and do not "
+                "count: a longer one would tell\n",
+                who, 100 * undecided(f));
+    if (f->objective[f->best[0]] < 0.01 && search->scenario->search.aim == AIM_SHARE)
+        fprintf(stderr,
+                "%s hardly a start recovers in the first generation: begin with another "
+                "controller, or with restarts\n",
+                who);
+    if (search->scenario->search.grow[0] < 128)
+        fprintf(stderr,
+                "%s %" PRIu64 " starts tell little of a candidate: optimise.grow, from 128 on\n",
+                who, search->scenario->search.grow[0]);
+}
+
+static void print_objective(const struct optimise *o, double value)
+{
+    if (o->first->search.aim == AIM_SHARE)
+        printf("%.2f %%", 100 * value);
+    else
+        printf("%.6g", value);
+}
+
+static int conclude(struct optimise *o)
+{
+    const struct search_file *const f = &o->search.record;
+    if (o->parallel.rank != 0)
+        return EXIT_DONE;
+    warn(o);
+    if (o->options.quiet)
+        return EXIT_DONE;
+    printf("%s: %zu candidates in %zu generations, %s; ", o->file, f->length[SEARCH_CANDIDATE],
+           f->length[SEARCH_GENERATION], f->note);
+    print_objective(o, f->confirmed_objective[f->chosen]);
+    printf(" of %zu fresh starts, the first ", f->length[SEARCH_START]);
+    print_objective(o, f->confirmed_objective[0]);
+    if (isfinite(f->linear_limit))
+        printf(", linear theory allows any %.2f %%", 100 * f->linear_limit);
+    printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - o->start,
+           o->parallel.size, o->parallel.size == 1 ? "" : "s", o->best);
+    return EXIT_DONE;
+}
+
+/* ---- the whole --------------------------------------------------------------------------------
+ */
+
+/* What all ranks agree on. */
+struct verdict {
+    int code;
+    bool printed;
+    char text[300];
+};
+
+/* Goes through the stages; stops where one failed on any rank. */
+static int go_through(struct optimise *o)
+{
+    static const struct {
+        bool (*go)(struct optimise *);
+        const char *doing;
+    } stage[] = {
+        {stage_options, "reading its options"}, {stage_scenario, "reading the scenario"},
+        {stage_claim, "looking into the file"}, {stage_make, "preparing the search"},
+        {stage_search, "trying candidates"},
+    };
+    for (size_t i = 0; i < sizeof stage / sizeof *stage; i++) {
+        crash_stage(stage[i].doing);
+        const bool good = stage[i].go(o);
+        struct verdict verdict = {.code = o->code, .printed = o->printed};
+        snprintf(verdict.text, sizeof verdict.text, "%s", o->message.text);
+        if (!good && verdict.code == EXIT_DONE)
+            verdict.code = EXIT_IO;
+        if (!parallel_agree(&o->parallel, good, (char *)&verdict, sizeof verdict)) {
+            if (o->parallel.rank == 0 && verdict.code == EXIT_INTERRUPTED) {
+                char what[80];
+                snprintf(what, sizeof what, "stopped after %zu of at most %zu generations",
+                         o->search.record.length[SEARCH_GENERATION], o->search.generations);
+                claim_say_stopped(&o->parallel, o->argc, o->argv, "--resume", what);
+            } else if (o->parallel.rank == 0 && !verdict.printed) {
+                fprintf(stderr, "stance optimise: %s\n", verdict.text);
+            }
+            return verdict.code;
+        }
+        if (o->options.help)
+            return EXIT_DONE;
+    }
+    return conclude(o);
+}
+
+static int run_optimise(int argc, char **argv)
+{
+    struct optimise *const o = calloc(1, sizeof *o);
+    if (!o) {
+        fprintf(stderr, "stance optimise: not enough memory\n");
+        return EXIT_IO;
+    }
+    store_prepare();
+    *o = (struct optimise){
+        .argc = argc, .argv = argv, .start = clock_seconds(), .lock = {.descriptor = -1}};
+    o->parallel = parallel_start();
+    if (o->parallel.size > 1)
+        deadline_prepare(o->parallel.rank);
+    crash_watch(o->parallel.rank);
+    work_catch_signals();
+    const int code = go_through(o);
+    if (o->made)
+        search_free(&o->search);
+    search_file_free(&o->origin);
+    if (o->asked)
+        scenario_free(o->asked);
+    if (o->first)
+        scenario_free(o->first);
+    lock_release(&o->lock);
+    heartbeat_end(&o->heartbeat);
+    parallel_finish(&o->parallel);
+    free(o->options.sets);
+    free(o->asked);
+    free(o->first);
+    free(o);
+    return code;
+}
+
+const struct command command_optimise = {
+    "optimise",
+    "optimise SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume]\n"
+    "           [--time-limit TIME] [--quiet]",
+    "search for the controller that recovers from more starts; alone or under mpirun -n N",
+    run_optimise,
+    "The scenario's section optimise says what differs between candidates and what counts as\n"
+    "better (stance describe optimise); sweep.sample are the starts that all candidates get,\n"
+    "sweep.grid the circumstances. The scenario as it is, with the gains of its design, is the\n"
+    "first candidate. An evolution strategy (CMA-ES) proposes the others, a generation at a time;\n"
+    "at the end the first, and of each stage the best and the mean, are compared from fresh "
+    "starts.\n"
+    "\n"
+    "  -o FILE            file of the search; default results/<scenario name>-search.h5. stance\n"
+    "                     summary and stance plot read it. Beside it <scenario name>-best.yaml,\n"
+    "                     the scenario with the best candidate\n"
+    "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
+    "  --force            replace the file of that name\n"
+    "  --resume           go on with a search of the same scenario after its last whole\n"
+    "                     generation. Begins when there is no file\n"
+    "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
+    "  --quiet            neither progress nor summary\n"
+    "\n"
+    "The result does not depend on ranks, nor on stops and resumes. Exit codes: 0 done, 2 bad use\n"
+    "or scenario, 3 input or output, 4 stopped and resumable.\n",
+};

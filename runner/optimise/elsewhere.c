@@ -1,0 +1,143 @@
+/* elsewhere.c - the scenario with one thing changed, and some candidates tried in it. */
+#include "elsewhere.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_STARTS = 8192 };
+static const double mass_error = 0.05, less_friction = 0.5;
+
+const char *elsewhere_name(enum elsewhere where)
+{
+    static const char *const name[ELSEWHERE_MOST] = {
+        [ELSEWHERE_CONTACTS] = "with every contact on the ground",
+        [ELSEWHERE_FRICTION] = "with half the friction",
+        [ELSEWHERE_LATER] = "one sample later",
+        [ELSEWHERE_SLOWER] = "with twice the sample time",
+        [ELSEWHERE_HEAVIER] = "with masses 5 % larger than the controller knows",
+        [ELSEWHERE_LIGHTER] = "with masses 5 % smaller than the controller knows"};
+    return name[where];
+}
+
+/* Whether anything swept or varied lies in [offset, offset + size) of the values. */
+static bool moves(const struct scenario *s, size_t offset, size_t size)
+{
+    for (int a = 0; a <= s->axes; a++) {
+        const struct scenario_axis *const axis = a < s->axes ? &s->axis[a] : &s->search.axis;
+        for (int k = 0; k < axis->paths; k++)
+            if (axis->offset[k] >= offset && axis->offset[k] < offset + size)
+                return true;
+    }
+    return false;
+}
+#define MOVES(s, member) moves(s, offsetof(struct scenario_values, member), sizeof(s)->base.member)
+
+static bool is_mass(const struct scenario *s, int i)
+{
+    return strcmp(s->scene->robot[i].unit, "kg") == 0;
+}
+
+static bool has_masses(const struct scenario *s)
+{
+    bool any = false;
+    for (int i = 0; !s->own_scene && i < s->scene->robot_count; i++)
+        any = any || is_mass(s, i);
+    return any && !MOVES(s, robot) && !MOVES(s, model);
+}
+
+static int every_contact(const struct scenario *s)
+{
+    return (1 << s->scene->contacts) - 1;
+}
+
+bool elsewhere_exists(const struct scenario *s, enum elsewhere where)
+{
+    const struct scenario_values *const base = &s->base;
+    switch (where) {
+    case ELSEWHERE_CONTACTS:
+        return base->contacts != every_contact(s);
+    case ELSEWHERE_FRICTION:
+        return base->friction > 0 && base->contacts && !MOVES(s, friction);
+    case ELSEWHERE_LATER:
+        return base->sample_time > 0 && base->delay < STANCE_MAX_DELAY && !MOVES(s, delay);
+    case ELSEWHERE_SLOWER:
+        return base->sample_time > 0 && !MOVES(s, sample_time);
+    default:
+        return has_masses(s);
+    }
+}
+
+uint64_t elsewhere_starts(const struct scenario *s)
+{
+    return s->search.confirm < MOST_STARTS ? s->search.confirm : MOST_STARTS;
+}
+
+static void change(struct scenario *s, enum elsewhere where)
+{
+    struct scenario_values *const base = &s->base;
+    const double factor = where == ELSEWHERE_HEAVIER ? 1 + mass_error : 1 - mass_error;
+    switch (where) {
+    case ELSEWHERE_CONTACTS:
+        base->contacts = every_contact(s);
+        break;
+    case ELSEWHERE_FRICTION:
+        base->friction *= less_friction;
+        break;
+    case ELSEWHERE_LATER:
+        base->delay++;
+        break;
+    case ELSEWHERE_SLOWER:
+        base->sample_time *= 2;
+        break;
+    default:
+        for (int i = 0; i < s->scene->robot_count; i++) {
+            if (!is_mass(s, i))
+                continue;
+            base->model[i] = isnan(base->model[i]) ? base->robot[i] : base->model[i];
+            base->robot[i] *= factor;
+        }
+        break;
+    }
+}
+
+enum trials_end elsewhere_run(const struct scenario *s, const struct trials *with,
+                              enum elsewhere where, size_t candidates, double *value, double *share,
+                              stance_message *message)
+{
+    const uint64_t starts = elsewhere_starts(s);
+    struct scenario *const there = malloc(sizeof *there);
+    struct trials trials = {0};
+    enum trials_end end = TRIALS_BROKEN;
+    bool good = there != NULL;
+    if (good) {
+        *there = *s; /* what it points to stays the scenario's */
+        change(there, where);
+        there->axis[0] = s->axis[s->axes - 1];
+        there->axes = 1;
+        there->cases = there->axis[0].count;
+        there->search.grow[there->search.stages - 1] = 1;
+        there->search.confirm = starts;
+        there->search.critical = 0;
+        good = trials_make(&trials, there, with->parallel);
+    }
+    if (parallel_agree(with->parallel, good, message->text, sizeof message->text)) {
+        trials.has_kernels = true; /* those of `with` */
+        trials.attend = with->attend;
+        trials.context = with->context;
+        trials.until = with->until;
+        trials.beats = with->beats;
+        end = trials_run(&trials, candidates, value, TRIALS_FRESH, starts, message);
+    }
+    for (size_t c = 0; end == TRIALS_DONE && c < candidates; c++) {
+        uint64_t recovered = 0;
+        for (uint64_t i = 0; i < starts; i++)
+            recovered += trials.label[c * starts + i] == STANCE_STABILISED + 1;
+        share[c] = (double)recovered / (double)starts;
+    }
+    if (there)
+        trials_free(&trials);
+    free(there);
+    return end;
+}

@@ -1,0 +1,648 @@
+/* search.c - stages and generations; rank 0 decides, all try. */
+#include "search.h"
+#include "allowed.h"
+#include "cma.h"
+#include "elsewhere.h"
+
+#include "runner/base/message.h"
+#include "runner/base/units.h"
+#include "runner/store/build_info.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define NAME_OF(NAME, name, ...) [(STANCE_##NAME) + 1] = #name,
+const char *const search_kinds[TRIAL_LABELS] = {[TRIAL_REFUSED] = "refused",
+                                                [TRIAL_FAILED] = "failed",
+                                                [STANCE_NONE + 1] = "none",
+                                                STANCE_OUTCOMES(NAME_OF)};
+#undef NAME_OF
+
+enum { MOST_ALLOWED = 16384 }; /* starts that are held against linear theory */
+
+/* ---- the plan of a search ---------------------------------------------------------------------
+ */
+
+/* Share of the candidates up to the end of a stage. */
+static double share_until(const struct scenario_search *s, int stage)
+{
+    static const double three[] = {0.5, 0.85, 1};
+    return s->stages == 3 ? three[stage] : (stage + 1.0) / s->stages;
+}
+
+static int lambda_of(const struct search *search, int restart)
+{
+    return cma_default_lambda(search->space.n) << restart;
+}
+
+int search_lambda(const struct search *search)
+{
+    return lambda_of(search, 0);
+}
+
+static size_t stage_generations(const struct search *search, int restart, int stage)
+{
+    const struct scenario_search *const s = &search->scenario->search;
+    const double all = (double)s->candidates / lambda_of(search, restart);
+    const double before = stage > 0 ? round(share_until(s, stage - 1) * all) : 0;
+    return (size_t)fmax(1, round(share_until(s, stage) * all) - before);
+}
+
+/* Generations of the last stage without a better candidate after which there is no use in more. */
+static size_t patience(const struct search *search, int restart)
+{
+    return 10 + (size_t)(30 * search->space.n / lambda_of(search, restart));
+}
+
+/* ---- words of the record ----------------------------------------------------------------------
+ */
+
+/* What a circumstance is: what differs from the scenario. */
+static char *circumstance_text(const struct scenario *s, size_t c)
+{
+    char text[1000] = "", value[64];
+    size_t used = 0;
+    struct scenario_values values;
+    const size_t points = s->axis[s->axes - 1].count;
+    scenario_case_values(s, c * points, &values);
+    for (int a = s->axes - 2; a >= 0; a--) {
+        const struct scenario_axis *const axis = &s->axis[a];
+        const size_t i = c % axis->count;
+        c /= axis->count;
+        for (int k = 0; k < axis->paths && used + 200 < sizeof text; k++) {
+            const size_t size = axis->integer[k] ? sizeof(int) : sizeof(double);
+            if (memcmp((const char *)&values + axis->offset[k],
+                       (const char *)&s->base + axis->offset[k], size) == 0)
+                continue;
+            scenario_axis_text(axis, i, k, value, sizeof value);
+            used += (size_t)snprintf(text + used, sizeof text - used, "%s%s = %s", used ? ", " : "",
+                                     axis->path[k], value);
+        }
+    }
+    return strdup(used ? text : "as it is");
+}
+
+static char **copy_words(size_t n, const char *(*word)(const struct search *, size_t),
+                         const struct search *search)
+{
+    char **const words = calloc(n + 1, sizeof *words);
+    for (size_t i = 0; words && i < n; i++)
+        words[i] = strdup(word(search, i));
+    return words;
+}
+
+static const char *parameter_word(const struct search *search, size_t i)
+{
+    return search->scenario->search.axis.path[search->space.path[i]];
+}
+
+static const char *kind_word(const struct search *search, size_t i)
+{
+    (void)search;
+    return search_kinds[i];
+}
+
+static const char *varied_word(const struct search *search, size_t i)
+{
+    return search->scenario->axis[search->scenario->axes - 1].path[i];
+}
+
+/* ---- making -----------------------------------------------------------------------------------
+ */
+
+static bool make_record(struct search *search, const char *text)
+{
+    struct search_file *const f = &search->record;
+    const struct scenario *const s = search->scenario;
+    const size_t stages = (size_t)s->search.stages, begun = (size_t)s->search.restarts + 1;
+    char date[40];
+    time_t now = time(NULL);
+    struct tm utc;
+    for (int r = 0; r <= s->search.restarts; r++) {
+        for (int stage = 0; stage < s->search.stages; stage++) {
+            const size_t generations = stage_generations(search, r, stage);
+            search->generations += generations;
+            search->candidates += generations * (size_t)lambda_of(search, r);
+            search->cases += (double)generations * lambda_of(search, r) *
+                             (double)s->search.grow[stage] * (double)search->trials.circumstances;
+        }
+    }
+    search->cases += (double)(1 + 2 * stages * begun) * (double)s->search.confirm *
+                     (double)search->trials.circumstances;
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
+    *f = (struct search_file){.chosen = -1, .linear_limit = NAN};
+    f->length[SEARCH_CANDIDATE] = search->candidates;
+    f->length[SEARCH_PARAMETER] = f->length[SEARCH_OTHER] = (size_t)search->space.n;
+    f->length[SEARCH_CIRCUMSTANCE] = search->trials.circumstances;
+    f->length[SEARCH_KIND] = TRIAL_LABELS;
+    f->length[SEARCH_GENERATION] = search->generations;
+    f->length[SEARCH_CONFIRMED] = 1 + 2 * stages * begun;
+    f->length[SEARCH_START] = s->search.confirm;
+    f->length[SEARCH_VARIED] = (size_t)s->axis[s->axes - 1].paths;
+    f->length[SEARCH_ELSEWHERE] = ELSEWHERE_MOST;
+    f->parameter = copy_words((size_t)search->space.n, parameter_word, search);
+    f->kind = copy_words(TRIAL_LABELS, kind_word, search);
+    f->varied = copy_words(f->length[SEARCH_VARIED], varied_word, search);
+    f->circumstance = calloc(search->trials.circumstances + 1, sizeof *f->circumstance);
+    for (size_t c = 0; f->circumstance && c < search->trials.circumstances; c++)
+        f->circumstance[c] = circumstance_text(s, c);
+    f->elsewhere = calloc(ELSEWHERE_MOST + 1, sizeof *f->elsewhere);
+    f->title = strdup(s->title);
+    f->scenario = strdup(text);
+    f->first_scenario = strdup(s->text);
+    f->revision = strdup(build_revision());
+    f->date = strdup(date);
+    const bool good = search_file_room(f) && f->parameter && f->kind && f->varied &&
+                      f->circumstance && f->elsewhere && f->title && f->scenario &&
+                      f->first_scenario && f->revision && f->date;
+    f->length[SEARCH_CANDIDATE] = f->length[SEARCH_GENERATION] = f->length[SEARCH_CONFIRMED] = 0;
+    f->length[SEARCH_START] = f->length[SEARCH_ELSEWHERE] = 0;
+    return good;
+}
+
+/* The generations that an earlier part left. */
+static bool take_over(struct search *search, const struct search_file *from)
+{
+    struct search_file *const f = &search->record;
+    const size_t c = from->length[SEARCH_CANDIDATE], g = from->length[SEARCH_GENERATION];
+    const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
+    if (c > search->candidates || g > search->generations || from->length[SEARCH_PARAMETER] != n ||
+        from->length[SEARCH_CIRCUMSTANCE] != circumstances ||
+        from->length[SEARCH_KIND] != TRIAL_LABELS)
+        return false;
+    memcpy(f->value, from->value, c * n * sizeof *f->value);
+    memcpy(f->coordinate, from->coordinate, c * n * sizeof *f->coordinate);
+    memcpy(f->of_generation, from->of_generation, c * sizeof *f->of_generation);
+    memcpy(f->count, from->count, c * circumstances * TRIAL_LABELS * sizeof *f->count);
+    memcpy(f->critical_sample_time, from->critical_sample_time,
+           c * circumstances * sizeof *f->critical_sample_time);
+    memcpy(f->score, from->score, c * sizeof *f->score);
+    memcpy(f->objective, from->objective, c * sizeof *f->objective);
+    memcpy(f->candidates, from->candidates, g * sizeof *f->candidates);
+    f->length[SEARCH_CANDIDATE] = c;
+    f->length[SEARCH_GENERATION] = g;
+    f->seconds = from->seconds;
+    return true;
+}
+
+/* Points come from libraries and may differ between machines: all ranks take those of rank 0. */
+static void share_points(struct search *search)
+{
+    const struct scenario *const s = search->scenario;
+    const size_t paths = (size_t)s->axis[s->axes - 1].paths;
+    const uint64_t count[TRIALS_STARTS] = {s->search.grow[s->search.stages - 1], s->search.confirm};
+    for (int k = 0; k < TRIALS_STARTS; k++) {
+        parallel_broadcast(search->parallel, search->trials.start[k],
+                           count[k] * paths * sizeof(double));
+        parallel_broadcast(search->parallel, search->trials.weight[k], count[k] * sizeof(int64_t));
+    }
+    for (int a = 0; a + 1 < s->axes; a++) {
+        const struct scenario_axis *const axis = &s->axis[a];
+        if (axis->value)
+            parallel_broadcast(search->parallel, axis->value,
+                               axis->count * (size_t)axis->paths * sizeof *axis->value);
+    }
+}
+
+bool search_make(struct search *search, const struct scenario *scenario, const char *text,
+                 const struct parallel *parallel, struct search_file *origin,
+                 stance_message *message)
+{
+    *search = (struct search){.scenario = scenario, .parallel = parallel};
+    bool good = trials_make(&search->trials, scenario, parallel);
+    if (parallel_agree(parallel, good, message->text, sizeof message->text))
+        share_points(search);
+    else
+        good = false;
+    space_make(&search->space, scenario);
+    if (good && parallel->rank == 0)
+        good = make_record(search, text);
+    if (!good)
+        return no_memory(message);
+    if (origin && parallel->rank == 0 && !take_over(search, origin))
+        return complain(message, "the file is of a search with other numbers");
+    return true;
+}
+
+void search_free(struct search *search)
+{
+    trials_free(&search->trials);
+    search_file_free(&search->record);
+}
+
+/* ---- trying -----------------------------------------------------------------------------------
+ */
+
+/* What the other ranks are told: so many candidates, -1: it is over; which starts, or behind these
+ * (TRIALS_STARTS + enum elsewhere) where else. */
+struct order {
+    int64_t candidates;
+    uint64_t starts;
+    int which;
+};
+enum { COMPARED = 2 }; /* elsewhere: the first and the chosen one */
+
+static void blank(double *value, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        value[i] = NAN;
+}
+
+/* Rank 0: tries value[candidates][paths]. */
+static enum trials_end try_all(struct search *search, size_t candidates, const double *coordinate,
+                               double *value, enum trials_starts which, uint64_t starts,
+                               stance_message *message)
+{
+    struct order order = {(int64_t)candidates, starts, which};
+    const size_t n = (size_t)search->space.n;
+    for (size_t i = 0; coordinate && i < candidates * n; i++)
+        value[i] = space_value(&search->space, (int)(i % n), coordinate[i]);
+    parallel_broadcast(search->parallel, &order, sizeof order);
+    parallel_broadcast(search->parallel, value, candidates * n * sizeof *value);
+    return trials_run(&search->trials, candidates, value, which, starts, message);
+}
+
+/* Other ranks: do as they are told until it is over. */
+static enum trials_end follow(struct search *search, stance_message *message)
+{
+    enum trials_end end = TRIALS_DONE;
+    double ignored[COMPARED];
+    struct order order;
+    for (;;) {
+        parallel_broadcast(search->parallel, &order, sizeof order);
+        if (order.candidates < 0)
+            return end;
+        const size_t size = (size_t)order.candidates * (size_t)search->space.n * sizeof(double);
+        double *const value = malloc(size);
+        if (!value)
+            abort(); /* the others wait in the broadcast: MPI ends the job */
+        parallel_broadcast(search->parallel, value, size);
+        end = order.which < TRIALS_STARTS
+                  ? trials_run(&search->trials, (size_t)order.candidates, value,
+                               (enum trials_starts)order.which, order.starts, message)
+                  : elsewhere_run(search->scenario, &search->trials,
+                                  (enum elsewhere)(order.which - TRIALS_STARTS),
+                                  (size_t)order.candidates, value, ignored, message);
+        free(value);
+    }
+}
+
+static void tell_end(struct search *search)
+{
+    struct order order = {-1, 0, 0};
+    parallel_broadcast(search->parallel, &order, sizeof order);
+}
+
+/* ---- scores -----------------------------------------------------------------------------------
+ */
+
+/* Of the axis of scales: its points and how many circumstances lie between two of them. */
+static const struct scenario_axis *scale_axis(const struct scenario *s, size_t *stride)
+{
+    int k;
+    const struct scenario_axis *const scale =
+        scenario_axis_of(s, offsetof(struct scenario_values, offset_scale), &k);
+    *stride = 1;
+    for (const struct scenario_axis *a = &s->axis[s->axes - 2]; a > scale; a--)
+        *stride *= a->count;
+    return scale;
+}
+
+/* Scales, in the order in which they stand, up to which all directions recover, the least over the
+ * other circumstances; ties are broken by the directions that go further. */
+static int64_t nearest_score(const struct search *search, size_t candidate, uint64_t starts,
+                             double *objective)
+{
+    const struct trials *const t = &search->trials;
+    size_t stride;
+    const struct scenario_axis *const scale = scale_axis(search->scenario, &stride);
+    const size_t circumstances = t->circumstances;
+    const uint8_t *const label = &t->label[candidate * circumstances * starts];
+    size_t nearest = scale->count;
+    int64_t further = 0;
+    for (size_t c = 0; c < circumstances; c++) {
+        if (c / stride % scale->count != 0)
+            continue;
+        for (uint64_t i = 0; i < starts; i++) {
+            size_t lead = 0;
+            while (lead < scale->count &&
+                   label[(c + lead * stride) * starts + i] == STANCE_STABILISED + 1)
+                lead++;
+            nearest = lead < nearest ? lead : nearest;
+            further += (int64_t)lead;
+        }
+    }
+    *objective = nearest > 0 ? scenario_axis_value(scale, nearest - 1, 0) : 0;
+    return ((int64_t)nearest << 40) + further;
+}
+
+static int64_t score_of(const struct search *search, size_t candidate, const double *coordinate,
+                        enum trials_starts which, uint64_t starts, double *objective)
+{
+    const struct scenario_search *const s = &search->scenario->search;
+    const struct trials *const t = &search->trials;
+    const size_t circumstances = t->circumstances;
+    int64_t whole = 0, score = s->worst ? INT64_MAX : 0;
+    if (s->aim == AIM_NEAREST)
+        return nearest_score(search, candidate, starts, objective);
+    for (uint64_t i = 0; i < starts; i++)
+        whole += t->weight[which][i];
+    for (size_t c = 0; c < circumstances; c++) {
+        const int64_t worth = t->worth[candidate * circumstances + c];
+        if (!s->worst)
+            score += worth / (int64_t)circumstances;
+        else if (worth < score)
+            score = worth;
+    }
+    const double one = TRIALS_WORTH * (double)whole;
+    score -= llround(s->gain_price * space_gain(&search->space, coordinate) * one);
+    *objective = (double)score / one;
+    return score;
+}
+
+static void count_labels(const struct search *search, size_t candidate, uint64_t starts,
+                         int64_t *count, double *critical)
+{
+    const struct trials *const t = &search->trials;
+    for (size_t c = 0; c < t->circumstances; c++) {
+        const size_t pair = candidate * t->circumstances + c;
+        for (uint64_t i = 0; i < starts; i++)
+            count[c * TRIAL_LABELS + t->label[pair * starts + i]]++;
+        critical[c] = t->loop[pair].critical;
+    }
+}
+
+/* ---- generations ------------------------------------------------------------------------------
+ */
+
+/* Where the search is. */
+struct course {
+    struct cma *cma;
+    int restart, stage, lambda;
+    size_t known;      /* generations that the record had */
+    size_t generation; /* of all */
+    size_t first;      /* candidate of this generation */
+    int64_t best;      /* candidate of this stage; -1: none */
+    size_t stale;      /* generations without a better one */
+};
+
+static enum trials_end try_generation(struct search *search, struct course *at,
+                                      stance_message *message)
+{
+    struct search_file *const f = &search->record;
+    const size_t n = (size_t)search->space.n, lambda = (size_t)at->lambda;
+    const uint64_t starts = search->scenario->search.grow[at->stage];
+    const size_t kinds = search->trials.circumstances * TRIAL_LABELS;
+    double *const x = &f->coordinate[at->first * n];
+    cma_ask(at->cma, x);
+    if (cma_generation(at->cma) == 0) /* what it begins with is a candidate, too */
+        memcpy(x, cma_mean(at->cma), n * sizeof *x);
+    const enum trials_end end =
+        try_all(search, lambda, x, &f->value[at->first * n], TRIALS_SEARCH, starts, message);
+    if (end != TRIALS_DONE)
+        return end;
+    for (size_t i = 0; i < lambda; i++) {
+        const size_t c = at->first + i;
+        f->of_generation[c] = (int64_t)at->generation;
+        f->score[c] = score_of(search, i, &x[i * n], TRIALS_SEARCH, starts, &f->objective[c]);
+        count_labels(search, i, starts, &f->count[c * kinds],
+                     &f->critical_sample_time[c * search->trials.circumstances]);
+    }
+    f->length[SEARCH_CANDIDATE] = at->first + lambda;
+    f->length[SEARCH_GENERATION] = at->generation + 1;
+    return end;
+}
+
+/* Notes what the generation led to. */
+static void note_generation(struct search *search, struct course *at)
+{
+    struct search_file *const f = &search->record;
+    const size_t n = (size_t)search->space.n, g = at->generation;
+    bool better = false;
+    for (int64_t c = (int64_t)at->first; c < (int64_t)at->first + at->lambda; c++) {
+        if (at->best >= 0 && f->score[c] <= f->score[at->best])
+            continue;
+        at->best = c;
+        better = true;
+    }
+    at->stale = better ? 0 : at->stale + 1;
+    f->stage[g] = at->stage;
+    f->restart[g] = at->restart;
+    f->starts[g] = (int64_t)search->scenario->search.grow[at->stage];
+    f->candidates[g] = (int64_t)at->first + at->lambda;
+    f->best[g] = at->best;
+    f->step[g] = cma_step(at->cma);
+    memcpy(&f->mean[g * n], cma_mean(at->cma), n * sizeof *f->mean);
+    memcpy(&f->covariance[g * n * n], cma_covariance(at->cma), n * n * sizeof *f->covariance);
+}
+
+static bool is_over(const struct search *search, const struct course *at, const char **why)
+{
+    const bool last = at->stage + 1 == search->scenario->search.stages;
+    *why = cma_stop_words[cma_stop(at->cma)];
+    if (cma_stop(at->cma) != CMA_GOES_ON)
+        return true;
+    *why = "the best candidate stayed the same";
+    return last && at->stale >= patience(search, at->restart);
+}
+
+/* Adds to what is compared from fresh starts: a candidate, or (-1) a mean. */
+static void confirm_later(struct search *search, int64_t candidate, int64_t generation,
+                          const double *coordinate)
+{
+    struct search_file *const f = &search->record;
+    const size_t n = (size_t)search->space.n, k = f->length[SEARCH_CONFIRMED];
+    for (size_t i = 0; i < k; i++)
+        if (candidate >= 0 && f->confirmed_candidate[i] == candidate)
+            return;
+    f->confirmed_candidate[k] = candidate;
+    f->confirmed_generation[k] = generation;
+    f->confirmed_training[k] = candidate >= 0 ? f->objective[candidate] : NAN;
+    /* Coordinates for now; values once it is tried. */
+    memcpy(&f->confirmed_value[k * n], coordinate, n * sizeof *coordinate);
+    f->length[SEARCH_CONFIRMED]++;
+}
+
+/* A record of what is known so far; what is to be compared from fresh starts is not, before it has
+ * been. */
+static bool keep(struct search *search, bool last, stance_message *message)
+{
+    struct search_file *const f = &search->record;
+    const size_t confirmed = f->length[SEARCH_CONFIRMED];
+    if (!f->finished)
+        f->length[SEARCH_CONFIRMED] = 0;
+    const bool good = !search->save || search->save(search->context, last, message);
+    f->length[SEARCH_CONFIRMED] = confirmed;
+    return good;
+}
+
+static enum trials_end run_stage(struct search *search, struct course *at, const char **why,
+                                 stance_message *message)
+{
+    struct search_file *const f = &search->record;
+    const size_t n = (size_t)search->space.n;
+    const size_t most = stage_generations(search, at->restart, at->stage);
+    bool over = false;
+    at->best = -1;
+    at->stale = 0;
+    *why = "as many candidates as were asked for";
+    for (size_t i = 0; i < most && !over; i++) {
+        if (at->generation >= at->known) {
+            const enum trials_end end = try_generation(search, at, message);
+            if (end != TRIALS_DONE)
+                return end;
+        }
+        if (!cma_tell(at->cma, &f->coordinate[at->first * n], &f->score[at->first])) {
+            complain(message, "a generation is out of the numbers that can be");
+            return TRIALS_BROKEN;
+        }
+        note_generation(search, at);
+        at->first += (size_t)at->lambda;
+        at->generation++;
+        if (at->generation > at->known && !keep(search, false, message))
+            return TRIALS_BROKEN;
+        over = is_over(search, at, why);
+    }
+    const int64_t last = (int64_t)at->generation - 1;
+    confirm_later(search, at->best, last, &f->coordinate[(size_t)at->best * n]);
+    confirm_later(search, -1, last, cma_mean(at->cma));
+    return TRIALS_DONE;
+}
+
+static enum trials_end run_beginning(struct search *search, struct course *at, const char **why,
+                                     stance_message *message)
+{
+    const struct scenario_search *const s = &search->scenario->search;
+    const struct space *const space = &search->space;
+    const double *const begin =
+        at->best < 0 ? space->first
+                     : &search->record.coordinate[(size_t)at->best * (size_t)space->n];
+    enum trials_end end = TRIALS_DONE;
+    at->lambda = lambda_of(search, at->restart);
+    at->cma = cma_make(space->n, at->lambda, begin, s->step, space->low, space->high,
+                       search->scenario->seed, (uint64_t)at->restart);
+    if (!at->cma) {
+        no_memory(message);
+        return TRIALS_BROKEN;
+    }
+    for (at->stage = 0; at->stage < s->stages && end == TRIALS_DONE; at->stage++)
+        end = run_stage(search, at, why, message);
+    cma_free(at->cma);
+    return end;
+}
+
+/* ---- fresh starts -----------------------------------------------------------------------------
+ */
+
+static enum trials_end confirm(struct search *search, stance_message *message)
+{
+    struct search_file *const f = &search->record;
+    const uint64_t starts = search->scenario->search.confirm;
+    search->confirming = true;
+    const size_t k = f->length[SEARCH_CONFIRMED], n = (size_t)search->space.n;
+    const size_t circumstances = search->trials.circumstances;
+    double *const coordinate = malloc(k * n * sizeof *coordinate);
+    if (!coordinate) {
+        no_memory(message);
+        return TRIALS_BROKEN;
+    }
+    memcpy(coordinate, f->confirmed_value, k * n * sizeof *coordinate);
+    const enum trials_end end =
+        try_all(search, k, coordinate, f->confirmed_value, TRIALS_FRESH, starts, message);
+    for (size_t i = 0; end == TRIALS_DONE && i < k; i++) {
+        f->confirmed_score[i] = score_of(search, i, &coordinate[i * n], TRIALS_FRESH, starts,
+                                         &f->confirmed_objective[i]);
+        count_labels(search, i, starts, &f->confirmed_count[i * circumstances * TRIAL_LABELS],
+                     &f->confirmed_critical[i * circumstances]);
+        blank(&f->confirmed_allowed[i * circumstances], circumstances);
+        if (f->chosen < 0 || f->confirmed_score[i] > f->confirmed_score[f->chosen])
+            f->chosen = (int64_t)i;
+    }
+    if (end == TRIALS_DONE) {
+        f->length[SEARCH_START] = starts;
+        memcpy(f->confirmed_outcome, search->trials.label, k * circumstances * starts);
+        memcpy(f->start_value, search->trials.start[TRIALS_FRESH],
+               starts * f->length[SEARCH_VARIED] * sizeof *f->start_value);
+    }
+    free(coordinate);
+    return end;
+}
+
+/* Of the first and of the chosen one. */
+static void find_allowed(struct search *search)
+{
+    struct search_file *const f = &search->record;
+    const uint64_t confirm = search->scenario->search.confirm;
+    const uint64_t starts = confirm < MOST_ALLOWED ? confirm : MOST_ALLOWED;
+    const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
+    const size_t which[COMPARED] = {0, (size_t)f->chosen};
+    for (int i = 0; i < COMPARED; i++)
+        allowed_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
+                       &f->confirmed_allowed[which[i] * circumstances]);
+    f->linear_limit = f->confirmed_allowed[which[1] * circumstances];
+}
+
+static enum trials_end try_elsewhere(struct search *search, stance_message *message)
+{
+    struct search_file *const f = &search->record;
+    const size_t n = (size_t)search->space.n;
+    enum trials_end end = TRIALS_DONE;
+    double value[COMPARED * SCENARIO_MAX_PATHS], share[COMPARED];
+    memcpy(value, f->confirmed_value, n * sizeof *value);
+    memcpy(value + n, &f->confirmed_value[(size_t)f->chosen * n], n * sizeof *value);
+    for (int e = 0; e < ELSEWHERE_MOST && end == TRIALS_DONE; e++) {
+        struct order order = {COMPARED, 0, TRIALS_STARTS + e};
+        if (!elsewhere_exists(search->scenario, (enum elsewhere)e))
+            continue;
+        parallel_broadcast(search->parallel, &order, sizeof order);
+        parallel_broadcast(search->parallel, value, COMPARED * n * sizeof *value);
+        end = elsewhere_run(search->scenario, &search->trials, (enum elsewhere)e, COMPARED, value,
+                            share, message);
+        const size_t k = f->length[SEARCH_ELSEWHERE];
+        f->elsewhere[k] = end == TRIALS_DONE ? strdup(elsewhere_name((enum elsewhere)e)) : NULL;
+        if (!f->elsewhere[k])
+            continue;
+        f->elsewhere_first[k] = share[0];
+        f->elsewhere_chosen[k] = share[1];
+        f->length[SEARCH_ELSEWHERE]++;
+    }
+    return end;
+}
+
+/* ---- the whole --------------------------------------------------------------------------------
+ */
+
+static enum trials_end lead(struct search *search, stance_message *message)
+{
+    struct search_file *const f = &search->record;
+    struct course at = {.known = f->length[SEARCH_GENERATION], .best = -1};
+    const char *why = "";
+    enum trials_end end = TRIALS_DONE;
+    confirm_later(search, 0, -1, search->space.first);
+    for (; at.restart <= search->scenario->search.restarts && end == TRIALS_DONE; at.restart++)
+        end = run_beginning(search, &at, &why, message);
+    f->confirmed_training[0] = f->length[SEARCH_CANDIDATE] > 0 ? f->objective[0] : NAN;
+    if (end == TRIALS_DONE)
+        end = confirm(search, message);
+    if (end == TRIALS_DONE)
+        end = try_elsewhere(search, message);
+    if (end == TRIALS_DONE) {
+        f->finished = 1;
+        f->note = strdup(why);
+        find_allowed(search);
+    } else {
+        f->length[SEARCH_CONFIRMED] = f->length[SEARCH_ELSEWHERE] = 0;
+        f->chosen = -1;
+    }
+    if (end != TRIALS_BROKEN && f->length[SEARCH_GENERATION] > 0 && !keep(search, true, message))
+        end = TRIALS_BROKEN;
+    tell_end(search);
+    return end;
+}
+
+enum trials_end search_run(struct search *search, stance_message *message)
+{
+    return search->parallel->rank == 0 ? lead(search, message) : follow(search, message);
+}

@@ -1,0 +1,50 @@
+/* search.h - a search for a better controller: generations of candidates, each tried from the same
+ * starts, of which there are more from stage to stage; then the best of each stage and the means of
+ * the distribution compared from fresh starts.
+ *
+ * Of the score of a candidate (trials.h) nothing but its order is used, ties go to the lower
+ * number, and random numbers follow from the seed and their place: the search is a function of the
+ * scenario. What it knows is in the record (search_file.h); told the generations that a record
+ * holds whole, it goes on where that ends.
+ */
+#ifndef STANCE_OPTIMISE_SEARCH_H
+#define STANCE_OPTIMISE_SEARCH_H
+
+#include "space.h"
+#include "trials.h"
+
+#include "runner/store/search_file.h"
+
+/* Kinds of `count`: refused, the outcomes, failed. */
+extern const char *const search_kinds[TRIAL_LABELS];
+
+struct search {
+    const struct scenario *scenario; /* the first candidate, gains written out */
+    const struct parallel *parallel;
+    struct trials trials;
+    struct space space;
+    /* On rank 0: */
+    struct search_file record;
+    size_t generations; /* most that there can be */
+    size_t candidates;
+    double cases;    /* that will be simulated at most */
+    bool confirming; /* fresh starts are being tried */
+    /* After each generation and (`last`) at the end, may be NULL: false, and *message says why. */
+    bool (*save)(void *context, bool last, stance_message *message);
+    void *context;
+};
+
+/* Collective. `origin`: what an earlier part of the search left, which is taken over; NULL: none.
+ * text: the scenario as it was read. false: *message says why. */
+bool search_make(struct search *search, const struct scenario *scenario, const char *text,
+                 const struct parallel *parallel, struct search_file *origin,
+                 stance_message *message);
+void search_free(struct search *search);
+
+/* Candidates in a generation of the first beginning. */
+int search_lambda(const struct search *search);
+
+/* Collective, with counters. */
+enum trials_end search_run(struct search *search, stance_message *message);
+
+#endif

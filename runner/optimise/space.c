@@ -1,0 +1,113 @@
+/* space.c - units and bounds of what a search varies.
+ *
+ * The unit of a gain is what takes the whole torque from the edge of the starts: torque limit over
+ * half-width of its coordinate in sweep.sample. Of a coordinate that is not sampled the widest of
+ * its kind, angles or rates, stands in, or `usual`.
+ */
+#include "space.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double usual[2] = {0.1, 0.5}; /* rad, rad/s */
+
+/* Half-width of the starts in coordinate i of the scene, rates behind; 0: it is not sampled. */
+static double half_width(const struct scenario *s, int i)
+{
+    const struct scenario_axis *const axis = &s->axis[s->axes - 1];
+    const size_t place = (s->base.state_given ? offsetof(struct scenario_values, state)
+                                              : offsetof(struct scenario_values, offset)) +
+                         (size_t)i * sizeof(double);
+    double width = 0;
+    for (size_t j = 0; s->sample.given && j < s->sample.design.factors; j++) {
+        const struct scenario_factor *const f = &s->sample.factor[j];
+        for (int k = 0; k < f->paths; k++) {
+            if (axis->offset[f->first + k] != place)
+                continue;
+            double least = INFINITY, most = -INFINITY;
+            for (size_t p = 0; p < f->points; p++) {
+                least = fmin(least, f->value[p * (size_t)f->paths + (size_t)k]);
+                most = fmax(most, f->value[p * (size_t)f->paths + (size_t)k]);
+            }
+            width = fmax(width, (most - least) / 2);
+        }
+    }
+    return width;
+}
+
+static double widest(const struct scenario *s, bool rate)
+{
+    const int n = s->scene->coordinates;
+    double width = 0;
+    for (int i = 0; i < n; i++)
+        width = fmax(width, half_width(s, rate ? n + i : i));
+    return width > 0 ? width : usual[rate];
+}
+
+static double gain_unit(const struct scenario *s, size_t actuator, size_t column)
+{
+    const size_t postures = (size_t)s->scene->postures;
+    const bool rate = column >= postures;
+    const int coordinate = s->scene->posture[column % postures];
+    double limit[STANCE_MAX_ACTUATORS];
+    stance_torque_limits(s->scene, s->base.robot, s->base.torque_limit, s->base.torque_limits,
+                         limit);
+    const double width = half_width(s, rate ? s->scene->coordinates + coordinate : coordinate);
+    return limit[actuator] / (width > 0 ? width : widest(s, rate));
+}
+
+static double coordinate_of(enum scenario_scale scale, double unit, double value)
+{
+    return (scale == SCALE_EVEN ? value : log(fabs(value))) / unit;
+}
+
+void space_make(struct space *space, const struct scenario *s)
+{
+    const struct scenario_search *const search = &s->search;
+    const size_t gains = offsetof(struct scenario_values, gains);
+    const size_t columns = 2 * (size_t)s->scene->postures;
+    *space = (struct space){.search = search};
+    for (int k = 0; k < search->axis.paths; k++) {
+        const struct scenario_varied *const v = &search->varied[k];
+        const size_t offset = search->axis.offset[k];
+        const int i = space->n++;
+        double value;
+        memcpy(&value, (const char *)&s->base + offset, sizeof value);
+        space->path[i] = k;
+        space->gain[i] = offset >= gains && offset < gains + sizeof s->base.gains;
+        const size_t place = space->gain[i] ? (offset - gains) / sizeof(double) : 0;
+        space->unit[i] = isnan(v->unit) ? gain_unit(s, place / columns, place % columns) : v->unit;
+        space->first[i] = coordinate_of(v->scale, space->unit[i], value);
+        const double a = v->low == 0 && v->scale != SCALE_EVEN
+                             ? -INFINITY
+                             : coordinate_of(v->scale, space->unit[i], v->low);
+        const double b = v->high == 0 && v->scale != SCALE_EVEN
+                             ? -INFINITY
+                             : coordinate_of(v->scale, space->unit[i], v->high);
+        space->low[i] = fmin(fmin(a, b), space->first[i]);
+        space->high[i] = fmax(fmax(a, b), space->first[i]);
+    }
+}
+
+double space_value(const struct space *space, int k, double y)
+{
+    const struct scenario_varied *const v = &space->search->varied[space->path[k]];
+    const double size = y * space->unit[k];
+    const double value = v->scale == SCALE_EVEN    ? size
+                         : v->scale == SCALE_RATIO ? exp(size)
+                                                   : -exp(size);
+    return fmin(fmax(value, v->low), v->high); /* rounding stays inside */
+}
+
+double space_gain(const struct space *space, const double *y)
+{
+    double sum = 0;
+    int gains = 0;
+    for (int k = 0; k < space->n; k++) {
+        gains += space->gain[k];
+        sum += space->gain[k] ? y[k] * y[k] : 0;
+    }
+    return gains > 0 ? sqrt(sum / gains) : 0;
+}

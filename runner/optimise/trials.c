@@ -1,0 +1,402 @@
+/* trials.c - a plan of candidates, circumstances and starts, simulated without a file. */
+#include "trials.h"
+
+#include "engine/control/design.h"
+#include "runner/base/message.h"
+#include "runner/base/units.h"
+#include "runner/plan/design.h"
+#include "runner/plan/instruction_set.h"
+#include "runner/plan/schedule.h"
+#include "runner/ranks/deadline.h"
+#include "runner/run/work.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_WORTH 1e3 /* of a start, either sign: sums stay whole numbers of 64 bits */
+
+/* ---- making -----------------------------------------------------------------------------------
+ */
+
+/* Integer weights of starts: even, or by a normal density about the middle of each range. */
+static int64_t *make_weights(const struct scenario *s, uint64_t starts, const double *value)
+{
+    const struct scenario_axis *const axis = &s->axis[s->axes - 1];
+    int64_t *const weight = malloc(starts * sizeof *weight);
+    for (uint64_t i = 0; weight && i < starts; i++) {
+        double sum = 0;
+        for (size_t j = 0; s->search.normal && j < s->sample.design.factors; j++) {
+            const struct scenario_factor *const f = &s->sample.factor[j];
+            const double from = f->value[0], to = f->value[(f->points - 1) * (size_t)f->paths];
+            const double at = value[i * (size_t)axis->paths + (size_t)f->first];
+            const double off = from < to ? ((at - from) / (to - from) - 0.5) / 0.25 : 0;
+            sum += off * off;
+        }
+        weight[i] = (int64_t)llround(TRIALS_WEIGHT * exp(-0.5 * sum));
+    }
+    return weight;
+}
+
+/* The points of the sample axis, drawn with a seed; the axis loses them. */
+static double *take_points(struct scenario *s, uint64_t count, uint64_t seed)
+{
+    struct scenario_axis *const axis = &s->axis[s->axes - 1];
+    if (!scenario_resample(s, count, seed))
+        return NULL;
+    double *const value = axis->value;
+    axis->value = NULL;
+    return value;
+}
+
+bool trials_make(struct trials *t, const struct scenario *scenario, const struct parallel *parallel)
+{
+    const struct scenario_search *const search = &scenario->search;
+    const uint64_t count[TRIALS_STARTS] = {search->grow[search->stages - 1], search->confirm};
+    const uint64_t seed[TRIALS_STARTS] = {scenario->seed, trials_fresh_seed(scenario)};
+    *t = (struct trials){
+        .scenario = scenario, .parallel = parallel, .circumstances = 1, .until = INFINITY};
+    t->at = malloc(sizeof *t->at);
+    struct scenario *const at = t->at;
+    if (!at || scenario->axes == SCENARIO_MAX_AXES)
+        return false;
+    *at = *scenario;
+    at->axis[at->axes - 1].value = NULL; /* points of its own */
+    bool good = true;
+    for (int k = 0; k < TRIALS_STARTS; k++) {
+        t->start[k] = take_points(at, count[k], seed[k]);
+        t->weight[k] = t->start[k] ? make_weights(scenario, count[k], t->start[k]) : NULL;
+        good = good && t->start[k] && t->weight[k];
+    }
+    for (int a = 0; a + 1 < scenario->axes; a++)
+        t->circumstances *= scenario->axis[a].count;
+    memmove(&at->axis[1], &at->axis[0], (size_t)scenario->axes * sizeof at->axis[0]);
+    at->axis[0] = search->axis;
+    at->axis[0].count = 1;
+    at->axes = scenario->axes + 1;
+    at->record_cases = RECORD_NONE;
+    at->record_every = 0;
+    return good;
+}
+
+void trials_free(struct trials *t)
+{
+    kernels_give_back(&t->kernels);
+    for (int k = 0; k < TRIALS_STARTS; k++) {
+        free(t->start[k]);
+        free(t->weight[k]);
+    }
+    free(t->label);
+    free(t->worth);
+    free(t->loop);
+    free(t->at); /* what it points to is the scenario's */
+    *t = (struct trials){0};
+}
+
+/* ---- loops ------------------------------------------------------------------------------------
+ */
+
+/* Linear theory of a law that it knows: whether the loop is stable as it acts, and from which
+ * sample time on it would not be. */
+static void look_at_loop(const struct trials *t, uint64_t index, struct scenario *one,
+                         struct design_report *report, struct trials_loop *loop)
+{
+    const double asked = t->scenario->search.critical;
+    stance_message ignored;
+    *loop = (struct trials_loop){.critical = NAN, .exists = 1, .stable = 1, .tried = 1};
+    scenario_case_values(t->at, index, &one->base);
+    if (!scenario_law(&one->base)->designed)
+        return;
+    loop->exists = design_loop(report, one, &ignored);
+    loop->stable = loop->exists && report->stable;
+    loop->tried = loop->stable;
+    if (!loop->tried || one->base.sample_time <= 0)
+        return;
+    const double least = isnan(asked) ? 2 * one->base.sample_time : asked;
+    if (stance_critical_sample_time(report->states, report->inputs, report->A, report->B, report->K,
+                                    0, DESIGN_LONGEST, &loop->critical) != STANCE_OK)
+        loop->critical = NAN;
+    loop->tried = least <= 0 || loop->critical >= least;
+}
+
+/* Each rank a block of them. */
+static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
+{
+    const size_t pairs = candidates * t->circumstances;
+    const size_t ranks = (size_t)t->parallel->size, rank = (size_t)t->parallel->rank;
+    const size_t first = pairs * rank / ranks, end = pairs * (rank + 1) / ranks;
+    struct scenario *const one = malloc(sizeof *one);
+    struct design_report *const report = malloc(sizeof *report);
+    if (one)
+        *one = *t->scenario;
+    for (size_t p = first; one && report && p < end; p++)
+        look_at_loop(t, p * starts, one, report, &t->loop[p]);
+    const bool good = one && report;
+    free(one);
+    free(report);
+    parallel_gather_block(t->parallel, t->loop, sizeof *t->loop, first, end - first);
+    parallel_broadcast(t->parallel, t->loop, pairs * sizeof *t->loop);
+    return good;
+}
+
+/* ---- cases ------------------------------------------------------------------------------------
+ */
+
+struct task {
+    stance_case input; /* first: by this the kernel names it */
+    stance_result result;
+    uint64_t row;
+    struct task *next, *next_idle;
+};
+
+struct stream {
+    struct trials *t;
+    const struct plan *plan;
+    uint64_t starts;
+    const int64_t *weight;
+    struct schedule schedule;
+    struct task *tasks, *idle;
+    uint64_t cases;
+    double look_at;
+    bool leaving, no_memory;
+};
+
+static bool asked_to_stop(const struct trials *t, double now)
+{
+    return work_stop_asked() || now > t->until;
+}
+
+/* About every millisecond. */
+static bool attend(void *context)
+{
+    struct stream *const stream = context;
+    struct trials *const t = stream->t;
+    const double now = clock_seconds();
+    if (stream->leaving)
+        return true;
+    bool stop = asked_to_stop(t, now);
+    if (t->attend && t->parallel->rank == 0)
+        stop = t->attend(t->context, now) || stop;
+    if (stop) {
+        parallel_add(t->parallel, COUNTER_STOP, 1);
+        stream->leaving = true;
+        deadline_begin();
+    } else if (now >= stream->look_at || t->parallel->rank == 0) {
+        parallel_beat(t->parallel, ++t->beats);
+        stream->leaving = parallel_add(t->parallel, COUNTER_STOP, 0) != 0;
+        stream->look_at = now + schedule_look_interval(t->parallel->size);
+    }
+    return stream->leaving;
+}
+
+static void wait_for_others(void *context)
+{
+    attend(context);
+}
+
+/* What a stabilised start is worth: 1 or an answer, less prices. */
+static int64_t worth_of(const struct scenario_search *search, const stance_result *result)
+{
+    double worth = 1;
+    for (int i = 0; i < STANCE_ANSWER_COUNT; i++) {
+        const stance_answer *const answer = &stance_answers[i];
+        const bool aim = search->aim == AIM_ANSWER && i == search->answer;
+        if ((search->price[i] == 0 && !aim) || answer->type == STANCE_UINT8)
+            continue;
+        double value;
+        if (answer->type == STANCE_INT64) {
+            int64_t whole;
+            memcpy(&whole, (const char *)result + answer->offset, sizeof whole);
+            value = (double)whole;
+        } else {
+            memcpy(&value, (const char *)result + answer->offset, sizeof value);
+        }
+        value = isnan(value) ? 0 : value;
+        worth = aim ? worth - 1 + value : worth;
+        worth -= search->price[i] * value;
+    }
+    return llround(TRIALS_WORTH * fmin(fmax(worth, -MOST_WORTH), MOST_WORTH));
+}
+
+static void end_case(struct stream *stream, uint64_t row, const stance_result *result)
+{
+    struct trials *const t = stream->t;
+    const bool failed = result->status != STANCE_DONE;
+    t->label[row] = (uint8_t)(failed ? TRIAL_FAILED : (int)result->outcome + 1);
+    if (!failed && result->outcome == STANCE_STABILISED)
+        t->worth[row / stream->starts] +=
+            stream->weight[row % stream->starts] * worth_of(&t->scenario->search, result);
+    stream->cases++;
+}
+
+static struct task *take_task(struct stream *stream)
+{
+    struct task *task = stream->idle;
+    if (task) {
+        stream->idle = task->next_idle;
+        return task;
+    }
+    task = calloc(1, sizeof *task);
+    if (task) {
+        task->next = stream->tasks;
+        stream->tasks = task;
+    }
+    return task;
+}
+
+static bool draw_row(struct stream *stream, uint64_t *row)
+{
+    while (schedule_take(&stream->schedule, 1, row) == 0) {
+        const int64_t k = parallel_add(stream->t->parallel, COUNTER_CHUNK, 1);
+        if (!schedule_draw(&stream->schedule, (uint64_t)k))
+            return false;
+    }
+    return true;
+}
+
+static bool next_case(void *context, const stance_case **input, stance_result **result)
+{
+    struct stream *const stream = context;
+    struct trials *const t = stream->t;
+    uint64_t row;
+    while (!stream->leaving && draw_row(stream, &row)) {
+        int method;
+        if (!t->loop[row / stream->starts].tried)
+            continue;
+        struct task *const task = take_task(stream);
+        if (!task) {
+            stream->no_memory = stream->leaving = true;
+            parallel_add(t->parallel, COUNTER_STOP, 1);
+            return false;
+        }
+        task->row = row;
+        if (plan_resolve(stream->plan, row, &task->input, &method)) {
+            /* All candidates meet the same noise. */
+            task->input.grid_index %= t->circumstances;
+            *input = &task->input;
+            *result = &task->result;
+            return true;
+        }
+        t->label[row] = TRIAL_FAILED;
+        task->next_idle = stream->idle;
+        stream->idle = task;
+    }
+    return false;
+}
+
+static void case_done(void *context, const stance_case *input, stance_result *result)
+{
+    struct stream *const stream = context;
+    struct task *const task = (struct task *)(uintptr_t)input;
+    end_case(stream, task->row, result);
+    task->next_idle = stream->idle;
+    stream->idle = task;
+}
+
+static enum trials_end simulate(struct trials *t, const struct plan *plan, uint64_t starts,
+                                const int64_t *weight, stance_message *message)
+{
+    const stance_kernel *const kernel =
+        instruction_set_kernel(t->scenario->scene, stance_methods()[t->scenario->base.method]);
+    struct stream stream = {.t = t,
+                            .plan = plan,
+                            .starts = starts,
+                            .weight = weight,
+                            .schedule = schedule_make(plan->rows, t->parallel->size, NULL)};
+    parallel_restart(t->parallel);
+    if (!attend(&stream))
+        kernel->stream(&(stance_feed){&stream, next_case, case_done, attend});
+    parallel_beat(t->parallel, HEARTBEAT_WAITS);
+    parallel_meet(t->parallel, wait_for_others, &stream);
+    for (struct task *task = stream.tasks, *next; task; task = next) {
+        next = task->next;
+        free(task);
+    }
+    if (!parallel_agree(t->parallel, !stream.no_memory, message->text, sizeof message->text))
+        return TRIALS_BROKEN;
+    uint64_t stopped = parallel_add(t->parallel, COUNTER_STOP, 0) != 0;
+    parallel_sum(t->parallel, &stopped, 1);
+    if (stopped)
+        return TRIALS_STOPPED;
+    const size_t pairs = plan->rows / starts;
+    parallel_largest(t->parallel, t->label, plan->rows);
+    parallel_sum(t->parallel, (uint64_t *)t->worth, (int)pairs);
+    parallel_sum(t->parallel, &stream.cases, 1);
+    t->cases += stream.cases;
+    return TRIALS_DONE;
+}
+
+/* ---- a run ------------------------------------------------------------------------------------
+ */
+
+static bool stop_designs(void *context)
+{
+    const struct trials *const t = context;
+    const bool stop = asked_to_stop(t, clock_seconds());
+    return parallel_add(t->parallel, COUNTER_STOP, stop) != 0 || stop;
+}
+
+static bool take_room(struct trials *t, size_t pairs, uint64_t starts)
+{
+    free(t->label);
+    free(t->worth);
+    free(t->loop);
+    t->label = calloc(pairs * starts, 1);
+    t->worth = calloc(pairs, sizeof *t->worth);
+    t->loop = calloc(pairs, sizeof *t->loop);
+    return t->label && t->worth && t->loop;
+}
+
+static bool take_kernels(struct trials *t, const struct plan *plan, stance_message *message)
+{
+    if (t->has_kernels)
+        return true;
+    const struct kernels_choice all = {NULL, NULL, 0, 0};
+    t->has_kernels =
+        kernels_take(&t->kernels, plan, &all, t->parallel, t->quiet, message) == EXIT_DONE;
+    return t->has_kernels;
+}
+
+enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
+                           enum trials_starts which, uint64_t starts, stance_message *message)
+{
+    struct scenario *const at = t->at;
+    struct scenario_axis *const sample = &at->axis[at->axes - 1];
+    struct plan plan;
+    struct plan_error error = {0};
+    const size_t pairs = candidates * t->circumstances;
+    at->axis[0].value = value;
+    at->axis[0].count = candidates;
+    sample->value = t->start[which];
+    sample->count = starts;
+    at->cases = pairs * starts;
+    at->seed = which == TRIALS_FRESH ? trials_fresh_seed(t->scenario) : t->scenario->seed;
+    bool good = plan_make(&plan, at, false, 0, false, &error);
+    if (!good)
+        *message = error.message;
+    if (good && !take_room(t, pairs, starts))
+        good = complain(message, "not enough memory for %zu candidates", candidates);
+    if (!parallel_agree(t->parallel, good, message->text, sizeof message->text)) {
+        plan_free(&plan);
+        return TRIALS_BROKEN;
+    }
+    plan.stop = stop_designs;
+    plan.stop_context = t;
+    enum trials_end end = TRIALS_DONE;
+    if (!plan_compute_designs(&plan, t->parallel, &error) && !error.message.text[0])
+        end = TRIALS_STOPPED; /* where none exists all candidates are refused */
+    parallel_broadcast(t->parallel, plan.design,
+                       plan.designs * plan.design_size * sizeof *plan.design);
+    parallel_broadcast(t->parallel, plan.design_status, plan.designs);
+    if (end == TRIALS_DONE) {
+        good = look_at_loops(t, candidates, starts) ||
+               complain(message, "not enough memory for the loops");
+        good = parallel_agree(t->parallel, good, message->text, sizeof message->text) &&
+               take_kernels(t, &plan, message);
+        end = good ? simulate(t, &plan, starts, t->weight[which], message) : TRIALS_BROKEN;
+    }
+    plan_free(&plan);
+    at->axis[0].value = NULL;
+    sample->value = NULL;
+    return end;
+}

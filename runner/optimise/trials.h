@@ -1,0 +1,70 @@
+/* trials.h - candidates of a search tried: each from all its starts in all circumstances, on all
+ * ranks, in memory.
+ *
+ * What comes out are a byte for each case and whole numbers that are summed, so that it does not
+ * depend on ranks, lanes or order.
+ */
+#ifndef STANCE_OPTIMISE_TRIALS_H
+#define STANCE_OPTIMISE_TRIALS_H
+
+#include "runner/plan/kernels.h"
+#include "runner/run/heartbeat.h"
+
+/* Labels of a case: not simulated, outcome + 1, failed. */
+enum { TRIAL_REFUSED = 0, TRIAL_FAILED = STANCE_OUTCOME_COUNT + 1, TRIAL_LABELS };
+
+/* The starts: those of the search, or fresh ones, made with the next seed. */
+enum trials_starts { TRIALS_SEARCH, TRIALS_FRESH, TRIALS_STARTS };
+
+enum trials_end { TRIALS_DONE, TRIALS_STOPPED, TRIALS_BROKEN };
+
+/* What is known of a candidate's loop in a circumstance before it is simulated. */
+struct trials_loop {
+    double critical; /* s, critical sample time without delay; INFINITY; NAN: not known */
+    uint8_t exists, stable, tried;
+};
+
+struct trials {
+    const struct scenario *scenario; /* the first candidate, whose search is given */
+    const struct parallel *parallel;
+    struct scenario *at; /* with the axes candidate, circumstances ..., start */
+    size_t circumstances;
+    double *start[TRIALS_STARTS];   /* points of the sample axis */
+    int64_t *weight[TRIALS_STARTS]; /* [starts], TRIALS_WEIGHT: 1 */
+    struct kernels kernels;
+    bool has_kernels, quiet;
+    /* Of the last run, [candidates][circumstances][starts] and [candidates][circumstances], on
+     * every rank. */
+    uint8_t *label;
+    int64_t *worth; /* sum over stabilised starts of weight times value, in TRIALS_WORTH */
+    struct trials_loop *loop;
+    uint64_t cases; /* simulated so far, by all ranks */
+    /* Told about every millisecond, on rank 0: true, to stop. */
+    bool (*attend)(void *context, double now);
+    void *context;
+    double until;  /* of clock_seconds() */
+    int64_t beats; /* this rank's sign of life */
+};
+
+/* Whole numbers that stand for 1. */
+#define TRIALS_WEIGHT 128
+#define TRIALS_WORTH 0x1p20
+
+/* Collective in what it makes: the same on every rank. False: no memory. */
+bool trials_make(struct trials *trials, const struct scenario *scenario,
+                 const struct parallel *parallel);
+void trials_free(struct trials *trials);
+
+/* Collective, with counters: tries `candidates` with value[candidates][paths] (of scenario's
+ * search.axis, the same on every rank) from the first `starts` of the starts. BROKEN: *message says
+ * why. */
+enum trials_end trials_run(struct trials *trials, size_t candidates, double *value,
+                           enum trials_starts which, uint64_t starts, stance_message *message);
+
+/* The seed of the fresh starts. */
+static inline uint64_t trials_fresh_seed(const struct scenario *s)
+{
+    return s->seed + 1;
+}
+
+#endif

@@ -1,0 +1,480 @@
+/* schema_rows.c - the scenario format: its table. */
+#include "schema_rows.h"
+
+#include <math.h>
+
+/* ---- words ----------------------------------------------------------------------------------- */
+
+/* In the order of the enumerations in scenario.h. */
+static const char *const design_words[] = {"place", "place-schur", "lqr", "gains"};
+static const char *const design_time_words[] = {"continuous", "sampled"};
+static const char *const branch_words[] = {"upper", "lower"};
+static const char *const prefer_words[] = {"least-energy", "most-energy"};
+static const char *const lands_words[] = {"anywhere", "ahead"};
+static const char *const spacing_words[] = {"linear", "log"};
+static const char *const truth_words[] = {"false", "true"};
+static const char *const record_words[] = {"none", "all"};
+static const char *const settle_words[] = {"off"};
+static const char *const vary_words[] = {"gains", "poles", "weights", "law"};
+static const char *const weight_words[] = {"even", "normal"};
+static const char *const over_words[] = {"worst", "mean"};
+static const char *const capture_words[] = {"off", "estimated"};
+const char *const schema_none[1] = {"none"};
+
+static const char *const answer_words[] = {
+#define ANSWER_WORD(name, ...) #name,
+    STANCE_ANSWERS(ANSWER_WORD)
+#undef ANSWER_WORD
+        "final_state",
+};
+static const char *const aim_words[] = {"share", "nearest",
+#define ANSWER_WORD(name, ...) #name,
+                                        STANCE_ANSWERS(ANSWER_WORD)
+#undef ANSWER_WORD
+};
+
+#define WORDS(list) .words = (list), .word_count = sizeof(list) / sizeof((list)[0])
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+#define VALUE(member) .offset = offsetof(struct scenario_values, member)
+#define BY_HAND .offset = NO_OFFSET
+#define RANGE(least, largest) .low = (least), .high = (largest)
+#define ABOVE(bound, largest) RANGE(bound, largest), .low_open = true
+
+/* Loose bounds that keep nonsense out where physics gives none. */
+#define LARGE 1e9
+#define RIGHT 1.5708 /* a right angle, rounded up */
+
+/* One member a line would make the table hard to read. */
+/* clang-format off */
+const struct row schema_rows[] = {
+    {0, {.path = "stance", .type = FIELD_INTEGER, .required = true, BY_HAND, RANGE(1, 1),
+         .fallback = NAN, .text = "version of this format"}},
+    {0, {.path = "title", .type = FIELD_TEXT, BY_HAND, .fallback_text = "the file's name",
+         .text = "what the study is about, in a line"}},
+    {FAMILY_SCENES, {.path = "scene", .type = FIELD_WORD, .required = true, BY_HAND,
+         .fallback = NAN, .text = "what is simulated"}},
+
+    {0, {.path = "robot", .type = FIELD_MAP, .by_scene = true, BY_HAND,
+         .text = "the body that is simulated"}},
+    {FAMILY_ROBOT, {.path = "robot.*", .type = FIELD_NUMBER, .by_scene = true, .design = true,
+         .sweep = true, VALUE(robot)}},
+
+    {0, {.path = "ground", .type = FIELD_MAP, BY_HAND, .text = "the ground, a half plane z <= 0"}},
+    {0, {.path = "ground.friction", .type = FIELD_NUMBER, .sweep = true, VALUE(friction),
+         .unit = "1", .fallback = 0.8, RANGE(0, 10), .text = "Coulomb coefficient of friction"}},
+    {0, {.path = "ground.restitution", .type = FIELD_NUMBER, .sweep = true, VALUE(restitution),
+         .unit = "1", .fallback = 0, RANGE(0, 1), .text = "Newton's coefficient of restitution",
+         .more = "Together with friction it can create energy in impacts; 0 never does."}},
+    {0, {.path = "ground.slope", .type = FIELD_NUMBER, .design = true, .sweep = true,
+         VALUE(robot[STANCE_ROBOT_SLOPE]), .unit = "rad", .fallback = 0, RANGE(-RIGHT, RIGHT),
+         .text = "slope of the ground, positive: +x is downhill",
+         .more = "x and z stay level and upright. Only of a mechanism; the block has robot.slope."}},
+    {0, {.path = "ground.gravity", .type = FIELD_NUMBER, .design = true, .sweep = true,
+         VALUE(robot[STANCE_ROBOT_GRAVITY]), .unit = "m/s^2", .fallback = STANCE_GRAVITY,
+         RANGE(0, 1e4), .text = "acceleration of gravity", .more = "Only of a mechanism."}},
+    {0, {.path = "ground.lands", .type = FIELD_WORD, .sweep = true, VALUE(lands), .fallback = 0,
+         WORDS(lands_words), .text = "where a foot in the air may come to the ground",
+         .more = "ahead: only where it is further along the ground than all other feet on it, as "
+                 "walkers without knees need, whose swinging foot would scuff; elsewhere it goes "
+                 "through the ground. Decided at the end of each step. Both ends of a sole are one "
+                 "foot."}},
+    {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(prefer), .fallback = 0,
+         WORDS(prefer_words), .text = "which motion, where several obey the contact laws",
+         .more = "The one that leaves the least kinetic energy, or the most; contacts that stand "
+                 "go on standing while they can. Such steps are counted as ambiguous_steps. Swept "
+                 "over both, each case is followed down both branches."}},
+    {FAMILY_CONTACTS, {.path = "ground.contacts", .type = FIELD_WORDS, .by_scene = true,
+         VALUE(contacts), .fallback_text = "all of the scene's",
+         .text = "points that may touch the ground"}},
+
+    {0, {.path = "initial", .type = FIELD_MAP, .required = true, BY_HAND,
+         .text = "how a run begins: from an equilibrium or from a given state"}},
+    {0, {.path = "initial.equilibrium", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
+         BY_HAND, .text = "the position of rest that the run begins at",
+         .more = "Give all but one of the angles of the biped; the last follows. Of a mechanism "
+                 "give any, or none: the others are found. Excludes initial.state."}},
+    {FAMILY_POSTURE, {.path = "initial.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.posture),
+         .fallback_text = "follows from the others", .text = "equilibrium: %s"}},
+    {FAMILY_BRANCH, {.path = "initial.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
+         .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.branch),
+         .fallback = 0, WORDS(branch_words),
+         .text = "which of the two solutions: hip above or below the foot"}},
+    {FAMILY_FOOT, {.path = "initial.support_foot", .type = FIELD_INTEGER, .by_scene = true,
+         .design = true, .sweep = true, VALUE(support_foot), .unit = "1",
+         .fallback_text = "1 with an equilibrium, else none",
+         .text = "number of the foot that the robot stands on",
+         .more = "With an equilibrium this foot stands at rest at the origin: offsets of angles "
+                 "and their rates apply first, the translation follows from the foot, offsets of "
+                 "the translation come last."}},
+    {FAMILY_CONTACTS, {.path = "initial.support", .type = FIELD_WORDS, .by_scene = true,
+         .design = true, VALUE(support),
+         .fallback_text = "the first contact with an equilibrium of a free root, else none",
+         .text = "contacts that the robot stands on",
+         .more = "They stand at rest, the first at the origin. With an equilibrium offsets apply "
+                 "as with support_foot; with a state x, z and their rates follow."}},
+    {0, {.path = "initial.offset", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
+         BY_HAND, .text = "how far from the equilibrium the run begins"}},
+    {FAMILY_OFFSET, {.path = "initial.offset.*", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset), .text = "initial offset: %s"}},
+    {0, {.path = "initial.offset.scale", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset_scale), .unit = "1", .fallback = 1,
+         RANGE(-1e6, 1e6), .text = "factor of all other offsets",
+         .more = "Swept beside directions (sweep.sample.method sphere) it goes along rays from the "
+                 "equilibrium."}},
+    {0, {.path = "initial.state", .type = FIELD_MAP, .by_scene = true, .use = USE_STATE, BY_HAND,
+         .text = "the whole initial state by hand", .more = "Excludes initial.equilibrium."}},
+    {FAMILY_STATE, {.path = "initial.state.*", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_STATE, .sweep = true, VALUE(state), .text = "initial %s"}},
+
+    {0, {.path = "controller", .type = FIELD_MAP, BY_HAND, .text = "what drives the actuators"}},
+    {FAMILY_KINDS, {.path = "controller.kind", .type = FIELD_WORD, .design = true, VALUE(law),
+         .fallback = 0, .text = "control law"}},
+    {0, {.path = "controller.design", .type = FIELD_WORD, .use = USE_FEEDBACK, .design = true,
+         .sweep = true, VALUE(design), .fallback = 0, WORDS(design_words),
+         .text = "where the gains come from",
+         .more = "place: robust pole placement. place-schur: the same poles by SLICOT's Schur "
+                 "method. lqr: linear quadratic regulator. gains: they are given."}},
+    {0, {.path = "controller.design_time", .type = FIELD_WORD, .use = USE_MODEL, .design = true,
+         .sweep = true, VALUE(design_time), .fallback = 0, WORDS(design_time_words),
+         .text = "model that the gains are designed for",
+         .more = "sampled: the robot sampled every controller.sample_time with torques held in "
+                 "between; a pole s becomes exp(s T), the cost of lqr stays the integral over all "
+                 "time. Each sample time of a sweep is then a design of its own."}},
+    {FAMILY_POLES, {.path = "controller.poles", .type = FIELD_POLES, .by_scene = true,
+         .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",
+         .text = "poles of the closed loop, in the open left half plane",
+         .more = "Real, or complex as -3+1.5i with -3-1.5i beside it; with place none may stand "
+                 "there more often than there are actuators. Of a mechanism as many as it has "
+                 "states while the contacts that it stands on hold."}},
+    {FAMILY_POLES, {.path = "controller.poles[]", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_PLACE, .design = true, .sweep = true, VALUE(pole_re), .unit = "1/s",
+         .fallback = NAN, RANGE(-1e6, 0), .high_open = true, .text = "pole of the closed loop",
+         .more = "Only a real pole can be swept."}},
+    {FAMILY_MATRIX, {.path = "controller.gains", .type = FIELD_MATRIX, .by_scene = true,
+         .use = USE_GAINS, .required = true, .design = true, BY_HAND, .unit = "N m/rad, N m s/rad",
+         .text = "gains: a row for each actuator; angles, then rates"}},
+    {FAMILY_MATRIX, {.path = "controller.gains[][]", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_GAINS, .design = true, .sweep = true, VALUE(gains),
+         .unit = "N m/rad, N m s/rad", .fallback = NAN, RANGE(-LARGE, LARGE),
+         .text = "gain of an actuator on an angle or a rate"}},
+    {0, {.path = "controller.weights", .type = FIELD_MAP, .by_scene = true, .use = USE_LQR, BY_HAND,
+         .text = "what the regulator minimises: weights times squares, integrated over time"}},
+    {FAMILY_POLES, {.path = "controller.weights.states", .type = FIELD_NUMBERS, .by_scene = true,
+         .use = USE_LQR, .design = true, BY_HAND, .unit = "1/rad^2, s^2/rad^2",
+         .fallback_text = "1 each", .text = "weights of the angles, then of the rates"}},
+    {FAMILY_POLES, {.path = "controller.weights.states[]", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_LQR, .design = true, .sweep = true, VALUE(state_weights),
+         .unit = "1/rad^2, s^2/rad^2", .fallback = 1, RANGE(0, LARGE),
+         .text = "weight of an angle or a rate"}},
+    {FAMILY_ACTUATORS, {.path = "controller.weights.torques", .type = FIELD_NUMBERS,
+         .by_scene = true, .use = USE_LQR, .design = true, BY_HAND, .unit = "1/(N m)^2",
+         .fallback_text = "1 each", .text = "weights of the torques"}},
+    {FAMILY_ACTUATORS, {.path = "controller.weights.torques[]", .type = FIELD_NUMBER,
+         .by_scene = true, .use = USE_LQR, .design = true, .sweep = true, VALUE(torque_weights),
+         .unit = "1/(N m)^2", .fallback = 1, ABOVE(0, LARGE), .text = "weight of a torque"}},
+    {0, {.path = "controller.model", .type = FIELD_MAP, .by_scene = true, .use = USE_FEEDBACK,
+         BY_HAND, .text = "the robot that the design believes in"}},
+    {FAMILY_ROBOT, {.path = "controller.model.*", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model),
+         .fallback_text = "as the robot", .text = "model of the design: %s"}},
+    {0, {.path = "controller.model.slope", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model[STANCE_ROBOT_SLOPE]),
+         .unit = "rad", .fallback = NAN, .fallback_text = "as the ground", RANGE(-RIGHT, RIGHT),
+         .text = "model of the design: slope of the ground"}},
+    {0, {.path = "controller.model.gravity", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(model[STANCE_ROBOT_GRAVITY]),
+         .unit = "m/s^2", .fallback = NAN, .fallback_text = "as on the ground", RANGE(0, 1e4),
+         .text = "model of the design: acceleration of gravity"}},
+    {0, {.path = "controller.equilibrium", .type = FIELD_MAP, .by_scene = true, .use = USE_FEEDBACK,
+         BY_HAND, .fallback_text = "initial.equilibrium",
+         .text = "the equilibrium that the controller is designed at"}},
+    {FAMILY_POSTURE, {.path = "controller.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.posture),
+         .fallback_text = "follows from the others", .text = "equilibrium of the controller: %s"}},
+    {FAMILY_BRANCH, {.path = "controller.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
+         .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.branch),
+         .fallback = 0, WORDS(branch_words),
+         .text = "which of the two solutions: hip above or below the foot"}},
+    {FAMILY_FAR, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
+         .fallback = 0, .text = "law that acts outside an ellipsoid about the target",
+         .more = "state-feedback acts inside it, where sum((angle/near.angle)^2) + "
+                 "sum((rate/near.rate)^2) <= 1 for the deviations from the target. Decided at each "
+                 "sample: needs sample_time > 0."}},
+    {0, {.path = "controller.near", .type = FIELD_MAP, .use = USE_FAR, BY_HAND,
+         .text = "the ellipsoid inside which state-feedback acts"}},
+    {0, {.path = "controller.near.angle", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
+         .sweep = true, VALUE(near_angle), .unit = "rad", .fallback = NAN, ABOVE(0, LARGE),
+         .text = "its semi-axis in each angle"}},
+    {0, {.path = "controller.near.rate", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
+         .sweep = true, VALUE(near_rate), .unit = "rad/s", .fallback = NAN, ABOVE(0, LARGE),
+         .text = "its semi-axis in each rate"}},
+    {FAMILY_PARAMETERS, {.path = "controller.*", .type = FIELD_NUMBER, .use = USE_LAW,
+         .sweep = true}},
+    {0, {.path = "controller.sample_time", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(sample_time), .unit = "s", .fallback = 0, RANGE(0, LARGE),
+         .text = "time between samples of the controller",
+         .more = "Torques are held in between; 0: it acts continuously, inside the step "
+                 "(decoupling with implicit and midpoint: once a step)."}},
+    {0, {.path = "controller.delay", .type = FIELD_INTEGER, .use = USE_CONTROL, .sweep = true,
+         VALUE(delay), .unit = "1", .fallback = 0, RANGE(0, STANCE_MAX_DELAY),
+         .text = "whole samples between measuring and acting",
+         .more = "1: the torques of a sample act from the next one on, until then those that "
+                 "state-feedback has at its target (none with hold and decoupling). Gains do not "
+                 "take it into account. Needs sample_time > 0."}},
+    {0, {.path = "controller.lag", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(lag), .unit = "s", .fallback = 0, RANGE(0, LARGE),
+         .text = "time constant of the actuators",
+         .more = "A torque approaches what is commanded as exp(-t/lag), from what state-feedback "
+                 "has at its target. Gains do not take it into account. Needs sample_time > 0."}},
+    {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(torque_limit), .unit = "N m", .fallback = INFINITY, .fallback_text = "none",
+         ABOVE(0, LARGE), WORDS(schema_none), .text = "largest torque of each actuator",
+         .more = "Of a slide a force, in N. A positive torque turns its leg, or body, "
+                 "counter-clockwise, and what it hangs from the other way: stance plot --model "
+                 "SCENARIO draws it."}},
+    {FAMILY_ACTUATORS, {.path = "controller.torque_limits", .type = FIELD_NUMBERS,
+         .by_scene = true, .use = USE_CONTROL, BY_HAND, .unit = "N m", .fallback_text = "none",
+         .text = "largest torque of each actuator by itself",
+         .more = "Of a slide in N. Each is limited by this, by torque_limit and by what the robot's "
+                 "description says, whichever is smallest."}},
+    {FAMILY_ACTUATORS, {.path = "controller.torque_limits[]", .type = FIELD_NUMBER,
+         .by_scene = true, .use = USE_CONTROL, .sweep = true, VALUE(torque_limits),
+         .unit = "N m", .fallback = INFINITY, .fallback_text = "none", ABOVE(0, LARGE),
+         WORDS(schema_none), .text = "largest torque of an actuator"}},
+    {0, {.path = "controller.torque_rate", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(torque_rate), .unit = "N m/s", .fallback = INFINITY, .fallback_text = "none",
+         ABOVE(0, LARGE), WORDS(schema_none), .text = "how fast a torque changes at most",
+         .more = "Of a slide N/s. With a lag, too, torques come up no faster than this. Needs "
+                 "sample_time > 0."}},
+    {0, {.path = "controller.noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(noise), .unit = "N m", .fallback = 0, RANGE(0, LARGE),
+         .text = "half-width of uniform noise on the torques",
+         .more = "Of a slide in N. White, new at each sample, added before the limit; needs "
+                 "sample_time > 0."}},
+    {0, {.path = "controller.angle_noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(angle_noise), .unit = "rad", .fallback = 0, RANGE(0, LARGE),
+         .text = "half-width of noise on measured angles",
+         .more = "Uniform, on each angle of the posture that the controller sees (of a slide in m), "
+                 "new at each sample. A decoupling law knows all the same which feet touch the "
+                 "ground. Needs sample_time > 0."}},
+    {0, {.path = "controller.rate_noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
+         VALUE(rate_noise), .unit = "rad/s", .fallback = 0, RANGE(0, LARGE),
+         .text = "half-width of noise on measured rates",
+         .more = "As controller.angle_noise; of a slide in m/s."}},
+
+    {0, {.path = "method", .type = FIELD_MAP, BY_HAND, .text = "how time is stepped"}},
+    {FAMILY_METHODS, {.path = "method.name", .type = FIELD_WORD, .sweep = true, VALUE(method),
+         .text = "time stepping method"}},
+    {0, {.path = "method.step", .type = FIELD_NUMBER, .sweep = true, VALUE(step), .unit = "s",
+         .fallback = 0.001, ABOVE(0, 0.1), .text = "time step",
+         .more = "An upper bound: a sample interval is cut into equal steps no longer than this."}},
+    {FAMILY_TOLERANCE, {.path = "method.tolerance", .type = FIELD_NUMBER, .sweep = true,
+         VALUE(tolerance), .unit = "m, rad", .fallback = NAN, .fallback_text = "the method's own",
+         ABOVE(0, 1), .text = "admitted error of a step"}},
+
+    {0, {.path = "stop", .type = FIELD_MAP, .required = true, BY_HAND,
+         .text = "when a run ends and what it counts as"}},
+    {0, {.path = "stop.time", .type = FIELD_NUMBER, .required = true, .sweep = true,
+         VALUE(stop_time), .unit = "s", .fallback = NAN, ABOVE(0, LARGE),
+         .text = "longest duration of a run"}},
+    {0, {.path = "stop.settle", .type = FIELD_MAP_OR_WORD, BY_HAND, WORDS(settle_words),
+         .text = "when a run counts as stabilised or at rest",
+         .more = "\"off\": a run lasts its whole time, unless the robot falls, and is judged at its "
+                 "end. (In quotes: tools of YAML 1.1 take a bare off for false. Here both are the "
+                 "word.)"}},
+    {0, {.path = "stop.settle.angle", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
+         VALUE(settle_angle), .unit = "rad", .fallback = 0.05, ABOVE(0, LARGE),
+         .text = "largest deviation of an angle that counts as settled"}},
+    {0, {.path = "stop.settle.rate", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
+         VALUE(settle_rate), .unit = "rad/s", .fallback = 0.5, ABOVE(0, LARGE),
+         .text = "largest rate that counts as settled, in m/s for the translation"}},
+    {0, {.path = "stop.settle.hold", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
+         VALUE(settle_hold), .unit = "s", .fallback = 0.5, RANGE(0, LARGE),
+         .text = "how long it must stay settled"}},
+    {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
+         .unit = "1", .fallback = 0.2, RANGE(0, 1),
+         .text = "height of the hip, in leg lengths, below which the robot has fallen",
+         .more = "Its fall_cause is then hip, and trunk where the trunk touches the ground."}},
+
+    {0, {.path = "stop.capture", .type = FIELD_WORD, VALUE(capture), .fallback = 0,
+         WORDS(capture_words),
+         .text = "whether a run may end where state-feedback is known to recover",
+         .more = "estimated: for each design the largest ellipsoid about the target is sought from "
+                 "whose boundary 10000 simulations all end as stabilised, with the noise, limits, "
+                 "method and rules of the case; a run that comes into it (0.8 of its level) on the "
+                 "support foot alone, at rest, ends as stabilised with evidence inferred. Its "
+                 "settle_time is then missing, and largest values and sums end where the run does. "
+                 "Only for state-feedback without far or delay, with stop.settle; each point of an "
+                 "axis other than initial.offset and initial.state is then a design of its own."}},
+
+    {0, {.path = "sweep", .type = FIELD_MAP, BY_HAND, .text = "what varies between cases"}},
+    {0, {.path = "sweep.grid", .type = FIELD_AXES, BY_HAND,
+         .text = "axes whose product are the cases, the last one fastest",
+         .more = "An axis is {path, from, to, count, spacing}, {path, values: [...]} or {paths: "
+                 "[...], values: [[...], ...]}; the last varies several fields together, as does "
+                 "{paths: [...], from: [...], to: [...], count}, along a line."}},
+    {0, {.path = "sweep.grid[].path", .type = FIELD_PATH, BY_HAND,
+         .text = "the field that varies along the axis",
+         .more = "Any number of this format, such as controller.gains[0][3] or ground.friction."}},
+    {0, {.path = "sweep.grid[].paths", .type = FIELD_PATHS, BY_HAND, .high = SCENARIO_MAX_PATHS,
+         .text = "fields that vary together along the axis"}},
+    {0, {.path = "sweep.grid[].from", .type = FIELD_ENDS, BY_HAND,
+         .text = "value at the first point, with `paths` a list"}},
+    {0, {.path = "sweep.grid[].to", .type = FIELD_ENDS, BY_HAND,
+         .text = "value at the last point, with `paths` a list"}},
+    {0, {.path = "sweep.grid[].count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN,
+         RANGE(1, 1e9), .text = "number of points"}},
+    {0, {.path = "sweep.grid[].spacing", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(spacing_words), .text = "equal differences or equal ratios between points"}},
+    {0, {.path = "sweep.grid[].values", .type = FIELD_VALUES, BY_HAND,
+         .text = "the points one by one: numbers or words, with `paths` a list for each point"}},
+    {0, {.path = "sweep.sample", .type = FIELD_MAP, BY_HAND,
+         .text = "a designed sample of several fields, at each point of the grid",
+         .more = "A further dimension, sample, after the grid's. Points follow from seed and their "
+                 "number alone, whatever count is (but for lhs): stance run --extend adds some."}},
+    {0, {.path = "sweep.sample.method", .type = FIELD_WORD, BY_HAND, .fallback = NAN,
+         .words = doe_words, .word_count = DOE_METHODS, .text = "how points are chosen",
+         .more = "random: independent. lhs: Latin hypercube, each of count strata of each factor "
+                 "holds one point. sobol: Sobol' sequence, shifted digitally; best with a power of "
+                 "two. saltelli: blocks of factors + 2 points for Sobol' indices. morris: "
+                 "trajectories of factors + 1 points for elementary effects. sphere: directions, "
+                 "uniform on the ellipsoid inscribed in the box of the ranges."}},
+    {0, {.path = "sweep.sample.count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN,
+         RANGE(1, 1 << DOE_MAX_BITS),
+         .text = "number of points; of blocks with saltelli, of trajectories with morris"}},
+    {0, {.path = "sweep.sample.second_order", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(truth_words),
+         .text = "whether saltelli's blocks have what second-order indices need",
+         .more = "2 factors + 2 points in each. Only with method saltelli."}},
+    {0, {.path = "sweep.sample.levels", .type = FIELD_INTEGER, BY_HAND, .fallback = 4,
+         RANGE(2, 1000), .text = "levels of each factor, an even number",
+         .more = "A step of a trajectory is levels / (2 (levels - 1)) of the range. Only with "
+                 "method morris."}},
+    {0, {.path = "sweep.sample.vary", .type = FIELD_FACTORS, BY_HAND,
+         .text = "the factors: what varies, and within which bounds",
+         .more = "A factor is {path, from, to, spacing}, {path, values: [...]}, or of several "
+                 "fields that move together {paths: [...], from: [...], to: [...]} or {paths: "
+                 "[...], values: [[...], ...]}."}},
+    {0, {.path = "sweep.sample.vary[].path", .type = FIELD_PATH, BY_HAND,
+         .text = "the field that the factor varies", .more = "Whatever may be swept."}},
+    {0, {.path = "sweep.sample.vary[].paths", .type = FIELD_PATHS, BY_HAND,
+         .high = SCENARIO_MAX_PATHS, .text = "fields that the factor varies together"}},
+    {0, {.path = "sweep.sample.vary[].from", .type = FIELD_ENDS, BY_HAND,
+         .text = "lower bound; with paths a list, one end of the segment",
+         .more = "Whole numbers between the bounds are equally likely, both included."}},
+    {0, {.path = "sweep.sample.vary[].to", .type = FIELD_ENDS, BY_HAND,
+         .text = "upper bound; with paths a list, the other end"}},
+    {0, {.path = "sweep.sample.vary[].spacing", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(spacing_words), .text = "uniform in the value or in its logarithm"}},
+    {0, {.path = "sweep.sample.vary[].values", .type = FIELD_VALUES, BY_HAND,
+         .text = "equally likely values: numbers or words, with paths a list for each"}},
+    {0, {.path = "sweep.refine", .type = FIELD_MAP, BY_HAND,
+         .text = "map the outcomes adaptively: simulate a coarse lattice, then only where they "
+                 "differ",
+         .more = "Along axes of numbers with more than start points; others are taken in full, "
+                 "each combination a map of its own. Cases that are not simulated take the outcome "
+                 "of their cell, with evidence inferred and no other answers. The same for any "
+                 "number of ranks."}},
+    {0, {.path = "sweep.refine.start", .type = FIELD_INTEGER, BY_HAND, .fallback = 32,
+         RANGE(2, 1e9), .text = "most cells of the coarse lattice along an axis",
+         .more = "Its stride is the smallest power of two that leaves no more; each level halves "
+                 "it."}},
+    {0, {.path = "sweep.refine.margin", .type = FIELD_INTEGER, BY_HAND, .fallback = 1,
+         RANGE(0, 1e9), .text = "cells around one of several outcomes that are refined with it"}},
+    {0, {.path = "sweep.refine.probes", .type = FIELD_NUMBER, BY_HAND, .unit = "1",
+         .fallback = 0.01, RANGE(0, 1),
+         .text = "share of all cases that is simulated in search of islands",
+         .more = "Chosen by seed. An island of k cases between the points of the lattice stays "
+                 "unseen with probability (1 - probes)^k."}},
+
+    {0, {.path = "optimise", .type = FIELD_MAP, BY_HAND,
+         .text = "what stance optimise varies in search of a better controller",
+         .more = "The scenario as it is is the first candidate; the points of sweep.sample are the "
+                 "starts that all candidates get, those of sweep.grid the circumstances. Other "
+                 "commands pass over this section."}},
+    {0, {.path = "optimise.vary", .type = FIELD_VARIED, BY_HAND, WORDS(vary_words),
+         .text = "what differs between candidates",
+         .more = "gains: all gains of state-feedback, those of the scenario's design to begin "
+                 "with. poles: all poles, real ones. weights: all weights of lqr. law: the "
+                 "parameters of controller.kind. A mapping is {path, from, to, spacing} or {path, "
+                 "unit}: any number that may be swept and need not be whole."}},
+    {0, {.path = "optimise.vary[].path", .type = FIELD_PATH, BY_HAND,
+         .text = "the number that differs between candidates"}},
+    {0, {.path = "optimise.vary[].from", .type = FIELD_NUMBER, BY_HAND, .fallback = NAN,
+         RANGE(-LARGE, LARGE), .text = "its lower bound"}},
+    {0, {.path = "optimise.vary[].to", .type = FIELD_NUMBER, BY_HAND, .fallback = NAN,
+         RANGE(-LARGE, LARGE), .text = "its upper bound"}},
+    {0, {.path = "optimise.vary[].spacing", .type = FIELD_WORD, BY_HAND, .fallback = 0,
+         WORDS(spacing_words), .text = "whether it is moved evenly or by equal ratios"}},
+    {0, {.path = "optimise.vary[].unit", .type = FIELD_NUMBER, BY_HAND, .fallback = NAN,
+         ABOVE(0, LARGE), .text = "what first_step is a part of",
+         .more = "By default the range; with spacing log of the logarithm."}},
+    {0, {.path = "optimise.maximise", .type = FIELD_WORD, BY_HAND, .fallback = 0, WORDS(aim_words),
+         .text = "what makes a candidate better",
+         .more = "share: of the starts, those that end as stabilised. nearest: the largest scale "
+                 "up to which all directions (method sphere, with initial.offset.scale in the "
+                 "grid) are stabilised. An answer: its mean over all starts, 0 for those that are "
+                 "not stabilised."}},
+    {0, {.path = "optimise.weight", .type = FIELD_WORD, BY_HAND, .fallback = 0, WORDS(weight_words),
+         .text = "what a start counts",
+         .more = "even: all the same. normal: as a normal density about the middle of the ranges "
+                 "whose standard deviation is a quarter of each range."}},
+    {0, {.path = "optimise.price", .type = FIELD_MAP, BY_HAND,
+         .text = "what a stabilised start costs, taken from what it is worth (1 with share)"}},
+    {0, {.path = "optimise.price.peak_torque", .type = FIELD_NUMBER, BY_HAND, .unit = "1/(N m)",
+         .fallback = 0, RANGE(0, LARGE), .text = "price of the largest torque"}},
+    {0, {.path = "optimise.price.friction_used", .type = FIELD_NUMBER, BY_HAND, .unit = "1",
+         .fallback = 0, RANGE(0, LARGE), .text = "price of the friction used"}},
+    {0, {.path = "optimise.price.settle_time", .type = FIELD_NUMBER, BY_HAND, .unit = "1/s",
+         .fallback = 0, RANGE(0, LARGE), .text = "price of the time to settle"}},
+    {0, {.path = "optimise.price.gain", .type = FIELD_NUMBER, BY_HAND, .unit = "1",
+         .fallback = 0, RANGE(0, LARGE),
+         .text = "price of the gains' root mean square, in their units",
+         .more = "The unit of a gain is the torque limit over the half-width of the starts."}},
+    {0, {.path = "optimise.over", .type = FIELD_WORD, BY_HAND, .fallback = 0, WORDS(over_words),
+         .text = "which of the circumstances of sweep.grid counts, or all alike"}},
+    {0, {.path = "optimise.require", .type = FIELD_MAP, BY_HAND,
+         .text = "what a candidate must have to be simulated",
+         .more = "In every circumstance. A loop that is unstable as it is sampled, late and with "
+                 "the lag of its actuators never counts as recovered."}},
+    {0, {.path = "optimise.require.critical_sample_time", .type = FIELD_NUMBER, BY_HAND,
+         .unit = "s", .fallback = NAN, .fallback_text = "twice controller.sample_time",
+         RANGE(0, LARGE), .text = "least critical sample time of its loop without delay",
+         .more = "Only of laws that linear theory knows; 0: none."}},
+    {0, {.path = "optimise.candidates", .type = FIELD_INTEGER, BY_HAND, .fallback = 1000,
+         RANGE(1, 1e6), .text = "candidates, over all generations"}},
+    {0, {.path = "optimise.grow", .type = FIELD_NUMBERS, BY_HAND, .unit = "1",
+         .fallback_text = "a quarter of sweep.sample.count, that, four times that",
+         .text = "starts of the stages of the search",
+         .more = "Of three stages they have 50, 35 and 15 % of the candidates, of others equal "
+                 "parts. A stage has the starts of those before it."}},
+    {0, {.path = "optimise.grow[]", .type = FIELD_INTEGER, BY_HAND, .unit = "1", .fallback = NAN,
+         RANGE(1, 1 << 20), .text = "starts of a stage"}},
+    {0, {.path = "optimise.confirm", .type = FIELD_INTEGER, BY_HAND, .unit = "1", .fallback = NAN,
+         .fallback_text = "eight times the last stage's", RANGE(1, 1 << 20),
+         .text = "fresh starts with which the best candidates are compared"}},
+    {0, {.path = "optimise.restarts", .type = FIELD_INTEGER, BY_HAND, .fallback = 0, RANGE(0, 20),
+         .text = "times that the search begins again at its best with twice the candidates a "
+                 "generation"}},
+    {0, {.path = "optimise.first_step", .type = FIELD_NUMBER, BY_HAND, .unit = "1",
+         .fallback = 0.1, ABOVE(0, 10), .text = "standard deviation of the first generation, in "
+                 "units of each number"}},
+
+    {0, {.path = "record", .type = FIELD_MAP, BY_HAND,
+         .text = "what is stored besides the parameters"}},
+    {0, {.path = "record.every", .type = FIELD_NUMBER, BY_HAND, .unit = "s", .fallback = 0.01,
+         ABOVE(0, LARGE), .text = "time between rows of a trajectory"}},
+    {0, {.path = "record.cases", .type = FIELD_CASES, BY_HAND, .fallback = 0, WORDS(record_words),
+         .text = "cases whose trajectories are stored",
+         .more = "A list counts them from 0, the last axis fastest."}},
+    {0, {.path = "record.answers", .type = FIELD_WORDS, BY_HAND, WORDS(answer_words),
+         .fallback_text = "all", .text = "answers that are stored"}},
+
+    {0, {.path = "seed", .type = FIELD_INTEGER, BY_HAND, .fallback = 1, RANGE(0, 0x1p63),
+         .text = "seed of the random numbers, up to 9223372036854775807"}},
+};
+/* clang-format on */
+const size_t schema_row_count = sizeof schema_rows / sizeof *schema_rows;

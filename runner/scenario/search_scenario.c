@@ -1,0 +1,461 @@
+/* search_scenario.c - the section optimise: what a search varies, by which bounds, and what it
+ * maximises; and what that asks of the rest of the scenario.
+ */
+#include "reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_CIRCUMSTANCES 64
+
+/* Units of the logarithm of a pole, a weight: a step of a tenth is 20 %, a factor of 2. */
+static const double pole_unit = 2, weight_unit = 7;
+
+/* ---- what varies ----------------------------------------------------------------------------- */
+
+static struct scenario_varied *last_varied(struct axis_reader *a)
+{
+    return &a->r->s->search.varied[a->axis->paths - 1];
+}
+
+/* One path, which is to be a number. */
+static bool add_path(struct axis_reader *a, const struct tree_node *node)
+{
+    struct scenario_axis *const axis = a->axis;
+    if (axis->paths == SCENARIO_MAX_PATHS)
+        return problem_add(&a->r->problems, node->mark, "%s: more than %d numbers", a->name,
+                           SCENARIO_MAX_PATHS);
+    if (!axis_read_path(a, node))
+        return false;
+    const struct scenario_field *const field = a->swept[axis->paths - 1].field;
+    if (axis->integer[axis->paths - 1])
+        return problem_add(&a->r->problems, node->mark,
+                           "%s: %s takes %s, which are not varied: search for each of them with "
+                           "--set, or list them in sweep.grid",
+                           a->name, node->text,
+                           field->type == FIELD_WORD ? "words" : "whole numbers");
+    *last_varied(a) = (struct scenario_varied){SCALE_EVEN, field->low, field->high, NAN, false};
+    return true;
+}
+
+/* Paths that a word stands for: FORMAT of i, of i and j. */
+static bool add_paths(struct axis_reader *a, const char *format, size_t rows, size_t columns,
+                      enum scenario_scale scale, double unit)
+{
+    bool good = true;
+    for (size_t i = 0; good && i < rows; i++) {
+        for (size_t j = 0; good && j < columns; j++) {
+            char path[96];
+            struct tree_node node = *a->node;
+            snprintf(path, sizeof path, format, i, j);
+            node.text = path;
+            node.kind = TREE_SCALAR;
+            good = add_path(a, &node);
+            if (good) {
+                last_varied(a)->scale = scale;
+                last_varied(a)->unit = unit;
+            }
+        }
+    }
+    return good;
+}
+
+static bool add_gains(struct axis_reader *a)
+{
+    struct scenario *const s = a->r->s;
+    const size_t m = (size_t)s->scene->actuators, n = 2 * (size_t)s->scene->postures;
+    s->search.designed_gains = s->base.design != DESIGN_GAINS;
+    if (m * n > SCENARIO_MAX_PATHS)
+        return axis_complain(a, "there are more gains than the 48 numbers that can be varied");
+    return s->search.designed_gains ||
+           add_paths(a, "controller.gains[%zu][%zu]", m, n, SCALE_EVEN, NAN);
+}
+
+static bool add_poles(struct axis_reader *a)
+{
+    const struct scenario_values *const base = &a->r->s->base;
+    if (base->design != DESIGN_PLACE && base->design != DESIGN_PLACE_SCHUR)
+        return axis_complain(a, "poles are those of controller.design place or place-schur");
+    for (int i = 0; i < base->poles; i++)
+        if (base->pole_im[i] != 0)
+            return axis_complain(a, "poles that are not real cannot be varied; give real ones");
+    return add_paths(a, "controller.poles[%zu]", (size_t)base->poles, 1, SCALE_NEGATIVE_RATIO,
+                     pole_unit);
+}
+
+static bool add_weights(struct axis_reader *a)
+{
+    const stance_scene *const scene = a->r->s->scene;
+    if (a->r->s->base.design != DESIGN_LQR)
+        return axis_complain(a, "weights are those of controller.design lqr");
+    return add_paths(a, "controller.weights.states[%zu]", 2 * (size_t)scene->postures, 1,
+                     SCALE_RATIO, weight_unit) &&
+           add_paths(a, "controller.weights.torques[%zu]", (size_t)scene->actuators, 1, SCALE_RATIO,
+                     weight_unit);
+}
+
+/* The parameters of the scenario's law that are numbers and may be swept. */
+static bool add_law(struct axis_reader *a)
+{
+    const struct schema *const schema = &a->r->schema;
+    const int before = a->axis->paths, law = a->r->s->base.law;
+    bool good = true;
+    for (size_t i = 0; good && i < schema->count; i++) {
+        const struct scenario_field *const field = &schema->field[i];
+        double value;
+        if (field->use != USE_LAW || field->law != law || !field->sweep ||
+            field->type != FIELD_NUMBER)
+            continue;
+        memcpy(&value, (const char *)&a->r->s->base + field->offset, sizeof value);
+        if (!isfinite(value))
+            continue; /* as it is by default, which is no number */
+        struct tree_node node = *a->node;
+        node.text = field->path;
+        node.kind = TREE_SCALAR;
+        good = add_path(a, &node);
+        if (!good)
+            continue;
+        last_varied(a)->scale = field->low >= 0 && value > 0 ? SCALE_RATIO : SCALE_EVEN;
+        last_varied(a)->unit = last_varied(a)->scale == SCALE_RATIO ? weight_unit : 1;
+    }
+    return good && (a->axis->paths > before ||
+                    axis_complain(a, "this controller.kind has no parameters that are numbers"));
+}
+
+static bool read_word(struct axis_reader *a)
+{
+    static bool (*const add[])(struct axis_reader *) = {add_gains, add_poles, add_weights, add_law};
+    int word;
+    return field_word(&a->r->problems, schema_find(&a->r->schema, "optimise.vary"), a->name,
+                      a->node, &word) &&
+           add[word](a);
+}
+
+static bool read_number(struct axis_reader *a, const char *key, double *value)
+{
+    const struct tree_node *const node = tree_find(a->node, key);
+    char path[48], name[AXIS_NAME + 16];
+    *value = NAN;
+    snprintf(path, sizeof path, "optimise.vary[].%s", key);
+    snprintf(name, sizeof name, "%s.%s", a->name, key);
+    return !node ||
+           field_number(&a->r->problems, schema_find(&a->r->schema, path), name, node, value);
+}
+
+/* {path, from, to, spacing, unit} */
+static bool read_entry(struct axis_reader *a)
+{
+    struct problems *const problems = &a->r->problems;
+    const size_t before = problems->count + problems->lost;
+    double from, to, unit;
+    bool log = false;
+    reader_check_keys(a->r, a->node, "optimise.vary[]", a->name);
+    const struct tree_node *const path = tree_find(a->node, "path");
+    if (problems->count + problems->lost != before)
+        return false;
+    if (!path)
+        return axis_complain(a, "path is missing");
+    if (!add_path(a, path))
+        return false;
+    struct scenario_varied *const varied = last_varied(a);
+    const struct scenario_field *const field = a->swept[a->axis->paths - 1].field;
+    bool good = read_number(a, "from", &from);
+    good = read_number(a, "to", &to) && good;
+    good = read_number(a, "unit", &unit) && good;
+    good = axis_read_spacing(a, "optimise.vary[].spacing", &log) && good;
+    if (!good)
+        return false;
+    varied->bounded = !isnan(from) || !isnan(to);
+    if (varied->bounded && (isnan(from) || isnan(to)))
+        return axis_complain(a, isnan(from) ? "from is missing" : "to is missing");
+    if (!varied->bounded && isnan(unit) && field->columns == 0)
+        return axis_complain(a, "give from and to, or a unit");
+    if (varied->bounded) {
+        if (!(from < to))
+            return axis_complain(a, "from must be less than to");
+        if (log && from <= 0)
+            return axis_complain(a, "spacing log needs from above 0");
+        if (!field_admits(problems, field, a->axis->path[a->axis->paths - 1], "from", path->mark,
+                          from) ||
+            !field_admits(problems, field, a->axis->path[a->axis->paths - 1], "to", path->mark, to))
+            return false;
+        varied->low = from;
+        varied->high = to;
+        if (isnan(unit))
+            unit = log ? log1p(to / from - 1) : to - from;
+    }
+    varied->scale = log ? SCALE_RATIO : SCALE_EVEN;
+    varied->unit = unit;
+    return true;
+}
+
+static bool read_vary(struct reader *r)
+{
+    struct scenario_search *const search = &r->s->search;
+    const struct tree_node *const vary = reader_seen(r, "optimise.vary")->node;
+    const bool list = vary && vary->kind == TREE_LIST;
+    bool good = true;
+
+    if (!vary)
+        return problem_add(&r->problems, reader_seen(r, "optimise")->key,
+                           "optimise.vary is missing");
+    if (list && !field_list(&r->problems, "optimise.vary", "words and mappings", vary))
+        return false;
+    for (size_t i = 0; i < (list ? vary->count : 1); i++) {
+        struct axis_reader a = {.r = r,
+                                .axis = &search->axis,
+                                .swept = r->sought,
+                                .node = list ? vary->item[i] : vary,
+                                .number = r->s->axes - 1};
+        snprintf(a.name, sizeof a.name, list ? "optimise.vary[%zu]" : "optimise.vary", i);
+        good = (a.node->kind == TREE_MAP ? read_entry(&a) : read_word(&a)) && good;
+    }
+    search->axis.count = 1;
+    return good;
+}
+
+/* ---- how the search goes ----------------------------------------------------------------------
+ */
+
+static bool read_grow(struct reader *r)
+{
+    struct scenario_search *const search = &r->s->search;
+    const struct tree_node *const grow = reader_seen(r, "optimise.grow")->node;
+    const uint64_t count = r->s->sample.design.count;
+    bool good = true;
+    if (!grow) {
+        const uint64_t usual[] = {(count + 3) / 4, count, 4 * count};
+        search->stages = 3;
+        memcpy(search->grow, usual, sizeof usual);
+        return true;
+    }
+    if (!field_list(&r->problems, "optimise.grow", "a list of numbers of starts", grow))
+        return false;
+    if (grow->count > SCENARIO_MAX_STAGES)
+        return problem_add(&r->problems, grow->mark, "optimise.grow: more than %d stages",
+                           SCENARIO_MAX_STAGES);
+    for (size_t i = 0; i < grow->count; i++) {
+        char name[32];
+        double number = 0;
+        snprintf(name, sizeof name, "optimise.grow[%zu]", i);
+        good = field_integer(&r->problems, schema_find(&r->schema, "optimise.grow[]"), name,
+                             grow->item[i], &number) &&
+               good;
+        search->grow[i] = (uint64_t)number;
+        if (good && i > 0 && search->grow[i] <= search->grow[i - 1])
+            good = problem_add(&r->problems, grow->item[i]->mark,
+                               "%s: %.0f is not more than the stage before has", name, number);
+    }
+    search->stages = (int)grow->count;
+    return good;
+}
+
+static void read_prices(struct reader *r)
+{
+    for (int i = 0; i < STANCE_ANSWER_COUNT; i++) {
+        char path[96];
+        snprintf(path, sizeof path, "optimise.price.%s", stance_answers[i].name);
+        if (schema_find(&r->schema, path))
+            reader_value(r, path, &r->s->search.price[i]);
+    }
+    reader_value(r, "optimise.price.gain", &r->s->search.gain_price);
+}
+
+void search_read(struct reader *r)
+{
+    struct scenario_search *const search = &r->s->search;
+    const struct seen *const seen = reader_seen(r, "optimise");
+    double aim = 0, weight = 0, over = 0, candidates = 0, confirm = NAN, restarts = 0;
+
+    if (!seen->node || seen->bad || !r->s->scene)
+        return;
+    search->given = true;
+    bool good = read_vary(r);
+    good = reader_value(r, "optimise.maximise", &aim) && good;
+    good = reader_value(r, "optimise.weight", &weight) && good;
+    good = reader_value(r, "optimise.over", &over) && good;
+    good = reader_value(r, "optimise.require.critical_sample_time", &search->critical) && good;
+    good = reader_value(r, "optimise.candidates", &candidates) && good;
+    good = reader_value(r, "optimise.confirm", &confirm) && good;
+    good = reader_value(r, "optimise.restarts", &restarts) && good;
+    good = reader_value(r, "optimise.first_step", &search->step) && good;
+    read_prices(r);
+    if (!r->s->sample.given || r->axes_bad) {
+        if (!r->axes_bad)
+            problem_add(&r->problems, seen->key,
+                        "optimise needs sweep.sample: starts that all candidates get");
+        return;
+    }
+    good = read_grow(r) && good;
+    if (!good)
+        return;
+    search->aim = aim < AIM_ANSWER ? (enum scenario_aim)aim : AIM_ANSWER;
+    search->answer = (int)aim - AIM_ANSWER;
+    search->normal = weight != 0;
+    search->worst = over == 0;
+    search->candidates = (uint64_t)candidates;
+    search->confirm = isnan(confirm) ? 8 * search->grow[search->stages - 1] : (uint64_t)confirm;
+    search->restarts = (int)restarts;
+}
+
+/* ---- what that asks of the rest ---------------------------------------------------------------
+ */
+
+static struct mark key_or(struct reader *r, const char *path)
+{
+    const struct seen *const seen = reader_seen(r, path);
+    return seen->node ? seen->key : reader_seen(r, "optimise")->key;
+}
+
+/* The starts: drawn so that more of them can be had, each by itself. */
+static void check_starts(struct reader *r)
+{
+    const struct scenario *const s = r->s;
+    const struct scenario_axis *const sample = &s->axis[s->axes - 1];
+    const enum doe_method method = s->sample.design.method;
+    bool starts = false;
+    for (int k = 0; k < sample->paths; k++)
+        starts = starts || scenario_is_start(sample->path[k]);
+    if (!starts)
+        problem_add(&r->problems, reader_seen(r, "sweep.sample")->key,
+                    "sweep.sample: optimise needs starts in it: initial.offset or initial.state");
+    if (method != DOE_RANDOM && method != DOE_SOBOL && method != DOE_SPHERE)
+        problem_add(&r->problems, key_or(r, "sweep.sample.method"),
+                    "sweep.sample.method %s has no meaning with optimise, whose starts grow in "
+                    "number: sobol, random or sphere",
+                    doe_words[method]);
+    if (s->search.aim == AIM_NEAREST) {
+        int k;
+        const struct scenario_axis *const scale =
+            scenario_axis_of(s, offsetof(struct scenario_values, offset_scale), &k);
+        if (method != DOE_SPHERE || !scale || scale->paths != 1 || scale->sample)
+            problem_add(&r->problems, key_or(r, "optimise.maximise"),
+                        "optimise.maximise nearest needs sweep.sample.method sphere and "
+                        "initial.offset.scale alone on an axis of sweep.grid");
+    }
+    if (8 * s->search.grow[s->search.stages - 1] > UINT64_C(1) << 26)
+        problem_add(&r->problems, key_or(r, "optimise.grow"),
+                    "optimise.grow: more starts than can be kept");
+}
+
+static void check_circumstances(struct reader *r)
+{
+    const struct scenario *const s = r->s;
+    const size_t circumstances = (size_t)(s->cases / s->axis[s->axes - 1].count);
+    for (int a = 0; a + 1 < s->axes; a++)
+        for (int k = 0; k < s->axis[a].paths; k++)
+            if (scenario_is_start(s->axis[a].path[k]))
+                problem_add(&r->problems, r->swept[a][k].mark,
+                            "sweep.grid[%d]: %s is a start: with optimise starts come from "
+                            "sweep.sample, the grid has circumstances",
+                            a, s->axis[a].path[k]);
+    int k;
+    const struct scenario_axis *const methods =
+        scenario_axis_of(s, offsetof(struct scenario_values, method), &k);
+    if (methods)
+        problem_add(&r->problems, (struct mark){0, methods->line, methods->column},
+                    "%s: optimise needs one method for all candidates", methods->path[k]);
+    if (circumstances > MOST_CIRCUMSTANCES && s->search.aim != AIM_NEAREST)
+        problem_add(&r->problems, reader_seen(r, "sweep.grid")->key,
+                    "sweep.grid: %zu circumstances are more than the %d that optimise compares",
+                    circumstances, MOST_CIRCUMSTANCES);
+    if (circumstances == 1 && reader_seen(r, "optimise.over")->node)
+        problem_add(&r->problems, key_or(r, "optimise.over"),
+                    "optimise.over needs circumstances, sweep.grid with more than one point");
+}
+
+/* What the first candidate is must be known, and lie within the bounds. */
+static void check_first(struct reader *r)
+{
+    const struct scenario *const s = r->s;
+    for (int k = 0; k < s->search.axis.paths; k++) {
+        const struct scenario_varied *const v = &s->search.varied[k];
+        double value;
+        memcpy(&value, (const char *)&s->base + s->search.axis.offset[k], sizeof value);
+        if (!isfinite(value))
+            problem_add(&r->problems, r->sought[k].mark,
+                        "optimise.vary: %s has no value to begin with: give it one",
+                        s->search.axis.path[k]);
+        else if (value < v->low || value > v->high)
+            problem_add(&r->problems, r->sought[k].mark,
+                        "optimise.vary: %s is %g in the first candidate, out of its range "
+                        "%g ... %g",
+                        s->search.axis.path[k], value, v->low, v->high);
+        else if ((v->scale == SCALE_RATIO && value <= 0) ||
+                 (v->scale == SCALE_NEGATIVE_RATIO && value >= 0))
+            problem_add(&r->problems, r->sought[k].mark,
+                        "optimise.vary: %s is %g in the first candidate, of which there are no "
+                        "ratios",
+                        s->search.axis.path[k], value);
+    }
+}
+
+/* The word among those that are varied, or the gains one by one. */
+static bool varies_gains(const struct scenario *s)
+{
+    bool any = s->search.designed_gains;
+    for (int k = 0; k < s->search.axis.paths; k++)
+        any = any || (strncmp(s->search.axis.path[k], "controller.gains[", 17) == 0 &&
+                      isnan(s->search.varied[k].unit));
+    return any;
+}
+
+static void check_gains(struct reader *r)
+{
+    const struct scenario *const s = r->s;
+    double limit[STANCE_MAX_ACTUATORS];
+    if (!varies_gains(s))
+        return;
+    if (!scenario_law(&s->base)->designed) {
+        problem_add(&r->problems, key_or(r, "optimise.vary"),
+                    "optimise.vary: gains are those of a law that is designed (here: %s)",
+                    scenario_law(&s->base)->name);
+        return;
+    }
+    if (scenario_far(&s->base) != stance_laws()[0] && s->search.designed_gains)
+        problem_add(&r->problems, key_or(r, "controller.far"),
+                    "controller.far has no meaning with optimise.vary gains: what acts far away "
+                    "would stay as it is");
+    stance_torque_limits(s->scene, s->base.robot, s->base.torque_limit, s->base.torque_limits,
+                         limit);
+    for (int i = 0; i < s->scene->actuators; i++)
+        if (!isfinite(limit[i])) {
+            problem_add(&r->problems, key_or(r, "optimise.vary"),
+                        "optimise.vary: gains have no unit without controller.torque_limit: give "
+                        "one, or each gain by {path, from, to}");
+            return;
+        }
+}
+
+void search_check(struct reader *r)
+{
+    const struct scenario *const s = r->s;
+    const struct scenario_search *const search = &s->search;
+    static const char *const alone[] = {"sweep.refine", "record.cases", "record.every"};
+
+    if (!search->given || r->axes_bad || search->stages == 0 || r->problems.count > 0)
+        return;
+    for (size_t k = 0; k < sizeof alone / sizeof *alone; k++)
+        if (reader_seen(r, alone[k])->node)
+            problem_add(&r->problems, reader_seen(r, alone[k])->key,
+                        "%s has no meaning with optimise", alone[k]);
+    if (s->base.capture)
+        problem_add(&r->problems, key_or(r, "stop.capture"),
+                    "stop.capture has no meaning with optimise: it would take longer than the "
+                    "candidates");
+    if (!s->base.settle)
+        problem_add(&r->problems, key_or(r, "stop.settle"),
+                    "stop.settle off has no meaning with optimise: stabilised starts are to end");
+    if (search->aim == AIM_ANSWER && search->answer < STANCE_ANSWER_end_time)
+        problem_add(&r->problems, key_or(r, "optimise.maximise"),
+                    "optimise.maximise: %s is no number", stance_answers[search->answer].name);
+    if (search->critical > 0 && s->base.sample_time == 0)
+        problem_add(&r->problems, key_or(r, "optimise.require.critical_sample_time"),
+                    "optimise.require.critical_sample_time needs controller.sample_time above 0");
+    check_starts(r);
+    check_circumstances(r);
+    check_first(r);
+    r->s->search.axis.design = true; /* whatever it moves */
+    check_gains(r);
+}

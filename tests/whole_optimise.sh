@@ -1,0 +1,131 @@
+#!/usr/bin/env bash
+# stance optimise: a search is a function of its scenario, whatever the ranks, stops and kills; what
+# its file tells follows from what it holds, and from simulations by stance run. Speaks TAP.
+set -u
+. "$(dirname "$0")/scratch.sh"
+kills=3
+[ -n "${STANCE_TEST_LONG:-}" ] && kills=30
+
+sampled() { # starts' method, further lines of sweep
+    cat <<END
+stop: {time: 5}
+sweep:
+$2
+  sample:
+    method: $1
+    count: 64
+    vary:
+      - {path: initial.offset.theta, from: -0.1, to: 0.1}
+      - {path: initial.offset.q1, from: -0.2, to: 0.2}
+      - {path: initial.offset.vtheta, from: -0.5, to: 0.5}
+END
+}
+{
+    balance 0.002 0.1
+    sampled sobol ''
+    echo 'optimise: {vary: gains, candidates: 77, grow: [48, 96], confirm: 512}'
+    echo 'seed: 7'
+} >box.yaml
+
+search() { # name, code, arguments
+    local name=$1 code=$2
+    shift 2
+    expect "$name" "$code" "$stance" optimise "$@"
+}
+search "a search" 0 box.yaml -o one.h5
+says "... tells what came out" '^one.h5: 77 candidates in 7 generations, .* of 512 fresh starts, the first'
+expect "... and leaves an ordinary scenario" 0 "$stance" check one-best.yaml
+for n in 2 3; do
+    expect "the same on $n ranks" 0 mpirun -n $n "$stance" optimise box.yaml -o "ranks$n.h5" --quiet
+    "$python" "$tests/search.py" same one.h5 "ranks$n.h5" >log 2>&1
+    result $? "... to the bit"
+done
+"$python" "$tests/search.py" consistent one.h5 >log 2>&1
+result $? "counts, objectives, the best and the chosen follow from each other"
+"$python" "$tests/search.py" reads one.h5 >log 2>&1
+result $? "xarray reads the file"
+
+# What was counted is what stance run counts.
+seed=$((7 + 1))
+expect "stance run computes the best from the fresh starts" 0 "$stance" run one-best.yaml -o best.h5 \
+    --set seed=$seed --set sweep.sample.count=512
+expect "... and the first" 0 "$stance" run box.yaml -o first.h5 --set seed=$seed \
+    --set sweep.sample.count=512
+"$python" "$tests/search.py" confirmed one.h5 best.h5 first.h5 >log 2>&1
+result $? "... each start ends as the search found"
+
+# Stops and kills.
+search "a time limit stops it" 4 box.yaml -o stopped.h5 --time-limit 0.3s
+says "... with the command that goes on" 'go on with:.* optimise box.yaml -o stopped.h5 --time-limit 0.3s --resume$'
+search "... which does" 0 box.yaml -o stopped.h5 --resume
+"$python" "$tests/search.py" same one.h5 stopped.h5 >log 2>&1
+result $? "... to the same end, to the bit"
+same=0
+for ((k = 0; k < kills; k++)); do
+    rm -f killed.h5
+    for ((try = 0; try < 40; try++)); do
+        mpirun -n $((1 + k % 2)) "$stance" optimise box.yaml -o killed.h5 --resume --quiet >/dev/null 2>&1 </dev/null &
+        job=$!
+        sleep "$(awk -v r=$RANDOM -v t=$try 'BEGIN { print 0.3 + 1.5 * r / 32768 + 0.2 * t }')"
+        pkill -9 -f 'optimise box.yaml -o killed.h5' 2>/dev/null || true
+        { wait $job; } 2>/dev/null && break
+    done
+    "$python" "$tests/search.py" same one.h5 killed.h5 >log 2>&1 && same=$((same + 1))
+done
+((same == kills))
+result $? "killed $kills times over, to the same end, to the bit"
+
+# Circumstances, and loops that are unstable in one of them.
+{
+    balance 0.002 0.1
+    sampled sobol '  grid:
+    - {path: ground.friction, values: [0.8, 0.2]}
+    - {paths: [controller.sample_time, controller.delay], values: [[0.002, 0], [0.1, 1]]}'
+    echo 'optimise: {vary: gains, candidates: 22, grow: [32], confirm: 64, over: worst, weight: normal,'
+    echo '  require: {critical_sample_time: 0.01}, price: {peak_torque: 0.02, gain: 0.01}}'
+} >worst.yaml
+search "the worst of several circumstances" 0 worst.yaml -o worst.h5
+"$python" "$tests/search.py" refused worst.h5 >log 2>&1
+result $? "loops that are unstable, or too slow, recover nothing"
+search "their mean" 0 worst.yaml -o mean.h5 --set optimise.over=mean
+"$python" "$tests/search.py" mean worst.h5 mean.h5 >log 2>&1
+result $? "... is another objective"
+sed 's/sobol/sphere/; s/  sample:/  grid:\n    - {path: initial.offset.scale, from: 0.1, to: 1, count: 10}\n&/; s/vary: gains/&, maximise: nearest/' \
+    box.yaml >nearest.yaml
+search "the nearest fall" 0 nearest.yaml -o nearest.h5 --set optimise.candidates=33 --set optimise.grow=[16,32] \
+    --set optimise.confirm=64
+"$python" "$tests/search.py" nearest nearest.h5 >log 2>&1
+result $? "... is where the first direction falls"
+search "posture, sample time and gains together" 0 box.yaml -o posture.h5 --set optimise.candidates=24 \
+    --set optimise.grow=[32] --set optimise.confirm=64 \
+    --set 'optimise.vary=[gains, {path: initial.equilibrium.theta, from: -0.6, to: 0.6}, {path: controller.sample_time, from: 0.001, to: 0.01, spacing: log}]'
+"$python" "$tests/search.py" bounds posture.h5 >log 2>&1
+result $? "... within their bounds"
+search "poles instead of gains" 0 box.yaml -o poles.h5 --set optimise.vary=poles \
+    --set optimise.candidates=24 --set optimise.grow=[32] --set optimise.confirm=64
+
+# Bad days.
+search "a file that exists is left alone" 3 box.yaml -o one.h5
+says "... says how to go on" '^stance optimise: one.h5 exists; --force replaces it, --resume goes on with it$'
+search "another scenario does not go on with it" 2 worst.yaml -o one.h5 --resume
+says "... says so" 'one.h5 is a search of another scenario'
+search "nor does a file of stance run" 3 box.yaml -o best.h5 --resume
+says "... says so" 'best.h5: not the file of a search'
+head -c 3000 one.h5 >cut.h5
+search "a file that is cut" 3 box.yaml -o cut.h5 --resume
+[ "$(wc -l <log)" = 1 ]
+result $? "... is told in one line"
+"$python" "$tests/search.py" spoil one.h5 spoilt.h5
+search "a file with another number in it" 3 box.yaml -o spoilt.h5 --resume
+says "... is known by its checksum" 'spoilt.h5: damaged'
+search "a scenario without the section" 2 one-best.yaml -o none.h5
+says "... is told so" '^one-best.yaml:[0-9]*:1: no section optimise'
+search "fewer candidates than a generation" 2 box.yaml -o none.h5 --set optimise.candidates=5
+says "... are refused" 'optimise.candidates: 5 are less than one generation, 11'
+search "poles that cannot be" 2 box.yaml -o none.h5 --set controller.poles='[-3,-3,-3,-4,-5,-6]'
+[ "$(wc -l <log)" = 1 ] && [ ! -e none.h5 ]
+result $? "... are told in one line"
+search "a folder that is not there" 3 box.yaml -o nowhere/none.h5
+[ "$(wc -l <log)" = 1 ]
+result $? "... is told in one line"
+echo "1..$count"
