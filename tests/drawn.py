@@ -215,8 +215,8 @@ class Picture:
         entries = {}
         for fill, points in self.page.areas:
             xs, ys = [p[0] for p in points], [p[1] for p in points]
-            if len(points) == 4 and abs(max(xs) - min(xs) - 14) < 0.1:
-                near = [t for x, y, t, _ in self.texts if x is not None and abs(x - min(xs) - 22) < 1 and
+            if len(points) == 4 and abs(max(ys) - min(ys) - 14) < 0.1:
+                near = [t for x, y, t, _ in self.texts if x is not None and abs(x - max(xs) - 8) < 1 and
                         abs(y - 4.3 - (min(ys) + max(ys)) / 2) < 3]
                 entries[near[0] if near else None] = fill
         return entries

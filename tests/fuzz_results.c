@@ -420,7 +420,8 @@ static void try_file(size_t which)
     char first[1000];
     char *arguments[] = {"", path, good_path[which], NULL};
     char *plot[] = {"plot", path, "-o", directory, NULL};
-    char *outline[] = {"plot", path, path, "--outline", "-o", directory, NULL};
+    char *outline[] = {"plot", path, path, "--outline", "--allowed", "-o", directory, NULL};
+    char *allowed[] = {"basin", path, "--allowed", NULL};
     char *json[] = {"", path, "--json", NULL};
     const uint64_t turn = shared->next / goods % 4;
     uint64_t pending;
@@ -432,11 +433,12 @@ static void try_file(size_t which)
         run_command(STAGE_STATUS, &command_status, 2, arguments);
     if (code != EXIT_IO && turn == 3) {
         run_command(STAGE_PLOT, &command_plot, 4, plot);
-        run_command(STAGE_PLOT, &command_plot, 6, outline);
+        run_command(STAGE_PLOT, &command_plot, 7, outline);
         run_command(STAGE_COMPARE, &command_compare, 3, arguments);
     }
     if (code != EXIT_IO && turn == 2) {
         run_command(STAGE_BASIN, &command_basin, 2, arguments);
+        run_command(STAGE_BASIN, &command_basin, 3, allowed);
         run_command(STAGE_SENSITIVITY, &command_sensitivity, 2, arguments);
     }
     shared->stage = STAGE_NUMBERS;

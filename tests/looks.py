@@ -211,6 +211,45 @@ def outlines():
         assert not printed and len(said) == 1, (arguments, said)
 
 
+def allowed():
+    """What linear theory allows has a line and a name of its own; where there is none, a line says why."""
+    for size, width in ("page", 180), ("column", 88):
+        for picture in ["--picture", "map"], ["--picture", "settle_time"], ["--outline"], ["--answer", "friction_used", "--of", "fell"]:
+            printed, said = call("plot", "map.h5", "--allowed", *picture, "--for", size, "-o", "allowed.pdf")
+            assert printed == ["allowed.pdf"] and not said, said
+            words = " ".join(is_whole("allowed.pdf", width))
+            assert "linear theory allows " in words and "while the contacts stand" in words, words
+    call("plot", "map.h5", "--allowed", "--picture", "map", "--labels", "linear theory allows=bound", "--colours",
+         "linear theory allows=#ff0080", "-o", "red.svg")
+    p = Picture("red.svg")
+    bound = [(dashed, len(line)) for panel in [p.page, *p.panels] for c, dashed, line in panel.lines if c == "ff0080"]
+    assert any(t.startswith("bound  ") for t in p.said()) and len(bound) >= 3 and all(dashed for dashed, _ in bound), (p.said(), bound)
+    none = "no outline of what linear theory allows"
+    few = ["sweep.grid[0].values=[0.1]", "sweep.grid[1].count=5", "sweep.grid[2].count=5", "stop.time=0.1", "record.cases=none"]
+    for name, setting, why in (
+            ("limitless", ["controller.torque_limit=none"], f"{none}: a torque has no limit"),
+            ("weak", ["sweep.grid[0]={path: controller.torque_limit, values: [5, 10]}"],
+             f"{none} in 1 of 2 panels: the equilibrium takes more torque than there is"),
+            ("uneven", ["sweep.grid[2]={path: initial.offset.vtheta, values: [0, 0.1, 0.3]}"],
+             f"{none}: the values of initial.offset.vtheta are not even"),
+            ("floors", ["sweep.grid[0]={path: initial.offset.vtheta, values: [0]}", "sweep.grid[2]={path: ground.friction, values: [0.1, 0.2]}"],
+             f"{none}: ground.friction is no coordinate of a start"),
+            ("curved", ["sweep.grid[2]={paths: [initial.offset.vtheta, initial.offset.q1], values: [[0, 0], [0.1, 0.1], [0.2, 0]]}"],
+             f"{none}: the starts of the map are no plane"),
+            ("near", ["sweep.grid[1].from=-0.01", "sweep.grid[1].to=0.01", "sweep.grid[2].from=-0.01", "sweep.grid[2].to=0.01"],
+             f"{none}: all of these starts are allowed"),
+            ("far", ["sweep.grid[1].from=0.9", "sweep.grid[1].to=1"], f"{none}: none of these starts is allowed")):
+        run(name, "friction_sweep.yaml", *few, *setting)
+        printed, said = call("plot", f"{name}.h5", "--allowed", "--picture", "map", "-o", f"{name}.svg")
+        said = [line for line in said if "settle_time" not in line]
+        assert printed == [f"{name}.svg"] and said == [f"{name}.h5: {why}"], said
+    assert any("linear theory allows  100.0 %" == t for t in Picture("near.svg").said())
+    for arguments in ["bounce.h5"], ["sampled.h5"], ["map.h5", "--case", "1"], ["--model", f"{SCENARIOS}/drop.yaml"]:
+        printed, said = call("plot", *arguments, "--allowed", "-o", "refused", code=2)
+        assert not printed and len(said) == 1 and "--allowed" in said[0], (arguments, said)
+    assert not os.path.exists("refused")
+
+
 def many_values():
     """Axes of several coordinates, many values: every line is its own, every text whole, every axis has a scale."""
     run("carts", "mechanisms/cart_pole.yaml", "record.cases=none", "stop.time=1", "controller.sample_time=0.01", "sweep.grid=["
@@ -419,5 +458,5 @@ def progress():
         assert heard.stderr.read().decode().startswith("gnuplot failed")
 
 
-tap([one_file, sizes, names, refusals, letters, every_kind, outlines, many_values, replay, two_cases, other_commands,
+tap([one_file, sizes, names, refusals, letters, every_kind, outlines, allowed, many_values, replay, two_cases, other_commands,
      under_mpirun, progress])

@@ -17,6 +17,7 @@ import sys
 import h5py
 import numpy as np
 
+import null_set
 from drawn import Picture
 from tap import tap
 
@@ -185,6 +186,66 @@ def greys():
     """Outcomes are told apart without colours."""
     bright = sorted(sum(w * int(c[i:i + 2], 16) for w, i in ((0.299, 0), (0.587, 2), (0.114, 4))) for c in COLOURS.values())
     assert min(np.diff(bright)) > 30, bright
+
+
+def dashes(picture, panel, hue="000000"):
+    """Points of the dashed lines of a colour in a panel's frame; a map's stand before it."""
+    found = [(x, y) for p in [picture.page, *picture.panels] for c, dashed, line in p.lines if c == hue and dashed
+             for x, y in line if panel.left - 1 < x < panel.right + 1 and panel.top - 1 < y < panel.bottom + 1]
+    return np.array(found).reshape(-1, 2)
+
+
+def allowed():
+    """The line of what linear theory allows is where the gauge is 1, in each panel by its own limits and starts."""
+    settings = ["record.cases=none", "stop.time=0.01", "stop.settle=off"]
+    for name, first, others, grid in (
+            ("limits", "{path: controller.torque_limit, values: [8, 14]}, ", {},
+             [({"theta": 1}, -0.2, 0.12, 17), ({"vtheta": 1}, -0.8, 0.5, 15)]),
+            ("oblique", "", {"theta": 0.05}, [({"q1": 1, "q2": -2}, -0.3, 0.4, 15), ({"vtheta": 1, "vq1": -0.5}, -2, 1.5, 14)])):
+        axes = ["{paths: [%s], from: [%s], to: [%s], count: %d}" % (", ".join(f"initial.offset.{n}" for n in along),
+                                                                    ", ".join(str(low * f) for f in along.values()),
+                                                                    ", ".join(str(high * f) for f in along.values()), count)
+                for along, low, high, count in grid]
+        data = run(name, "basin_one_foot.yaml", f"sweep.grid=[{first}{', '.join(axes)}]", *settings,
+                   *[f"initial.offset.{n}={v}" for n, v in others.items()])
+        stance("plot", f"{name}.h5", "--allowed", "--picture", "map")
+        stance("plot", f"{name}.h5", "--allowed", "--outline", "--of", "rested", "--format", "svg")
+        p, outline = Picture(f"{name}-map.svg"), Picture(f"{name}-outline.svg")
+        limits = [8, 14] if first else [10]
+        shares = {round(100 * r["allowed"], 1) for r in json.loads(stance("basin", f"{name}.h5", "--allowed", "--json"))["rows"]}
+        share = f"  {shares.pop()} %" if len(limits) == 1 else ""
+        for picture in p, outline:
+            says(picture, f"linear theory allows{share}")
+            assert "linear theory allows: some controller recovers, while the contacts stand" in " ".join(picture.said())
+        for k, limit in enumerate(limits):
+            design = json.loads(stance("design", f"{SCENARIOS}/basin_one_foot.yaml", "--set", f"controller.torque_limit={limit}", "--json"))
+
+            def states(u, v):
+                x = np.zeros((len(u), 6)) + [others.get(n, 0) for n in design["states"]]
+                for (along, *_), value in zip(grid, (u, v)):
+                    for n, factor in along.items():
+                        x[:, design["states"].index(n)] += factor * value
+                return x
+            for panel, marks in ((p.panels[k], dashes(p, p.panels[k])),
+                                 (outline.panels[0], dashes(outline, outline.panels[0]) if len(limits) == 1 else None)):
+                if marks is None:
+                    lines = [np.array(line) for c, dashed, line in outline.panels[0].lines if c == HUES[k] and len(line) > 5]
+                    marks = np.vstack(lines)
+                at = panel.x(marks[:, 0]), panel.y(marks[:, 1])
+                off = np.abs(null_set.gauge(design, limit, states(*at)) - 1)
+                assert len(off) > 10 and off.max() < 1e-3, (name, limit, len(off), off.max())
+            # and it is all of the line: gauges are on the same side of 1 on the panel's edges but where it meets them
+            low, high = zip(*(p.panels[k].range(axis) for axis in (0, 1)))
+            marks = dashes(p, p.panels[k])
+            ends = np.stack([p.panels[k].x(marks[:, 0]), p.panels[k].y(marks[:, 1])], 1)
+            for axis in 0, 1:
+                for edge in low[axis], high[axis]:
+                    u = np.linspace(low[1 - axis], high[1 - axis], 400)
+                    inside = null_set.gauge(design, limit, states(*((np.full(400, edge), u) if axis == 0 else (u, np.full(400, edge))))) < 1
+                    for place in u[1:][inside[1:] != inside[:-1]]:
+                        size = (np.array(high) - low)
+                        there = (edge, place) if axis == 0 else (place, edge)
+                        assert (np.abs((ends - there) / size).max(1) < 0.01).any(), (name, limit, there)
 
 
 def answers():
@@ -573,5 +634,5 @@ def speeds():
     assert [t for _, t in panel.words(0)] == ["256²", "512²", "1024²"]
 
 
-tap([maps, tables, axes, greys, answers, curve_of_shares, lines, tics, samples, rays, case, strip, mechanisms, sensitivities, morris, accuracy, failures,
+tap([maps, tables, axes, greys, allowed, answers, curve_of_shares, lines, tics, samples, rays, case, strip, mechanisms, sensitivities, morris, accuracy, failures,
      speeds])

@@ -26,12 +26,13 @@ runner/optimise: engine engine/control runner/base runner/ranks runner/objects r
 analysis/statistics: $runner
 analysis/table: $runner analysis/statistics
 analysis/draw: $numbers
-analysis/summary: $numbers analysis/draw
+analysis/optimise: $numbers analysis/draw
+analysis/summary: $numbers analysis/draw analysis/optimise
 analysis/basin: $numbers analysis/draw
-analysis/sensitivity: $numbers analysis/draw analysis/summary
+analysis/sensitivity: $numbers analysis/draw analysis/optimise analysis/summary
 analysis/compare: $numbers analysis/draw
-analysis/plot: $numbers analysis/draw analysis/summary analysis/basin analysis/sensitivity
-analysis/bench: $numbers analysis/draw analysis/summary analysis/basin analysis/sensitivity analysis/plot
+analysis/plot: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity
+analysis/bench: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot
 runner: $runner"
 git ls-files -co --exclude-standard 'engine/*.[ch]' 'runner/*.[ch]' 'analysis/*.[ch]' |
     xargs -r grep -HE '^[[:space:]]*#[[:space:]]*include' /dev/null |

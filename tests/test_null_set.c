@@ -2,29 +2,18 @@
  * forms, against all directions, and against torques that steer a point just inside home. */
 #include "linear.h"
 
-#include "engine/control/design.h"
+#include "runner/plan/design.h"
 
-enum { K = STANCE_NULL_MODES };
+enum { K = 10, INPUTS = 4 }; /* states and torques at most */
 
-/* x' = A x + B u with the given eigenvalues (of pairs one) in a random basis, and random B. */
-static void random_plant(uint64_t *seed, int n, int m, const double *re, const double *im,
-                         double *A, double *B)
+/* By Gauss and Jordan, with pivots. */
+static void invert(int n, const double *T, double *inverse)
 {
-    double D[K * K] = {0}, T[K * K], inverse[K * K], product[K * K];
-    for (int i = 0; i < n; i++) {
-        D[i * n + i] = re[i];
-        if (im[i] > 0) {
-            D[i * n + i + 1] = -im[i], D[(i + 1) * n + i] = im[i], D[(i + 1) * n + i + 1] = re[i];
-            i++;
-        }
-    }
-    for (int i = 0; i < n * n; i++)
-        T[i] = uniform(seed, -1, 1) + (i % (n + 1) == 0 ? 2 : 0);
     double work[K * 2 * K];
     for (int i = 0; i < n; i++)
         for (int j = 0; j < 2 * n; j++)
             work[i * 2 * n + j] = j < n ? T[i * n + j] : (j - n == i);
-    for (int c = 0; c < n; c++) { /* Gauss and Jordan, with pivots */
+    for (int c = 0; c < n; c++) {
         int row = c;
         for (int i = c; i < n; i++)
             row = fabs(work[i * 2 * n + c]) > fabs(work[row * 2 * n + c]) ? i : row;
@@ -44,6 +33,23 @@ static void random_plant(uint64_t *seed, int n, int m, const double *re, const d
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++)
             inverse[i * n + j] = work[i * 2 * n + n + j];
+}
+
+/* x' = A x + B u with the given eigenvalues (of pairs one) in a random basis, and random B. */
+static void random_plant(uint64_t *seed, int n, int m, const double *re, const double *im,
+                         double *A, double *B)
+{
+    double D[K * K] = {0}, T[K * K], inverse[K * K], product[K * K];
+    for (int i = 0; i < n; i++) {
+        D[i * n + i] = re[i];
+        if (im[i] > 0) {
+            D[i * n + i + 1] = -im[i], D[(i + 1) * n + i] = im[i], D[(i + 1) * n + i + 1] = re[i];
+            i++;
+        }
+    }
+    for (int i = 0; i < n * n; i++)
+        T[i] = uniform(seed, -1, 1) + (i % (n + 1) == 0 ? 2 : 0);
+    invert(n, T, inverse);
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++) {
             product[i * n + j] = 0;
@@ -107,7 +113,8 @@ static void two_modes(void **state)
 
 struct plant {
     int n, m, k;
-    double A[K * K], B[K * 3], low[3], high[3];
+    double A[K * K], B[K * INPUTS], low[INPUTS], high[INPUTS];
+    double unstable[K * K]; /* projector on the modes that are, of rows from the right */
 };
 
 /* exp(-A t) by Taylor and squaring, times B. */
@@ -176,7 +183,7 @@ static double quadrature(const struct plant *p, const double *eta, double slowes
 {
     enum { PARTS = 20000 };
     const double h = 36 / slowest / PARTS;
-    double row[K], E[K * K], s[3][3], sum = 0;
+    double row[K], E[K * K], s[INPUTS][3], sum = 0;
     for (int c = 0; c < p->n; c++) { /* columns of exp(-A h / 2) */
         struct plant one = *p;
         double column[K];
@@ -187,6 +194,8 @@ static double quadrature(const struct plant *p, const double *eta, double slowes
         for (int i = 0; i < p->n; i++)
             E[i * p->n + c] = column[i];
     }
+    for (int i = 0; i < p->n; i++) /* rounding must not grow along the others */
+        march(p->n, p->unstable, E + i * p->n);
     memcpy(row, eta, sizeof(double) * (size_t)p->n);
     for (int t = 0; t < PARTS; t++) {
         for (int part = 0; part < 3; part++) {
@@ -204,14 +213,63 @@ static double quadrature(const struct plant *p, const double *eta, double slowes
     return sum;
 }
 
-/* Of 1 to 5 modes, pairs among them: along x, the largest eta' x / h(eta) over directions near the
- * one that the set itself gives is its gauge, h by quadrature. */
+/* How far off 1 the gauge is against quadrature at some points, and the integral in other
+ * directions above it. */
+struct errors {
+    int points;
+    double worst, above;
+};
+
+/* Along x, the largest eta' x / h(eta) over directions near the one that the set itself gives is
+ * its gauge, h by quadrature. */
+static void compare(uint64_t *seed, const struct plant *p, const stance_null_set *set,
+                    double slowest, int points, struct errors *e)
+{
+    for (int k = 0; k < points; k++) {
+        double x[K], eta[K], along = 0;
+        for (int i = 0; i < p->n; i++)
+            x[i] = uniform(seed, -1, 1);
+        const double gauge = stance_null_set_gauge(set, x);
+        if (gauge > 1e3) /* a torque hardly reaches some mode: no differences, then */
+            continue;
+        e->points++;
+        /* The normal at the boundary point x / gauge, by differences of the gauge. */
+        for (int i = 0; i < p->n; i++) {
+            double high[K], low[K];
+            memcpy(high, x, sizeof x), memcpy(low, x, sizeof x);
+            high[i] += 1e-5, low[i] -= 1e-5;
+            eta[i] = (stance_null_set_gauge(set, high) - stance_null_set_gauge(set, low)) / 2e-5;
+        }
+        march(p->n, p->unstable, eta);
+        for (int i = 0; i < p->n; i++)
+            along += eta[i] * x[i];
+        e->worst = fmax(e->worst, fabs(along / quadrature(p, eta, slowest) / gauge - 1));
+        /* No direction gives more. */
+        for (int d = 0; d < 2; d++) {
+            double other[K];
+            for (int i = 0; i < p->n; i++)
+                other[i] = eta[i] * (1 + uniform(seed, -0.3, 0.3));
+            march(p->n, p->unstable, other);
+            along = 0;
+            for (int i = 0; i < p->n; i++)
+                along += other[i] * x[i];
+            e->above = fmax(e->above, along / quadrature(p, other, slowest) / gauge - 1);
+        }
+        for (int i = 0; i < p->n; i++)
+            x[i] /= gauge * 1.000001;
+        assert_true(stance_null_set_holds(set, x));
+        for (int i = 0; i < p->n; i++)
+            x[i] *= 1.000002;
+        assert_false(stance_null_set_holds(set, x));
+    }
+}
+
+/* Of 1 to 5 modes, pairs among them. */
 static void support_is_the_integral(void **state)
 {
     (void)state;
     uint64_t seed = 3;
-    double worst = 0, above = 0;
-    int points = 0;
+    struct errors e = {0};
     for (int round = 0; round < 10; round++) {
         struct plant p = {.n = 1 + round % 5, .m = 1 + round % 3};
         double re[K] = {0}, im[K] = {0}, slowest = INFINITY;
@@ -225,52 +283,122 @@ static void support_is_the_integral(void **state)
             slowest = fmin(slowest, re[i]);
         }
         random_plant(&seed, p.n, p.m, re, im, p.A, p.B);
+        for (int i = 0; i < p.n; i++)
+            p.unstable[i * p.n + i] = 1;
         for (int j = 0; j < p.m; j++)
             p.low[j] = -uniform(&seed, 0.2, 2), p.high[j] = uniform(&seed, 0.2, 2);
         stance_null_set *const set = made(p.n, p.m, p.A, p.B, p.low, p.high);
         assert_int_equal(stance_null_set_modes(set, NULL, NULL), p.n);
-        for (int k = 0; k < 5; k++) {
-            double x[K], best = 0;
-            for (int i = 0; i < p.n; i++)
-                x[i] = uniform(&seed, -1, 1);
-            const double gauge = stance_null_set_gauge(set, x);
-            if (gauge > 1e3) /* a torque hardly reaches some mode: no differences, then */
-                continue;
-            points++;
-            /* The normal at the boundary point x / gauge, by differences of the gauge. */
-            double eta[K];
-            for (int i = 0; i < p.n; i++) {
-                double high[K], low[K];
-                memcpy(high, x, sizeof x), memcpy(low, x, sizeof x);
-                high[i] += 1e-5, low[i] -= 1e-5;
-                eta[i] =
-                    (stance_null_set_gauge(set, high) - stance_null_set_gauge(set, low)) / 2e-5;
-            }
-            double along = 0;
-            for (int i = 0; i < p.n; i++)
-                along += eta[i] * x[i];
-            best = along / quadrature(&p, eta, slowest);
-            worst = fmax(worst, fabs(best / gauge - 1));
-            /* No direction gives more. */
-            for (int d = 0; d < 2; d++) {
-                double other[K];
-                along = 0;
-                for (int i = 0; i < p.n; i++)
-                    along += (other[i] = eta[i] * (1 + uniform(&seed, -0.3, 0.3))) * x[i];
-                above = fmax(above, along / quadrature(&p, other, slowest) / gauge - 1);
-            }
-            for (int i = 0; i < p.n; i++)
-                x[i] /= gauge * 1.000001;
-            assert_true(stance_null_set_holds(set, x));
-            for (int i = 0; i < p.n; i++)
-                x[i] *= 1.000002;
-            assert_false(stance_null_set_holds(set, x));
-        }
+        compare(&seed, &p, set, slowest, 5, &e);
         stance_null_set_free(set);
     }
     print_message("# %d points: gauge by quadrature off by %.1e; another direction above by %.1e\n",
-                  points, worst, above);
-    assert_true(points > 35 && worst < 1e-6 && above < 1e-6);
+                  e.points, e.worst, e.above);
+    assert_true(e.points > 35 && e.worst < 1e-6 && e.above < 1e-6);
+}
+
+/* The projector on eigenvalues beyond `shift`: (1 + sign(A - shift)) / 2, the sign by Newton's
+ * iteration (Roberts 1980). */
+static void project(struct plant *p, double shift)
+{
+    const int n = p->n;
+    double S[K * K], inverse[K * K], moved = INFINITY;
+    for (int i = 0; i < n * n; i++)
+        S[i] = p->A[i] - (i % (n + 1) == 0 ? shift : 0);
+    for (int round = 0; round < 100 && moved > 1e-14; round++) {
+        moved = 0;
+        invert(n, S, inverse);
+        for (int i = 0; i < n * n; i++) {
+            const double next = 0.5 * (S[i] + inverse[i]);
+            moved = fmax(moved, fabs(next - S[i]) / (1 + fabs(next)));
+            S[i] = next;
+        }
+    }
+    assert_true(moved < 1e-11);
+    for (int i = 0; i < n * n; i++)
+        p->unstable[i] = 0.5 * (S[i] + (i % (n + 1) == 0));
+}
+
+/* Robots with random numbers, of one, two and three unstable modes beside others. */
+static void robots(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file, *robot;
+        int modes;
+        struct {
+            const char *path;
+            double value;
+        } number[4];
+    } kinds[] = {
+        {"scenarios/mechanisms/cart_pole.yaml",
+         "cart and pole",
+         1,
+         {{"robot.bodies.cart.mass", 1},
+          {"robot.bodies.pole.mass", 0.1},
+          {"robot.bodies.pole.inertia", 0.00833},
+          {"robot.actuators.push.limit", 20}}},
+        {"scenarios/balance_recovers.yaml",
+         "biped on one foot",
+         2,
+         {{"robot.trunk_mass", 1.8},
+          {"robot.foot_mass", 1.8},
+          {"robot.leg_length", 0.535},
+          {"controller.torque_limit", 30}}},
+        {"scenarios/mechanisms/rabbit.yaml",
+         "RABBIT on one foot",
+         3,
+         {{"robot.bodies.trunk.mass", 20},
+          {"robot.bodies.thigh1.mass", 6.8},
+          {"robot.bodies.shank1.inertia", 0.93},
+          {"robot.actuators.knee1.limit", 150}}},
+    };
+    uint64_t seed = 7;
+    for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {
+        struct errors e = {0};
+        for (int round = 0; round < 4; round++) {
+            static struct scenario s;
+            static struct design_report r;
+            struct plant p = {0};
+            char text[4][96];
+            const char *sets[4];
+            double re[K], im[K], slowest = INFINITY;
+            stance_message message = {""};
+            for (int k = 0; k < 4; k++) {
+                snprintf(text[k], sizeof text[k], "%s=%.17g", kinds[kind].number[k].path,
+                         kinds[kind].number[k].value * uniform(&seed, 0.7, 1.4));
+                sets[k] = text[k];
+            }
+            assert_true(scenario_read(&s, kinds[kind].file, NULL, sets, 4, stderr));
+            if (!design_plant(&r, &s, &message))
+                fail_msg("%s", message.text);
+            stance_null_set *const set = design_null_set(&r, &message);
+            if (!set)
+                fail_msg("%s", message.text);
+            assert_int_equal(stance_null_set_modes(set, re, im), kinds[kind].modes);
+            for (int i = 0; i < kinds[kind].modes; i++)
+                slowest = fmin(slowest, re[i]);
+            p.n = r.states, p.m = r.inputs;
+            memcpy(p.A, r.A, sizeof(double) * (size_t)(p.n * p.n));
+            memcpy(p.B, r.B, sizeof(double) * (size_t)(p.n * p.m));
+            double limit[STANCE_MAX_ACTUATORS];
+            stance_torque_limits(s.scene, r.model, s.base.torque_limit, s.base.torque_limits,
+                                 limit);
+            for (int j = 0; j < p.m; j++) {
+                p.low[j] = -limit[j] - r.equilibrium.torque[j];
+                p.high[j] = limit[j] - r.equilibrium.torque[j];
+            }
+            project(&p, 0.5 * slowest);
+            compare(&seed, &p, set, slowest, 3, &e);
+            stance_null_set_free(set);
+            scenario_free(&s);
+        }
+        print_message("## %s, %d unstable mode%s, %d points of 4 random robots: support function "
+                      "off by %.1e at most; another direction above by %.1e\n",
+                      kinds[kind].robot, kinds[kind].modes, kinds[kind].modes > 1 ? "s" : "",
+                      e.points, e.worst, e.above);
+        assert_true(e.points > 9 && e.worst < 1e-6 && e.above < 1e-6);
+    }
 }
 
 static void refusals(void **state)
@@ -300,6 +428,7 @@ int main(void)
         cmocka_unit_test(one_mode),
         cmocka_unit_test(two_modes),
         cmocka_unit_test(support_is_the_integral),
+        cmocka_unit_test(robots),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

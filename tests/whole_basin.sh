@@ -465,6 +465,51 @@ for r in json.load(open("log"))["rows"]:
     assert 0 < r["allowed"] <= 1 and 0 <= r["used"] <= 1 and 0 <= r["outside"] < 0.1, r
 END
 result $? "... is a share of the starts, and what is recovered one of that"
+# Recoveries from outside, and what the robot did: gauges once more, by null_set.py.
+wide=(--set controller.sample_time=0.002 --set method.step=0.002 --set ground.friction=0.15 --set record.cases=none --set
+    'sweep.grid=[{path: initial.offset.theta, from: -0.2, to: 0.2, count: 41}, {path: initial.offset.vtheta, from: -1.2, to: 1.2, count: 41}]')
+"$stance" run "$shipped/basin_one_foot.yaml" "${wide[@]}" --quiet -o outside1.h5 >>log2 2>&1
+"$stance" run "$shipped/basin_both_feet.yaml" "${wide[@]}" --quiet -o outside2.h5 >>log2 2>&1
+"$stance" run "$shipped/basin_one_foot.yaml" "${wide[@]}" --set 'record={answers: [outcome, footfalls]}' --quiet -o outside3.h5 >>log2 2>&1
+for n in 1 2 3; do
+    expect "what recovers from outside, $n" 0 "$stance" basin outside$n.h5 --allowed --json
+    mv log allowed$n.json
+done
+"$stance" design "$shipped/basin_one_foot.yaml" --json >design.json
+PYTHONPATH=$tests "$python" - >log 2>&1 <<'END'
+import h5py, json, numpy, null_set
+design, seen = json.load(open("design.json")), set()
+for n in 1, 2, 3:
+    f, (row,) = h5py.File(f"outside{n}.h5"), json.load(open(f"allowed{n}.json"))["rows"]
+    x = numpy.zeros((41, 41, 6))
+    x[..., 0] += f["initial.offset.theta"][...][:, None]
+    x[..., 3] += f["initial.offset.vtheta"][...]
+    gauge = null_set.gauge(design, 10, x.reshape(-1, 6))
+    assert abs(gauge - 1).min() > 3e-4 # none is in doubt
+    saved = (f["outcome"][...] == 1).ravel()
+    out = saved & (gauge > 1)
+    assert row["starts"] == 1681 and abs(row["allowed"] - (gauge < 1).mean()) < 1e-12, row
+    assert abs(row["used"] - saved[gauge < 1].mean()) < 1e-12 and abs(row["outside"] - out.mean()) < 1e-12, row
+    slip = f["slip_distance"][...].ravel() if n < 3 else numpy.full(1681, numpy.nan)
+    lifted = f["footfalls"][...].ravel() > 0
+    if n < 3:
+        lifted |= f["least_normal_force"][...].ravel() == 0
+    of = {"lifted": lifted, "slipped": ~lifted & (slip > 1e-6), "unknown": ~lifted & numpy.isnan(slip)}
+    of["neither"] = ~(of["lifted"] | of["slipped"] | of["unknown"])
+    for name, which in of.items():
+        here, told = numpy.flatnonzero(out & which), row[name]
+        assert told["starts"] == len(here), (n, name, told, len(here))
+        if len(here):
+            seen.add(name)
+            farthest = here[gauge[here].argmax()]
+            assert told["case"] == farthest and abs(told["farthest"] - gauge[farthest]) < 1e-3, (name, told)
+        else:
+            assert told["farthest"] is None and told["case"] is None
+assert seen >= {"lifted", "slipped", "unknown"}, seen
+END
+result $? "... is counted by what it did, with the farthest of each"
+expect "... in words" 0 "$stance" basin outside1.h5 --allowed
+says "... which name it" '^ *slipped  *farthest  *case$'
 
 # What one domain has lost of another: labels side by side.
 for form in --json --csv; do

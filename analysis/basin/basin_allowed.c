@@ -1,12 +1,12 @@
-/* basin_allowed.c - a basin against what linear theory allows any controller: the starts in the
- * null-controllable set of the robot about its equilibrium (engine/control/null_controllable.c), of
- * these the ones with the outcome, and those with the outcome that are not in it. Linear theory is
- * no bound: a robot far from its equilibrium, or one that slips, may recover from outside. */
+/* basin_allowed.c - a basin against what linear theory allows any controller (allowed.h): the
+ * starts in that set, of these the ones with the outcome, and those with the outcome that are not
+ * in it. Linear theory is no bound: a robot that slips, lifts a foot, or is far from its
+ * equilibrium may recover from outside, and what it did is told. */
 #include "basin_print.h"
 
 #include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
-#include "runner/plan/design.h"
+#include "runner/plan/allowed.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -15,97 +15,175 @@
 
 enum { MOST_ROWS = 2000 };
 
-/* Of a row: its design, and how many of its starts are where. */
-struct allowed {
-    stance_null_set *set; /* NULL where there is none: `why` */
-    bool asked;
-    stance_message why;
-    stance_equilibrium equilibrium;
-    struct resolved_design design;
-    uint64_t starts, allowed, inside, outside;
+#define SLIPPED 1e-6 /* m: less is dust of the steps */
+
+/* What a case did that linear theory does not know of. X(NAME, name, heading) */
+#define EXCUSES(X)                                                                                 \
+    X(SLID, slipped, "slipped")                                                                    \
+    X(LIFTED, lifted, "lifted")                                                                    \
+    X(NEITHER, neither, "neither")                                                                 \
+    X(UNKNOWN, unknown, "unknown") /* the file does not say */
+enum excuse {
+#define EXCUSE(NAME, name, heading) NAME,
+    EXCUSES(EXCUSE)
+#undef EXCUSE
+        EXCUSE_COUNT
 };
 
-static void look_at_row(struct allowed *row, const struct scenario *s, uint64_t index,
-                        struct scenario *at, struct design_report *report)
+/* Of a row: its set, and how many of its starts are where. */
+struct row {
+    struct allowed of;
+    bool asked;
+    uint64_t starts, allowed, inside, outside;
+    struct {
+        uint64_t starts, index; /* index: of the farthest */
+        double gauge;           /* how far it is: the set's boundary is at 1 */
+    } excuse[EXCUSE_COUNT];
+};
+
+/* Numbers of all cases; NULL: not stored. */
+struct motion {
+    double *slip, *footfalls, *least;
+};
+
+static bool read_motion(const struct results *r, struct motion *m, stance_message *message)
 {
-    row->asked = true;
-    *at = *s;
-    scenario_case_values(s, index, &at->base);
-    if (!resolve_design(s->scene, &at->base, &row->design, &row->why) ||
-        !design_loop(report, at, &row->why))
-        return;
-    row->equilibrium = report->equilibrium;
-    row->set = design_null_set(report, &row->why);
+    return basin_numbers(r, "slip_distance", &m->slip, message) &&
+           basin_numbers(r, "footfalls", &m->footfalls, message) &&
+           basin_numbers(r, "least_normal_force", &m->least, message);
 }
 
-static void count_case(struct allowed *row, const struct scenario *s, uint64_t index,
-                       const struct scenario_values *values, stance_case *c, bool has_outcome)
+static enum excuse excuse_of(const struct motion *m, uint64_t i)
 {
-    const stance_equilibrium *const e = &row->equilibrium;
-    double x[2 * STANCE_MAX_POSTURE];
-    stance_message ignored;
-    if (!resolve_case(s->scene, values, &row->design, s->seed, index, c, &ignored))
-        return;
-    for (int i = 0; i < e->freedoms; i++) {
-        x[i] = c->position[e->freedom[i]] - e->position[e->freedom[i]];
-        x[e->freedoms + i] = c->velocity[e->freedom[i]];
-    }
-    const bool holds = stance_null_set_holds(row->set, x);
+    const double slip = m->slip ? m->slip[i] : NAN, steps = m->footfalls ? m->footfalls[i] : NAN,
+                 least = m->least ? m->least[i] : NAN;
+    return steps > 0 || least <= 0                         ? LIFTED
+           : slip > SLIPPED                                ? SLID
+           : isnan(slip) || (isnan(steps) && isnan(least)) ? UNKNOWN
+                                                           : NEITHER;
+}
+
+static void count_case(struct row *row, uint64_t index, const stance_case *c, bool has_outcome,
+                       const struct motion *motion)
+{
+    double x[DESIGN_STATES];
+    allowed_state(&row->of, c->position, c->velocity, x);
+    const bool holds = stance_null_set_holds(row->of.set, x);
     row->starts++;
     row->allowed += holds;
     row->inside += holds && has_outcome;
-    row->outside += !holds && has_outcome;
+    if (holds || !has_outcome)
+        return;
+    const enum excuse e = excuse_of(motion, index);
+    const double gauge = stance_null_set_gauge(row->of.set, x);
+    row->outside++;
+    if (row->excuse[e].starts++ == 0 || gauge > row->excuse[e].gauge) {
+        row->excuse[e].gauge = gauge;
+        row->excuse[e].index = index;
+    }
 }
 
-static bool count_rows(const struct basin *b, const struct scenario *s, struct allowed *rows,
-                       stance_message *message)
+static bool count_rows(const struct basin *b, const struct scenario *s, struct row *rows,
+                       const struct motion *motion, stance_message *message)
 {
     const struct results *const r = b->r;
-    struct scenario *const at = malloc(sizeof *at);
-    struct design_report *const report = malloc(sizeof *report);
     struct scenario_values *const values = malloc(sizeof *values);
     stance_case *const c = malloc(sizeof *c);
-    const bool good = at && report && values && c;
+    bool good = (values && c) || statistics_no_memory(r, message);
     for (uint64_t i = 0; good && i < r->cases; i++) {
         size_t point[SCENARIO_MAX_AXES];
+        stance_message ignored;
         results_point(r, i, point);
-        struct allowed *const row = &rows[basin_row_of(b, point)];
+        struct row *const row = &rows[basin_row_of(b, point)];
         if (!row->asked)
-            look_at_row(row, s, i, at, report);
-        if (!row->set)
+            good = allowed_make(&row->of, s, i, message);
+        row->asked = true;
+        if (!row->of.set)
             continue;
         scenario_case_values(s, i, values);
-        count_case(row, s, i, values, c, r->kind[i] == b->choice.of);
+        if (resolve_case(s->scene, values, &row->of.design, s->seed, i, c, &ignored))
+            count_case(row, i, c, r->kind[i] == b->choice.of, motion);
     }
     free(c);
     free(values);
-    free(report);
-    free(at);
-    return good || statistics_no_memory(r, message);
+    return good;
 }
 
-static void add_row(struct table *t, const struct basin *b, size_t k, const struct allowed *row)
+static void add_row(struct table *t, const struct basin *b, size_t k, const struct row *row)
 {
     const double starts = (double)row->starts, allowed = (double)row->allowed;
-    const bool known = row->set != NULL;
+    const bool known = row->of.set != NULL;
     table_axes(t, b->r, b->by, b->by_axes, b->row[k].point);
-    TABLE_FACTS(t, {{"starts", "starts", .width = 10}, as_whole(row->starts)},
-                {{"allowed", "allowed", "%.3f %%", .width = 10, .percent = true},
-                 as_number(known ? allowed / starts : NAN)},
-                {{"used", "of that", "%.3f %%", .width = 10, .percent = true},
-                 as_number(known ? (double)row->inside / allowed : NAN)},
-                {{"outside", "outside", "%.3f %%", .width = 10, .percent = true},
-                 as_number(known ? (double)row->outside / starts : NAN)},
-                {{"why", "", .width = 2, .left = true, .before = "  "},
-                 known ? as_nothing("") : as_text(row->why.text)});
+    TABLE_FACTS(
+        t, {{"starts", "starts", .width = 10}, known ? as_whole(row->starts) : as_nothing(NULL)},
+        {{"allowed", "allowed", "%.3f %%", .width = 10, .percent = true},
+         as_number(known ? allowed / starts : NAN)},
+        {{"used", "of that", "%.3f %%", .width = 10, .percent = true},
+         as_number(known ? (double)row->inside / allowed : NAN)},
+        {{"outside", "outside", "%.3f %%", .width = 10, .percent = true},
+         as_number(known ? (double)row->outside / starts : NAN)},
+        {{"why", "", .width = 2, .left = true, .before = "  "},
+         known ? as_nothing("") : as_text(row->of.why.text)});
+#define FACTS(NAME, name, heading)                                                                 \
+    {{#name "_starts", heading, .width = 9, .group = #name, .key = "starts"},                      \
+     known ? as_whole(row->excuse[NAME].starts) : as_nothing(NULL)},                               \
+        {{#name "_farthest", "farthest", "%.4f", .width = 9, .group = #name, .key = "farthest"},   \
+         as_number(row->excuse[NAME].starts ? row->excuse[NAME].gauge : NAN)},                     \
+        {{#name "_case", "case", .width = 9, .group = #name, .key = "case"},                       \
+         row->excuse[NAME].starts ? as_whole(row->excuse[NAME].index) : as_nothing(NULL)},
+    TABLE_FACTS(t, EXCUSES(FACTS));
+#undef FACTS
     table_end_row(t);
+}
+
+static bool print_text(struct table *t, const struct basin *b, const uint64_t *excuses)
+{
+    char view[300];
+    size_t used = (size_t)snprintf(view, sizeof view, "at/");
+    const struct results *const r = b->r;
+    printf("%s\n%s: %" PRIu64 " cases\n\n"
+           "Starts from which linear theory allows some controller to recover with these torques, "
+           "while the\ncontacts stand; of that, what ends as %s; and what does from outside of "
+           "it\n\n",
+           r->title[0] ? r->title : r->name, r->file, r->cases, basin_asked(b));
+    if (!table_write_text(t, stdout, "at/ starts allowed used outside why", BASIN_SHOWN))
+        return false;
+#define VIEW(NAME, name, heading)                                                                  \
+    if (excuses[NAME] > 0)                                                                         \
+        used += (size_t)snprintf(view + used, sizeof view - used,                                  \
+                                 " " #name "_starts " #name "_farthest " #name "_case");
+    EXCUSES(VIEW)
+#undef VIEW
+    if (used == strlen("at/"))
+        return true;
+    puts("\nThose from outside by what they did: slipped, lifted (a foot; it may have slipped, "
+         "too), or neither,\nfor linear theory is none of a robot far from its equilibrium; the "
+         "farthest of each in units of the\nset, whose boundary is at 1, and which case that is\n");
+    return table_write_text(t, stdout, view, BASIN_SHOWN);
+}
+
+static bool print_rows(const struct basin *b, const struct row *rows, enum table_form form)
+{
+    struct table t = {0};
+    uint64_t excuses[EXCUSE_COUNT] = {0};
+    for (size_t k = 0; k < b->rows; k++) {
+        add_row(&t, b, k, &rows[k]);
+        for (int e = 0; e < EXCUSE_COUNT; e++)
+            excuses[e] += rows[k].excuse[e].starts;
+    }
+    if (form != TABLE_AS_TEXT)
+        return basin_table_write(
+            &t, form, "", TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])}));
+    const bool good = print_text(&t, b, excuses);
+    table_free(&t);
+    return good;
 }
 
 bool basin_print_allowed(const struct basin *b, enum table_form form, bool *usage,
                          stance_message *message)
 {
-    struct table t = {0};
     struct scenario s;
+    struct motion motion = {0};
     *usage = b->averaged >= 0 || b->rows > MOST_ROWS;
     for (size_t k = 0; k < b->rows; k++)
         *usage = *usage || b->row[k].slices > 1;
@@ -114,29 +192,20 @@ bool basin_print_allowed(const struct basin *b, enum table_form form, bool *usag
                         "stance basin: --allowed needs a row for each point of the parameters, "
                         "%d of them at most: no --by, no sample of parameters",
                         MOST_ROWS);
-    struct allowed *const rows = calloc(b->rows + 1, sizeof *rows);
+    struct row *const rows = calloc(b->rows + 1, sizeof *rows);
     if (!rows)
         return statistics_no_memory(b->r, message);
-    if (!scenario_read(&s, b->r->file, b->r->scenario, NULL, 0, stderr)) {
-        free(rows);
-        return complain(message, "%.150s: the scenario in it cannot be read", b->r->file);
+    bool good = results_swept(b->r, &s, message);
+    if (good) {
+        good = read_motion(b->r, &motion, message) && count_rows(b, &s, rows, &motion, message) &&
+               print_rows(b, rows, form);
+        scenario_free(&s);
     }
-    const bool counted = count_rows(b, &s, rows, message);
-    for (size_t k = 0; k < b->rows; k++) {
-        if (counted)
-            add_row(&t, b, k, &rows[k]);
-        stance_null_set_free(rows[k].set);
-    }
-    scenario_free(&s);
+    for (size_t k = 0; k < b->rows; k++)
+        allowed_free(&rows[k].of);
+    free(motion.slip);
+    free(motion.footfalls);
+    free(motion.least);
     free(rows);
-    if (!counted)
-        return false;
-    if (form == TABLE_AS_TEXT)
-        printf("%s\n%s: %" PRIu64 " cases\n\n"
-               "Starts from which linear theory allows some controller to recover with these "
-               "torques, while the\ncontacts stand; of that, what ends as %s; and what does from "
-               "outside of it\n\n",
-               b->r->title[0] ? b->r->title : b->r->name, b->r->file, b->r->cases, basin_asked(b));
-    return basin_table_write(&t, form, "at/ starts allowed used outside why",
-                             TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])}));
+    return good;
 }

@@ -13,6 +13,7 @@ struct plot {
     const struct results *r;
     const char *directory, *stem;
     struct look *look;
+    bool allowed; /* maps of starts show what linear theory allows any controller */
 };
 
 /* Begins a picture of the file, under its title; ends it as STEM-picture. */

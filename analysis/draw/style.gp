@@ -19,6 +19,15 @@ grey = 0x8a8a8a
 no_number = 0xd9d9d9
 
 # Numbers: after cividis (Nunez, Anderton, Renslow 2018), even steps for every reader.
+# What linear theory allows any controller: a line of its own dashes, on maps over a white one; beside several
+# outlines thin lines, with the dashes of each.
+colour_allowed = 0x000000
+set dashtype 11 (9,5)
+set dashtype 12 (1,0)
+thin(dash) = dash == 12
+allowed = 0
+over_map = ", '$allowed'.p using 1:2 with lines lw 4.4 dt 1 lc rgb 'white' notitle, " \
+    ."'$allowed'.p using 1:2 with lines lw 2 dt 11 lc rgb colour_allowed notitle"
 palette = "set palette defined (0 '#00224e', 0.25 '#434e6c', 0.5 '#7d7c78', 0.75 '#bcae6c', 1 '#fee838')"
 all_grey = 0
 in_grey = "all_grey = 1; colour_stabilised = 0x404040; colour_rested = 0x8a8a8a; colour_fell = 0xdcdcdc; colour_undecided = 0xb0b0b0; " \
@@ -91,9 +100,9 @@ notes = 0
 legend_step = 24
 legend_head = ''
 box(left, y, colour) = sprintf("set object rectangle from screen %.6f,%.6f to screen %.6f,%.6f fillcolor rgb %d " \
-    ."fillstyle solid border lc '#606060' lw 0.5 front", X(left), Y(y + 7), X(left + 14), Y(y - 7), colour)
+    ."fillstyle solid border lc '#606060' lw 0.5 front", X(left), Y(y + 7), X(left + legend_indent - 8), Y(y - 7), colour)
 line_mark(left, y, colour, dash) = sprintf("set arrow from screen %.6f,%.6f to screen %.6f,%.6f nohead lc rgb %d dt %d " \
-    ."lw 2 front", X(left), Y(y), X(left + legend_indent - 8), Y(y), colour, dash)
+    ."lw %g front", X(left), Y(y), X(left + legend_indent - 8), Y(y), colour, dash, thin(dash) ? 0.8 : 2)
 point_mark(left, y, colour, type) = sprintf("set label '' at screen %.6f,%.6f point pt %d ps 1.4 lw 2 lc rgb %d front", \
     X(left + 0.5*legend_indent - 4), Y(y), type, colour)
 mark(k, left, y) = legend_dash[k] + legend_point[k] == 0 ? box(left, y, legend_colour[k]) \
@@ -101,7 +110,7 @@ mark(k, left, y) = legend_dash[k] + legend_point[k] == 0 ? box(left, y, legend_c
     .(legend_point[k] > 0 ? point_mark(left, y, legend_colour[k], legend_point[k]) : '')
 # The colour bar of the page: under the legend's entries.
 legend_bar(_) = legend_below ? colour_bar(left, page_height - 80, at_most(280, asked_width - left - 3*margin), 12) \
-    : colour_bar(legend_x, legend_y + 70, 18, 180)
+    : colour_bar(legend_x, legend_y + bar_y, 18, 180)
 
 # ---- tics of the axis whose name begins with x or y: about n, two at least ----
 round_up(x) = (f_power = 10.0**floor(log10(x)), f_digit = x/f_power*(1 - 1e-9), \

@@ -2,9 +2,11 @@
 #include "plot_case.h"
 #include "plot_model.h"
 
+#include "analysis/optimise/search_pictures.h"
 #include "analysis/sensitivity/sensitivity_study.h"
 #include "runner/base/command.h"
 #include "runner/base/sandbox.h"
+#include "runner/store/search_file.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -172,7 +174,7 @@ enum { MOST_FILES = 12 };
 
 struct request {
     const char *file[MOST_FILES], *index, *answer, *of;
-    size_t files, outline;
+    size_t files, outline, allowed;
     struct look look;
 };
 
@@ -206,6 +208,18 @@ static int draw_outlines(struct request *request, const struct plot *first)
     return good ? EXIT_DONE : EXIT_IO;
 }
 
+/* Of the file of a search. */
+static int draw_search(struct request *request)
+{
+    if (request->index || request->answer || request->outline)
+        return command_usage(&command_plot, "a search has no cases: none of --case, --answer and "
+                                            "--outline; its best scenario, once it is run, has");
+    const int code = search_draw(&request->look, request->file, request->files);
+    return code == EXIT_DONE && !look_end(&request->look, &command_plot, request->file[0])
+               ? EXIT_USAGE
+               : code;
+}
+
 static int draw(void *context)
 {
     struct request *request = context;
@@ -220,14 +234,21 @@ static int draw(void *context)
         fprintf(stderr, "stance plot: --case takes the number of a case, not '%s'\n", index_text);
         return EXIT_USAGE;
     }
+    if (search_file_is(request->file[0]))
+        return draw_search(request);
+    if (request->files > 1 && !request->outline)
+        return command_usage(&command_plot, "several files are drawn in one frame by --outline");
     if (!results_open(&r, request->file[0], &message)) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_IO;
     }
     const char *const directory =
         look_directory(&request->look, request->file[0], own_directory, sizeof own_directory);
-    const struct plot plot = {&r, directory, r.name, &request->look};
-    if (!gnuplot_directory(directory)) {
+    const struct plot plot = {&r, directory, r.name, &request->look, request->allowed > 0};
+    if (request->allowed && !request->outline && (r.single || r.sample >= 0 || r.axes < 2)) {
+        fprintf(stderr, "%s: has no map: --allowed belongs to maps over two starts\n", r.file);
+        code = EXIT_USAGE;
+    } else if (!gnuplot_directory(directory)) {
         code = EXIT_IO;
     } else if (request->outline) {
         code = draw_outlines(request, &plot);
@@ -267,6 +288,7 @@ static int run(int argc, char **argv)
         {"--answer", true, &request.answer, 1, &given[1]},
         {"--of", true, &request.of, 1, &given[2]},
         {"--outline", false, NULL, 0, &request.outline},
+        {"--allowed", false, NULL, 0, &request.allowed},
         {"--model", false, NULL, 0, &model},
         {"--set", true, sets, MAX_SETS, &set_count},
         LOOK_SPECS(options),
@@ -281,9 +303,12 @@ static int run(int argc, char **argv)
         return EXIT_USAGE;
     if (set_count > 0 && model == 0)
         return command_usage(&command_plot, "--set belongs to --model");
-    if (model > 0 && (request.index || request.answer || request.outline || request.files > 1))
+    if (model > 0 && (request.index || request.answer || request.outline || request.allowed ||
+                      request.files > 1))
         return command_usage(&command_plot, "--model takes one scenario, and none of --case, "
-                                            "--answer and --outline");
+                                            "--answer, --outline and --allowed");
+    if (request.allowed && request.index)
+        return command_usage(&command_plot, "--allowed belongs to maps, not to --case");
     if (request.look.format[LOOK_GIF])
         return command_usage(&command_plot,
                              "stance replay draws animations; pictures are svg, png or pdf");
@@ -291,8 +316,6 @@ static int run(int argc, char **argv)
         return command_usage(&command_plot, "one of --case, --answer and --outline");
     if (request.of && !request.answer && !request.outline)
         return command_usage(&command_plot, "--of belongs to --answer or --outline");
-    if (request.files > 1 && !request.outline)
-        return command_usage(&command_plot, "several files are drawn in one frame by --outline");
     if (model > 0)
         return plot_model(request.file[0], sets, set_count, &request.look);
     return sandbox(draw, &request, files_text(&request, text, sizeof text));
@@ -301,7 +324,7 @@ static int run(int argc, char **argv)
 const struct command command_plot = {
     "plot",
     "plot FILE... [--outline [--of OUTCOME] | --answer A [--of OUTCOME] | --case N]\n"
-    "           [-o PLACE] [--format F,...]\n"
+    "           [--allowed] [-o PLACE] [--format F,...]\n"
     "           [--picture P] [--for column|page] [--size W[xH]] [--font NAME[,PT]]\n"
     "           [--title TEXT] [--labels NAME=TEXT]... [--colours NAME=#rrggbb|grey]...\n"
     "       stance plot --model SCENARIO [--set PATH=VALUE]... [-o PLACE] [--format F,...]",
@@ -311,25 +334,28 @@ const struct command command_plot = {
     "path of every file written.\n"
     "\n"
 #define HELP(name, help) help
-    PLOT_PICTURES(HELP)
+    PLOT_PICTURES(HELP) SEARCH_PICTURES(HELP) SEARCH_FRONT_HELP
 #undef HELP
-        "  sampled factors     NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
-        "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and "
-        "-strip:\n"
-        "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
-        "\n"
-        "  --outline      NAME-outline instead: where cases were stabilised, a line for each of up "
-        "to\n"
-        "                 12 files and each value of their other axes, in one frame with a legend\n"
-        "  --model        of a scenario: NAME-model, the robot where its first case begins, with\n"
-        "                 coordinates and their signs, actuators, contacts; into this directory\n"
-        "  --set          replaces a value of that scenario\n"
-        "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
-        "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another "
-        "number) of "
-        "every\n"
-        "                 case, as a map or along the one axis; sampled factors: "
-        "NAME-A-sensitivity\n"
-        "  --of OUTCOME   only of the cases that were stabilised, rested, fell or stayed "
-        "undecided\n" LOOK_HELP,
+    "  sampled factors     NAME-sensitivity: which factor decides (stance sensitivity -h)\n"
+    "  one case with a     NAME-coordinates, -forces, -torques, -gaps against time, and "
+    "-strip:\n"
+    "  trajectory          stick figures; of a sweep: --case N, its files NAME-caseN-...\n"
+    "\n"
+    "  --outline      NAME-outline instead: where cases were stabilised, a line for each of up "
+    "to\n"
+    "                 12 files and each value of their other axes, in one frame with a legend\n"
+    "  --allowed      in maps and outlines over two starts, too: the line within which linear\n"
+    "                 theory allows some controller to recover with these torques, while the\n"
+    "                 contacts stand (stance basin -h), of each panel's own design and limits\n"
+    "  --model        of a scenario: NAME-model, the robot where its first case begins, with\n"
+    "                 coordinates and their signs, actuators, contacts; into this directory\n"
+    "  --set          replaces a value of that scenario\n"
+    "  --case N       the trajectory of case N (flat index) instead of the sweep\n"
+    "  --answer A     NAME-A instead: the answer A (friction_used, fall_time or another "
+    "number) of "
+    "every\n"
+    "                 case, as a map or along the one axis; sampled factors: "
+    "NAME-A-sensitivity\n"
+    "  --of OUTCOME   only of the cases that were stabilised, rested, fell or stayed "
+    "undecided\n" LOOK_HELP,
 };

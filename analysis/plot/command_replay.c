@@ -343,7 +343,7 @@ static int replay(const struct request *request, struct look *look, const struct
     }
     const char *const where = look_directory(look, request->file, directory, sizeof directory);
     for (size_t k = 0; k < MOST_CASES; k++)
-        plots[k] = (struct plot){NULL, where, stem, look};
+        plots[k] = (struct plot){NULL, where, stem, look, false};
     if (!gnuplot_directory(where))
         return EXIT_IO;
     for (size_t k = 0; code == EXIT_DONE && k < count; k++)

@@ -81,6 +81,19 @@ void plot_layout_point(const struct plot_layout *layout, const struct results *r
     }
 }
 
+uint64_t plot_layout_index(const struct plot_layout *layout, const struct results *r, int panel,
+                           size_t i, size_t j)
+{
+    size_t point[SCENARIO_MAX_AXES];
+    uint64_t index = 0;
+    plot_layout_point(layout, r, panel, point);
+    point[layout->x] = i;
+    point[layout->y] = j;
+    for (int a = 0; a < r->axes; a++)
+        index = index * r->axis[a].count + point[a];
+    return index;
+}
+
 /* The panel that shows a case, or -1. */
 int plot_layout_panel(const struct plot_layout *layout, const struct results *r, uint64_t index)
 {

@@ -27,6 +27,9 @@ void plot_layout_make(struct plot_layout *layout, const struct results *r, int m
 /* Coordinates of a panel, 0 along the axes of the map. */
 void plot_layout_point(const struct plot_layout *layout, const struct results *r, int panel,
                        size_t *point);
+/* The case of a panel at points i and j of the axes of the map. */
+uint64_t plot_layout_index(const struct plot_layout *layout, const struct results *r, int panel,
+                           size_t i, size_t j);
 /* Index of the m-th shown point of the k-th axis of the panels. */
 size_t plot_layout_shown(const struct plot_layout *layout, const struct results *r, int k,
                          size_t m);

@@ -1,6 +1,6 @@
 /* plot_map.c - maps of a sweep over two axes or more: what became of every case, a cell each, and
  * when it settled. Further axes become panels. */
-#include "plot_layout.h"
+#include "plot_allowed.h"
 
 #include "analysis/statistics/statistics.h"
 
@@ -104,8 +104,8 @@ static void subtitle_of(const struct results *r, const struct plot_layout *layou
 /* Axes, panels and their cells: of an array over the cases, their kinds or numbers; none: the
  * legend of cells without a number. */
 static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct plot_layout *layout,
-                       const char *what, const void *values, size_t size, const char *none,
-                       stance_message *message)
+                       const struct plot_allowed *allowed, const char *what, const void *values,
+                       size_t size, const char *none, stance_message *message)
 {
     const struct results *r = plot->r;
     struct plot_cells cells = {&layout->across, &layout->up, 0, {0, 0}};
@@ -131,6 +131,8 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
         gnuplot_set(g, "cross_x = %#.17g; cross_y = %#.17g", x, y);
         gnuplot_legend_mark(g, "0x000000", 0, 1, "equilibrium", "");
     }
+    if (allowed->panels > 0)
+        plot_allowed_legend(allowed->panel, allowed->panels, PLOT_ALLOWED_ONE, g);
     put_shares(g, r, layout, measured);
     plot_layout_note(layout, g, r);
     for (int a = r->axes - 1; a >= 0; a--) {
@@ -145,12 +147,23 @@ static bool begin_page(struct gnuplot *g, const struct plot *plot, const struct 
         for (int a = 0; a < r->axes; a++)
             cells.first += point[a] * stride[a];
         plot_cells_write(g, &cells, values, size);
+        if (p < allowed->panels)
+            plot_allowed_write(&allowed->panel[p], g, p + 1);
     }
     return true;
 }
 
+/* What linear theory allows in a map's panels. */
+static bool find_allowed(struct plot_allowed *allowed, const struct plot *plot,
+                         const struct plot_layout *layout, stance_message *message)
+{
+    const struct plot_axis *const x = &layout->across, *const y = &layout->up;
+    const struct plot_frame frame = {{x->scale, y->scale}, {x->low, y->low}, {x->high, y->high}};
+    return plot_allowed_make(allowed, plot, layout, &frame, message);
+}
+
 static bool draw_outcomes(const struct plot *plot, const struct plot_layout *layout,
-                          stance_message *message)
+                          const struct plot_allowed *allowed, stance_message *message)
 {
     struct gnuplot g;
     char what[700];
@@ -165,7 +178,8 @@ static bool draw_outcomes(const struct plot *plot, const struct plot_layout *lay
                  (unsigned long long)inferred);
     }
     plot_cut_text(plot->r, statistics_judged(plot->r), true, what, sizeof what);
-    if (!begin_page(&g, plot, layout, what, plot->r->kind, sizeof *plot->r->kind, "", message))
+    if (!begin_page(&g, plot, layout, allowed, what, plot->r->kind, sizeof *plot->r->kind, "",
+                    message))
         return false;
     return plot_end(plot, &g, "map", message);
 }
@@ -197,10 +211,12 @@ static bool settle_range(const struct results *r, struct measure *m)
 }
 
 static bool draw_measure(const struct plot *plot, const struct plot_layout *layout,
-                         const struct measure *m, stance_message *message)
+                         const struct plot_allowed *allowed, const struct measure *m,
+                         stance_message *message)
 {
     struct gnuplot g;
-    if (!begin_page(&g, plot, layout, m->what, m->values, sizeof *m->values, m->none, message))
+    if (!begin_page(&g, plot, layout, allowed, m->what, m->values, sizeof *m->values, m->none,
+                    message))
         return false;
     gnuplot_set(&g, "lowest = %#.17g; highest = %#.17g", m->low, m->high);
     const char *label = look_label(plot->look, m->name);
@@ -223,15 +239,16 @@ bool plot_maps(const struct plot *plot, stance_message *message)
     if (!statistics_inferred(plot->r, &inferred, NULL, message))
         return false;
     m.none = inferred > 0 ? "none or inferred" : m.none;
-    if (!draw_outcomes(plot, &layout, message) ||
-        !results_answer(plot->r, "settle_time", &m.values, message))
-        return false;
-    bool good = true;
-    if (m.values && settle_range(plot->r, &m))
-        good = draw_measure(plot, &layout, &m, message);
-    else
+    struct plot_allowed allowed;
+    bool good = find_allowed(&allowed, plot, &layout, message) &&
+                draw_outcomes(plot, &layout, &allowed, message) &&
+                results_answer(plot->r, "settle_time", &m.values, message);
+    if (good && m.values && settle_range(plot->r, &m))
+        good = draw_measure(plot, &layout, &allowed, &m, message);
+    else if (good)
         fputs("no picture of settle_time: no case has one\n", stderr);
     free(m.values);
+    plot_allowed_free(&allowed);
     return good;
 }
 
@@ -254,7 +271,10 @@ bool plot_answer_map(const struct plot *plot, const struct plot_answer *answer,
                                                 : "not %s",
              answer->of == RESULTS_KIND_COUNT ? "" : results_kind_names[answer->of]);
     plot_layout_make(&layout, plot->r, MAX_PANELS);
-    bool good = draw_measure(plot, &layout, &m, message);
+    struct plot_allowed allowed;
+    bool good = find_allowed(&allowed, plot, &layout, message) &&
+                draw_measure(plot, &layout, &allowed, &m, message);
+    plot_allowed_free(&allowed);
     free(m.values);
     return good;
 }

@@ -79,6 +79,7 @@ if (measured) {
     eval legend_bar(0)
     set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor rgb no_number fillstyle solid noborder
 }
+over = allowed ? over_map : ''
 cell_colour(code) = kind_colour[code+1]
 if (cross) {
     set label 1 '' at cross_x,cross_y point pt 1 ps 1.6 lw 4.5 lc rgb 'white' front
@@ -88,6 +89,6 @@ do for [p=1:panels] {
     eval panel(panel_left(p), panel_top(p), width, height)
     eval axis_tics('x', width/65, p + columns > panels)
     eval axis_tics('y', height/45, (p - 1) % columns == 0)
-    if (measured) { plot @cells @as_numbers notitle } else { plot @cells @as_colours notitle }
+    if (measured) { plot @cells @as_numbers notitle @over } else { plot @cells @as_colours notitle @over }
     unset colorbox # one for all
 }

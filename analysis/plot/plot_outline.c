@@ -1,7 +1,7 @@
 /* plot_outline.c - the domains of an outcome over the same two axes in one frame: an outline for
  * each file, and in it for each value of the other axes. */
 #include "boundary.h"
-#include "plot_layout.h"
+#include "plot_allowed.h"
 #include "plot_points.h"
 
 #include "analysis/statistics/statistics.h"
@@ -178,15 +178,11 @@ static uint8_t *find_inside(const struct page *page, int f, const struct plot_la
 {
     const struct results *const r = page->plots[f].r;
     uint8_t *inside = malloc(count[0] * count[1]);
-    size_t point[SCENARIO_MAX_AXES], sum = 0, done = 0;
-    plot_layout_point(layout, r, panel, point);
+    size_t sum = 0, done = 0;
     for (size_t j = 0; inside && j < count[1]; j++) {
         for (size_t i = 0; i < count[0]; i++) {
-            point[layout->x] = points[0][i].index;
-            point[layout->y] = points[1][j].index;
-            uint64_t index = 0;
-            for (int a = 0; a < r->axes; a++)
-                index = index * r->axis[a].count + point[a];
+            const uint64_t index =
+                plot_layout_index(layout, r, panel, points[0][i].index, points[1][j].index);
             inside[j * count[0] + i] = r->kind[index] == page->of;
             sum += r->kind[index] == page->of;
             done += r->kind[index] < RESULTS_FAILED;
@@ -223,6 +219,39 @@ static bool put_outline(struct page *page, int f, const struct plot_layout *layo
     free(inside);
     free(points[0]);
     free(points[1]);
+    return good;
+}
+
+/* ---- what linear theory allows -------------------------------------------------------------- */
+
+/* A line in the colour of each outline, or one for all where that is the same. */
+static bool put_allowed(struct page *page, int most, stance_message *message)
+{
+    const struct plot_frame frame = {{page->scale[0], page->scale[1]},
+                                     {page->low[0], page->low[1]},
+                                     {page->high[0], page->high[1]}};
+    struct plot_allowed allowed[MOST_OUTLINES] = {{0}};
+    struct plot_allowed_panel panel[MOST_OUTLINES];
+    int count = 0;
+    bool good = true, same = true;
+    for (int f = 0; good && f < page->files; f++) {
+        struct plot_layout layout;
+        plot_layout_make(&layout, page->plots[f].r, most);
+        good = plot_allowed_make(&allowed[f], &page->plots[f], &layout, &frame, message);
+        for (int k = 0; good && k < layout.panels; k++)
+            panel[count++] = allowed[f].panels > 0 ? allowed[f].panel[k]
+                                                   : (struct plot_allowed_panel){.share = NAN};
+    }
+    for (int k = 1; k < count; k++)
+        same = same && plot_allowed_same(&panel[0], &panel[k]);
+    for (int k = 0; good && k < (same ? 1 : count); k++)
+        plot_allowed_write(&panel[k], &page->g, k + 1);
+    if (good) {
+        plot_allowed_legend(panel, count, same ? PLOT_ALLOWED_ONE : PLOT_ALLOWED_EACH, &page->g);
+        gnuplot_set(&page->g, "alloweds = allowed ? %d : 0", same ? 1 : count);
+    }
+    for (int f = 0; f < page->files; f++)
+        plot_allowed_free(&allowed[f]);
     return good;
 }
 
@@ -295,6 +324,7 @@ bool plot_outline(const struct plot *plots, int files, enum results_kind of,
             good = put_outline(&page, f, &layout, p, message);
         plot_layout_note(&layout, &page.g, plots[f].r);
     }
+    good = good && put_allowed(&page, most, message);
     if (!good) {
         gnuplot_abandon(&page.g);
         return false;

@@ -1,6 +1,7 @@
 /* command_summary.c - `stance summary FILE`: what came out, as text, JSON or CSV. */
 #include "summary.h"
 
+#include "analysis/optimise/search_summary.h"
 #include "analysis/table/report.h"
 
 #include <stdlib.h>
@@ -23,14 +24,16 @@ static int summarise(struct report *report, const struct results *r, stance_mess
 
 static int run(int argc, char **argv)
 {
-    struct report report = {.command = &command_summary, .work = summarise};
+    struct report report = {
+        .command = &command_summary, .work = summarise, .search = search_summarise};
     int code;
     return report_options(&report, argc, argv, NULL, 0, &code) ? report_run(&report) : code;
 }
 
 const struct command command_summary = {
     "summary",
-    "summary FILE [--json | --csv]",
+    "summary FILE [--json | --csv]\n"
+    "       stance summary SEARCH... [--json | --csv]",
     "what came out: outcomes, extent of the stabilised set, extremes, cost",
     run,
     "Works on files that are not finished, too. Shares are of the cases that are done. Those of a\n"
@@ -88,5 +91,5 @@ const struct command command_summary = {
     "                 wall_time (s, of the slowest rank), total_time (s, all ranks),\n"
     "                 cases_per_second\n"
     "    case         of a file of one case: index, outcome, failure, end_time, settle_time,\n"
-    "                 fall_time, final_state {name: value}\n",
+    "                 fall_time, final_state {name: value}\n" SEARCH_SUMMARY_HELP,
 };

@@ -1,7 +1,9 @@
 /* report.c - see report.h. */
 #include "report.h"
 
+#include "runner/base/message.h"
 #include "runner/base/sandbox.h"
+#include "runner/store/search_file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -15,7 +17,7 @@ bool report_options(struct report *report, int argc, char **argv, const struct o
 {
     const char *name = report->command->name;
     struct option_spec all[MOST_OPTIONS];
-    size_t json = 0, csv = 0, operands = 0;
+    size_t json = 0, csv = 0;
     bool help = false;
     for (size_t k = 0; k < count; k++)
         all[k] = specs[k];
@@ -24,9 +26,11 @@ bool report_options(struct report *report, int argc, char **argv, const struct o
         all[count++] = (struct option_spec){"--csv", false, NULL, 0, &csv};
     }
     *code = EXIT_USAGE;
-    if (!command_options(report->command, argc, argv, all, count, &report->file, 1, &operands,
-                         &help))
+    if (!command_options(report->command, argc, argv, all, count, report->files,
+                         report->search ? REPORT_FILES : 1, &report->count, &help))
         return false;
+    const size_t operands = report->count;
+    report->file = report->files[0];
     report->form = table_form(json, csv);
     if (help)
         *code = EXIT_DONE;
@@ -44,7 +48,14 @@ static int open_and_work(void *context)
     struct results r;
     stance_message message = {""};
     int code = EXIT_IO;
-    if (results_open(&r, report->file, &message)) {
+    if (report->search && search_file_is(report->file)) {
+        code = report->search(report, &message);
+    } else if (report->count > 1) {
+        code = EXIT_USAGE;
+        complain(&message,
+                 "stance %s: one results file; several can be of searches (stance optimise)",
+                 report->command->name);
+    } else if (results_open(&r, report->file, &message)) {
         code = report->work(report, &r, &message);
         results_close(&r);
     }

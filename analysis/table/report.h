@@ -8,14 +8,21 @@
 
 #include "runner/base/command.h"
 
+enum { REPORT_FILES = 12 };
+
 struct report {
     const struct command *command;
     /* Does the work on the open file; returns an exit code. A line in *message is printed to
      * standard error; EXIT_IO without one: no memory, or the output failed. */
     int (*work)(struct report *report, const struct results *r, stance_message *message);
+    /* The same on the file of a search, which is no results file, or on several; NULL: it has
+     * nothing to say of one. */
+    int (*search)(struct report *report, stance_message *message);
     void *request; /* the command's own */
     bool one_form; /* there is neither --json nor --csv */
     const char *file;
+    const char *files[REPORT_FILES]; /* `file`, and of searches others */
+    size_t count;
     enum table_form form;
 };
 

@@ -13,8 +13,9 @@
  * and its point that eta touches, the gradient of h, is minus the integral of exp(-L t) G u with u
  * at the bound that s_j asks for. Both are integrals of exponentials between the sign changes of
  * s_j, which are looked for on a grid that resolves the modes still alive, with their derivatives,
- * so that two changes within an interval are seen, too. n real modes have n - 1 changes at most
- * (one mode: none; two: one, at a time that is a logarithm).
+ * so that two changes within an interval are seen, too. Of real modes there are no more than
+ * between their amplitudes, from the slowest to the fastest (one mode: none; two: one): Descartes'
+ * rule of signs, for powers of exp(-t).
  *
  * The gauge of z, 1 on the boundary, is the least sum of mu >= 0 with z = sum of mu_i p_i over
  * points of the set: a linear programme whose columns are the set's points. The simplex method
@@ -25,6 +26,7 @@
 #include "control.h"
 
 #include <lapacke.h>
+#include <limits.h>
 #include <string.h>
 
 #define MODE_GROWS 1e-9 /* of the largest eigenvalue: a real part that is not zero */
@@ -45,6 +47,8 @@ struct stance_null_set {
     double *G;   /* [k][m] */
     double *low, *high;
     double re[MOST], im[MOST]; /* of coordinate i; a pair stands in two places, im > 0 first */
+    double size[MOST];         /* of re + i im */
+    int order[MOST];           /* the coordinates by re */
     double slowest;            /* least re */
     int directions;            /* of the table: */
     double *eta, *point;       /* [directions][k], scaled to h = 1; where they touch the set */
@@ -52,23 +56,55 @@ struct stance_null_set {
 
 /* ---- the support function -------------------------------------------------------------------- */
 
-/* s_j at t and its derivative: amplitudes p and, of a pair in its second place, q. */
-static double signal(const stance_null_set *s, const double *amplitude, double t, double *slope)
+/* exp(-(a + i b) t) of each mode; of a pair in its first place. */
+struct waves {
+    double re[MOST], im[MOST];
+};
+
+static void waves_at(const stance_null_set *s, double t, struct waves *w)
+{
+    for (int i = 0; i < s->k; i++) {
+        const double decay = exp(-s->re[i] * t);
+        w->re[i] = s->im[i] > 0 ? decay * cos(s->im[i] * t) : decay;
+        w->im[i] = s->im[i] > 0 ? -decay * sin(s->im[i] * t) : 0;
+    }
+}
+
+/* Waves after another time. */
+static void waves_go_on(const stance_null_set *s, const struct waves *later, struct waves *w)
+{
+    for (int i = 0; i < s->k; i++) {
+        const double re = w->re[i];
+        w->re[i] = re * later->re[i] - w->im[i] * later->im[i];
+        w->im[i] = re * later->im[i] + w->im[i] * later->re[i];
+    }
+}
+
+/* s_j and its derivative: amplitudes p and, of a pair in its second place, q. */
+static double signal_of(const stance_null_set *s, const double *amplitude, const struct waves *w,
+                        double *slope)
 {
     double sum = 0;
     *slope = 0;
     for (int i = 0; i < s->k; i++) {
-        const double a = s->re[i], b = s->im[i], decay = exp(-a * t), p = amplitude[i];
+        const double a = s->re[i], b = s->im[i], p = amplitude[i], re = w->re[i], im = w->im[i];
         if (b > 0) {
-            const double q = amplitude[++i], c = cos(b * t), d = sin(b * t);
-            sum += decay * (p * c + q * d);
-            *slope += decay * ((b * q - a * p) * c - (b * p + a * q) * d);
+            const double q = amplitude[++i];
+            sum += p * re - q * im;
+            *slope += (b * q - a * p) * re + (b * p + a * q) * im;
         } else {
-            sum += decay * p;
-            *slope -= a * decay * p;
+            sum += re * p;
+            *slope -= a * re * p;
         }
     }
     return sum;
+}
+
+static double signal(const stance_null_set *s, const double *amplitude, double t, double *slope)
+{
+    struct waves w;
+    waves_at(s, t, &w);
+    return signal_of(s, amplitude, &w, slope);
 }
 
 /* out[k] += factor times the integral of exp(-L t) g_j from `from` to `to`. A pair's block is
@@ -114,17 +150,31 @@ static double reach_at(const stance_null_set *s, double t)
     double fastest = 0;
     for (int i = 0; i < s->k; i++)
         if ((s->re[i] - s->slowest) * t <= ALIVE)
-            fastest = fmax(fastest, hypot(s->re[i], s->im[i]));
+            fastest = fmax(fastest, s->size[i]);
     return LOOK / fastest;
 }
 
-/* Sign changes of s_j between t and t + step, at most two, in order. */
-static int changes_between(const stance_null_set *s, const double *amplitude, double t, double step,
-                           double *change)
+/* How often s_j can change its sign. */
+static int most_changes(const stance_null_set *s, const double *amplitude)
 {
-    double slope[2], ignored;
-    const double at[2] = {signal(s, amplitude, t, &slope[0]),
-                          signal(s, amplitude, t + step, &slope[1])};
+    int changes = 0;
+    double last = 0;
+    for (int k = 0; k < s->k; k++) {
+        const int i = s->order[k];
+        if (s->im[i] != 0)
+            return INT_MAX;
+        changes += last * amplitude[i] < 0;
+        last = amplitude[i] != 0 ? copysign(1, amplitude[i]) : last;
+    }
+    return changes;
+}
+
+/* Sign changes of s_j between t and t + step, where it and its slope are as given; at most two, in
+ * order. */
+static int changes_between(const stance_null_set *s, const double *amplitude, double t, double step,
+                           const double at[2], const double slope[2], double *change)
+{
+    double ignored;
     if ((at[0] < 0) != (at[1] < 0)) {
         change[0] = change_between(s, amplitude, false, t, t + step);
         return 1;
@@ -142,7 +192,7 @@ static int changes_between(const stance_null_set *s, const double *amplitude, do
 /* point[k] += what input j adds to the point that eta touches. */
 static void add_input(const stance_null_set *s, int j, const double *eta, double *point)
 {
-    double amplitude[MOST] = {0}, slope, from = 0;
+    double amplitude[MOST] = {0}, at[2], slope[2], from = 0;
     for (int i = 0; i < s->k; i++) {
         const double g = s->G[i * s->m + j];
         amplitude[i] = -eta[i] * g;
@@ -154,11 +204,21 @@ static void add_input(const stance_null_set *s, int j, const double *eta, double
         }
     }
     const double begin = 1e-9 * reach_at(s, 0); /* at 0 itself s_j may be zero */
-    bool up = !(signal(s, amplitude, begin, &slope) < 0);
-    for (double t = begin, step; t * s->slowest < ALIVE; t += step) {
+    int left = most_changes(s, amplitude);
+    struct waves w, later = {{0}, {0}};
+    waves_at(s, begin, &w);
+    at[0] = signal_of(s, amplitude, &w, &slope[0]);
+    bool up = !(at[0] < 0);
+    for (double t = begin, step = 0; left > 0 && t * s->slowest < ALIVE; t += step) {
+        const double reach = reach_at(s, t);
         double change[2];
-        step = reach_at(s, t);
-        const int changes = changes_between(s, amplitude, t, step, change);
+        if (reach != step)
+            waves_at(s, step = reach, &later);
+        waves_go_on(s, &later, &w);
+        at[1] = signal_of(s, amplitude, &w, &slope[1]);
+        const int changes = changes_between(s, amplitude, t, step, at, slope, change);
+        left -= changes;
+        at[0] = at[1], slope[0] = slope[1];
         for (int c = 0; c < changes; c++) {
             add_integral(s, j, from, change[c], up ? -s->high[j] : -s->low[j], point);
             from = change[c];
@@ -212,8 +272,13 @@ static stance_error find_modes(stance_null_set *s, const double *A, stance_messa
         /* Of a pair the columns are real and imaginary part, im > 0 first. */
         memcpy(s->W + s->k * n, V + i * n, (size_t)n * sizeof *V);
         s->re[s->k] = re[i];
-        s->im[s->k++] = im[i];
+        s->im[s->k] = im[i];
+        s->size[s->k] = hypot(re[i], im[i]);
         s->slowest = fmin(s->slowest, re[i]);
+        int place = s->k++;
+        for (; place > 0 && s->re[s->order[place - 1]] > re[i]; place--)
+            s->order[place] = s->order[place - 1];
+        s->order[place] = s->k - 1;
     }
     if (info != 0)
         stance_refuse(message, error, "no eigenvectors");

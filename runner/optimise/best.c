@@ -64,8 +64,7 @@ char *best_first(const struct scenario *s, stance_message *message)
     return text;
 }
 
-/* The text of the chosen candidate; NULL: no memory. */
-static char *chosen_text(const struct search_file *f)
+char *best_text(const struct search_file *f)
 {
     enum { ROOM = 160 };
     static const char *const drop[] = {"optimise"};
@@ -88,7 +87,7 @@ static char *chosen_text(const struct search_file *f)
 bool best_write(const struct search_file *f, const char *file, stance_message *message)
 {
     char part[1200];
-    char *const text = chosen_text(f);
+    char *const text = best_text(f);
     if (!text)
         return no_memory(message);
     snprintf(part, sizeof part, "%.1100s.part", file);

@@ -10,8 +10,10 @@
  * freed by the caller. NULL: *message says why, such as that no design exists. */
 char *best_first(const struct scenario *s, stance_message *message);
 
-/* Writes the scenario with the chosen candidate's numbers and without its section optimise, an
- * ordinary one. */
+/* The scenario with the chosen candidate's numbers and without its section optimise, an ordinary
+ * one; freed by the caller. NULL: no memory, or a damaged text. */
+char *best_text(const struct search_file *f);
+/* Writes it. */
 bool best_write(const struct search_file *f, const char *file, stance_message *message);
 
 #endif

@@ -4,25 +4,26 @@
 #include <math.h>
 #include <stdbool.h>
 
-static bool none(const struct bounds *b)
+/* Whether u and x are the same there. */
+static bool plain(const struct bounds *b, double u)
 {
-    return isinf(b->low) && isinf(b->high);
+    return b->low + b->margin <= u && u <= b->high - b->margin;
 }
 
-/* Of u from the nearest image of the lower bound, or of the upper one where it is the only one;
- * then there is one image: remainder by infinity changes nothing. */
-static double from_image(const struct bounds *b, double u)
+/* Of u from the nearest vertex of the lower bound, or of the upper one where it is the only one;
+ * then there is one vertex: remainder by infinity changes nothing. */
+static double from_vertex(const struct bounds *b, double u)
 {
-    const double image = isinf(b->low) ? b->high + b->margin : b->low - b->margin;
-    return remainder(u - image, 2 * (b->high - b->low + 2 * b->margin));
+    const double vertex = isinf(b->low) ? b->high + b->margin : b->low - b->margin;
+    return remainder(u - vertex, 2 * (b->high - b->low + 2 * b->margin));
 }
 
 double bounds_image(const struct bounds *b, double u)
 {
-    if (none(b))
+    if (plain(b, u))
         return u;
-    const double d = fabs(from_image(b, u)), span = b->high - b->low, a = b->margin;
-    const double rest = span + 2 * a - d; /* to the image of the other bound */
+    const double d = fabs(from_vertex(b, u)), span = b->high - b->low, a = b->margin;
+    const double rest = span + 2 * a - d; /* to the other bound's vertex */
     if (rest < 2 * a)
         return b->high - fmin(rest * rest / (4 * a), span);
     const double inward = d < 2 * a ? d * d / (4 * a) : d - a;
@@ -33,9 +34,9 @@ double bounds_preimage(const struct bounds *b, double x, double beside)
 {
     if (bounds_image(b, beside) == x)
         return beside;
-    if (none(b))
+    if (plain(b, x) && plain(b, beside))
         return x;
-    const double r = from_image(b, beside), span = b->high - b->low, a = b->margin;
+    const double r = from_vertex(b, beside), span = b->high - b->low, a = b->margin;
     const double inward = isinf(b->low) ? b->high - x : x - b->low;
     double d = inward < a ? 2 * sqrt(a * inward) : inward + a;
     if (b->high - x < a && !isinf(b->low))

@@ -272,7 +272,7 @@ static void show_progress(struct optimise *o, double now)
         return;
     char text[80], left[32] = "?";
     describe_work(o, text, sizeof text);
-    const double part = (double)o->search.trials.cases / o->search.cases;
+    const double part = (double)o->search.trials.cases / scenario_search_cases(o->first);
     if (part > 0.01 && part < 1)
         text_of_seconds(left, sizeof left, (now - o->start) * (1 - part) / part);
     fprintf(stderr, "%s%s; about %s left%s", o->terminal ? "\r" : "", text, left,
@@ -376,6 +376,20 @@ static double undecided(const struct search_file *f)
     return most;
 }
 
+/* Share of the candidates that were not tried in any circumstance. */
+static double refused(const struct search_file *f)
+{
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    size_t count = 0;
+    for (size_t i = 0; i < f->length[SEARCH_CANDIDATE]; i++) {
+        bool all = true;
+        for (size_t c = 0; c < circumstances; c++)
+            all = all && f->count[(i * circumstances + c) * TRIAL_LABELS + TRIAL_REFUSED] > 0;
+        count += all;
+    }
+    return (double)count / (double)f->length[SEARCH_CANDIDATE];
+}
+
 /* What linear theory and the counts say against the best. */
 static void warn(const struct optimise *o)
 {
@@ -410,6 +424,12 @@ static void warn(const struct optimise *o)
                 "%s hardly a start recovers in the first generation: begin with another "
                 "controller, or with restarts\n",
                 who);
+    if (refused(f) > 0.5)
+        fprintf(
+            stderr,
+            "%s %.0f %% of the candidates were not tried, as their loops are unstable or do not "
+            "have what optimise.require asks for: a smaller optimise.first_step may find more\n",
+            who, 100 * refused(f));
     if (search->scenario->search.grow[0] < 128)
         fprintf(stderr,
                 "%s %" PRIu64 " starts tell little of a candidate: optimise.grow, from 128 on\n",

@@ -1,8 +1,8 @@
 /* search.c - stages and generations; rank 0 decides, all try. */
 #include "search.h"
-#include "allowed.h"
 #include "cma.h"
 #include "elsewhere.h"
+#include "linear_limit.h"
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"
@@ -25,13 +25,6 @@ enum { MOST_ALLOWED = 16384 }; /* starts that are held against linear theory */
 /* ---- the plan of a search ---------------------------------------------------------------------
  */
 
-/* Share of the candidates up to the end of a stage. */
-static double share_until(const struct scenario_search *s, int stage)
-{
-    static const double three[] = {0.5, 0.85, 1};
-    return s->stages == 3 ? three[stage] : (stage + 1.0) / s->stages;
-}
-
 static int lambda_of(const struct search *search, int restart)
 {
     return cma_default_lambda(search->space.n) << restart;
@@ -44,10 +37,10 @@ int search_lambda(const struct search *search)
 
 static size_t stage_generations(const struct search *search, int restart, int stage)
 {
-    const struct scenario_search *const s = &search->scenario->search;
-    const double all = (double)s->candidates / lambda_of(search, restart);
-    const double before = stage > 0 ? round(share_until(s, stage - 1) * all) : 0;
-    return (size_t)fmax(1, round(share_until(s, stage) * all) - before);
+    const struct scenario *const s = search->scenario;
+    const double all = (double)s->search.candidates / lambda_of(search, restart);
+    const double before = stage > 0 ? round(scenario_search_until(s, stage - 1) * all) : 0;
+    return (size_t)fmax(1, round(scenario_search_until(s, stage) * all) - before);
 }
 
 /* Generations of the last stage without a better candidate after which there is no use in more. */
@@ -125,14 +118,13 @@ static bool make_record(struct search *search, const char *text)
             const size_t generations = stage_generations(search, r, stage);
             search->generations += generations;
             search->candidates += generations * (size_t)lambda_of(search, r);
-            search->cases += (double)generations * lambda_of(search, r) *
-                             (double)s->search.grow[stage] * (double)search->trials.circumstances;
         }
     }
-    search->cases += (double)(1 + 2 * stages * begun) * (double)s->search.confirm *
-                     (double)search->trials.circumstances;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-    *f = (struct search_file){.chosen = -1, .linear_limit = NAN};
+    *f = (struct search_file){.chosen = -1,
+                              .most_generations = (int64_t)search->generations,
+                              .most_cases = scenario_search_cases(s),
+                              .linear_limit = NAN};
     f->length[SEARCH_CANDIDATE] = search->candidates;
     f->length[SEARCH_PARAMETER] = f->length[SEARCH_OTHER] = (size_t)search->space.n;
     f->length[SEARCH_CIRCUMSTANCE] = search->trials.circumstances;
@@ -338,6 +330,25 @@ static int64_t nearest_score(const struct search *search, size_t candidate, uint
     return ((int64_t)nearest << 40) + further;
 }
 
+/* Below all scores of candidates that are tried: by how much loops fall short in the circumstances
+ * that make the candidate's score nothing, so that a search finds its way to those that are tried.
+ * 0: none does. */
+static int64_t refusal(const struct search *search, size_t candidate)
+{
+    const struct trials *const t = &search->trials;
+    size_t refused = 0;
+    double sum = 0;
+    for (size_t c = 0; c < t->circumstances; c++) {
+        const struct trials_loop *const loop = &t->loop[candidate * t->circumstances + c];
+        refused += !loop->tried;
+        sum += loop->tried ? 0 : loop->short_of;
+    }
+    const bool all = search->scenario->search.aim == AIM_NEAREST || search->scenario->search.worst;
+    return refused > 0 && (all || refused == t->circumstances)
+               ? INT64_MIN / 2 - llround(TRIALS_WORTH * sum)
+               : 0;
+}
+
 static int64_t score_of(const struct search *search, size_t candidate, const double *coordinate,
                         enum trials_starts which, uint64_t starts, double *objective)
 {
@@ -345,6 +356,10 @@ static int64_t score_of(const struct search *search, size_t candidate, const dou
     const struct trials *const t = &search->trials;
     const size_t circumstances = t->circumstances;
     int64_t whole = 0, score = s->worst ? INT64_MAX : 0;
+    const int64_t refused = refusal(search, candidate);
+    *objective = 0;
+    if (refused)
+        return refused;
     if (s->aim == AIM_NEAREST)
         return nearest_score(search, candidate, starts, objective);
     for (uint64_t i = 0; i < starts; i++)
@@ -441,11 +456,12 @@ static void note_generation(struct search *search, struct course *at)
 static bool is_over(const struct search *search, const struct course *at, const char **why)
 {
     const bool last = at->stage + 1 == search->scenario->search.stages;
-    *why = cma_stop_words[cma_stop(at->cma)];
+    const bool stale = last && at->stale >= patience(search, at->restart);
     if (cma_stop(at->cma) != CMA_GOES_ON)
-        return true;
-    *why = "the best candidate stayed the same";
-    return last && at->stale >= patience(search, at->restart);
+        *why = cma_stop_words[cma_stop(at->cma)];
+    else if (stale)
+        *why = "the best candidate stayed the same";
+    return stale || cma_stop(at->cma) != CMA_GOES_ON;
 }
 
 /* Adds to what is compared from fresh starts: a candidate, or (-1) a mean. */
@@ -579,8 +595,8 @@ static void find_allowed(struct search *search)
     const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
     const size_t which[COMPARED] = {0, (size_t)f->chosen};
     for (int i = 0; i < COMPARED; i++)
-        allowed_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
-                       &f->confirmed_allowed[which[i] * circumstances]);
+        linear_limit_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
+                            &f->confirmed_allowed[which[i] * circumstances]);
     f->linear_limit = f->confirmed_allowed[which[1] * circumstances];
 }
 

@@ -27,7 +27,6 @@ struct search {
     struct search_file record;
     size_t generations; /* most that there can be */
     size_t candidates;
-    double cases;    /* that will be simulated at most */
     bool confirming; /* fresh starts are being tried */
     /* After each generation and (`last`) at the end, may be NULL: false, and *message says why. */
     bool (*save)(void *context, bool last, stance_message *message);

@@ -31,13 +31,13 @@ static void rotate(int n, double *a, double *vector, int p, int q)
 }
 
 /* Whether anything was left to rotate. */
-static bool sweep(int n, double *a, double *vector, double negligible)
+static bool sweep(int n, double *a, double *vector)
 {
     bool rotated = false;
     for (int p = 0; p < n; p++) {
         for (int q = p + 1; q < n; q++) {
             const double beside = sqrt(fabs(a[p * n + p])) * sqrt(fabs(a[q * n + q]));
-            if (fabs(a[p * n + q]) > fmax(DBL_EPSILON / 2 * beside, negligible)) {
+            if (fabs(a[p * n + q]) > DBL_EPSILON / 2 * beside) {
                 rotate(n, a, vector, p, q);
                 rotated = true;
             }
@@ -65,15 +65,10 @@ static void sort(int n, double *value, double *vector)
 
 void symmetric_eigen(int n, double *a, double *value, double *vector)
 {
-    double largest = 0;
     memset(vector, 0, (size_t)n * n * sizeof *vector);
     for (int k = 0; k < n; k++)
         vector[k * n + k] = 1;
-    for (int k = 0; k < n * n; k++)
-        largest = fmax(largest, fabs(a[k]));
-    /* Where a diagonal element is 0 nothing is negligible beside it. */
-    const double negligible = DBL_EPSILON * DBL_EPSILON * largest;
-    for (int i = 0; i < MOST_SWEEPS && sweep(n, a, vector, negligible); i++) {
+    for (int i = 0; i < MOST_SWEEPS && sweep(n, a, vector); i++) {
     }
     for (int k = 0; k < n; k++)
         value[k] = a[k * n + k];

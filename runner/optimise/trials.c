@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define MOST_SHORT 1e3
 #define MOST_WORTH 1e3 /* of a start, either sign: sums stay whole numbers of 64 bits */
 
 /* ---- making -----------------------------------------------------------------------------------
@@ -81,7 +82,8 @@ bool trials_make(struct trials *t, const struct scenario *scenario, const struct
 
 void trials_free(struct trials *t)
 {
-    kernels_give_back(&t->kernels);
+    if (t->kernels.count > 0)
+        kernels_give_back(&t->kernels);
     for (int k = 0; k < TRIALS_STARTS; k++) {
         free(t->start[k]);
         free(t->weight[k]);
@@ -95,6 +97,16 @@ void trials_free(struct trials *t)
 
 /* ---- loops ------------------------------------------------------------------------------------
  */
+
+/* How fast a loop that is not stable departs: above 0, below MOST_SHORT. */
+static double instability(const struct design_report *r)
+{
+    double largest = 0;
+    for (int i = 0; i < r->states; i++)
+        largest = fmax(largest, r->closed_re[i]);
+    const double excess = r->sampled ? r->radius - 1 : largest;
+    return fmin(fmax(excess, 0), MOST_SHORT - 1);
+}
 
 /* Linear theory of a law that it knows: whether the loop is stable as it acts, and from which
  * sample time on it would not be. */
@@ -110,6 +122,7 @@ static void look_at_loop(const struct trials *t, uint64_t index, struct scenario
     loop->exists = design_loop(report, one, &ignored);
     loop->stable = loop->exists && report->stable;
     loop->tried = loop->stable;
+    loop->short_of = !loop->exists ? MOST_SHORT : loop->stable ? 0 : 1 + instability(report);
     if (!loop->tried || one->base.sample_time <= 0)
         return;
     const double least = isnan(asked) ? 2 * one->base.sample_time : asked;
@@ -117,6 +130,7 @@ static void look_at_loop(const struct trials *t, uint64_t index, struct scenario
                                     0, DESIGN_LONGEST, &loop->critical) != STANCE_OK)
         loop->critical = NAN;
     loop->tried = least <= 0 || loop->critical >= least;
+    loop->short_of = loop->tried ? 0 : isnan(loop->critical) ? 1 : 1 - loop->critical / least;
 }
 
 /* Each rank a block of them. */

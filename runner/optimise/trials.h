@@ -21,6 +21,7 @@ enum trials_end { TRIALS_DONE, TRIALS_STOPPED, TRIALS_BROKEN };
 /* What is known of a candidate's loop in a circumstance before it is simulated. */
 struct trials_loop {
     double critical; /* s, critical sample time without delay; INFINITY; NAN: not known */
+    double short_of; /* by how much a loop that is not tried falls short, the less the nearer */
     uint8_t exists, stable, tried;
 };
 

@@ -359,10 +359,15 @@ static bool bounds(struct design_report *r, stance_message *message)
     return sublevel(r, message) && confirmed(r, message);
 }
 
-bool design_loop(struct design_report *r, const struct scenario *s, stance_message *message)
+bool design_plant(struct design_report *r, const struct scenario *s, stance_message *message)
 {
     *r = (struct design_report){.scenario = s, .inputs = s->scene->actuators};
-    return open_loop(r, message) && loop(r, message);
+    return open_loop(r, message);
+}
+
+bool design_loop(struct design_report *r, const struct scenario *s, stance_message *message)
+{
+    return design_plant(r, s, message) && loop(r, message);
 }
 
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message)

@@ -106,8 +106,9 @@ bool design_selections_compute(struct design_selections *d, const struct scenari
 void design_selections_print(const struct design_selections *d);
 json_t *design_selections_json(const struct design_selections *d);
 
-/* false: `message` says what does not exist. design_loop: without `critical`, `set` and `capture`,
- * which take longer. */
+/* false: `message` says what does not exist. design_plant: up to `rank`, whatever the law;
+ * design_loop: without `allowed`, `critical`, `set` and `capture`, which take longer. */
+bool design_plant(struct design_report *r, const struct scenario *s, stance_message *message);
 bool design_loop(struct design_report *r, const struct scenario *s, stance_message *message);
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message);
 

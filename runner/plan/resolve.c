@@ -311,22 +311,36 @@ static bool is_posture(const stance_scene *scene, int coordinate)
 /* Offsets of the angles tilt the robot about the foot it stands on; those of the translation move
  * it away from there. */
 static void place_robot(const stance_scene *scene, const struct scenario_values *values,
-                        const double *start, stance_case *out)
+                        const double *start, double *position, double *velocity)
 {
     const int n = scene->coordinates;
     const double scale = values->offset_scale;
     for (int i = 0; i < n; i++) {
         const bool angle = is_posture(scene, i);
-        out->position[i] = start[i] + (angle ? scale * values->offset[i] : 0);
-        out->velocity[i] = angle ? scale * values->offset[n + i] : 0;
+        position[i] = start[i] + (angle ? scale * values->offset[i] : 0);
+        velocity[i] = angle ? scale * values->offset[n + i] : 0;
     }
-    scene->stand(scene, out->robot, scenario_supports(scene, values), out->position, out->velocity);
+    scene->stand(scene, values->robot, scenario_supports(scene, values), position, velocity);
     for (int i = 0; i < n; i++) {
         if (!is_posture(scene, i)) {
-            out->position[i] += scale * values->offset[i];
-            out->velocity[i] += scale * values->offset[n + i];
+            position[i] += scale * values->offset[i];
+            velocity[i] += scale * values->offset[n + i];
         }
     }
+}
+
+void resolve_start(const stance_scene *scene, const struct scenario_values *values,
+                   const struct resolved_design *design, double *position, double *velocity)
+{
+    const size_t n = (size_t)scene->coordinates;
+    if (!values->state_given) {
+        place_robot(scene, values, design->start, position, velocity);
+        return;
+    }
+    memcpy(position, values->state, n * sizeof *position);
+    memcpy(velocity, values->state + n, n * sizeof *velocity);
+    if (values->support > 0)
+        scene->stand(scene, values->robot, scenario_supports(scene, values), position, velocity);
 }
 
 /* Where a contact is along the ground. */
@@ -380,23 +394,6 @@ static bool check_start(const stance_scene *scene, const stance_case *out, stanc
         }
     }
     return true;
-}
-
-static bool resolve_start(const stance_scene *scene, const struct scenario_values *values,
-                          const struct resolved_design *design, stance_case *out,
-                          stance_message *message)
-{
-    const int n = scene->coordinates;
-    if (values->state_given) {
-        memcpy(out->position, values->state, (size_t)n * sizeof *out->position);
-        memcpy(out->velocity, values->state + n, (size_t)n * sizeof *out->velocity);
-        if (values->support > 0)
-            scene->stand(scene, out->robot, scenario_supports(scene, values), out->position,
-                         out->velocity);
-    } else {
-        place_robot(scene, values, design->start, out);
-    }
-    return check_start(scene, out, message);
 }
 
 /* ---- law and time ---------------------------------------------------------------------------- */
@@ -594,9 +591,8 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         return complain(message, "ground.friction must not be negative, ground.restitution lie "
                                  "within 0 ... 1");
     }
-    if (!resolve_start(scene, values, design, out, message))
-        return false;
-    if (!set_laws(scene, values, design, out, message))
+    resolve_start(scene, values, design, out->position, out->velocity);
+    if (!check_start(scene, out, message) || !set_laws(scene, values, design, out, message))
         return false;
     return resolve_time(values, out, message) && check_law(scene, out, message);
 }

@@ -71,6 +71,10 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
 stance_error resolve_loop(int n, int m, const double *A, const double *B, const double *K,
                           double interval, double *loop);
 
+/* Where a case starts, whether it may or not: position and velocity[coordinates]. */
+void resolve_start(const stance_scene *scene, const struct scenario_values *values,
+                   const struct resolved_design *design, double *position, double *velocity);
+
 /* Fills *out (trajectory NULL). Checks the initial state: a gap below -1e-9 m of a contact that
  * may touch is an error, and so is a state that is not finite. `index` is the flat case index. */
 bool resolve_case(const stance_scene *scene, const struct scenario_values *values,

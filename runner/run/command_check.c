@@ -22,10 +22,17 @@ static int check(const struct scenario *s, bool json)
     if (!plan_make(&plan, s, false, 0, false, &error))
         return plan_error_print(s, &error);
     plan.patience = PLAN_PATIENCE_DESIGNS;
-    if (plan_compute_designs(&plan, &alone, &error) && plan_check_cases(&plan, &error)) {
+    bool good = plan_compute_designs(&plan, &alone, &error);
+    if (good && !plan_check_cases(&plan, &error)) {
+        good = s->search.given;
+        if (good)
+            fprintf(stderr, "stance check: warning: %s: to a search such starts are lost\n",
+                    error.message.text);
+    }
+    if (good) {
         snprintf(file, sizeof file, "results/%s.h5", s->name);
         report_plan(&plan, 1, file, json, stdout);
-        if (!warnings_print(&plan, "stance check", stderr))
+        if (!warnings_print(&plan, "stance check", stderr) && !s->search.given)
             warnings_try(&plan, "stance check", stderr);
     } else {
         code = plan_error_print(s, &error);

@@ -5,10 +5,12 @@
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/base/units.h"
+#include "runner/store/search_file.h"
 #include "runner/store/store.h"
 
 #include <inttypes.h>
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +22,8 @@ extern const struct command command_status; /* below */
 struct state {
     struct store_counts counts;
     struct heartbeat_note note;
+    struct search_file search; /* where `searches`: what there is is candidates, not cases */
+    bool searches;
     bool refined; /* a map whose boundary is being sought: the cases left are not all simulated */
     double rate, mean, left; /* cases/s of late, since the job's start, and s; negative: unknown */
 };
@@ -47,6 +51,20 @@ static uint64_t count_pending(const struct state *state)
     return state->counts.cases - state->counts.done - state->counts.failed;
 }
 
+/* By the cases that its generations have taken, of those that it may take. */
+static bool read_search(const char *file, struct state *state, stance_message *message)
+{
+    struct search_file *const f = &state->search;
+    double cases = 0;
+    state->searches = search_file_read(f, file, message);
+    for (size_t g = 0; state->searches && g < f->length[SEARCH_GENERATION]; g++)
+        cases += (double)(f->candidates[g] - (g > 0 ? f->candidates[g - 1] : 0)) *
+                 (double)f->starts[g] * (double)f->length[SEARCH_CIRCUMSTANCE];
+    if (state->searches && state->note.running && cases > 0 && cases < f->most_cases)
+        state->left = f->seconds * (f->most_cases - cases) / cases;
+    return state->searches;
+}
+
 static bool read_state(const char *file, struct state *state, stance_message *message)
 {
     *state = (struct state){.rate = -1, .mean = -1, .left = -1};
@@ -56,6 +74,8 @@ static bool read_state(const char *file, struct state *state, stance_message *me
         return complain(message, "%.150s: not there yet: a run is %s", file,
                         note->exists ? note->doing : "starting");
     }
+    if (search_file_is(file))
+        return read_search(file, state, message);
     if (!store_count(file, &state->counts, message) || !store_check(file, false, message))
         return false;
     state->refined = count_pending(state) > 0 && is_refined(file);
@@ -74,26 +94,53 @@ static json_t *number_or_null(double number)
     return number < 0 ? json_null() : json_real(number);
 }
 
-static void print_json(const char *file, const struct state *state)
+static json_t *objective_or_null(double objective)
+{
+    return isfinite(objective) ? json_real(objective) : json_null();
+}
+
+/* Writes what there is in the file, which it releases, and what is known of the job. */
+static void print_json(json_t *root, const struct state *state)
+{
+    const struct heartbeat_note *note = &state->note;
+    const bool known = note->exists && note->running;
+    json_object_update_new(root,
+                           json_pack("{s:b, s:o, s:o, s:o, s:o, s:o, s:o}", "running",
+                                     note->running, "seconds_left", number_or_null(state->left),
+                                     "ranks", known ? json_integer(note->ranks) : json_null(),
+                                     "ranks_alive", known ? json_integer(note->alive) : json_null(),
+                                     "host", note->exists ? json_string(note->host) : json_null(),
+                                     "doing", known ? json_string(note->doing) : json_null(),
+                                     "last_sign", number_or_null(note->exists ? note->age : -1)));
+    json_dumpf(root, stdout, JSON_INDENT(2));
+    putchar('\n');
+    json_decref(root);
+}
+
+static json_t *run_json(const char *file, const struct state *state)
 {
     const struct store_counts *c = &state->counts;
     const struct heartbeat_note *note = &state->note;
     const bool known = note->exists && note->running;
-    json_t *root = json_pack(
-        "{s:s, s:I, s:I, s:I, s:o, s:b, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "file", file,
-        "cases", (json_int_t)c->cases, "done", (json_int_t)c->done, "failed", (json_int_t)c->failed,
-        "pending", state->refined ? json_null() : json_integer((json_int_t)count_pending(state)),
-        "running", note->running, "rate", number_or_null(state->rate), "mean_rate",
-        number_or_null(state->mean), "seconds_left", number_or_null(state->left), "ranks",
-        known ? json_integer(note->ranks) : json_null(), "ranks_alive",
-        known ? json_integer(note->alive) : json_null(), "host",
-        note->exists ? json_string(note->host) : json_null(), "doing",
-        known ? json_string(note->doing) : json_null(), "round",
-        known && note->round > 0 ? json_integer(note->round) : json_null(), "last_sign",
-        number_or_null(note->exists ? note->age : -1));
-    json_dumpf(root, stdout, JSON_INDENT(2));
-    putchar('\n');
-    json_decref(root);
+    return json_pack("{s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "file", file, "cases",
+                     (json_int_t)c->cases, "done", (json_int_t)c->done, "failed",
+                     (json_int_t)c->failed, "pending",
+                     state->refined ? json_null() : json_integer((json_int_t)count_pending(state)),
+                     "rate", number_or_null(state->rate), "mean_rate", number_or_null(state->mean),
+                     "round", known && note->round > 0 ? json_integer(note->round) : json_null());
+}
+
+static json_t *search_json(const char *file, const struct state *state)
+{
+    const struct search_file *f = &state->search;
+    const size_t last = f->length[SEARCH_GENERATION] - 1;
+    return json_pack("{s:s, s:b, s:I, s:I, s:I, s:I, s:I, s:o, s:o}", "file", file, "finished",
+                     f->finished, "generations", (json_int_t)last + 1, "most_generations",
+                     (json_int_t)f->most_generations, "candidates",
+                     (json_int_t)f->length[SEARCH_CANDIDATE], "starts", (json_int_t)f->starts[last],
+                     "best", (json_int_t)f->best[last], "best_objective",
+                     objective_or_null(f->objective[f->best[last]]), "chosen_objective",
+                     objective_or_null(f->chosen < 0 ? NAN : f->confirmed_objective[f->chosen]));
 }
 
 static void print_running(const struct state *state)
@@ -113,7 +160,7 @@ static void print_running(const struct state *state)
             text_of_seconds(time, sizeof time, note->age);
             printf(", no sign of life for %s", time);
         }
-        if (strcmp(note->doing, "computing") != 0)
+        if (strcmp(note->doing, "computing") != 0 && strncmp(note->doing, "generation", 10) != 0)
             printf(", %s", note->doing);
     }
     if (state->rate >= 0)
@@ -124,12 +171,43 @@ static void print_running(const struct state *state)
     }
 }
 
+/* Why nothing writes the file that is not complete. */
+static void print_stopped(const struct heartbeat_note *note, const char *command)
+{
+    char time[32];
+    fputs("not running", stdout);
+    if (note->exists) { /* it did not end by itself: it would have taken its note along */
+        text_of_seconds(time, sizeof time, note->age);
+        printf(" (the last sign of life was %s ago, on %s)", time, note->host);
+    }
+    printf(" (stance %s --resume goes on)", command);
+}
+
+static void print_search(const char *file, const struct state *state)
+{
+    const struct search_file *f = &state->search;
+    const size_t last = f->length[SEARCH_GENERATION] - 1;
+    printf("%s: generation %zu of at most %" PRId64 ", %zu candidates, best %.4g of ", file,
+           last + 1, f->most_generations, f->length[SEARCH_CANDIDATE],
+           f->chosen < 0 ? f->objective[f->best[last]] : f->confirmed_objective[f->chosen]);
+    if (f->chosen < 0)
+        printf("%" PRId64 " starts; ", f->starts[last]);
+    else
+        printf("%zu fresh starts; ", f->length[SEARCH_START]);
+    if (state->note.running)
+        print_running(state);
+    else if (f->finished)
+        printf("finished: %s", f->note);
+    else
+        print_stopped(&state->note, "optimise");
+    putchar('\n');
+}
+
 static void print_text(const char *file, const struct state *state)
 {
     const struct store_counts *c = &state->counts;
     const struct heartbeat_note *note = &state->note;
     const uint64_t pending = count_pending(state);
-    char time[32];
 
     printf("%s: %" PRIu64 " of %" PRIu64 " cases done, %" PRIu64 " failed, ", file, c->done,
            c->cases, c->failed);
@@ -137,18 +215,12 @@ static void print_text(const char *file, const struct state *state)
         fputs("others to be simulated or inferred as the map is refined; ", stdout);
     else
         printf("%" PRIu64 " pending; ", pending);
-    if (note->running) {
+    if (note->running)
         print_running(state);
-    } else if (pending == 0) {
+    else if (pending == 0)
         fputs("complete", stdout);
-    } else {
-        fputs("not running", stdout);
-        if (note->exists) { /* it did not end by itself: it would have taken its note along */
-            text_of_seconds(time, sizeof time, note->age);
-            printf(" (the last sign of life was %s ago, on %s)", time, note->host);
-        }
-        fputs(" (stance run --resume goes on)", stdout);
-    }
+    else
+        print_stopped(note, "run");
     putchar('\n');
 }
 
@@ -175,9 +247,11 @@ static int say(void *context)
         return EXIT_IO;
     }
     if (request->json)
-        print_json(request->file, &state);
+        print_json((state.searches ? search_json : run_json)(request->file, &state), &state);
     else
-        print_text(request->file, &state);
+        (state.searches ? print_search : print_text)(request->file, &state);
+    if (state.searches)
+        search_file_free(&state.search);
     return request->watch && state.note.running ? STILL_RUNNING : EXIT_DONE;
 }
 
@@ -203,7 +277,7 @@ static int run_status(int argc, char **argv)
 const struct command command_status = {
     "status",
     "status FILE [--json] [--watch]",
-    "how far a run is: done, failed, pending, rate, time left, ranks alive",
+    "how far a run or a search is: what is done, time left, ranks alive",
     run_status,
     "Reads the results file, which a run may be writing, and FILE.lock, where the run gives a "
     "sign\n"
@@ -223,5 +297,11 @@ const struct command command_status = {
     "    host                     of its rank 0\n"
     "    doing, round             what it is at; of a refined map, which round\n"
     "    last_sign                seconds since its last sign of life\n"
+    "  of the file of a search (stance optimise) with\n"
+    "    file, finished, generations, most_generations, candidates\n"
+    "    starts, best, best_objective   of the last generation how many its candidates have, the\n"
+    "                             best one of its stage so far\n"
+    "    chosen_objective         of fresh starts, once it is finished\n"
+    "    running, seconds_left (at most), ranks, ranks_alive, host, doing, last_sign\n"
     "  What is unknown is null. A run that was killed leaves host and last_sign behind.\n",
 };

@@ -220,6 +220,13 @@ void scenario_free(struct scenario *s);
 char *scenario_rewrite(const char *text, const char *const *drop, size_t drops,
                        const char *const *set, size_t sets);
 
+/* Of a scenario with a search: numbers that it varies, cases that it simulates at most. */
+int scenario_search_numbers(const struct scenario *s);
+double scenario_search_cases(const struct scenario *s);
+/* Share of the candidates up to the end of a stage: of three stages 50, 35 and 15 %, of others
+ * equal parts. */
+double scenario_search_until(const struct scenario *s, int stage);
+
 /* Where the key stands that a message begins with ("controller.poles: ..."), or the nearest mapping
  * around it. False: it does not begin with a key that is given; line and column stay. */
 bool scenario_place(const struct scenario *s, const char *text, int *line, int *column);

@@ -459,3 +459,32 @@ void search_check(struct reader *r)
     r->s->search.axis.design = true; /* whatever it moves */
     check_gains(r);
 }
+
+/* ---- what it takes ----------------------------------------------------------------------------
+ */
+
+int scenario_search_numbers(const struct scenario *s)
+{
+    return s->search.axis.paths +
+           (s->search.designed_gains ? s->scene->actuators * 2 * s->scene->postures : 0);
+}
+
+double scenario_search_until(const struct scenario *s, int stage)
+{
+    static const double three[] = {0.5, 0.85, 1};
+    return s->search.stages == 3 ? three[stage] : (stage + 1.0) / s->search.stages;
+}
+
+double scenario_search_cases(const struct scenario *s)
+{
+    const struct scenario_search *const search = &s->search;
+    const double circumstances = (double)s->cases / (double)s->axis[s->axes - 1].count;
+    double starts = (1 + 2.0 * search->stages * (search->restarts + 1)) * (double)search->confirm;
+    for (int k = 0; k < search->stages; k++) {
+        const double part =
+            scenario_search_until(s, k) - (k > 0 ? scenario_search_until(s, k - 1) : 0);
+        starts +=
+            part * (double)search->candidates * (search->restarts + 1) * (double)search->grow[k];
+    }
+    return starts * circumstances;
+}

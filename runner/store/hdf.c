@@ -114,6 +114,16 @@ hid_t hdf_open_to_read(const char *file, stance_message *message)
     return id;
 }
 
+bool hdf_is_no(hid_t id, const char *file, const char *what, stance_message *message)
+{
+    if (hdf_whole(id, "search_version", 0) > 0)
+        return complain(message,
+                        "%.110s: of a search (stance optimise), not a results file: stance "
+                        "summary, plot and status read it; running its -best.yaml gives one",
+                        file);
+    return complain(message, "%.120s: not %s", file, what);
+}
+
 bool hdf_exists(hid_t file, const char *path)
 {
     char part[128];

@@ -36,6 +36,9 @@ bool store_failed(stance_message *message, const char *file, const char *what);
 
 /* Files only: to open a pipe would wait for its writer. */
 hid_t hdf_open_to_read(const char *file, stance_message *message);
+/* What an open file is that is not `what`: "FILE: not WHAT", or the file of a search, and what
+ * reads it. Returns false. */
+bool hdf_is_no(hid_t id, const char *file, const char *what, stance_message *message);
 /* Every link of a path such as "trajectory/time" exists. */
 bool hdf_exists(hid_t file, const char *path);
 

@@ -388,7 +388,7 @@ static bool read_provenance(struct results *r, stance_message *message)
     int version = hdf_whole(id, "format_version", -1);
     r->scenario = hdf_text(id, "scenario");
     if (version < 0 || H5Aexists(id, "axes") <= 0 || !r->scenario)
-        return complain(message, "%.100s: not a results file of stance", r->file);
+        return hdf_is_no(id, r->file, "a results file of stance", message);
     if (version != FORMAT_VERSION) {
         return complain(message, "%.100s: has format version %d; this program reads version %d",
                         r->file, version, FORMAT_VERSION);

@@ -122,6 +122,8 @@ void results_clean(char *text);
 
 /* The scenario of the file, read by the scenario's own reader; false when this version cannot. */
 bool results_scenario(const struct results *r, struct scenario *s);
+/* The same, whose axes must be the file's: its cases are the file's. */
+bool results_swept(const struct results *r, struct scenario *s, stance_message *message);
 
 /* ---- trajectories ------------------------------------------------------------------------- */
 

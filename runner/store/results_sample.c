@@ -2,6 +2,8 @@
  * of sweep.sample; and the file's scenario, which has them. */
 #include "results_private.h"
 
+#include "runner/base/message.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -145,6 +147,19 @@ bool results_scenario(const struct results *r, struct scenario *s)
     if (good)
         take_points(r, s);
     return good;
+}
+
+bool results_swept(const struct results *r, struct scenario *s, stance_message *message)
+{
+    if (!results_scenario(r, s))
+        return complain(message, "%.150s: the scenario in it cannot be read", r->file);
+    bool same = s->axes == r->axes;
+    for (int a = 0; same && a < r->axes; a++)
+        same = s->axis[a].count == r->axis[a].count;
+    if (same)
+        return true;
+    scenario_free(s);
+    return complain(message, "%.150s: the scenario in it has other axes than its cases", r->file);
 }
 
 void results_free_sample(struct results *r)

@@ -155,6 +155,8 @@ static bool put_attributes(hid_t file, const struct search_file *f)
            put_text(file, "first_scenario", f->first_scenario) &&
            put_text(file, "note", f->note ? f->note : "") &&
            put_number(file, "chosen", KIND_int64_t, &f->chosen) &&
+           put_number(file, "most_generations", KIND_int64_t, &f->most_generations) &&
+           put_number(file, "most_cases", KIND_double, &f->most_cases) &&
            put_int(file, "finished", f->finished) &&
            put_number(file, "linear_limit", KIND_double, &f->linear_limit) &&
            put_number(file, "wall_time", KIND_double, &f->seconds);
@@ -246,10 +248,13 @@ static bool read_attributes(hid_t file, struct search_file *f)
     f->date = hdf_text(file, "date");
     f->note = hdf_text(file, "note");
     int32_t finished = 0;
-    const bool numbers = hdf_number(file, "chosen", H5T_NATIVE_INT64, &f->chosen) &&
-                         hdf_number(file, "finished", H5T_NATIVE_INT32, &finished) &&
-                         hdf_number(file, "linear_limit", H5T_NATIVE_DOUBLE, &f->linear_limit) &&
-                         hdf_number(file, "wall_time", H5T_NATIVE_DOUBLE, &f->seconds);
+    const bool numbers =
+        hdf_number(file, "chosen", H5T_NATIVE_INT64, &f->chosen) &&
+        hdf_number(file, "most_generations", H5T_NATIVE_INT64, &f->most_generations) &&
+        hdf_number(file, "most_cases", H5T_NATIVE_DOUBLE, &f->most_cases) &&
+        hdf_number(file, "finished", H5T_NATIVE_INT32, &finished) &&
+        hdf_number(file, "linear_limit", H5T_NATIVE_DOUBLE, &f->linear_limit) &&
+        hdf_number(file, "wall_time", H5T_NATIVE_DOUBLE, &f->seconds);
     f->finished = finished;
     return numbers && f->title && f->scenario && f->first_scenario && f->revision && f->date &&
            f->note;

@@ -4,9 +4,10 @@
  * written anew, under another name until it is whole, whenever it is to hold more, so that it is
  * whole at any time. Variables have checksums as those of results files (file_checksums.h).
  * Attributes: Conventions, title, search_version, git_revision, date, scenario (text, with the
- * section optimise), first_scenario (the first candidate, gains written out), seed, finished,
- * linear_limit (share of the fresh starts from which linear theory allows any controller to
- * recover; none: it tells none), note (why the search ended).
+ * section optimise), first_scenario (the first candidate, gains written out), chosen,
+ * most_generations, most_cases, finished, wall_time, linear_limit (share of the fresh starts from
+ * which linear theory allows any controller to recover; none: it tells none), note (why the search
+ * ended).
  */
 #ifndef STANCE_STORE_SEARCH_FILE_H
 #define STANCE_STORE_SEARCH_FILE_H
@@ -87,7 +88,9 @@ struct search_file {
     SEARCH_VARIABLES(SEARCH_FIELD)
 #undef SEARCH_FIELD
     char *title, *scenario, *first_scenario, *revision, *date, *note;
-    int64_t chosen; /* place among `confirmed`; -1: none yet */
+    int64_t chosen;           /* place among `confirmed`; -1: none yet */
+    int64_t most_generations; /* that the search may have */
+    double most_cases;        /* that it may simulate */
     int finished;
     double linear_limit, seconds; /* s, of all ranks' wall time, over all parts of the search */
 };

@@ -9,10 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool not_resumable(const char *file, stance_message *message)
+static bool not_resumable(hid_t id, const char *file, stance_message *message)
 {
-    return complain(message, "%.120s: not a results file that can be resumed; --force replaces it",
-                    file);
+    return hdf_is_no(id, file, "a results file that can be resumed; --force replaces it", message);
 }
 
 bool store_check(const char *file, bool resume, stance_message *message)
@@ -22,7 +21,7 @@ bool store_check(const char *file, bool resume, stance_message *message)
         return false;
     /* The last attribute written says that the creation came to its end. */
     char *hash = hdf_text(id, "scenario_sha256"), *scenario = hdf_text(id, "scenario");
-    bool good = !resume || (hash && scenario) || not_resumable(file, message);
+    bool good = !resume || (hash && scenario) || not_resumable(id, file, message);
     good =
         good && file_checksums_verify(id, file, scenario, scenario ? hash : NULL, resume, message);
     free(hash);
@@ -47,16 +46,15 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     snprintf(origin->revision, sizeof origin->revision, "%s", revision ? revision : "unknown");
     snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
     hdf_close(sample);
-    bool good = store_read_history(id, origin);
+    const bool good =
+        (store_read_history(id, origin) || store_failed(message, file, "read its history")) &&
+        (origin->scenario || not_resumable(id, file, message));
     H5Fclose(id);
     free(revision);
     free(date);
-    if (!good || !origin->scenario) {
+    if (!good)
         store_origin_free(origin);
-        return good ? not_resumable(file, message)
-                    : store_failed(message, file, "read its history");
-    }
-    return true;
+    return good;
 }
 
 void store_origin_free(struct store_origin *origin)
@@ -149,7 +147,7 @@ bool store_count(const char *file, struct store_counts *counts, stance_message *
     hid_t dataset = H5Dopen2(id, "status", H5P_DEFAULT);
     bool good = dataset >= 0 && count_status(dataset, counts);
     if (!good)
-        complain(message, "%.120s: not a results file of stance", file);
+        hdf_is_no(id, file, "a results file of stance", message);
     hdf_close(dataset);
     H5Fclose(id);
     return good;

@@ -1,0 +1,244 @@
+/* plot_convergence.c - a search as it went: over the candidates in their order what each was worth,
+ * the mean of the distribution that they are drawn from, and how wide it is.
+ *
+ * Of the mean its change from the first candidate is drawn, in the coordinates that the search
+ * moves, each number in its unit: of a gain what takes the whole torque from the edge of the
+ * starts, of what moves by ratios its logarithm. The width along a coordinate is its standard
+ * deviation, the step times the root of the covariance.
+ */
+#include "search_pictures.h"
+
+#include "runner/scenario/schema.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+GNUPLOT_SCRIPT(plot_convergence_gp, "analysis/optimise/plot_convergence.gp");
+
+enum { MOST_NAMED = 14, MOST_DRAWN = 40000, MOST_STAGES = SCENARIO_MAX_STAGES * 21 };
+
+struct page {
+    struct gnuplot g;
+    const struct search_study *study;
+    double scale; /* 100: objectives are per cent */
+};
+
+/* ---- what the candidates were worth ------------------------------------------------------- */
+
+/* Dots, and in a block of its own the best so far as steps, stages apart. */
+static void put_candidates(struct page *page)
+{
+    const struct search_file *const f = &page->study->f;
+    const size_t n = f->length[SEARCH_CANDIDATE], every = (n + MOST_DRAWN - 1) / MOST_DRAWN;
+    gnuplot_block(&page->g, "candidates");
+    for (size_t i = 0; i < n; i += every)
+        GNUPLOT_ROW(&page->g, (double)i + 1, page->scale * f->objective[i]);
+    gnuplot_end_block(&page->g);
+    gnuplot_block(&page->g, "best");
+    for (size_t g = 0; g < f->length[SEARCH_GENERATION]; g++) {
+        const double best = page->scale * f->objective[f->best[g]];
+        if (g > 0 && (f->stage[g] != f->stage[g - 1] || f->restart[g] != f->restart[g - 1]))
+            gnuplot_set(&page->g, "%s", "");
+        GNUPLOT_ROW(&page->g, (double)search_first(f, g), best);
+        GNUPLOT_ROW(&page->g, (double)f->candidates[g], best);
+    }
+    gnuplot_end_block(&page->g);
+}
+
+static void put_stages(struct page *page)
+{
+    const struct search_file *const f = &page->study->f;
+    size_t last[MOST_STAGES];
+    const size_t stages = search_stages(page->study, last, MOST_STAGES);
+    gnuplot_set(&page->g,
+                "stages = %zu\narray stage_from[%zu]\narray stage_to[%zu]\n"
+                "array stage_text[%zu]",
+                stages, stages, stages, stages);
+    for (size_t i = 0; i < stages; i++) {
+        char text[40];
+        snprintf(text, sizeof text, "%lld starts", (long long)f->starts[last[i]]);
+        gnuplot_set(&page->g, "stage_from[%zu] = %lld; stage_to[%zu] = %lld", i + 1,
+                    i > 0 ? (long long)f->candidates[last[i - 1]] : 0LL, i + 1,
+                    (long long)f->candidates[last[i]]);
+        gnuplot_text(&page->g, text, "stage_text[%zu]", i + 1);
+    }
+}
+
+/* Where the axis of objectives begins and ends. Prices have no lower bound: candidates that are far
+ * worse than the first are left out there. */
+static void put_range(struct page *page, double first, double chosen, double limit)
+{
+    const struct search_file *const f = &page->study->f;
+    double low = fmin(first, chosen), high = fmax(fmax(first, chosen), limit);
+    low = isnan(low) ? page->scale * f->objective[0] : low;
+    high = isnan(high) ? low : high;
+    for (size_t i = 0; i < f->length[SEARCH_CANDIDATE]; i++)
+        high = fmax(high, page->scale * f->objective[i]);
+    double least = low;
+    for (size_t i = 0; i < f->length[SEARCH_CANDIDATE]; i++)
+        least = fmin(least, page->scale * f->objective[i]);
+    low = page->study->plain ? 0 : fmax(least, low - (high - low));
+    const double room = high > low ? 0.06 * (high - low) : 1;
+    gnuplot_number(&page->g, page->study->plain ? 0 : low - room, "low");
+    gnuplot_number(&page->g, high + room, "high");
+}
+
+/* The lines of what fresh starts said, with their numbers in the legend. */
+static void put_lines(struct page *page)
+{
+    static const char *const format[] = {"%.4g", "%.1f %%"};
+    const struct search_study *const study = page->study;
+    const struct search_file *const f = &study->f;
+    const bool done = study->done;
+    const double at[SEARCH_CURVES] = {
+        page->scale * (done ? f->confirmed_objective[0] : NAN),
+        page->scale * (done ? f->confirmed_objective[f->chosen] : NAN),
+        page->scale * (done && study->plain ? search_limit(study) : NAN)};
+    char text[SEARCH_CURVES][40];
+    const char *more[SEARCH_CURVES] = {NULL};
+    gnuplot_set(&page->g, "array curve_at[%d]", SEARCH_CURVES);
+    for (int k = 0; k < SEARCH_CURVES; k++) {
+        snprintf(text[k], sizeof text[k], format[study->plain], at[k]);
+        more[k] = isnan(at[k]) ? NULL : text[k];
+        gnuplot_number(&page->g, at[k], "curve_at[%d]", k + 1);
+    }
+    search_curves_write(&page->g, more);
+    put_range(page, at[SEARCH_FIRST], at[SEARCH_CHOSEN], at[SEARCH_ALLOWED]);
+}
+
+/* ---- the distribution --------------------------------------------------------------------- */
+
+/* "hip1 vq2" of a gain, else the last part of the path. */
+static void name_number(const struct search_study *study, size_t k, char *text, size_t size)
+{
+    const char *const path = study->f.parameter[k];
+    const stance_scene *const scene = study->first ? study->first->scene : NULL;
+    int row, column;
+    if (scene && sscanf(path, "controller.gains[%d][%d]", &row, &column) == 2 && row >= 0 &&
+        row < scene->actuators && column >= 0 && column < 2 * scene->postures)
+        snprintf(text, size, "%s %s%s", scene->actuator_name[row],
+                 column < scene->postures ? "" : "v",
+                 scene->coordinate[scene->posture[column % scene->postures]].name);
+    else
+        snprintf(text, size, "%s", schema_last_name(path));
+}
+
+static double change(const struct search_file *f, size_t generation, size_t k)
+{
+    return f->mean[generation * f->length[SEARCH_PARAMETER] + k] - f->coordinate[k];
+}
+
+/* Rows of a block: candidates so far, then one number each. */
+static void put_distribution(struct page *page, const char *block, bool width)
+{
+    const struct search_file *const f = &page->study->f;
+    const size_t n = f->length[SEARCH_PARAMETER];
+    double row[2 + SCENARIO_MAX_PATHS];
+    gnuplot_block(&page->g, "%s", block);
+    for (size_t g = 0; g < f->length[SEARCH_GENERATION]; g++) {
+        size_t columns = 0;
+        row[columns++] = (double)f->candidates[g];
+        if (width)
+            row[columns++] = f->step[g];
+        for (size_t k = 0; k < n; k++)
+            row[columns++] =
+                width ? f->step[g] * sqrt(f->covariance[(g * n + k) * n + k]) : change(f, g, k);
+        gnuplot_row(&page->g, row, columns);
+    }
+    gnuplot_end_block(&page->g);
+}
+
+static bool lower(const struct search_file *f, size_t a, size_t b)
+{
+    const size_t last = f->length[SEARCH_GENERATION] - 1;
+    const double x = change(f, last, a), y = change(f, last, b);
+    return x < y || (x == y && a < b);
+}
+
+/* Numbers in the order in which they end, the lowest first: number[k], its name, its end. */
+static void put_ends(struct page *page)
+{
+    const struct search_file *const f = &page->study->f;
+    const size_t n = f->length[SEARCH_PARAMETER];
+    const size_t last = f->length[SEARCH_GENERATION] - 1;
+    gnuplot_set(&page->g,
+                "numbers = %zu; named = %d\narray end_number[%zu]\narray end_at[%zu]\n"
+                "array end_text[%zu]",
+                n, n <= MOST_NAMED, n, n, n);
+    for (size_t k = 0; k < n; k++) {
+        size_t rank = 1;
+        char text[100];
+        for (size_t other = 0; other < n; other++)
+            rank += lower(f, other, k);
+        name_number(page->study, k, text, sizeof text);
+        gnuplot_set(&page->g, "end_number[%zu] = %zu", rank, k + 1);
+        gnuplot_number(&page->g, change(f, last, k), "end_at[%zu]", rank);
+        gnuplot_text(&page->g, look_label(page->g.look, text), "end_text[%zu]", rank);
+    }
+}
+
+static void put_means(struct page *page)
+{
+    const struct search_file *const f = &page->study->f;
+    const size_t n = f->length[SEARCH_PARAMETER], generations = f->length[SEARCH_GENERATION];
+    double low = INFINITY, high = -INFINITY, least = INFINITY, most = 0;
+    for (size_t i = 0; i < generations * n; i++) {
+        const double variance = f->covariance[i * n + i % n];
+        const double width = f->step[i / n] * sqrt(variance);
+        low = fmin(low, change(f, i / n, i % n));
+        high = fmax(high, change(f, i / n, i % n));
+        least = width > 0 ? fmin(least, width) : least;
+        most = fmax(most, width);
+    }
+    for (size_t g = 0; g < generations; g++) {
+        least = f->step[g] > 0 ? fmin(least, f->step[g]) : least;
+        most = fmax(most, f->step[g]);
+    }
+    const bool known = isfinite(low) && isfinite(high) && isfinite(most) && least <= most;
+    const double room = known && high > low ? 0.05 * (high - low) : 0.5;
+    gnuplot_number(&page->g, known ? low - room : 0, "mean_low");
+    gnuplot_number(&page->g, known ? high + room : 1, "mean_high");
+    gnuplot_number(&page->g, known ? log10(least) - 0.05 : -1, "width_low");
+    gnuplot_number(&page->g, known ? log10(most) + 0.05 : 0, "width_high");
+    put_ends(page);
+    put_distribution(page, "mean", false);
+    put_distribution(page, "width", true);
+}
+
+/* ---- the page ----------------------------------------------------------------------------- */
+
+static void subtitle_of(const struct search_study *study, char *text, size_t size)
+{
+    const struct search_file *const f = &study->f;
+    if (study->done)
+        snprintf(text, size, "%zu candidates in %zu generations; lines: of %zu fresh starts",
+                 f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
+                 f->length[SEARCH_START]);
+    else
+        snprintf(text, size, "%zu candidates in %zu of at most %lld generations, not finished",
+                 f->length[SEARCH_CANDIDATE], f->length[SEARCH_GENERATION],
+                 (long long)f->most_generations);
+}
+
+bool plot_search_convergence(const struct search_study *study, struct look *look,
+                             const char *directory, stance_message *message)
+{
+    const struct search_file *const f = &study->f;
+    struct page page = {.study = study, .scale = study->plain ? 100 : 1};
+    char subtitle[200], stem[400];
+    subtitle_of(study, subtitle, sizeof subtitle);
+    if (!gnuplot_begin(&page.g, look, plot_convergence_gp, f->title[0] ? f->title : study->name,
+                       subtitle, message))
+        return false;
+    gnuplot_set(&page.g, "candidates = %zu", f->length[SEARCH_CANDIDATE]);
+    gnuplot_text(&page.g, study->plain ? "recovered starts (%)" : "objective", "worth");
+    gnuplot_legend_mark(&page.g, "grey", 0, 7, "candidate", "");
+    gnuplot_legend_mark(&page.g, "0x000000", 1, 0, "best so far of its stage", "");
+    put_lines(&page);
+    put_stages(&page);
+    put_candidates(&page);
+    put_means(&page);
+    snprintf(stem, sizeof stem, "%.300s-convergence", study->name);
+    return gnuplot_end(&page.g, directory, stem, message);
+}

@@ -1,0 +1,196 @@
+/* plot_starts.c - where a search has won: along each coordinate of the fresh starts, in parts of
+ * equally many, the share that the first candidate and the chosen one recover, and from which
+ * linear theory allows any controller to. All others of a part's coordinates are spread over their
+ * ranges: these are shares, not a section through the domain. */
+#include "search_pictures.h"
+
+#include "runner/base/message.h"
+#include "runner/scenario/schema.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+GNUPLOT_SCRIPT(plot_starts_gp, "analysis/optimise/plot_starts.gp");
+
+enum { PARTS = 12, LEAST = 20, MOST_PANELS = 18 }; /* starts in a part at least */
+
+struct page {
+    struct gnuplot g;
+    const struct search_study *study;
+    double *allowed; /* of each start; NULL: linear theory sets no bound */
+    size_t *order;
+    size_t circumstance;
+    double most; /* per cent */
+};
+
+static const struct search_file *by_file;
+static size_t by_column;
+
+static double coordinate(const struct search_file *f, size_t start, size_t column)
+{
+    return f->start_value[start * f->length[SEARCH_VARIED] + column];
+}
+
+/* NAN, which only a damaged file has, at the end. */
+static int compare(const void *a, const void *b)
+{
+    const size_t i = *(const size_t *)a, j = *(const size_t *)b;
+    const double x = coordinate(by_file, i, by_column), y = coordinate(by_file, j, by_column);
+    if (x < y || (isnan(y) && !isnan(x)))
+        return -1;
+    if (y < x || (isnan(x) && !isnan(y)))
+        return 1;
+    return i < j ? -1 : i > j;
+}
+
+static double recovered(const struct page *page, size_t k, size_t start)
+{
+    size_t from, to, count = 0;
+    search_circumstances(page->study, page->circumstance, &from, &to);
+    for (size_t c = from; c < to; c++)
+        count += search_recovers(page->study, k, c, start);
+    return (double)count / (double)(to - from);
+}
+
+/* The middle of a part, and of each curve its share and interval. */
+static void put_part(struct page *page, size_t column, size_t from, size_t to)
+{
+    const struct search_file *const f = &page->study->f;
+    struct interval_draws draws[SEARCH_CURVES] = {{0}};
+    double row[1 + 3 * SEARCH_CURVES] = {0};
+    for (size_t i = from; i < to; i++) {
+        const size_t start = page->order[i];
+        row[0] += coordinate(f, start, column) / (double)(to - from);
+        interval_add(&draws[SEARCH_FIRST], recovered(page, 0, start), 1);
+        interval_add(&draws[SEARCH_CHOSEN], recovered(page, (size_t)f->chosen, start), 1);
+        if (page->allowed)
+            interval_add(&draws[SEARCH_ALLOWED], page->allowed[start], 1);
+    }
+    for (int k = 0; k < SEARCH_CURVES; k++) {
+        const struct interval interval = interval_of(&draws[k], 0.95);
+        row[1 + 3 * k] = 100 * draws[k].k / draws[k].m;
+        row[2 + 3 * k] = 100 * interval.low;
+        row[3 + 3 * k] = 100 * interval.high;
+        page->most = fmax(page->most, isnan(interval.high) ? 0 : 100 * interval.high);
+    }
+    gnuplot_row(&page->g, row, sizeof row / sizeof *row);
+}
+
+/* Unit of a path; "" where it has none. */
+static void unit_of(const struct search_study *study, const char *path, char *unit, size_t size)
+{
+    const struct scenario *const s = study->first;
+    unit[0] = '\0';
+    for (int a = 0; s && a < s->axes; a++)
+        for (int k = 0; k < s->axis[a].paths; k++)
+            if (strcmp(s->axis[a].path[k], path) == 0 && s->axis[a].meaning)
+                snprintf(unit, size, "%s", s->axis[a].meaning[k].unit);
+    if (strcmp(unit, "1") == 0)
+        unit[0] = '\0';
+}
+
+static void put_panel(struct page *page, size_t column)
+{
+    const struct search_file *const f = &page->study->f;
+    const size_t n = f->length[SEARCH_START], parts = n / PARTS >= LEAST ? PARTS
+                                                      : n / LEAST > 2    ? n / LEAST
+                                                                         : 2;
+    const char *const path = f->varied[column], *const label = look_label(page->g.look, path);
+    char text[200], unit[24];
+    for (size_t i = 0; i < n; i++)
+        page->order[i] = i;
+    by_file = f;
+    by_column = column;
+    qsort(page->order, n, sizeof *page->order, compare);
+    const double low = coordinate(f, page->order[0], column),
+                 high = coordinate(f, page->order[n - 1], column);
+    unit_of(page->study, path, unit, sizeof unit);
+    snprintf(text, sizeof text, "%.120s%s%s%s", label == path ? schema_last_name(path) : label,
+             unit[0] ? " (" : "", unit, unit[0] ? ")" : "");
+    gnuplot_text(&page->g, text, "panel_text[%zu]", column + 1);
+    const double margin = low < high ? 0.04 * (high - low) : 0.5;
+    gnuplot_number(&page->g, low - margin, "panel_low[%zu]", column + 1);
+    gnuplot_number(&page->g, high + margin, "panel_high[%zu]", column + 1);
+    gnuplot_block(&page->g, "parts%zu", column + 1);
+    for (size_t p = 0; p < parts; p++)
+        if (p * n / parts < (p + 1) * n / parts)
+            put_part(page, column, p * n / parts, (p + 1) * n / parts);
+    gnuplot_end_block(&page->g);
+}
+
+static void put_curves(struct page *page)
+{
+    const struct search_file *const f = &page->study->f;
+    const size_t n = f->length[SEARCH_START];
+    char text[SEARCH_CURVES][32];
+    double allowed = 0;
+    for (size_t i = 0; page->allowed && i < n; i++)
+        allowed += page->allowed[i] / (double)n;
+    const double share[SEARCH_CURVES] = {
+        search_share(page->study, 0, page->circumstance),
+        search_share(page->study, (size_t)f->chosen, page->circumstance), allowed};
+    for (int k = 0; k < SEARCH_CURVES; k++)
+        snprintf(text[k], sizeof text[k], "%.1f %%", 100 * share[k]);
+    search_curves_write(
+        &page->g, (const char *const[SEARCH_CURVES]){text[SEARCH_FIRST], text[SEARCH_CHOSEN],
+                                                     page->allowed ? text[SEARCH_ALLOWED] : NULL});
+}
+
+static bool draw(struct page *page, struct look *look, const char *directory,
+                 stance_message *message)
+{
+    const struct search_file *const f = &page->study->f;
+    const size_t varied = f->length[SEARCH_VARIED],
+                 panels = varied < MOST_PANELS ? varied : MOST_PANELS;
+    char subtitle[400], stem[400];
+    if (f->length[SEARCH_CIRCUMSTANCE] == 1)
+        snprintf(subtitle, sizeof subtitle, "%zu fresh starts", f->length[SEARCH_START]);
+    else if (page->circumstance == SEARCH_OVERALL)
+        snprintf(subtitle, sizeof subtitle, "%zu fresh starts, mean of %zu circumstances",
+                 f->length[SEARCH_START], f->length[SEARCH_CIRCUMSTANCE]);
+    else
+        snprintf(subtitle, sizeof subtitle,
+                 "%zu fresh starts, in the worst circumstance of the chosen one: %.200s",
+                 f->length[SEARCH_START], f->circumstance[page->circumstance]);
+    if (!gnuplot_begin(&page->g, look, plot_starts_gp, f->title[0] ? f->title : page->study->name,
+                       subtitle, message))
+        return false;
+    gnuplot_set(&page->g,
+                "panels = %zu; limited = %d\narray panel_text[%zu]\narray panel_low[%zu]\n"
+                "array panel_high[%zu]",
+                panels, page->allowed != NULL, panels, panels, panels);
+    put_curves(page);
+    for (size_t k = 0; k < panels; k++)
+        put_panel(page, k);
+    gnuplot_note(&page->g, "bars: 95 % intervals");
+    if (panels < varied) {
+        snprintf(subtitle, sizeof subtitle, "%zu of the %zu coordinates are drawn", panels, varied);
+        gnuplot_note(&page->g, subtitle);
+    }
+    gnuplot_number(&page->g, fmin(104, 1.04 * page->most + 1), "most");
+    snprintf(stem, sizeof stem, "%.300s-starts", page->study->name);
+    return gnuplot_end(&page->g, directory, stem, message);
+}
+
+bool plot_search_starts(const struct search_study *study, struct look *look, const char *directory,
+                        stance_message *message)
+{
+    const size_t n = study->f.length[SEARCH_START];
+    if (!study->done || study->f.length[SEARCH_VARIED] == 0)
+        return true;
+    struct page page = {.study = study,
+                        .allowed = calloc(n, sizeof *page.allowed),
+                        .order = calloc(n, sizeof *page.order),
+                        .circumstance = search_worst(study, (size_t)study->f.chosen)};
+    double *const room = page.allowed;
+    bool good = (page.allowed && page.order) || no_memory(message);
+    if (good) {
+        if (!search_allowed(study, page.allowed))
+            page.allowed = NULL;
+        good = draw(&page, look, directory, message);
+    }
+    free(room);
+    free(page.order);
+    return good;
+}

@@ -1,0 +1,65 @@
+/* search_draw.c - chooses the pictures of searches. */
+#include "search_front.h"
+#include "search_pictures.h"
+
+void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES])
+{
+    static const struct {
+        const char *colour, *name;
+        int dash;
+    } curve[SEARCH_CURVES] = {{"hue[2]", "first candidate", 2},
+                              {"hue[1]", "chosen", 1},
+                              {"hue[3]", "allowed by linear theory", 4}};
+    gnuplot_set(g, "array curve_colour[%d]\narray curve_dash[%d]", SEARCH_CURVES, SEARCH_CURVES);
+    for (int k = 0; k < SEARCH_CURVES; k++) {
+        if (more[k])
+            gnuplot_legend_mark(g, curve[k].colour, curve[k].dash, 0, curve[k].name, more[k]);
+        gnuplot_set(g, "curve_colour[%d] = %s; curve_dash[%d] = %d", k + 1, curve[k].colour, k + 1,
+                    curve[k].dash);
+    }
+}
+
+static bool (*const pictures[])(const struct search_study *, struct look *, const char *,
+                                stance_message *) = {
+#define PICTURE(name, help) plot_search_##name,
+    SEARCH_PICTURES(PICTURE)
+#undef PICTURE
+};
+
+static bool draw_one(struct look *look, const char *file, const char *directory,
+                     stance_message *message)
+{
+    struct search_study study;
+    bool good = search_study_open(&study, file, message);
+    if (!good)
+        return false;
+    for (size_t k = 0; good && k < sizeof pictures / sizeof *pictures; k++)
+        good = pictures[k](&study, look, directory, message);
+    search_study_close(&study);
+    return good;
+}
+
+static bool draw_front(struct look *look, const char *const *file, size_t files,
+                       const char *directory, stance_message *message)
+{
+    struct search_front front;
+    if (!search_front_open(&front, file, files, message))
+        return false;
+    const bool good = plot_search_front(&front, look, directory, message);
+    search_front_close(&front);
+    return good;
+}
+
+int search_draw(struct look *look, const char *const *file, size_t files)
+{
+    stance_message message = {""};
+    char own[1024];
+    const char *const directory = look_directory(look, file[0], own, sizeof own);
+    if (!gnuplot_directory(directory))
+        return EXIT_IO;
+    const bool good = files == 1 ? draw_one(look, file[0], directory, &message)
+                                 : draw_front(look, file, files, directory, &message);
+    if (!good)
+        fprintf(stderr, "%s\n", message.text);
+    return good ? EXIT_DONE : EXIT_IO;
+}

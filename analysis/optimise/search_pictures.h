@@ -1,0 +1,45 @@
+/* search_pictures.h - the pictures of `stance plot` of the file of a search, and of several. */
+#ifndef STANCE_ANALYSIS_SEARCH_PICTURES_H
+#define STANCE_ANALYSIS_SEARCH_PICTURES_H
+
+#include "search_study.h"
+
+#include "analysis/draw/gnuplot.h"
+
+/* X(name, help): plot_search_NAME draws DIRECTORY/STEM-NAME, nothing of a search that does not call
+ * for it. */
+#define SEARCH_PICTURES(X)                                                                         \
+    X(convergence,                                                                                 \
+      "  a search            NAME-convergence: the objective of every candidate, the best so\n"    \
+      "  (stance optimise)   far, what fresh starts said of the first and the chosen one, and\n"   \
+      "                      what linear theory allows any controller; under it the mean of\n"     \
+      "                      the distribution, and its width\n")                                   \
+    X(starts,                                                                                      \
+      "  ... that is         NAME-starts: the share of fresh starts that the first and the\n"      \
+      "  finished            chosen one recover, and that linear theory allows, along each\n"      \
+      "                      coordinate of the starts\n")
+#define SEARCH_PICTURE(name, help)                                                                 \
+    bool plot_search_##name(const struct search_study *study, struct look *look,                   \
+                            const char *directory, stance_message *message);
+SEARCH_PICTURES(SEARCH_PICTURE)
+#undef SEARCH_PICTURE
+
+/* Their curves: the first candidate, the chosen one, what linear theory allows; each a colour of
+ * style.gp and a type of dashes. */
+enum search_curve { SEARCH_FIRST, SEARCH_CHOSEN, SEARCH_ALLOWED, SEARCH_CURVES };
+/* Tells the script curve_colour[3] and curve_dash[3], and the legend, a text behind each name;
+ * NULL: that curve is not drawn. */
+void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES]);
+
+struct search_front;
+bool plot_search_front(const struct search_front *front, struct look *look, const char *directory,
+                       stance_message *message);
+/* Its lines of help. */
+#define SEARCH_FRONT_HELP                                                                          \
+    "  several searches    NAME-front of the first: shares of fresh starts against the number\n"   \
+    "                      that differs in their scenarios (stance summary has its table)\n"
+
+/* Draws what a file calls for, or of several searches their front; an exit code. */
+int search_draw(struct look *look, const char *const *file, size_t files);
+
+#endif

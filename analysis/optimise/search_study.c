@@ -1,0 +1,288 @@
+/* search_study.c - see search_study.h. */
+#include "search_study.h"
+
+#include "runner/base/message.h"
+#include "runner/base/sandbox.h"
+#include "runner/optimise/best.h"
+#include "runner/optimise/search.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- opening ------------------------------------------------------------------------------ */
+
+static void clean_words(char **words, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        results_clean(words[i]);
+}
+
+static void clean(struct search_file *f)
+{
+    clean_words(f->parameter, f->length[SEARCH_PARAMETER]);
+    clean_words(f->circumstance, f->length[SEARCH_CIRCUMSTANCE]);
+    clean_words(f->varied, f->length[SEARCH_VARIED]);
+    clean_words(f->elsewhere, f->length[SEARCH_ELSEWHERE]);
+    clean_words((char *[]){f->title, f->revision, f->date, f->note}, 4);
+}
+
+/* Labels are numbers in the file, and words. */
+static bool has_labels(const struct search_file *f)
+{
+    bool same = f->length[SEARCH_KIND] == TRIAL_LABELS;
+    for (size_t i = 0; same && i < TRIAL_LABELS; i++)
+        same = strcmp(f->kind[i], search_kinds[i]) == 0;
+    return same;
+}
+
+/* NULL: this version does not read it. */
+static struct scenario *read_scenario(const char *file, const char *text)
+{
+    struct scenario *s = text ? calloc(1, sizeof *s) : NULL;
+    if (s && !scenario_read(s, file, text, NULL, 0, NULL)) {
+        free(s);
+        s = NULL;
+    }
+    return s;
+}
+
+static void drop_scenario(struct scenario **s)
+{
+    if (*s)
+        scenario_free(*s);
+    free(*s);
+    *s = NULL;
+}
+
+static bool is_plain(const struct scenario *s)
+{
+    if (!s || !s->search.given)
+        return true;
+    bool plain = s->search.aim == AIM_SHARE && !s->search.normal && s->search.gain_price == 0;
+    for (int i = 0; i < STANCE_ANSWER_COUNT; i++)
+        plain = plain && s->search.price[i] == 0;
+    return plain;
+}
+
+static void name_study(struct search_study *study)
+{
+    const char *const slash = strrchr(study->file, '/');
+    snprintf(study->name, sizeof study->name, "%s", slash ? slash + 1 : study->file);
+    char *const dot = strrchr(study->name, '.');
+    if (dot && dot != study->name && strcmp(dot, ".h5") == 0)
+        *dot = '\0';
+}
+
+bool search_study_open(struct search_study *study, const char *file, stance_message *message)
+{
+    *study = (struct search_study){.file = file};
+    struct search_file *const f = &study->f;
+    sandbox_limit(true);
+    const bool good = search_file_read(f, file, message);
+    sandbox_limit(false);
+    if (!good)
+        return false;
+    if (!has_labels(f)) {
+        search_study_close(study);
+        return complain(message, "%.150s: has other outcomes than this version knows", file);
+    }
+    clean(f);
+    name_study(study);
+    study->done = f->finished && f->chosen >= 0 && f->length[SEARCH_START] > 0;
+    study->first = read_scenario(file, f->first_scenario);
+    if (study->first && study->done) {
+        char *const text = best_text(f);
+        study->best = read_scenario(file, text);
+        free(text);
+    }
+    study->plain = is_plain(study->first);
+    return true;
+}
+
+void search_study_close(struct search_study *study)
+{
+    drop_scenario(&study->first);
+    drop_scenario(&study->best);
+    search_file_free(&study->f);
+}
+
+/* ---- shares ------------------------------------------------------------------------------- */
+
+static bool counts_worst(const struct search_study *study)
+{
+    return study->first && study->first->search.worst && study->f.length[SEARCH_CIRCUMSTANCE] > 1;
+}
+
+static int64_t count_in(const struct search_study *study, size_t k, size_t circumstance, int label)
+{
+    const struct search_file *const f = &study->f;
+    return f->confirmed_count[(k * f->length[SEARCH_CIRCUMSTANCE] + circumstance) * TRIAL_LABELS +
+                              (size_t)label];
+}
+
+int64_t search_count(const struct search_study *study, size_t k, int label)
+{
+    int64_t sum = 0;
+    for (size_t c = 0; c < study->f.length[SEARCH_CIRCUMSTANCE]; c++)
+        sum += count_in(study, k, c, label);
+    return sum;
+}
+
+size_t search_worst(const struct search_study *study, size_t k)
+{
+    size_t worst = 0;
+    if (!counts_worst(study))
+        return study->f.length[SEARCH_CIRCUMSTANCE] > 1 ? SEARCH_OVERALL : 0;
+    for (size_t c = 1; c < study->f.length[SEARCH_CIRCUMSTANCE]; c++)
+        if (count_in(study, k, c, STANCE_STABILISED + 1) <
+            count_in(study, k, worst, STANCE_STABILISED + 1))
+            worst = c;
+    return worst;
+}
+
+void search_circumstances(const struct search_study *study, size_t circumstance, size_t *from,
+                          size_t *to)
+{
+    const bool all = circumstance == SEARCH_OVERALL;
+    *from = all ? 0 : circumstance;
+    *to = all ? study->f.length[SEARCH_CIRCUMSTANCE] : circumstance + 1;
+}
+
+static struct interval_draws draws_of(const struct search_study *study, size_t k,
+                                      size_t circumstance)
+{
+    struct interval_draws draws = {0};
+    size_t from, to;
+    if (circumstance == SEARCH_OVERALL)
+        circumstance = search_worst(study, k);
+    search_circumstances(study, circumstance, &from, &to);
+    for (size_t i = 0; i < study->f.length[SEARCH_START]; i++) {
+        double recovered = 0;
+        for (size_t c = from; c < to; c++)
+            recovered += search_recovers(study, k, c, i);
+        interval_add(&draws, recovered, (double)(to - from));
+    }
+    return draws;
+}
+
+double search_share(const struct search_study *study, size_t k, size_t circumstance)
+{
+    const struct interval_draws draws = draws_of(study, k, circumstance);
+    return draws.k / draws.m;
+}
+
+struct interval search_interval(const struct search_study *study, size_t k, size_t circumstance)
+{
+    const struct interval_draws draws = draws_of(study, k, circumstance);
+    return interval_of(&draws, 0.95);
+}
+
+struct search_gain search_gain(const struct search_study *study, size_t circumstance)
+{
+    struct search_gain gain = {0};
+    const size_t chosen = (size_t)study->f.chosen, n = study->f.length[SEARCH_START];
+    double sum = 0, squares = 0;
+    size_t from, to;
+    search_circumstances(study, circumstance, &from, &to);
+    for (size_t i = 0; i < n; i++) {
+        int difference = 0;
+        for (size_t c = from; c < to; c++) {
+            const bool before = search_recovers(study, 0, c, i),
+                       after = search_recovers(study, chosen, c, i);
+            gain.won += after && !before;
+            gain.lost += before && !after;
+            difference += after - before;
+        }
+        const double d = difference / (double)(to - from);
+        sum += d;
+        squares += d * d;
+    }
+    const double pairs = (double)n + 2, at = sum / pairs,
+                 sd = sqrt((squares + 1 - sum * at) / (pairs * pairs)),
+                 half = statistics_deviations(0.95) * sd;
+    gain.share = sum / (double)n;
+    gain.interval = (struct interval){fmax(-1, at - half), fmin(1, at + half)};
+    return gain;
+}
+
+double search_limit(const struct search_study *study)
+{
+    const struct search_file *const f = &study->f;
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE],
+                 worst = search_worst(study, (size_t)f->chosen);
+    const double *const allowed = &f->confirmed_allowed[(size_t)f->chosen * circumstances];
+    double least = INFINITY, sum = 0;
+    for (size_t c = 0; c < circumstances; c++) {
+        least = fmin(least, isnan(allowed[c]) ? INFINITY : allowed[c]);
+        sum += allowed[c];
+    }
+    return worst == SEARCH_OVERALL ? sum / (double)circumstances : isinf(least) ? NAN : least;
+}
+
+/* ---- words -------------------------------------------------------------------------------- */
+
+void search_name(const struct search_study *study, size_t k, char *text, size_t size)
+{
+    const struct search_file *const f = &study->f;
+    const int64_t g = f->confirmed_generation[k];
+    if (g < 0) {
+        snprintf(text, size, "first candidate");
+        return;
+    }
+    const size_t last = f->length[SEARCH_GENERATION] - 1;
+    const int used = snprintf(text, size, "%s stage %lld",
+                              f->confirmed_candidate[k] < 0 ? "mean after" : "best of",
+                              (long long)f->stage[g] + 1);
+    if (f->restart[last] > 0 && used > 0 && (size_t)used < size)
+        snprintf(text + used, size - (size_t)used, " of beginning %lld",
+                 (long long)f->restart[g] + 1);
+}
+
+void search_aim(const struct search_study *study, char *text, size_t size)
+{
+    if (!study->first || !study->first->search.given) {
+        snprintf(text, size, "what its scenario says, which this version does not read");
+        return;
+    }
+    const struct scenario_search *const s = &study->first->search;
+    const size_t circumstances = study->f.length[SEARCH_CIRCUMSTANCE];
+    FILE *const to = fmemopen(text, size, "w");
+    if (!to)
+        return;
+    if (s->aim == AIM_SHARE)
+        fputs("share of the starts that are stabilised", to);
+    else if (s->aim == AIM_NEAREST)
+        fputs("scale up to which all directions are stabilised", to);
+    else
+        fprintf(to, "%s of the starts that are stabilised", stance_answers[s->answer].name);
+    if (s->normal)
+        fputs(", those near the middle counting more", to);
+    for (int i = 0; i < STANCE_ANSWER_COUNT; i++)
+        if (s->price[i] != 0)
+            fprintf(to, ", less %g of each %s", s->price[i], stance_answers[i].name);
+    if (s->gain_price != 0)
+        fprintf(to, ", less %g of the gains", s->gain_price);
+    if (circumstances > 1)
+        fprintf(to,
+                s->worst ? ", in the worst of %zu circumstances" : ", mean of %zu circumstances",
+                circumstances);
+    fclose(to);
+}
+
+int64_t search_best(const struct search_study *study)
+{
+    return study->f.best[study->f.length[SEARCH_GENERATION] - 1];
+}
+
+size_t search_stages(const struct search_study *study, size_t *generation, size_t room)
+{
+    const struct search_file *const f = &study->f;
+    const size_t generations = f->length[SEARCH_GENERATION];
+    size_t stages = 0;
+    for (size_t g = 0; g < generations && stages < room; g++)
+        if (g + 1 == generations || f->stage[g + 1] != f->stage[g] ||
+            f->restart[g + 1] != f->restart[g])
+            generation[stages++] = g;
+    return stages;
+}

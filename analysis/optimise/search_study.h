@@ -1,0 +1,87 @@
+/* search_study.h - what the file of a search says: shares of the fresh starts, how sure they are,
+ * how much the chosen candidate gains, and its loop.
+ *
+ * The search file has a byte for each fresh start of each confirmed candidate. Shares have the
+ * intervals of analysis/statistics/intervals.h, whose blocks are the starts. What a candidate gains
+ * over the first one is judged pair by pair, by what became of the same start under both: with d_i
+ * the difference of a start (its mean over circumstances), the difference of the shares is sum d_i
+ * / (n + 2), its variance (sum d_i^2 + 1 - (sum d_i)^2 / (n + 2)) / (n + 2)^2 (Agresti and Min,
+ * Statistics in Medicine 24, 2005: McNemar's table with half a pair more in each cell). Points of
+ * lhs and Sobol' sequences are more even than independent ones: both are rather too wide.
+ */
+#ifndef STANCE_ANALYSIS_SEARCH_STUDY_H
+#define STANCE_ANALYSIS_SEARCH_STUDY_H
+
+#include "analysis/statistics/intervals.h"
+#include "runner/optimise/trials.h"
+#include "runner/store/search_file.h"
+
+/* In the place of a circumstance: as the search counts, the worst of them or their mean. */
+#define SEARCH_OVERALL SIZE_MAX
+
+struct search_study {
+    struct search_file f;
+    const char *file;
+    char name[256]; /* without directory and .h5 */
+    bool done;      /* fresh starts have been tried: there are `confirmed`, and a chosen one */
+    bool plain;     /* the objective is the share of starts */
+    struct scenario *first; /* NULL: this version does not read it */
+    struct scenario *best;  /* of the chosen one; NULL: there is none */
+};
+
+/* False: one line in *message. Texts are clean. */
+bool search_study_open(struct search_study *study, const char *file, stance_message *message);
+void search_study_close(struct search_study *study);
+
+/* Of confirmed candidate k in a circumstance, or overall. */
+double search_share(const struct search_study *study, size_t k, size_t circumstance);
+struct interval search_interval(const struct search_study *study, size_t k, size_t circumstance);
+/* Fresh starts by what became of them, a label of trials.h, in all circumstances. */
+int64_t search_count(const struct search_study *study, size_t k, int label);
+/* Whether a fresh start is recovered. */
+static inline bool search_recovers(const struct search_study *study, size_t k, size_t circumstance,
+                                   size_t start)
+{
+    const struct search_file *const f = &study->f;
+    const size_t pair = k * f->length[SEARCH_CIRCUMSTANCE] + circumstance;
+    return f->confirmed_outcome[pair * f->length[SEARCH_START] + start] == STANCE_STABILISED + 1;
+}
+
+/* The chosen less the first candidate; of one circumstance, or of their mean. */
+struct search_gain {
+    double share;
+    struct interval interval;
+    uint64_t won, lost; /* pairs of a start and a circumstance */
+};
+struct search_gain search_gain(const struct search_study *study, size_t circumstance);
+
+/* The circumstance that counts overall for a candidate: its worst one; SEARCH_OVERALL: all do. */
+size_t search_worst(const struct search_study *study, size_t k);
+/* The circumstances [*from, *to) that such a one stands for. */
+void search_circumstances(const struct search_study *study, size_t circumstance, size_t *from,
+                          size_t *to);
+
+/* Share from which linear theory allows any controller to recover, about the chosen one's
+ * equilibrium, overall: no more than in the worst circumstance, or the mean. NAN: it sets no bound.
+ */
+double search_limit(const struct search_study *study);
+/* Of each fresh start the share of the circumstances that count for the chosen candidate in which
+ * linear theory allows any controller to recover, allowed[starts]. False: it sets no bound. */
+bool search_allowed(const struct search_study *study, double *allowed);
+
+/* "first candidate", "best of stage 2", "mean after stage 3". */
+void search_name(const struct search_study *study, size_t k, char *text, size_t size);
+/* What is maximised: "share of stabilised starts, in the worst of 6 circumstances". */
+void search_aim(const struct search_study *study, char *text, size_t size);
+/* The best candidate so far, the last stage's. */
+int64_t search_best(const struct search_study *study);
+
+/* Stages, over all beginnings: the last generation of each, in their order. */
+size_t search_stages(const struct search_study *study, size_t *generation, size_t room);
+/* First candidate of a generation. */
+static inline int64_t search_first(const struct search_file *f, size_t generation)
+{
+    return generation > 0 ? f->candidates[generation - 1] : 0;
+}
+
+#endif

@@ -1,0 +1,70 @@
+/* search_summary.h - `stance summary` of the file of a search: its tables, as text, CSV and JSON.
+ */
+#ifndef STANCE_ANALYSIS_SEARCH_SUMMARY_H
+#define STANCE_ANALYSIS_SEARCH_SUMMARY_H
+
+#include "search_study.h"
+
+#include "analysis/table/report.h"
+#include "runner/plan/design.h"
+
+/* The work of a `struct report` on the file of a search, or on several: a front (search_front.h).
+ */
+int search_summarise(struct report *report, stance_message *message);
+
+/* Rows: a stage; a candidate tried from fresh starts; a circumstance; a change of the scenario. */
+void search_table_stages(struct table *t, const struct search_study *study);
+void search_table_confirmed(struct table *t, const struct search_study *study);
+void search_table_circumstances(struct table *t, const struct search_study *study);
+void search_table_elsewhere(struct table *t, const struct search_study *study);
+
+/* The loop of the chosen candidate, freed by the caller; NULL: linear theory knows none. */
+struct design_report *search_loop(const struct search_study *study);
+/* Whether parameter k is an entry of controller.gains. */
+bool search_is_gain(const struct search_study *study, size_t k);
+/* Whether some is, and `best` has them. */
+bool search_has_gains(const struct search_study *study);
+
+/* What `stance summary -h` says of it. */
+#define SEARCH_SUMMARY_HELP                                                                        \
+    "\n"                                                                                           \
+    "Of the file of a search (stance optimise): what was varied and maximised, its stages; the\n"  \
+    "first, the best and the means from fresh starts, with 95 % intervals and the gap to the\n"    \
+    "starts by which they were chosen; circumstances, and what the chosen one costs elsewhere; "   \
+    "its\n"                                                                                        \
+    "gains, as a scenario takes them, poles and critical sample time. A search that is not\n"      \
+    "finished tells how far it is.\n"                                                              \
+    "  --csv    a row for each candidate that was tried from fresh starts: which, candidate,\n"    \
+    "           share, low, high, objective, training, gap\n"                                      \
+    "  --json   keys\n"                                                                            \
+    "    file, title, revision, date, seconds, finished, note (why it ended)\n"                    \
+    "    generations, most_generations, candidates\n"                                              \
+    "    best, best_objective   of the last stage, of the starts of the search\n"                  \
+    "    maximised, varied, starts_over   in words, paths\n"                                       \
+    "    stages       [{beginning, stage, starts, generations, candidates, best, "                 \
+    "best_candidate,\n"                                                                            \
+    "                 step}]\n"                                                                    \
+    "    fresh_starts how many\n"                                                                  \
+    "    confirmed    [{which, candidate (null: a mean), share, low, high, objective, training,\n" \
+    "                 gap, chosen}]; share: of fresh starts that are stabilised, in the worst\n"   \
+    "                 circumstance or the mean of them, as the search counts\n"                    \
+    "    linear_limit share of the fresh starts from which linear theory allows any controller\n"  \
+    "                 to recover\n"                                                                \
+    "    circumstances  [{circumstance, first, chosen, chosen_low, chosen_high, gain, gain_low,\n" \
+    "                 gain_high, won, lost, allowed, of_allowed, critical_first,\n"                \
+    "                 critical_chosen}]; gain: chosen - first, start by start, of which so many\n" \
+    "                 were won and lost; critical: sample time, s\n"                               \
+    "    elsewhere    [{where, first, chosen}]\n"                                                  \
+    "    chosen       {which, starts: {what became of them: count}, gain, gain_low, gain_high,\n"  \
+    "                 won, lost, values: {path: value}, gains: [[...]], poles: [[re, im]]}\n"      \
+    "Of several searches of a scenario, up to 12, the front: a row for each against the number "   \
+    "that\n"                                                                                       \
+    "differs, of several the one with most values (stance plot draws it).\n"                       \
+    "  --json   {title, against, unit, also (other paths that differ), searches: [{PATH, first,\n" \
+    "           first_low, first_high, chosen, chosen_low, chosen_high, allowed, of_allowed,\n"    \
+    "           critical_chosen, file}]}; --csv the rows\n"
+
+bool search_print_text(const struct search_study *study);
+bool search_print_json(const struct search_study *study);
+
+#endif
