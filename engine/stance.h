@@ -259,6 +259,13 @@ typedef struct stance_linear_law {
     double target[STANCE_MAX_POSTURE];
 } stance_linear_law;
 
+/* What a bimodal law takes off a linear law's torques: push max(0, normal (posture - target, rate)
+ * - 1). */
+typedef struct stance_bend {
+    double normal[2 * STANCE_MAX_POSTURE];
+    double push[STANCE_MAX_ACTUATORS]; /* N m */
+} stance_bend;
+
 /* One coordinate that a decoupling law controls: acceleration kp (r - q) + kd (r' - q') + ki times
  * the integral of r - q, r = setpoint + ramp min(t, duration). */
 typedef struct stance_servo {
@@ -274,6 +281,7 @@ typedef struct stance_servo {
 typedef enum stance_per {
     STANCE_PER_LAW,        /* one */
     STANCE_PER_ACTUATOR,   /* one for each, named by the coordinate that it drives */
+    STANCE_PER_POSTURE,    /* one for each coordinate of the posture */
     STANCE_PER_COORDINATE, /* one for each coordinate of the scene */
     STANCE_PER_SELECTION,  /* which coordinates, see stance_selection: an int */
 } stance_per;
@@ -297,17 +305,19 @@ typedef struct stance_law {
     bool designed; /* brings the robot to an equilibrium by gains that are designed or given */
     bool acts_far; /* may act outside the ellipsoid inside which a designed law does */
     bool servos;   /* controls the coordinates of a selection, each by a servo */
+    bool samples;  /* needs a sample time above 0 */
     int parameters;
     const stance_parameter *parameter; /* [parameters] */
     /* Makes *c act by it. value[parameters * STANCE_LAW_ROOM]: of each parameter one number, or by
      * actuators or coordinates; NAN: as the scene is at `begin`[coordinates]. `linear`: c's near or
-     * far. Errors: BAD_ARGUMENT. NULL: nothing acts, or a designed law. */
+     * far. Errors: BAD_ARGUMENT. NULL: nothing acts, or a designed law
+     * that is all in its gains. */
     stance_error (*set)(const stance_scene *scene, const double *value, const double *begin,
                         stance_linear_law *linear, struct stance_case *c, stance_message *message);
 } stance_law;
 
 /* The laws there are, NULL-terminated; the first one is `none`. */
-#define STANCE_LAWS(X) X(none) X(hold) X(state_feedback) X(decoupling)
+#define STANCE_LAWS(X) X(none) X(hold) X(state_feedback) X(bimodal_feedback) X(decoupling)
 const stance_law *const *stance_laws(void);
 /* One by name, or NULL. */
 const stance_law *stance_law_find(const char *name);
@@ -358,7 +368,8 @@ typedef struct stance_case {
      * switch_axis)^2 <= 1, and outside it the servos or, where the case does not decouple, `far`;
      * needs sample_every > 0. */
     stance_linear_law near, far;
-    bool decouples, switches;
+    bool decouples, switches, bends;
+    stance_bend bend; /* of `near`, where it bends; needs sample_every > 0 */
     stance_servo servo[STANCE_MAX_ACTUATORS];
     double switch_axis[2 * STANCE_MAX_POSTURE]; /* rad, rad/s, > 0 */
     double torque_limit; /* N m, > 0, may be INFINITY; of an actuator, `body.limit` where smaller */

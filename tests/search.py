@@ -102,6 +102,30 @@ def bounds(f):
     assert len(set(theta)) > 10 and len(set(time)) > 10
 
 
+def answer(f, run):
+    k = int(f.attrs["chosen"][0])
+    mean = np.where(run["outcome"][()] == 1, run["steps"][()], 0).mean()
+    assert run["steps"][()].max() > 1000 and np.isclose(f["confirmed_objective"][k], mean)
+
+
+def weighted(f):
+    centre, half = np.array([[0, 0, 0, 0, 0, 0, 0.8, 5.4, 1.8, 1.8, 0.525], [0.1, 0.2, 0.5, 1, 1, 0.2, 0.1, 0.1, 0.1, 0.1, 0.025]])
+    weight = np.exp(-0.5 * (((f["start_value"][()] - centre) / half * 2) ** 2).sum(axis=1))
+    recovered = f["confirmed_outcome"][:, 0] == words(f, "kind").index("stabilised")
+    assert np.allclose(f["confirmed_objective"][()], recovered @ weight / weight.sum(), atol=1e-6)
+    assert np.isfinite(f["objective"][()]).all() and recovered.any()
+
+
+def dear(f):
+    tried = kinds(f)["refused"][:, 0] == 0
+    assert tried.any() and not tried.all() and f["score"][tried].min() > f["score"][~tried].max()
+
+
+def ratios(f):
+    value = f["value"][:, 0]
+    assert value[0] == 0.82 and value.min() < 0.81 and value.max() > 0.83
+
+
 def reads(f):
     try:
         import xarray

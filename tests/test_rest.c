@@ -259,32 +259,42 @@ static stance_case odd_case(uint64_t *seed, int kind)
 struct stay {
     int rested, left, fallen, still, missed;
 };
-static struct stay stay_of(const stance_kernel *kernel, stance_case c)
+static void stay_add(struct stay *sum, const stance_result *r, const stance_result *end,
+                     const stance_result *later, double bound)
 {
-    stance_result r, end, later;
-    kernel->run(&c, &r, 1);
-    c.settle = false;
-    kernel->run(&c, &end, 1);
-    c.steps *= 3;
-    kernel->run(&c, &later, 1);
-    if (r.status != STANCE_DONE || later.status != STANCE_DONE)
-        return (struct stay){0};
+    if (r->status != STANCE_DONE || later->status != STANCE_DONE)
+        return;
     double moved = 0, rate = 0, since = 0;
     for (int k = 2; k < 5; k++) {
-        moved = fmax(moved, fabs(later.position[k] - r.position[k]));
-        since = fmax(since, fabs(later.position[k] - end.position[k]));
-        rate = fmax(rate, fabs(end.velocity[k]));
+        moved = fmax(moved, fabs(later->position[k] - r->position[k]));
+        since = fmax(since, fabs(later->position[k] - end->position[k]));
+        rate = fmax(rate, fabs(end->velocity[k]));
     }
-    const bool stopped = later.outcome != STANCE_FELL && rate < 1e-7 && since < 1e-6;
-    const bool says = r.outcome == STANCE_RESTED;
-    const double bound = c.settle_angle;
-    return (struct stay){says, says && moved > bound, says && later.outcome == STANCE_FELL, stopped,
-                         stopped && !says};
+    const bool stopped = later->outcome != STANCE_FELL && rate < 1e-7 && since < 1e-6;
+    const bool says = r->outcome == STANCE_RESTED;
+    sum->rested += says;
+    sum->left += says && moved > bound;
+    sum->fallen += says && later->outcome == STANCE_FELL;
+    sum->still += stopped;
+    sum->missed += stopped && !says;
 }
-static void stay_add(struct stay *sum, struct stay s)
+static struct stay stay_of(const stance_kernel *kernel, stance_case *c, int count)
 {
-    sum->rested += s.rested, sum->left += s.left, sum->fallen += s.fallen;
-    sum->still += s.still, sum->missed += s.missed;
+    stance_result *const r = calloc(3 * (size_t)count, sizeof *r), *const end = r + count,
+                         *const later = end + count;
+    struct stay sum = {0};
+    assert_non_null(r);
+    kernel->run(c, r, (size_t)count);
+    for (int i = 0; i < count; i++)
+        c[i].settle = false;
+    kernel->run(c, end, (size_t)count);
+    for (int i = 0; i < count; i++)
+        c[i].steps *= 3;
+    kernel->run(c, later, (size_t)count);
+    for (int i = 0; i < count; i++)
+        stay_add(&sum, &r[i], &end[i], &later[i], c[i].settle_angle);
+    free(r);
+    return sum;
 }
 
 /* What rests does not move afterwards, and nearly all of what has stopped was said to rest. */
@@ -293,17 +303,20 @@ static void soft_legs_rest_where_they_stay(void **state)
     (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
     const int count = getenv("STANCE_TEST_LONG") ? 20000 : 1000;
+    stance_case *const c = calloc((size_t)count, sizeof *c);
+    assert_non_null(c);
     for (int m = 0; m < 2; m++) {
         uint64_t seed = 11;
-        struct stay sum = {0};
         for (int i = 0; i < count; i++)
-            stay_add(&sum, stay_of(kernel_of(methods[m], NULL), soft_case(&seed)));
+            c[i] = soft_case(&seed);
+        const struct stay sum = stay_of(kernel_of(methods[m], NULL), c, count);
         print_message("## %s: %d of %d rested, of which %d fell and %d moved later; of %d that had "
                       "stopped %d were not said to rest\n",
                       methods[m], sum.rested, count, sum.fallen, sum.left, sum.still, sum.missed);
         assert_true(sum.rested > count / 5 && sum.fallen == 0 && sum.left == 0);
         assert_true(sum.missed * 20 < sum.still);
     }
+    free(c);
 }
 
 /* The same with laws that are not linear about where it stands, and where the trunk sinks. */
@@ -312,16 +325,19 @@ static void odd_laws_rest_where_they_stay(void **state)
     (void)state;
     static const char *const names[] = {"two laws", "ramps", "limits", "underground"};
     const int count = getenv("STANCE_TEST_LONG") ? 10000 : 400;
+    stance_case *const c = calloc((size_t)count, sizeof *c);
+    assert_non_null(c);
     for (int kind = 0; kind < KINDS; kind++) {
         uint64_t seed = 5;
-        struct stay sum = {0};
         for (int i = 0; i < count; i++)
-            stay_add(&sum, stay_of(kernel_of("midpoint", NULL), odd_case(&seed, kind)));
+            c[i] = odd_case(&seed, kind);
+        const struct stay sum = stay_of(kernel_of("midpoint", NULL), c, count);
         print_message("## %s: %d of %d rested, of which %d fell and %d moved later\n", names[kind],
                       sum.rested, count, sum.fallen, sum.left);
         assert_true(sum.fallen == 0 && sum.left == 0);
         assert_true(kind == RAMPS || sum.rested > count / 5);
     }
+    free(c);
 }
 
 /* At e = 0.55 and 0.75 the steps of 1 ms end in bounces of micrometres, for ever: it lies still. */

@@ -72,6 +72,12 @@ static const char switches[] = "stance: 1\n"
                                "  sample_time: 0.01}\n"
                                "stop: {time: 1}\n";
 
+static const char bends[] = "stance: 1\n"
+                            "scene: biped\n"
+                            "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
+                            "controller: {kind: bimodal-feedback, design: lqr, sample_time: 0.01}\n"
+                            "stop: {time: 1}\n";
+
 static const char gives_gains[] = "stance: 1\n"
                                   "scene: biped\n"
                                   "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
@@ -642,6 +648,7 @@ static const char *text_for(const struct scenario_field *field)
            : use == USE_GAINS                           ? gives_gains
            : use == USE_LQR                             ? regulates
            : strcmp(law, "decoupling") == 0             ? decouples
+           : strcmp(law, "bimodal-feedback") == 0       ? bends
            : use == USE_FAR                             ? switches
                                                         : places;
 }

@@ -36,6 +36,28 @@ compiler() { # file, what it does instead of compiling
     chmod +x "$1"
 }
 
+# What the compiler has made once of the same source with the same flags it need not make again: the cc in the path
+# keeps it.
+mkdir tools made
+real=$(command -v cc)
+cat >tools/cc <<END
+#!/bin/bash
+case " \$* " in *" --version "* | *" -dumpmachine "*) exec "$real" "\$@" ;; esac
+flags=() out=
+while ((\$#)); do
+    if [ "\$1" = -o ]; then out=\$2 && shift; else flags+=("\$1"); fi
+    shift
+done
+made=$scratch/made/\$({ echo "\${flags[@]}"; "$real" "\${flags[@]}" -E -P; } | sha256sum | cut -c 1-40) || exit
+if [ ! -e "\$made" ]; then
+    "$real" "\${flags[@]}" -o "\$made.\$\$" || exit
+    mv "\$made.\$\$" "\$made"
+fi
+cp "\$made" "\$out"
+END
+chmod +x tools/cc
+PATH=$scratch/tools:$PATH
+
 # ---- all goes well --------------------------------------------------------------------------------
 for scene in ball rod; do
     expect "$scene: compiled" 0 "$job" $scene implicit,midpoint,capturing,lagrange $isa

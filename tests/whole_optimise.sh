@@ -104,6 +104,39 @@ result $? "... within their bounds"
 search "poles instead of gains" 0 box.yaml -o poles.h5 --set optimise.vary=poles \
     --set optimise.candidates=24 --set optimise.grow=[32] --set optimise.confirm=64
 
+# What counts, and what is said of it.
+search "an answer instead of a share" 0 box.yaml -o steps.h5 --set optimise.maximise=steps \
+    --set optimise.candidates=11 --set method.step=0.0005 --set optimise.grow=[32] --set optimise.confirm=64
+says "... is not told as one" '^steps.h5: 11 candidates in 1 generation, .*; objective [0-9.]* of 64 fresh starts, the first [0-9.]*; '
+! grep -q 'twice the sample time' log
+result $? "... nor compared with one"
+expect "its scenario runs" 0 "$stance" run steps-best.yaml -o steps-run.h5 --set seed=$seed --set sweep.sample.count=64
+"$python" "$tests/search.py" answer steps.h5 steps-run.h5 >log 2>&1
+result $? "... and has the same mean, of answers above 1000, too"
+sed 's/method: sobol/method: random/; s/  *- {path: initial.offset.vtheta.*/&\n      - {path: initial.offset.vq1, from: -1, to: 1}\n      - {path: initial.offset.vq2, from: -1, to: 1}\n      - {path: initial.offset.q2, from: -0.2, to: 0.2}\n      - {path: ground.friction, from: 0.7, to: 0.9}\n      - {path: robot.hip_mass, from: 5.3, to: 5.5}\n      - {path: robot.foot_mass, from: 1.7, to: 1.9}\n      - {path: robot.trunk_mass, from: 1.7, to: 1.9}\n      - {path: robot.leg_length, from: 0.5, to: 0.55}/' \
+    box.yaml >many.yaml
+search "starts of eleven numbers, the middle counting more" 0 many.yaml -o many.h5 --set optimise.weight=normal \
+    --set optimise.candidates=11 --set optimise.grow=[8] --set optimise.confirm=32
+"$python" "$tests/search.py" weighted many.h5 >log 2>&1
+result $? "... have weights, however far from the middle they are"
+search "a price beyond all worth" 0 box.yaml -o dear.h5 --set optimise.price.gain=1e9 --set optimise.candidates=22 \
+    --set optimise.grow=[32] --set optimise.confirm=64
+"$python" "$tests/search.py" dear dear.h5 >log 2>&1
+result $? "... makes no loop that was not tried the best"
+search "equal ratios without bounds" 0 box.yaml -o ratios.h5 --set optimise.candidates=24 --set optimise.grow=[32] \
+    --set optimise.confirm=64 --set 'optimise.vary=[{path: initial.equilibrium.q2, unit: 0.1, spacing: log}]'
+"$python" "$tests/search.py" ratios ratios.h5 >log 2>&1
+result $? "... go both ways"
+
+# What ships.
+for scenario in "$shipped"/optimise/*.yaml; do
+    name=$(basename "$scenario" .yaml)
+    expect "$name is sound" 0 "$stance" check "$scenario"
+    [ "$name" = optimise_rabbit ] && continue # whose kernel takes a minute to compile
+    search "... and a search" 0 "$scenario" -o shipped.h5 --force --set optimise.candidates=20 \
+        --set optimise.grow=[32] --set optimise.confirm=64
+done
+
 # Bad days.
 search "a file that exists is left alone" 3 box.yaml -o one.h5
 says "... says how to go on" '^stance optimise: one.h5 exists; --force replaces it, --resume goes on with it$'
@@ -122,6 +155,18 @@ search "a scenario without the section" 2 one-best.yaml -o none.h5
 says "... is told so" '^one-best.yaml:[0-9]*:1: no section optimise'
 search "fewer candidates than a generation" 2 box.yaml -o none.h5 --set optimise.candidates=5
 says "... are refused" 'optimise.candidates: 5 are less than one generation, 11'
+search "... than the last beginning has" 2 box.yaml -o none.h5 --set optimise.restarts=3
+says "... are refused" 'optimise.candidates: 77 are less than one generation after the restarts, 88'
+search "what is wrong once the gains are known" 2 box.yaml -o none.h5 --set 'optimise.vary=[gains, gains]'
+says "... is told at its place" "^box.yaml:$(grep -n '^optimise' box.yaml | cut -d: -f1):[0-9]*: optimise.vary\[1\]: .* is varied twice"
+cp box.yaml own-best.yaml
+search "the scenario is not written over by the best" 3 own-best.yaml -o own.h5 --force
+says "... says so" 'own-best.yaml is the scenario and would be written over: give another -o'
+search "... nor by the search" 3 own-best.yaml -o own-best.yaml --force
+cmp -s box.yaml own-best.yaml
+result $? "... and stays"
+search "nor is another scenario of that name" 3 box.yaml -o own.h5
+says "... says how to go on" 'own-best.yaml exists; --force replaces it, -o names other files'
 search "poles that cannot be" 2 box.yaml -o none.h5 --set controller.poles='[-3,-3,-3,-4,-5,-6]'
 [ "$(wc -l <log)" = 1 ] && [ ! -e none.h5 ]
 result $? "... are told in one line"

@@ -127,12 +127,12 @@ expect "a stop while sets are estimated" 4 "$stance" run captured.yaml -o never.
 result $? "... leaves no file"
 
 # ---- killed, stopped, damaged, and gone on with ------------------------------------------------
-scenario "$(grid 250 250)
+scenario "$(grid 200 200)
 stop: {time: $span, settle: off}
-record: {every: 0.1, cases: [0, 100, 62499]}" >long.yaml
+record: {every: 0.1, cases: [0, 100, 39999]}" >long.yaml
 expect "the whole job" 0 mpirun -n 2 "$stance" run long.yaml -o long.h5
 expect "status of a finished file" 0 "$stance" status long.h5 --json
-says "status counts 62500 cases" '"done": 62500'
+says "status counts 40000 cases" '"done": 40000'
 
 # Waits until some cases of $1 are done.
 await() {

@@ -55,16 +55,6 @@ static void drop_scenario(struct scenario **s)
     *s = NULL;
 }
 
-static bool is_plain(const struct scenario *s)
-{
-    if (!s || !s->search.given)
-        return true;
-    bool plain = s->search.aim == AIM_SHARE && !s->search.normal && s->search.gain_price == 0;
-    for (int i = 0; i < STANCE_ANSWER_COUNT; i++)
-        plain = plain && s->search.price[i] == 0;
-    return plain;
-}
-
 static void name_study(struct search_study *study)
 {
     const char *const slash = strrchr(study->file, '/');
@@ -96,7 +86,8 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
         study->best = read_scenario(file, text);
         free(text);
     }
-    study->plain = is_plain(study->first);
+    study->plain =
+        !study->first || !study->first->search.given || scenario_search_plain(study->first);
     return true;
 }
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_STAGES = SCENARIO_MAX_STAGES * 21 };
+enum { MOST_STAGES = SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1) };
 
 /* ---- facts -------------------------------------------------------------------------------- */
 

@@ -94,7 +94,9 @@ static void print_aim(const struct search_study *study)
     printf("Maximised: %s\n", aim);
     if (study->first && study->first->search.given) {
         const double critical = study->first->search.critical;
-        if (isnan(critical))
+        if (study->first->base.sample_time == 0)
+            ; /* nothing is sampled */
+        else if (isnan(critical))
             puts("Required: a critical sample time of two sample times");
         else if (critical > 0)
             printf("Required: a critical sample time of %g s\n", critical);
@@ -261,6 +263,7 @@ static void print_loop(const struct search_study *study)
 {
     const double critical =
         study->f.confirmed_critical[(size_t)study->f.chosen * study->f.length[SEARCH_CIRCUMSTANCE]];
+    const double first = study->f.confirmed_critical[0];
     struct design_report *const loop = search_loop(study);
     if (loop) {
         fputs("  poles ", stdout);
@@ -273,10 +276,13 @@ static void print_loop(const struct search_study *study)
         free(loop);
     }
     if (isinf(critical))
-        puts("  critical sample time: none up to 10 s");
+        fputs("  critical sample time: none up to 10 s", stdout);
     else if (!isnan(critical))
-        printf("  critical sample time %.4g s, of the first %.4g s\n", critical,
-               study->f.confirmed_critical[0]);
+        printf("  critical sample time %.4g s", critical);
+    if (isfinite(critical) && isfinite(first))
+        printf(", of the first %.4g s", first);
+    if (!isnan(critical))
+        putchar('\n');
 }
 
 static void print_chosen(const struct search_study *study)

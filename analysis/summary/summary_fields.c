@@ -130,8 +130,8 @@ static void add_entry(struct collection *c, const char *path, const struct scena
     }
 }
 
-/* What a law is told: of parameters by coordinates those of the pair that it controls. Where the
- * pair is varied the loops of all coordinates may act, and nothing is told. */
+/* What a law is told: of parameters by coordinates those of the selection that it controls. Where
+ * that is varied the loops of all coordinates may act, and nothing is told. */
 static void add_law(struct collection *c, const struct scenario_values *v, const stance_law *law)
 {
     const stance_scene *const scene = c->s->scene;
@@ -147,12 +147,16 @@ static void add_law(struct collection *c, const struct scenario_values *v, const
                    sizeof selection);
         if (parameter->per == STANCE_PER_LAW || parameter->per == STANCE_PER_SELECTION)
             add_entry(c, path, v, telling);
-        if (parameter->per != STANCE_PER_COORDINATE ||
-            !stance_selection(scene, selection, selected))
-            continue;
-        for (int k = 0; k < scene->actuators; k++) {
+        const bool posture = parameter->per == STANCE_PER_POSTURE, told = parameter->told;
+        const int *const of = posture                                         ? scene->posture
+                              : told && parameter->per == STANCE_PER_ACTUATOR ? scene->actuated
+                              : parameter->per == STANCE_PER_COORDINATE &&
+                                      stance_selection(scene, selection, selected)
+                                  ? selected
+                                  : NULL;
+        for (int k = 0; of && k < (posture ? scene->postures : scene->actuators); k++) {
             snprintf(path, sizeof path, "controller.%s.%s", parameter->of.name,
-                     scene->coordinate[selected[k]].name);
+                     scene->coordinate[of[k]].name);
             add_entry(c, path, v, telling);
         }
     }

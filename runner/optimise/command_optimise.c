@@ -142,6 +142,24 @@ static bool say_place(struct optimise *o, const char *key, const char *text)
     return fail(o, EXIT_USAGE);
 }
 
+/* The first candidate, from a text of our own: places in it are none of the user's. */
+static bool read_first(struct optimise *o, const char *text)
+{
+    char *said = NULL;
+    size_t size = 0, place = strlen(o->options.scenario);
+    FILE *const to = open_memstream(&said, &size);
+    const bool good = to && scenario_read(o->first, o->options.scenario, text, NULL, 0, to);
+    if (to)
+        fclose(to);
+    if (!good && size > place) {
+        place += strspn(said + place, ":0123456789 ");
+        said[place + strcspn(said + place, "\n")] = '\0';
+        say_place(o, "optimise.vary:", said + place);
+    }
+    free(said);
+    return good || fail(o, EXIT_USAGE);
+}
+
 /* Rank 0: the scenario, and of it the first candidate. */
 static bool read_scenario(struct optimise *o)
 {
@@ -157,10 +175,9 @@ static bool read_scenario(struct optimise *o)
     char *const text = best_first(o->asked, &o->message);
     if (!text)
         return say_place(o, "controller:", o->message.text);
-    const bool good = scenario_read(o->first, options->scenario, text, NULL, 0, stderr);
+    const bool good = read_first(o, text);
     free(text);
-    o->printed = !good;
-    return good || fail(o, EXIT_USAGE);
+    return good;
 }
 
 static bool stage_scenario(struct optimise *o)
@@ -170,8 +187,10 @@ static bool stage_scenario(struct optimise *o)
     if (!o->asked || !o->first)
         abort(); /* the others wait in the broadcast: MPI ends the job */
     const bool read = o->parallel.rank == 0 && read_scenario(o);
-    if (claim_scenario(&o->parallel, o->first, o->options.scenario, read, &o->message))
+    if (claim_scenario(&o->parallel, o->first, o->options.scenario, read, &o->message)) {
+        space_prune(o->first);
         return true;
+    }
     return o->code != EXIT_DONE || o->parallel.rank != 0 ? false : fail(o, EXIT_IO);
 }
 
@@ -234,11 +253,32 @@ static bool look_into_file(struct optimise *o)
     return true;
 }
 
+/* Neither file of the search is the scenario itself, and a scenario of the best that lies there is
+ * not taken for one of an earlier search. */
+static bool spares_files(struct optimise *o)
+{
+    const char *const names[] = {o->file, o->best};
+    const struct options *const options = &o->options;
+    struct stat scenario, other;
+    if (stat(options->scenario, &scenario) != 0)
+        return true; /* read all the same: from a pipe */
+    for (int i = 0; i < 2; i++)
+        if (stat(names[i], &other) == 0 && other.st_dev == scenario.st_dev &&
+            other.st_ino == scenario.st_ino)
+            return complain(&o->message,
+                            "%.150s is the scenario and would be written over: give another -o",
+                            names[i]);
+    return options->force || options->resume || access(o->best, F_OK) != 0 ||
+           complain(&o->message, "%.150s exists; --force replaces it, -o names other files",
+                    o->best);
+}
+
 static bool take_file(struct optimise *o)
 {
     bool exists;
     if (!claim_file(o->file, o->options.force, o->options.resume, !o->options.output, &o->lock,
                     &exists, &o->message) ||
+        !spares_files(o) ||
         (!heartbeat_begin(&o->heartbeat, &o->lock, &o->parallel, "starting") &&
          !no_memory(&o->message)))
         return fail(o, EXIT_IO);
@@ -336,8 +376,10 @@ static bool stage_make(struct optimise *o)
         o->first->search.candidates < (uint64_t)search_lambda(&o->search)) {
         char line[120];
         snprintf(line, sizeof line,
-                 "optimise.candidates: %" PRIu64 " are less than one generation, %d",
-                 o->first->search.candidates, search_lambda(&o->search));
+                 "optimise.candidates: %" PRIu64 " are less than one generation%s, %d",
+                 o->first->search.candidates,
+                 o->first->search.restarts > 0 ? " after the restarts" : "",
+                 search_lambda(&o->search));
         return say_place(o, line, line);
     }
     return true;
@@ -390,6 +432,20 @@ static double refused(const struct search_file *f)
     return (double)count / (double)f->length[SEARCH_CANDIDATE];
 }
 
+/* Share of fresh starts that the best one recovers, where it recovers most. */
+static double best_share(const struct search_file *f)
+{
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    const int64_t *const count =
+        &f->confirmed_count[(size_t)f->chosen * circumstances * TRIAL_LABELS];
+    int64_t most = 0;
+    for (size_t c = 0; c < circumstances; c++) {
+        const int64_t recovered = count[c * TRIAL_LABELS + STANCE_STABILISED + 1];
+        most = recovered > most ? recovered : most;
+    }
+    return (double)most / (double)f->length[SEARCH_START];
+}
+
 /* What linear theory and the counts say against the best. */
 static void warn(const struct optimise *o)
 {
@@ -400,9 +456,11 @@ static void warn(const struct optimise *o)
     const double *const value = &f->confirmed_value[(size_t)f->chosen * n];
     static const char who[] = "stance optimise: warning:";
     for (size_t k = 0; k < n; k++) {
-        const struct scenario_varied *const v = &space->search->varied[space->path[k]];
-        const double edge = 0.01 * (v->high - v->low);
-        const bool low = value[k] <= v->low + edge, high = value[k] >= v->high - edge;
+        const struct scenario_varied *const v = &space->search->varied[k];
+        const bool even = v->scale == SCALE_EVEN;
+        const double edge = 0.01 * (even ? v->high - v->low : log(v->high / v->low));
+        const bool low = value[k] <= (even ? v->low + edge : v->low * exp(edge)),
+                   high = value[k] >= (even ? v->high - edge : v->high * exp(-edge));
         if (v->bounded && (low || high))
             fprintf(stderr,
                     "%s %s of the best is at its %s bound, %g: better ones may lie beyond\n", who,
@@ -410,7 +468,7 @@ static void warn(const struct optimise *o)
     }
     for (size_t e = 0; e < f->length[SEARCH_ELSEWHERE]; e++)
         if (f->elsewhere_chosen[e] < f->elsewhere_first[e] ||
-            f->elsewhere_chosen[e] < 0.5 * f->confirmed_objective[f->chosen])
+            f->elsewhere_chosen[e] < 0.5 * best_share(f))
             fprintf(stderr, "%s %s the best recovers %.1f %% of the starts, the first %.1f %%\n",
                     who, f->elsewhere[e], 100 * f->elsewhere_chosen[e],
                     100 * f->elsewhere_first[e]);
@@ -419,7 +477,7 @@ static void warn(const struct optimise *o)
                 "%s %.2f %% of the best one's starts are undecided when stop.time is up and do not "
                 "count: a longer one would tell\n",
                 who, 100 * undecided(f));
-    if (f->objective[f->best[0]] < 0.01 && search->scenario->search.aim == AIM_SHARE)
+    if (f->objective[f->best[0]] < 0.01 && scenario_search_plain(search->scenario))
         fprintf(stderr,
                 "%s hardly a start recovers in the first generation: begin with another "
                 "controller, or with restarts\n",
@@ -438,7 +496,7 @@ static void warn(const struct optimise *o)
 
 static void print_objective(const struct optimise *o, double value)
 {
-    if (o->first->search.aim == AIM_SHARE)
+    if (scenario_search_plain(o->first))
         printf("%.2f %%", 100 * value);
     else
         printf("%.6g", value);
@@ -452,12 +510,14 @@ static int conclude(struct optimise *o)
     warn(o);
     if (o->options.quiet)
         return EXIT_DONE;
-    printf("%s: %zu candidates in %zu generations, %s; ", o->file, f->length[SEARCH_CANDIDATE],
-           f->length[SEARCH_GENERATION], f->note);
+    const bool plain = scenario_search_plain(o->first);
+    printf("%s: %zu candidates in %zu generation%s, %s; %s", o->file, f->length[SEARCH_CANDIDATE],
+           f->length[SEARCH_GENERATION], f->length[SEARCH_GENERATION] == 1 ? "" : "s", f->note,
+           plain ? "" : "objective ");
     print_objective(o, f->confirmed_objective[f->chosen]);
     printf(" of %zu fresh starts, the first ", f->length[SEARCH_START]);
     print_objective(o, f->confirmed_objective[0]);
-    if (isfinite(f->linear_limit))
+    if (plain && isfinite(f->linear_limit))
         printf(", linear theory allows any %.2f %%", 100 * f->linear_limit);
     printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - o->start,
            o->parallel.size, o->parallel.size == 1 ? "" : "s", o->best);

@@ -32,7 +32,7 @@ static int lambda_of(const struct search *search, int restart)
 
 int search_lambda(const struct search *search)
 {
-    return lambda_of(search, 0);
+    return lambda_of(search, search->scenario->search.restarts);
 }
 
 static size_t stage_generations(const struct search *search, int restart, int stage)
@@ -88,7 +88,7 @@ static char **copy_words(size_t n, const char *(*word)(const struct search *, si
 
 static const char *parameter_word(const struct search *search, size_t i)
 {
-    return search->scenario->search.axis.path[search->space.path[i]];
+    return search->scenario->search.axis.path[i];
 }
 
 static const char *kind_word(const struct search *search, size_t i)
@@ -372,7 +372,8 @@ static int64_t score_of(const struct search *search, size_t candidate, const dou
             score = worth;
     }
     const double one = TRIALS_WORTH * (double)whole;
-    score -= llround(s->gain_price * space_gain(&search->space, coordinate) * one);
+    const double gain = s->gain_price * space_gain(&search->space, coordinate);
+    score -= llround(fmin(gain, TRIALS_MOST_WORTH) * one);
     *objective = (double)score / one;
     return score;
 }

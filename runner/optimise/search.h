@@ -40,7 +40,7 @@ bool search_make(struct search *search, const struct scenario *scenario, const c
                  stance_message *message);
 void search_free(struct search *search);
 
-/* Candidates in a generation of the first beginning. */
+/* Candidates in a generation, of several beginnings the last. */
 int search_lambda(const struct search *search);
 
 /* Collective, with counters. */

@@ -6,6 +6,8 @@
  */
 #include "space.h"
 
+#include "runner/plan/resolve.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -46,6 +48,13 @@ static double widest(const struct scenario *s, bool rate)
     return width > 0 ? width : usual[rate];
 }
 
+/* Half-width of the starts in an angle or its rate. */
+static double start_width(const struct scenario *s, int coordinate, bool rate)
+{
+    const double width = half_width(s, rate ? s->scene->coordinates + coordinate : coordinate);
+    return width > 0 ? width : widest(s, rate);
+}
+
 static double gain_unit(const struct scenario *s, size_t actuator, size_t column)
 {
     const size_t postures = (size_t)s->scene->postures;
@@ -54,8 +63,23 @@ static double gain_unit(const struct scenario *s, size_t actuator, size_t column
     double limit[STANCE_MAX_ACTUATORS];
     stance_torque_limits(s->scene, s->base.robot, s->base.torque_limit, s->base.torque_limits,
                          limit);
-    const double width = half_width(s, rate ? s->scene->coordinates + coordinate : coordinate);
-    return limit[actuator] / (width > 0 ? width : widest(s, rate));
+    return limit[actuator] / start_width(s, coordinate, rate);
+}
+
+/* Of a law's parameter: for each coordinate of the posture that of a gain, of its angle or, in s/rad
+ * and the like, its rate; else 1. So a bend by 1 N m is as wide as a gain. */
+static double law_unit(const struct scenario *s, int k)
+{
+    const size_t size = sizeof s->base.law_value[0];
+    const size_t offset = s->search.axis.offset[k] - offsetof(struct scenario_values, law_value);
+    const stance_law *const law = stance_laws()[offset / size];
+    const size_t number = offset % size / sizeof(double), place = number % STANCE_LAW_ROOM;
+    const stance_parameter *const p = &law->parameter[number / STANCE_LAW_ROOM];
+    const size_t rate = p->of.unit[0] == 's' ? (size_t)s->scene->postures : 0;
+    double unit = 0;
+    for (size_t i = 0; p->per == STANCE_PER_POSTURE && i < (size_t)s->scene->actuators; i++)
+        unit = fmax(unit, gain_unit(s, i, rate + place));
+    return unit > 0 && isfinite(unit) ? unit : 1;
 }
 
 static double coordinate_of(enum scenario_scale scale, double unit, double value)
@@ -63,22 +87,54 @@ static double coordinate_of(enum scenario_scale scale, double unit, double value
     return (scale == SCALE_EVEN ? value : log(fabs(value))) / unit;
 }
 
+/* Whether a number is a gain, and then its place in the matrix of them. */
+static bool is_gain(const struct scenario *s, int k, size_t *place)
+{
+    const size_t gains = offsetof(struct scenario_values, gains);
+    const size_t offset = s->search.axis.offset[k];
+    *place = (offset - gains) / sizeof(double);
+    return offset >= gains && offset < gains + sizeof s->base.gains;
+}
+
+void space_prune(struct scenario *s)
+{
+    struct scenario_axis *const axis = &s->search.axis;
+    const int columns = 2 * s->scene->postures;
+    double model[STANCE_MAX_ROBOT];
+    stance_equilibrium equilibrium;
+    stance_message ignored;
+    bool moves[2 * STANCE_MAX_POSTURE] = {false};
+    int n = 0;
+    if (!scenario_law(&s->base)->designed ||
+        !resolve_equilibrium(s->scene, &s->base, model, &equilibrium, &ignored))
+        return;
+    for (int j = 0; j < 2 * equilibrium.freedoms; j++)
+        moves[resolve_state(s->scene, &equilibrium, j)] = true;
+    for (int k = 0; k < axis->paths; k++) {
+        size_t place;
+        if (is_gain(s, k, &place) && !moves[place % (size_t)columns])
+            continue;
+        memmove(axis->path[n], axis->path[k], sizeof axis->path[k]);
+        axis->offset[n] = axis->offset[k];
+        s->search.varied[n++] = s->search.varied[k];
+    }
+    axis->paths = n;
+}
+
 void space_make(struct space *space, const struct scenario *s)
 {
     const struct scenario_search *const search = &s->search;
-    const size_t gains = offsetof(struct scenario_values, gains);
     const size_t columns = 2 * (size_t)s->scene->postures;
-    *space = (struct space){.search = search};
-    for (int k = 0; k < search->axis.paths; k++) {
-        const struct scenario_varied *const v = &search->varied[k];
-        const size_t offset = search->axis.offset[k];
-        const int i = space->n++;
+    *space = (struct space){.search = search, .n = search->axis.paths};
+    for (int i = 0; i < space->n; i++) {
+        const struct scenario_varied *const v = &search->varied[i];
+        size_t place;
         double value;
-        memcpy(&value, (const char *)&s->base + offset, sizeof value);
-        space->path[i] = k;
-        space->gain[i] = offset >= gains && offset < gains + sizeof s->base.gains;
-        const size_t place = space->gain[i] ? (offset - gains) / sizeof(double) : 0;
-        space->unit[i] = isnan(v->unit) ? gain_unit(s, place / columns, place % columns) : v->unit;
+        memcpy(&value, (const char *)&s->base + search->axis.offset[i], sizeof value);
+        space->gain[i] = is_gain(s, i, &place);
+        space->unit[i] = !isnan(v->unit)   ? v->unit
+                         : space->gain[i] ? gain_unit(s, place / columns, place % columns)
+                                          : law_unit(s, i);
         space->first[i] = coordinate_of(v->scale, space->unit[i], value);
         const double a = v->low == 0 && v->scale != SCALE_EVEN
                              ? -INFINITY
@@ -93,7 +149,7 @@ void space_make(struct space *space, const struct scenario *s)
 
 double space_value(const struct space *space, int k, double y)
 {
-    const struct scenario_varied *const v = &space->search->varied[space->path[k]];
+    const struct scenario_varied *const v = &space->search->varied[k];
     const double size = y * space->unit[k];
     const double value = v->scale == SCALE_EVEN    ? size
                          : v->scale == SCALE_RATIO ? exp(size)

@@ -6,18 +6,19 @@
 
 #include <stdbool.h>
 
-/* Number k is y unit, exp(y unit) or -exp(y unit), y its coordinate; of scenario_search's numbers
- * those in `path`, which some candidate feels. */
+/* Number k is y unit, exp(y unit) or -exp(y unit), y its coordinate. */
 struct space {
     int n;
     const struct scenario_search *search;
-    int path[SCENARIO_MAX_PATHS];
     double unit[SCENARIO_MAX_PATHS];
     double first[SCENARIO_MAX_PATHS];                         /* coordinates of the scenario */
     double low[SCENARIO_MAX_PATHS], high[SCENARIO_MAX_PATHS]; /* of coordinates */
     bool gain[SCENARIO_MAX_PATHS];
 };
 
+/* Leaves out of what a scenario's search varies the gains on what the contacts hold, which no
+ * candidate would feel. */
+void space_prune(struct scenario *s);
 /* Of a scenario whose gains, if they are varied, are given. */
 void space_make(struct space *space, const struct scenario *s);
 /* The value of number k at a coordinate. */

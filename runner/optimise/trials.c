@@ -15,27 +15,34 @@
 #include <string.h>
 
 #define MOST_SHORT 1e3
-#define MOST_WORTH 1e3 /* of a start, either sign: sums stay whole numbers of 64 bits */
 
 /* ---- making -----------------------------------------------------------------------------------
  */
 
-/* Integer weights of starts: even, or by a normal density about the middle of each range. */
+/* What a start counts: even, or by a normal density about the middle of each range. */
+static double density(const struct scenario *s, const double *value)
+{
+    double sum = 0;
+    for (size_t j = 0; s->search.normal && j < s->sample.design.factors; j++) {
+        const struct scenario_factor *const f = &s->sample.factor[j];
+        const double from = f->value[0], to = f->value[(f->points - 1) * (size_t)f->paths];
+        const double at = value[f->first];
+        const double off = from < to ? ((at - from) / (to - from) - 0.5) / 0.25 : 0;
+        sum += off * off;
+    }
+    return exp(-0.5 * sum);
+}
+
+/* The same as whole numbers. */
 static int64_t *make_weights(const struct scenario *s, uint64_t starts, const double *value)
 {
-    const struct scenario_axis *const axis = &s->axis[s->axes - 1];
+    const size_t paths = (size_t)s->axis[s->axes - 1].paths;
     int64_t *const weight = malloc(starts * sizeof *weight);
-    for (uint64_t i = 0; weight && i < starts; i++) {
-        double sum = 0;
-        for (size_t j = 0; s->search.normal && j < s->sample.design.factors; j++) {
-            const struct scenario_factor *const f = &s->sample.factor[j];
-            const double from = f->value[0], to = f->value[(f->points - 1) * (size_t)f->paths];
-            const double at = value[i * (size_t)axis->paths + (size_t)f->first];
-            const double off = from < to ? ((at - from) / (to - from) - 0.5) / 0.25 : 0;
-            sum += off * off;
-        }
-        weight[i] = (int64_t)llround(TRIALS_WEIGHT * exp(-0.5 * sum));
-    }
+    double sum = 0;
+    for (uint64_t i = 0; weight && i < starts; i++)
+        sum += density(s, &value[i * paths]);
+    for (uint64_t i = 0; weight && i < starts; i++)
+        weight[i] = llround(TRIALS_WEIGHT / sum * density(s, &value[i * paths]));
     return weight;
 }
 
@@ -229,7 +236,7 @@ static int64_t worth_of(const struct scenario_search *search, const stance_resul
         worth = aim ? worth - 1 + value : worth;
         worth -= search->price[i] * value;
     }
-    return llround(TRIALS_WORTH * fmin(fmax(worth, -MOST_WORTH), MOST_WORTH));
+    return llround(TRIALS_WORTH * fmin(fmax(worth, -TRIALS_MOST_WORTH), TRIALS_MOST_WORTH));
 }
 
 static void end_case(struct stream *stream, uint64_t row, const stance_result *result)

@@ -31,7 +31,7 @@ struct trials {
     struct scenario *at; /* with the axes candidate, circumstances ..., start */
     size_t circumstances;
     double *start[TRIALS_STARTS];   /* points of the sample axis */
-    int64_t *weight[TRIALS_STARTS]; /* [starts], TRIALS_WEIGHT: 1 */
+    int64_t *weight[TRIALS_STARTS]; /* [starts], their sum TRIALS_WEIGHT but for rounding */
     struct kernels kernels;
     bool has_kernels, quiet;
     /* Of the last run, [candidates][circumstances][starts] and [candidates][circumstances], on
@@ -47,9 +47,11 @@ struct trials {
     int64_t beats; /* this rank's sign of life */
 };
 
-/* Whole numbers that stand for 1. */
-#define TRIALS_WEIGHT 128
+/* Whole numbers: of the weights of all starts, and what stands for a worth of 1. A start is worth
+ * at most TRIALS_MOST_WORTH, either sign, so that sums stay within 64 bits. */
+#define TRIALS_WEIGHT 0x1p24
 #define TRIALS_WORTH 0x1p20
+#define TRIALS_MOST_WORTH 5e4
 
 /* Collective in what it makes: the same on every rank. False: no memory. */
 bool trials_make(struct trials *trials, const struct scenario *scenario,

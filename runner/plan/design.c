@@ -92,7 +92,7 @@ static void find_allowed(struct design_report *r)
 
 /* ---- the loop -------------------------------------------------------------------------------- */
 
-/* K, of a law that is not designed too: what it is as a gain matrix. */
+/* K, of a law that is not designed too: what it is as a gain matrix; and where it bends. */
 static bool gains(struct design_report *r, stance_message *message)
 {
     const stance_scene *const scene = r->scenario->scene;
@@ -101,14 +101,20 @@ static bool gains(struct design_report *r, stance_message *message)
     stance_case c = {0};
 
     r->how = (struct resolved_gains){0, NAN};
-    if (scenario_law(values)->designed)
-        return resolve_gains(scene, values, &r->equilibrium, r->A, r->B, r->K, &r->how, message);
-    if (r->states < 2 * scene->postures)
+    const stance_law *const law = scenario_law(values);
+    if (law->designed &&
+        !resolve_gains(scene, values, &r->equilibrium, r->A, r->B, r->K, &r->how, message))
+        return false;
+    if (!law->designed && r->states < 2 * scene->postures)
         return complain(message, "a law that is not designed acts on what the contacts hold, too: "
                                  "it has no gains here");
-    if (!resolve_law(scene, values, scenario_law(values), begin, &c.near, &c, message))
+    if (!resolve_law(scene, values, law, begin, &c.near, &c, message))
         return false;
-    for (int i = 0; i < r->inputs; i++)
+    r->bends = c.bends;
+    for (int j = 0; j < r->states; j++)
+        r->plane[j] = c.bend.normal[resolve_state(scene, &r->equilibrium, j)];
+    memcpy(r->push, c.bend.push, sizeof r->push);
+    for (int i = 0; i < r->inputs && !law->designed; i++)
         for (int j = 0; j < r->states; j++)
             r->K[i * r->states + j] = c.near.gain[i][resolve_state(scene, &r->equilibrium, j)];
     return true;
@@ -294,8 +300,10 @@ static bool sublevel(struct design_report *r, stance_message *message)
             known_basin_bounds(r->scenario->scene, values, r->model, &r->equilibrium, r->K, a, d);
     }
     if (error == STANCE_OK) {
-        error = stance_sublevel(n, set->P, 2 * m + 3, a, d, &set->level, &set->binding, set->alone,
-                                set->extent);
+        memcpy(&a[(2 * m + 3) * n], r->plane, (size_t)n * sizeof *a);
+        d[2 * m + 3] = 1;
+        error = stance_sublevel(n, set->P, 2 * m + 3 + r->bends, a, d, &set->level, &set->binding,
+                                set->alone, set->extent);
     }
     return error == STANCE_OK || refuse(message, "Lyapunov function", error);
 }
@@ -344,6 +352,13 @@ static bool loop(struct design_report *r, stance_message *message)
     stance_error error = resolve_loop(n, m, r->A, r->B, r->K, 0, matrix);
     if (error == STANCE_OK)
         error = stance_eigenvalues(n, matrix, r->closed_re, r->closed_im);
+    if (error == STANCE_OK && r->bends) {
+        double beyond[DESIGN_INPUTS * DESIGN_STATES];
+        design_beyond(r, beyond);
+        error = resolve_loop(n, m, r->A, r->B, beyond, 0, matrix);
+        if (error == STANCE_OK)
+            error = stance_eigenvalues(n, matrix, r->beyond_re, r->beyond_im);
+    }
     if (error == STANCE_OK)
         error = sampled_loop(r);
     if (error == STANCE_OK)
@@ -378,6 +393,13 @@ bool design_compute(struct design_report *r, const struct scenario *s, stance_me
     return !r->closed || bounds(r, message);
 }
 
+void design_beyond(const struct design_report *r, double *K)
+{
+    for (int i = 0; i < r->inputs; i++)
+        for (int j = 0; j < r->states; j++)
+            K[i * r->states + j] = r->K[i * r->states + j] + r->push[i] * r->plane[j];
+}
+
 /* ---- names ----------------------------------------------------------------------------------- */
 
 const char *design_state_name(const struct design_report *r, int i, char name[SCENARIO_NAME])
@@ -407,7 +429,7 @@ const char *design_bound_name(const struct design_report *r, int bound, char nam
     } else if (bound < torques + 2) {
         snprintf(name, 64, "friction cone, force %s", bound == torques ? "forward" : "backward");
     } else {
-        snprintf(name, 64, "lift-off");
+        snprintf(name, 64, bound == torques + 2 ? "lift-off" : "plane beyond which torques bend");
     }
     return name;
 }

@@ -12,7 +12,8 @@
 enum {
     DESIGN_STATES = 2 * STANCE_MAX_POSTURE,
     DESIGN_INPUTS = STANCE_MAX_ACTUATORS,
-    DESIGN_BOUNDS = 2 * DESIGN_INPUTS + 3, /* each torque up and down, the cone twice, lift-off */
+    /* Each torque up and down, the cone twice, lift-off, the plane of a bimodal law. */
+    DESIGN_BOUNDS = 2 * DESIGN_INPUTS + 4,
     DESIGN_PLANT = DESIGN_STATES + DESIGN_INPUTS,                  /* with torques that lag */
     DESIGN_LOOP = DESIGN_PLANT + STANCE_MAX_DELAY * DESIGN_INPUTS, /* and those under way */
 };
@@ -70,6 +71,10 @@ struct design_report {
     double K[DESIGN_INPUTS * DESIGN_STATES];
     double closed_re[DESIGN_STATES], closed_im[DESIGN_STATES];
     struct resolved_gains how;
+    /* Of a bimodal law: the plane, and the loop that it makes beyond. */
+    bool bends;
+    double plane[DESIGN_STATES], push[DESIGN_INPUTS];
+    double beyond_re[DESIGN_STATES], beyond_im[DESIGN_STATES];
     int delay, sampled; /* delay of the scenario; number of sampled eigenvalues, 0: continuous */
     double lag;         /* s, of the scenario's actuators */
     double sampled_re[DESIGN_LOOP], sampled_im[DESIGN_LOOP];
@@ -114,6 +119,9 @@ bool design_compute(struct design_report *r, const struct scenario *s, stance_me
 
 /* The set itself, of the report's linearisation and limits; NULL: `message` says why not. */
 stance_null_set *design_null_set(const struct design_report *r, stance_message *message);
+
+/* K[inputs][states] beyond the plane of a bimodal law. */
+void design_beyond(const struct design_report *r, double *K);
 
 /* Name of state i: a coordinate, or its rate with a "v" before it. */
 const char *design_state_name(const struct design_report *r, int i, char name[SCENARIO_NAME]);

@@ -143,6 +143,16 @@ static void put_design(const struct design_report *r, json_t *controller)
         json_object_set_new(controller, "condition", json_real(r->how.condition));
         json_object_set_new(controller, "sweeps", json_integer(r->how.sweeps));
     }
+    if (r->bends) {
+        double beyond[DESIGN_INPUTS * DESIGN_STATES];
+        design_beyond(r, beyond);
+        json_object_set_new(
+            controller, "beyond",
+            json_pack("{s:o, s:o, s:o, s:o}", "normal", json_vector(r->states, r->plane), "push",
+                      json_vector(r->inputs, r->push), "gain",
+                      json_matrix(r->inputs, r->states, beyond), "closed_loop_eigenvalues",
+                      json_complex(r->states, r->beyond_re, r->beyond_im)));
+    }
     json_object_set_new(controller, "lyapunov", json_set(r));
     if (r->capture.asked)
         json_object_set_new(controller, "captured", json_capture(r));

@@ -319,6 +319,23 @@ static void print_weights(const struct design_report *r)
         printf(" %.6g%s", values->torque_weights[i], i + 1 < r->inputs ? "," : "\n");
 }
 
+/* A bimodal law beyond its plane. */
+static void print_beyond(const struct design_report *r)
+{
+    double K[DESIGN_INPUTS * DESIGN_STATES];
+    char state[SCENARIO_NAME];
+    design_beyond(r, K);
+    puts("\nBeyond the plane normal X = 1 torques are less by push (normal X - 1): gains there");
+    print_matrix(r, "K + push normal", r->inputs, r->states, K, true, false);
+    putchar('\n');
+    for (int j = 0; j < r->states; j++)
+        printf("  %-16s %14.6g 1/(%s)\n", design_state_name(r, j, state), r->plane[j],
+               state_unit(r, j));
+    for (int i = 0; i < r->inputs; i++)
+        printf("  push, %-10s %14.6g N m\n", r->scenario->scene->actuator_name[i], r->push[i]);
+    print_complex("its closed loop", r->states, r->beyond_re, r->beyond_im);
+}
+
 static void print_closed_loop(const struct design_report *r)
 {
     const struct scenario_values *values = &r->scenario->base;
@@ -334,8 +351,8 @@ static void print_closed_loop(const struct design_report *r)
             "\nController: %s, as a gain matrix: torques = -K X, X counted from the held angles\n",
             law->name);
     } else {
-        printf("\nController: state feedback, %s%s;\ntorques = those of the equilibrium - K X\n",
-               design_text(values),
+        printf("\nController: %s, %s%s;\ntorques = those of the equilibrium - K X\n",
+               r->bends ? "bimodal feedback" : "state feedback", design_text(values),
                values->design != DESIGN_GAINS && values->design_time == DESIGN_SAMPLED
                    ? " for the sampled model"
                    : "");
@@ -351,6 +368,8 @@ static void print_closed_loop(const struct design_report *r)
         printf("  %-16s %.6g, condition number of the eigenvectors, after %d sweeps\n",
                "conditioning", r->how.condition, r->how.sweeps);
     }
+    if (r->bends)
+        print_beyond(r);
     print_sampled(r);
     if (law->designed)
         print_set(r);

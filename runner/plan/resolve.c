@@ -1,6 +1,6 @@
 /* resolve.c - from the numbers of one case to what the engine runs.
  *
- * Which equilibrium is the target of a state-feedback law: controller.equilibrium, or where that
+ * Which equilibrium is the target of a designed law: controller.equilibrium, or where that
  * is not given initial.equilibrium, solved for the robot that the design believes in
  * (controller.model) and the foot that the robot stands on (initial.support_foot, foot 1 if there
  * is none). Its posture is the target, its torques are the feedforward, and the gains come from the
@@ -441,6 +441,8 @@ static bool set_laws(const stance_scene *scene, const struct scenario_values *va
     if (!law->designed)
         return resolve_law(scene, values, law, out->position, &out->near, out, message);
     feed_back(scene, values, design, out);
+    if (!resolve_law(scene, values, law, design->equilibrium, &out->near, out, message))
+        return false;
     if (values->capture && design->capture_time > 0)
         capture(scene, design, out);
     if (!far->set)
@@ -477,6 +479,7 @@ static bool check_law(const stance_scene *scene, const stance_case *out, stance_
         {"controller.angle_noise", out->angle_noise != 0},
         {"controller.rate_noise", out->rate_noise != 0},
         {"controller.far", out->switches},
+        {"controller.kind bimodal-feedback", out->bends},
         {"controller.delay", out->delay != 0},
         {"controller.lag", out->lag != 0},
         {"controller.torque_rate", out->torque_rate != 0},

@@ -81,8 +81,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
                   const struct resolved_design *design, uint64_t seed, uint64_t index,
                   stance_case *out, stance_message *message);
 
-/* Makes *out act by a law that is not designed, from the coordinates `begin`; `linear`: its near or
- * far. */
+/* Makes *out act by what a law is told, from the coordinates `begin`; `linear`: its near or far. */
 bool resolve_law(const stance_scene *scene, const struct scenario_values *values,
                  const stance_law *law, const double *begin, stance_linear_law *linear,
                  stance_case *out, stance_message *message);

@@ -17,6 +17,7 @@ enum {
     SCENARIO_MAX_AXES = 24,
     SCENARIO_MAX_PATHS = 48, /* paths of one axis */
     SCENARIO_MAX_STAGES = 8, /* of a search, each with more starts */
+    SCENARIO_MAX_RESTARTS = 12,
     SCENARIO_MAX_STATES = 2 * STANCE_MAX_COORDINATES,
     SCENARIO_MAX_GAINS = STANCE_MAX_ACTUATORS * 2 * STANCE_MAX_POSTURE,
     SCENARIO_MAX_POLES = 2 * STANCE_MAX_POSTURE,
@@ -220,7 +221,9 @@ void scenario_free(struct scenario *s);
 char *scenario_rewrite(const char *text, const char *const *drop, size_t drops,
                        const char *const *set, size_t sets);
 
-/* Of a scenario with a search: numbers that it varies, cases that it simulates at most. */
+/* Of a scenario with a search: whether its objective is the plain share of starts; numbers that it
+ * varies, cases that it simulates at most. */
+bool scenario_search_plain(const struct scenario *s);
 int scenario_search_numbers(const struct scenario *s);
 double scenario_search_cases(const struct scenario *s);
 /* Share of the candidates up to the end of a stage: of three stages 50, 35 and 15 %, of others

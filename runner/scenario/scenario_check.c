@@ -361,9 +361,11 @@ static void check_controller(struct reader *r, const struct situation *is)
         return;
     base->design_point.given = check_equilibrium(r, "controller.equilibrium");
     if (!base->design_point.given && is->start_known && !is->from_equilibrium) {
-        problem_add(&r->problems, reader_seen(r, "controller")->key,
-                    "controller.equilibrium is missing: state-feedback needs one where the run "
-                    "does not begin at one");
+        problem_add(
+            &r->problems, reader_seen(r, "controller")->key,
+            "controller.equilibrium is missing: %s needs one where the run does not begin at "
+            "one",
+            is->law->name);
     }
     for (int a = 0; a < r->s->axes; a++) {
         for (int k = 0; k < r->s->axis[a].paths; k++) {
@@ -428,6 +430,9 @@ static void check_sampling(struct reader *r, const struct situation *is)
     scenario_extent(r->s, offsetof(struct scenario_values, sample_time), &shortest, &longest);
     if (shortest > 0)
         return;
+    if (is->law->samples)
+        problem_add(&r->problems, reader_seen(r, "controller.kind")->node->mark,
+                    "controller.kind %s needs controller.sample_time > 0: %s", is->law->name, acts);
     for (size_t k = 0; k < sizeof sampled / sizeof *sampled; k++)
         if (is_on(r, sampled[k].path) && !reader_seen(r, sampled[k].path)->bad)
             problem_add(&r->problems, where(r, sampled[k].path),

@@ -87,6 +87,7 @@ static bool add_parameter(struct schema *schema, const struct scenario_field *ro
     const stance_per per = stance_laws()[law]->parameter[parameter].per;
     const int count = !scene                         ? 0
                       : per == STANCE_PER_ACTUATOR   ? scene->actuators
+                      : per == STANCE_PER_POSTURE    ? scene->postures
                       : per == STANCE_PER_COORDINATE ? scene->coordinates
                                                      : 0;
     if (per == STANCE_PER_SELECTION && !scene) {
@@ -96,7 +97,9 @@ static bool add_parameter(struct schema *schema, const struct scenario_field *ro
     }
     bool good = add_number(schema, row, law, parameter, NULL, 0);
     for (int i = 0; good && i < count; i++) {
-        const int k = per == STANCE_PER_ACTUATOR ? scene->actuated[i] : i;
+        const int k = per == STANCE_PER_ACTUATOR  ? scene->actuated[i]
+                      : per == STANCE_PER_POSTURE ? scene->posture[i]
+                                                  : i;
         good = add_number(schema, row, law, parameter, &scene->coordinate[k], i);
     }
     return good;

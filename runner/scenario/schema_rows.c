@@ -417,7 +417,7 @@ const struct row schema_rows[] = {
          .more = "share: of the starts, those that end as stabilised. nearest: the largest scale "
                  "up to which all directions (method sphere, with initial.offset.scale in the "
                  "grid) are stabilised. An answer: its mean over all starts, 0 for those that are "
-                 "not stabilised."}},
+                 "not stabilised; a start counts at most 50000 either way."}},
     {0, {.path = "optimise.weight", .type = FIELD_WORD, BY_HAND, .fallback = 0, WORDS(weight_words),
          .text = "what a start counts",
          .more = "even: all the same. normal: as a normal density about the middle of the ranges "
@@ -445,7 +445,8 @@ const struct row schema_rows[] = {
          RANGE(0, LARGE), .text = "least critical sample time of its loop without delay",
          .more = "Only of laws that linear theory knows; 0: none."}},
     {0, {.path = "optimise.candidates", .type = FIELD_INTEGER, BY_HAND, .fallback = 1000,
-         RANGE(1, 1e6), .text = "candidates, over all generations"}},
+         RANGE(1, 1e6), .text = "candidates, over all generations",
+         .more = "Whole generations; with restarts each beginning has so many."}},
     {0, {.path = "optimise.grow", .type = FIELD_NUMBERS, BY_HAND, .unit = "1",
          .fallback_text = "a quarter of sweep.sample.count, that, four times that",
          .text = "starts of the stages of the search",
@@ -456,7 +457,7 @@ const struct row schema_rows[] = {
     {0, {.path = "optimise.confirm", .type = FIELD_INTEGER, BY_HAND, .unit = "1", .fallback = NAN,
          .fallback_text = "eight times the last stage's", RANGE(1, 1 << 20),
          .text = "fresh starts with which the best candidates are compared"}},
-    {0, {.path = "optimise.restarts", .type = FIELD_INTEGER, BY_HAND, .fallback = 0, RANGE(0, 20),
+    {0, {.path = "optimise.restarts", .type = FIELD_INTEGER, BY_HAND, .fallback = 0, RANGE(0, SCENARIO_MAX_RESTARTS),
          .text = "times that the search begins again at its best with twice the candidates a "
                  "generation"}},
     {0, {.path = "optimise.first_step", .type = FIELD_NUMBER, BY_HAND, .unit = "1",

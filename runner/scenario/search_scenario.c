@@ -116,8 +116,10 @@ static bool add_law(struct axis_reader *a)
         good = add_path(a, &node);
         if (!good)
             continue;
-        last_varied(a)->scale = field->low >= 0 && value > 0 ? SCALE_RATIO : SCALE_EVEN;
-        last_varied(a)->unit = last_varied(a)->scale == SCALE_RATIO ? weight_unit : 1;
+        if (field->low >= 0 && value > 0) {
+            last_varied(a)->scale = SCALE_RATIO;
+            last_varied(a)->unit = weight_unit;
+        }
     }
     return good && (a->axis->paths > before ||
                     axis_complain(a, "this controller.kind has no parameters that are numbers"));
@@ -187,6 +189,8 @@ static bool read_entry(struct axis_reader *a)
     }
     varied->scale = log ? SCALE_RATIO : SCALE_EVEN;
     varied->unit = unit;
+    if (log)
+        varied->low = fmax(varied->low, 0); /* ratios keep the sign */
     return true;
 }
 
@@ -447,7 +451,7 @@ void search_check(struct reader *r)
     if (!s->base.settle)
         problem_add(&r->problems, key_or(r, "stop.settle"),
                     "stop.settle off has no meaning with optimise: stabilised starts are to end");
-    if (search->aim == AIM_ANSWER && search->answer < STANCE_ANSWER_end_time)
+    if (search->aim == AIM_ANSWER && stance_answers[search->answer].type == STANCE_UINT8)
         problem_add(&r->problems, key_or(r, "optimise.maximise"),
                     "optimise.maximise: %s is no number", stance_answers[search->answer].name);
     if (search->critical > 0 && s->base.sample_time == 0)
@@ -460,8 +464,18 @@ void search_check(struct reader *r)
     check_gains(r);
 }
 
-/* ---- what it takes ----------------------------------------------------------------------------
+/* ---- what it is, and takes
+ * ----------------------------------------------------------------------------
  */
+
+bool scenario_search_plain(const struct scenario *s)
+{
+    const struct scenario_search *const search = &s->search;
+    bool plain = search->aim == AIM_SHARE && !search->normal && search->gain_price == 0;
+    for (int i = 0; i < STANCE_ANSWER_COUNT; i++)
+        plain = plain && search->price[i] == 0;
+    return plain;
+}
 
 int scenario_search_numbers(const struct scenario *s)
 {

@@ -4,6 +4,9 @@
  *
  *   torque = clip(feedforward - gain (posture - target, rate)).
  *
+ * A bimodal law (bimodal-feedback) takes push max(0, normal (posture - target, rate) - 1) off that
+ * before it is clipped.
+ *
  * The decoupling law (the paper's section 3.3) drives as many coordinates as there are actuators to
  * accelerations of its own choice, given by a PID on each:
  *
@@ -43,6 +46,8 @@ struct law {
     lanes switches;  /* 1: `linear` inside the ellipsoid only */
     lanes inverse_axis[2 * POSTURES]; /* of the ellipsoid, 1/rad and s/rad */
     lanes limit[ACTUATORS];           /* N m */
+    lanes normal[2 * POSTURES];       /* of the plane beyond which `near` bends ... */
+    lanes push[ACTUATORS];            /* ... and how, N m; 0: not at all */
 };
 
 /* Does a law that acts all the time sum errors in any lane? */
@@ -72,6 +77,20 @@ static inline void law_torque(const struct law *law, const lanes *s, const lanes
     scene_posture(s, posture);
     scene_posture(w, rate);
     linear_torque(&law->near, posture, rate, torque);
+}
+/* ... at a sample, with its bend. */
+static inline void law_sampled(const struct law *law, const lanes *s, const lanes *w, lanes *torque)
+{
+    lanes posture[POSTURES], rate[POSTURES], beyond = lanes_of(-1);
+    scene_posture(s, posture);
+    scene_posture(w, rate);
+    linear_torque(&law->near, posture, rate, torque);
+    for (int j = 0; j < SCENE_POSTURE; j++)
+        beyond = lanes_fma(law->normal[j], posture[j] - law->near.target[j],
+                           lanes_fma(law->normal[SCENE_POSTURE + j], rate[j], beyond));
+    beyond = lanes_max(beyond, lanes_of(0));
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        torque[i] = lanes_fnma(law->push[i], beyond, torque[i]);
 }
 static inline void law_clip(const struct law *law, lanes *torque)
 {

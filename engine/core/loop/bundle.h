@@ -45,9 +45,9 @@ struct gathered {
 
 struct bundle {
     const stance_feed *feed;
-    mask live;                                /* lanes that are not idle */
-    int filled;                               /* how many */
-    int recorded, capturing, unusual, choosy; /* of these: see bundle_count */
+    mask live;                                         /* lanes that are not idle */
+    int filled;                                        /* how many */
+    int recorded, capturing, unusual, bending, choosy; /* of these: see bundle_count */
     double target_key[sizeof(struct setting) / sizeof(lanes) + 8 + CONTACTS]; /* see rest_target */
     bool target_known, target_holds;
     /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
@@ -159,7 +159,12 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
     }
     lane_set(&law->decouples, lane, c->decouples);
     lane_set(&law->switches, lane, c->switches);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        lane_set(&law->push[i], lane, c->bends ? c->bend.push[i] : 0);
     for (int j = 0; j < OWN_POSTURE; j++) {
+        lane_set(&law->normal[j], lane, c->bends ? c->bend.normal[j] : 0);
+        lane_set(&law->normal[SCENE_POSTURE + j], lane,
+                 c->bends ? c->bend.normal[OWN_POSTURE + j] : 0);
         lane_set(&law->inverse_axis[j], lane, c->switches ? 1 / c->switch_axis[j] : 0);
         lane_set(&law->inverse_axis[SCENE_POSTURE + j], lane,
                  c->switches ? 1 / c->switch_axis[OWN_POSTURE + j] : 0);
@@ -209,6 +214,7 @@ static void bundle_count(struct bundle *b, const stance_case *c, int by)
     b->recorded += c->trajectory && c->trajectory->rows > 0 ? by : 0;
     b->capturing += known_basin_applies(c) ? by : 0;
     b->unusual += case_is_unusual(c) ? by : 0;
+    b->bending += c->bends ? by : 0;
     b->choosy += c->lands_ahead ? by : 0;
 }
 

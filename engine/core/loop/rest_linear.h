@@ -56,7 +56,7 @@ COLD void rest_law(const struct rest *r, const lanes *s, const lanes *w, const l
 {
     struct dynamics e;
     const struct law *const law = &r->set->law;
-    law_torque(law, s, w, torque);
+    law_sampled(law, s, w, torque);
     for (int i = 0; i < ACTUATORS; i++)
         rate[i] = lanes_of(0);
     if (REST_INPUTS > 0 && mask_any(mask_less(lanes_of(0), law->decouples + law->switches))) {

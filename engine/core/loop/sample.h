@@ -104,7 +104,7 @@ COLD void bundle_sample_unusual(struct bundle *b, mask due, lanes *torque)
     scene_trig trig;
     const mask delayed = due & mask_less(lanes_of(0), b->delay);
     bundle_measure(b, due, s, w, &trig);
-    law_torque(&b->set.law, s, w, torque);
+    law_sampled(&b->set.law, s, w, torque);
     if (mask_any(due & mask_less(lanes_of(0), b->set.law.decouples + b->set.law.switches)))
         bundle_decouple(b, due, s, w, &trig, torque);
     bundle_shake(b, due, torque);
@@ -132,7 +132,10 @@ HOT void bundle_sample(struct bundle *b, mask live)
         if (unusual) {
             bundle_sample_unusual(b, due, torque);
         } else {
-            law_torque(&b->set.law, b->now.s, b->now.w, torque);
+            if (bundle_some(b->bending))
+                law_sampled(&b->set.law, b->now.s, b->now.w, torque);
+            else
+                law_torque(&b->set.law, b->now.s, b->now.w, torque);
             law_clip(&b->set.law, torque);
         }
         for (int i = 0; i < SCENE_ACTUATORS; i++)
