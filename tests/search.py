@@ -126,6 +126,11 @@ def ratios(f):
     assert value[0] == 0.82 and value.min() < 0.81 and value.max() > 0.83
 
 
+def flat(f):
+    assert words(f, "parameter") == ["controller.gains[0][1]", "controller.gains[0][3]"]
+    assert (kinds(f)["refused"] == 0).mean() > 0.5 and f["confirmed_objective"][()].max() > 0.2
+
+
 def reads(f):
     try:
         import xarray

@@ -58,25 +58,18 @@ static const char holds[] = "stance: 1\n"
                             "stop: {time: 1.5, settle: off}\n"
                             "record: {cases: all}\n";
 
-static const char decouples[] = "stance: 1\n"
-                                "scene: biped\n"
-                                "initial: {state: {z: 1.1}}\n"
-                                "controller: {kind: decoupling, controlled: x-theta}\n"
-                                "stop: {time: 1}\n";
+static const char decouples[] =
+    "stance: 1\nscene: biped\ninitial: {state: {z: 1.1}}\nstop: {time: 1}\n"
+    "controller: {kind: decoupling, controlled: x-theta}\n";
 
-static const char switches[] = "stance: 1\n"
-                               "scene: biped\n"
-                               "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
-                               "controller: {kind: state-feedback, design: lqr, far: hold,\n"
-                               "  near: {angle: 0.1, rate: 1}, kp: 100, kd: 10,\n"
-                               "  sample_time: 0.01}\n"
-                               "stop: {time: 1}\n";
+static const char switches[] =
+    "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: -0.41, q2: 0.82}}\nstop: {time: 1}\n"
+    "controller: {kind: state-feedback, design: lqr, far: hold,\n"
+    "  near: {angle: 0.1, rate: 1}, kp: 100, kd: 10, sample_time: 0.01}\n";
 
-static const char bends[] = "stance: 1\n"
-                            "scene: biped\n"
-                            "initial: {equilibrium: {theta: -0.41, q2: 0.82}}\n"
-                            "controller: {kind: bimodal-feedback, design: lqr, sample_time: 0.01}\n"
-                            "stop: {time: 1}\n";
+static const char bends[] =
+    "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: -0.41, q2: 0.82}}\nstop: {time: 1}\n"
+    "controller: {kind: bimodal-feedback, design: lqr, sample_time: 0.01}\n";
 
 static const char gives_gains[] = "stance: 1\n"
                                   "scene: biped\n"

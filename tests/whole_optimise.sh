@@ -128,6 +128,19 @@ search "equal ratios without bounds" 0 box.yaml -o ratios.h5 --set optimise.cand
 "$python" "$tests/search.py" ratios ratios.h5 >log 2>&1
 result $? "... go both ways"
 
+# A robot on a flat foot, whose angle follows while the sole holds: gains of it are 0.
+sed -n '/^    # own.yaml/,/^$/s/^    //p' "$tests/../README.md" >own.yaml
+{
+    sampled sobol '' | grep -v '^stop\|vary:\|initial'
+    echo '    vary: [{path: initial.offset.body, from: -0.2, to: 0.2}, {path: initial.offset.vbody, from: -0.5, to: 0.5}]'
+    echo 'optimise: {vary: gains, candidates: 18, grow: [32], confirm: 64}'
+} >>own.yaml
+expect "the robot of the first hour" 0 "$stance" check own.yaml
+says "... varies what can differ" '^optimise    2 numbers, '
+search "... and a search for its gains" 0 own.yaml -o own.h5 --force
+"$python" "$tests/search.py" flat own.h5 >log 2>&1
+result $? "... tries them"
+
 # What ships.
 for scenario in "$shipped"/optimise/*.yaml; do
     name=$(basename "$scenario" .yaml)
@@ -159,14 +172,14 @@ search "... than the last beginning has" 2 box.yaml -o none.h5 --set optimise.re
 says "... are refused" 'optimise.candidates: 77 are less than one generation after the restarts, 88'
 search "what is wrong once the gains are known" 2 box.yaml -o none.h5 --set 'optimise.vary=[gains, gains]'
 says "... is told at its place" "^box.yaml:$(grep -n '^optimise' box.yaml | cut -d: -f1):[0-9]*: optimise.vary\[1\]: .* is varied twice"
-cp box.yaml own-best.yaml
-search "the scenario is not written over by the best" 3 own-best.yaml -o own.h5 --force
-says "... says so" 'own-best.yaml is the scenario and would be written over: give another -o'
-search "... nor by the search" 3 own-best.yaml -o own-best.yaml --force
-cmp -s box.yaml own-best.yaml
+cp box.yaml mine-best.yaml
+search "the scenario is not written over by the best" 3 mine-best.yaml -o mine.h5 --force
+says "... says so" 'mine-best.yaml is the scenario and would be written over: give another -o'
+search "... nor by the search" 3 mine-best.yaml -o mine-best.yaml --force
+cmp -s box.yaml mine-best.yaml
 result $? "... and stays"
-search "nor is another scenario of that name" 3 box.yaml -o own.h5
-says "... says how to go on" 'own-best.yaml exists; --force replaces it, -o names other files'
+search "nor is another scenario of that name" 3 box.yaml -o mine.h5
+says "... says how to go on" 'mine-best.yaml exists; --force replaces it, -o names other files'
 search "poles that cannot be" 2 box.yaml -o none.h5 --set controller.poles='[-3,-3,-3,-4,-5,-6]'
 [ "$(wc -l <log)" = 1 ] && [ ! -e none.h5 ]
 result $? "... are told in one line"

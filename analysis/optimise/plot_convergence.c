@@ -16,7 +16,11 @@
 
 GNUPLOT_SCRIPT(plot_convergence_gp, "analysis/optimise/plot_convergence.gp");
 
-enum { MOST_NAMED = 14, MOST_DRAWN = 40000, MOST_STAGES = SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1) };
+enum {
+    MOST_NAMED = 14,
+    MOST_DRAWN = 40000,
+    MOST_STAGES = SCENARIO_MAX_STAGES * (SCENARIO_MAX_RESTARTS + 1)
+};
 
 struct page {
     struct gnuplot g;

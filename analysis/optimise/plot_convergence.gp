@@ -1,5 +1,5 @@
 # plot_convergence.gp - a search over its candidates: what they were worth, the mean of the distribution, its width.
-left = 88
+left = 104 # room for tics of five letters
 hue_of(k) = named ? hue[(k-1) % 7 + 1] : grey
 dash_of(k) = named ? (k-1)/7 % 5 + 1 : 1
 named_room = 10

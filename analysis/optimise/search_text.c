@@ -6,6 +6,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -94,7 +95,10 @@ static void print_aim(const struct search_study *study)
     printf("Maximised: %s\n", aim);
     if (study->first && study->first->search.given) {
         const double critical = study->first->search.critical;
-        if (study->first->base.sample_time == 0)
+        double least, longest;
+        scenario_extent(study->first, offsetof(struct scenario_values, sample_time), &least,
+                        &longest);
+        if (longest == 0)
             ; /* nothing is sampled */
         else if (isnan(critical))
             puts("Required: a critical sample time of two sample times");

@@ -282,11 +282,13 @@ static bool make_panels(struct plot_allowed *allowed, struct picture *p, stance_
             first = why;
     }
     if (good && without > 0 && allowed->panels > 1)
-        fprintf(stderr, "%s: no outline of what linear theory allows in %d of %d panels: %s\n",
-                p->r->file, without, allowed->panels, first.text);
+        fprintf(
+            stderr,
+            "stance: warning: %s: no outline of what linear theory allows in %d of %d panels: %s\n",
+            p->r->file, without, allowed->panels, first.text);
     else if (good && without > 0)
-        fprintf(stderr, "%s: no outline of what linear theory allows: %s\n", p->r->file,
-                first.text);
+        fprintf(stderr, "stance: warning: %s: no outline of what linear theory allows: %s\n",
+                p->r->file, first.text);
     return good;
 }
 
@@ -313,7 +315,8 @@ bool plot_allowed_make(struct plot_allowed *allowed, const struct plot *plot,
             allowed->panels = layout->panels;
             good = make_panels(allowed, p, message);
         } else {
-            fprintf(stderr, "%s: no outline of what linear theory allows: %s\n", r->file, why.text);
+            fprintf(stderr, "stance: warning: %s: no outline of what linear theory allows: %s\n",
+                    r->file, why.text);
         }
         scenario_free(&p->s);
     }

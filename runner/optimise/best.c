@@ -69,13 +69,13 @@ char *best_text(const struct search_file *f)
     enum { ROOM = 160 };
     static const char *const drop[] = {"optimise"};
     const size_t n = f->length[SEARCH_PARAMETER];
-    char(*const set)[ROOM] = calloc(n, sizeof *set);
+    char *const set = calloc(n, ROOM);
     const char **const list = calloc(n, sizeof *list);
     char *text = NULL;
     for (size_t i = 0; set && list && i < n; i++) {
-        snprintf(set[i], ROOM, "%.110s=%.17g", f->parameter[i],
+        snprintf(&set[i * ROOM], ROOM, "%.110s=%.17g", f->parameter[i],
                  f->confirmed_value[(size_t)f->chosen * n + i]);
-        list[i] = set[i];
+        list[i] = &set[i * ROOM];
     }
     if (set && list)
         text = scenario_rewrite(f->first_scenario, drop, 1, list, n);

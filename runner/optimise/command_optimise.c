@@ -9,6 +9,7 @@
 #include "runner/base/sandbox.h"
 #include "runner/base/units.h"
 #include "runner/plan/instruction_set.h"
+#include "runner/plan/search_numbers.h"
 #include "runner/ranks/crash.h"
 #include "runner/ranks/deadline.h"
 #include "runner/run/claim.h"
@@ -188,8 +189,11 @@ static bool stage_scenario(struct optimise *o)
         abort(); /* the others wait in the broadcast: MPI ends the job */
     const bool read = o->parallel.rank == 0 && read_scenario(o);
     if (claim_scenario(&o->parallel, o->first, o->options.scenario, read, &o->message)) {
-        space_prune(o->first);
-        return true;
+        search_numbers_keep(o->first);
+        static const char none[] = "optimise.vary: all of these stay 0 while the contacts hold";
+        if (o->first->search.axis.paths > 0)
+            return true;
+        return o->parallel.rank == 0 ? say_place(o, none, none) : fail(o, EXIT_USAGE);
     }
     return o->code != EXIT_DONE || o->parallel.rank != 0 ? false : fail(o, EXIT_IO);
 }
@@ -346,7 +350,8 @@ static bool save(void *context, bool last, stance_message *message)
     if (!search_file_write(&o->search.record, o->file, message))
         return false;
     heartbeat_guard(&o->heartbeat, o->file);
-    o->save_at = clock_seconds() + SAVE_INTERVAL;
+    const double end = clock_seconds();
+    o->save_at = end + fmax(SAVE_INTERVAL, 20 * (end - now)); /* 5 % of the time at most */
     return true;
 }
 
@@ -619,7 +624,7 @@ const struct command command_optimise = {
     "                     summary and stance plot read it. Beside it <scenario name>-best.yaml,\n"
     "                     the scenario with the best candidate\n"
     "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
-    "  --force            replace the file of that name\n"
+    "  --force            replace files of these names\n"
     "  --resume           go on with a search of the same scenario after its last whole\n"
     "                     generation. Begins when there is no file\n"
     "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"

@@ -6,8 +6,6 @@
  */
 #include "space.h"
 
-#include "runner/plan/resolve.h"
-
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -66,8 +64,8 @@ static double gain_unit(const struct scenario *s, size_t actuator, size_t column
     return limit[actuator] / start_width(s, coordinate, rate);
 }
 
-/* Of a law's parameter: for each coordinate of the posture that of a gain, of its angle or, in s/rad
- * and the like, its rate; else 1. So a bend by 1 N m is as wide as a gain. */
+/* Of a law's parameter: for each coordinate of the posture that of a gain, of its angle or, in
+ * s/rad and the like, its rate; else 1. So a bend by 1 N m is as wide as a gain. */
 static double law_unit(const struct scenario *s, int k)
 {
     const size_t size = sizeof s->base.law_value[0];
@@ -96,31 +94,6 @@ static bool is_gain(const struct scenario *s, int k, size_t *place)
     return offset >= gains && offset < gains + sizeof s->base.gains;
 }
 
-void space_prune(struct scenario *s)
-{
-    struct scenario_axis *const axis = &s->search.axis;
-    const int columns = 2 * s->scene->postures;
-    double model[STANCE_MAX_ROBOT];
-    stance_equilibrium equilibrium;
-    stance_message ignored;
-    bool moves[2 * STANCE_MAX_POSTURE] = {false};
-    int n = 0;
-    if (!scenario_law(&s->base)->designed ||
-        !resolve_equilibrium(s->scene, &s->base, model, &equilibrium, &ignored))
-        return;
-    for (int j = 0; j < 2 * equilibrium.freedoms; j++)
-        moves[resolve_state(s->scene, &equilibrium, j)] = true;
-    for (int k = 0; k < axis->paths; k++) {
-        size_t place;
-        if (is_gain(s, k, &place) && !moves[place % (size_t)columns])
-            continue;
-        memmove(axis->path[n], axis->path[k], sizeof axis->path[k]);
-        axis->offset[n] = axis->offset[k];
-        s->search.varied[n++] = s->search.varied[k];
-    }
-    axis->paths = n;
-}
-
 void space_make(struct space *space, const struct scenario *s)
 {
     const struct scenario_search *const search = &s->search;
@@ -132,7 +105,7 @@ void space_make(struct space *space, const struct scenario *s)
         double value;
         memcpy(&value, (const char *)&s->base + search->axis.offset[i], sizeof value);
         space->gain[i] = is_gain(s, i, &place);
-        space->unit[i] = !isnan(v->unit)   ? v->unit
+        space->unit[i] = !isnan(v->unit)  ? v->unit
                          : space->gain[i] ? gain_unit(s, place / columns, place % columns)
                                           : law_unit(s, i);
         space->first[i] = coordinate_of(v->scale, space->unit[i], value);

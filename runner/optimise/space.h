@@ -16,9 +16,6 @@ struct space {
     bool gain[SCENARIO_MAX_PATHS];
 };
 
-/* Leaves out of what a scenario's search varies the gains on what the contacts hold, which no
- * candidate would feel. */
-void space_prune(struct scenario *s);
 /* Of a scenario whose gains, if they are varied, are given. */
 void space_make(struct space *space, const struct scenario *s);
 /* The value of number k at a coordinate. */

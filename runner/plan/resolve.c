@@ -125,18 +125,23 @@ int resolve_state(const stance_scene *scene, const stance_equilibrium *equilibri
     return state < p ? k : scene->postures + k;
 }
 
+void resolve_free(const stance_scene *scene, const stance_equilibrium *equilibrium, bool *column)
+{
+    memset(column, false, 2 * (size_t)scene->postures * sizeof *column);
+    for (int j = 0; j < 2 * equilibrium->freedoms; j++)
+        column[resolve_state(scene, equilibrium, j)] = true;
+}
+
 /* The columns of given gains that the linear model has; the others must be 0. */
 static bool take_gains(const stance_scene *scene, const struct scenario_values *values,
                        const stance_equilibrium *equilibrium, double *K, stance_message *message)
 {
     const int n = 2 * equilibrium->freedoms, all = 2 * scene->postures, m = scene->actuators;
-    bool taken[2 * STANCE_MAX_POSTURE] = {false};
-    for (int j = 0; j < n; j++) {
-        const int column = resolve_state(scene, equilibrium, j);
-        taken[column] = true;
+    bool taken[2 * STANCE_MAX_POSTURE];
+    resolve_free(scene, equilibrium, taken);
+    for (int j = 0; j < n; j++)
         for (int i = 0; i < m; i++)
-            K[i * n + j] = values->gains[i * all + column];
-    }
+            K[i * n + j] = values->gains[i * all + resolve_state(scene, equilibrium, j)];
     for (int k = 0; k < m * all; k++) {
         const char *const name = scene->coordinate[scene->posture[k % all % scene->postures]].name;
         if (!taken[k % all] && values->gains[k] != 0)

@@ -60,6 +60,8 @@ struct resolved_gains {
 /* Which of the posture's 2 postures angles and rates is a state of the linear model about an
  * equilibrium, whose contacts may leave it fewer. */
 int resolve_state(const stance_scene *scene, const stance_equilibrium *equilibrium, int state);
+/* column[2 postures]: whether it is one of them. Gains of the others are 0. */
+void resolve_free(const stance_scene *scene, const stance_equilibrium *equilibrium, bool *column);
 
 /* K[actuators][states] of a state-feedback law for x' = A x + B u: designed, or as given. `how`
  * may be NULL. */

@@ -4,6 +4,7 @@
 #include "runner/base/units.h"
 #include "runner/plan/kernels.h"
 #include "runner/plan/refine.h"
+#include "runner/plan/search_numbers.h"
 #include "runner/store/store.h"
 
 #include <inttypes.h>
@@ -240,20 +241,23 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
 }
 
 /* What stance optimise makes of the scenario. */
-static void report_search(const struct scenario *s, double seconds, int ranks, FILE *out)
+static void report_search(const struct scenario *s, const struct estimate *e, int ranks, FILE *out)
 {
     char text[40] = "";
     const double cases = scenario_search_cases(s);
     if (!s->search.given)
         return;
-    if (seconds >= 0)
-        text_of_seconds(text, sizeof text, seconds * cases / (double)s->cases / ranks);
+    if (e->seconds >= 0)
+        text_of_seconds(text, sizeof text, e->seconds * cases / (double)s->cases / ranks);
     fprintf(out,
             "optimise    %d numbers, %" PRIu64 " candidates from %" PRIu64 " to %" PRIu64
             " starts, %" PRIu64 " fresh ones%s%s: stance optimise %s\n",
-            scenario_search_numbers(s), s->search.candidates, s->search.grow[0],
+            search_numbers(s), s->search.candidates, s->search.grow[0],
             s->search.grow[s->search.stages - 1], s->search.confirm,
-            text[0] ? "; at first guess " : "", text, s->file);
+            !text[0]   ? ""
+            : e->bound ? "; at most about "
+                       : "; at first guess ",
+            text, s->file);
 }
 
 void report_plan(const struct plan *plan, int ranks, const char *file, bool json, FILE *out)
@@ -264,5 +268,5 @@ void report_plan(const struct plan *plan, int ranks, const char *file, bool json
     else
         report_text(plan, &e, ranks, file, out);
     if (!json)
-        report_search(plan->scenario, e.seconds, ranks, out);
+        report_search(plan->scenario, &e, ranks, out);
 }

@@ -221,10 +221,9 @@ void scenario_free(struct scenario *s);
 char *scenario_rewrite(const char *text, const char *const *drop, size_t drops,
                        const char *const *set, size_t sets);
 
-/* Of a scenario with a search: whether its objective is the plain share of starts; numbers that it
- * varies, cases that it simulates at most. */
+/* Of a scenario with a search: whether its objective is the plain share of starts; cases that it
+ * simulates at most. */
 bool scenario_search_plain(const struct scenario *s);
-int scenario_search_numbers(const struct scenario *s);
 double scenario_search_cases(const struct scenario *s);
 /* Share of the candidates up to the end of a stage: of three stages 50, 35 and 15 %, of others
  * equal parts. */

@@ -398,7 +398,8 @@ const struct row schema_rows[] = {
     {0, {.path = "optimise.vary", .type = FIELD_VARIED, BY_HAND, WORDS(vary_words),
          .text = "what differs between candidates",
          .more = "gains: all gains of state-feedback, those of the scenario's design to begin "
-                 "with. poles: all poles, real ones. weights: all weights of lqr. law: the "
+                 "with; of coordinates that follow from the others while the contacts hold they "
+                 "stay 0. poles: all poles, real ones. weights: all weights of lqr. law: the "
                  "parameters of controller.kind. A mapping is {path, from, to, spacing} or {path, "
                  "unit}: any number that may be swept and need not be whole."}},
     {0, {.path = "optimise.vary[].path", .type = FIELD_PATH, BY_HAND,
@@ -410,7 +411,7 @@ const struct row schema_rows[] = {
     {0, {.path = "optimise.vary[].spacing", .type = FIELD_WORD, BY_HAND, .fallback = 0,
          WORDS(spacing_words), .text = "whether it is moved evenly or by equal ratios"}},
     {0, {.path = "optimise.vary[].unit", .type = FIELD_NUMBER, BY_HAND, .fallback = NAN,
-         ABOVE(0, LARGE), .text = "what first_step is a part of",
+         RANGE(1e-12, LARGE), .text = "what first_step is a part of",
          .more = "By default the range; with spacing log of the logarithm."}},
     {0, {.path = "optimise.maximise", .type = FIELD_WORD, BY_HAND, .fallback = 0, WORDS(aim_words),
          .text = "what makes a candidate better",

@@ -39,16 +39,18 @@ static bool add_path(struct axis_reader *a, const struct tree_node *node)
     return true;
 }
 
-/* Paths that a word stands for: FORMAT of i, of i and j. */
-static bool add_paths(struct axis_reader *a, const char *format, size_t rows, size_t columns,
+/* Paths that a word stands for: LIST[i], or with columns LIST[i][j]. */
+static bool add_paths(struct axis_reader *a, const char *list, size_t rows, size_t columns,
                       enum scenario_scale scale, double unit)
 {
     bool good = true;
     for (size_t i = 0; good && i < rows; i++) {
-        for (size_t j = 0; good && j < columns; j++) {
+        for (size_t j = 0; good && (j < columns || j == 0); j++) {
             char path[96];
             struct tree_node node = *a->node;
-            snprintf(path, sizeof path, format, i, j);
+            const int used = snprintf(path, sizeof path, "%s[%zu]", list, i);
+            if (columns > 0)
+                snprintf(path + used, sizeof path - (size_t)used, "[%zu]", j);
             node.text = path;
             node.kind = TREE_SCALAR;
             good = add_path(a, &node);
@@ -68,8 +70,7 @@ static bool add_gains(struct axis_reader *a)
     s->search.designed_gains = s->base.design != DESIGN_GAINS;
     if (m * n > SCENARIO_MAX_PATHS)
         return axis_complain(a, "there are more gains than the 48 numbers that can be varied");
-    return s->search.designed_gains ||
-           add_paths(a, "controller.gains[%zu][%zu]", m, n, SCALE_EVEN, NAN);
+    return s->search.designed_gains || add_paths(a, "controller.gains", m, n, SCALE_EVEN, NAN);
 }
 
 static bool add_poles(struct axis_reader *a)
@@ -80,7 +81,7 @@ static bool add_poles(struct axis_reader *a)
     for (int i = 0; i < base->poles; i++)
         if (base->pole_im[i] != 0)
             return axis_complain(a, "poles that are not real cannot be varied; give real ones");
-    return add_paths(a, "controller.poles[%zu]", (size_t)base->poles, 1, SCALE_NEGATIVE_RATIO,
+    return add_paths(a, "controller.poles", (size_t)base->poles, 0, SCALE_NEGATIVE_RATIO,
                      pole_unit);
 }
 
@@ -89,9 +90,9 @@ static bool add_weights(struct axis_reader *a)
     const stance_scene *const scene = a->r->s->scene;
     if (a->r->s->base.design != DESIGN_LQR)
         return axis_complain(a, "weights are those of controller.design lqr");
-    return add_paths(a, "controller.weights.states[%zu]", 2 * (size_t)scene->postures, 1,
-                     SCALE_RATIO, weight_unit) &&
-           add_paths(a, "controller.weights.torques[%zu]", (size_t)scene->actuators, 1, SCALE_RATIO,
+    return add_paths(a, "controller.weights.states", 2 * (size_t)scene->postures, 0, SCALE_RATIO,
+                     weight_unit) &&
+           add_paths(a, "controller.weights.torques", (size_t)scene->actuators, 0, SCALE_RATIO,
                      weight_unit);
 }
 
@@ -333,10 +334,22 @@ static void check_starts(struct reader *r)
         int k;
         const struct scenario_axis *const scale =
             scenario_axis_of(s, offsetof(struct scenario_values, offset_scale), &k);
-        if (method != DOE_SPHERE || !scale || scale->paths != 1 || scale->sample)
+        bool rises = scale != NULL;
+        for (size_t i = 0; rises && i < scale->count; i++)
+            rises = scenario_axis_value(scale, i, k) >
+                    (i > 0 ? scenario_axis_value(scale, i - 1, k) : 0);
+        if (method != DOE_SPHERE || !rises || scale->paths != 1 || scale->sample)
             problem_add(&r->problems, key_or(r, "optimise.maximise"),
                         "optimise.maximise nearest needs sweep.sample.method sphere and "
-                        "initial.offset.scale alone on an axis of sweep.grid");
+                        "initial.offset.scale, rising from above 0, alone on an axis of "
+                        "sweep.grid");
+        static const char *const worth[] = {"optimise.weight", "optimise.price", "optimise.over"};
+        for (size_t i = 0; i < sizeof worth / sizeof *worth; i++)
+            if (reader_seen(r, worth[i])->node)
+                problem_add(&r->problems, reader_seen(r, worth[i])->key,
+                            "%s has no meaning with optimise.maximise nearest, of which the "
+                            "nearest fall of all counts",
+                            worth[i]);
     }
     if (8 * s->search.grow[s->search.stages - 1] > UINT64_C(1) << 26)
         problem_add(&r->problems, key_or(r, "optimise.grow"),
@@ -377,7 +390,18 @@ static void check_first(struct reader *r)
         const struct scenario_varied *const v = &s->search.varied[k];
         double value;
         memcpy(&value, (const char *)&s->base + s->search.axis.offset[k], sizeof value);
-        if (!isfinite(value))
+        if (scenario_is_start(s->search.axis.path[k]))
+            problem_add(&r->problems, r->sought[k].mark,
+                        "optimise.vary: %s is a start, the same for all candidates: starts are "
+                        "those of sweep.sample",
+                        s->search.axis.path[k]);
+        else if (s->search.axis.offset[k] == offsetof(struct scenario_values, sample_time) &&
+                 !(v->low > 0))
+            problem_add(&r->problems, r->sought[k].mark,
+                        "optimise.vary: %s needs a range from above 0: the shorter it is, the "
+                        "longer a candidate takes",
+                        s->search.axis.path[k]);
+        else if (!isfinite(value))
             problem_add(&r->problems, r->sought[k].mark,
                         "optimise.vary: %s has no value to begin with: give it one",
                         s->search.axis.path[k]);
@@ -475,12 +499,6 @@ bool scenario_search_plain(const struct scenario *s)
     for (int i = 0; i < STANCE_ANSWER_COUNT; i++)
         plain = plain && search->price[i] == 0;
     return plain;
-}
-
-int scenario_search_numbers(const struct scenario *s)
-{
-    return s->search.axis.paths +
-           (s->search.designed_gains ? s->scene->actuators * 2 * s->scene->postures : 0);
 }
 
 double scenario_search_until(const struct scenario *s, int stage)
