@@ -242,7 +242,7 @@ def allowed():
         run(name, "friction_sweep.yaml", *few, *setting)
         printed, said = call("plot", f"{name}.h5", "--allowed", "--picture", "map", "-o", f"{name}.svg")
         said = [line for line in said if "settle_time" not in line]
-        assert printed == [f"{name}.svg"] and said == [f"{name}.h5: {why}"], said
+        assert printed == [f"{name}.svg"] and said == [f"stance: warning: {name}.h5: {why}"], said
     assert any("linear theory allows  100.0 %" == t for t in Picture("near.svg").said())
     for arguments in ["bounce.h5"], ["sampled.h5"], ["map.h5", "--case", "1"], ["--model", f"{SCENARIOS}/drop.yaml"]:
         printed, said = call("plot", *arguments, "--allowed", "-o", "refused", code=2)
