@@ -77,8 +77,7 @@ static double near_to(uint64_t *seed, double x)
     return number(bits_of(x) + (uint64_t)random_int(seed, -4, 4));
 }
 
-/* ---- kinds of operands -------------------------------------------------------------------------
- */
+/* ---- kinds of operands ---------------------------------------------------------------------- */
 
 /* Whatever 64 bits mean: infinities, NANs, subnormal numbers among them. */
 static void anything(uint64_t *seed, double *x)
@@ -180,8 +179,7 @@ static void special(uint64_t *seed, double *x)
         x[k] = i % 2 ? -values[i / 2 % N] : values[i / 2 % N];
 }
 
-/* ---- the comparison ----------------------------------------------------------------------------
- */
+/* ---- the comparison ------------------------------------------------------------------------- */
 
 static bool same(double x, double y)
 {

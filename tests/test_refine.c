@@ -32,8 +32,7 @@ static int truth(const struct refine_map *map, label_function label, uint64_t ro
     return label(map, at);
 }
 
-/* ---- the second implementation ----------------------------------------------------------------
- */
+/* ---- the second implementation -------------------------------------------------------------- */
 
 static size_t stride_at(const struct refine_map *map, int a, int level)
 {
@@ -159,8 +158,7 @@ static void brute(const struct refine_map *map, label_function label, int *known
     }
 }
 
-/* ---- both -------------------------------------------------------------------------------------
- */
+/* ---- both ----------------------------------------------------------------------------------- */
 
 /* Runs a map, `room` points a round, each round's labels given in reverse; how many simulated. */
 static uint64_t run(struct refine *refine, const struct refine_map *map, label_function label,
@@ -296,8 +294,7 @@ static void test_more_axes(void **unused)
     agree(&line, ball);
 }
 
-/* ---- what it is good for ----------------------------------------------------------------------
- */
+/* ---- what it is good for -------------------------------------------------------------------- */
 
 static int disc(const struct refine_map *map, const size_t *at)
 {

@@ -120,8 +120,7 @@ static const char bounces[] = "stance: 1\n"
 static const char *const good_texts[] = {full, holds, gives_gains, places, regulates, bounces};
 enum { GOOD_TEXTS = sizeof good_texts / sizeof good_texts[0] };
 
-/* ---- good scenarios ---------------------------------------------------------------------------
- */
+/* ---- good scenarios ------------------------------------------------------------------------- */
 
 static void check_numbers(const double *found, const double *wanted, size_t n)
 {
@@ -393,8 +392,7 @@ static void swept_fields_count_as_given(void **state)
     scenario_free(&s);
 }
 
-/* ---- round trip -------------------------------------------------------------------------------
- */
+/* ---- round trip ----------------------------------------------------------------------------- */
 
 static void same_scenario(const struct scenario *a, const struct scenario *b)
 {
@@ -471,8 +469,7 @@ static void resolved_text_is_canonical(void **state)
     scenario_free(&b);
 }
 
-/* ---- --set ------------------------------------------------------------------------------------
- */
+/* ---- --set ---------------------------------------------------------------------------------- */
 
 static void sets_edit(void **state)
 {
@@ -547,8 +544,7 @@ static void bad_sets_are_refused(void **state)
     }
 }
 
-/* ---- bad scenarios ----------------------------------------------------------------------------
- */
+/* ---- bad scenarios -------------------------------------------------------------------------- */
 
 static void bad_files_lead_to_one_line(void **state)
 {
@@ -629,8 +625,7 @@ static void several_errors_are_sorted(void **state)
     assert_non_null(strstr(errors, "\nbad.yaml: 281 more errors\n"));
 }
 
-/* ---- every row of the table -------------------------------------------------------------------
- */
+/* ---- every row of the table ----------------------------------------------------------------- */
 
 /* A scenario in which a field may be given. */
 static const char *text_for(const struct scenario_field *field)
@@ -723,8 +718,7 @@ static void every_field_can_be_set_and_swept(void **state)
     free(schema);
 }
 
-/* ---- damaged text -----------------------------------------------------------------------------
- */
+/* ---- damaged text --------------------------------------------------------------------------- */
 
 /* Changes, removes, doubles some bytes. */
 static void damage(char *text, size_t size, uint64_t *random)

@@ -11,8 +11,7 @@
 
 static char errors[1 << 12];
 
-/* ---- documentation ----------------------------------------------------------------------------
- */
+/* ---- documentation -------------------------------------------------------------------------- */
 
 static char described[1 << 19];
 
@@ -200,8 +199,7 @@ static void schema_agrees_with_the_table(void **state)
     json_decref(root);
 }
 
-/* ---- options and words ------------------------------------------------------------------------
- */
+/* ---- options and words ---------------------------------------------------------------------- */
 
 static void nearest_words(void **state)
 {

@@ -167,8 +167,7 @@ static void impacts_against_reference(void **state)
     json_decref(root);
 }
 
-/* ---- the second drop of physics.md section 5 ---------------------------------------------------
- */
+/* ---- the second drop of physics.md section 5 ------------------------------------------------ */
 
 enum { DROP_ROWS = 1201 };
 
@@ -319,8 +318,7 @@ static void smooth_order(void **state)
         }
 }
 
-/* ---- the drop of section 2.4 --------------------------------------------------------------------
- */
+/* ---- the drop of section 2.4 ---------------------------------------------------------------- */
 
 static void first_drop_stages(void **state)
 {
@@ -418,8 +416,7 @@ static void far_roots_are_refused(void **state)
     }
 }
 
-/* ---- determinism --------------------------------------------------------------------------------
- */
+/* ---- determinism ---------------------------------------------------------------------------- */
 
 /* One value for every width, order and slicing, and for every processor and compiler. It changes
  * only when the mathematics of a step changes: then say so in the CHANGELOG. */

@@ -65,8 +65,7 @@ static bool fail(struct optimise *o, enum exit_code code)
     return false;
 }
 
-/* ---- options ----------------------------------------------------------------------------------
- */
+/* ---- options -------------------------------------------------------------------------------- */
 
 static bool usage(struct optimise *o, const char *text)
 {
@@ -131,8 +130,7 @@ static bool stage_options(struct optimise *o)
     return help || instruction_set_check(&o->message) || fail(o, EXIT_USAGE);
 }
 
-/* ---- the scenario -----------------------------------------------------------------------------
- */
+/* ---- the scenario --------------------------------------------------------------------------- */
 
 static bool say_place(struct optimise *o, const char *key, const char *text)
 {
@@ -198,8 +196,7 @@ static bool stage_scenario(struct optimise *o)
     return o->code != EXIT_DONE || o->parallel.rank != 0 ? false : fail(o, EXIT_IO);
 }
 
-/* ---- the file ---------------------------------------------------------------------------------
- */
+/* ---- the file ------------------------------------------------------------------------------- */
 
 static bool name_files(struct optimise *o)
 {
@@ -294,8 +291,7 @@ static bool stage_claim(struct optimise *o)
     return name_files(o) && (o->parallel.rank != 0 || take_file(o));
 }
 
-/* ---- signs of life ----------------------------------------------------------------------------
- */
+/* ---- signs of life -------------------------------------------------------------------------- */
 
 static void describe_work(struct optimise *o, char *text, size_t size)
 {
@@ -355,8 +351,7 @@ static bool save(void *context, bool last, stance_message *message)
     return true;
 }
 
-/* ---- the search -------------------------------------------------------------------------------
- */
+/* ---- the search ----------------------------------------------------------------------------- */
 
 static bool stage_make(struct optimise *o)
 {
@@ -408,8 +403,7 @@ static bool stage_search(struct optimise *o)
     return o->code == EXIT_DONE;
 }
 
-/* ---- what came out ----------------------------------------------------------------------------
- */
+/* ---- what came out -------------------------------------------------------------------------- */
 
 static double undecided(const struct search_file *f)
 {
@@ -529,8 +523,7 @@ static int conclude(struct optimise *o)
     return EXIT_DONE;
 }
 
-/* ---- the whole --------------------------------------------------------------------------------
- */
+/* ---- the whole ------------------------------------------------------------------------------ */
 
 /* What all ranks agree on. */
 struct verdict {
@@ -581,14 +574,12 @@ static int run_optimise(int argc, char **argv)
         fprintf(stderr, "stance optimise: not enough memory\n");
         return EXIT_IO;
     }
-    store_prepare();
     *o = (struct optimise){
         .argc = argc, .argv = argv, .start = clock_seconds(), .lock = {.descriptor = -1}};
-    o->parallel = parallel_start();
-    if (o->parallel.size > 1)
-        deadline_prepare(o->parallel.rank);
-    crash_watch(o->parallel.rank);
-    work_catch_signals();
+    if (!claim_ranks("optimise", &o->parallel)) {
+        free(o);
+        return EXIT_USAGE;
+    }
     const int code = go_through(o);
     if (o->made)
         search_free(&o->search);

@@ -22,8 +22,7 @@ const char *const search_kinds[TRIAL_LABELS] = {[TRIAL_REFUSED] = "refused",
 
 enum { MOST_ALLOWED = 16384 }; /* starts that are held against linear theory */
 
-/* ---- the plan of a search ---------------------------------------------------------------------
- */
+/* ---- the plan of a search ------------------------------------------------------------------- */
 
 static int lambda_of(const struct search *search, int restart)
 {
@@ -49,8 +48,7 @@ static size_t patience(const struct search *search, int restart)
     return 10 + (size_t)(30 * search->space.n / lambda_of(search, restart));
 }
 
-/* ---- words of the record ----------------------------------------------------------------------
- */
+/* ---- words of the record -------------------------------------------------------------------- */
 
 /* What a circumstance is: what differs from the scenario. */
 static char *circumstance_text(const struct scenario *s, size_t c)
@@ -102,8 +100,7 @@ static const char *varied_word(const struct search *search, size_t i)
     return search->scenario->axis[search->scenario->axes - 1].path[i];
 }
 
-/* ---- making -----------------------------------------------------------------------------------
- */
+/* ---- making --------------------------------------------------------------------------------- */
 
 static bool make_record(struct search *search, const char *text)
 {
@@ -224,8 +221,7 @@ void search_free(struct search *search)
     search_file_free(&search->record);
 }
 
-/* ---- trying -----------------------------------------------------------------------------------
- */
+/* ---- trying --------------------------------------------------------------------------------- */
 
 /* What the other ranks are told: so many candidates, -1: it is over; which starts, or behind these
  * (TRIALS_STARTS + enum elsewhere) where else. */
@@ -287,8 +283,7 @@ static void tell_end(struct search *search)
     parallel_broadcast(search->parallel, &order, sizeof order);
 }
 
-/* ---- scores -----------------------------------------------------------------------------------
- */
+/* ---- scores --------------------------------------------------------------------------------- */
 
 /* Of the axis of scales: its points and how many circumstances lie between two of them. */
 static const struct scenario_axis *scale_axis(const struct scenario *s, size_t *stride)
@@ -390,8 +385,7 @@ static void count_labels(const struct search *search, size_t candidate, uint64_t
     }
 }
 
-/* ---- generations ------------------------------------------------------------------------------
- */
+/* ---- generations ---------------------------------------------------------------------------- */
 
 /* Where the search is. */
 struct course {
@@ -550,8 +544,7 @@ static enum trials_end run_beginning(struct search *search, struct course *at, c
     return end;
 }
 
-/* ---- fresh starts -----------------------------------------------------------------------------
- */
+/* ---- fresh starts --------------------------------------------------------------------------- */
 
 static enum trials_end confirm(struct search *search, stance_message *message)
 {
@@ -628,8 +621,7 @@ static enum trials_end try_elsewhere(struct search *search, stance_message *mess
     return end;
 }
 
-/* ---- the whole --------------------------------------------------------------------------------
- */
+/* ---- the whole ------------------------------------------------------------------------------ */
 
 static enum trials_end lead(struct search *search, stance_message *message)
 {

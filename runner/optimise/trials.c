@@ -16,8 +16,7 @@
 
 #define MOST_SHORT 1e3
 
-/* ---- making -----------------------------------------------------------------------------------
- */
+/* ---- making --------------------------------------------------------------------------------- */
 
 /* What a start counts: even, or by a normal density about the middle of each range. */
 static double density(const struct scenario *s, const double *value)
@@ -102,8 +101,7 @@ void trials_free(struct trials *t)
     *t = (struct trials){0};
 }
 
-/* ---- loops ------------------------------------------------------------------------------------
- */
+/* ---- loops ---------------------------------------------------------------------------------- */
 
 /* How fast a loop that is not stable departs: above 0, below MOST_SHORT. */
 static double instability(const struct design_report *r)
@@ -160,8 +158,7 @@ static bool look_at_loops(struct trials *t, size_t candidates, uint64_t starts)
     return good;
 }
 
-/* ---- cases ------------------------------------------------------------------------------------
- */
+/* ---- cases ---------------------------------------------------------------------------------- */
 
 struct task {
     stance_case input; /* first: by this the kernel names it */
@@ -347,8 +344,7 @@ static enum trials_end simulate(struct trials *t, const struct plan *plan, uint6
     return TRIALS_DONE;
 }
 
-/* ---- a run ------------------------------------------------------------------------------------
- */
+/* ---- a run ---------------------------------------------------------------------------------- */
 
 static bool stop_designs(void *context)
 {

@@ -1,7 +1,10 @@
 /* claim.c - see claim.h. */
 #include "claim.h"
+#include "work.h"
 
 #include "runner/base/message.h"
+#include "runner/ranks/crash.h"
+#include "runner/ranks/deadline.h"
 
 #include <errno.h>
 #include <math.h>
@@ -9,6 +12,26 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+bool claim_ranks(const char *who, struct parallel *parallel)
+{
+    bool first;
+    if (parallel_misses_launcher(&first)) {
+        if (first)
+            fprintf(stderr,
+                    "stance %s: srun started several of these without an MPI that joins them: use "
+                    "mpirun, or srun --mpi=pmix\n",
+                    who);
+        return false;
+    }
+    store_prepare();
+    *parallel = parallel_start();
+    if (parallel->size > 1)
+        deadline_prepare(parallel->rank);
+    crash_watch(parallel->rank);
+    work_catch_signals();
+    return true;
+}
 
 double claim_duration(const char *text)
 {

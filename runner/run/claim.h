@@ -8,6 +8,10 @@
 #include "runner/scenario/scenario.h"
 #include "runner/store/lock.h"
 
+/* The ranks of the job, which from now on attend to signals and say where they crash. false: a
+ * launcher started several processes that are no ranks of each other; the first one has said so. */
+bool claim_ranks(const char *who, struct parallel *parallel);
+
 /* Seconds from "90", "90s", "55m", "1h30m", "2d"; negative when it is none of these. */
 double claim_duration(const char *text);
 

@@ -566,25 +566,14 @@ static int run_run(int argc, char **argv)
         fprintf(stderr, "stance run: not enough memory\n");
         return EXIT_IO;
     }
-    bool first;
-    if (parallel_misses_launcher(&first)) {
-        if (first) {
-            fprintf(stderr, "stance run: srun started several of these without an MPI that joins "
-                            "them: use mpirun, or srun --mpi=pmix\n");
-        }
-        free(run);
-        return EXIT_USAGE;
-    }
-    store_prepare();
     run->argc = argc;
     run->argv = argv;
     run->start = clock_seconds();
     run->lock.descriptor = -1;
-    run->parallel = parallel_start();
-    if (run->parallel.size > 1)
-        deadline_prepare(run->parallel.rank);
-    crash_watch(run->parallel.rank);
-    work_catch_signals();
+    if (!claim_ranks("run", &run->parallel)) {
+        free(run);
+        return EXIT_USAGE;
+    }
     int code = go_through(run);
     store_abandon(run->store);
     kernels_give_back(&run->kernels);

@@ -152,7 +152,7 @@ static bool read_entry(struct axis_reader *a)
     struct problems *const problems = &a->r->problems;
     const size_t before = problems->count + problems->lost;
     double from, to, unit;
-    bool log = false;
+    bool ratios = false;
     reader_check_keys(a->r, a->node, "optimise.vary[]", a->name);
     const struct tree_node *const path = tree_find(a->node, "path");
     if (problems->count + problems->lost != before)
@@ -166,7 +166,7 @@ static bool read_entry(struct axis_reader *a)
     bool good = read_number(a, "from", &from);
     good = read_number(a, "to", &to) && good;
     good = read_number(a, "unit", &unit) && good;
-    good = axis_read_spacing(a, "optimise.vary[].spacing", &log) && good;
+    good = axis_read_spacing(a, "optimise.vary[].spacing", &ratios) && good;
     if (!good)
         return false;
     varied->bounded = !isnan(from) || !isnan(to);
@@ -177,7 +177,7 @@ static bool read_entry(struct axis_reader *a)
     if (varied->bounded) {
         if (!(from < to))
             return axis_complain(a, "from must be less than to");
-        if (log && from <= 0)
+        if (ratios && from <= 0)
             return axis_complain(a, "spacing log needs from above 0");
         if (!field_admits(problems, field, a->axis->path[a->axis->paths - 1], "from", path->mark,
                           from) ||
@@ -186,11 +186,11 @@ static bool read_entry(struct axis_reader *a)
         varied->low = from;
         varied->high = to;
         if (isnan(unit))
-            unit = log ? log1p(to / from - 1) : to - from;
+            unit = ratios ? log(to / from) : to - from;
     }
-    varied->scale = log ? SCALE_RATIO : SCALE_EVEN;
+    varied->scale = ratios ? SCALE_RATIO : SCALE_EVEN;
     varied->unit = unit;
-    if (log)
+    if (ratios)
         varied->low = fmax(varied->low, 0); /* ratios keep the sign */
     return true;
 }
@@ -220,8 +220,7 @@ static bool read_vary(struct reader *r)
     return good;
 }
 
-/* ---- how the search goes ----------------------------------------------------------------------
- */
+/* ---- how the search goes -------------------------------------------------------------------- */
 
 static bool read_grow(struct reader *r)
 {
@@ -304,8 +303,7 @@ void search_read(struct reader *r)
     search->restarts = (int)restarts;
 }
 
-/* ---- what that asks of the rest ---------------------------------------------------------------
- */
+/* ---- what that asks of the rest ------------------------------------------------------------- */
 
 static struct mark key_or(struct reader *r, const char *path)
 {

@@ -55,8 +55,7 @@ static char *const *words_of(const struct search_file *f, int d)
     return *(char **const *)(const void *)((const char *)f + dimensions[d].words);
 }
 
-/* ---- room -------------------------------------------------------------------------------------
- */
+/* ---- room ----------------------------------------------------------------------------------- */
 
 static void **place_of(struct search_file *f, const struct entry *e)
 {
@@ -97,8 +96,7 @@ void search_file_free(struct search_file *f)
     *f = (struct search_file){0};
 }
 
-/* ---- writing ----------------------------------------------------------------------------------
- */
+/* ---- writing -------------------------------------------------------------------------------- */
 
 static double own_number(const void *context, uint64_t i)
 {
@@ -191,8 +189,7 @@ bool search_file_write(const struct search_file *f, const char *file, stance_mes
     return good;
 }
 
-/* ---- reading ----------------------------------------------------------------------------------
- */
+/* ---- reading -------------------------------------------------------------------------------- */
 
 bool search_file_is(const char *file)
 {
