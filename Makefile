@@ -18,13 +18,15 @@ STRICT   = -std=c17 -D_GNU_SOURCE -ffp-contract=off -fno-tree-slp-vectorize -fno
 # ---- libraries: found with pkg-config and mpicc; MPI=0 builds for one rank with serial HDF5 ------
 PKG_CONFIG ?= pkg-config
 PACKAGES_RUN  = libopenmpi-dev openmpi-bin libhdf5-openmpi-dev libyaml-dev liblapacke-dev \
-                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev libssl-dev \
+                libslicot-dev libsundials-dev libgsl-dev librandom123-dev libjansson-dev libssl-dev zlib1g-dev \
                 gnuplot-nox fonts-dejavu-core
 PACKAGES_TEST = libcmocka-dev python3-yaml python3-jsonschema man-db python3-h5py python3-xarray python3-netcdf4 python3-scipy netcdf-bin \
                 poppler-utils
 PACKAGES_LINT = clang-format clang-tidy cppcheck
 PACKAGES_FUZZ = clang libclang-rt-dev
 PACKAGES_NEON = gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user-static
+CLANG_VERSION = $(shell clang -dumpversion 2>/dev/null | cut -d. -f1)
+PACKAGES_WEB  = clang lld llvm wasi-libc libclang-rt-$(CLANG_VERSION:%=%-)dev-wasm32 $(if $(shell command -v node),,nodejs) $(if $(shell command -v npm),,npm)
 PACKAGES_SLURM = munge slurmctld slurmd slurm-client
 PACKAGES_HOSTS = iproute2
 PACKAGES_BENCH = libmujoco-dev valgrind linux-perf
@@ -37,8 +39,8 @@ MPI_LIBS     = $(shell mpicc --showme:link 2>/dev/null)
 else
 HDF5_PACKAGE = hdf5-serial
 endif
-LIBRARY_CFLAGS := $(shell $(PKG_CONFIG) --cflags $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl 2>/dev/null)
-LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl 2>/dev/null)
+LIBRARY_CFLAGS := $(shell $(PKG_CONFIG) --cflags $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl zlib 2>/dev/null)
+LIBRARIES      := $(shell $(PKG_CONFIG) --libs $(HDF5_PACKAGE) yaml-0.1 jansson lapacke gsl zlib 2>/dev/null)
 PROGRAM_CFLAGS  = $(MPI_CFLAGS) $(LIBRARY_CFLAGS)
 LIBS            = $(LIBRARIES) -lhdf5_hl $(MPI_LIBS) -lslicot -llapack -lblas \
                   -lsundials_arkode -lsundials_nvecserial -lcrypto -lm
@@ -52,7 +54,7 @@ ALLFLAGS = -I. $(STRICT) $(WARNINGS) $(SANITIZE)
 
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
 SCENES  = ball block rod biped
-# Of mechanisms: the structure is read at run time, in one lane. Others are compiled on demand.
+# Of mechanisms: the structure is read at run time. Others are compiled on demand.
 RUNTIME = runtime
 METHODS = implicit midpoint capturing lagrange
 SCALAR_METHODS = event_driven
@@ -60,11 +62,16 @@ MACHINE := $(shell uname -m)
 # Slow to fast: sse2 has to emulate fused multiply-adds and is for processors without them.
 ISAS_x86_64  = sse2 scalar avx2 avx512
 ISAS_aarch64 = scalar neon
+ISAS_wasm32  = wasm128
 ISAS    := $(or $(ISAS_$(MACHINE)),scalar)
+# Where the structure is read at run time, one lane is nearly as fast as many; not where one lane
+# calls the C library for each multiply-add.
+RUNTIME_ISA = $(or $(filter wasm128,$(ISAS)),scalar)
 fma_x86_64       = -mfma
 isa_flags_scalar = -DSTANCE_LANES=1 $(fma_$(MACHINE))
 isa_flags_sse2   = -DSTANCE_LANES=2
 isa_flags_neon   = -DSTANCE_LANES=2
+isa_flags_wasm128 = -DSTANCE_LANES=2 -msimd128
 isa_flags_avx2   = -DSTANCE_LANES=4 -mavx2 -mfma
 isa_flags_avx512 = -DSTANCE_LANES=8 -mavx512f -mavx512dq -mavx512vl -mfma
 # Methods that take one case at a time run on every processor.
@@ -73,7 +80,7 @@ scalar_method_flags = -DSTANCE_LANES=1
 kernel_warnings = -Wno-maybe-uninitialized
 
 kernels        := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i)))) \
-                  $(foreach m,$(METHODS),$(RUNTIME)-$(m)-scalar)
+                  $(foreach m,$(METHODS),$(RUNTIME)-$(m)-$(RUNTIME_ISA))
 scalar_kernels := $(foreach s,$(SCENES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
 kernel_objects := $(patsubst %,$(BUILD)/kernel/%.o,$(kernels) $(scalar_kernels))
 engine_sources := $(wildcard engine/*.c engine/core/lanes/*.c engine/laws/*.c engine/scenes/*.c)
@@ -96,7 +103,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon test test-neon test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-schedule profile lint sanitize install uninstall clean FORCE
+.PHONY: all help packages demo golden golden-neon golden-web web web-page test test-neon test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-schedule profile lint sanitize install uninstall clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(archives)
@@ -106,7 +113,7 @@ $(PROGRAM): $(program_objects) $(archives)
 $(BUILD)/libstance.a: $(engine_objects)
 $(BUILD)/libstance_control.a: $(control_objects)
 $(BUILD)/%.a:
-	$(call QUIET,ar,$@)rm -f $@ && ar rcs $@ $^
+	$(call QUIET,ar,$@)rm -f $@ && $(AR) rcs $@ $^
 
 define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
@@ -116,7 +123,7 @@ $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
 endef
 $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
 $(eval $(call kernel_rule,$(s),$(m),$(i),$(isa_flags_$(i)))))))
-$(foreach m,$(METHODS),$(eval $(call kernel_rule,$(RUNTIME),$(m),scalar,$(isa_flags_scalar))))
+$(foreach m,$(METHODS),$(eval $(call kernel_rule,$(RUNTIME),$(m),$(RUNTIME_ISA),$(isa_flags_$(RUNTIME_ISA)))))
 $(foreach s,$(SCENES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),\
 $(eval $(call kernel_rule,$(s),$(m),scalar,$(scalar_method_flags)))))
 
@@ -133,6 +140,10 @@ $(BUILD)/analysis/%.o: analysis/%.c Makefile
 scripts := $(wildcard analysis/*/plot_*.gp)
 $(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(scripts:%.gp=$(b)/%.o): $(b)/%.o: %.gp) \
     $(eval $(b)/analysis/draw/gnuplot.o: $(wildcard analysis/draw/*.gp)))
+# The page that `stance view` fills, where `make web` has made one.
+PAGE = $(wildcard build/web/page.html)
+$(BUILD)/analysis/view/page_template.o: PROGRAM_CFLAGS += $(PAGE:%=-DSTANCE_PAGE='"%"')
+$(BUILD)/analysis/view/page_template.o: $(PAGE)
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/store/build_info.o: $(BUILD)/revision
@@ -214,6 +225,45 @@ golden-neon:
 	@$(MAKE) BUILD=build/neon$(NEON_CFLAGS) KERNEL_CFLAGS=$(NEON_CFLAGS) MACHINE=aarch64 \
 	    CC=aarch64-linux-gnu-gcc SCALAR_METHODS= LIBRARY_CFLAGS= LDFLAGS=-static \
 	    GOLDEN_LIBS=-lm golden
+
+# The same for WebAssembly, run by node. Of Random123's processors, admitted by name, __riscv is one
+# without instructions of its own; a stack smaller than the bundles of a stream is not noticed.
+WEB         = build/web
+WEB_CC      = clang --target=wasm32-wasi -D__riscv -DR123_USE_GNU_UINT128=1
+WEB_CFLAGS ?= -O2
+WEB_LDFLAGS = -Wl,--gc-sections,--strip-all,-z,stack-size=8388608,--stack-first
+WEB_MAKE    = $(MAKE) BUILD=$(WEB) MACHINE=wasm32 AR=llvm-ar CC='$(WEB_CC)' CFLAGS='$(WEB_CFLAGS)' \
+    WARNINGS='$(WARNINGS) -Wno-bitwise-instead-of-logical' kernel_warnings= \
+    KERNEL_CFLAGS='$(WEB_CFLAGS)' SCALAR_METHODS= LIBRARY_CFLAGS= LDFLAGS='$(WEB_LDFLAGS)' GOLDEN_LIBS=-lm
+golden-web:
+	+@$(WEB_MAKE) golden
+
+# ---- pages: the engine as WebAssembly, the page around it, see analysis/view/page -----------------
+# The engine of a page reads scenarios, too, but no YAML and no files, and designs nothing.
+page_sources := $(wildcard analysis/view/wasm/*.c) $(addprefix runner/base/,checksum.c numbers.c problem.c words.c) \
+    $(addprefix runner/plan/,instruction_set.c plan.c refine.c resolve.c) \
+    $(filter-out %/command_describe.c %/describe.c %/scenario_file.c %/tree_yaml.c,$(wildcard runner/scenario/*.c))
+ifeq ($(BUILD),$(WEB))
+$(WEB)/engine.wasm: $(page_sources:%.c=$(WEB)/%.o) $(WEB)/libstance.a
+	$(call QUIET,link,$@)$(CC) -mexec-model=reactor $(LDFLAGS) -o $@ $^ -lm
+$(WEB)/node_modules/made: analysis/view/page/package-lock.json
+	$(call QUIET,npm,$(WEB)/node_modules)cp analysis/view/page/package*.json $(WEB) && cd $(WEB) && npm ci --no-audit --no-fund --loglevel=error >&2 && touch node_modules/made
+$(WEB)/page.html: $(WEB)/engine.wasm $(WEB)/node_modules/made $(wildcard analysis/view/page/*)
+	$(call QUIET,page,$@)node analysis/view/page/build.mjs $(WEB)/node_modules $(WEB)/engine.wasm $@
+endif
+web-page:
+	+@$(WEB_MAKE) MPI=0 $(WEB)/page.html
+# Pages that simulate, the program that makes them, and pages of studies that ship.
+GALLERY  = basin_one_foot basin_both_feet friction_sweep topple block_threshold painleve controllers/bimodal \
+           controllers/switching mechanisms/compass_gait mechanisms/rabbit mechanisms/pushed balance_recovers walk_attempt
+GALLERY_DIRECTORY = results/gallery
+web: packages packages-web
+	$(MAKE) -j$(CORES) web-page
+	$(MAKE) -j$(CORES) $(PROGRAM)
+	@mkdir -p $(GALLERY_DIRECTORY)
+	@for s in $(GALLERY); do \
+	    $(MPI_ENVIRONMENT) mpirun -n $(CORES) $(PROGRAM) run --quiet --force scenarios/$$s.yaml -o $(GALLERY_DIRECTORY)/$$(basename $$s).h5 || exit 1; done
+	@echo "Studies to click through:"; $(PROGRAM) view $(patsubst %,$(GALLERY_DIRECTORY)/%.h5,$(notdir $(GALLERY))) -o $(GALLERY_DIRECTORY)
 
 # Models of ours in MuJoCo.
 $(BUILD)/tests/test_export: LIBS += $(MUJOCO:%=-lmujoco)
@@ -312,10 +362,10 @@ fuzz-programs: $(fuzz_programs)
 
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
-packages packages-test packages-neon packages-slurm packages-hosts packages-bench: packages%:
+packages packages-test packages-neon packages-web packages-slurm packages-hosts packages-bench: packages%:
 	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT) $(PACKAGES_FUZZ)) \
 	    $(if $(filter -slurm,$*),$(PACKAGES_SLURM) python3-h5py) $(if $(filter -hosts,$*),$(PACKAGES_HOSTS) python3-h5py) \
-	    $(if $(filter -neon,$*),$(PACKAGES_NEON)) $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
+	    $(if $(filter -neon,$*),$(PACKAGES_NEON)) $(if $(filter -web,$*),$(PACKAGES_WEB)) $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
 	missing=; for p in $$need; do \
 	    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
 	[ -z "$$missing" ] && exit 0; \

@@ -531,7 +531,7 @@ typedef struct stance_feed {
 typedef struct stance_kernel {
     const stance_scene *scene;
     const stance_method *method;
-    const char *isa; /* "scalar", "sse2", "avx2", "avx512", "neon" */
+    const char *isa; /* "scalar", "sse2", "avx2", "avx512", "neon", "wasm128" */
     int lanes;
     /* Runs cases until there are no more or it is told to leave; false: told to leave. A case's
      * result does not depend on lanes, on the order, or on the cases that run beside it. */

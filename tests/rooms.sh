@@ -33,6 +33,8 @@ analysis/sensitivity: $numbers analysis/draw analysis/optimise analysis/summary
 analysis/compare: $numbers analysis/draw
 analysis/plot: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity
 analysis/bench: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot
+analysis/view: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot analysis/bench
+analysis/view/wasm: $runner
 runner: $runner"
 git ls-files -co --exclude-standard 'engine/*.[ch]' 'runner/*.[ch]' 'analysis/*.[ch]' |
     xargs -r grep -HE '^[[:space:]]*#[[:space:]]*include' /dev/null |

@@ -1,9 +1,6 @@
-/* checksum.c - CRC-32C, in portable C or by the processor's own instruction; SHA-256 by libcrypto.
- */
+/* checksum.c - CRC-32C, in portable C or by the processor's own instruction. */
 #include "checksum.h"
 
-#include <openssl/sha.h>
-#include <stdio.h>
 #include <string.h>
 
 #ifdef __x86_64__
@@ -57,12 +54,4 @@ uint32_t checksum_crc32c(uint32_t crc, const void *data, size_t size)
     }
 #endif
     return ~crc_bytes(crc, bytes + done, size - done);
-}
-
-void checksum_sha256(const void *data, size_t size, char text[CHECKSUM_SHA256_TEXT])
-{
-    uint8_t hash[SHA256_DIGEST_LENGTH];
-    SHA256(data, size, hash);
-    for (int i = 0; i < SHA256_DIGEST_LENGTH; i++)
-        snprintf(text + 2 * i, 3, "%02x", hash[i]);
 }

@@ -270,9 +270,11 @@ bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_value
     const double sample_time = values->sample_time;
     for (size_t k = 0; good && k < schema->count; k++) {
         const struct scenario_field *field = &schema->field[k];
+        const size_t items =
+            (field->items ? field->items : 1) * (field->columns ? field->columns : 1);
         if (field->offset != NO_OFFSET && !field->design)
             memset((char *)values + field->offset, 0,
-                   field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int));
+                   items * (field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int)));
     }
     free(schema);
     values->settle = 0;

@@ -58,6 +58,9 @@ void reader_no_mapping(struct reader *r, const struct scenario_field *field,
 /* What mechanism_read has read: where keys stand is noted by the reader, no more. */
 bool reader_described(const struct reader *r, const char *path);
 
+/* scenario_file.c: the whole file as a string, to be freed by the caller; NULL: a problem. */
+char *scenario_text(const char *file, struct problems *problems, size_t *length);
+
 /* scenario_check.c: what the keys mean for each other; completes the base values. */
 void scenario_cross_check(struct reader *r);
 

@@ -1,4 +1,5 @@
-/* fma.h - a * b + c rounded once, in two lanes, on processors that cannot: SSE2 alone.
+/* fma.h - a * b + c rounded once, in two lanes, on processors that cannot: SSE2 alone, and
+ * WebAssembly.
  *
  * Bit for bit what the instruction gives (which NAN it is excepted), from error-free
  * transformations. The product is p + q exactly (Dekker 1971, factors split into 26 bits and
@@ -52,7 +53,7 @@ static inline lanes fma_sum_error(lanes a, lanes b, lanes sum)
 static inline lanes fma_add_to_odd(lanes a, lanes b)
 {
     const lanes sum = a + b, error = fma_sum_error(a, b, sum);
-    const fma_bits inexact = (fma_bits)_mm_cmpneq_pd(error, lanes_of(0));
+    const fma_bits inexact = (fma_bits)~mask_equal(error, lanes_of(0));
     const fma_bits beyond = ((fma_bits)sum ^ (fma_bits)error) >> 63; /* 1: rounded away from zero */
     return (lanes)(((fma_bits)sum - (beyond & inexact)) | (inexact & 1));
 }
@@ -63,7 +64,7 @@ static inline mask fma_finite(lanes a)
 }
 static inline mask fma_zero(lanes a)
 {
-    return (mask)_mm_cmpeq_pd(a, lanes_of(0));
+    return mask_equal(a, lanes_of(0));
 }
 
 /* Every operand there is. */
@@ -91,7 +92,7 @@ static inline lanes fma_emulated(lanes a, lanes b, lanes c)
     const lanes few = (lanes)((fma_bits)rest << FMA_FEW_BITS);
     /* rest - rest: zero, or NAN where something has overflowed or was not finite. */
     const mask doubtful =
-        (fma_zero(few) & (mask)_mm_cmpneq_pd(rest - rest, q)) |
+        (fma_zero(few) & ~mask_equal(rest - rest, q)) |
         (mask_less(lanes_abs(p), lanes_of(FMA_SMALLEST_PRODUCT)) & ~(fma_zero(a) | fma_zero(b)));
     if (__builtin_expect(mask_any(doubtful), 0))
         return fma_careful(a, b, c);

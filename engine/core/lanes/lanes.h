@@ -12,7 +12,8 @@
  * that to the same bits.
  *
  * lanes_fma(a, b, c) is a * b + c rounded once, lanes_fms(a, b, c) a * b - c, and
- * lanes_fnma(a, b, c) c - a * b: an instruction each; emulated in fma.h for SSE2, which has none;
+ * lanes_fnma(a, b, c) c - a * b: an instruction each; emulated in fma.h in the two lanes of SSE2
+ * and WebAssembly (not the relaxed one, whose results are the browser's choice), which have none;
  * by the C library, as exactly, in one lane compiled for processors without.
  */
 #ifndef STANCE_CORE_LANES_LANES_H
@@ -30,10 +31,14 @@
 
 enum { LANES = STANCE_LANES };
 
+#if STANCE_LANES == 2 && !defined(__aarch64__)
+#define LANES_EMULATE_FMA
+#endif
+
 /* Functions of the inner loop, compiled anew for what each caller knows; and those that are not.
  * Where multiply-adds are emulated, or nothing is constant, nothing is gained by the first, and
  * compiling takes long. */
-#if (STANCE_LANES == 2 && defined(__SSE2__) && !defined(__FMA__)) || defined(TREE_RUNTIME)
+#if defined(LANES_EMULATE_FMA) || defined(TREE_RUNTIME)
 #define HOT static inline
 #else
 #define HOT static inline __attribute__((always_inline))
@@ -232,22 +237,50 @@ static inline bool mask_any(mask m)
 {
     return _mm_movemask_pd((__m128d)m) != 0;
 }
+static inline mask mask_equal(lanes a, lanes b)
+{
+    return (mask)_mm_cmpeq_pd(a, b);
+}
 static inline lanes lanes_abs(lanes a)
 {
     return _mm_andnot_pd(_mm_set1_pd(-0.0), a);
 }
-#include "fma.h"
-static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+
+#elif STANCE_LANES == 2 && defined(__wasm_simd128__)
+
+#include <wasm_simd128.h>
+typedef double lanes __attribute__((vector_size(16), may_alias));
+typedef int64_t mask __attribute__((vector_size(16)));
+
+#define LANES_ALL ((mask){-1, -1})
+#define LANES_NOT(m) (~(m))
+static inline lanes lanes_of(double x)
 {
-    return fma_emulated(a, b, c);
+    return (lanes){x, x};
 }
-static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+static inline mask mask_less(lanes a, lanes b)
 {
-    return fma_emulated(a, b, -c);
+    return (mask)(a < b);
 }
-static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+static inline mask mask_less_equal(lanes a, lanes b)
 {
-    return fma_emulated(-a, b, c);
+    return (mask)(a <= b);
+}
+static inline lanes choose(mask m, lanes a, lanes b)
+{
+    return (lanes)wasm_v128_bitselect((v128_t)a, (v128_t)b, (v128_t)m);
+}
+static inline bool mask_any(mask m)
+{
+    return wasm_v128_any_true((v128_t)m);
+}
+static inline mask mask_equal(lanes a, lanes b)
+{
+    return (mask)(a == b);
+}
+static inline lanes lanes_abs(lanes a)
+{
+    return (lanes)wasm_f64x2_abs((v128_t)a);
 }
 
 #elif STANCE_LANES == 2 && defined(__aarch64__)
@@ -297,6 +330,22 @@ static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
 
 #else
 #error "no lanes of this width for these compiler flags"
+#endif
+
+#ifdef LANES_EMULATE_FMA
+#include "fma.h"
+static inline lanes lanes_fma(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(a, b, c);
+}
+static inline lanes lanes_fms(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(a, b, -c);
+}
+static inline lanes lanes_fnma(lanes a, lanes b, lanes c)
+{
+    return fma_emulated(-a, b, c);
+}
 #endif
 
 #if STANCE_LANES > 1

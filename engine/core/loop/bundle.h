@@ -50,10 +50,10 @@ struct bundle {
     int recorded, capturing, unusual, bending, choosy; /* of these: see bundle_count */
     double target_key[sizeof(struct setting) / sizeof(lanes) + 8 + CONTACTS]; /* see rest_target */
     bool target_known, target_holds;
-    /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
-    _Alignas(sizeof(lanes)) const stance_case *which[LANES]; /* NULL: idle */
+    const stance_case *which[LANES]; /* NULL: idle */
     stance_result *result[LANES];
-    struct setting set;
+    /* From here on everything is an array over the lanes, of 8 bytes each: see regroup.h. */
+    _Alignas(sizeof(lanes)) struct setting set;
     struct motion now;
     lanes torque[ACTUATORS]; /* in force */
     lanes delay;             /* samples until a command is in force */

@@ -26,13 +26,17 @@ static int regroup_key(const struct bundle *b, int lane)
 }
 
 _Static_assert(sizeof(struct bundle) % sizeof(lanes) == 0 &&
-                   offsetof(struct bundle, which) % sizeof(lanes) == 0,
+                   offsetof(struct bundle, set) % sizeof(lanes) == 0,
                "a bundle's lanes are columns");
 
 /* Exchanges two lanes with everything that is kept of them. */
 static void regroup_swap(struct bundle *a, int i, struct bundle *b, int j)
 {
-    const size_t begin = offsetof(struct bundle, which), column = LANES * sizeof(double);
+    const stance_case *const which = a->which[i];
+    stance_result *const result = a->result[i];
+    a->which[i] = b->which[j], b->which[j] = which;
+    a->result[i] = b->result[j], b->result[j] = result;
+    const size_t begin = offsetof(struct bundle, set), column = LANES * sizeof(double);
     char *const p = (char *)a + begin + (size_t)i * sizeof(double);
     char *const q = (char *)b + begin + (size_t)j * sizeof(double);
     for (size_t k = 0; k + column <= sizeof *a - begin; k += column) {

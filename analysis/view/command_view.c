@@ -1,0 +1,263 @@
+/* command_view.c - `stance view FILE`: a results file as one page that simulates its cases. */
+#include "page_data.h"
+#include "page_template.h"
+
+#include "runner/base/command.h"
+#include "runner/base/sandbox.h"
+#include "runner/store/search_file.h"
+
+#include <errno.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+extern const struct command command_view; /* below */
+
+enum { MOST_FILES = 64, NAME = 1100 };
+
+struct request {
+    const char *files[MOST_FILES], *place, *answers;
+    size_t count;
+    struct page_request page;
+    const char *file; /* the one at hand */
+    char out[NAME];   /* its page */
+};
+
+/* ---- writing ------------------------------------------------------------------------------ */
+
+static int failed(const char *file, const char *what)
+{
+    fprintf(stderr, "%s: cannot %s: %s\n", file, what, strerror(errno));
+    return EXIT_IO;
+}
+
+/* A page that takes its name when it is complete. */
+struct writing {
+    const char *name;
+    char unfinished[NAME + 20];
+    FILE *out;
+};
+
+static bool begin(struct writing *w, const char *name)
+{
+    w->name = name;
+    snprintf(w->unfinished, sizeof w->unfinished, "%s.unfinished", name);
+    w->out = fopen(w->unfinished, "wb");
+    return w->out || !failed(name, "write");
+}
+
+/* The whole page, or nothing; `good`: what is written is right, else message says why not. */
+static int end(struct writing *w, bool good, const stance_message *message)
+{
+    const bool wrote = !ferror(w->out), closed = fclose(w->out) == 0;
+    if (good && wrote && closed && rename(w->unfinished, w->name) == 0)
+        return EXIT_DONE;
+    if (good)
+        failed(w->name, "write");
+    else
+        fprintf(stderr, "%s\n", message->text);
+    unlink(w->unfinished);
+    return EXIT_IO;
+}
+
+/* r NULL: of a search. */
+static int write_page(const struct request *request, const struct results *r)
+{
+    const char *const template = page_template(), *const place = strstr(template, PAGE_PLACE);
+    stance_message message = {""};
+    struct writing w;
+    if (!begin(&w, request->out))
+        return EXIT_IO;
+    fwrite(template, 1, (size_t)(place - template), w.out);
+    const bool good = r ? page_data_write(w.out, r, &request->page, &message)
+                        : page_search_write(w.out, request->file, &message);
+    fputs(place + strlen(PAGE_PLACE), w.out);
+    return end(&w, good, &message);
+}
+
+static int view(void *context)
+{
+    struct request *const request = context;
+    struct results r;
+    stance_message message = {""};
+    if (search_file_is(request->file))
+        return write_page(request, NULL);
+    if (!results_open(&r, request->file, &message)) {
+        fprintf(stderr, "%s\n", message.text);
+        return EXIT_IO;
+    }
+    int code = EXIT_USAGE;
+    if (r.cases > PAGE_MOST_CASES)
+        fprintf(stderr,
+                "%s: has %llu cases; a page carries up to %d: draw them (stance plot), or run "
+                "fewer points (--set sweep.grid[0].count=...) and look closer in the page, which "
+                "computes what lies between them\n",
+                request->file, (unsigned long long)r.cases, PAGE_MOST_CASES);
+    else
+        code = write_page(request, &r);
+    results_close(&r);
+    return code;
+}
+
+/* ---- several files ------------------------------------------------------------------------ */
+
+static bool name_page(struct request *request);
+
+static int write_index(void *context)
+{
+    struct request *const request = context;
+    stance_message message = {""};
+    struct writing w;
+    char name[NAME];
+    snprintf(name, sizeof name, "%.1000s/index.html", request->place);
+    if (!begin(&w, name))
+        return EXIT_IO;
+    bool good = true;
+    page_index_begin(w.out);
+    for (size_t i = 0; good && i < request->count; i++) {
+        request->file = request->files[i];
+        good = name_page(request) &&
+               page_index_card(w.out, request->file, strrchr(request->out, '/') + 1, &message);
+    }
+    page_index_end(w.out);
+    return end(&w, good, &message);
+}
+
+/* ---- the command -------------------------------------------------------------------------- */
+
+/* FILE.html beside the file, PLACE, or in the directory PLACE. False: it is too long. */
+static bool name_page(struct request *request)
+{
+    const char *const file = request->file, *const place = request->place;
+    const char *const slash = strrchr(file, '/'), *const name = slash ? slash + 1 : file;
+    const size_t length = strlen(name),
+                 stem = length > 3 && strcmp(name + length - 3, ".h5") == 0 ? length - 3 : length;
+    struct stat status;
+    int n;
+    if (place && !(stat(place, &status) == 0 && S_ISDIR(status.st_mode)))
+        n = snprintf(request->out, sizeof request->out, "%s", place);
+    else if (place)
+        n = snprintf(request->out, sizeof request->out, "%s/%.*s.html", place, (int)stem, name);
+    else
+        n = snprintf(request->out, sizeof request->out, "%.*s%.*s.html", (int)(name - file), file,
+                     (int)stem, name);
+    return n > 0 && (size_t)n < sizeof request->out;
+}
+
+/* The browser that the desktop has. What it says is of no interest, whether there is one is. */
+static int show(const char *page)
+{
+    char *const arguments[] = {(char *)"xdg-open", (char *)page, NULL};
+    pid_t child;
+    int status;
+    if (posix_spawnp(&child, "xdg-open", NULL, NULL, arguments, environ) == 0 &&
+        waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        return EXIT_DONE;
+    fprintf(stderr, "stance view: no browser could be opened (xdg-open): open %s in one\n", page);
+    return EXIT_DONE;
+}
+
+/* Splits the list of --answers; false with a message: there is no such answer. */
+static bool choose_answers(struct request *request, const char *list,
+                           const char *answer[PAGE_MOST_ANSWERS])
+{
+    static char text[1024];
+    const char *known[STANCE_ANSWER_COUNT];
+    request->page.answer = answer;
+    if (!list)
+        return true;
+    request->page.whole = strcmp(list, "all") == 0;
+    for (int a = 0; a < STANCE_ANSWER_COUNT; a++)
+        known[a] = stance_answers[a].name;
+    snprintf(text, sizeof text, "%s", list);
+    char *rest = text;
+    for (char *name; !request->page.whole && (name = strsep(&rest, ","));) {
+        if (command_word(&command_view, "--answers", name, known, STANCE_ANSWER_COUNT) ==
+            STANCE_ANSWER_COUNT)
+            return false;
+        if (request->page.answers < PAGE_MOST_ANSWERS)
+            answer[request->page.answers++] = name;
+    }
+    return true;
+}
+
+/* The page of each file, and the one that leads to them. */
+static int write_pages(struct request *request)
+{
+    int code = EXIT_DONE;
+    for (size_t i = 0; code == EXIT_DONE && i < request->count; i++) {
+        request->file = request->page.file = request->files[i];
+        if (!name_page(request))
+            return command_usage(&command_view, "the page's name is too long");
+        code = sandbox(view, request, request->file);
+        if (code == EXIT_DONE && request->count == 1)
+            printf("%s\n", request->out);
+    }
+    if (code != EXIT_DONE || request->count == 1)
+        return code;
+    code = sandbox(write_index, request, request->place);
+    snprintf(request->out, sizeof request->out, "%.1000s/index.html", request->place);
+    if (code == EXIT_DONE)
+        printf("%s\n", request->out);
+    return code;
+}
+
+static int run(int argc, char **argv)
+{
+    struct request request = {0};
+    size_t given[3] = {0};
+    const char *answer[PAGE_MOST_ANSWERS];
+    const struct option_spec specs[] = {
+        {"-o", true, &request.place, 1, &given[0]},
+        {"--answers", true, &request.answers, 1, &given[1]},
+        {"--open", false, NULL, 0, &given[2]},
+    };
+    const int begun =
+        command_begin(&command_view, argc, argv, specs, sizeof specs / sizeof specs[0],
+                      "a results file", request.files, 1, MOST_FILES, &request.count);
+    if (begun != COMMAND_GOES_ON)
+        return begun;
+    if (!strstr(page_template(), PAGE_PLACE)) {
+        fputs("stance view: this program was built without the page; `make web` builds both "
+              "(analysis/README.md says what that takes)\n",
+              stderr);
+        return EXIT_USAGE;
+    }
+    if (!choose_answers(&request, request.answers, answer))
+        return EXIT_USAGE;
+    if (request.count > 1 && !request.place)
+        return command_usage(&command_view, "pages of several files need a directory: -o DIR");
+    if (request.count > 1 && mkdir(request.place, 0777) != 0 && errno != EEXIST)
+        return failed(request.place, "make");
+    const int code = write_pages(&request);
+    if (code != EXIT_DONE)
+        return code;
+    return given[2] ? show(request.out) : EXIT_DONE;
+}
+
+const struct command command_view = {
+    "view",
+    "view FILE... [-o PLACE] [--answers A,...|all] [--open]",
+    "a page for the browser: a map whose cases are simulated where one clicks",
+    run,
+    "Writes one self-contained page, NAME.html beside the file, which any browser opens from "
+    "disk:\n"
+    "no server, no network, nothing to install. It holds the file's labels, checksums and "
+    "answers,\n"
+    "its scenario, and the engine that computed it. A click on a case simulates and plays it, "
+    "with\n"
+    "the bits that the file has; parameters can be changed there and the map computed anew.\n"
+    "Of several files there is a page each, and index.html leads to them: with -o DIR. Of a "
+    "search\n"
+    "(stance optimise) the page has its curves.\n"
+    "\n"
+    "  -o PLACE       the page's name, or a directory\n"
+    "  --answers A,... the answers that the page carries, for colours and for what the pointer\n"
+    "                 shows; `all` of them. Unasked as many as take 24 MB. What is left out the\n"
+    "                 page computes where one clicks\n"
+    "  --open         opens it in the browser\n",
+};

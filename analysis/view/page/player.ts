@@ -1,0 +1,401 @@
+// player.ts - cases as stick figures that move, one over the other or side by side, with contact forces as arrows and
+// torques as arcs, to scale; the ground; and what moves the time.
+import { context, eachFrame, el, style } from './dom';
+import type { PlayText, Trajectory, ViewText } from './format';
+import { numberText } from './numbers';
+
+export interface PlayedCase {
+  name: string;
+  hue: string;
+  text: PlayText;
+  rows: Trajectory;
+  scene: ViewText;
+  values: Record<string, number | string | null>;
+}
+
+interface Box {
+  left: number;
+  right: number;
+  low: number;
+  high: number;
+}
+
+const speeds: [string, number][] = [['1\u00d7', 1], ['1/2', 0.5], ['1/5', 0.2], ['1/10', 0.1], ['1/20', 0.05], ['1/50', 0.02]];
+const force_colour = '#d55e00';
+const torque_colour = '#009e73';
+
+// Row of a trajectory at a time: the last one that is not later.
+export function rowAt(rows: Trajectory, time: number): number {
+  const { time: t } = rows;
+  let low = 0;
+  let high = t.length - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (t[middle] <= time + 1e-9) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
+const roundDown = (x: number): number => {
+  const power = 10 ** Math.floor(Math.log10(x));
+  return (x / power >= 5 ? 5 : x / power >= 2 ? 2 : 1) * power;
+};
+
+export class Player {
+  private cases: PlayedCase[] = [];
+  private beside = false;
+  private time = 0;
+  private playing = false;
+  private last = 0;
+  private readonly canvas = el('canvas', { id: 'figure', role: 'img', tabindex: '0' });
+  private readonly button = el('button', { type: 'button', id: 'play', onclick: () => this.play(!this.playing) }, 'play');
+  private readonly scrub = el('input', { type: 'range', id: 'scrub', min: 0, step: 'any', 'aria-label': 'Time', oninput: () => this.go(Number(this.scrub.value)) });
+  private readonly clock = el('output', { id: 'clock' });
+  private readonly speed = el('select', { 'aria-label': 'Speed' }, ...speeds.map(([text, x]) => el('option', { value: x }, text)));
+  private redraw = eachFrame(() => this.draw());
+  // Of all cases and rows: what is in sight, and the largest force and torque.
+  private box: Box = { left: 0, right: 1, low: 0, high: 1 };
+  private follows = false;
+  private force = 0;
+  private torque = 0;
+  readonly element: HTMLElement;
+
+  constructor(private readonly moved: (time: number, passing: boolean) => void) {
+    const step = (by: number, text: string, name: string): HTMLElement =>
+      el('button', { type: 'button', 'aria-label': name, onclick: () => this.step(by) }, text);
+    this.element = el('div', { class: 'player' }, this.canvas,
+      el('div', { class: 'transport', role: 'group', 'aria-label': 'Playing' }, this.button, step(-1, '\u2039', 'One step back'), step(1, '\u203a', 'One step on'), this.speed, this.scrub, this.clock));
+    new ResizeObserver(() => this.redraw()).observe(this.canvas);
+  }
+
+  show(cases: PlayedCase[], beside: boolean): void {
+    this.cases = cases;
+    this.beside = beside && cases.length > 1;
+    this.measure();
+    this.scrub.max = String(this.end());
+    if (!cases.length) this.play(false);
+    this.redraw();
+  }
+
+  private end = (): number => Math.max(0, ...this.cases.map((c) => c.rows.time[c.rows.time.length - 1]));
+
+  play(on: boolean): void {
+    if (on && this.time >= this.end() - 1e-9) this.at(0);
+    if (on && !this.playing) {
+      this.last = performance.now();
+      requestAnimationFrame((now) => this.frame(now));
+    }
+    this.playing = on && this.cases.length > 0;
+    this.button.textContent = this.playing ? 'pause' : 'play';
+    this.button.setAttribute('aria-pressed', String(this.playing));
+    if (!this.playing) this.moved(this.time, false);
+  }
+
+  private frame(now: number): void {
+    if (!this.playing) return;
+    const next = this.time + ((now - this.last) / 1000) * Number(this.speed.value);
+    this.last = now;
+    this.at(Math.min(next, this.end()));
+    this.moved(this.time, true);
+    if (this.time >= this.end()) this.play(false);
+    else requestAnimationFrame((t) => this.frame(t));
+  }
+
+  // Time from outside; nobody is told.
+  at(time: number): void {
+    this.time = time;
+    this.scrub.value = String(time);
+    const text = `${time.toFixed(3)} / ${numberText(this.end(), 4)} s`;
+    this.clock.textContent = text;
+    this.scrub.setAttribute('aria-valuetext', text);
+    this.redraw();
+  }
+
+  go(time: number): void {
+    this.at(Math.max(0, Math.min(this.end(), time)));
+    this.moved(this.time, true);
+  }
+
+  step(by: number): void {
+    if (this.playing) this.play(false);
+    const rows = this.cases[0]?.rows;
+    if (rows) this.go(rows.time[Math.max(0, Math.min(rows.time.length - 1, rowAt(rows, this.time) + by))]);
+  }
+
+  // Keys of the page: true if this was one of the player's.
+  key(key: string): boolean {
+    if (!this.cases.length || ![' ', ',', '.'].includes(key)) return false;
+    if (key === ' ') this.play(!this.playing);
+    else this.step(key === '.' ? 1 : -1);
+    return true;
+  }
+
+  // ---- geometry ----
+  // Frames in which the ground is level and gravity leans are turned so that gravity points down.
+  private lean = (c: PlayedCase): number => (c.text.slope === 0 && c.scene.scene !== 'mechanism' ? Number(c.values['ground.slope'] ?? 0) : 0);
+  private fall = (c: PlayedCase): number => c.text.slope + this.lean(c);
+  private turned(c: PlayedCase, x: number, z: number): [number, number] {
+    const a = this.lean(c);
+    return a === 0 ? [x, z] : [x * Math.cos(a) + z * Math.sin(a), -x * Math.sin(a) + z * Math.cos(a)];
+  }
+
+  private measure(): void {
+    const box: Box = { left: Infinity, right: -Infinity, low: Infinity, high: -Infinity };
+    const forces: number[] = [];
+    this.torque = 0;
+    let size = 0;
+    for (const c of this.cases) {
+      const { figure, force, torque } = c.rows;
+      const points = c.text.figure;
+      const first: Box = { left: Infinity, right: -Infinity, low: Infinity, high: -Infinity };
+      for (let p = 0; 2 * p < figure.length; p++) {
+        const [x, z] = this.turned(c, figure[2 * p], figure[2 * p + 1]);
+        if (!Number.isFinite(x) || Math.abs(x) + Math.abs(z) > 1e4) continue;
+        for (const b of p < points ? [box, first] : [box]) {
+          b.left = Math.min(b.left, x);
+          b.right = Math.max(b.right, x);
+          b.low = Math.min(b.low, z);
+          b.high = Math.max(b.high, z);
+        }
+      }
+      size = Math.max(size, first.right - first.left, first.high - first.low);
+      for (let k = 0; k < force.length; k += 2) if (force[k] > 0) forces.push(Math.hypot(force[k], force[k + 1]));
+      for (const t of torque) if (Number.isFinite(t)) this.torque = Math.max(this.torque, Math.abs(t));
+    }
+    if (!(box.right >= box.left)) Object.assign(box, { left: -0.5, right: 0.5, low: 0, high: 1 });
+    size = size || 1;
+    forces.sort((a, b) => a - b);
+    // Blows aside: the force that one row in fifty exceeds.
+    this.force = forces.length ? forces[Math.floor(0.98 * (forces.length - 1))] : 0;
+    this.follows = box.right - box.left > 3.2 * size;
+    if (this.follows) Object.assign(box, { left: -1.3 * size, right: 1.3 * size });
+    const margin = 0.16 * size;
+    this.box = { left: box.left - margin, right: box.right + margin, low: Math.min(box.low, 0) - margin, high: box.high + margin };
+  }
+
+  // ---- drawing ----
+  private draw(): void {
+    const { g, width, height } = context(this.canvas);
+    const panels = this.beside ? this.cases.length : 1;
+    const across = width > 460 || panels < 2 ? panels : Math.ceil(panels / 2);
+    const down = Math.ceil(panels / across);
+    for (let k = 0; k < panels; k++) {
+      const [w, h] = [width / across, height / down];
+      g.save();
+      g.beginPath();
+      g.rect((k % across) * w, Math.floor(k / across) * h, w, h);
+      g.clip();
+      g.translate((k % across) * w, Math.floor(k / across) * h);
+      this.panel(g, w, h, this.beside ? [this.cases[k]] : this.cases);
+      g.restore();
+    }
+    this.canvas.setAttribute('aria-label', this.describe());
+  }
+
+  private describe(): string {
+    return this.cases.map((c) => {
+      const k = rowAt(c.rows, this.time);
+      const q = c.scene.coordinates.map((x, i) => `${x.name} ${numberText(c.rows.position[k * c.scene.coordinates.length + i], 3)} ${x.unit}`);
+      return `${c.name}, ${c.text.outcome}, at ${this.time.toFixed(3)} s: ${q.join(', ')}`;
+    }).join('; ');
+  }
+
+  private panel(g: CanvasRenderingContext2D, width: number, height: number, cases: PlayedCase[]): void {
+    const [first] = cases;
+    if (!first) return;
+    const { box } = this;
+    const scale = Math.min(width / (box.right - box.left), (height - 22) / (box.high - box.low));
+    const { middle, base } = this.centre(first);
+    const X = (x: number): number => width / 2 + (x - middle - (box.left + box.right) / 2) * scale;
+    const Y = (z: number): number => height - 4 - (z - base - box.low) * scale;
+    this.ground(g, width, X, Y, this.fall(first), scale);
+    [...cases].reverse().forEach((c) => this.figure(g, c, X, Y, scale, c === first));
+    this.legend(g, scale, cases);
+  }
+
+  // Where the view is that moves with the first case.
+  private centre(c: PlayedCase): { middle: number; base: number } {
+    if (!this.follows) return { middle: 0, base: 0 };
+    const k = rowAt(c.rows, this.time);
+    const n = c.text.figure;
+    let sum = 0;
+    let count = 0;
+    for (let p = 0; p < n; p++) {
+      const [x] = this.turned(c, c.rows.figure[2 * (k * n + p)], c.rows.figure[2 * (k * n + p) + 1]);
+      if (Number.isFinite(x)) [sum, count] = [sum + x, count + 1];
+    }
+    const middle = count ? sum / count : 0;
+    return { middle, base: -Math.tan(this.fall(c)) * middle };
+  }
+
+  private ground(g: CanvasRenderingContext2D, width: number, X: (x: number) => number, Y: (z: number) => number, slope: number, scale: number): void {
+    const left = (0 - X(0)) / scale;
+    const right = (width - X(0)) / scale;
+    const z = (x: number): number => -Math.tan(slope) * x;
+    g.strokeStyle = style('--ground');
+    g.lineWidth = 1.5;
+    g.beginPath();
+    g.moveTo(0, Y(z(left)));
+    g.lineTo(width, Y(z(right)));
+    g.stroke();
+    g.lineWidth = 0.7;
+    g.beginPath();
+    const step = roundDown(40 / scale);
+    for (let x = Math.floor(left / step) * step; x < right; x += step) {
+      g.moveTo(X(x), Y(z(x)));
+      g.lineTo(X(x) - 7, Y(z(x)) + 9);
+    }
+    g.stroke();
+  }
+
+  private figure(g: CanvasRenderingContext2D, c: PlayedCase, X: (x: number) => number, Y: (z: number) => number, scale: number, solid: boolean): void {
+    const { rows, text } = c;
+    const k = rowAt(rows, this.time);
+    const n = text.figure;
+    // Between two rows where the points are, in proportion.
+    const next = Math.min(k + 1, rows.time.length - 1);
+    const share = next > k ? Math.min(1, Math.max(0, (this.time - rows.time[k]) / (rows.time[next] - rows.time[k]))) : 0;
+    const between = (list: Float64Array, per: number, i: number): [number, number] => {
+      const at = (row: number, j: number): number => list[(row * per + i) * 2 + j];
+      return this.turned(c, at(k, 0) + share * (at(next, 0) - at(k, 0)), at(k, 1) + share * (at(next, 1) - at(k, 1)));
+    };
+    g.globalAlpha = solid ? 1 : 0.45;
+    g.strokeStyle = this.cases.length > 1 ? c.hue : style('--figure');
+    g.lineWidth = solid ? 4 : 3;
+    g.lineJoin = g.lineCap = 'round';
+    g.beginPath();
+    let open = false;
+    const joints: [number, number][] = [];
+    for (let p = 0; p < n; p++) {
+      const [x, z] = between(rows.figure, n, p);
+      const there = Number.isFinite(x) && Number.isFinite(z);
+      if (there) {
+        g[open ? 'lineTo' : 'moveTo'](X(x), Y(z));
+        joints.push([X(x), Y(z)]);
+      }
+      open = there;
+    }
+    g.stroke();
+    g.fillStyle = g.strokeStyle;
+    if (joints.length < 40)
+      for (const [x, y] of joints) {
+        g.beginPath();
+        g.arc(x, y, 3.2, 0, 7);
+        g.fill();
+      }
+    if (solid) {
+      this.forces(g, c, next, between, X, Y, scale);
+      this.torques(g, c, next, X, Y);
+    }
+    g.globalAlpha = 1;
+  }
+
+  // Of the row that the time is in: forces are means since the row before.
+  private forces(g: CanvasRenderingContext2D, c: PlayedCase, row: number, between: (l: Float64Array, per: number, i: number) => [number, number],
+    X: (x: number) => number, Y: (z: number) => number, scale: number): void {
+    const contacts = c.scene.contacts.length;
+    const slope = this.fall(c);
+    const factor = this.forceScale(scale);
+    for (let i = 0; i < contacts && factor > 0; i++) {
+      const [x, z] = between(c.rows.contact, contacts, i);
+      const normal = c.rows.force[2 * (row * contacts + i)];
+      const tangential = c.rows.force[2 * (row * contacts + i) + 1];
+      if (!Number.isFinite(x) || !(Math.hypot(normal, tangential) > 0)) continue;
+      const dx = normal * Math.sin(slope) + tangential * Math.cos(slope);
+      const dz = normal * Math.cos(slope) - tangential * Math.sin(slope);
+      arrow(g, X(x), Y(z), dx * factor, -dz * factor, force_colour);
+    }
+  }
+
+  // Pixels per newton.
+  private forceScale = (scale: number): number => (this.force > 0 ? (0.32 * (this.box.high - this.box.low) * scale) / this.force : 0);
+  private arc = (torque: number): number => (this.torque > 0 ? (torque / this.torque) * 1.4 * Math.PI : 0);
+
+  private torques(g: CanvasRenderingContext2D, c: PlayedCase, row: number, X: (x: number) => number, Y: (z: number) => number): void {
+    const count = c.scene.actuators.length;
+    for (let a = 0; a < count; a++) {
+      const torque = c.rows.torque[row * count + a];
+      const [px, pz, dx, dz] = c.rows.actuator.subarray(4 * (row * count + a), 4 * (row * count + a) + 4);
+      if (!Number.isFinite(torque) || torque === 0 || !Number.isFinite(px)) continue;
+      const [x, z] = this.turned(c, px, pz);
+      if (Number.isFinite(dx)) {
+        const [ux, uz] = this.turned(c, dx, dz);
+        const size = (40 * torque) / this.torque / (Math.hypot(ux, uz) || 1);
+        arrow(g, X(x), Y(z), ux * size, -uz * size, torque_colour);
+      } else turn(g, X(x), Y(z), 15 + 4 * (a % 2), this.arc(torque));
+    }
+  }
+
+  private legend(g: CanvasRenderingContext2D, scale: number, cases: PlayedCase[]): void {
+    g.font = '11px system-ui, sans-serif';
+    g.textBaseline = 'middle';
+    g.textAlign = 'left';
+    let x = 8;
+    const word = (text: string, colour: string): void => {
+      g.fillStyle = colour;
+      g.fillText(text, x, 12);
+      x += g.measureText(text).width + 14;
+    };
+    if (this.beside) word(cases[0].name, cases[0].hue);
+    const factor = this.forceScale(scale);
+    if (factor > 0) {
+      const force = roundDown(60 / factor);
+      arrow(g, x, 12, force * factor, 0, force_colour);
+      x += force * factor + 6;
+      word(`${numberText(force)} N`, style('--ink'));
+    }
+    if (this.torque > 0) {
+      const torque = roundDown(this.torque);
+      turn(g, x + 9, 13, 8, this.arc(torque));
+      x += 22;
+      const unit = cases[0].scene.actuators[0]?.unit ?? 'N m';
+      word(`${numberText(torque)} ${unit}`, style('--ink'));
+    }
+    const metre = roundDown(90 / scale);
+    g.strokeStyle = g.fillStyle = style('--muted');
+    g.lineWidth = 2;
+    g.beginPath();
+    g.moveTo(x, 12);
+    g.lineTo(x + metre * scale, 12);
+    g.stroke();
+    x += metre * scale + 5;
+    word(`${numberText(metre)} m`, style('--ink'));
+  }
+}
+
+function head(g: CanvasRenderingContext2D, x: number, y: number, angle: number, size: number): void {
+  g.beginPath();
+  g.moveTo(x, y);
+  g.lineTo(x - size * Math.cos(angle - 0.4), y - size * Math.sin(angle - 0.4));
+  g.lineTo(x - size * Math.cos(angle + 0.4), y - size * Math.sin(angle + 0.4));
+  g.fill();
+}
+
+function arrow(g: CanvasRenderingContext2D, x: number, y: number, dx: number, dy: number, colour: string): void {
+  const size = Math.hypot(dx, dy);
+  if (size < 1) return;
+  g.strokeStyle = g.fillStyle = colour;
+  g.lineWidth = 2;
+  g.beginPath();
+  g.moveTo(x, y);
+  g.lineTo(x + dx * (1 - Math.min(1, 6 / size)), y + dy * (1 - Math.min(1, 6 / size)));
+  g.stroke();
+  head(g, x + dx, y + dy, Math.atan2(dy, dx), Math.min(8, size));
+}
+
+// An arc of `angle`, counter-clockwise as x is to the right and z up.
+function turn(g: CanvasRenderingContext2D, x: number, y: number, radius: number, angle: number): void {
+  if (Math.abs(angle) < 0.02) return;
+  const from = -Math.PI / 2;
+  g.strokeStyle = g.fillStyle = torque_colour;
+  g.lineWidth = 2.2;
+  g.beginPath();
+  g.arc(x, y, radius, from, from - angle, angle > 0);
+  g.stroke();
+  const end = from - angle;
+  head(g, x + radius * Math.cos(end), y + radius * Math.sin(end), end + (angle > 0 ? -1 : 1) * (Math.PI / 2), 6);
+}
+
+export const reduced = (): boolean => window.matchMedia('(prefers-reduced-motion: reduce)').matches;
+export const playerKey = (target: EventTarget | null): boolean => !(target instanceof HTMLElement && /^(INPUT|SELECT|TEXTAREA|BUTTON|SUMMARY|A)$/.test(target.tagName));

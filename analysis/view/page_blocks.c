@@ -1,0 +1,68 @@
+/* page_blocks.c - numbers and JSON as text that stands in a page. */
+#include "page_data.h"
+
+#include <openssl/evp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+/* As base64, in pieces of whole groups. */
+static void put_base64(FILE *out, const uint8_t *bytes, size_t size)
+{
+    enum { PIECE = 3 * 1024 };
+    unsigned char text[PIECE / 3 * 4 + 1];
+    for (size_t at = 0; at < size; at += PIECE) {
+        const size_t n = size - at < PIECE ? size - at : PIECE;
+        fwrite(text, 1, (size_t)EVP_EncodeBlock(text, bytes + at, (int)n), out);
+    }
+}
+
+static void shuffle(uint8_t *to, const uint8_t *from, size_t size, size_t count)
+{
+    for (size_t b = 0; b < size; b++)
+        for (size_t i = 0; i < count; i++)
+            *to++ = from[i * size + b];
+}
+
+bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, const void *numbers,
+                size_t size, size_t count, size_t limit, size_t *bytes)
+{
+    const uLong plain = (uLong)(size * count);
+    uLongf length = compressBound(plain);
+    uint8_t *const shuffled = malloc(plain ? plain : 1), *const packed = malloc(length);
+    bool good = shuffled && packed;
+    if (good)
+        shuffle(shuffled, numbers, size, count);
+    good = good && compress2(packed, &length, shuffled, plain, 6) == Z_OK;
+    if (bytes)
+        *bytes = good ? length : 0;
+    if (good && length <= limit) {
+        fprintf(out, "<script type=\"text/plain\" id=\"block-%s\">", name);
+        put_base64(out, packed, length);
+        fputs("</script>\n", out);
+        json_object_set_new(blocks, name,
+                            json_pack("{s:s,s:I}", "type", type, "count", (json_int_t)count));
+    }
+    free(shuffled);
+    free(packed);
+    return good;
+}
+
+static int put_escaped(const char *text, size_t size, void *out)
+{
+    for (size_t i = 0; i < size; i++) {
+        const char c = text[i];
+        if (c == '<' || c == '>' || c == '&')
+            fprintf(out, "\\u%04x", (unsigned)c);
+        else
+            fputc(c, out);
+    }
+    return 0;
+}
+
+void page_json(FILE *out, const char *id, const json_t *json)
+{
+    fprintf(out, "<script type=\"application/json\" id=\"%s\">", id);
+    json_dump_callback(json, put_escaped, out, JSON_COMPACT | JSON_ENSURE_ASCII | JSON_ENCODE_ANY);
+    fputs("</script>\n", out);
+}

@@ -1,0 +1,289 @@
+/* page_charts.c - what of a file is better read off curves than off a map. */
+#include "page_charts.h"
+
+#include "analysis/bench/accuracy.h"
+#include "analysis/optimise/search_study.h"
+#include "analysis/sensitivity/sensitivity_study.h"
+#include "analysis/statistics/intervals.h"
+#include "analysis/statistics/statistics.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_TABLES = 6, MOST_DOTS = 4000 };
+#define COST_SECONDS 0.03 /* that a row of error against cost is measured for */
+
+static json_t *number(double x)
+{
+    return isfinite(x) ? json_real(x) : json_null();
+}
+
+static json_t *axis(const char *label, const char *unit, bool log, json_t *words)
+{
+    return json_pack("{s:s,s:s,s:b,s:o}", "label", label, "unit", unit, "log", log, "words",
+                     words ? words : json_null());
+}
+
+/* Points of a curve, with intervals where `low` is one. */
+struct curve {
+    json_t *x, *y, *low, *high;
+};
+
+static struct curve curve_begin(void)
+{
+    return (struct curve){json_array(), json_array(), json_array(), json_array()};
+}
+
+static void curve_add(struct curve *c, double x, double y, struct interval interval)
+{
+    json_array_append_new(c->x, number(x));
+    json_array_append_new(c->y, number(y));
+    json_array_append_new(c->low, number(interval.low));
+    json_array_append_new(c->high, number(interval.high));
+}
+
+static const struct interval no_interval = {NAN, NAN};
+
+static void curve_end(json_t *series, const struct curve *c, const char *name, bool lines)
+{
+    json_array_append_new(series,
+                          json_pack("{s:s,s:o,s:o,s:o,s:o,s:b}", "name", name, "x", c->x, "y", c->y,
+                                    "low", c->low, "high", c->high, "lines", lines));
+}
+
+static json_t *chart(const char *title, const char *text, json_t *x, json_t *y, json_t *series)
+{
+    return json_pack("{s:s,s:s,s:o,s:o,s:o}", "title", title, "text", text, "x", x, "y", y,
+                     "series", series);
+}
+
+/* ---- shares along an axis ----------------------------------------------------------------- */
+
+static bool is_start(const struct results_axis *a)
+{
+    return strncmp(a->name, "initial.offset.", 15) == 0 ||
+           strncmp(a->name, "initial.state.", 14) == 0;
+}
+
+static json_t *words_of(const struct results_axis *a)
+{
+    json_t *const list = a->word ? json_array() : NULL;
+    for (size_t i = 0; list && i < a->count; i++)
+        json_array_append_new(list, json_string(a->word[i]));
+    return list;
+}
+
+/* The share of each outcome that occurs, at each value of an axis. */
+static bool put_shares(json_t *charts, const struct results *r, int k, stance_message *message)
+{
+    const struct results_axis *const a = &r->axis[k];
+    struct statistics_counts all, *const counts = calloc(a->count, sizeof *counts);
+    char title[200];
+    if (!counts)
+        return statistics_no_memory(r, message);
+    json_t *const series = json_array();
+    statistics_count(r, -1, 0, &all);
+    statistics_count_axis(r, k, counts);
+    for (int kind = 0; kind < RESULTS_OUTCOMES; kind++) {
+        if (all.kind[kind] == 0)
+            continue;
+        struct curve c = curve_begin();
+        for (size_t i = 0; i < a->count; i++)
+            curve_add(&c, a->value[i], 100 * (double)counts[i].kind[kind] / (double)counts[i].done,
+                      no_interval);
+        curve_end(series, &c, results_kind_names[kind], true);
+    }
+    free(counts);
+    snprintf(title, sizeof title, "Shares of outcomes along %.120s", a->name);
+    json_array_append_new(charts, chart(title, a->text, axis(a->name, a->unit, false, words_of(a)),
+                                        axis("share of the cases that are done", "%", false, NULL),
+                                        series));
+    return true;
+}
+
+/* ---- sensitivity -------------------------------------------------------------------------- */
+
+static json_t *factor_names(const struct sensitivity_study *study)
+{
+    json_t *const list = json_array();
+    for (size_t i = 0; i < study->factors; i++) {
+        char text[160];
+        sensitivity_factor_text(study, study->order[i], text, sizeof text);
+        json_array_append_new(list, json_string(text));
+    }
+    return list;
+}
+
+static void put_measure(json_t *series, const struct sensitivity_study *study,
+                        const struct sensitivity *s, enum sensitivity_measure measure,
+                        const char *name)
+{
+    if (!s->measure[measure])
+        return;
+    struct curve c = curve_begin();
+    for (size_t i = 0; i < study->factors; i++) {
+        const struct sensitivity_value *const v = &s->measure[measure][study->order[i]];
+        curve_add(&c, (double)i, v->estimate, (struct interval){v->low, v->high});
+    }
+    curve_end(series, &c, name, false);
+}
+
+static void put_table(json_t *charts, const struct sensitivity_study *study, size_t t)
+{
+    const struct sensitivity *const s = &study->table[t].s;
+    const bool morris = s->measure[SENSITIVITY_MU_STAR] != NULL;
+    char response[200], where[200], title[460];
+    json_t *const series = json_array();
+    sensitivity_response_text(study, response, sizeof response);
+    sensitivity_table_text(study, t, where, sizeof where);
+    snprintf(title, sizeof title, "What the %s depends on%s%s", response, where[0] ? ": " : "",
+             where);
+    put_measure(series, study, s, SENSITIVITY_FIRST, "first: the factor alone");
+    put_measure(series, study, s, SENSITIVITY_TOTAL, "total: with interactions");
+    put_measure(series, study, s, SENSITIVITY_MU_STAR, "mean magnitude of the effects");
+    put_measure(series, study, s, SENSITIVITY_SIGMA, "their standard deviation");
+    json_array_append_new(
+        charts, chart(title,
+                      morris ? "Morris's elementary effects over the ranges, with 95 % intervals"
+                             : "Sobol' indices with 95 % intervals, what matters most first",
+                      axis("factor", "", false, factor_names(study)),
+                      axis(morris ? "effect" : "index", "", false, NULL), series));
+}
+
+static bool put_sensitivity(json_t *charts, const struct results *r, stance_message *message)
+{
+    const struct sensitivity_request request = {
+        .unit = "", .of = RESULTS_KIND_COUNT, .bootstrap = SENSITIVITY_BOOTSTRAP};
+    struct sensitivity_study study;
+    const int code = sensitivity_study_make(&study, r, &request, message);
+    if (code != EXIT_DONE) /* too short, say: then there is no chart */
+        return code == EXIT_USAGE;
+    for (size_t t = 0; t < study.response.tables && t < MOST_TABLES; t++)
+        put_table(charts, &study, t);
+    sensitivity_study_free(&study);
+    return true;
+}
+
+/* ---- error against cost ------------------------------------------------------------------- */
+
+static double error_of(const struct accuracy *a, const struct accuracy_row *row)
+{
+    const double error = a->labels ? (double)row->differ / (double)row->compared : row->position;
+    return row->compared == 0 ? NAN : a->labels ? fmax(error, 1 / (double)row->compared) : error;
+}
+
+/* Files that are no study of accuracy have none of it, which is no fault. */
+static void put_accuracy(json_t *charts, const struct results *r)
+{
+    struct accuracy a;
+    stance_message ignored;
+    if (r->axes == 0 || strcmp(r->axis[0].name, "method.name") != 0 ||
+        !accuracy_make(&a, r, COST_SECONDS, &ignored))
+        return;
+    json_t *const series = json_array();
+    for (const stance_method *const *m = stance_methods(); *m; m++) {
+        struct curve c = curve_begin();
+        for (size_t k = 0; k < a.rows; k++)
+            if (a.row[k].method == *m && k != a.truth && error_of(&a, &a.row[k]) > 0)
+                curve_add(&c, a.row[k].cost.median, error_of(&a, &a.row[k]), no_interval);
+        if (json_array_size(c.x) > 0)
+            curve_end(series, &c, (*m)->name, true);
+        else
+            json_decref(c.x), json_decref(c.y), json_decref(c.low), json_decref(c.high);
+    }
+    json_array_append_new(
+        charts,
+        chart("Error against cost",
+              a.labels ? "Share of the cases whose outcome is not that of the reference; none at "
+                         "all is drawn as one. Cost was measured when the page was made"
+                       : "Largest difference of a coordinate from the reference. Cost was measured "
+                         "when the page was made",
+              axis("processor time per simulated second of a case", "us", true, NULL),
+              axis(a.labels ? "share of outcomes unlike the reference" : "error of coordinates",
+                   a.labels ? "" : "m, rad", true, NULL),
+              series));
+    accuracy_free(&a);
+}
+
+json_t *page_charts(const struct results *r, stance_message *message)
+{
+    json_t *const charts = json_array();
+    bool good = true;
+    if (r->single)
+        return charts;
+    put_accuracy(charts, r);
+    if (sensitivity_study_fits(r))
+        good = put_sensitivity(charts, r, message);
+    for (int a = 0; good && a < r->axes; a++)
+        if (a != r->sample && r->axis[a].count > 1 && !is_start(&r->axis[a]))
+            good = put_shares(charts, r, a, message);
+    if (good)
+        return charts;
+    json_decref(charts);
+    return NULL;
+}
+
+/* ---- searches ----------------------------------------------------------------------------- */
+
+static void put_candidates(json_t *charts, const struct search_study *study, double scale)
+{
+    const struct search_file *const f = &study->f;
+    const size_t n = f->length[SEARCH_CANDIDATE], every = (n + MOST_DOTS - 1) / MOST_DOTS;
+    char aim[300];
+    json_t *const series = json_array();
+    struct curve dots = curve_begin(), best = curve_begin();
+    for (size_t i = 0; i < n; i += every ? every : 1)
+        curve_add(&dots, (double)i + 1, scale * f->objective[i], no_interval);
+    for (size_t g = 0; g < f->length[SEARCH_GENERATION]; g++)
+        curve_add(&best, (double)f->candidates[g], scale * f->objective[f->best[g]], no_interval);
+    curve_end(series, &dots, "candidates", false);
+    curve_end(series, &best, "best so far, of its stage's starts", true);
+    search_aim(study, aim, sizeof aim);
+    json_array_append_new(charts,
+                          chart("The search as it went", aim, axis("candidate", "", false, NULL),
+                                axis(study->plain ? "recovered starts" : "objective",
+                                     study->plain ? "%" : "", false, NULL),
+                                series));
+}
+
+static void put_confirmed(json_t *charts, const struct search_study *study, double scale)
+{
+    const struct search_file *const f = &study->f;
+    json_t *const series = json_array(), *const names = json_array();
+    struct curve fresh = curve_begin(), training = curve_begin();
+    for (size_t k = 0; k < f->length[SEARCH_CONFIRMED]; k++) {
+        char name[80];
+        const struct interval own = search_interval(study, k, SEARCH_OVERALL);
+        search_name(study, k, name, sizeof name);
+        json_array_append_new(names, json_string(name));
+        curve_add(&fresh, (double)k, 100 * search_share(study, k, SEARCH_OVERALL),
+                  (struct interval){100 * own.low, 100 * own.high});
+        curve_add(&training, (double)k, scale * f->confirmed_training[k], no_interval);
+    }
+    curve_end(series, &fresh, "fresh starts, 95 % intervals", false);
+    if (study->plain)
+        curve_end(series, &training, "the search's own starts", false);
+    else
+        json_decref(training.x), json_decref(training.y), json_decref(training.low),
+            json_decref(training.high);
+    json_array_append_new(charts, chart("What is left of it from fresh starts",
+                                        "Shares of starts by which nothing was chosen",
+                                        axis("candidate", "", false, names),
+                                        axis("recovered starts", "%", false, NULL), series));
+}
+
+json_t *page_search_charts(const char *file, char title[256], stance_message *message)
+{
+    struct search_study study;
+    if (!search_study_open(&study, file, message))
+        return NULL;
+    json_t *const charts = json_array();
+    snprintf(title, 256, "%s", study.f.title ? study.f.title : study.name);
+    if (study.f.length[SEARCH_CANDIDATE] > 0)
+        put_candidates(charts, &study, study.plain ? 100 : 1);
+    if (study.done)
+        put_confirmed(charts, &study, study.plain ? 100 : 1);
+    search_study_close(&study);
+    return charts;
+}

@@ -1,0 +1,56 @@
+/* page_data.h - what a page holds of a results file: a head in JSON, and blocks of numbers.
+ *
+ * Numbers are little-endian, those of more than a byte shuffled (all first bytes, then all second
+ * ones ...), deflated (zlib, RFC 1950), in base64. analysis/view/page/data.ts reads them.
+ */
+#ifndef STANCE_VIEW_PAGE_DATA_H
+#define STANCE_VIEW_PAGE_DATA_H
+
+#include "runner/store/results.h"
+
+#include <jansson.h>
+#include <stdio.h>
+
+enum {
+    PAGE_MOST_CASES = 8000000,
+    PAGE_MOST_ANSWERS = 32, /* that may be asked for */
+};
+/* Compressed bytes of answers that a page carries unasked. */
+#define PAGE_BYTES 24e6
+
+struct page_request {
+    const char *file;    /* as it is to stand in commands */
+    const char **answer; /* [answers] those to be carried; none: as many as PAGE_BYTES allow */
+    size_t answers;
+    bool whole; /* all of them */
+};
+
+/* Writes the page's script elements. False: *message says why; errors of `out` are the caller's. */
+bool page_data_write(FILE *out, const struct results *r, const struct page_request *request,
+                     stance_message *message);
+
+/* The same of the file of a search: its charts. */
+bool page_search_write(FILE *out, const char *file, stance_message *message);
+
+/* page_blocks.c: a block of `count` numbers of `size` bytes, and its entry in the head's object
+ * `blocks`. *bytes, not NULL: what it takes, compressed; with a limit below that nothing is
+ * written. False: no memory. */
+bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, const void *numbers,
+                size_t size, size_t count, size_t limit, size_t *bytes);
+/* Text that stands in a script element, JSON or not: no '<', no '&'. */
+void page_json(FILE *out, const char *id, const json_t *json);
+
+/* Colours of kinds: those of analysis/draw/style.gp. */
+extern const char *const page_kind_colour[RESULTS_KIND_COUNT];
+
+/* page_index.c: a page that leads to others, card after card. `page`: where the link goes. False:
+ * the file cannot be read, *message says why. */
+void page_index_begin(FILE *out);
+bool page_index_card(FILE *out, const char *file, const char *page, stance_message *message);
+void page_index_end(FILE *out);
+
+/* page_wire.c: a scenario's text as wire text (analysis/view/wasm/wire.c), freed by the caller;
+ * NULL: it is none, or no memory. */
+char *page_wire(const char *scenario);
+
+#endif

@@ -1,0 +1,94 @@
+/* absent.c - what a page does without: files, and the numerical libraries that designs of
+ * controllers need. It has the designs of its results file (page_designs.c), and asks for no other.
+ */
+#include "engine/control/design.h"
+
+#include "runner/base/message.h"
+#include "runner/scenario/reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+double gsl_cdf_ugaussian_Pinv(double p);
+
+static stance_error absent(stance_message *message)
+{
+    complain(message, "a page designs no controller");
+    return STANCE_NUMERICAL;
+}
+
+stance_error stance_place(int n, int m, const double *A, const double *B, const double *re,
+                          const double *im, double *K, int *sweeps, double *condition,
+                          stance_message *message)
+{
+    (void)n, (void)m, (void)A, (void)B, (void)re, (void)im, (void)K, (void)sweeps, (void)condition;
+    return absent(message);
+}
+
+stance_error stance_place_schur(int n, int m, const double *A, const double *B, const double *re,
+                                const double *im, double *K, stance_message *message)
+{
+    (void)n, (void)m, (void)A, (void)B, (void)re, (void)im, (void)K;
+    return absent(message);
+}
+
+stance_error stance_place_sampled(stance_placement how, int n, int m, const double *A,
+                                  const double *B, double T, const double *re, const double *im,
+                                  double *K, int *sweeps, double *condition,
+                                  stance_message *message)
+{
+    (void)how, (void)n, (void)m, (void)A, (void)B, (void)T, (void)re, (void)im, (void)K;
+    (void)sweeps, (void)condition;
+    return absent(message);
+}
+
+stance_error stance_lqr(int n, int m, const double *A, const double *B, const double *states,
+                        const double *torques, double *K, stance_message *message)
+{
+    (void)n, (void)m, (void)A, (void)B, (void)states, (void)torques, (void)K;
+    return absent(message);
+}
+
+stance_error stance_lqr_sampled(int n, int m, const double *A, const double *B, double T,
+                                const double *states, const double *torques, double *K,
+                                stance_message *message)
+{
+    (void)n, (void)m, (void)A, (void)B, (void)T, (void)states, (void)torques, (void)K;
+    return absent(message);
+}
+
+stance_error stance_discretise(int n, int m, const double *A, const double *B, double T, double *Ad,
+                               double *Bd)
+{
+    (void)n, (void)m, (void)A, (void)B, (void)T, (void)Ad, (void)Bd;
+    return STANCE_NUMERICAL;
+}
+
+stance_error stance_selection_condition(const stance_scene *scene, const double *robot,
+                                        const double *position, int selection, double *condition)
+{
+    (void)scene, (void)robot, (void)position, (void)selection;
+    *condition = 1; /* what is singular was refused where the file was made */
+    return STANCE_OK;
+}
+
+/* Of directions on a sphere: the page is given the points that its file has. */
+double gsl_cdf_ugaussian_Pinv(double p)
+{
+    (void)p;
+    return 0;
+}
+
+char *scenario_text(const char *file, struct problems *problems, size_t *length)
+{
+    (void)file, (void)length;
+    problem_add(problems, (struct mark){0}, "a page reads no files");
+    return NULL;
+}
+
+/* A page has no environment. */
+char *getenv(const char *name)
+{
+    (void)name;
+    return NULL;
+}

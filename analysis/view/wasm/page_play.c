@@ -1,0 +1,176 @@
+/* page_play.c - one case with its trajectory, and what a stick figure needs of it: points of the
+ * figure and of contacts, where actuators act, the energy.
+ *
+ * Where joint k turns: the figure moves with it as v = E (p - c), E the quarter turn (x, z) ->
+ * (-z, x), so that c = p + E v of any point that moves, the fastest one here; v from a difference
+ * over a small angle.
+ */
+#include "page.h"
+
+#include "runner/base/message.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+EXPORTED(play) int play(double index, double every, int most_rows);
+EXPORTED(play_text) const char *play_text(void);
+EXPORTED(play_numbers) const double *play_numbers(int which);
+
+enum {
+    TIME,
+    POSITION,
+    VELOCITY,
+    TORQUE,
+    FORCE,
+    GAP,
+    FIGURE,
+    CONTACT,
+    ACTUATOR,
+    ENERGY,
+    NUMBERS,
+};
+
+static struct {
+    stance_case input;
+    stance_result result;
+    int rows, points;
+    double every;
+    double *number[NUMBERS];
+} played;
+
+static bool room(int which, int rows, int numbers)
+{
+    free(played.number[which]);
+    played.number[which] =
+        malloc((size_t)rows * (size_t)(numbers > 0 ? numbers : 1) * sizeof(double));
+    return played.number[which] || no_memory(&page.message);
+}
+
+/* Into place[4]: of what turns its centre and nothing, of what slides a point and its direction. */
+static void put_actuator(const stance_scene *scene, int k, const double *position,
+                         const double point[][2], int points, double *place)
+{
+    const bool turns = strcmp(scene->coordinate[k].unit, "rad") == 0;
+    const double step = 1e-6;
+    double moved[STANCE_MAX_COORDINATES], ahead[STANCE_MAX_POINTS][2], v[2] = {0, 0};
+    int fastest = 0;
+    memcpy(moved, position, (size_t)scene->coordinates * sizeof *moved);
+    moved[k] += step;
+    scene->figure(scene, played.input.robot, moved, ahead);
+    for (int p = 0; p < points; p++) {
+        const double own[2] = {(ahead[p][0] - point[p][0]) / step,
+                               (ahead[p][1] - point[p][1]) / step};
+        if (hypot(own[0], own[1]) > hypot(v[0], v[1])) {
+            fastest = p;
+            memcpy(v, own, sizeof v);
+        }
+    }
+    place[0] = point[fastest][0] - (turns ? v[1] : 0);
+    place[1] = point[fastest][1] + (turns ? v[0] : 0);
+    place[2] = turns ? NAN : v[0];
+    place[3] = turns ? NAN : v[1];
+}
+
+static void put_row(const stance_scene *scene, int row)
+{
+    const int n = scene->coordinates, contacts = scene->contacts;
+    const double *const position = &played.number[POSITION][row * n],
+                        *const velocity = &played.number[VELOCITY][row * n];
+    double point[STANCE_MAX_POINTS][2], speed[2];
+    const int points = scene->figure(scene, played.input.robot, position, point);
+    played.number[TIME][row] = row * played.every;
+    memcpy(&played.number[FIGURE][row * 2 * played.points], point,
+           (size_t)(2 * played.points) * sizeof **point);
+    for (int c = 0; c < contacts; c++)
+        scene->contact_point(scene, played.input.robot, position, velocity, c,
+                             &played.number[CONTACT][(row * contacts + c) * 2], speed);
+    for (int a = 0; a < scene->actuators; a++)
+        put_actuator(scene, scene->actuated[a], position, point, points,
+                     &played.number[ACTUATOR][(row * scene->actuators + a) * 4]);
+    played.number[ENERGY][row] = scene->energy(scene, played.input.robot, position, velocity);
+}
+
+/* Rows up to the end of the case: the first one that was not reached holds NAN. */
+static bool make_rows(const stance_scene *scene, const stance_kernel *kernel, int rows)
+{
+    const int n = scene->coordinates, m = scene->actuators, contacts = scene->contacts;
+    double point[STANCE_MAX_POINTS][2];
+    played.points = scene->figure(scene, played.input.robot, played.input.position, point);
+    const int numbers[NUMBERS] = {
+        1, n, n, m, 2 * contacts, contacts, 2 * played.points, 2 * contacts, 4 * m, 1};
+    for (int k = 0; k < NUMBERS; k++)
+        if (!room(k, rows, numbers[k]))
+            return false;
+    for (int i = 0; i < rows; i++)
+        played.number[POSITION][i * n] = NAN;
+    stance_trajectory trajectory = {
+        .interval = played.every,
+        .rows = rows,
+        .position = played.number[POSITION],
+        .velocity = played.number[VELOCITY],
+        .torque = played.number[TORQUE],
+        .force = played.number[FORCE],
+        .gap = played.number[GAP],
+    };
+    played.input.trajectory = &trajectory;
+    kernel->run(&played.input, &played.result, 1);
+    page_simulated(&played.result);
+    played.input.trajectory = NULL;
+    played.rows = 0;
+    while (played.rows < rows && !isnan(played.number[POSITION][played.rows * n]))
+        put_row(scene, played.rows++);
+    return true;
+}
+
+int play(double index, double every, int most_rows)
+{
+    const stance_scene *const scene = page.view.scene;
+    const stance_kernel *kernel;
+    played.rows = 0;
+    page_fail(&played.result);
+    if (!page_case(index, &played.input, &kernel)) {
+        if (!page.message.text[0])
+            complain(&page.message, "case %.0f has no start, or no controller, that exists", index);
+        return 0;
+    }
+    if (most_rows < 2)
+        most_rows = 2;
+    if (!(every > 0)) { /* each step, or each so many of them */
+        kernel->run(&played.input, &played.result, 1);
+        const double steps = fmax(1, (double)played.result.steps);
+        every = played.input.step * ceil(steps / (most_rows - 1));
+    }
+    played.every = every;
+    const double length = played.input.step * (double)played.input.steps;
+    const double rows = fmin(most_rows, floor(length / every + 1e-6) + 1);
+    return make_rows(scene, kernel, (int)rows) ? played.rows : 0;
+}
+
+const double *play_numbers(int which)
+{
+    return which >= 0 && which < NUMBERS ? played.number[which] : NULL;
+}
+
+const char *play_text(void)
+{
+    static struct text text;
+    double answer[STANCE_ANSWER_COUNT];
+    page_answers(&played.result, answer);
+    text_clear(&text);
+    text_add(&text, "{\"rows\":%d,\"interval\":", played.rows);
+    text_number(&text, played.every);
+    text_add(&text, ",\"step\":");
+    text_number(&text, played.input.step);
+    text_add(&text, ",\"figure\":%d,\"contacts\":%d,\"kind\":%d,\"checksum\":%lu,\"slope\":",
+             played.points, page.view.scene->contacts, page_kind(&played.result),
+             (unsigned long)page_checksum(&played.result));
+    text_number(&text, page.view.scene->mechanism ? played.input.robot[STANCE_ROBOT_SLOPE] : 0);
+    text_add(&text, ",\"answers\":[");
+    for (int a = 0; a < STANCE_ANSWER_COUNT; a++) {
+        text_add(&text, "%s", a ? "," : "");
+        text_number(&text, answer[a]);
+    }
+    text_add(&text, "]}");
+    return text_done(&text);
+}

@@ -1,0 +1,328 @@
+/* page_text.c - what the engine tells a page in words: JSON (RFC 8259). */
+#include "page.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+EXPORTED(view_text) const char *view_text(void);
+EXPORTED(answers_text) const char *answers_text(void);
+EXPORTED(case_values) const char *case_values(double index);
+
+/* ---- text that grows; without memory it ends where it was ----------------------------------- */
+
+void text_clear(struct text *text)
+{
+    text->length = 0;
+}
+
+void text_add(struct text *text, const char *format, ...)
+{
+    va_list arguments;
+    for (;;) {
+        const size_t left = text->room - text->length;
+        va_start(arguments, format);
+        const int n =
+            vsnprintf(text->bytes ? text->bytes + text->length : NULL, left, format, arguments);
+        va_end(arguments);
+        if (n < 0)
+            return;
+        if ((size_t)n < left) {
+            text->length += (size_t)n;
+            return;
+        }
+        const size_t room = 2 * text->room + (size_t)n + 4096;
+        char *const bytes = realloc(text->bytes, room);
+        if (!bytes)
+            return;
+        text->bytes = bytes;
+        text->room = room;
+    }
+}
+
+void text_string(struct text *text, const char *string)
+{
+    text_add(text, "\"");
+    for (const char *s = string; *s; s++) {
+        const size_t plain = strcspn(s, "\"\\\b\f\n\r\t\x01\x02\x03\x04\x05\x06\x07\x0b\x0e\x0f"
+                                        "\x10\x11\x12\x13\x14\x15\x16\x17\x18\x19\x1a\x1b\x1c\x1d"
+                                        "\x1e\x1f");
+        text_add(text, "%.*s", (int)plain, s);
+        s += plain;
+        if (!*s)
+            break;
+        text_add(text, "\\u%04x", (unsigned)(unsigned char)*s);
+    }
+    text_add(text, "\"");
+}
+
+void text_number(struct text *text, double number)
+{
+    if (isfinite(number))
+        text_add(text, "%.17g", number);
+    else
+        text_add(text, "null");
+}
+
+const char *text_done(struct text *text)
+{
+    return text->bytes ? text->bytes : "";
+}
+
+static void add_words(struct text *text, const char *const *word, size_t words)
+{
+    text_add(text, ",\"words\":");
+    for (size_t i = 0; i < words; i++) {
+        text_add(text, i ? "," : "[");
+        text_string(text, word[i]);
+    }
+    text_add(text, words ? "]" : "null");
+}
+
+/* ---- fields that may be changed ----------------------------------------------------------- */
+
+/* Whether a field means something for the view as it is. */
+static bool applies(const struct scenario_field *field)
+{
+    const struct scenario_values *const is = &page.view.base;
+    const stance_law *const law = scenario_law(is), *const own = stance_laws()[field->law];
+    const bool places = is->design == DESIGN_PLACE || is->design == DESIGN_PLACE_SCHUR;
+    switch (field->use) {
+    case USE_CONTROL:
+        return law->set || law->designed;
+    case USE_LAW:
+        return law == own || scenario_far(is) == own;
+    case USE_FAR:
+        return scenario_far(is)->set != NULL;
+    case USE_FEEDBACK:
+        return law->designed;
+    case USE_PLACE:
+        return law->designed && places;
+    case USE_LQR:
+        return law->designed && is->design == DESIGN_LQR;
+    case USE_MODEL:
+        return law->designed && is->design != DESIGN_GAINS;
+    case USE_GAINS:
+        return law->designed && is->design == DESIGN_GAINS;
+    case USE_EQUILIBRIUM:
+        return !is->state_given;
+    case USE_STATE:
+        return is->state_given;
+    case USE_SETTLE:
+        return is->settle;
+    default:
+        return true;
+    }
+}
+
+/* The value of item i of a field. */
+static void add_value(struct text *text, const struct scenario_field *field,
+                      const struct scenario_values *values, size_t i)
+{
+    const char *const place = (const char *)values + field->offset;
+    if (field->type == FIELD_NUMBER) {
+        double number;
+        memcpy(&number, place + i * sizeof number, sizeof number);
+        if (isinf(number) && field->words)
+            text_string(text, field->words[0]);
+        else
+            text_number(text, number);
+        return;
+    }
+    int number;
+    memcpy(&number, place, sizeof number);
+    if (field->type == FIELD_WORD && number >= 0 && (size_t)number < field->word_count)
+        text_string(text, field->words[number]);
+    else
+        text_add(text, "%d", number);
+}
+
+/* Calls `tell` with each item of each field that may be changed: with its path. */
+static void each_field(struct text *text, const struct scenario_values *values,
+                       void (*tell)(struct text *, const struct scenario_field *,
+                                    const struct scenario_values *, const char *, size_t))
+{
+    for (size_t k = 0; k < page.schema.count; k++) {
+        const struct scenario_field *const field = &page.schema.field[k];
+        const bool number = field->type == FIELD_NUMBER || field->type == FIELD_INTEGER;
+        if (!field->sweep || field->offset == NO_OFFSET || !applies(field) ||
+            (!number && field->type != FIELD_WORD))
+            continue;
+        const char *const bracket = strstr(field->path, "[]");
+        const size_t columns = field->columns ? field->columns : 1,
+                     items = (field->items ? field->items : 1) * columns;
+        for (size_t i = 0; i < (bracket ? items : 1); i++) {
+            char path[160];
+            const int length = bracket ? (int)(bracket - field->path) : (int)strlen(field->path);
+            if (!bracket)
+                snprintf(path, sizeof path, "%s", field->path);
+            else if (field->columns)
+                snprintf(path, sizeof path, "%.*s[%zu][%zu]", length, field->path, i / columns,
+                         i % columns);
+            else
+                snprintf(path, sizeof path, "%.*s[%zu]%s", length, field->path, i, bracket + 2);
+            tell(text, field, values, path, i);
+        }
+    }
+}
+
+static bool is_swept(const struct scenario_field *field, size_t item)
+{
+    const size_t size = field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int);
+    int k;
+    return scenario_axis_of(&page.view, field->offset + item * size, &k) != NULL;
+}
+
+static void tell_field(struct text *text, const struct scenario_field *field,
+                       const struct scenario_values *values, const char *path, size_t item)
+{
+    text_add(text, "%s{\"path\":", text->bytes[text->length - 1] == '[' ? "" : ",");
+    text_string(text, path);
+    text_add(text, ",\"text\":");
+    text_string(text, field->text);
+    text_add(text, ",\"unit\":");
+    text_string(text, field->unit);
+    text_add(text, ",\"type\":\"%s\",\"value\":",
+             field->type == FIELD_NUMBER    ? "number"
+             : field->type == FIELD_INTEGER ? "integer"
+                                            : "word");
+    add_value(text, field, values, item);
+    text_add(text, ",\"low\":");
+    text_number(text, field->low);
+    text_add(text, ",\"high\":");
+    text_number(text, field->high);
+    text_add(text, ",\"lowOpen\":%s,\"highOpen\":%s,\"design\":%s,\"swept\":%s",
+             field->low_open ? "true" : "false", field->high_open ? "true" : "false",
+             field->design ? "true" : "false", is_swept(field, item) ? "true" : "false");
+    add_words(text, field->words, field->words ? field->word_count : 0);
+    text_add(text, "}");
+}
+
+static void tell_value(struct text *text, const struct scenario_field *field,
+                       const struct scenario_values *values, const char *path, size_t item)
+{
+    text_add(text, "%s", text->bytes[text->length - 1] == '{' ? "" : ",");
+    text_string(text, path);
+    text_add(text, ":");
+    add_value(text, field, values, item);
+}
+
+/* ---- the texts ---------------------------------------------------------------------------- */
+
+static void add_quantities(struct text *text, const char *name, const stance_quantity *of, int n)
+{
+    text_add(text, ",\"%s\":[", name);
+    for (int i = 0; i < n; i++) {
+        text_add(text, "%s{\"name\":", i ? "," : "");
+        text_string(text, of[i].name);
+        text_add(text, ",\"unit\":");
+        text_string(text, of[i].unit);
+        text_add(text, "}");
+    }
+    text_add(text, "]");
+}
+
+/* Contacts with the ground come first, then the stops of joints. */
+static void add_bodies(struct text *text, const stance_scene *scene)
+{
+    add_quantities(text, "coordinates", scene->coordinate, scene->coordinates);
+    text_add(text, ",\"actuators\":[");
+    for (int a = 0; a < scene->actuators; a++) {
+        const bool turns = strcmp(scene->coordinate[scene->actuated[a]].unit, "rad") == 0;
+        text_add(text, "%s{\"name\":", a ? "," : "");
+        text_string(text, scene->actuator_name[a]);
+        text_add(text, ",\"unit\":\"%s\"}", turns ? "N m" : "N");
+    }
+    text_add(text, "],\"contacts\":[");
+    for (int c = 0; c < scene->contacts && !(scene->grip && scene->grip[c] < 0); c++) {
+        text_add(text, "%s", c ? "," : "");
+        text_string(text, scene->contact_name[c]);
+    }
+    text_add(text, "]");
+}
+
+static void add_axes(struct text *text, const struct scenario *s)
+{
+    text_add(text, ",\"axes\":[");
+    for (int a = 0; a < s->axes; a++) {
+        text_add(text, "%s{\"count\":%zu,\"sample\":%s,\"paths\":[", a ? "," : "", s->axis[a].count,
+                 s->axis[a].sample ? "true" : "false");
+        for (int k = 0; k < s->axis[a].paths; k++) {
+            text_add(text, "%s", k ? "," : "");
+            text_string(text, s->axis[a].path[k]);
+        }
+        text_add(text, "]}");
+    }
+    text_add(text, "]");
+}
+
+const char *view_text(void)
+{
+    static struct text text;
+    const struct scenario *const s = &page.view;
+    text_clear(&text);
+    text_add(&text, "{\"scene\":");
+    text_string(&text, s->scene->name);
+    text_add(&text, ",\"title\":");
+    text_string(&text, s->title);
+    text_add(&text, ",\"method\":");
+    text_string(&text, stance_methods()[s->base.method]->name);
+    text_add(&text, ",\"law\":");
+    text_string(&text, scenario_law(&s->base)->name);
+    text_add(&text, ",\"designed\":%s,\"capture\":%s,\"seed\":%llu,\"step\":",
+             scenario_law(&s->base)->designed && s->base.design != DESIGN_GAINS ? "true" : "false",
+             s->base.capture ? "true" : "false", (unsigned long long)s->seed);
+    text_number(&text, s->base.step);
+    text_add(&text, ",\"stop_time\":");
+    text_number(&text, s->base.stop_time);
+    text_add(&text, ",\"slope\":");
+    text_number(&text, s->scene->mechanism ? s->base.robot[STANCE_ROBOT_SLOPE] : 0);
+    text_add(&text, ",\"cases\":%.0f", (double)page.view_plan.rows);
+    add_bodies(&text, s->scene);
+    add_axes(&text, s);
+    text_add(&text, ",\"fields\":[");
+    each_field(&text, &s->base, tell_field);
+    text_add(&text, "]}");
+    return text_done(&text);
+}
+
+const char *answers_text(void)
+{
+    static struct text text;
+    text_clear(&text);
+    for (int a = 0; a < STANCE_ANSWER_COUNT; a++) {
+        const stance_answer *const answer = &stance_answers[a];
+        const char *word[STANCE_MAX_WORDS];
+        const int words = stance_answer_words(page.view.scene, a, word);
+        text_add(&text, "%s{\"name\":", a ? "," : "[");
+        text_string(&text, answer->name);
+        text_add(&text, ",\"unit\":");
+        text_string(&text, answer->unit);
+        text_add(&text, ",\"text\":");
+        text_string(&text, answer->text);
+        text_add(&text, ",\"type\":\"%s\"",
+                 words                           ? "code"
+                 : answer->type == STANCE_DOUBLE ? "number"
+                                                 : "count");
+        add_words(&text, word, (size_t)words);
+        text_add(&text, "}");
+    }
+    text_add(&text, "]");
+    return text_done(&text);
+}
+
+const char *case_values(double index)
+{
+    static struct text text;
+    struct scenario_values values;
+    text_clear(&text);
+    text_add(&text, "{");
+    if (index >= 0 && index < (double)page.view_plan.rows) {
+        scenario_case_values(&page.view, plan_case(&page.view_plan, (uint64_t)index), &values);
+        each_field(&text, &values, tell_value);
+    }
+    text_add(&text, "}");
+    return text_done(&text);
+}

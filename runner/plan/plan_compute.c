@@ -1,0 +1,379 @@
+/* plan_compute.c - designs, checks and estimates. */
+#include "instruction_set.h"
+#include "known_basin.h"
+#include "plan.h"
+
+#include "runner/base/command.h"
+#include "runner/base/message.h"
+#include "runner/base/numbers.h"
+#include "runner/base/units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum {
+    CHECKED_CASES = 4096,
+    CORNER_AXES = 11, /* 2048 corners */
+    WIDEST = 8,       /* bundle of lanes */
+    COST_CASES = 64,
+    COST_STEPS = 500, /* length of the beginnings tried first */
+};
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+/* ---- designs ------------------------------------------------------------------------------ */
+
+/* At the key that the message begins with, or else at another. */
+static void place_error(const struct scenario *s, const char *otherwise, const char *message,
+                        struct plan_error *error)
+{
+    error->line = error->column = 1;
+    if (!scenario_place(s, message, &error->line, &error->column))
+        scenario_place(s, otherwise, &error->line, &error->column);
+}
+
+/* Whose fault it is that a design does not exist: the initial equilibrium's, or the law's. */
+static void blame_design(const struct plan *plan, size_t design, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    struct scenario_values values;
+    struct resolved_design result;
+    stance_message ignored;
+
+    scenario_case_values(s, plan_design_case(plan, design), &values);
+    resolve_design(s->scene, &values, &result, &error->message);
+    values.law = 0;
+    bool law = resolve_design(s->scene, &values, &result, &ignored);
+    place_error(s, law ? "controller:" : "initial:", error->message.text, error);
+}
+
+/* This rank's block of the designs. */
+static size_t designs_here(const struct plan *plan, const struct parallel *parallel, size_t *first)
+{
+    const size_t ranks = (size_t)parallel->size, rank = (size_t)parallel->rank;
+    const size_t share = plan->designs / ranks, extra = plan->designs % ranks;
+    *first = rank * share + smaller(rank, extra);
+    return share + (rank < extra);
+}
+
+/* Corner c of the grid: bit a says which end of axis a. */
+static uint64_t corner_case(const struct scenario *s, uint64_t c)
+{
+    uint64_t index = 0;
+    for (int a = 0; a < s->axes; a++)
+        index = index * s->axis[a].count + ((c >> a & 1) ? s->axis[a].count - 1 : 0);
+    return index;
+}
+
+static uint64_t corners(const struct scenario *s)
+{
+    return (uint64_t)1 << smaller((size_t)s->axes, CORNER_AXES);
+}
+
+/* Case i of n spread evenly over all. */
+static uint64_t spread_case(const struct plan *plan, uint64_t i, uint64_t n)
+{
+    uint64_t last = plan->scenario->cases - 1;
+    return n < 2 ? 0 : last / (n - 1) * i + last % (n - 1) * i / (n - 1);
+}
+
+/* Case i of COST_CASES, in an order that is spread evenly wherever it is cut: 27 and 64 have no
+ * divisor. */
+static uint64_t cost_case(const struct plan *plan, uint64_t i)
+{
+    return spread_case(plan, i * 27 % COST_CASES, COST_CASES);
+}
+
+/* A step that meets each of n numbers once, modulo n, and spreads them evenly wherever it is cut:
+ * near the golden section, without a common divisor. */
+static size_t even_stride(size_t n)
+{
+    for (size_t stride = (size_t)(0.6180339887498949 * (double)n) | 1;; stride++) {
+        size_t a = stride, b = n;
+        while (b > 0) {
+            const size_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1)
+            return stride;
+    }
+}
+
+static void ask_to_stop(void *context)
+{
+    const struct plan *plan = context;
+    plan->stop(plan->stop_context); /* which tells the other ranks */
+}
+
+/* A rank that waits for others goes on asking: the signal may be its own. */
+static void meet(struct plan *plan, const struct parallel *parallel)
+{
+    if (plan->stop)
+        parallel_meet(parallel, ask_to_stop, plan);
+}
+
+bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
+                          struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    size_t first;
+    const size_t count = designs_here(plan, parallel, &first);
+    const size_t stride = even_stride(count);
+    const uint64_t ends = corners(s);
+    uint64_t found[3] = {0}; /* designs that exist; that are pending; ranks that were stopped */
+    size_t computed = 0;
+    const double start = clock_seconds();
+
+    /* Time may run out: those come first that plan_cost needs, then those of the corners. */
+    for (uint64_t i = 0; i < COST_CASES + ends + count; i++) {
+        const size_t d = i < COST_CASES          ? plan_design(plan, cost_case(plan, i))
+                         : i < COST_CASES + ends ? plan_design(plan, corner_case(s, i - COST_CASES))
+                                                 : first + (i - COST_CASES - ends) * stride % count;
+        struct scenario_values values;
+        stance_message ignored;
+        if (d < first || d >= first + count || plan->design_status[d] != STANCE_PENDING)
+            continue;
+        if (plan->stop && plan->stop(plan->stop_context)) {
+            found[2] = 1;
+            break;
+        }
+        if (plan->patience > 0 && computed > 0 && clock_seconds() - start > plan->patience)
+            break;
+        scenario_case_values(s, plan_design_case(plan, d), &values);
+        struct resolved_design design = plan_design_at(plan, d);
+        bool exists = resolve_design(s->scene, &values, &design, &ignored);
+        plan_design_put(plan, d, &design);
+        plan->design_status[d] = exists ? STANCE_DONE : STANCE_FAILED;
+        computed++;
+    }
+    if (computed > 0)
+        plan->design_seconds = (clock_seconds() - start) * (double)plan->designs / (double)computed;
+    for (size_t d = first; d < first + count; d++) {
+        found[0] += plan->design_status[d] == STANCE_DONE;
+        found[1] += plan->design_status[d] == STANCE_PENDING;
+    }
+    meet(plan, parallel);
+    parallel_gather_block(parallel, plan->design, plan->design_size * sizeof *plan->design, first,
+                          count);
+    parallel_gather_block(parallel, plan->design_status, 1, first, count);
+    parallel_sum(parallel, found, 3);
+    plan->pending = found[1];
+    const bool good = found[0] > 0 || found[1] > 0;
+    if (!good && found[2] == 0)
+        blame_design(plan, 0, error);
+    return good && found[2] == 0;
+}
+
+bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
+                            bool (*stop)(void *context), void *context, stance_message *message)
+{
+    const struct scenario *s = plan->scenario;
+    size_t first;
+    const size_t count = designs_here(plan, parallel, &first);
+    bool good = true;
+
+    if (!s->base.capture)
+        return true;
+    for (size_t d = first; good && d < first + count; d++) {
+        struct scenario_values values;
+        stance_message why = {""}; /* there need not be a set */
+        struct resolved_design design = plan_design_at(plan, d);
+        if (plan->design_status[d] != STANCE_DONE || design.capture_time != 0)
+            continue; /* none, or known from another file */
+        scenario_case_values(s, plan_design_case(plan, d), &values);
+        good = known_basin_estimate(s->scene, &values, &design, s->seed, stop, context, NULL, &why);
+        plan_design_put(plan, d, &design);
+        if (!good)
+            *message = why;
+    }
+    meet(plan, parallel);
+    parallel_gather_block(parallel, plan->design, plan->design_size * sizeof *plan->design, first,
+                          count);
+    return parallel_agree(parallel, good, message->text, sizeof message->text);
+}
+
+/* ---- checking ----------------------------------------------------------------------------- */
+
+static bool check_case(const struct plan *plan, uint64_t index, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    struct scenario_values values;
+    stance_case resolved;
+    stance_message message = {""};
+    size_t design = plan_design(plan, index);
+
+    if (plan->design_status[design] != STANCE_DONE)
+        return true;
+    scenario_case_values(s, index, &values);
+    const struct resolved_design own = plan_design_at(plan, design);
+    if (resolve_case(s->scene, &values, &own, s->seed, index, &resolved, &message) &&
+        (s->cases > 1 || resolve_selection(s->scene, &resolved, &message)))
+        return true;
+    place_error(s, "initial:", message.text, error);
+    if (s->cases == 1)
+        error->message = message;
+    else
+        complain(&error->message, "case %llu: %.200s", (unsigned long long)index, message.text);
+    return false;
+}
+
+bool plan_check_cases(const struct plan *plan, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    if (plan->single)
+        return check_case(plan, plan->single_case, error);
+    uint64_t n = s->cases < CHECKED_CASES ? s->cases : CHECKED_CASES;
+    for (uint64_t i = 0; i < n; i++)
+        if (!check_case(plan, spread_case(plan, i, n), error))
+            return false;
+    for (uint64_t c = 0; n < s->cases && c < corners(s); c++)
+        if (!check_case(plan, corner_case(s, c), error))
+            return false;
+    /* Of few designs that are known the cases above may miss most. */
+    for (size_t d = 0; plan->pending > 0 && d < plan->designs; d++)
+        if (plan->design_status[d] == STANCE_DONE &&
+            !check_case(plan, plan_design_case(plan, d), error))
+            return false;
+    return true;
+}
+
+/* ---- cost --------------------------------------------------------------------------------- */
+
+/* Copies of a case, one for each lane: lanes share the work of a bundle. */
+struct copies {
+    const stance_case *input;
+    stance_result result[WIDEST];
+    int lanes, given;
+    double until;
+};
+
+static bool copies_next(void *context, const stance_case **c, stance_result **result)
+{
+    struct copies *copies = context;
+    if (copies->given == copies->lanes)
+        return false;
+    *c = copies->input;
+    *result = &copies->result[copies->given++];
+    return true;
+}
+
+static void copies_done(void *context, const stance_case *c, stance_result *result)
+{
+    (void)context, (void)c, (void)result;
+}
+
+static bool is_late(void *context)
+{
+    const double *until = context;
+    return clock_seconds() > *until;
+}
+
+static bool copies_leave(void *context)
+{
+    return is_late(&((struct copies *)context)->until);
+}
+
+struct trial {
+    double seconds;        /* spent */
+    uint64_t steps;        /* taken */
+    uint64_t steps_asked;  /* that the cases would take to their ends */
+    uint64_t cases, begun; /* tried; of these, that have a start */
+    bool late;             /* the last one was given up, at steps that are not known */
+};
+
+/* Runs number i of COST_CASES, at most `steps` long, until the clock says `until`. */
+static void try_case(const struct plan *plan, uint64_t i, int64_t steps, double until,
+                     struct trial *trial)
+{
+    stance_case input;
+    int method;
+    const uint64_t row = plan->single ? 0 : cost_case(plan, i);
+    if (plan->design_status[plan_design(plan, plan_case(plan, row))] == STANCE_PENDING)
+        return;
+    trial->cases++;
+    if (!plan_resolve(plan, row, &input, &method))
+        return;
+    trial->begun++;
+    trial->steps_asked += (uint64_t)input.steps;
+    input.steps = input.steps < steps ? input.steps : steps;
+    const stance_kernel *kernel =
+        instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
+    struct copies copies = {
+        .input = &input, .lanes = kernel->lanes < WIDEST ? kernel->lanes : WIDEST, .until = until};
+    const double start = clock_seconds();
+    trial->late = !kernel->stream(&(stance_feed){&copies, copies_next, copies_done, copies_leave});
+    trial->seconds += (clock_seconds() - start) / copies.lanes;
+    trial->steps += trial->late ? 0 : (uint64_t)copies.result[0].steps;
+}
+
+/* A search with few simulations tells what one takes on the way to a set. */
+double plan_capture_cost(const struct plan *plan, double budget)
+{
+    enum { TRIED = 256 };
+    const struct scenario *s = plan->scenario;
+    const double start = clock_seconds();
+    double until = start + budget;
+
+    for (size_t d = 0; s->base.capture && d < plan->designs; d++) {
+        struct scenario_values values;
+        stance_known_basin_search search;
+        stance_known_basin set = {.simulations = 0};
+        stance_message ignored;
+        if (plan->design_status[d] != STANCE_DONE)
+            continue;
+        if (is_late(&until))
+            return NAN;
+        scenario_case_values(s, plan_design_case(plan, d), &values);
+        const struct resolved_design design = plan_design_at(plan, d);
+        if (!known_basin_prepare(s->scene, &values, &design, s->seed, &search, &ignored))
+            continue;
+        memcpy(search.P[0], search.P[search.shapes / 2], sizeof search.P[0]);
+        search.shapes = 1;
+        search.boundary = TRIED;
+        search.interior = 0;
+        search.leave = is_late;
+        search.context = &until;
+        const double begin = clock_seconds();
+        const stance_error error = stance_known_basin_estimate(&search, &set);
+        if ((error == STANCE_OK || error == STANCE_STOPPED) && set.simulations > 0) {
+            return (clock_seconds() - begin) / (double)set.simulations * KNOWN_BASIN_USUAL *
+                   (double)plan->designs;
+        }
+    }
+    return s->base.capture && plan->pending > 0 ? NAN : 0;
+}
+
+double plan_cost(const struct plan *plan, double budget, bool *bound)
+{
+    enum { FIRST = 8, LATEST = 5 };
+    struct trial beginnings = {0}, whole = {0};
+    const double start = clock_seconds(), until = start + LATEST * budget;
+
+    *bound = false;
+    /* Beginnings first, to learn what whole cases would take. */
+    for (uint64_t i = 0; i < FIRST && !beginnings.late; i++)
+        try_case(plan, i, COST_STEPS, until, &beginnings);
+    if (beginnings.begun == 0 || (beginnings.late && beginnings.steps == 0))
+        return beginnings.late ? NAN : -1;
+    const double per_step = /* cases that end where they begin take none */
+        beginnings.steps > 0 ? beginnings.seconds / (double)beginnings.steps : 0;
+    double per_case = per_step * (double)beginnings.steps_asked / (double)beginnings.cases;
+    if (beginnings.late || per_case * WIDEST * FIRST > budget) {
+        *bound = true;
+        return per_case * (double)plan->rows;
+    }
+    for (uint64_t i = 0; i < COST_CASES && clock_seconds() - start < budget && !whole.late; i++)
+        try_case(plan, i, INT64_MAX, until, &whole);
+    if (whole.cases == 0 || whole.late) {
+        *bound = true;
+        return per_case * (double)plan->rows;
+    }
+    return whole.seconds / (double)whole.cases * (double)plan->rows;
+}

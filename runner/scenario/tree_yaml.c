@@ -1,0 +1,282 @@
+/* tree_yaml.c - YAML text as nodes with line and column, from the events that libyaml delivers. */
+#include "mend.h"
+#include "tree_nodes.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+/* ---- parsing --------------------------------------------------------------------------------- */
+
+struct parse {
+    struct tree *tree;
+    struct problems *problems;
+    yaml_parser_t parser;
+    yaml_event_t event; /* the one being looked at; deleted by `next` */
+    const char *text;
+    size_t length;
+    int set;
+    size_t anchors;
+    struct {
+        char *name;
+        struct tree_node *node; /* NULL until it is complete */
+    } anchor[TREE_MAX_ANCHORS];
+};
+
+static struct mark event_mark(const struct parse *parse)
+{
+    const yaml_mark_t at = parse->event.start_mark;
+    return (struct mark){parse->set, (int)at.line + 1, (int)at.column + 1};
+}
+
+static bool next(struct parse *parse)
+{
+    yaml_event_delete(&parse->event);
+    if (yaml_parser_parse(&parse->parser, &parse->event))
+        return true;
+    memset(&parse->event, 0, sizeof parse->event);
+    if (parse->parser.error == YAML_MEMORY_ERROR)
+        return problem_no_memory(parse->problems);
+    const yaml_parser_t *parser = &parse->parser;
+    const bool has_mark = parser->problem_mark.index || parser->problem_mark.line;
+    const yaml_mark_t at = has_mark ? parser->problem_mark : parser->context_mark;
+    struct misread misread = {
+        .text = parse->text,
+        .length = parse->length,
+        .problem = parser->problem ? parser->problem : "malformed",
+        .line = at.line,
+        .column = at.column,
+        .context_line = parser->context_mark.line,
+        .context_column = parser->context_mark.column,
+    };
+    char mend[MEND_SIZE];
+    const bool mended = mend_yaml(&misread, mend);
+    const struct mark mark = {parse->set, (int)misread.line + 1, (int)misread.column + 1};
+    return problem_add(parse->problems, mark, "not YAML: %s", mended ? mend : misread.problem);
+}
+
+static bool too_deep(struct problems *problems, struct mark mark)
+{
+    return problem_add(problems, mark, "nested deeper than %d levels", TREE_MAX_DEPTH);
+}
+
+/* What an alias stands for, as a copy of its own. */
+static bool copy_node(struct parse *parse, const struct tree_node *from, int depth,
+                      struct mark alias, struct tree_node **out)
+{
+    struct tree *tree = parse->tree;
+    if (depth > TREE_MAX_DEPTH)
+        return too_deep(parse->problems, alias);
+    if (++tree->copied > TREE_MAX_COPIED) {
+        return problem_add(parse->problems, alias, "aliases expand to more than %d nodes",
+                           TREE_MAX_COPIED);
+    }
+    struct tree_node *node = tree_new(tree, from->kind, from->mark);
+    if (!node)
+        return problem_no_memory(parse->problems);
+    node->quoted = from->quoted;
+    node->text = from->text;
+    for (size_t i = 0; i < from->count; i++) {
+        struct tree_node *item;
+        if (!copy_node(parse, from->item[i], depth + 1, alias, &item))
+            return false;
+        if (!tree_append(tree, node, from->kind == TREE_MAP ? &from->key[i] : NULL, item))
+            return problem_no_memory(parse->problems);
+    }
+    *out = node;
+    return true;
+}
+
+static bool read_alias(struct parse *parse, int depth, struct tree_node **out)
+{
+    const char *name = (const char *)parse->event.data.alias.anchor;
+    struct mark mark = event_mark(parse);
+    char word[SHOWN_SIZE];
+    for (size_t i = parse->anchors; i-- > 0;) {
+        if (strcmp(parse->anchor[i].name, name) != 0)
+            continue;
+        if (!parse->anchor[i].node) {
+            return problem_add(parse->problems, mark, "the alias *%s stands inside what it names",
+                               shown(word, name));
+        }
+        return copy_node(parse, parse->anchor[i].node, depth, mark, out);
+    }
+    return problem_add(
+        parse->problems, mark,
+        "no anchor &%s stands before this alias; text that begins with * stands in quotes",
+        shown(word, name));
+}
+
+/* Notes the anchor of the event, if it has one; *index is then where. Tags are refused. */
+static bool read_properties(struct parse *parse, const yaml_char_t *anchor, const yaml_char_t *tag,
+                            size_t *index)
+{
+    char word[SHOWN_SIZE];
+    *index = SIZE_MAX;
+    if (tag) {
+        return problem_add(parse->problems, event_mark(parse),
+                           "the tag %s is not accepted: types follow from the keys",
+                           shown(word, (const char *)tag));
+    }
+    if (!anchor)
+        return true;
+    if (parse->anchors == TREE_MAX_ANCHORS) {
+        return problem_add(parse->problems, event_mark(parse), "more than %d anchors",
+                           TREE_MAX_ANCHORS);
+    }
+    *index = parse->anchors++;
+    parse->anchor[*index].node = NULL;
+    parse->anchor[*index].name =
+        tree_copy(parse->tree, (const char *)anchor, strlen((const char *)anchor));
+    if (!parse->anchor[*index].name)
+        return problem_no_memory(parse->problems);
+    return true;
+}
+
+static bool read_text(struct parse *parse, const char **text)
+{
+    const char *value = (const char *)parse->event.data.scalar.value;
+    size_t length = parse->event.data.scalar.length;
+    if (strlen(value) != length)
+        return problem_add(parse->problems, event_mark(parse), "a zero byte stands in this text");
+    *text = tree_copy(parse->tree, value, length);
+    if (!*text)
+        return problem_no_memory(parse->problems);
+    return true;
+}
+
+static bool read_node(struct parse *parse, int depth, struct tree_node **out);
+
+static bool read_scalar(struct parse *parse, struct tree_node *node)
+{
+    node->quoted = parse->event.data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
+    return read_text(parse, &node->text);
+}
+
+static bool read_list(struct parse *parse, int depth, struct tree_node *node)
+{
+    for (;;) {
+        struct tree_node *item;
+        if (!next(parse))
+            return false;
+        if (parse->event.type == YAML_SEQUENCE_END_EVENT)
+            return true;
+        if (!read_node(parse, depth + 1, &item))
+            return false;
+        if (!tree_append(parse->tree, node, NULL, item))
+            return problem_no_memory(parse->problems);
+    }
+}
+
+static bool read_map(struct parse *parse, int depth, struct tree_node *node)
+{
+    for (;;) {
+        struct tree_key key;
+        struct tree_node *item;
+        size_t first;
+        char word[SHOWN_SIZE];
+        if (!next(parse))
+            return false;
+        if (parse->event.type == YAML_MAPPING_END_EVENT)
+            return true;
+        key.mark = event_mark(parse);
+        if (parse->event.type != YAML_SCALAR_EVENT || parse->event.data.scalar.tag)
+            return problem_add(parse->problems, key.mark, "a key must be a plain word");
+        if (node->count == TREE_MAX_KEYS) {
+            return problem_add(parse->problems, key.mark, "more than %d keys in one mapping",
+                               TREE_MAX_KEYS);
+        }
+        if (!read_text(parse, &key.name) || !next(parse) || !read_node(parse, depth + 1, &item))
+            return false;
+        if (tree_place(node, key.name, &first)) {
+            problem_add(parse->problems, key.mark, "duplicate key '%s' (first in line %d)",
+                        shown(word, key.name), node->key[first].mark.line);
+        } else if (!tree_append(parse->tree, node, &key, item)) {
+            return problem_no_memory(parse->problems);
+        }
+    }
+}
+
+/* The node that begins with the present event; leaves its last event in place. */
+static bool read_node(struct parse *parse, int depth, struct tree_node **out)
+{
+    const yaml_event_t *event = &parse->event;
+    struct mark mark = event_mark(parse);
+    size_t anchor;
+    bool good;
+
+    if (depth > TREE_MAX_DEPTH)
+        return too_deep(parse->problems, mark);
+    if (event->type == YAML_ALIAS_EVENT)
+        return read_alias(parse, depth, out);
+    enum tree_kind kind = event->type == YAML_SCALAR_EVENT           ? TREE_SCALAR
+                          : event->type == YAML_SEQUENCE_START_EVENT ? TREE_LIST
+                                                                     : TREE_MAP;
+    struct tree_node *node = tree_new(parse->tree, kind, mark);
+    if (!node)
+        return problem_no_memory(parse->problems);
+    if (kind == TREE_SCALAR) {
+        good = read_properties(parse, event->data.scalar.anchor, event->data.scalar.tag, &anchor) &&
+               read_scalar(parse, node);
+    } else if (kind == TREE_LIST) {
+        good = read_properties(parse, event->data.sequence_start.anchor,
+                               event->data.sequence_start.tag, &anchor) &&
+               read_list(parse, depth, node);
+    } else {
+        good = read_properties(parse, event->data.mapping_start.anchor,
+                               event->data.mapping_start.tag, &anchor) &&
+               read_map(parse, depth, node);
+    }
+    if (good && anchor != SIZE_MAX)
+        parse->anchor[anchor].node = node;
+    *out = node;
+    return good;
+}
+
+static bool read_document(struct parse *parse, struct tree_node **root)
+{
+    if (!next(parse) || !next(parse)) /* start of the stream, then of the document */
+        return false;
+    if (parse->event.type == YAML_STREAM_END_EVENT) {
+        if (parse->set > 0) { /* --set a= : nothing, as in "a:" */
+            *root = tree_new(parse->tree, TREE_SCALAR, (struct mark){parse->set, 1, 1});
+            if (*root) {
+                (*root)->text = "";
+                return true;
+            }
+            return problem_no_memory(parse->problems);
+        }
+        return problem_add(parse->problems, (struct mark){parse->set, 0, 0},
+                           "nothing stands in this file");
+    }
+    if (!next(parse) || !read_node(parse, 1, root) || !next(parse) || !next(parse))
+        return false;
+    if (parse->event.type != YAML_STREAM_END_EVENT) {
+        return problem_add(parse->problems, event_mark(parse),
+                           "a second document begins here; a scenario is one");
+    }
+    return true;
+}
+
+bool tree_read(struct tree *tree, const char *text, size_t length, int set,
+               struct problems *problems, struct tree_node **root)
+{
+    struct parse *parse = calloc(1, sizeof *parse);
+    if (!parse || !yaml_parser_initialize(&parse->parser)) {
+        free(parse);
+        return problem_no_memory(problems);
+    }
+    parse->tree = tree;
+    parse->problems = problems;
+    parse->set = set;
+    parse->text = text;
+    parse->length = length;
+    yaml_parser_set_encoding(&parse->parser, YAML_UTF8_ENCODING);
+    yaml_parser_set_input_string(&parse->parser, (const unsigned char *)text, length);
+    bool good = read_document(parse, root);
+    yaml_event_delete(&parse->event);
+    yaml_parser_delete(&parse->parser);
+    free(parse);
+    return good;
+}
