@@ -93,6 +93,9 @@ kernel_lists = $(isa_list) -DSTANCE_METHOD_LIST='$(foreach m,$(METHODS) $(SCALAR
     -DSTANCE_KERNEL_LIST='$(foreach k,$(kernels),KERNEL($(subst -,$(comma),$(k))))' \
     -DSTANCE_SCALAR_KERNEL_LIST='$(foreach k,$(scalar_kernels),KERNEL($(subst -,$(comma),$(k))))'
 
+# Where pages are made, see below.
+WEB = build/web
+
 # ---- the program ---------------------------------------------------------------------------------
 program_sources := $(wildcard runner/*.c runner/*/*.c analysis/*/*.c)
 program_objects := $(program_sources:%.c=$(BUILD)/%.o)
@@ -140,9 +143,9 @@ $(BUILD)/analysis/%.o: analysis/%.c Makefile
 scripts := $(wildcard analysis/*/plot_*.gp)
 $(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(scripts:%.gp=$(b)/%.o): $(b)/%.o: %.gp) \
     $(eval $(b)/analysis/draw/gnuplot.o: $(wildcard analysis/draw/*.gp)))
-# The page that `stance view` fills, where `make web` has made one.
-PAGE = $(wildcard build/web/page.html)
-$(BUILD)/analysis/view/page_template.o: PROGRAM_CFLAGS += $(PAGE:%=-DSTANCE_PAGE='"%"')
+# The page that `stance view` fills, and the engines that it may carry, where `make web` has made them.
+PAGE = $(wildcard $(WEB)/page.html)
+$(BUILD)/analysis/view/page_template.o: PROGRAM_CFLAGS += $(PAGE:%=-DSTANCE_PAGE='"%"' -DSTANCE_PAGE_ENGINES='$(foreach s,$(SCENES) $(RUNTIME),ENGINE($(s)))')
 $(BUILD)/analysis/view/page_template.o: $(PAGE)
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
@@ -228,7 +231,6 @@ golden-neon:
 
 # The same for WebAssembly, run by node. Of Random123's processors, admitted by name, __riscv is one
 # without instructions of its own; a stack smaller than the bundles of a stream is not noticed.
-WEB         = build/web
 WEB_CC      = clang --target=wasm32-wasi -D__riscv -DR123_USE_GNU_UINT128=1
 WEB_CFLAGS ?= -O2
 WEB_LDFLAGS = -Wl,--gc-sections,--strip-all,-z,stack-size=8388608,--stack-first
@@ -243,13 +245,26 @@ golden-web:
 page_sources := $(wildcard analysis/view/wasm/*.c) $(addprefix runner/base/,checksum.c numbers.c problem.c words.c) \
     $(addprefix runner/plan/,instruction_set.c plan.c refine.c resolve.c) \
     $(filter-out %/command_describe.c %/describe.c %/scenario_file.c %/tree_yaml.c,$(wildcard runner/scenario/*.c))
+# A page carries the engine of its file's scene.
+engines = $(patsubst %,$(WEB)/engine-%.z,$(SCENES) $(RUNTIME))
 ifeq ($(BUILD),$(WEB))
-$(WEB)/engine.wasm: $(page_sources:%.c=$(WEB)/%.o) $(WEB)/libstance.a
-	$(call QUIET,link,$@)$(CC) -mexec-model=reactor $(LDFLAGS) -o $@ $^ -lm
+page_objects = $(page_sources:%.c=$(WEB)/%.o)
+define engine_rule
+$(WEB)/kernels-$(1).o: engine/kernels.c Makefile
+	$$(call QUIET,cc,$$@)$$(CC) $$(CFLAGS) $$(ALLFLAGS) $$(isa_list) -DSTANCE_METHOD_LIST='$$(foreach m,$$(METHODS),METHOD($$(m)))' \
+	    -DSTANCE_KERNEL_LIST='$$(foreach m,$$(METHODS),KERNEL($(1),$$(m),$(2)))' -DSTANCE_SCALAR_KERNEL_LIST= -c -o $$@ $$<
+$(WEB)/engine-$(1).wasm: $(WEB)/kernels-$(1).o $$(page_objects) $(WEB)/libstance.a
+	$$(call QUIET,link,$$@)$$(CC) -mexec-model=reactor $$(LDFLAGS) -o $$@ $$^ -lm
+endef
+$(foreach s,$(SCENES),$(eval $(call engine_rule,$(s),$(firstword $(ISAS)))))
+$(eval $(call engine_rule,$(RUNTIME),$(RUNTIME_ISA)))
+%.z: %.wasm
+	@node -e 'const fs = require("fs"), z = require("zlib"); fs.writeFileSync("$@", z.deflateSync(fs.readFileSync("$<"), {level: 9}))'
+.PRECIOUS: $(WEB)/engine-%.wasm
 $(WEB)/node_modules/made: analysis/view/page/package-lock.json
 	$(call QUIET,npm,$(WEB)/node_modules)cp analysis/view/page/package*.json $(WEB) && cd $(WEB) && npm ci --no-audit --no-fund --loglevel=error >&2 && touch node_modules/made
-$(WEB)/page.html: $(WEB)/engine.wasm $(WEB)/node_modules/made $(wildcard analysis/view/page/*)
-	$(call QUIET,page,$@)node analysis/view/page/build.mjs $(WEB)/node_modules $(WEB)/engine.wasm $@
+$(WEB)/page.html: $(engines) $(WEB)/node_modules/made $(wildcard analysis/view/page/*)
+	$(call QUIET,page,$@)node analysis/view/page/build.mjs $(WEB)/node_modules $@
 endif
 web-page:
 	+@$(WEB_MAKE) MPI=0 $(WEB)/page.html
@@ -299,11 +314,14 @@ test-neon: packages-neon
 	$(MAKE) golden
 	@$(TEST_ENVIRONMENT) NEON_CFLAGS=-O3 bash tests/whole_machines.sh
 
+# Pages are tested where they can be made: not without npm's registry.
 test: packages-test
+	+@$(MAKE) packages-pages && $(MAKE) web-page || echo 'test: pages cannot be made here: their tests are skipped' >&2
 	$(MAKE) check
 check: $(PROGRAM) $(test_programs) $(other_programs) fuzz-programs
 	@$(TEST_ENVIRONMENT) bash tests/run.sh
-test-long: packages-test
+test-long: packages-test packages-pages
+	$(MAKE) web-page
 	$(MAKE) $(PROGRAM) $(test_programs) $(other_programs) fuzz-programs
 	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
 
@@ -362,10 +380,10 @@ fuzz-programs: $(fuzz_programs)
 
 # ---- what a new user types -----------------------------------------------------------------------
 # Installs Debian packages that are missing (as root or with sudo), else names them.
-packages packages-test packages-neon packages-web packages-slurm packages-hosts packages-bench: packages%:
+packages packages-test packages-pages packages-neon packages-web packages-slurm packages-hosts packages-bench: packages%:
 	@need="$(BUILD_TOOLS) $(PACKAGES_RUN) $(if $(filter -test,$*),$(PACKAGES_TEST) $(PACKAGES_LINT) $(PACKAGES_FUZZ)) \
 	    $(if $(filter -slurm,$*),$(PACKAGES_SLURM) python3-h5py) $(if $(filter -hosts,$*),$(PACKAGES_HOSTS) python3-h5py) \
-	    $(if $(filter -neon,$*),$(PACKAGES_NEON)) $(if $(filter -web,$*),$(PACKAGES_WEB)) $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
+	    $(if $(filter -neon,$*),$(PACKAGES_NEON)) $(if $(filter -web -pages,$*),$(PACKAGES_WEB)) $(if $(filter -pages,$*),chromium) $(if $(filter -bench,$*),$(PACKAGES_BENCH))"; \
 	missing=; for p in $$need; do \
 	    dpkg-query -W -f '$${db:Status-Status}\n' $$p 2>/dev/null | grep -qx installed || missing="$$missing $$p"; done; \
 	[ -z "$$missing" ] && exit 0; \
@@ -379,11 +397,14 @@ CORES := $(shell nproc)
 processor := $(shell grep -m1 -o 'avx512dq' /proc/cpuinfo || grep -m1 -ow 'avx2' /proc/cpuinfo)
 own_isa    = $(or $(filter $(patsubst avx512dq,avx512,$(processor)),$(ISAS)),$(lastword $(filter-out avx2 avx512,$(ISAS))))
 demo: packages
+	+@$(MAKE) packages-web && $(MAKE) -j$(CORES) web-page || echo 'demo: goes on without a page that simulates' >&2
 	$(MAKE) -j$(CORES) ISAS='$(own_isa)' bin/stance
 	@mkdir -p results
 	$(MPI_ENVIRONMENT) mpirun -n $(CORES) bin/stance run --force scenarios/basin_one_foot.yaml
 	bin/stance summary results/basin_one_foot.h5
 	@echo; echo "The stability domain, drawn:"; bin/stance plot results/basin_one_foot.h5
+	@[ ! -e $(WEB)/page.html ] || { echo; echo "As a page for the browser: click a case, and it is simulated and played:"; \
+	    bin/stance view results/basin_one_foot.h5; }
 
 # All speed benchmarks -> results/bench.csv and .png. Packages for comparisons are no necessity.
 bench: packages
@@ -419,6 +440,7 @@ clean:
 help:
 	@echo 'make            build bin/stance'
 	@echo 'make demo       install what is missing, build, map a stability domain, draw it'
+	@echo 'make web        the same with pages for the browser: studies to click through, in results/gallery'
 	@echo 'make test       install what is missing, build, run every test'
 	@echo 'make test-long  the same with the long tests'
 	@echo 'make hunt       look for numbers that depend on the neighbours (HUNT_CASES= SEED=)'

@@ -27,7 +27,7 @@ nm -g --defined-only build/libstance.a build/libstance_control.a 2>/dev/null | a
 [ -s /tmp/lint.$$ ] && bad=1
 rm -f /tmp/lint.$$
 
-cppcheck --quiet --std=c11 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability \
+cppcheck --quiet -j "$(nproc)" --std=c11 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability \
     --suppress=missingIncludeSystem --suppress=unknownMacro --suppress=ctuuninitvar -DSTANCE_LANES=1 -DSTANCE_MPI -D__x86_64__ -I. \
     '-DSTANCE_SCENE_LANES="engine/scenes/biped_lanes.h"' -DSTANCE_SCENE=biped -DSTANCE_ISA=scalar \
     runner analysis engine/*.c engine/control engine/scenes || complain "cppcheck"
@@ -36,8 +36,7 @@ kernel='-DSTANCE_LANES=1 -DSTANCE_SCENE=biped -DSTANCE_ISA=scalar -DSTANCE_SCENE
 flags="$kernel -I. -std=c17 -D_GNU_SOURCE -DSTANCE_MPI $(mpicc --showme:compile) $(pkg-config --cflags hdf5-openmpi yaml-0.1 jansson lapacke gsl)"
 checks='-*,bugprone-*,-bugprone-easily-swappable-parameters,-bugprone-reserved-identifier,-bugprone-narrowing-conversions,-bugprone-implicit-widening-of-multiplication-result,-bugprone-assignment-in-if-condition,-bugprone-macro-parentheses,clang-analyzer-*,-clang-analyzer-security.insecureAPI.DeprecatedOrUnsafeBufferHandling,-clang-analyzer-optin.mpi*'
 git ls-files 'runner/*.c' 'analysis/*.c' 'engine/*.c' | # pathspecs go into the rooms
-   
-    xargs -P 2 -I{} sh -c "clang-tidy --quiet --warnings-as-errors='*' --checks='$checks' {} -- $flags 2>/dev/null" ||
+    xargs -P "$(nproc)" -I{} sh -c "clang-tidy --quiet --warnings-as-errors='*' --checks='$checks' {} -- $flags 2>/dev/null" ||
     complain "clang-tidy"
 
 ((bad == 0)) && echo "lint: clean"

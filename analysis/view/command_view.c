@@ -129,6 +129,19 @@ static int write_index(void *context)
 
 /* ---- the command -------------------------------------------------------------------------- */
 
+static bool is_directory(const char *place)
+{
+    struct stat status;
+    return stat(place, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+/* By its ending: nothing else is written over. */
+static bool is_page(const char *place)
+{
+    const size_t length = strlen(place);
+    return length > 5 && strcmp(place + length - 5, ".html") == 0;
+}
+
 /* FILE.html beside the file, PLACE, or in the directory PLACE. False: it is too long. */
 static bool name_page(struct request *request)
 {
@@ -136,9 +149,8 @@ static bool name_page(struct request *request)
     const char *const slash = strrchr(file, '/'), *const name = slash ? slash + 1 : file;
     const size_t length = strlen(name),
                  stem = length > 3 && strcmp(name + length - 3, ".h5") == 0 ? length - 3 : length;
-    struct stat status;
     int n;
-    if (place && !(stat(place, &status) == 0 && S_ISDIR(status.st_mode)))
+    if (place && !is_directory(place) && request->count == 1)
         n = snprintf(request->out, sizeof request->out, "%s", place);
     else if (place)
         n = snprintf(request->out, sizeof request->out, "%s/%.*s.html", place, (int)stem, name);
@@ -231,6 +243,9 @@ static int run(int argc, char **argv)
         return EXIT_USAGE;
     if (request.count > 1 && !request.place)
         return command_usage(&command_view, "pages of several files need a directory: -o DIR");
+    if (request.count == 1 && request.place && !is_directory(request.place) &&
+        !is_page(request.place))
+        return command_usage(&command_view, "-o takes a directory, or a name that ends in .html");
     if (request.count > 1 && mkdir(request.place, 0777) != 0 && errno != EEXIST)
         return failed(request.place, "make");
     const int code = write_pages(&request);
@@ -255,7 +270,7 @@ const struct command command_view = {
     "search\n"
     "(stance optimise) the page has its curves.\n"
     "\n"
-    "  -o PLACE       the page's name, or a directory\n"
+    "  -o PLACE       the page's name, which ends in .html, or a directory\n"
     "  --answers A,... the answers that the page carries, for colours and for what the pointer\n"
     "                 shows; `all` of them. Unasked as many as take 24 MB. What is left out the\n"
     "                 page computes where one clicks\n"

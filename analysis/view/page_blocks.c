@@ -6,15 +6,18 @@
 #include <string.h>
 #include <zlib.h>
 
-/* As base64, in pieces of whole groups. */
-static void put_base64(FILE *out, const uint8_t *bytes, size_t size)
+/* In pieces of whole groups. */
+void page_base64(FILE *out, const char *id, const uint8_t *bytes, size_t size)
 {
     enum { PIECE = 3 * 1024 };
     unsigned char text[PIECE / 3 * 4 + 1];
+    fprintf(out, "<script type=\"text/plain\" id=\"%s\">", id);
     for (size_t at = 0; at < size; at += PIECE) {
         const size_t n = size - at < PIECE ? size - at : PIECE;
-        fwrite(text, 1, (size_t)EVP_EncodeBlock(text, bytes + at, (int)n), out);
+        const int length = EVP_EncodeBlock(text, bytes + at, (int)n);
+        fwrite(text, 1, (size_t)length, out);
     }
+    fputs("</script>\n", out);
 }
 
 static void shuffle(uint8_t *to, const uint8_t *from, size_t size, size_t count)
@@ -37,9 +40,9 @@ bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, c
     if (bytes)
         *bytes = good ? length : 0;
     if (good && length <= limit) {
-        fprintf(out, "<script type=\"text/plain\" id=\"block-%s\">", name);
-        put_base64(out, packed, length);
-        fputs("</script>\n", out);
+        char id[96];
+        snprintf(id, sizeof id, "block-%s", name);
+        page_base64(out, id, packed, length);
         json_object_set_new(blocks, name,
                             json_pack("{s:s,s:I}", "type", type, "count", (json_int_t)count));
     }

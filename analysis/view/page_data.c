@@ -1,6 +1,7 @@
 /* page_data.c - what a page holds of a results file. */
 #include "page_data.h"
 #include "page_charts.h"
+#include "page_template.h"
 
 #include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
@@ -160,6 +161,11 @@ static bool put_engine(struct page *p)
     free(wire);
     if (!known)
         return true;
+    const stance_scene *const scene = p->scenario.scene;
+    size_t size;
+    const uint8_t *const engine = page_engine(scene->mechanism ? "runtime" : scene->name, &size);
+    if (engine)
+        page_base64(p->out, "engine", engine, size);
     json_object_set_new(p->head, "stored", json_integer((json_int_t)(p->scenario.answers)));
     return put_axis_values(p) && put_designs(p);
 }

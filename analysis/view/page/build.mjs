@@ -1,9 +1,8 @@
-// build.mjs - makes the page's template: script, style and engine in one HTML file without data, in which `stance view`
+// build.mjs - makes the page's template: script and style in one HTML file without data, in which `stance view`
 // replaces the line <!--stance:data-->.
 //
-//   node build.mjs MODULES ENGINE OUT
+//   node build.mjs MODULES OUT
 //     MODULES  folder node_modules that `npm ci` has made from package-lock.json, wherever it is
-//     ENGINE   engine.wasm, or - for a page without an engine
 //     OUT      the template
 import { execFileSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -11,14 +10,13 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { deflateSync } from 'node:zlib';
 
-if (process.argv.length !== 5) {
-  console.error('usage: node build.mjs MODULES ENGINE|- OUT');
+if (process.argv.length !== 4) {
+  console.error('usage: node build.mjs MODULES OUT');
   process.exit(2);
 }
 const here = dirname(fileURLToPath(import.meta.url));
-const [modules, engine, out] = process.argv.slice(2);
+const [modules, out] = process.argv.slice(2);
 const need = createRequire(join(resolve(modules), 'here.js'));
 const esbuild = need('esbuild');
 const read = (...path) => readFileSync(join(...path), 'utf8');
@@ -53,7 +51,6 @@ const parts = {
   ].join('; '),
   style,
   script,
-  engine: engine === '-' ? '' : deflateSync(readFileSync(engine), { level: 9 }).toString('base64'),
 };
 const page = read(here, 'page.html').replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]);
 if (page.split('<!--stance:data-->').length !== 2) throw new Error('the template has not one place for data');

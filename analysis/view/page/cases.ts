@@ -53,7 +53,9 @@ export class Cases {
     });
   }
 
-  private hint = (): HTMLElement => el('p', { class: 'hint' }, 'Choose a case on the map: it is simulated here, and played.');
+  private hint = (): HTMLElement =>
+    el('div', { class: 'empty' }, el('p', {}, 'What happens at a place of the map?'),
+      el('p', { class: 'muted' }, 'Click it: the case is simulated here, and played. With Shift it is added, to compare.'));
 
   // The run of a case, simulated once.
   run(ref: CaseRef): Promise<Run> {
@@ -116,8 +118,8 @@ export class Cases {
       const badges = await this.badges(cases[k], run);
       if (turn !== this.turn) return;
       const answers = await this.answers(run);
-      card.append(el('div', { class: 'row' }, el('b', { class: 'outcome' }, run.text.outcome), ...badges.map((b) => el('span', { class: `badge ${b.good === null ? '' : b.good ? 'good' : 'bad'}` }, b.text))), answers);
-      played.push({ name: `case ${cases[k].index}`, hue: hues[k % hues.length], ...run });
+      card.append(el('div', { class: 'row' }, el('b', { class: 'outcome' }, this.outcome(run)), ...badges.map((b) => el('span', { class: `badge ${b.good === null ? '' : b.good ? 'good' : 'bad'}` }, b.text))), answers);
+      played.push({ name: `case ${cases[k].index}`, outcome: this.outcome(run), hue: hues[k % hues.length], ...run });
     }
     this.stage.hidden = played.length === 0;
     this.player.show(played, now.beside);
@@ -142,7 +144,7 @@ export class Cases {
     const text = this.commandOf(ref);
     const card = el('div', { class: 'case', 'data-case': ref.index },
       el('div', { class: 'row' },
-        el('span', {}, el('b', {}, `case ${ref.index}`), ` ${this.where(ref)}`),
+        el('span', {}, el('b', {}, this.data.head.single ? 'the case of the file' : `case ${ref.index}`), ' ', el('small', {}, this.where(ref))),
         offer ? el('button', { type: 'button', class: 'small', onclick: again }, 'with the changes, too') : null,
         el('button', { type: 'button', class: 'small', 'aria-label': `Remove case ${ref.index}`, onclick: remove }, '\u00d7')),
       ...(text ? [el('details', {}, el('summary', { class: 'muted' }, 'command that reproduces this'), command(text))] : []));
@@ -160,6 +162,8 @@ export class Cases {
     });
     return el('details', {}, el('summary', { class: 'muted' }, 'answers'), el('dl', { class: 'facts' }, ...facts));
   }
+
+  private outcome = (run: Run): string => this.data.head.kinds[run.text.kind].name;
 
   commandOf(ref: CaseRef): string | null {
     const file = shellWord(this.data.head.command_file);

@@ -11,8 +11,10 @@ export interface Progress {
 }
 
 const batch_seconds = 0.05; // that a worker is busy with one batch
-const refine_start = 16; // cells of the coarse lattice along an axis
-const refine_margin = 1;
+// Most cells of the coarse lattice along an axis, and how many cells around a mixed one are refined with it: none beside a
+// lattice that has every other case.
+const refine_start = 32;
+const refine_margin = (layer: Computed): number => (Math.max(layer.grid!.nx, layer.grid!.ny) > 2 * refine_start ? 1 : 0);
 
 // Of a grid the coarse lattices first.
 function coarseFirst(layer: Computed): number[] {
@@ -58,7 +60,7 @@ export async function compute(pool: Pool, layer: Computed, all: boolean, signal:
 
   if (all || !layer.grid) await simulate(coarseFirst(layer));
   else {
-    await pool.refine(layer.view, 'refineBegin', [refine_start, refine_margin]);
+    await pool.refine(layer.view, 'refineBegin', [refine_start, refine_margin(layer)]);
     for (;;) {
       const wanted = await pool.refine<Float64Array>(null, 'refineAsk', [layer.count]);
       if (wanted.length === 0 || signal.aborted) break;

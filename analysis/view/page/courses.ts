@@ -2,7 +2,7 @@
 import uPlot from 'uplot';
 import { el, style } from './dom';
 import { hues } from './colours';
-import { label } from './numbers';
+import { label, numberText } from './numbers';
 import type { PlayedCase } from './player';
 
 interface Group {
@@ -21,9 +21,9 @@ const groups: Group[] = [
   { name: 'torques', unit: (c) => units(c.scene.actuators), names: (c) => c.scene.actuators.map((x) => x.name), numbers: (c, k) => column(c.rows.torque, c.scene.actuators.length, k) },
   {
     name: 'forces', unit: () => 'N', names: (c) => c.scene.contacts.flatMap((x) => [`${x} normal`, `${x} tangential`]),
-    numbers: (c, k) => column(c.rows.force, 2 * c.scene.contacts.length, k),
+    numbers: (c, k) => column(c.rows.force, 2 * c.text.contacts, k),
   },
-  { name: 'gaps', unit: () => 'm', names: (c) => c.scene.contacts, numbers: (c, k) => column(c.rows.gap, c.scene.contacts.length, k) },
+  { name: 'gaps', unit: () => 'm', names: (c) => c.scene.contacts, numbers: (c, k) => column(c.rows.gap, c.text.contacts, k) },
   { name: 'energy', unit: () => 'J', names: () => ['energy'], numbers: (c) => c.rows.energy },
 ];
 
@@ -77,7 +77,7 @@ export class Courses {
       for (const name of own)
         series.push({
           label: this.cases.length > 1 ? `${n + 1} ${name}` : name, stroke: hues[names.indexOf(name) % hues.length], width: n ? 1.2 : 1.8,
-          dash: [[], [6, 4], [2, 3], [9, 3, 2, 3]][n % 4], points: { show: false }, value: (_, y) => (y === null || y === undefined ? '' : String(Number(y.toPrecision(5)))),
+          dash: [[], [6, 4], [2, 3], [9, 3, 2, 3]][n % 4], points: { show: false }, pxAlign: 0, value: (_, y) => (y === null || y === undefined ? '' : numberText(y, 5)),
         });
       // NaN is a gap.
       const numbers = own.map((_, k) => Array.from(g.numbers(c, k), (y) => (Number.isFinite(y) ? y : null)));
@@ -90,9 +90,10 @@ export class Courses {
     const plot = new uPlot(
       {
         width: Math.max(200, this.list.clientWidth), height: 130, series, scales: { x: { time: false } },
-        axes: [{ ...axis, size: 26 }, { ...axis, size: 56 }],
+        axes: [{ ...axis, size: 26 }, { ...axis, size: 56, space: 22 }],
         cursor: { drag: { x: false, y: false }, y: false, points: { show: false }, bind: { mousemove: () => null, mouseleave: () => null, mouseenter: () => null, mousedown: () => null, mouseup: () => null, dblclick: () => null } },
         legend: { live: true },
+        hooks: { ready: [(u) => u.setCursor({ left: u.valToPos(this.time, 'x'), top: 0 })] },
       },
       tables.length > 1 ? uPlot.join(tables) : tables[0],
       box,
@@ -110,9 +111,6 @@ export class Courses {
 
   at(time: number): void {
     this.time = time;
-    for (const p of this.plots) {
-      const left = p.valToPos(time, 'x');
-      p.setCursor({ left, top: 0 });
-    }
+    for (const p of this.plots) p.setCursor({ left: p.valToPos(time, 'x'), top: 0 });
   }
 }

@@ -35,6 +35,12 @@ function unshuffle(bytes: Uint8Array, size: number): ArrayBuffer {
   return out.buffer;
 }
 
+// What a page of charts alone has not.
+const absent: Partial<Head> = {
+  file_program: '', file_revision: '', date: '', scenario: '', wire: null, command_file: '', cases: 0, single: false, index: 0, axes: [], sample: -1,
+  varied: [], designs: { count: 0, numbers: 0 }, kinds: [], answers: [], checksums: false, left_out: [], stored: 0, blocks: {}, recorded: [],
+};
+
 export interface Axis extends FileAxis {
   spacing: Spacing;
   stride: number; // of the flat index
@@ -48,7 +54,7 @@ export class Data {
   constructor() {
     const text = document.getElementById('head')?.textContent;
     if (!text) throw new Error('the page carries no data; stance view FILE writes pages that do');
-    this.head = JSON.parse(text) as Head;
+    this.head = { ...absent, ...(JSON.parse(text) as Head) };
     if (this.head.format !== 1) throw new Error(`the data of the page have format ${this.head.format}, the page reads format 1`);
     let stride = this.head.axes.reduce((n, a) => n * a.count, 1);
     this.axes = this.head.axes.map((a) => {

@@ -2,7 +2,7 @@
 // wasm/page.c. One instance serves one worker.
 import type { Answer, PlayText, Trajectory, ViewText } from './format';
 import { pathOf, textOf, type View } from './state';
-import { wireOf } from './wire';
+import { Refusal, wireOf } from './wire';
 
 // What every instance is told of the file.
 export interface FileParts {
@@ -24,9 +24,6 @@ export interface Play {
   rows: Trajectory;
   values: Record<string, number | string | null>;
 }
-
-// What the engine said of something that cannot be done; any other error leaves an instance that is not to be trusted.
-export class Refusal extends Error {}
 
 type Exports = Record<string, (...numbers: number[]) => number> & { memory: WebAssembly.Memory };
 
@@ -72,7 +69,7 @@ export class Engine {
     file.axes.forEach((values, k) => this.lend([values], ([p]) => this.must(this.e.file_axis(k, p, values.length))));
     const { designs } = file;
     if (designs) this.lend([designs.numbers, designs.status], ([numbers, status]) => this.must(this.e.file_designs(numbers, status, designs.count)));
-    this.e.file_stored(file.stored, file.single);
+    this.e.file_stored(file.stored, -1);
     this.columns = JSON.parse(this.text(this.e.answers_text())) as Answer[];
   }
 
@@ -135,9 +132,9 @@ export class Engine {
   play(index: number, most: number): Play {
     this.must(this.e.play(index, 0, most));
     const text = JSON.parse(this.text(this.e.play_text())) as PlayText;
-    const { coordinates, actuators, contacts } = this.describe();
+    const { coordinates, actuators } = this.describe();
     const numbers = (which: number, columns: number): Float64Array => this.doubles(this.e.play_numbers(which), text.rows * columns);
-    const [q, m, k] = [coordinates.length, actuators.length, contacts.length];
+    const [q, m, k] = [coordinates.length, actuators.length, text.contacts];
     const rows: Trajectory = {
       time: numbers(0, 1), position: numbers(1, q), velocity: numbers(2, q), torque: numbers(3, m), force: numbers(4, 2 * k), gap: numbers(5, k),
       figure: numbers(6, 2 * text.figure), contact: numbers(7, 2 * k), actuator: numbers(8, 4 * m), energy: numbers(9, 1),

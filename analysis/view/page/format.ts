@@ -42,8 +42,8 @@ export interface Series {
   name: string;
   x: (number | null)[];
   y: (number | null)[];
-  low?: (number | null)[];
-  high?: (number | null)[];
+  low?: (number | null)[] | null;
+  high?: (number | null)[] | null;
   lines: boolean;
 }
 
@@ -51,6 +51,7 @@ export interface ChartAxis {
   label: string;
   unit: string;
   log: boolean;
+  words?: Word[] | null; // names of the places 0, 1, 2 ...
 }
 
 export interface Chart {
@@ -120,9 +121,10 @@ export interface ViewText {
   stop_time: number;
   law: string;
   designed: boolean;
+  capture: boolean; // cases may stop early in what was captured: only in the file's own scenario
   coordinates: Named[];
   actuators: Named[];
-  contacts: string[];
+  contacts: string[]; // with the ground
   axes: { paths: string[]; count: number }[];
   cases: number;
   fields: Field[];
@@ -131,15 +133,14 @@ export interface ViewText {
 // A case that was simulated with its trajectory.
 export interface PlayText {
   rows: number;
-  interval: number;
-  kind: number;
-  outcome: string;
-  checksum: number;
-  answers: (number | null)[];
+  interval: number; // s
+  step: number;
   figure: number; // points per row
-  evidence: string;
-  cause: string;
+  contacts: number; // per row: those with the ground, then stops of joints
+  kind: number;
+  checksum: number;
   slope: number; // rad: how the ground falls along x in the frame of the figure
+  answers: (number | null)[];
 }
 
 // Numbers of play_numbers(): a row per time; forces (normal, tangential), points (x, z), of actuators the place and, of

@@ -4,7 +4,7 @@ import { el } from './dom';
 import type { Field, ViewText } from './format';
 import { numberText } from './numbers';
 import type { Progress } from './compute';
-import { pathOf, textOf, type Store, type View } from './state';
+import { capture_off, pathOf, textOf, type Store, type View } from './state';
 
 // The usual ones come first, in this order.
 const usual = [
@@ -27,6 +27,7 @@ export interface LiveEvents {
 
 export class Live {
   private base = new Map<string, Field>(); // of the file itself
+  private captures = false;
   private text: ViewText | null = null;
   private rows = new Map<string, { row: HTMLElement; set: (value: string) => void; error: HTMLElement }>();
   private last = ''; // path that was changed last
@@ -53,8 +54,15 @@ export class Live {
   ) {}
 
   async start(): Promise<void> {
-    const text = await this.events.describe([]);
+    let text: ViewText;
+    try {
+      text = await this.events.describe([]);
+    } catch (problem) {
+      this.part.replaceChildren(el('p', { class: 'empty', id: 'refused' }, `Here nothing can be simulated or changed: ${(problem as Error).message}`));
+      return;
+    }
     this.base = new Map(text.fields.map((f) => [f.path, f]));
+    this.captures = text.capture;
     const controls = el('div', { class: 'row' }, el('label', {}, 'Map ', this.cells), el('label', {}, this.all, ' every case'), this.compute, this.stop);
     this.part.replaceChildren(el('h2', {}, 'Change something'), this.list, this.problem, ...(this.map ? [controls, this.bar, this.told, this.reproduce] : []), this.search, this.fields);
     this.show(text);
@@ -71,7 +79,7 @@ export class Live {
     this.list.replaceChildren(
       ...changes.map((c) => {
         const model = this.modelOf(c, changes);
-        const told = model ? ` \u2014 the controller stays the one designed for ${model} = ${textOf(c)}` : '';
+        const told = model ? ` \u2014 the controller stays the one designed for ${model} = ${textOf(c)}` : c === capture_off ? ' \u2014 cases run to their end: what the file captured is not of this robot' : '';
         return el('div', { class: 'change' }, el('span', {}, el('code', {}, c), told),
           el('button', { type: 'button', class: 'small', 'aria-label': `Take back ${pathOf(c)}`, onclick: () => this.set(changes.filter((x) => x !== c)) }, '\u00d7'));
       }),
@@ -138,7 +146,8 @@ export class Live {
       if (!back) {
         if (model && !changes.some((c) => pathOf(c) === model)) changes.push(`${model}=${this.fileText(field.path)}`);
         changes.push(`${field.path}=${value}`);
-      }
+        if (this.captures && !changes.some((c) => pathOf(c) === 'stop.capture')) changes.push(capture_off);
+      } else if (changes.length === 1 && changes[0] === capture_off) changes = [];
       this.set(changes);
     }, pause);
   }
@@ -189,9 +198,9 @@ export class Live {
   private row(f: Field): HTMLElement {
     const id = `field-${f.path}`;
     const error = el('p', { class: 'error', role: 'alert' });
-    const name = el('label', { for: id }, el('b', {}, f.path), el('span', { class: 'muted' }, `${f.text}${f.unit && f.unit !== '1' ? `, ${f.unit}` : ''}${f.swept ? ' (varies over the map)' : ''}${f.design ? ' (needs a design)' : ''}`));
-    const top = el('div', { class: 'top' }, name);
-    const row = el('div', { class: 'field', 'data-path': f.path }, top, error);
+    const name = el('label', { for: id }, el('b', {}, f.path), el('span', { class: 'muted' }, `${f.text}${f.unit && f.unit !== '1' ? `, ${f.unit}` : ''}${f.swept ? ' (varies over the map)' : ''}${f.design && this.text!.designed ? ' (needs a design)' : ''}`));
+    const top = el('div', { class: 'top' });
+    const row = el('div', { class: 'field', 'data-path': f.path }, name, top, error);
     if (f.type === 'word') {
       const select = el('select', { id, disabled: f.swept, onchange: () => this.change(f, select.value) }, ...(f.words ?? []).map((w) => el('option', { value: w }, w)));
       top.append(select);
@@ -204,8 +213,7 @@ export class Live {
       input.value = slider.value;
       this.change(f, slider.value);
     } });
-    top.append(input);
-    row.insertBefore(slider, error);
+    top.append(slider, input);
     this.fit(slider, f, Number(f.value ?? NaN));
     this.rows.set(f.path, { row, error, set: (v) => {
       if (document.activeElement !== input) input.value = v;
@@ -214,6 +222,7 @@ export class Live {
         if (v !== '' && (x < Number(slider.min) || x > Number(slider.max))) this.fit(slider, f, x);
         slider.value = v;
       }
+      slider.disabled = f.swept || Number.isNaN(Number(v));
     } });
     return row;
   }

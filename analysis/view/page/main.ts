@@ -84,7 +84,7 @@ async function start(): Promise<void> {
   byId('subtitle').textContent = [head.file, head.cases > 1 ? `${head.cases} cases` : '', head.date.slice(0, 10)].filter(Boolean).join(' \u00b7 ');
   const initial = initialState(data);
   const store = new Store(initial, (s) => valid(data, initial, s), head.cases);
-  const charts = head.charts?.length ? chartsPage(byId('panel-charts'), head.charts) : null;
+  const charts = head.charts?.length ? chartsPage(byId('panel-charts'), head.charts, head.kinds) : null;
   const pages: [string, string][] = [['map', head.cases === 1 ? 'Case' : 'Map'], ['charts', 'Charts'], ['scenario', 'Scenario'], ['about', 'About']];
   const parts: (() => void)[] = charts ? [charts] : [];
   theme(() => parts.forEach((redraw) => redraw()));

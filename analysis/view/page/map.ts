@@ -10,9 +10,10 @@ export interface Shown {
   colouring: Colouring;
 }
 
+// A case that is played.
 export interface Mark {
-  x: number;
-  y: number;
+  layer: Layer;
+  n: number;
   text: string;
 }
 
@@ -78,7 +79,7 @@ export class MapView {
   // ---- places and pixels ----
   private frame(): { left: number; top: number; width: number; height: number } {
     const { clientWidth: w, clientHeight: h } = this.canvas;
-    const left = this.vertical ? (w < 480 ? 50 : 64) : 12;
+    const left = this.vertical ? (w < 480 ? 58 : 64) : 12;
     return { left, top: 8, width: Math.max(20, w - left - 14), height: Math.max(20, h - 8 - 46) };
   }
   private toX = (p: number): number => this.frame().left + ((p - this.window[0]) / (this.window[1] - this.window[0])) * this.frame().width;
@@ -345,7 +346,7 @@ export class MapView {
     for (let n = 0; n < layer.count; n++) {
       const c = colouring.pixels(n);
       if (!c) continue;
-      g.fillStyle = `rgb(${c & 255},${(c >> 8) & 255},${(c >> 16) & 255})`;
+      g.fillStyle = css(c);
       g.fillRect(this.toX(layer.px(n)) - size / 2, this.toY(this.y ? layer.py(n) : 0) - size / 2, size, size);
     }
   }
@@ -368,14 +369,20 @@ export class MapView {
     for (const n of order) {
       const y = colouring.number!(n);
       g.beginPath();
-      g.fillStyle = style('--link');
-      g.arc(this.toX(layer.px(n)), this.toY(y), 3, 0, 7);
-      if (Number.isFinite(y)) g.fill();
+      g.fillStyle = css(colouring.pixels(n));
+      g.strokeStyle = style('--muted');
+      g.arc(this.toX(layer.px(n)), this.toY(y), 3.5, 0, 7);
+      if (!Number.isFinite(y)) continue;
+      g.fill();
+      g.stroke();
     }
   }
 
   private drawMarks(g: CanvasRenderingContext2D): void {
-    const middle = (this.window[2] + this.window[3]) / 2;
+    const height = ({ layer, n }: { layer: Layer; n: number }): number => {
+      const number = this.shown.find((s) => s.layer === layer)?.colouring.number?.(n);
+      return this.toY(this.y ? layer.py(n) : Number.isFinite(number) ? number! : (this.window[2] + this.window[3]) / 2);
+    };
     const ring = (x: number, y: number, radius: number, colour: string, width: number): void => {
       g.beginPath();
       g.arc(x, y, radius, 0, 7);
@@ -384,7 +391,7 @@ export class MapView {
       g.stroke();
     };
     for (const m of this.marks) {
-      const [x, y] = [this.toX(m.x), this.toY(this.y ? m.y : middle)];
+      const [x, y] = [this.toX(m.layer.px(m.n)), height(m)];
       ring(x, y, 7, '#ffffff', 5);
       ring(x, y, 7, '#000000', 2);
       if (!m.text) continue;
@@ -400,7 +407,7 @@ export class MapView {
     if (this.cursor && document.activeElement === this.canvas) {
       const { layer } = this.cursor.shown;
       const x = this.toX(layer.px(this.cursor.n));
-      const y = this.toY(this.y ? layer.py(this.cursor.n) : middle);
+      const y = height({ layer, n: this.cursor.n });
       for (const [colour, w] of [['#ffffff', 4], ['#000000', 2]] as const) {
         g.strokeStyle = colour;
         g.lineWidth = w;
@@ -417,6 +424,8 @@ export class MapView {
     }
   }
 }
+
+const css = (c: number): string => `rgb(${c & 255},${(c >> 8) & 255},${(c >> 16) & 255})`;
 
 function fitted(g: CanvasRenderingContext2D, text: string, width: number): string {
   if (g.measureText(text).width <= width) return text;

@@ -232,7 +232,7 @@ export class MapPart {
         if (layer && (layer.computed ? sameView(c.view, layer.view) : !c.view.some((s) => s.startsWith('sweep=')))) {
           const n = layer.of(c.index);
           if (n >= 0) {
-            marks.push({ x: layer.px(n), y: layer.py(n), text: state.cases.length > 1 ? String(k + 1) : '' });
+            marks.push({ layer, n, text: state.cases.length > 1 ? String(k + 1) : '' });
             break;
           }
         }

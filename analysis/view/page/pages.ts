@@ -20,14 +20,14 @@ export async function scenarioPage(part: HTMLElement, data: Data): Promise<void>
       el('tbody', {}, ...rows.map((r) => el('tr', {}, el('th', { scope: 'row' }, r.name), el('td', { class: 'number' }, String(r.count)), el('td', { class: 'number' }, `${numberText((100 * r.count) / head.cases, 4)} %`))))));
   }
   parts.push(el('table', { 'aria-label': 'Provenance' }, el('tbody', {},
-    row('file', head.file), row('computed', `${head.date}, by stance ${head.file_program} (${head.file_revision})`),
-    row('this page', `by stance ${head.program} (${head.revision})`), row('cases', head.single ? `one, place ${head.index} of its sweep` : String(head.cases)),
+    row('file', head.file), ...(head.date ? [row('computed', `${head.date}, by stance ${head.file_program} (${head.file_revision})`)] : []),
+    row('this page', `by stance ${head.program} (${head.revision})`), ...(head.cases > 0 ? [row('cases', head.single ? `one, place ${head.index} of its sweep` : String(head.cases))] : []),
     ...(head.recorded.length ? [row('with trajectories', head.recorded.slice(0, 20).join(', ') + (head.recorded.length > 20 ? ', ...' : ''))] : []))));
   if (head.left_out.length)
     parts.push(el('h2', {}, 'What the page does not carry'), el('p', {}, `Answers left out for their size: ${head.left_out.join(', ')}. To carry one of them:`),
       command(`stance view ${shellWord(head.command_file)} --answers ${head.left_out[0]}`));
   const button: HTMLButtonElement = el('button', { type: 'button', onclick: () => void copy(head.scenario, button) }, 'copy');
-  parts.push(el('h2', {}, 'Scenario'), el('div', { class: 'row' }, button,
+  if (head.scenario) parts.push(el('h2', {}, 'Scenario'), el('div', { class: 'row' }, button,
     el('button', { type: 'button', onclick: () => download(fileName(data), head.scenario) }, `save as ${fileName(data)}`)), el('pre', { tabindex: '0' }, head.scenario));
   part.replaceChildren(...parts);
 }

@@ -1,11 +1,13 @@
 // player.ts - cases as stick figures that move, one over the other or side by side, with contact forces as arrows and
 // torques as arcs, to scale; the ground; and what moves the time.
+import { hues } from './colours';
 import { context, eachFrame, el, style } from './dom';
 import type { PlayText, Trajectory, ViewText } from './format';
 import { numberText } from './numbers';
 
 export interface PlayedCase {
   name: string;
+  outcome: string;
   hue: string;
   text: PlayText;
   rows: Trajectory;
@@ -21,7 +23,6 @@ interface Box {
 }
 
 const speeds: [string, number][] = [['1\u00d7', 1], ['1/2', 0.5], ['1/5', 0.2], ['1/10', 0.1], ['1/20', 0.05], ['1/50', 0.02]];
-const force_colour = '#d55e00';
 const torque_colour = '#009e73';
 
 // Row of a trajectory at a time: the last one that is not later.
@@ -197,7 +198,7 @@ export class Player {
     return this.cases.map((c) => {
       const k = rowAt(c.rows, this.time);
       const q = c.scene.coordinates.map((x, i) => `${x.name} ${numberText(c.rows.position[k * c.scene.coordinates.length + i], 3)} ${x.unit}`);
-      return `${c.name}, ${c.text.outcome}, at ${this.time.toFixed(3)} s: ${q.join(', ')}`;
+      return `${c.name}, ${c.outcome}, at ${this.time.toFixed(3)} s: ${q.join(', ')}`;
     }).join('; ');
   }
 
@@ -261,29 +262,33 @@ export class Player {
       return this.turned(c, at(k, 0) + share * (at(next, 0) - at(k, 0)), at(k, 1) + share * (at(next, 1) - at(k, 1)));
     };
     g.globalAlpha = solid ? 1 : 0.45;
-    g.strokeStyle = this.cases.length > 1 ? c.hue : style('--figure');
     g.lineWidth = solid ? 4 : 3;
     g.lineJoin = g.lineCap = 'round';
-    g.beginPath();
-    let open = false;
-    const joints: [number, number][] = [];
-    for (let p = 0; p < n; p++) {
-      const [x, z] = between(rows.figure, n, p);
-      const there = Number.isFinite(x) && Number.isFinite(z);
-      if (there) {
-        g[open ? 'lineTo' : 'moveTo'](X(x), Y(z));
-        joints.push([X(x), Y(z)]);
-      }
-      open = there;
+    const points = Array.from({ length: n }, (_, p) => between(rows.figure, n, p));
+    const contacts = c.scene.contacts.map((_, i) => between(rows.contact, text.contacts, i));
+    const body = this.cases.length > 1 ? c.hue : style('--figure');
+    const ink = (contact: number): string => (this.cases.length > 1 || contact < 0 ? body : hues[contact % hues.length]);
+    const touches = ([x, z]: [number, number]): number => contacts.findIndex(([a, b]) => Math.hypot(x - a, z - b) < 1e-9);
+    // What ends at one contact has its colour; an outline, which ends where it begins, is the body.
+    const outline = n > 1 && Math.hypot(points[0][0] - points[n - 1][0], points[0][1] - points[n - 1][1]) < 1e-9;
+    const of = points.map(touches);
+    for (let p = 0; p + 1 < n; p++) {
+      const [[a, b], [x, z]] = [points[p], points[p + 1]];
+      if (!Number.isFinite(a + b + x + z)) continue;
+      const leg = outline || (of[p] >= 0) === (of[p + 1] >= 0) ? -1 : Math.max(of[p], of[p + 1]);
+      g.strokeStyle = ink(leg);
+      g.beginPath();
+      g.moveTo(X(a), Y(b));
+      g.lineTo(X(x), Y(z));
+      g.stroke();
     }
-    g.stroke();
-    g.fillStyle = g.strokeStyle;
-    if (joints.length < 40)
-      for (const [x, y] of joints) {
-        g.beginPath();
-        g.arc(x, y, 3.2, 0, 7);
-        g.fill();
-      }
+    points.forEach(([x, z], p) => {
+      if (outline || !Number.isFinite(x + z)) return;
+      g.fillStyle = ink(of[p]);
+      g.beginPath();
+      g.arc(X(x), Y(z), 3.6, 0, 7);
+      g.fill();
+    });
     if (solid) {
       this.forces(g, c, next, between, X, Y, scale);
       this.torques(g, c, next, X, Y);
@@ -295,16 +300,17 @@ export class Player {
   private forces(g: CanvasRenderingContext2D, c: PlayedCase, row: number, between: (l: Float64Array, per: number, i: number) => [number, number],
     X: (x: number) => number, Y: (z: number) => number, scale: number): void {
     const contacts = c.scene.contacts.length;
+    const columns = c.text.contacts;
     const slope = this.fall(c);
     const factor = this.forceScale(scale);
     for (let i = 0; i < contacts && factor > 0; i++) {
-      const [x, z] = between(c.rows.contact, contacts, i);
-      const normal = c.rows.force[2 * (row * contacts + i)];
-      const tangential = c.rows.force[2 * (row * contacts + i) + 1];
+      const [x, z] = between(c.rows.contact, columns, i);
+      const normal = c.rows.force[2 * (row * columns + i)];
+      const tangential = c.rows.force[2 * (row * columns + i) + 1];
       if (!Number.isFinite(x) || !(Math.hypot(normal, tangential) > 0)) continue;
       const dx = normal * Math.sin(slope) + tangential * Math.cos(slope);
       const dz = normal * Math.cos(slope) - tangential * Math.sin(slope);
-      arrow(g, X(x), Y(z), dx * factor, -dz * factor, force_colour);
+      arrow(g, X(x), Y(z), dx * factor, -dz * factor, hues[i % hues.length]);
     }
   }
 
@@ -341,7 +347,7 @@ export class Player {
     const factor = this.forceScale(scale);
     if (factor > 0) {
       const force = roundDown(60 / factor);
-      arrow(g, x, 12, force * factor, 0, force_colour);
+      arrow(g, x, 12, force * factor, 0, style('--ink'));
       x += force * factor + 6;
       word(`${numberText(force)} N`, style('--ink'));
     }
@@ -398,4 +404,3 @@ function turn(g: CanvasRenderingContext2D, x: number, y: number, radius: number,
 }
 
 export const reduced = (): boolean => window.matchMedia('(prefers-reduced-motion: reduce)').matches;
-export const playerKey = (target: EventTarget | null): boolean => !(target instanceof HTMLElement && /^(INPUT|SELECT|TEXTAREA|BUTTON|SUMMARY|A)$/.test(target.tagName));

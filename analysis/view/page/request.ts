@@ -4,7 +4,7 @@ import type { Answer, ViewText } from './format';
 import { Computed, gridPlaces, type Get, type Layer } from './layers';
 import { valueAt } from './numbers';
 import type { Scale } from './scales';
-import type { MapRequest, View } from './state';
+import { capture_off, type MapRequest, type View } from './state';
 
 const yamlWord = (word: string): string => (/^[\w.-]+$/.test(word) ? word : JSON.stringify(word));
 
@@ -72,5 +72,6 @@ export async function requestLayer(
   const grid = { nx, ny, x0: across.from, x1: across.to, y0: up?.from ?? 0, y1: up?.to ?? 0 };
   const index: Get = (n) => (n % nx) * ny + Math.floor(n / nx);
   const of: Get = (i) => (i < nx * ny ? (i % ny) * nx + Math.floor(i / ny) : -1);
-  return new Computed([...changes, ...others, sweep], nx * ny, columns, grid, index, of, gridPlaces(grid));
+  const capture = base.capture && !changes.includes(capture_off) ? [capture_off] : [];
+  return new Computed([...changes, ...capture, ...others, sweep], nx * ny, columns, grid, index, of, gridPlaces(grid));
 }

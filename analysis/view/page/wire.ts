@@ -2,17 +2,20 @@
 // text, the form in which the engine takes them:
 //   s<bytes>:<text> scalar, q<bytes>:<text> quoted scalar, l<count>:items, m<count>:pairs of <bytes>:<key> and item.
 
+// What cannot be done as it was asked for; any other error leaves an engine that is not to be trusted.
+export class Refusal extends Error {}
+
 const encoder = new TextEncoder();
 const counted = (text: string): string => `${encoder.encode(text).length}:${text}`;
 
-// Throws an Error that says what is wrong with the text.
+// Throws a Refusal that says what is wrong with the text.
 export function wireOf(text: string): string {
   let at = 0;
   const blank = (): void => {
     while (at < text.length && /\s/.test(text[at])) at++;
   };
   const fail = (what: string): never => {
-    throw new Error(`${what} at character ${at + 1} of "${text}"`);
+    throw new Refusal(`${what} at character ${at + 1} of "${text}"`);
   };
   const quoted = (): string => {
     const mark = text[at++];

@@ -1,6 +1,7 @@
 // worker.ts - a worker of the page: an engine, and one call after the other.
-import { Engine, Refusal, type FileParts } from './engine';
+import { Engine, type FileParts } from './engine';
 import type { View } from './state';
+import { Refusal } from './wire';
 
 export type Call = 'describe' | 'values' | 'run' | 'play' | 'refineBegin' | 'refineAsk' | 'refineTell' | 'refineEnd';
 export interface Request {
@@ -32,8 +33,10 @@ self.onmessage = (event: MessageEvent<Request | { module: WebAssembly.Module; fi
     if (view) engine.open(view);
     reply = { id, result: (engine[call] as (...a: unknown[]) => unknown).apply(engine, given), columns: engine.columns };
   } catch (problem) {
-    if (!(problem instanceof Refusal)) engine = null;
-    reply = { id, problem: problem instanceof Error ? problem.message : String(problem) };
+    const message = problem instanceof Error ? problem.message : String(problem);
+    const refused = problem instanceof Refusal;
+    if (!refused) engine = null;
+    reply = { id, problem: refused ? message : `the engine failed: ${message}` };
   }
   self.postMessage(reply);
 };

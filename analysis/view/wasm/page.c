@@ -399,9 +399,9 @@ int refine_end(uint8_t *kind, uint8_t *inferred)
     for (uint64_t row = 0; row < page.view.cases; row++) {
         const int label = refine_label(refining, row);
         kind[row] = RESULTS_FAILED;
-        for (uint8_t k = 0; k < RESULTS_OUTCOMES; k++)
-            if (label_of(k) == label)
-                kind[row] = k;
+        for (int k = 0; k < RESULTS_OUTCOMES; k++)
+            if (label_of((uint8_t)k) == label)
+                kind[row] = (uint8_t)k;
         inferred[row] = refine_inferred(refining, row);
     }
     return 1;

@@ -83,11 +83,26 @@ static void add_words(struct text *text, const char *const *word, size_t words)
 
 /* ---- fields that may be changed ----------------------------------------------------------- */
 
+/* Slope and gravity are others for described robots alone. */
+static bool is_world(const struct scenario_field *field)
+{
+    const size_t at[] = {offsetof(struct scenario_values, robot[STANCE_ROBOT_SLOPE]),
+                         offsetof(struct scenario_values, model[STANCE_ROBOT_SLOPE]),
+                         offsetof(struct scenario_values, robot[STANCE_ROBOT_GRAVITY]),
+                         offsetof(struct scenario_values, model[STANCE_ROBOT_GRAVITY])};
+    bool found = false;
+    for (size_t k = 0; k < sizeof at / sizeof *at; k++)
+        found |= field->offset == at[k];
+    return found;
+}
+
 /* Whether a field means something for the view as it is. */
 static bool applies(const struct scenario_field *field)
 {
     const struct scenario_values *const is = &page.view.base;
     const stance_law *const law = scenario_law(is), *const own = stance_laws()[field->law];
+    if (is_world(field) && !page.view.scene->mechanism)
+        return false;
     const bool places = is->design == DESIGN_PLACE || is->design == DESIGN_PLACE_SCHUR;
     switch (field->use) {
     case USE_CONTROL:

@@ -1,0 +1,405 @@
+// view.mjs - pages of files of many kinds in a browser: clicks, plays, changes a parameter, and reads what a user reads.
+// Speaks TAP. Usage: node view.mjs FOLDER, with the pages that whole_view.sh has made in it.
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { open } from './web.mjs';
+
+const folder = process.argv[2];
+const only = process.argv[3];
+const at = (name) => join(folder, name);
+const checks = [];
+const check = (name, f) => checks.push([name, f]);
+const assert = (good, text) => {
+  if (!good) throw new Error(text);
+};
+const same = (a, b, what) => assert(a === b, `${what}: ${JSON.stringify(a)} instead of ${JSON.stringify(b)}`);
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+const shift = 8;
+
+// With a page, closed in the end; no check leaves an error on the console or asks the network.
+async function on(file, options, f) {
+  const page = await open(at(file), options);
+  try {
+    await f(page);
+    if (!options.mistakes) same(page.errors.join('; '), '', 'errors of the page');
+    same(page.requests.join('; '), '', 'requests to the network');
+  } catch (problem) {
+    await page.screenshot(at(`failed-${file}.png`)).catch(() => {});
+    throw problem;
+  } finally {
+    await page.close();
+  }
+}
+const painted = `document.body.dataset.painted`;
+const played = `!document.querySelector('#case-list')?.parentElement.querySelector('#figure')?.closest('[hidden]') && document.querySelector('#case-list .badge')`;
+const badges = `[...document.querySelectorAll('#case-list .badge')].map((b) => b.textContent).join('|')`;
+const count = (name) => `Number(document.querySelector('#legend [data-name="${name}"]')?.dataset.count ?? 0)`;
+const computed = `document.querySelector('#progress')?.dataset.running === 'false'`;
+const fields = `document.querySelector('#fields .field')`;
+const field = (path) => `[id="field-${path}"]`;
+const choose = (label) => `[...document.querySelectorAll('#show button, .group button')].find((b) => b.textContent === '${label}').click()`;
+const head = (file) => JSON.parse(/<script type="application\/json" id="head">([^]*?)<\/script>/.exec(readFileSync(at(file), 'utf8'))[1]);
+// A copy of a page with another head, or with other text.
+const changed = (file, to, edit) => {
+  const text = readFileSync(at(file), 'utf8');
+  writeFileSync(at(to), edit(text));
+};
+const withHead = (file, to, edit) =>
+  changed(file, to, (text) => text.replace(/(<script type="application\/json" id="head">)([^]*?)(<\/script>)/, (_, a, json, z) => a + JSON.stringify(edit(JSON.parse(json))).replace(/</g, '\\u003c') + z));
+
+check('a map: counts, colours, and the case under the pointer', () =>
+  on('map.html', {}, async (p) => {
+    await p.until(painted);
+    const h = head('map.html');
+    same(await p.evaluate(`${count('stabilised')} + ${count('fell')}`), h.cases, 'cases in the legend');
+    assert(await p.evaluate(`${count('stabilised')} > 100 && ${count('fell')} > 100`), 'both outcomes are there');
+    same((await p.pixel('#map', 0.95, 0.95)).join(), '243,187,76', 'colour of a fall');
+    same((await p.pixel('#map', 0.5, 0.5)).join(), '0,90,146', 'colour of a recovery');
+    await p.move(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(`document.querySelector('#readout').innerText.includes('stabilised')`);
+    const told = await p.text('#readout');
+    for (const word of ['initial.offset.theta = ', 'rad/s', 'settle_time', 'friction_used']) assert(told.includes(word), `the readout says ${word}: ${told}`);
+  }));
+
+check('a click plays the case: identical to the file, courses, command', () =>
+  on('map.html', { motion: false }, async (p) => {
+    await p.until(painted);
+    await p.click(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(played);
+    same(await p.evaluate(badges), 'identical to the file', 'badge');
+    assert(/stance replay \S*map.h5 --case \d+/.test(await p.evaluate(`document.querySelector('#case-list code').textContent`)), 'the command');
+    same(await p.evaluate(`document.querySelectorAll('.course canvas').length`), 3, 'courses');
+    await p.evaluate(`[...document.querySelectorAll('.courses .group button')].find((b) => b.textContent === 'energy').click()`);
+    same(await p.evaluate(`document.querySelectorAll('.course canvas').length`), 4, 'courses with the energy');
+    assert(/^0\.000 \/ /.test(await p.text('#clock')), 'with reduced motion it waits');
+    const before = await p.evaluate(`document.querySelector('#figure').getAttribute('aria-label')`);
+    await p.key('.');
+    assert(!/^0\.000/.test(await p.text('#clock')), 'one step on');
+    for (let k = 0; k < 200; k++) await p.key('.');
+    assert((await p.evaluate(`document.querySelector('#figure').getAttribute('aria-label')`)) !== before, 'the figure has moved');
+    await p.key(',');
+    const [x, y] = await p.spot('.course .u-over', 0.8, 0.5);
+    await p.drag(x - 60, y, x, y);
+    const [time, end] = (await p.text('#clock')).match(/[\d.]+/g).map(Number);
+    assert(Math.abs(time / end - 0.8) < 0.1, `dragging in a course moves the time to ${time} of ${end}`);
+    await p.key(' ');
+    await p.until(`document.querySelector('#play').textContent === 'pause'`);
+    await p.key(' ');
+    await p.until(`document.querySelector('#play').textContent === 'play'`);
+    assert(await p.evaluate(`location.hash.includes('case=')`), 'the address names the case');
+  }));
+
+check('a case plays by itself, slowly if asked', () =>
+  on('map.html', {}, async (p) => {
+    await p.until(painted);
+    await p.click(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(played);
+    await p.until(`parseFloat(document.querySelector('#clock').textContent) > 0.05`);
+    await p.set('.transport select', '0.02');
+    await wait(100);
+    const begin = parseFloat(await p.text('#clock'));
+    await wait(500);
+    const passed = parseFloat(await p.text('#clock')) - begin;
+    assert(passed > 0 && passed < 0.1, `in half a second ${passed} s at a fiftieth of the speed`);
+  }));
+
+check('only keys: arrows, Enter, and a second case beside the first', () =>
+  on('map.html', { motion: false }, async (p) => {
+    await p.until(painted);
+    await p.evaluate(`document.querySelector('#map').focus()`);
+    await p.key('ArrowLeft');
+    await p.key('ArrowLeft');
+    await p.until(`document.querySelector('#readout').innerText.includes('case')`);
+    const first = await p.text('#readout');
+    await p.key('ArrowRight');
+    await p.until(`!document.querySelector('#readout').innerText.startsWith(${JSON.stringify(first.slice(0, 40))})`);
+    await p.key('Enter');
+    await p.until(played);
+    await p.key('ArrowUp', shift);
+    await p.key('Enter', shift);
+    await p.until(`document.querySelectorAll('#case-list .badge').length === 2`);
+    same(await p.evaluate(badges), 'identical to the file|identical to the file', 'both badges');
+    await p.evaluate(choose('side by side'));
+    await p.until(`location.hash.includes('beside=1')`);
+    await p.press('#case-list .case button');
+    await p.until(`document.querySelectorAll('#case-list .case').length === 1`);
+    await p.evaluate(`history.back()`);
+    await p.until(`document.querySelectorAll('#case-list .case').length === 2`);
+  }));
+
+check('an address shows the same again', async () => {
+  let hash = '';
+  let clock = '';
+  await on('map.html', { motion: false }, async (p) => {
+    await p.until(painted);
+    await p.set('#colour', 'settle_time');
+    await p.drag(...(await p.spot('#map', 0.2, 0.2)), ...(await p.spot('#map', 0.7, 0.8)));
+    await p.click(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(played);
+    await p.set('#scrub', '0.5');
+    await p.until(`/zoom=.*t=0.5/.test(location.hash)`);
+    hash = await p.evaluate('location.hash');
+    clock = await p.text('#clock');
+  });
+  await on('map.html', { motion: false, hash }, async (p) => {
+    await p.until(played);
+    await p.until(`document.querySelector('#clock').innerText === ${JSON.stringify(clock)}`);
+    same(await p.evaluate('location.hash'), hash, 'address');
+    assert((await p.text('#legend')).startsWith('settle_time'), 'the colour');
+    await p.press('#zoom-all');
+    await p.until(`!location.hash.includes('zoom')`);
+  });
+});
+
+check('wheel and pan stay within the map', () =>
+  on('map.html', {}, async (p) => {
+    await p.until(painted);
+    const [x, y] = await p.spot('#map', 0.5, 0.5);
+    for (let k = 0; k < 3; k++) await p.call('Input.dispatchMouseEvent', { type: 'mouseWheel', x, y, deltaX: 0, deltaY: -200 });
+    await p.until(`location.hash.includes('zoom')`);
+    const zoom = () => p.evaluate(`location.hash.match(/zoom=([^&]*)/)?.[1].split(',').map(Number) ?? []`);
+    const before = await zoom();
+    await p.drag(x, y, x - 50, y, shift);
+    await wait(500);
+    const after = await zoom();
+    assert(after[0] > before[0] && Math.abs(after[1] - after[0] - before[1] + before[0]) < 1e-3, `panned from ${before} to ${after}`);
+    for (let k = 0; k < 40; k++) await p.call('Input.dispatchMouseEvent', { type: 'mouseWheel', x, y, deltaX: 0, deltaY: 300 });
+    await p.until(`!location.hash.includes('zoom')`);
+  }));
+
+check('live: friction changes the map; the difference is counted; the command computes it', () =>
+  on('map.html', { motion: false }, async (p) => {
+    await p.until(fields);
+    await p.set(field('ground.friction'), '0.15');
+    await p.until(computed, 120);
+    const here = await p.evaluate(count('stabilised'));
+    assert(/^\d+ of \d+ cases simulated, [\d.]+ s: done$/.test(await p.text('#progress')), await p.text('#progress'));
+    await p.evaluate(choose('difference'));
+    await p.until(`document.querySelector('#legend').innerText.includes('\\u2192')`);
+    assert((await p.evaluate(count('fell \u2192 stabilised'))) > 50, 'on this floor more recover');
+    await p.click(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(played);
+    same(await p.evaluate(badges), 'a case computed in this page', 'badge');
+    const sets = await p.evaluate(`[...document.querySelectorAll('#live-part code')].map((c) => c.textContent).find((t) => t.startsWith('stance run'))`);
+    writeFileSync(at('command.txt'), `${sets}\n${here}\n`);
+    assert(await p.evaluate(`location.hash.includes('set=ground.friction=0.15')`), 'the address has the change');
+    await p.press('.change button');
+    await p.until(`!location.hash.includes('set=') && document.querySelector('#show').hidden`);
+  }));
+
+check('live: every case simulated is the file again, answer for answer', () =>
+  on('map.html', { hash: '#map=0,all' }, async (p) => {
+    await p.until(computed, 120);
+    await p.evaluate(choose('difference'));
+    await p.until(`document.querySelector('#legend').innerText.includes('as in the file')`);
+    same(await p.evaluate(count('as in the file')), head('map.html').cases, 'cases as in the file');
+    const h = head('map.html');
+    await p.move(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(`document.querySelector('#readout').innerText.includes('friction_used')`);
+    const here = await p.text('#readout');
+    await p.evaluate(choose('file'));
+    await wait(100);
+    await p.move(...(await p.spot('#map', 0.51, 0.9)));
+    await p.move(...(await p.spot('#map', 0.5, 0.5)));
+    await wait(200);
+    same(await p.text('#readout'), here, `readout of one of ${h.cases}`);
+  }));
+
+check('live: a map of what is in sight, stopped and started', () =>
+  on('map.html', { hash: '#zoom=5,15,5,15' }, async (p) => {
+    await p.until(fields);
+    await p.press('#compute');
+    await p.until(computed, 120);
+    assert(/map=64,refined,5,15,5,15/.test(await p.evaluate('location.hash')), 'the window is in the address');
+    same(await p.evaluate(`document.querySelector('#map').dataset.cases`), '4096', 'cases of the window');
+    await p.evaluate(`document.querySelector('#cells').value = '256'; document.querySelector('#cells').dispatchEvent(new Event('change'))`);
+    await p.until(`document.querySelector('#progress').dataset.running === 'true'`);
+    await p.press('#stop');
+    await p.until(computed);
+  }));
+
+check('live: what the scenario does not admit is said at its field', () =>
+  on('map.html', {}, async (p) => {
+    await p.until(fields);
+    await p.set(field('ground.friction'), '99');
+    await p.until(`document.querySelector('[data-path="ground.friction"] .error').innerText.includes('10')`);
+    assert((await p.text('#legend')).includes('stabilised'), 'the map stays');
+    await p.set(field('ground.friction'), '0.8');
+    await p.until(`document.querySelector('[data-path="ground.friction"] .error').innerText === '' && !location.hash.includes('set')`);
+  }));
+
+check('live: another mass keeps the controller; a controller without a design says so', () =>
+  on('map.html', {}, async (p) => {
+    await p.until(fields);
+    await p.set('#search', 'trunk_mass');
+    await p.set(field('robot.trunk_mass'), '1.9');
+    await p.until(`document.querySelector('#changes').innerText.includes('the controller stays the one designed for robot.trunk_mass = 1.8')`);
+    await p.until(computed, 120);
+    // Taken back, the design would have to be made anew.
+    await p.evaluate(`document.querySelector('#changes button[aria-label="Take back controller.model.trunk_mass"]').click()`);
+    await p.until(`[...document.querySelectorAll('#live-part .error')].some((e) => !e.hidden && /design/.test(e.innerText))`);
+  }));
+
+check('a case with changes beside the file\'s', () =>
+  on('map.html', { motion: false, hash: '#set=controller.torque_limit=20&map=32,refined' }, async (p) => {
+    await p.until(computed, 120);
+    await p.evaluate(choose('file'));
+    await p.click(...(await p.spot('#map', 0.9, 0.9)));
+    await p.until(played);
+    await p.evaluate(`[...document.querySelectorAll('#case-list button')].find((b) => b.textContent === 'with the changes, too').click()`);
+    await p.until(`document.querySelectorAll('#case-list .badge').length === 2`);
+    same(await p.evaluate(badges), 'identical to the file|parameters changed', 'badges');
+    const text = await p.evaluate(`[...document.querySelectorAll('#case-list code')].at(-1).textContent`);
+    assert(text.includes('--set controller.torque_limit=20'), text);
+  }));
+
+check('a refined map says what is inferred', () =>
+  on('refined.html', { motion: false }, async (p) => {
+    await p.until(painted);
+    await p.click(...(await p.spot('#map', 0.98, 0.98)));
+    await p.until(played);
+    assert((await p.text('#readout')).includes('inferred, not simulated'), await p.text('#readout'));
+    same(await p.evaluate(badges), 'not simulated in the file (inferred)', 'badge');
+  }));
+
+check('five axes: any two across, sliders for the others, a curve of one', () =>
+  on('axes.html', {}, async (p) => {
+    await p.until(painted);
+    same(await p.evaluate(`document.querySelectorAll('#sliders input').length`), 3, 'sliders');
+    await p.set('#x', 'ground.restitution');
+    await p.set('#y', 'initial.state.z');
+    await p.until(`[...document.querySelectorAll('#sliders label')].map((l) => l.textContent).join() === 'ground.friction,initial.state.vx,initial.state.vz'`);
+    const before = await p.text('#sliders output');
+    await p.set('#sliders input', '1');
+    assert((await p.text('#sliders output')) !== before, 'the slider says its value');
+    await p.set('#y', '');
+    await p.set('#colour', 'end_time');
+    await p.until(`document.querySelector('#map').getAttribute('aria-label').startsWith('Map of end_time')`);
+    await p.click(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(played);
+    same(await p.evaluate(badges), 'identical to the file', 'badge');
+  }));
+
+check('a sample: points over two of its paths, simulated as in the file', () =>
+  on('sample.html', { motion: false }, async (p) => {
+    await p.until(painted);
+    const options = await p.evaluate(`[...document.querySelector('#x').options].map((o) => o.value)`);
+    assert(options.includes('ground.friction') && options.includes('controller.sample_time'), options.join());
+    await p.evaluate(`document.querySelector('#map').focus()`);
+    for (const key of ['ArrowRight', 'ArrowRight', 'ArrowUp', 'Enter']) await p.key(key);
+    await p.until(played);
+    same(await p.evaluate(badges), 'identical to the file', 'badge');
+    await p.set(field('controller.noise'), '0.5');
+    await p.until(computed, 120);
+    same(await p.evaluate(`document.querySelector('#map').dataset.computed`), 'true', 'computed');
+  }));
+
+check('one case: it plays, and its changes stand beside it', () =>
+  on('single.html', { motion: false }, async (p) => {
+    await p.until(played);
+    same(await p.evaluate(badges), 'identical to the file', 'badge');
+    await p.until(fields);
+    await p.set(field('controller.torque_limit'), '5');
+    await p.until(`document.querySelectorAll('#case-list .badge').length === 2`);
+    same(await p.evaluate(badges), 'parameters changed|identical to the file', 'badges');
+  }));
+
+check('a mechanism with springs: identical, forces and no torques', () =>
+  on('mechanism.html', { motion: false }, async (p) => {
+    await p.until(painted);
+    await p.click(...(await p.spot('#map', 0.5, 0.3)));
+    await p.until(played);
+    same(await p.evaluate(badges), 'identical to the file', 'badge');
+    same(await p.evaluate(`[...document.querySelectorAll('.course')].map((c) => c.dataset.course).join()`), 'coordinates,forces', 'courses');
+  }));
+
+check('a case that is not what the file says is found out', async () => {
+  withHead('single.html', 'other.html', (h) => ({ ...h, wire: h.wire.replace('12:torque_limits2:10', '12:torque_limits1:5') }));
+  await on('other.html', { motion: false }, async (p) => {
+    await p.until(played);
+    assert(/^differs: .*\(file .*, here .*\)/.test(await p.evaluate(badges)), await p.evaluate(badges));
+  });
+});
+
+check('text with markup stays text', async () => {
+  const evil = `<img src=x onerror="window.hacked=1"><script>window.hacked=1</script>`;
+  withHead('map.html', 'evil.html', (h) => ({ ...h, title: evil, file: evil, scenario: evil, command_file: `x'; ${evil}`,
+    axes: h.axes.map((a, k) => (k ? a : { ...a, path: evil, text: evil, unit: evil })) }));
+  await on('evil.html', { motion: false }, async (p) => {
+    await p.until(painted);
+    await p.click(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(played);
+    await p.evaluate(`document.querySelector('#tab-scenario').click()`);
+    same(await p.evaluate(`String(window.hacked) + document.querySelectorAll('img').length`), 'undefined0', 'what ran');
+    same(await p.text('#title'), evil, 'title');
+  });
+});
+
+check('a browser without vectors, and one without streams, get a sentence', async () => {
+  await on('map.html', { before: `WebAssembly.validate = () => false` }, async (p) => {
+    await p.until(`document.querySelector('#lacking')`);
+    assert((await p.text('#lacking')).includes('128-bit vectors'), await p.text('#lacking'));
+    assert((await p.text('#legend')).includes('stabilised'), 'the map is there');
+  });
+  await on('map.html', { before: `delete window.DecompressionStream`, mistakes: true }, async (p) => {
+    await p.until(`document.querySelector('#problem-text').innerText.includes('newer browser')`);
+  });
+});
+
+check('a damaged page says so', async () => {
+  changed('map.html', 'damaged.html', (text) => text.replace(/(id="block-kind">)([^<]{40})/, (_, a, b) => a + b.split('').reverse().join('')));
+  await on('damaged.html', { mistakes: true }, (p) => p.until(`document.querySelector('#problem-text').innerText.includes('damaged')`));
+});
+
+check('an address of nonsense shows the map', () =>
+  on('map.html', { hash: '#x=no&y=%ZZ&at=1,2,3,4&zoom=NaN,1,2,3&case=9e99&case=3;[1]&set=&t=-4&map=-3,x&colour=no&tab=none' }, async (p) => {
+    await p.until(painted);
+    assert((await p.text('#legend')).includes('stabilised'), 'the map is there');
+  }));
+
+check('charts alone: curves with error bars, logarithmic axes', async () => {
+  withHead('map.html', 'charts.html', (h) => ({ ...h, cases: 0, axes: [], answers: [], blocks: {}, charts: [{
+    title: 'Accuracy', text: 'against cost', x: { label: 'cost', unit: 's', log: true }, y: { label: 'error', unit: 'm', log: true },
+    series: [{ name: 'midpoint', x: [1, 10, 100], y: [1e-2, 1e-4, 1e-6], low: [5e-3, 5e-5, 5e-7], high: [2e-2, 2e-4, 2e-6], lines: true }, { name: 'implicit', x: [1, 20, 0], y: [1e-1, null, 1e-3], lines: false }] }] }));
+  await on('charts.html', {}, async (p) => {
+    await p.until(`document.querySelector('#panel-charts canvas')`);
+    assert((await p.text('#panel-charts')).includes('midpoint'), 'legend');
+    same(await p.text('#tabs'), 'Charts\nScenario\nAbout'.replace(/\n/g, (await p.text('#tabs')).includes('\n') ? '\n' : ''), 'tabs');
+  });
+});
+
+check('a phone: nothing overflows, a tap plays', () =>
+  on('map.html', { width: 360, height: 740, touch: true, motion: false, dark: true }, async (p) => {
+    await p.until(fields);
+    await p.tap(...(await p.spot('#map', 0.5, 0.5)));
+    await p.until(played);
+    for (const tab of ['map', 'scenario', 'about']) {
+      await p.evaluate(`document.querySelector('#tab-${tab}').click()`);
+      const [wide, window] = await p.evaluate(`[document.documentElement.scrollWidth, innerWidth]`);
+      assert(wide <= window, `${tab}: ${wide} of ${window} px`);
+    }
+    same(await p.evaluate(`document.documentElement.dataset.theme`), 'dark', 'theme');
+    await p.evaluate(`document.querySelector('#theme').click()`);
+    same(await p.evaluate(`document.documentElement.dataset.theme`), 'light', 'theme');
+  }));
+
+check('names for those who do not see', () =>
+  on('map.html', { motion: false }, async (p) => {
+    await p.until(fields);
+    const bare = await p.evaluate(`[...document.querySelectorAll('button, input, select, canvas[tabindex]')].filter((e) => !e.closest('[hidden]'))
+      .filter((e) => !(e.textContent.trim() || e.getAttribute('aria-label') || e.labels?.length)).map((e) => e.outerHTML.slice(0, 80))`);
+    same(bare.join(), '', 'controls without a name');
+  }));
+
+let number = 0;
+for (const [name, f] of checks) {
+  if (only && !name.includes(only)) continue;
+  number++;
+  try {
+    await f();
+    console.log(`ok ${number} - ${name}`);
+  } catch (problem) {
+    console.log(`not ok ${number} - ${name}\n# ${String(problem.stack ?? problem).replace(/\n/g, '\n# ')}`);
+  }
+}
+console.log(`1..${number}`);

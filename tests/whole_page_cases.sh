@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# The engine of pages has the program's bits: all scenes, described ones too, by all methods with lanes, with noise,
+# samples, logarithmic axes, other laws. PAGE_CASES (24) of each page, of maps of PAGE_SIDE (7) places a side: see
+# page_cases.mjs. Speaks TAP.
+set -u
+. "$(dirname "$0")/scratch.sh"
+node=$(command -v node) && "$stance" view -h >/dev/null && "$stance" view "$shipped/topple.yaml" 2>&1 | grep -qv 'built without' ||
+    { skip "pages" "no node, or the program was built without the page"; echo "1..1"; exit 0; }
+cases=${PAGE_CASES:-24} side=${PAGE_SIDE:-7}
+pages=()
+page() { # name, scenario, --set ...
+    local name=$1 scenario=$2
+    shift 2
+    "$stance" run --quiet "$shipped/$scenario.yaml" "$@" -o "$name.h5" >"$name.log" 2>&1
+    "$stance" view "$name.h5" >>"$name.log" 2>&1 || cat "$name.log" >&2
+    pages+=("$name.html")
+}
+grid() { # count of the first axes
+    local k=0 n
+    for n in "$@"; do sets+=(--set "sweep.grid[$k].count=$n"); k=$((k + 1)); done
+}
+for method in implicit midpoint capturing lagrange; do
+    for scenario in ball_bounce rod_fall block_threshold basin_one_foot mechanisms/acrobot mechanisms/cart_pole; do
+        sets=(--set "method.name=$method")
+        [ "$scenario" = ball_bounce ] || grid "$side" "$side"
+        [ "$scenario" = rod_fall ] && sets+=(--set record.cases=none)
+        page "$method-$(basename "$scenario")" "$scenario" "${sets[@]}"
+    done
+done
+sets=() && grid 5 5 && page feet basin_both_feet "${sets[@]}"
+page friction friction_sweep --set 'sweep.grid[1].count=5' --set 'sweep.grid[2].count=5'
+page sampled sampled --set sweep.sample.count=32
+sets=() && grid 65 65 && page refined basin_refined "${sets[@]}"
+page pushed mechanisms/pushed --set 'sweep.grid[1].count=5'
+sets=() && grid 5 5 && page compass mechanisms/compass_gait "${sets[@]}"
+for law in bimodal switching sensors delay lag; do
+    page "$law" "controllers/$law" --set 'sweep.grid=[{path: initial.offset.theta, from: -0.1, to: 0.1, count: 6}, {path: initial.offset.vtheta, from: -0.4, to: 0.4, count: 5}]'
+done
+sets=() && page flight controllers/decoupling_flight
+page log basin_one_foot --set 'sweep.grid=[{path: ground.friction, from: 0.01, to: 1, count: 9, spacing: log}, {path: controller.noise, values: [0, 0.3]}]'
+page single balance_recovers
+# Changes in a page are changes by --set. A designed controller stays what it was while its model does.
+study() { study=$1 && sets=() && grid 6 6 && page "base-$(basename "$study")" "$study" "${sets[@]}" && base=${pages[-1]}; }
+change() { # PATH=VALUE ...
+    local name=change${#pages[@]} set all=$base
+    local of=("${sets[@]}")
+    for set in "$@"; do of+=(--set "$set") all+="|$set"; done
+    page "$name" "$study" "${of[@]}"
+    pages[-1]="$all|$name.html"
+}
+study basin_one_foot
+change ground.friction=0.25
+change robot.trunk_mass=3 controller.model.trunk_mass=1.8
+change controller.torque_limit=7
+change controller.noise=0.5 seed=7
+change controller.sample_time=0.01
+change controller.lag=0.01 controller.delay=2
+change method.name=capturing ground.restitution=0.5
+change stop.time=3 stop.settle.hold=0.1
+study mechanisms/cart_pole
+change ground.gravity=5 controller.model.gravity=9.81
+change controller.torque_limit=20 method.step=0.002
+"$node" "$tests/page_cases.mjs" "$cases" "${pages[@]}"

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Pages of files of many kinds, in a headless Chromium: see view.mjs. Speaks TAP.
+set -u
+. "$(dirname "$0")/scratch.sh"
+node=$(command -v node) && [ -x "$(command -v chromium || command -v google-chrome)" ] || { skip "pages in a browser" "no node, or no chromium"; echo "1..1"; exit 0; }
+make_page() { # name, scenario, --set ...
+    local name=$1 scenario=$2
+    shift 2
+    "$stance" run "$shipped/$scenario" "$@" -o "$name.h5" >/dev/null && "$stance" view "$name.h5" -o "$name.html" >/dev/null
+}
+make_page map basin_one_foot.yaml --set 'sweep.grid[0].count=41' --set 'sweep.grid[1].count=41' ||
+    { skip "pages in a browser" "the program was built without the page: make web"; echo "1..1"; exit 0; }
+make_page refined basin_refined.yaml --set 'sweep.grid[0].count=129' --set 'sweep.grid[1].count=129'
+make_page sample sampled.yaml --set sweep.sample.count=64
+make_page single balance_recovers.yaml
+make_page mechanism mechanisms/hopper.yaml --set 'sweep.grid[1].count=5' --set 'sweep.grid[2].count=5'
+make_page axes ball_bounce.yaml --set 'record={answers: [outcome, failure, end_time]}' --set method.step=0.01 --set stop.time=1 --set 'sweep={grid: [
+    {path: ground.restitution, from: 0, to: 0.6, count: 4}, {path: ground.friction, from: 0, to: 1, count: 4}, {path: initial.state.z, from: 0.2, to: 1, count: 4},
+    {path: initial.state.vx, from: -1, to: 1, count: 4}, {path: initial.state.vz, from: -1, to: 1, count: 4}]}'
+"$node" "$tests/view.mjs" "$scratch" "$@"
