@@ -35,6 +35,15 @@
 
 #define SLIDES_TO 10.0 /* m */
 
+/* The same on every machine, as the C library's hypot is not. */
+static double length(const double v[2])
+{
+    int scale = 0;
+    (void)frexp(fmax(fabs(v[0]), fabs(v[1])), &scale);
+    const double x = ldexp(v[0], -scale), y = ldexp(v[1], -scale);
+    return ldexp(sqrt(x * x + y * y), scale);
+}
+
 /* ---- frames ---------------------------------------------------------------------------------- */
 
 /* Which angle carries each body, and where in its frame the body's own is while nothing slides. */
@@ -94,7 +103,7 @@ static void frames_joint(const stance_mechanism *m, const stance_mechanism_numbe
     const int b = f->body[angle], parent = m->body[b].parent;
     const bool free = m->body[0].joint == STANCE_FREE;
     if (slides(m, f, angle)) {
-        const double *const axis = v->body[b].axis, size = hypot(axis[0], axis[1]);
+        const double *const axis = v->body[b].axis, size = length(axis);
         joint[0] = axis[0] / size, joint[1] = axis[1] / size;
         return;
     }
@@ -233,7 +242,7 @@ static struct slid slid_in(const stance_mechanism *m, const stance_mechanism_num
         if (!slides(m, f, i) || above(m, f, i) != frame)
             continue;
         const double far = goes(m, v, f, i), resists = slide_resists(m, f, l, i);
-        s.inertia += 2 * far * hypot(l->moment[i][0], l->moment[i][1]);
+        s.inertia += 2 * far * length(l->moment[i]);
         s.inertia += far * (l->inertia[i] * far + 2 * stretch);
         stretch += l->inertia[i] * far;
         s.own += l->own_inertia[i];
@@ -529,8 +538,7 @@ static double longest_arm(const stance_tree *tree, const stance_mechanism *m,
         for (int i = j; i < tree->angles; i++)
             if (tree->above[i] == j && tree->path[c][i] >= 0)
                 more += goes(m, v, f, i);
-        longest = fmax(longest, more + hypot(next == STANCE_TREE_OWN ? end[0] : l->joint[next][0],
-                                             next == STANCE_TREE_OWN ? end[1] : l->joint[next][1]));
+        longest = fmax(longest, more + length(next == STANCE_TREE_OWN ? end : l->joint[next]));
     }
     return longest;
 }
@@ -593,7 +601,7 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
     number->gravity[0] = -(g * sine), number->gravity[1] = g * cosine;
     number->mass = l.mass;
     if (tree->base == 1) {
-        const double *const axis = v.body[0].axis, size = hypot(axis[0], axis[1]);
+        const double *const axis = v.body[0].axis, size = length(axis);
         number->rail[0] = (cosine * axis[0] - sine * axis[1]) / size;
         number->rail[1] = (sine * axis[0] + cosine * axis[1]) / size;
         number->mass += v.body[0].armature;

@@ -17,83 +17,7 @@
 
 #include "random_mechanism.h"
 
-#include "engine/tree.h"
-
-enum { CASES = 100, STEPS = 250 };
-
-/* One that has no more contacts than fit. */
-static stance_scene *random_scene(int tree, double slides)
-{
-    static stance_mechanism m;
-    stance_scene *scene = NULL;
-    dice = 1000003u * (uint64_t)tree + 11;
-    do {
-        random_mechanism(&m, whole(1, STANCE_MAX_ANGLES), slides, STANCE_MAX_ELEMENTS);
-        for (int p = 0; p < m.points; p++) {
-            stance_point_numbers *const n = &m.value.point[p];
-            m.point[p].pushed = sometimes(0.5) ? STANCE_FORCE : STANCE_IMPULSE;
-            for (int axis = 0; axis < 2; axis++)
-                n->force[axis] =
-                    m.point[p].pushed == STANCE_FORCE ? between(-100, 100) : between(-3, 3);
-            n->from = between(0, 0.2);
-            n->to = n->from + between(0, 0.1);
-        }
-        for (int e = 0; e < m.elements; e++) /* a sole has a length */
-            m.element[e].sole &= hypot(m.value.element[e].at[0] - m.value.element[e].to[0],
-                                       m.value.element[e].at[1] - m.value.element[e].to[1]) > 0.05;
-    } while (stance_mechanism_scene(&m, &scene, NULL) != STANCE_OK);
-    return scene;
-}
-
-/* Where no stop is passed; a free root just above the ground or on it. What then is below the
- * ground all the same, the root being held, is no contact. */
-static void random_case(const stance_scene *scene, stance_case *c)
-{
-    double gap[STANCE_MAX_CONTACTS], least = INFINITY;
-    bool beyond = true;
-    memset(c, 0, sizeof *c);
-    stance_robot_fallback(scene, c->robot);
-    const double slope = sometimes(0.5) ? 0 : between(-0.3, 0.3);
-    c->robot[STANCE_ROBOT_SLOPE] = slope;
-    while (beyond) {
-        for (int i = 0; i < scene->coordinates; i++) {
-            c->position[i] = between(-2, 2);
-            c->velocity[i] = between(-4, 4);
-        }
-        scene->gaps(scene, c->robot, c->position, gap);
-        beyond = false;
-        for (int k = 0; k < scene->contacts; k++)
-            beyond |= scene->grip[k] < 0 && gap[k] < 0;
-    }
-    for (int k = 0; k < scene->contacts; k++)
-        if (scene->grip[k] >= 0)
-            least = fmin(least, gap[k]);
-    if (scene->mechanism->body[0].joint == STANCE_FREE && isfinite(least)) {
-        c->position[1] += ((sometimes(0.5) ? 1e-13 : between(0, 0.2)) - least) / cos(slope);
-        scene->gaps(scene, c->robot, c->position, gap);
-    }
-    c->contacts = (1u << scene->contacts) - 1;
-    for (int k = 0; k < scene->contacts; k++)
-        for (int end = 0; end < scene->contacts; end++)
-            if (gap[k] < 0 && scene->grip[end] == scene->grip[k] && scene->grip[k] >= 0)
-                c->contacts &= ~(1u << end);
-    c->scene = scene;
-    c->tree = scene->tree;
-    stance_tree_numbers_make(scene->tree, scene->mechanism, c->robot, &c->body);
-    c->friction = between(0, 2);
-    c->sample_every = sometimes(0.8);
-    /* Held torques may feed a light body without end. */
-    c->torque_limit = c->sample_every ? 20 : INFINITY;
-    for (int i = 0; i < scene->actuators; i++)
-        for (int p = 0; p < scene->postures; p++)
-            if (scene->posture[p] == scene->actuated[i]) {
-                c->near.gain[i][p] = between(0, 50);
-                c->near.gain[i][scene->postures + p] = between(0, 5);
-                c->near.target[p] = c->position[scene->actuated[i]];
-            }
-    c->step = exp(between(log(1e-4), log(2e-2)));
-    c->steps = (int64_t)fmin(STEPS, 0.25 / c->step);
-}
+enum { CASES = 100 };
 
 struct tally {
     double penetration, cone, signorini, impact;
@@ -151,7 +75,7 @@ static void hunt(const stance_method *method, int hinged, int sliding)
         stance_scene *const scene =
             tree < hinged ? random_scene(tree, 0) : random_scene(tree - hinged, 0.4);
         for (int k = 0; k < CASES; k++) {
-            random_case(scene, &cases[k]);
+            random_scene_case(scene, &cases[k]);
             cases[k].tolerance = method->tolerance;
         }
         stance_kernel_find(scene, method, NULL)->run(cases, results, CASES);

@@ -89,6 +89,16 @@ check('a click plays the case: identical to the file, courses, command', () =>
     assert(await p.evaluate(`location.hash.includes('case=')`), 'the address names the case');
   }));
 
+check('of two cases the longer one is stepped through', () =>
+  on('map.html', { motion: false, hash: '#case=0&case=840' }, async (p) => {
+    await p.until(`document.querySelectorAll('#case-list .badge').length === 2`);
+    await p.evaluate(`document.querySelector('#scrub').max *= 0.95; document.querySelector('#scrub').value = document.querySelector('#scrub').max; document.querySelector('#scrub').dispatchEvent(new Event('input'))`);
+    const before = parseFloat(await p.text('#clock'));
+    for (let k = 0; k < 3; k++) await p.key('.');
+    assert(parseFloat(await p.text('#clock')) > before, `from ${before} to ${await p.text('#clock')}`);
+    assert(!/undefined/.test(await p.evaluate(`document.querySelector('#case-list').textContent`)), 'answers have their words');
+  }));
+
 check('a case plays by itself, slowly if asked', () =>
   on('map.html', {}, async (p) => {
     await p.until(painted);
@@ -205,6 +215,14 @@ check('live: every case simulated is the file again, answer for answer', () =>
     same(await p.text('#readout'), here, `readout of one of ${h.cases}`);
   }));
 
+check('live: two fields within a moment are two changes', () =>
+  on('map.html', {}, async (p) => {
+    await p.until(fields);
+    await p.set(field('ground.friction'), '0.3');
+    await p.set(field('controller.torque_limit'), '7');
+    await p.until(`location.hash.includes('set=ground.friction=0.3&set=controller.torque_limit=7')`);
+  }));
+
 check('live: a map of what is in sight, stopped and started', () =>
   on('map.html', { hash: '#zoom=5,15,5,15' }, async (p) => {
     await p.until(fields);
@@ -216,6 +234,9 @@ check('live: a map of what is in sight, stopped and started', () =>
     await p.until(`document.querySelector('#progress').dataset.running === 'true'`);
     await p.press('#stop');
     await p.until(computed);
+    assert((await p.text('#progress')).endsWith(': stopped'), await p.text('#progress'));
+    await p.press('#compute');
+    await p.until(`document.querySelector('#progress').dataset.running === 'true'`);
   }));
 
 check('live: what the scenario does not admit is said at its field', () =>
@@ -294,6 +315,20 @@ check('a sample: points over two of its paths, simulated as in the file', () =>
     same(await p.evaluate(`document.querySelector('#map').dataset.computed`), 'true', 'computed');
   }));
 
+check('a file of two scenarios: each case is held against its own', () =>
+  on('scenarios.html', { motion: false, hash: '#case=0' }, async (p) => {
+    await p.until(played);
+    same(await p.evaluate(badges), 'of an earlier scenario of the file', 'badge');
+    await p.evaluate(`location.hash = '#case=' + ${head('scenarios.html').cases - 1}`);
+    await p.until(`${badges} === 'identical to the file'`);
+  }));
+
+check('a file without outcomes differs in none of them', () =>
+  on('bare.html', { hash: '#map=0,all&show=difference' }, async (p) => {
+    await p.until(computed, 120);
+    await p.until(`document.querySelector('#legend').innerText.includes('the file has no outcome')`);
+  }));
+
 check('one case: it plays, and its changes stand beside it', () =>
   on('single.html', { motion: false }, async (p) => {
     await p.until(played);
@@ -302,6 +337,9 @@ check('one case: it plays, and its changes stand beside it', () =>
     await p.set(field('controller.torque_limit'), '5');
     await p.until(`document.querySelectorAll('#case-list .badge').length === 2`);
     same(await p.evaluate(badges), 'parameters changed|identical to the file', 'badges');
+    await p.until(`location.hash.includes('set=')`);
+    await p.call('Page.reload');
+    await p.until(`${badges} === 'parameters changed|identical to the file'`);
   }));
 
 check('a mechanism with springs: identical, forces and no torques', () =>
@@ -352,7 +390,7 @@ check('a damaged page says so', async () => {
 });
 
 check('an address of nonsense shows the map', () =>
-  on('map.html', { hash: '#x=no&y=%ZZ&at=1,2,3,4&zoom=NaN,1,2,3&case=9e99&case=3;[1]&set=&t=-4&map=-3,x&colour=no&tab=none' }, async (p) => {
+  on('map.html', { hash: '#set=sweep.grid[0].count=3&zoom=1e17,1.0000000000000002e17,0,1&x=no&y=%ZZ&at=1,2,3,4&zoom=NaN,1,2,3&case=9e99&case=3;[1]&set=&t=-4&map=-3,x&colour=no&tab=none' }, async (p) => {
     await p.until(painted);
     assert((await p.text('#legend')).includes('stabilised'), 'the map is there');
   }));

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # One hash for each kernel whatever the machine: this processor's instruction sets, an x86-64 without
-# AVX and fused multiply-adds (emulated), and a 64-bit ARM (`make test-neon`: cross-compiled and
-# emulated). What cannot be had is skipped with a notice.
+# AVX and fused multiply-adds (emulated), a 64-bit ARM (`make test-neon`: cross-compiled and
+# emulated), and WebAssembly under node and in a browser (`make test-web`). What cannot be had is skipped with a
+# notice. GOLDEN_CASES of each scene and method; 500 are 24,000 in all.
 set -u
 cd "$(dirname "$0")/.."
-build=${BUILD:-build} neon=build/neon${NEON_CFLAGS:=-O1} cases=10 count=0
+build=${BUILD:-build} neon=build/neon${NEON_CFLAGS:=-O1} cases=${GOLDEN_CASES:-10} count=0
 export NEON_CFLAGS
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 check() { # description, command ...
@@ -57,5 +58,24 @@ else
     check "64-bit ARM runs" sh -c "'$arm' $neon/tests/golden $cases >'$work/arm'"
     check "64-bit ARM: NEON among its sets" grep -q neon "$work/arm"
     check "64-bit ARM: the same" same "$work/here" "$work/arm"
+fi
+web() { # is there all that it takes?
+    command -v node >/dev/null && command -v llvm-ar >/dev/null &&
+        clang --target=wasm32-wasi -x c - -o "$work/probe" <<<'int main(void) { return 0; }' 2>/dev/null
+}
+if ! web; then
+    echo "# skipped: WebAssembly (make test-web installs compiler and node)"
+else
+    check "WebAssembly builds" env -u BUILD make golden-web
+    check "WebAssembly runs" sh -c "node --no-warnings tests/wasi.mjs build/web/tests/golden $cases >'$work/web'"
+    check "WebAssembly: wasm128 alone" only wasm128 "$work/web"
+    check "WebAssembly: all of them" [ "$(awk '$3 == "wasm128"' "$work/web" | wc -l)" = 48 ]
+    check "WebAssembly: the same" same "$work/here" "$work/web"
+    if node -e 'import("./tests/web.mjs").then((web) => process.exit(web.browser ? 0 : 1))'; then
+        check "WebAssembly in a browser runs" sh -c "node --no-warnings tests/wasi.mjs --browser build/web/tests/golden $cases >'$work/browser'"
+        check "WebAssembly in a browser: the same" cmp "$work/web" "$work/browser"
+    else
+        echo "# skipped: a browser (make packages-pages installs one)"
+    fi
 fi
 echo "1..$count"

@@ -97,7 +97,10 @@ static int view(void *context)
                 "fewer points (--set sweep.grid[0].count=...) and look closer in the page, which "
                 "computes what lies between them\n",
                 request->file, (unsigned long long)r.cases, PAGE_MOST_CASES);
-    else
+    else if (r.damage.cases > 0) {
+        fprintf(stderr, "%s: no page is made of a damaged file\n", request->file);
+        code = EXIT_IO;
+    } else
         code = write_page(request, &r);
     results_close(&r);
     return code;
@@ -197,14 +200,49 @@ static bool choose_answers(struct request *request, const char *list,
     return true;
 }
 
+/* Whether two names are of one file. */
+static bool is_same(const char *a, const char *b)
+{
+    struct stat first, second;
+    return stat(a, &first) == 0 && stat(b, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+/* No page is written over a results file, another file's page, or the index. */
+static bool names_differ(struct request *request)
+{
+    char name[MOST_FILES + 1][NAME];
+    snprintf(name[request->count], NAME, "%.1000s/index.html",
+             request->place ? request->place : "");
+    for (size_t i = request->count; i-- > 0;) {
+        request->file = request->files[i];
+        if (!name_page(request))
+            return command_usage(&command_view, "the page's name is too long"), false;
+        memcpy(name[i], request->out, NAME);
+        for (size_t k = 0; k < request->count; k++)
+            if (is_same(request->out, request->files[k])) {
+                fprintf(stderr, "stance view: %s is a results file: give its page another name\n",
+                        request->out);
+                return false;
+            }
+        for (size_t k = i + 1; request->count > 1 && k <= request->count; k++)
+            if (strcmp(name[i], name[k]) == 0) {
+                fprintf(stderr, "stance view: %s: its page would be written over %s%s, %s\n",
+                        request->file, k < request->count ? "that of " : "the index",
+                        k < request->count ? request->files[k] : "", name[k]);
+                return false;
+            }
+    }
+    return true;
+}
+
 /* The page of each file, and the one that leads to them. */
 static int write_pages(struct request *request)
 {
     int code = EXIT_DONE;
     for (size_t i = 0; code == EXIT_DONE && i < request->count; i++) {
         request->file = request->page.file = request->files[i];
-        if (!name_page(request))
-            return command_usage(&command_view, "the page's name is too long");
+        name_page(request);
         code = sandbox(view, request, request->file);
         if (code == EXIT_DONE && request->count == 1)
             printf("%s\n", request->out);
@@ -248,6 +286,8 @@ static int run(int argc, char **argv)
         return command_usage(&command_view, "-o takes a directory, or a name that ends in .html");
     if (request.count > 1 && mkdir(request.place, 0777) != 0 && errno != EEXIST)
         return failed(request.place, "make");
+    if (!names_differ(&request))
+        return EXIT_USAGE;
     const int code = write_pages(&request);
     if (code != EXIT_DONE)
         return code;
@@ -270,7 +310,8 @@ const struct command command_view = {
     "search\n"
     "(stance optimise) the page has its curves.\n"
     "\n"
-    "  -o PLACE       the page's name, which ends in .html, or a directory\n"
+    "  -o PLACE       the page's name, which ends in .html, or a directory; a file of that name is\n"
+    "                 replaced, unless it is one of the results files\n"
     "  --answers A,... the answers that the page carries, for colours and for what the pointer\n"
     "                 shows; `all` of them. Unasked as many as take 24 MB. What is left out the\n"
     "                 page computes where one clicks\n"

@@ -51,6 +51,19 @@ bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, c
     return good;
 }
 
+json_t *page_text(const char *text)
+{
+    json_t *const json = json_string(text);
+    char *const plain = json ? NULL : strdup(text);
+    if (!plain)
+        return json;
+    for (char *c = plain; *c; c++)
+        *c = (unsigned char)*c < 0x80 ? *c : '?';
+    json_t *const found = json_string(plain);
+    free(plain);
+    return found;
+}
+
 static int put_escaped(const char *text, size_t size, void *out)
 {
     for (size_t i = 0; i < size; i++) {

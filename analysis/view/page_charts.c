@@ -1,6 +1,8 @@
 /* page_charts.c - what of a file is better read off curves than off a map. */
 #include "page_charts.h"
+#include "page_data.h"
 
+#include "analysis/basin/basin.h"
 #include "analysis/bench/accuracy.h"
 #include "analysis/optimise/search_study.h"
 #include "analysis/sensitivity/sensitivity_study.h"
@@ -54,8 +56,8 @@ static void curve_end(json_t *series, const struct curve *c, const char *name, b
 
 static json_t *chart(const char *title, const char *text, json_t *x, json_t *y, json_t *series)
 {
-    return json_pack("{s:s,s:s,s:o,s:o,s:o}", "title", title, "text", text, "x", x, "y", y,
-                     "series", series);
+    return json_pack("{s:o,s:o,s:o,s:o,s:o}", "title", page_text(title), "text", page_text(text),
+                     "x", x, "y", y, "series", series);
 }
 
 /* ---- shares along an axis ----------------------------------------------------------------- */
@@ -70,7 +72,7 @@ static json_t *words_of(const struct results_axis *a)
 {
     json_t *const list = a->word ? json_array() : NULL;
     for (size_t i = 0; list && i < a->count; i++)
-        json_array_append_new(list, json_string(a->word[i]));
+        json_array_append_new(list, page_text(a->word[i]));
     return list;
 }
 
@@ -102,6 +104,47 @@ static bool put_shares(json_t *charts, const struct results *r, int k, stance_me
     return true;
 }
 
+/* ---- basins ------------------------------------------------------------------------------- */
+
+/* How much of the box of starts a basin fills at each value of an axis, with likely errors. Files
+ * that have no starts have no basin, which is no fault. */
+static void put_basin(json_t *charts, const struct results *r, int k)
+{
+    const struct results_axis *const a = &r->axis[k];
+    const char *const by[] = {a->name};
+    const struct basin_choice choice = {
+        .of = statistics_judged(r), .by = by, .by_count = 1, .side = 5, .level = 0.95};
+    struct basin_sample sample;
+    struct basin basin;
+    stance_message ignored;
+    bool usage;
+    char title[200];
+    if (!basin_sample_make(&sample, r, &ignored) ||
+        !basin_make(&basin, r, &choice, &sample, &usage, &ignored))
+        return;
+    if (basin.by_axes == 1 && basin.start_axes > 0) {
+        json_t *const series = json_array();
+        struct curve c = curve_begin();
+        for (size_t i = 0; i < basin.rows; i++) {
+            const struct basin_row *const row = &basin.row[i];
+            const double scale = 100 / basin.box;
+            curve_add(&c, a->value[row->point[k]], scale * row->volume,
+                      (struct interval){fmax(0, scale * (row->volume - row->reach)),
+                                        fmin(100, scale * (row->volume + row->reach))});
+        }
+        curve_end(series, &c, "basin, with its likely error (95 %)", true);
+        snprintf(title, sizeof title, "Basin of what is %s along %.120s",
+                 results_kind_names[choice.of], a->name);
+        json_array_append_new(charts,
+                              chart(title,
+                                    "Volume of the starts from which cases end so, of the "
+                                    "box of starts; stance basin has more",
+                                    axis(a->name, a->unit, false, words_of(a)),
+                                    axis("share of the box of starts", "%", false, NULL), series));
+    }
+    basin_free(&basin);
+}
+
 /* ---- sensitivity -------------------------------------------------------------------------- */
 
 static json_t *factor_names(const struct sensitivity_study *study)
@@ -110,7 +153,7 @@ static json_t *factor_names(const struct sensitivity_study *study)
     for (size_t i = 0; i < study->factors; i++) {
         char text[160];
         sensitivity_factor_text(study, study->order[i], text, sizeof text);
-        json_array_append_new(list, json_string(text));
+        json_array_append_new(list, page_text(text));
     }
     return list;
 }
@@ -173,14 +216,14 @@ static double error_of(const struct accuracy *a, const struct accuracy_row *row)
     return row->compared == 0 ? NAN : a->labels ? fmax(error, 1 / (double)row->compared) : error;
 }
 
-/* Files that are no study of accuracy have none of it, which is no fault. */
-static void put_accuracy(json_t *charts, const struct results *r)
+/* Files that are no study of accuracy have none of it, which is no fault: false then. */
+static bool put_accuracy(json_t *charts, const struct results *r)
 {
     struct accuracy a;
     stance_message ignored;
     if (r->axes == 0 || strcmp(r->axis[0].name, "method.name") != 0 ||
         !accuracy_make(&a, r, COST_SECONDS, &ignored))
-        return;
+        return false;
     json_t *const series = json_array();
     for (const stance_method *const *m = stance_methods(); *m; m++) {
         struct curve c = curve_begin();
@@ -204,6 +247,7 @@ static void put_accuracy(json_t *charts, const struct results *r)
                    a.labels ? "" : "m, rad", true, NULL),
               series));
     accuracy_free(&a);
+    return true;
 }
 
 json_t *page_charts(const struct results *r, stance_message *message)
@@ -212,12 +256,14 @@ json_t *page_charts(const struct results *r, stance_message *message)
     bool good = true;
     if (r->single)
         return charts;
-    put_accuracy(charts, r);
+    const bool methods = put_accuracy(charts, r); /* along its first axis */
     if (sensitivity_study_fits(r))
         good = put_sensitivity(charts, r, message);
-    for (int a = 0; good && a < r->axes; a++)
-        if (a != r->sample && r->axis[a].count > 1 && !is_start(&r->axis[a]))
+    for (int a = methods; good && a < r->axes; a++)
+        if (a != r->sample && r->axis[a].count > 1 && !is_start(&r->axis[a])) {
+            put_basin(charts, r, a);
             good = put_shares(charts, r, a, message);
+        }
     if (good)
         return charts;
     json_decref(charts);
@@ -256,7 +302,7 @@ static void put_confirmed(json_t *charts, const struct search_study *study, doub
         char name[80];
         const struct interval own = search_interval(study, k, SEARCH_OVERALL);
         search_name(study, k, name, sizeof name);
-        json_array_append_new(names, json_string(name));
+        json_array_append_new(names, page_text(name));
         curve_add(&fresh, (double)k, 100 * search_share(study, k, SEARCH_OVERALL),
                   (struct interval){100 * own.low, 100 * own.high});
         curve_add(&training, (double)k, scale * f->confirmed_training[k], no_interval);

@@ -6,6 +6,7 @@
 #include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
 #include "runner/plan/plan.h"
+#include "runner/store/ancestry.h"
 #include "runner/store/build_info.h"
 #include "runner/store/results_rows.h"
 
@@ -34,11 +35,6 @@ const char *const page_kind_colour[RESULTS_KIND_COUNT] = {
     [RESULTS_PENDING] = "#e4e4e4",
 };
 
-static json_t *text_of(const char *text)
-{
-    return json_stringn_nocheck(text, strlen(text));
-}
-
 /* NaN and infinities: null. */
 static json_t *number_of(double x)
 {
@@ -58,7 +54,7 @@ static json_t *words_of(char **word, size_t count)
 {
     json_t *const list = json_array();
     for (size_t i = 0; i < count; i++)
-        json_array_append_new(list, text_of(word[i]));
+        json_array_append_new(list, page_text(word[i]));
     return list;
 }
 
@@ -72,8 +68,8 @@ static json_t *values_of(const double *value, size_t count)
 
 static json_t *axis_of(const struct results_axis *axis)
 {
-    return json_pack("{s:o,s:o,s:o,s:I,s:b,s:o,s:o}", "path", text_of(axis->name), "unit",
-                     text_of(axis->unit), "text", text_of(axis->text), "count",
+    return json_pack("{s:o,s:o,s:o,s:I,s:b,s:o,s:o}", "path", page_text(axis->name), "unit",
+                     page_text(axis->unit), "text", page_text(axis->text), "count",
                      (json_int_t)axis->count, "offset", axis->offset, "words",
                      axis->word ? words_of(axis->word, axis->count) : json_null(), "values",
                      values_of(axis->value, axis->count));
@@ -85,11 +81,11 @@ static json_t *varied_of(const struct results_varied *v)
     if (v->word) {
         words = json_array();
         for (int i = 0; i < v->words; i++)
-            json_array_append_new(words, text_of(v->word[i]));
+            json_array_append_new(words, page_text(v->word[i]));
     }
-    return json_pack("{s:o,s:o,s:o,s:i,s:o,s:o}", "path", text_of(v->of.name), "unit",
-                     text_of(v->of.unit), "text", text_of(v->of.text), "factor", v->factor, "words",
-                     words, "values", values_of(v->of.value, v->of.count));
+    return json_pack("{s:o,s:o,s:o,s:i,s:o,s:o}", "path", page_text(v->of.name), "unit",
+                     page_text(v->of.unit), "text", page_text(v->of.text), "factor", v->factor,
+                     "words", words, "values", values_of(v->of.value, v->of.count));
 }
 
 static void put_axes(struct page *p)
@@ -157,7 +153,7 @@ static bool put_engine(struct page *p)
     char *const wire = page_wire(p->r->scenario);
     const bool known = wire && (p->r->single ? results_scenario(p->r, &p->scenario)
                                              : results_swept(p->r, &p->scenario, p->message));
-    json_object_set_new(p->head, "wire", known ? text_of(wire) : json_null());
+    json_object_set_new(p->head, "wire", known ? page_text(wire) : json_null());
     free(wire);
     if (!known)
         return true;
@@ -215,7 +211,7 @@ static json_t *answer_words(const struct page *p, int answer)
     const int words = stance_answer_words(p->scenario.scene, answer, word);
     json_t *const list = words ? json_array() : json_null();
     for (int i = 0; i < words; i++)
-        json_array_append_new(list, text_of(word[i]));
+        json_array_append_new(list, page_text(word[i]));
     return list;
 }
 
@@ -257,9 +253,33 @@ static bool put_answer(struct page *p, int answer, json_t *list)
                                           : a->type == STANCE_DOUBLE ? "number"
                                                                      : "count",
                                           "words", words, "block",
-                                          carried ? text_of(name) : json_null()));
+                                          carried ? page_text(name) : json_null()));
     if (!carried)
-        json_array_append_new(p->left_out, text_of(a->name));
+        json_array_append_new(p->left_out, page_text(a->name));
+    return good;
+}
+
+/* Where a run went on with another scenario: which one each case is of. */
+static bool put_scenario_numbers(struct page *p)
+{
+    const size_t cases = (size_t)p->r->cases;
+    struct ancestry ancestry;
+    double *value = NULL;
+    if (!ancestry_read(p->r, &ancestry, p->message))
+        return false;
+    const int last = (int)ancestry.scenarios - 1;
+    json_object_set_new(p->head, "number", json_integer(last > 0 ? last : -1));
+    if (last <= 0)
+        return true;
+    if (!results_answer(p->r, "scenario_number", &value, p->message))
+        return false;
+    uint8_t *const number = malloc(cases);
+    for (size_t i = 0; number && i < cases; i++)
+        number[i] = isnan(value[i]) ? (uint8_t)last : (uint8_t)value[i];
+    free(value);
+    const bool good =
+        number ? put_block(p, "number", "u8", number, 1, cases) : no_memory(p->message);
+    free(number);
     return good;
 }
 
@@ -272,7 +292,7 @@ static bool put_cases(struct page *p)
         return false;
     bool good = put_block(p, "kind", "u8", p->r->kind, 1, cases) &&
                 (!inferred || put_block(p, "inferred", "u8", inferred, 1, cases)) &&
-                put_checksums(p);
+                put_checksums(p) && put_scenario_numbers(p);
     free(inferred);
     json_t *const list = json_array();
     for (int a = 0; good && a < STANCE_ANSWER_COUNT; a++)
@@ -299,15 +319,15 @@ static bool put_provenance(struct page *p)
         free(recorded);
     json_t *const head = p->head;
     json_object_set_new(head, "format", json_integer(1));
-    json_object_set_new(head, "program", text_of(STANCE_VERSION));
-    json_object_set_new(head, "revision", text_of(build_revision()));
-    json_object_set_new(head, "file_program", text_of(r->version));
-    json_object_set_new(head, "file_revision", text_of(r->revision));
-    json_object_set_new(head, "file", text_of(r->name));
-    json_object_set_new(head, "command_file", text_of(p->request->file));
-    json_object_set_new(head, "title", text_of(r->title));
-    json_object_set_new(head, "date", text_of(r->date));
-    json_object_set_new(head, "scenario", text_of(r->scenario));
+    json_object_set_new(head, "program", page_text(STANCE_VERSION));
+    json_object_set_new(head, "revision", page_text(build_revision()));
+    json_object_set_new(head, "file_program", page_text(r->version));
+    json_object_set_new(head, "file_revision", page_text(r->revision));
+    json_object_set_new(head, "file", page_text(r->name));
+    json_object_set_new(head, "command_file", page_text(p->request->file));
+    json_object_set_new(head, "title", page_text(r->title));
+    json_object_set_new(head, "date", page_text(r->date));
+    json_object_set_new(head, "scenario", page_text(r->scenario));
     json_object_set_new(head, "cases", json_integer((json_int_t)r->cases));
     json_object_set_new(head, "single", json_boolean(r->single));
     json_object_set_new(head, "index", json_integer((json_int_t)r->index));
@@ -349,8 +369,8 @@ bool page_search_write(FILE *out, const char *file, stance_message *message)
         return false;
     json_t *const head =
         json_pack("{s:i,s:s,s:s,s:o,s:o,s:i,s:o}", "format", 1, "program", STANCE_VERSION,
-                  "revision", build_revision(), "title", text_of(title), "file",
-                  text_of(slash ? slash + 1 : file), "cases", 0, "charts", charts);
+                  "revision", build_revision(), "title", page_text(title), "file",
+                  page_text(slash ? slash + 1 : file), "cases", 0, "charts", charts);
     page_json(out, "head", head);
     json_decref(head);
     return true;

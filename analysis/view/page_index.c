@@ -10,6 +10,7 @@
 
 #include "analysis/optimise/search_study.h"
 
+#include <ctype.h>
 #include <string.h>
 
 enum { CELLS = 72 };
@@ -22,6 +23,15 @@ static void put_text(FILE *out, const char *text)
             fprintf(out, "&#%d;", *text);
         else
             fputc(*text, out);
+}
+
+/* The name of a file as a relative address (RFC 3986): nothing in it is a scheme, a query or a
+ * part. */
+static void put_address(FILE *out, const char *name)
+{
+    for (; *name; name++)
+        fprintf(out, isalnum((unsigned char)*name) || strchr("-._~", *name) ? "%c" : "%%%02X",
+                (unsigned char)*name);
 }
 
 /* ---- the small map ------------------------------------------------------------------------ */
@@ -121,7 +131,7 @@ void page_index_begin(FILE *out)
 static void put_head(FILE *out, const char *page)
 {
     fputs("<li><a href=\"", out);
-    put_text(out, page);
+    put_address(out, page);
     fputs("\">", out);
 }
 

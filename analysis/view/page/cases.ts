@@ -181,13 +181,14 @@ export class Cases {
     const kind = (await data.block('kind'))[row];
     if (head.kinds[kind].name === 'pending') return [{ text: 'not in the file yet', good: null }];
     if (data.has('inferred') && (await data.block('inferred'))[row]) return [{ text: 'not simulated in the file (inferred)', good: null }];
+    if (data.has('number') && (await data.block('number'))[row] !== head.number) return [{ text: 'of an earlier scenario of the file', good: null }];
     if (head.checksums && (await data.block('checksum'))[row] === run.text.checksum >>> 0) return [{ text: 'identical to the file', good: true }];
     const differ: string[] = [];
     if (kind !== run.text.kind) differ.push(`outcome (file ${head.kinds[kind].name}, here ${head.kinds[run.text.kind]?.name})`);
     const columns = (await this.pool)!.columns;
     for (const a of head.answers) {
       const k = columns.findIndex((c) => c.name === a.name);
-      if (!a.block || k < 0) continue;
+      if (!a.block || k < 0 || a.name === 'outcome') continue;
       const there = (await data.block(a.block))[row];
       const here = run.text.answers[k] ?? NaN;
       const same = a.type === 'code' ? there === here : Object.is(Math.fround(here), there) || (Number.isNaN(here) && Number.isNaN(there)) || Math.fround(here) === there;

@@ -8,6 +8,7 @@ export interface Progress {
   simulated: number;
   asked: number; // cases that are to be simulated, as far as is known
   seconds: number;
+  stopped?: boolean;
 }
 
 const batch_seconds = 0.05; // that a worker is busy with one batch
@@ -61,7 +62,8 @@ export async function compute(pool: Pool, layer: Computed, all: boolean, signal:
   if (all || !layer.grid) await simulate(coarseFirst(layer));
   else {
     await pool.refine(layer.view, 'refineBegin', [refine_start, refine_margin(layer)]);
-    for (;;) {
+    // What another map has begun to refine is not asked for.
+    while (!signal.aborted) {
       const wanted = await pool.refine<Float64Array>(null, 'refineAsk', [layer.count]);
       if (wanted.length === 0 || signal.aborted) break;
       await simulate([...wanted].map(layer.of));

@@ -38,7 +38,7 @@ function unshuffle(bytes: Uint8Array, size: number): ArrayBuffer {
 // What a page of charts alone has not.
 const absent: Partial<Head> = {
   file_program: '', file_revision: '', date: '', scenario: '', wire: null, command_file: '', cases: 0, single: false, index: 0, axes: [], sample: -1,
-  varied: [], designs: { count: 0, numbers: 0 }, kinds: [], answers: [], checksums: false, left_out: [], stored: 0, blocks: {}, recorded: [],
+  varied: [], designs: { count: 0, numbers: 0 }, kinds: [], answers: [], checksums: false, left_out: [], stored: 0, number: -1, blocks: {}, recorded: [],
 };
 
 export interface Axis extends FileAxis {

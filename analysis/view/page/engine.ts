@@ -11,6 +11,7 @@ export interface FileParts {
   axes: Float64Array[]; // exact values, count times paths
   designs: { count: number; numbers: Float64Array; status: Uint8Array } | null;
   stored: number; // which answers the checksum covers
+  number: number; // and the scenario's number, -1: not that
 }
 
 export interface Results {
@@ -69,7 +70,7 @@ export class Engine {
     file.axes.forEach((values, k) => this.lend([values], ([p]) => this.must(this.e.file_axis(k, p, values.length))));
     const { designs } = file;
     if (designs) this.lend([designs.numbers, designs.status], ([numbers, status]) => this.must(this.e.file_designs(numbers, status, designs.count)));
-    this.e.file_stored(file.stored, -1);
+    this.e.file_stored(file.stored, file.number);
     this.columns = JSON.parse(this.text(this.e.answers_text())) as Answer[];
   }
 

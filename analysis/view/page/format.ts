@@ -86,6 +86,7 @@ export interface Head {
   checksums: boolean;
   left_out: string[];
   stored: number;
+  number: number; // of the scenario, where the file was made from several: block 'number' has each case's; else -1
   blocks: Record<string, { type: BlockType; count: number }>;
   recorded: number[];
   charts?: Chart[];

@@ -6,6 +6,7 @@ import type { View } from './state';
 
 export const unknown = 255; // kind of a case that is not there yet
 export const pending = 6; // of one that the file has not
+const done = 4; // of one that has no outcome, or whose file has not kept it
 
 export type Get = (n: number) => number;
 
@@ -128,7 +129,7 @@ export function differences(file: Layer, now: Layer): { of: Uint8Array; counts: 
     }
     const from = file.kinds[m];
     const to = now.kinds[n];
-    if (from === unknown || to === unknown || from === pending || to === pending) continue;
+    if (from === unknown || to === unknown || from === pending || to === pending || (from === done && to < done)) continue;
     compared++;
     if (from === to) continue;
     of[n] = from * 16 + to;

@@ -31,6 +31,8 @@ export class Live {
   private text: ViewText | null = null;
   private rows = new Map<string, { row: HTMLElement; set: (value: string) => void; error: HTMLElement }>();
   private last = ''; // path that was changed last
+  private pending = new Map<string, () => void>(); // changes that do not count yet, by their paths
+  private next: View = []; // with those of them that are taken
   private timer = 0;
   private turn = 0;
   private readonly search = el('input', { type: 'text', id: 'search', placeholder: 'search, as in friction or mass', 'aria-label': 'Search parameters', oninput: () => this.filter() });
@@ -134,13 +136,21 @@ export class Live {
     this.store.set({ changes, map, show: state.show === 'file' ? 'now' : state.show });
   }
 
+  // Why the map cannot be computed, unless it stands at a field already.
+  refused(problem: unknown): void {
+    const message = (problem as Error).message;
+    if ([...this.rows.values()].some((r) => r.error.textContent === message)) return;
+    this.problem.textContent = message;
+    this.problem.hidden = false;
+  }
+
   // A field has another value; the file's own value takes the change back.
   private change(field: Field, value: string): void {
     this.last = field.path;
     clearTimeout(this.timer);
-    this.timer = window.setTimeout(() => {
+    this.pending.set(field.path, () => {
       const model = this.designModel(field.path);
-      let changes = this.store.state.changes.filter((c) => pathOf(c) !== field.path);
+      let changes = this.next.filter((c) => pathOf(c) !== field.path);
       const back = value.trim() === '' || value === this.fileText(field.path);
       if (back && model) changes = changes.filter((c) => pathOf(c) !== model);
       if (!back) {
@@ -148,7 +158,13 @@ export class Live {
         changes.push(`${field.path}=${value}`);
         if (this.captures && !changes.some((c) => pathOf(c) === 'stop.capture')) changes.push(capture_off);
       } else if (changes.length === 1 && changes[0] === capture_off) changes = [];
-      this.set(changes);
+      this.next = changes;
+    });
+    this.timer = window.setTimeout(() => {
+      this.next = this.store.state.changes;
+      for (const take of this.pending.values()) take();
+      this.pending.clear();
+      this.set(this.next);
     }, pause);
   }
 
@@ -175,7 +191,7 @@ export class Live {
       return;
     }
     this.bar.value = p.asked ? p.simulated / p.asked : 0;
-    this.told.textContent = `${p.simulated} of ${p.asked} cases simulated, ${p.seconds.toFixed(1)} s${running ? '' : ': done'}`;
+    this.told.textContent = `${p.simulated} of ${p.asked} cases simulated, ${p.seconds.toFixed(1)} s${running ? '' : p.stopped ? ': stopped' : ': done'}`;
     this.told.dataset.running = String(running);
   }
 

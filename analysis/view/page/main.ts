@@ -8,8 +8,8 @@ import { Live } from './live';
 import { MapPart } from './map_part';
 import { aboutPage, scenarioPage } from './pages';
 import { lacking, Pool } from './pool';
-import { scalesOf } from './scales';
-import { Store, type State } from './state';
+import { leastWidth, scalesOf } from './scales';
+import { sameCase, Store, type State } from './state';
 
 // What is seen at first: axes of offsets, else factors of the sample, else the last two axes.
 function initialState(data: Data): State {
@@ -34,8 +34,14 @@ function valid(data: Data, initial: State, s: State): State {
   const y = s.y === '' || (known(s.y) && s.y !== x) ? s.y : initial.y === x ? (scales.find((k) => k.path !== x)?.path ?? '') : initial.y;
   const at = s.at.map((p, k) => Math.max(0, Math.min(data.axes[k].count - 1, p)));
   const carried = s.colour === 'outcome' || data.head.answers.some((a) => a.name === s.colour && a.block);
-  const zoom = s.zoom && s.zoom[1] > s.zoom[0] && s.zoom[3] >= s.zoom[2] ? s.zoom : null;
-  const cases = data.head.cases === 1 && s.cases.length === 0 ? [{ index: data.head.index, view: [] }] : s.cases;
+  const within = (path: string, from: number, to: number): boolean => {
+    const scale = scales.find((k) => k.path === path);
+    const some = scale ? 1e-3 * (scale.to - scale.from) : 0; // an address rounds
+    return !scale || (from >= scale.from - some && to <= scale.to + some && to - from > 0.5 * leastWidth(scale));
+  };
+  const zoom = s.zoom && within(x, s.zoom[0], s.zoom[1]) && within(y, s.zoom[2], s.zoom[3]) ? s.zoom : null;
+  const own = { index: data.head.index, view: [] };
+  const cases = data.head.cases === 1 && !s.cases.some((c) => sameCase(c, own)) ? [...s.cases, own] : s.cases;
   return { ...s, x, y, at, zoom, cases, colour: carried ? s.colour : 'outcome' };
 }
 
@@ -104,7 +110,7 @@ function cases(data: Data, store: Store, parts: (() => void)[]): void {
   const painted = new Promise<void>((resolve) => (first = resolve));
   // The engine waits until the map is on the screen.
   const pool = lack ? Promise.resolve(null) : painted.then(() => Pool.make(data)).catch((problem: unknown) => (complain(problem), null));
-  const map = new MapPart(data, store, pool, (p, running) => live?.progress(p, running));
+  const map = new MapPart(data, store, pool, (p, running) => live?.progress(p, running), (problem) => live?.refused(problem));
   const single = map.scales.length === 0;
   document.querySelector('main')!.classList.toggle('single', single);
   const play = new Cases(byId('case-part'), data, pool, store, (ref) => map.where(ref));

@@ -3,7 +3,7 @@
 import { context, eachFrame, style } from './dom';
 import { unknown, type Layer } from './layers';
 import type { Colouring } from './paint';
-import { numberScale, type Scale, type Tic } from './scales';
+import { leastWidth, numberScale, type Scale, type Tic } from './scales';
 
 export interface Shown {
   layer: Layer;
@@ -138,9 +138,8 @@ export class MapView {
       const start = Math.max(from, Math.min(low + (high - low - size) / 2, to - size));
       return [start, start + size];
     };
-    const least = (s: Scale): number => (s.varied < 0 ? 1e-3 : (s.to - s.from) * 1e-6);
-    const across = clip(window[0], window[1], this.x.from, this.x.to, least(this.x));
-    const up = this.y ? clip(window[2], window[3], this.y.from, this.y.to, least(this.y)) : [0, 0];
+    const across = clip(window[0], window[1], this.x.from, this.x.to, leastWidth(this.x));
+    const up = this.y ? clip(window[2], window[3], this.y.from, this.y.to, leastWidth(this.y)) : [0, 0];
     const whole = across[0] === this.x.from && across[1] === this.x.to && (!this.y || (up[0] === this.y.from && up[1] === this.y.to));
     this.events.zoom(whole ? null : [...across, ...up]);
   }

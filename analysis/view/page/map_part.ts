@@ -11,7 +11,7 @@ import { fileName } from './pages';
 import type { Pool } from './pool';
 import { requestLayer } from './request';
 import { scalesOf, type Scale } from './scales';
-import { sameView, type CaseRef, type State, type Store } from './state';
+import { sameView, type CaseRef, type MapRequest, type State, type Store } from './state';
 import { shellWord } from './wire';
 
 export class MapPart {
@@ -22,6 +22,7 @@ export class MapPart {
   private shown: Shown[] = [];
   private abort: AbortController | null = null;
   private job = ''; // what the computed layer is of
+  private halted: MapRequest | null = null; // the request that was stopped: a like one begins anew
   private turn = 0;
   private hovered = 0;
   private repaint = 0;
@@ -31,6 +32,7 @@ export class MapPart {
     private readonly store: Store,
     private readonly pool: Promise<Pool | null>,
     private readonly progress: (p: Progress | null, running: boolean) => void,
+    private readonly failed: (problem: unknown) => void,
   ) {
     this.scales = scalesOf(data);
     this.view = new MapView(byId('map') as HTMLCanvasElement, {
@@ -74,23 +76,23 @@ export class MapPart {
   // Starts or stops computing, as the state has it.
   private prepare(now: State, x: Scale, y: Scale | null): void {
     const job = now.map ? JSON.stringify([now.map, now.changes, now.x, now.y, now.at]) : '';
-    if (job === this.job) return;
+    if (job === this.job && (!this.halted || this.halted === now.map)) return;
     this.job = job;
+    this.halted = null;
     this.abort?.abort();
-    this.abort = null;
+    const abort = (this.abort = new AbortController());
     this.computed = null;
     if (!now.map) this.progress(null, false);
-    else void this.run(now, x, y).catch((problem: unknown) => {
+    else void this.run(now, x, y, abort).catch((problem: unknown) => {
+      if (abort.signal.aborted) return;
       this.progress(null, false);
-      // What the reader refuses stands at its field.
-      if (this.job === job && !now.changes.length) complain(problem);
+      this.failed(problem);
     });
   }
 
-  private async run(now: State, x: Scale, y: Scale | null): Promise<void> {
+  private async run(now: State, x: Scale, y: Scale | null, abort: AbortController): Promise<void> {
     const pool = await this.pool;
     if (!pool) return;
-    const abort = (this.abort = new AbortController());
     const base = await pool.ask<ViewText>([], 'describe', [], true);
     const layer = await requestLayer(this.data, base, pool.columns, this.file!, x, y, now.at, now.changes, now.map!);
     await pool.ask<ViewText>(layer.view, 'describe', [], true); // complains before anything is painted
@@ -109,10 +111,11 @@ export class MapPart {
     // A grid that is the whole sweep can be refined.
     const whole = layer.grid !== null && layer.view.some((s) => s.startsWith('sweep=')) || layer.count === this.data.head.cases;
     await compute(pool, layer, now.map!.all || !whole, abort.signal, (p) => told((last = p), true));
-    told(last, false);
+    told({ ...last, stopped: abort.signal.aborted }, false);
   }
 
   stop(): void {
+    this.halted = this.store.state.map;
     this.abort?.abort();
   }
 
@@ -120,7 +123,7 @@ export class MapPart {
     const { computed, data } = this;
     if (!computed) return null;
     const sets = computed.view.map((s) => ` --set ${shellWord(s)}`).join('');
-    return el('div', {}, command(`stance run ${fileName(data)}${sets} -o anew.h5`), el('p', { class: 'muted' }, `${fileName(data)}: the scenario, which the tab Scenario saves`));
+    return el('div', {}, command(`stance run ${shellWord(fileName(data))}${sets} -o anew.h5`), el('p', { class: 'muted' }, `${fileName(data)}: the scenario, which the tab Scenario saves`));
   }
 
   private async paint(turn: number, x: Scale, y: Scale | null): Promise<void> {

@@ -89,7 +89,7 @@ export function differenceColouring(data: Data, file: Layer, now: Layer): Colour
   entries.push({ name: 'as in the file', colour: same, count: found.compared - differ });
   return {
     title: 'from the file to here', pixels: (n) => (now.kinds[n] === unknown ? 0 : table[found.of[n]]), entries, of: found.compared, bar: null,
-    number: null, note: JSON.stringify(file.grid) === JSON.stringify(now.grid) ? '' : 'each case against the nearest one of the file',
+    number: null, note: found.compared === 0 ? 'the file has no outcome of these cases' : JSON.stringify(file.grid) === JSON.stringify(now.grid) ? '' : 'each case against the nearest one of the file',
   };
 }
 

@@ -120,7 +120,9 @@ export class Player {
 
   step(by: number): void {
     if (this.playing) this.play(false);
-    const rows = this.cases[0]?.rows;
+    // Of the case that lasts longest.
+    const end = this.end();
+    const rows = this.cases.find((c) => c.rows.time[c.rows.time.length - 1] === end)?.rows;
     if (rows) this.go(rows.time[Math.max(0, Math.min(rows.time.length - 1, rowAt(rows, this.time) + by))]);
   }
 
@@ -134,7 +136,7 @@ export class Player {
 
   // ---- geometry ----
   // Frames in which the ground is level and gravity leans are turned so that gravity points down.
-  private lean = (c: PlayedCase): number => (c.text.slope === 0 && c.scene.scene !== 'mechanism' ? Number(c.values['ground.slope'] ?? 0) : 0);
+  private lean = (c: PlayedCase): number => (c.text.slope === 0 && c.scene.scene !== 'mechanism' ? Number(c.values['robot.slope'] ?? 0) : 0);
   private fall = (c: PlayedCase): number => c.text.slope + this.lean(c);
   private turned(c: PlayedCase, x: number, z: number): [number, number] {
     const a = this.lean(c);

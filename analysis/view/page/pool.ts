@@ -76,6 +76,7 @@ export class Pool {
       axes: await Promise.all(head.axes.map((_, k) => doubles(`axis-${k}`))),
       designs: data.has('designs') ? { count: head.designs.count, numbers: await doubles('designs'), status: (await data.block('design-status')) as Uint8Array } : null,
       stored: head.stored,
+      number: head.number,
     };
     const module = await WebAssembly.compile(bytes);
     const source = URL.createObjectURL(new Blob([WORKER], { type: 'text/javascript' }));

@@ -2,11 +2,12 @@
 import type { Data } from './data';
 import type { Answer, ViewText } from './format';
 import { Computed, gridPlaces, type Get, type Layer } from './layers';
-import { valueAt } from './numbers';
+import { spacing, valueAt } from './numbers';
 import type { Scale } from './scales';
 import { capture_off, type MapRequest, type View } from './state';
 
-const yamlWord = (word: string): string => (/^[\w.-]+$/.test(word) ? word : JSON.stringify(word));
+// A word in a list or mapping on one line; brackets, commas and the like stand in quotes.
+const yamlWord = (word: string): string => (/^[\w.-]+$/.test(word) ? word : `'${word.replace(/'/g, "''")}'`);
 
 interface Edge {
   yaml: string; // of the sweep's grid
@@ -25,19 +26,22 @@ async function edgeOf(data: Data, base: ViewText, scale: Scale, cells: number, f
   const axis = data.axes[scale.axis];
   const { paths } = base.axes[scale.axis];
   const at = await exact(data, scale.axis, paths.length);
-  const names = paths.length > 1 ? `paths: [${paths.join(', ')}]` : `path: ${paths[0]}`;
+  const names = paths.length > 1 ? `paths: [${paths.map(yamlWord).join(', ')}]` : `path: ${yamlWord(paths[0])}`;
   const listed = (numbers: (number | string)[]): string => (paths.length > 1 ? `[${numbers.join(', ')}]` : String(numbers[0]));
-  if (axis.spacing === 'list') {
+  const values = (j: number): Float64Array => Float64Array.from({ length: axis.count }, (_, i) => at(i, j));
+  // Only the values that the file has: words, uneven ones, and those for which it holds designs.
+  const designed = base.designed && paths.some((p) => base.fields.find((f) => f.path === p)?.design);
+  if (designed || paths.some((_, j) => spacing(values(j), axis.words !== null) !== axis.spacing) || axis.spacing === 'list') {
     const first = Math.max(0, Math.round(from));
     const last = Math.min(axis.count - 1, Math.round(to));
-    const values = Array.from({ length: last - first + 1 }, (_, i) =>
+    const listing = Array.from({ length: last - first + 1 }, (_, i) =>
       listed(paths.map((_, j) => (axis.words && paths.length === 1 ? yamlWord(axis.words[axis.values[first + i]]) : at(first + i, j)))));
-    return { yaml: `{${names}, values: [${values.join(', ')}]}`, count: values.length, from: first, to: last };
+    return { yaml: `{${names}, values: [${listing.join(', ')}]}`, count: listing.length, from: first, to: last };
   }
   const end = (p: number): string =>
-    listed(paths.map((_, j) => valueAt(Float64Array.from({ length: axis.count }, (_, i) => at(i, j)), axis.spacing, p)));
-  const spacing = axis.spacing === 'log' ? ', spacing: log' : '';
-  return { yaml: `{${names}, from: ${end(from)}, to: ${end(to)}, count: ${cells}${spacing}}`, count: cells, from, to };
+    listed(paths.map((_, j) => valueAt(values(j), axis.spacing, p)));
+  const ratios = axis.spacing === 'log' ? ', spacing: log' : '';
+  return { yaml: `{${names}, from: ${end(from)}, to: ${end(to)}, count: ${cells}${ratios}}`, count: cells, from, to };
 }
 
 // Values of the axes that the map does not show, as settings.
@@ -73,5 +77,6 @@ export async function requestLayer(
   const index: Get = (n) => (n % nx) * ny + Math.floor(n / nx);
   const of: Get = (i) => (i < nx * ny ? (i % ny) * nx + Math.floor(i / ny) : -1);
   const capture = base.capture && !changes.includes(capture_off) ? [capture_off] : [];
-  return new Computed([...changes, ...capture, ...others, sweep], nx * ny, columns, grid, index, of, gridPlaces(grid));
+  const record = data.head.wire!.includes('5:cases') ? ['record.cases=none'] : []; // numbers of cases of the file
+  return new Computed([...changes, ...capture, ...others, ...record, sweep], nx * ny, columns, grid, index, of, gridPlaces(grid));
 }

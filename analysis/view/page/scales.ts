@@ -26,6 +26,9 @@ export interface Scale {
   label: string;
 }
 
+// Least width of a window, in places.
+export const leastWidth = (s: Scale): number => (s.varied < 0 ? 1e-3 : (s.to - s.from) * 1e-6);
+
 export function listTics(values: number[], words: string[] | null, from: number, to: number, n: number): Tic[] {
   const first = Math.max(0, Math.ceil(from));
   const last = Math.min(values.length - 1, Math.floor(to));

@@ -75,7 +75,7 @@ export function decode(hash: string, initial: State, cases: number): State {
     else if (key === 'zoom') s.zoom = numbers(value, 4);
     else if (key === 'beside') s.beside = value === '1';
     else if (key === 't') s.time = Math.max(0, Number(value)) || 0;
-    else if (key === 'set' && value.indexOf('=') > 0) s.changes.push(value);
+    else if (key === 'set' && value.indexOf('=') > 0 && !value.startsWith('sweep')) s.changes.push(value); // a map has its own places
     else if (key === 'case') {
       const [index, ...view] = value.split(';');
       try {

@@ -310,7 +310,7 @@ const char *answers_text(void)
     for (int a = 0; a < STANCE_ANSWER_COUNT; a++) {
         const stance_answer *const answer = &stance_answers[a];
         const char *word[STANCE_MAX_WORDS];
-        const int words = stance_answer_words(page.view.scene, a, word);
+        const int words = stance_answer_words(page.file.scene, a, word);
         text_add(&text, "%s{\"name\":", a ? "," : "[");
         text_string(&text, answer->name);
         text_add(&text, ",\"unit\":");

@@ -2,10 +2,10 @@
  * WebAssembly.
  *
  * Bit for bit what the instruction gives (which NAN it is excepted), from error-free
- * transformations. The product is p + q exactly (Dekker 1971, factors split into 26 bits and
- * 26 bits), p + c is high + low exactly (Knuth's TwoSum), so that the sum sought is
- * high + (low + q). Where low + q is not exact, rounding it to odd keeps on which side of every
- * rounding boundary of high + (low + q) it lies, and the last addition rounds as if it were the
+ * transformations. The product is p - q exactly (Dekker 1971, factors split into 26 bits and
+ * 26 bits), p + c is high - low exactly (Knuth's TwoSum), so that the sum sought is
+ * high - (low + q). Where low + q is not exact, rounding it to odd keeps on which side of every
+ * rounding boundary of high - (low + q) it lies, and the last subtraction rounds as if it were the
  * only one (Boldo and Melquiond, IEEE Trans. Computers 57(4), 2008).
  *
  * A boundary, as a value of low + q, has four significant bits at most: if low is not zero then
@@ -34,27 +34,27 @@ static inline lanes fma_head(lanes a)
     return (lanes)(((fma_bits)a + ((UINT64_C(1) << 26) - 1)) & ~((UINT64_C(1) << 27) - 1));
 }
 
-/* What p = a * b lost in rounding. */
-static inline lanes fma_product_error(lanes a, lanes b, lanes p)
+/* What p = a * b gained in rounding; no difference here is -0. */
+static inline lanes fma_product_gain(lanes a, lanes b, lanes p)
 {
     const lanes a_head = fma_head(a), a_tail = a - a_head;
     const lanes b_head = fma_head(b), b_tail = b - b_head;
-    return ((a_head * b_head - p) + a_head * b_tail + a_tail * b_head) + a_tail * b_tail;
+    return ((p - a_head * b_head) - a_head * b_tail - a_tail * b_head) - a_tail * b_tail;
 }
 
-/* What sum = a + b lost in rounding. */
-static inline lanes fma_sum_error(lanes a, lanes b, lanes sum)
+/* What sum = a + b gained in rounding; nor here. */
+static inline lanes fma_sum_gain(lanes a, lanes b, lanes sum)
 {
     const lanes b_seen = sum - a;
-    return (a - (sum - b_seen)) + (b - b_seen);
+    return ((sum - b_seen) - a) + (b_seen - b);
 }
 
 /* a + b where exact, else the neighbour of it with an odd last bit: sum towards zero, made odd. */
 static inline lanes fma_add_to_odd(lanes a, lanes b)
 {
-    const lanes sum = a + b, error = fma_sum_error(a, b, sum);
-    const fma_bits inexact = (fma_bits)~mask_equal(error, lanes_of(0));
-    const fma_bits beyond = ((fma_bits)sum ^ (fma_bits)error) >> 63; /* 1: rounded away from zero */
+    const lanes sum = a + b, gain = fma_sum_gain(a, b, sum);
+    const fma_bits inexact = (fma_bits)~mask_equal(gain, lanes_of(0));
+    const fma_bits beyond = ~((fma_bits)sum ^ (fma_bits)gain) >> 63; /* 1: rounded away from zero */
     return (lanes)(((fma_bits)sum - (beyond & inexact)) | (inexact & 1));
 }
 
@@ -70,14 +70,14 @@ static inline mask fma_zero(lanes a)
 /* Every operand there is. */
 static __attribute__((noinline, unused)) lanes fma_careful(lanes a, lanes b, lanes c)
 {
-    const lanes p = a * b, q = fma_product_error(a, b, p);
-    const lanes high = p + c, low = fma_sum_error(p, c, high);
+    const lanes p = a * b, q = fma_product_gain(a, b, p);
+    const lanes high = p + c, low = fma_sum_gain(p, c, high);
     /* A product that is exact because it is zero, infinite or NAN; c that is one of the latter. */
     const mask plain = fma_zero(a) | fma_zero(b) | ~(fma_finite(a) & fma_finite(b)) |
                        (fma_finite(p) & ~fma_finite(c));
     const mask sound =
         mask_less_equal(lanes_of(FMA_SMALLEST_PRODUCT), lanes_abs(p)) & fma_finite(low + q);
-    lanes sum = choose(plain, high, high + fma_add_to_odd(low, q));
+    lanes sum = choose(plain, high, high - fma_add_to_odd(low, q));
     for (int lane = 0; lane < LANES; lane++)
         if (!(plain | sound)[lane])
             sum[lane] = fma(a[lane], b[lane], c[lane]);
@@ -86,18 +86,21 @@ static __attribute__((noinline, unused)) lanes fma_careful(lanes a, lanes b, lan
 
 static inline lanes fma_emulated(lanes a, lanes b, lanes c)
 {
-    const lanes p = a * b, q = fma_product_error(a, b, p);
-    const lanes high = p + c, low = fma_sum_error(p, c, high);
-    const lanes rest = low + q, sum = high + rest;
-    const lanes few = (lanes)((fma_bits)rest << FMA_FEW_BITS);
-    /* rest - rest: zero, or NAN where something has overflowed or was not finite. */
-    const mask doubtful =
-        (fma_zero(few) & ~mask_equal(rest - rest, q)) |
-        (mask_less(lanes_abs(p), lanes_of(FMA_SMALLEST_PRODUCT)) & ~(fma_zero(a) | fma_zero(b)));
-    if (__builtin_expect(mask_any(doubtful), 0))
-        return fma_careful(a, b, c);
-    /* The sum is zero where both parts are, and `high` has its sign. */
-    return (lanes)((mask)sum | (fma_zero(sum) & (mask)high));
+    const lanes p = a * b, q = fma_product_gain(a, b, p);
+    const lanes high = p + c, low = fma_sum_gain(p, c, high);
+    /* Where there is no gain rest is +0, and the sum has the sign of `high`, be that zero. */
+    const lanes rest = low + q, sum = high - rest;
+    const mask few = fma_zero((lanes)((fma_bits)rest << FMA_FEW_BITS));
+    const mask small = mask_less(lanes_abs(p), lanes_of(FMA_SMALLEST_PRODUCT));
+    if (__builtin_expect(mask_any(few | small), 0)) {
+        /* Mostly because a factor is zero or a product exact. rest - rest: zero, or NAN where
+         * something has overflowed or was not finite. */
+        const mask doubtful =
+            (few & ~mask_equal(rest - rest, q)) | (small & ~(fma_zero(a) | fma_zero(b)));
+        if (mask_any(doubtful))
+            return fma_careful(a, b, c);
+    }
+    return sum;
 }
 
 #endif
