@@ -246,7 +246,7 @@ golden-web:
 # ---- pages: the engine as WebAssembly, the page around it, see analysis/view/page -----------------
 # The engine of a page reads scenarios, too, but no YAML and no files, and designs nothing.
 page_sources := $(wildcard analysis/view/wasm/*.c) $(addprefix runner/base/,checksum.c numbers.c problem.c words.c) \
-    $(addprefix runner/plan/,instruction_set.c plan.c refine.c resolve.c) \
+    $(addprefix runner/plan/,plan.c refine.c resolve.c) \
     $(filter-out %/command_describe.c %/describe.c %/scenario_file.c %/tree_yaml.c,$(wildcard runner/scenario/*.c))
 # A page carries the engine of its file's scene.
 engines = $(patsubst %,$(WEB)/engine-%.z,$(SCENES) $(RUNTIME))
@@ -254,7 +254,7 @@ ifeq ($(BUILD),$(WEB))
 page_objects = $(page_sources:%.c=$(WEB)/%.o)
 define engine_rule
 $(WEB)/kernels-$(1).o: engine/kernels.c Makefile
-	$$(call QUIET,cc,$$@)$$(CC) $$(CFLAGS) $$(ALLFLAGS) $$(isa_list) -DSTANCE_METHOD_LIST='$$(foreach m,$$(METHODS),METHOD($$(m)))' \
+	$$(call QUIET,cc,$$@)$$(CC) $$(CFLAGS) $$(ALLFLAGS) $$(isa_list) -DSTANCE_METHOD_LIST='$$(foreach m,$$(METHODS) event_driven,METHOD($$(m)))' \
 	    -DSTANCE_KERNEL_LIST='$$(foreach m,$$(METHODS),KERNEL($(1),$$(m),$(2)))' -DSTANCE_SCALAR_KERNEL_LIST= -c -o $$@ $$<
 $(WEB)/engine-$(1).wasm: $(WEB)/kernels-$(1).o $$(page_objects) $(WEB)/libstance.a
 	$$(call QUIET,link,$$@)$$(CC) -mexec-model=reactor $$(LDFLAGS) -o $$@ $$^ -lm

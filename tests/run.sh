@@ -45,16 +45,16 @@ names() {
     done
 }
 
-# As many at a time as there are cores, those that take longest first.
+# One more at a time than there are cores, as some wait for others; those that take longest first.
 tests=$(
-    for name in whole_runner whole_program whole_robust test_rest whole_adding test_stepping test_balance test_lanes; do
+    for name in whole_runner whole_program whole_objects whole_robust whole_view whole_adding test_stepping test_balance test_rest test_lanes; do
         names tests/$name.*
     done
     names tests/whole_*.sh tests/test_*.c
 )
 tests=$(awk '!seen[$1]++' <<<"$tests")
 for name in $tests; do
-    while (($(jobs -rp | wc -l) >= $(nproc))); do wait -n; done
+    while (($(jobs -rp | wc -l) > $(nproc))); do wait -n; done
     if [[ $name == whole_* ]]; then
         run "$name" env ASAN_OPTIONS="$mpi_options" bash "tests/$name.sh" &
     else

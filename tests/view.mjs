@@ -329,6 +329,37 @@ check('a file without outcomes differs in none of them', () =>
     await p.until(`document.querySelector('#legend').innerText.includes('the file has no outcome')`);
   }));
 
+check('of a comparison of methods all but event-driven is simulated', () =>
+  on('methods.html', { motion: false, hash: '#case=0&case=1&case=2' }, async (p) => {
+    await p.until(`document.querySelectorAll('#case-list .badge').length === 3`);
+    same(await p.evaluate(badges), 'identical to the file|a page cannot simulate by event-driven, stance does|identical to the file', 'badges');
+  }));
+
+check('axes of the least numbers, and of all but equal ones', () =>
+  on('tiny.html', { motion: false, hash: '#zoom=0.5,0.502,1,1.002' }, async (p) => {
+    await p.until(painted);
+    await p.press('#zoom-all');
+    await p.until(`!location.hash.includes('zoom')`);
+  }));
+
+check('an axis of whole numbers is computed at them', () =>
+  on('delays.html', {}, async (p) => {
+    await p.until(fields);
+    await p.set(field('ground.friction'), '0.5');
+    await p.until(computed);
+    same(await p.evaluate(`document.querySelector('#map').dataset.cases`), String(64 * 3), 'cases');
+  }));
+
+check('words of axes with several paths, and `none`, stand in what is computed', () =>
+  on('pairs.html', { hash: '#x=initial.offset.q1&y=&map=32,all&set=ground.friction=0.7' }, async (p) => {
+    await p.until(computed);
+    const command = await p.evaluate(`document.querySelector('#live-part .command code').textContent`);
+    assert(command.includes('--set method.name=implicit --set method.step=0.002 --set controller.torque_limit=none'), command);
+    await p.set('#y', 'method.name');
+    await p.until(`document.querySelector('#live-part .command code')?.textContent.includes('values: [[implicit, 0.002], [lagrange, 0.001]]')`);
+    await p.until(`${computed} && document.querySelector('#map').dataset.cases === '64'`);
+  }));
+
 check('one case: it plays, and its changes stand beside it', () =>
   on('single.html', { motion: false }, async (p) => {
     await p.until(played);
@@ -387,6 +418,12 @@ check('a browser without vectors, and one without streams, get a sentence', asyn
 check('a damaged page says so', async () => {
   changed('map.html', 'damaged.html', (text) => text.replace(/(id="block-kind">)([^<]{40})/, (_, a, b) => a + b.split('').reverse().join('')));
   await on('damaged.html', { mistakes: true }, (p) => p.until(`document.querySelector('#problem-text').innerText.includes('damaged')`));
+});
+
+check('a page that is cut off says so', async () => {
+  changed('map.html', 'cut.html', (text) => text.slice(0, text.length - 2000));
+  await on('cut.html', { mistakes: true }, async (p) => assert((await p.text('#reading')).includes('its file is not whole'), 'sentence'));
+  await on('map.html', {}, (p) => p.until(`${painted} && !document.querySelector('#reading')`));
 });
 
 check('an address of nonsense shows the map', () =>

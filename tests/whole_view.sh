@@ -17,6 +17,10 @@ make_page mechanism mechanisms/hopper.yaml --set 'sweep.grid[1].count=5' --set '
 make_page axes ball_bounce.yaml --set 'record={answers: [outcome, failure, end_time]}' --set method.step=0.01 --set stop.time=1 --set 'sweep={grid: [
     {path: ground.restitution, from: 0, to: 0.6, count: 4}, {path: ground.friction, from: 0, to: 1, count: 4}, {path: initial.state.z, from: 0.2, to: 1, count: 4},
     {path: initial.state.vx, from: -1, to: 1, count: 4}, {path: initial.state.vz, from: -1, to: 1, count: 4}]}'
+make_page methods topple.yaml --set 'sweep={grid: [{path: method.name, values: [implicit, event-driven, lagrange]}]}'
+make_page tiny basin_one_foot.yaml --set 'sweep={grid: [{path: initial.offset.vtheta, from: -5e-324, to: 5e-324, count: 3}, {path: ground.friction, from: 1, to: 1.000000000001, count: 5}]}'
+make_page delays controllers/delay.yaml --set 'sweep={grid: [{path: initial.offset.theta, from: -0.1, to: 0.1, count: 9}, {path: controller.delay, from: 0, to: 2, count: 3}]}'
+make_page pairs basin_one_foot.yaml --set 'sweep={grid: [{paths: [method.name, method.step], values: [[implicit, 0.002], [lagrange, 0.001]]}, {path: initial.offset.q1, from: -0.1, to: 0.1, count: 5}, {path: controller.torque_limit, values: [none, 5]}]}'
 make_page bare basin_one_foot.yaml --set 'sweep.grid[0].count=9' --set 'sweep.grid[1].count=9' --set 'record={answers: [end_time]}'
 slow=(--set 'sweep.grid[0].count=60' --set 'sweep.grid[1].count=120' --set controller.sample_time=0.0005 --set method.step=0.0001)
 "$stance" run "$shipped/basin_one_foot.yaml" "${slow[@]}" --time-limit 1s -o scenarios.h5 >/dev/null 2>&1

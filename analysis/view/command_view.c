@@ -284,10 +284,10 @@ static int run(int argc, char **argv)
     if (request.count == 1 && request.place && !is_directory(request.place) &&
         !is_page(request.place))
         return command_usage(&command_view, "-o takes a directory, or a name that ends in .html");
-    if (request.count > 1 && mkdir(request.place, 0777) != 0 && errno != EEXIST)
-        return failed(request.place, "make");
     if (!names_differ(&request))
         return EXIT_USAGE;
+    if (request.count > 1 && mkdir(request.place, 0777) != 0 && errno != EEXIST)
+        return failed(request.place, "make");
     const int code = write_pages(&request);
     if (code != EXIT_DONE)
         return code;
@@ -310,7 +310,8 @@ const struct command command_view = {
     "search\n"
     "(stance optimise) the page has its curves.\n"
     "\n"
-    "  -o PLACE       the page's name, which ends in .html, or a directory; a file of that name is\n"
+    "  -o PLACE       the page's name, which ends in .html, or a directory; a file of that name "
+    "is\n"
     "                 replaced, unless it is one of the results files\n"
     "  --answers A,... the answers that the page carries, for colours and for what the pointer\n"
     "                 shows; `all` of them. Unasked as many as take 24 MB. What is left out the\n"

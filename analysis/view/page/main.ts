@@ -150,6 +150,7 @@ function cases(data: Data, store: Store, parts: (() => void)[]): void {
   }
 }
 
+byId('reading').remove();
 window.addEventListener('error', (e) => complain(e.error ?? e.message));
 window.addEventListener('unhandledrejection', (e) => complain(e.reason));
 byId('problem-close').addEventListener('click', () => (byId('problem').hidden = true));

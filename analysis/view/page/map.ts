@@ -293,12 +293,16 @@ export class MapView {
     g.font = '12px system-ui, sans-serif';
     g.textAlign = 'center';
     g.textBaseline = 'top';
+    let end = -Infinity; // of the text before
     this.drawTics(x.tics(this.window[0], this.window[1], Math.max(2, f.width / 80)), (t) => {
       const at = this.toX(t.p);
       if (at < f.left - 1 || at > f.left + f.width + 1) return;
       g.fillRect(at - 0.5, f.top + f.height, 1, 4);
       const half = g.measureText(t.text).width / 2;
-      g.fillText(t.text, Math.max(half, Math.min(width - half, at)), f.top + f.height + 7);
+      const middle = Math.max(half, Math.min(width - half, at));
+      if (middle - half < end + 4) return;
+      end = middle + half;
+      g.fillText(t.text, middle, f.top + f.height + 7);
     });
     g.fillText(fitted(g, x.text && x.text !== x.path ? `${x.label}: ${x.text}` : x.label, f.width), f.left + f.width / 2, height - 18);
     if (!vertical) return;

@@ -27,9 +27,16 @@ export function tics(low: number, high: number, n: number): number[] {
   const power = 10 ** Math.floor(Math.log10(rough));
   const digit = rough / power;
   const step = (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10) * power;
-  const found: number[] = [];
-  for (let k = Math.ceil(low / step - 1e-9); k <= Math.floor(high / step + 1e-9); k++) found.push(Number((k * step).toPrecision(12)));
+  const [first, last] = [Math.ceil(low / step - 1e-9), Math.floor(high / step + 1e-9)];
+  if (!(Math.max(-first, last) < 1e14)) return [low, high]; // no round numbers lie between
+  const found = Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => Number(((first + k) * step).toPrecision(15)));
   return found.length > 1 || n > 20 ? found : tics(low, high, n + 1); // two at least
+}
+
+// Texts of tics, in as many digits as tell them apart.
+export function ticTexts(list: number[]): string[] {
+  const size = Math.max(...list.map(Math.abs)) / Math.abs(list[1] - list[0]);
+  return list.map((x) => numberText(x, Math.max(6, Math.min(15, Math.ceil(Math.log10(size)) + 1 || 6))));
 }
 
 // Tics of a logarithmic scale.

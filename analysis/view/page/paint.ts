@@ -4,7 +4,7 @@ import { el, style } from './dom';
 import type { Data } from './data';
 import type { Answer } from './format';
 import { differences, unknown, type Get, type Layer } from './layers';
-import { label, numberText, tics } from './numbers';
+import { label, numberText, tics, ticTexts } from './numbers';
 
 export interface Entry {
   name: string;
@@ -101,9 +101,9 @@ export function drawLegend(element: HTMLElement, c: Colouring): void {
     ramp.style.background = gradient('90deg');
     const scale = el('div', { class: 'ramp-tics' });
     const list = tics(low, high, 4);
-    const places = list.length > 1 ? list : [low];
-    for (const x of places) {
-      const tic = el('span', {}, numberText(x, 4));
+    const texts = ticTexts(list);
+    for (const [k, x] of list.entries()) {
+      const tic = el('span', {}, texts[k]);
       tic.style.left = `${high > low ? (100 * (x - low)) / (high - low) : 50}%`;
       scale.append(tic);
     }

@@ -7,7 +7,13 @@ import type { Scale } from './scales';
 import { capture_off, type MapRequest, type View } from './state';
 
 // A word in a list or mapping on one line; brackets, commas and the like stand in quotes.
-const yamlWord = (word: string): string => (/^[\w.-]+$/.test(word) ? word : `'${word.replace(/'/g, "''")}'`);
+const yamlWord = (word: string): string => (/^[\w.+-]+$/.test(word) ? word : `'${word.replace(/'/g, "''")}'`);
+
+// A value of a path as a scenario has it: words stand for numbers.
+function said(base: ViewText, path: string, x: number): number | string {
+  const f = base.fields.find((one) => one.path === path);
+  return (f?.type === 'word' ? f.words?.[x] : Number.isFinite(x) ? null : f?.words?.[0]) ?? x;
+}
 
 interface Edge {
   yaml: string; // of the sweep's grid
@@ -29,13 +35,13 @@ async function edgeOf(data: Data, base: ViewText, scale: Scale, cells: number, f
   const names = paths.length > 1 ? `paths: [${paths.map(yamlWord).join(', ')}]` : `path: ${yamlWord(paths[0])}`;
   const listed = (numbers: (number | string)[]): string => (paths.length > 1 ? `[${numbers.join(', ')}]` : String(numbers[0]));
   const values = (j: number): Float64Array => Float64Array.from({ length: axis.count }, (_, i) => at(i, j));
-  // Only the values that the file has: words, uneven ones, and those for which it holds designs.
-  const designed = base.designed && paths.some((p) => base.fields.find((f) => f.path === p)?.design);
-  if (designed || paths.some((_, j) => spacing(values(j), axis.words !== null) !== axis.spacing) || axis.spacing === 'list') {
+  // Only the values that the file has: words, whole numbers, uneven ones, and those for which it holds designs.
+  const fields = base.fields.filter((f) => paths.includes(f.path));
+  if (fields.some((f) => f.type === 'integer' || (base.designed && f.design)) || paths.some((_, j) => spacing(values(j), axis.words !== null) !== axis.spacing) || axis.spacing === 'list') {
     const first = Math.max(0, Math.round(from));
     const last = Math.min(axis.count - 1, Math.round(to));
     const listing = Array.from({ length: last - first + 1 }, (_, i) =>
-      listed(paths.map((_, j) => (axis.words && paths.length === 1 ? yamlWord(axis.words[axis.values[first + i]]) : at(first + i, j)))));
+      listed(paths.map((path, j) => yamlWord(String(said(base, path, at(first + i, j)))))));
     return { yaml: `{${names}, values: [${listing.join(', ')}]}`, count: listing.length, from: first, to: last };
   }
   const end = (p: number): string =>
@@ -51,9 +57,7 @@ async function fixed(data: Data, base: ViewText, shown: number[], at: number[]):
     if (shown.includes(k)) continue;
     const value = await exact(data, k, paths.length);
     for (const [j, path] of paths.entries()) {
-      const x = value(at[k], j);
-      const words = k === data.head.sample ? (data.head.varied.find((v) => v.path === path)?.words ?? null) : paths.length === 1 ? data.axes[k].words : null;
-      sets.push(`${path}=${words ? words[x] : x}`);
+      sets.push(`${path}=${said(base, path, value(at[k], j))}`);
     }
   }
   return sets;

@@ -1,7 +1,7 @@
 // scales.ts - what a map can have along an edge: an axis of the file, or a path that a sample varies. Places p run along
 // it: 0, 1, ... at the values of an axis; at the values themselves (their logarithms) of a sample's path.
 import type { Axis, Data } from './data';
-import { label, logTics, numberText, placeOf, tics, valueAt, withUnit, type Spacing } from './numbers';
+import { label, logTics, numberText, placeOf, tics, ticTexts, valueAt, withUnit, type Spacing } from './numbers';
 
 export interface Tic {
   p: number;
@@ -26,6 +26,11 @@ export interface Scale {
   label: string;
 }
 
+const numberTics = (list: number[], place: (x: number) => number): Tic[] => {
+  const texts = ticTexts(list);
+  return list.map((x, k) => ({ p: place(x), text: texts[k] }));
+};
+
 // Least width of a window, in places.
 export const leastWidth = (s: Scale): number => (s.varied < 0 ? 1e-3 : (s.to - s.from) * 1e-6);
 
@@ -49,7 +54,7 @@ function ofAxis(a: Axis, k: number): Scale {
       if (a.spacing === 'list') return listTics(a.values, a.words, from, to, n);
       const ends = [value(from), value(to)].sort((x, y) => x - y);
       const list = a.spacing === 'log' ? logTics(ends[0], ends[1], n) : tics(ends[0], ends[1], n);
-      return list.map((x) => ({ p: place(x), text: numberText(x) }));
+      return numberTics(list, place);
     },
     label: label(a.path, a.unit),
   };
@@ -76,7 +81,7 @@ function ofVaried(data: Data, k: number): Scale {
     tics: (from, to, n) =>
       v.words
         ? v.words.map((text, p) => ({ p, text })).filter((t) => t.p >= from && t.p <= to)
-        : (log ? logTics(value(from), value(to), n) : tics(from, to, n)).map((x) => ({ p: place(x), text: numberText(x) })),
+        : numberTics(log ? logTics(value(from), value(to), n) : tics(from, to, n), place),
     label: label(v.path, v.unit),
   };
 }
@@ -94,7 +99,7 @@ export function numberScale(low: number, high: number, name: string, unit: strin
   return {
     path: name, text: name, unit, axis: -1, varied: -1, count: 2, from: low - margin, to: high + margin, spacing: 'linear',
     values: [low, high], value: (p) => p, place: (x) => x, say: (p) => withUnit(numberText(p), unit),
-    tics: (from, to, n) => tics(from, to, n).map((x) => ({ p: x, text: numberText(x) })), label: label(name, unit),
+    tics: (from, to, n) => numberTics(tics(from, to, n), (x) => x), label: label(name, unit),
   };
 }
 

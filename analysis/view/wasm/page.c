@@ -205,7 +205,8 @@ bool page_case(double index, stance_case *out, const stance_kernel **kernel)
         !plan_resolve(&page.view_plan, row, out, &method))
         return false;
     *kernel = stance_kernel_find(page.view.scene, stance_methods()[method], NULL);
-    return *kernel || complain(&page.message, "a page cannot step with this method");
+    return *kernel || complain(&page.message, "a page cannot simulate by %s, stance does",
+                               stance_methods()[method]->name);
 }
 
 void page_fail(stance_result *result)
