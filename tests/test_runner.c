@@ -323,7 +323,7 @@ static void write_rows(struct store *store, uint64_t first, size_t n)
     stance_result results[STORE_ROWS];
     for (size_t i = 0; i < n; i++)
         results[i] = numbered(first + i);
-    store_results(store, (struct rows){NULL, n, first}, results);
+    store_results(store, (struct rows){.count = n, .first = first}, results);
 }
 
 static void assert_whole(struct store *store, uint64_t first, size_t n, bool expected)
@@ -331,7 +331,8 @@ static void assert_whole(struct store *store, uint64_t first, size_t n, bool exp
     stance_result results[STORE_ROWS];
     stance_message message;
     bool whole[STORE_ROWS];
-    assert_true(store_verify(store, &(struct rows){NULL, n, first}, results, whole, &message));
+    assert_true(
+        store_verify(store, &(struct rows){.count = n, .first = first}, results, whole, &message));
     for (size_t i = 0; i < n; i++) {
         assert_int_equal(whole[i], expected);
         if (expected)
@@ -388,8 +389,9 @@ static void test_listed_rows(void **state)
             results[n] = numbered(row);
             rows[n++] = row;
         }
-        store_results(store, (struct rows){rows, n, 0}, results);
-        assert_true(store_verify(store, &(struct rows){rows, n, 0}, read, whole, &message));
+        store_results(store, (struct rows){.row = rows, .count = n}, results);
+        assert_true(
+            store_verify(store, &(struct rows){.row = rows, .count = n}, read, whole, &message));
         for (size_t i = 0; i < n; i++)
             assert_true(whole[i] && read[i].outcome == STANCE_FELL);
         for (uint64_t row = begin; row < 60; row++)
@@ -459,15 +461,15 @@ static void test_plain_scene(void **state)
         assert_true(data[1] == 0.6 && data[36] == 0.6 - c.robot[1]); /* z and the gap at 0 */
         assert_true(store_write_trajectory(store, row, &t, &message));
     }
-    store_results(store, (struct rows){NULL, 2, 0}, results);
-    assert_true(store_verify(store, &(struct rows){NULL, 3, 0}, read, whole, &message));
+    store_results(store, (struct rows){.count = 2, .first = 0}, results);
+    assert_true(store_verify(store, &(struct rows){.count = 3, .first = 0}, read, whole, &message));
     assert_true(whole[0] && whole[1] && !whole[2]);
     data[41] += 1;
     assert_true(store_write_trajectory(
         store, 2, &(stance_trajectory){0.1, 6, data, data + 12, NULL, data + 24, data + 36},
         &message));
-    store_results(store, (struct rows){NULL, 1, 2}, &results[2]);
-    assert_true(store_verify(store, &(struct rows){NULL, 3, 0}, read, whole, &message));
+    store_results(store, (struct rows){.count = 1, .first = 2}, &results[2]);
+    assert_true(store_verify(store, &(struct rows){.count = 3, .first = 0}, read, whole, &message));
     assert_true(whole[2]); /* its checksum is of what was written */
     assert_true(store_close(store, &message));
     plan_free(&plan);

@@ -16,7 +16,7 @@ static void test_stretches(void **state)
 {
     (void)state;
     const uint64_t row[5] = {3, 4, 9, 100, 1000};
-    const struct rows only = {row, 5, 0};
+    const struct rows only = {.row = row, .count = 5};
     uint64_t first, count, place;
     struct schedule schedule = schedule_make(1000, 3, NULL);
     assert_int_equal(schedule_take(&schedule, 10, &place), 0);
@@ -106,7 +106,7 @@ static void run_rows(struct fixture *f, const struct rows *only)
 {
     stance_message message;
     uint8_t label[240] = {0};
-    const struct rows rows = only ? *only : (struct rows){NULL, 240, 0};
+    const struct rows rows = only ? *only : (struct rows){.count = 240};
     assert_true(parallel_share(&f->parallel));
     assert_true(work_run(&f->work, only, label, &message));
     parallel_unshare(&f->parallel);
@@ -124,7 +124,7 @@ static void assert_whole(struct fixture *f, const bool *expected)
     stance_result results[240];
     stance_message message;
     bool whole[240];
-    assert_true(store_verify(f->store, &(struct rows){NULL, 240, 0}, results, whole, &message));
+    assert_true(store_verify(f->store, &(struct rows){.count = 240}, results, whole, &message));
     for (int row = 0; row < 240; row++) {
         assert_int_equal(whole[row], expected[row]);
         if (whole[row]) /* every other row of three has a trunk of 9 m */
@@ -141,17 +141,110 @@ static void test_lists(void **state)
     for (uint64_t i = 0; i < 240; i++)
         if (uniform(&random, 0, 1) < 0.2 || i == 100 || i / 8 == 3)
             row[n++] = i, whole[i] = true;
-    run_rows(f, &(struct rows){row, n, 0});
+    run_rows(f, &(struct rows){.row = row, .count = n});
     assert_int_equal(f->work.computed, n);
     assert_int_equal(f->work.finished, n);
     assert_whole(f, whole);
-    run_rows(f, &(struct rows){row, 0, 0});
+    run_rows(f, &(struct rows){.row = row, .count = 0});
     assert_int_equal(f->work.computed, n);
     f->work.resume = true;
     run_rows(f, NULL);
     assert_int_equal(f->work.computed, 240);
     assert_int_equal(f->work.finished, 240 + n); /* what was kept counts again */
     memset(whole, true, sizeof whole);
+    assert_whole(f, whole);
+}
+
+/* Every case is in one shard, in ascending order; runs are what they say; sizes differ by a stripe
+ * at most. */
+static void test_shards(void **state)
+{
+    (void)state;
+    static const uint64_t sweeps[][2] = {{1, 1},      {7, 7},      {240, 1},       {240, 7},
+                                         {65536, 16}, {65537, 16}, {65536, 60000}, {9000001, 3}};
+    for (size_t i = 0; i < sizeof sweeps / sizeof sweeps[0]; i++) {
+        const uint64_t rows = sweeps[i][0], count = sweeps[i][1];
+        uint8_t *seen = calloc(rows, 1);
+        uint64_t total = 0, least = rows, most = 0, stripe = 0;
+        for (uint64_t k = 1; k <= count; k++) {
+            const struct shard shard = shard_of(&(struct shard){.number = k, .count = count}, rows);
+            const uint64_t share = shard_rows(&shard);
+            const struct rows all = {.count = share, .shard = &shard};
+            assert_true(share > 0);
+            for (uint64_t place = 0; place < share; place++) {
+                const uint64_t row = rows_at(&all, place);
+                assert_true(row < rows && !seen[row]);
+                assert_true(place == 0 || row > rows_at(&all, place - 1));
+                seen[row] = 1;
+                const struct rows part = rows_part(&all, place, 1);
+                assert_int_equal(rows_at(&part, 0), row);
+                if (place + 1 < share && shard_run(&shard, place) > 1)
+                    assert_int_equal(rows_at(&all, place + 1), row + 1);
+            }
+            total += share;
+            least = share < least ? share : least;
+            most = share > most ? share : most;
+            stripe = shard.stripe;
+        }
+        assert_int_equal(total, rows);
+        assert_true(most - least <= stripe);
+        free(seen);
+    }
+}
+
+/* On a grid of 256 x 256 whose cases cost more to one corner, or along the one axis or the other,
+ * the dearest of N shards costs little more than the mean. */
+static void test_even_shards(void **state)
+{
+    (void)state;
+    for (uint64_t count = 2; count <= 64; count++) {
+        for (int slope = 0; slope < 3; slope++) {
+            double most = 0, total = 0;
+            for (uint64_t k = 1; k <= count; k++) {
+                const struct shard shard =
+                    shard_of(&(struct shard){.number = k, .count = count}, 65536);
+                double cost = 0;
+                for (uint64_t place = 0; place < shard_rows(&shard); place++) {
+                    const uint64_t row = shard_row(&shard, place);
+                    cost += slope == 0   ? (double)(row % 256)
+                            : slope == 1 ? (double)(row / 256)
+                                         : (double)(row % 256 * (row / 256));
+                }
+                most = fmax(most, cost);
+                total += cost;
+            }
+            assert_true(most < 1.08 * total / (double)count);
+        }
+    }
+}
+
+static void test_shard_words(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {
+        "",          "0/4",  "5/4",  "a/b", "1/1e9",
+        "1/1000001", "1/",   "/1",   "1",   "-1/2",
+        "1/-2",      " 1/2", "1/2 ", "1/0", "99999999999999999999/99999999999999999999"};
+    struct shard shard;
+    char text[SHARD_TEXT];
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_false(shard_parse(&shard, bad[i]));
+    assert_true(shard_parse(&shard, "1000000/1000000"));
+    shard_text(&shard, text);
+    assert_string_equal(text, "1000000/1000000");
+}
+
+/* A shard computes its rows and no others. */
+static void test_one_shard(void **state)
+{
+    struct fixture *f = *state;
+    bool whole[240] = {false};
+    const struct shard shard = shard_of(&(struct shard){.number = 3, .count = 7}, 240);
+    const struct rows share = {.count = shard_rows(&shard), .shard = &shard};
+    for (uint64_t place = 0; place < share.count; place++)
+        whole[shard_row(&shard, place)] = true;
+    run_rows(f, &share);
+    assert_int_equal(f->work.computed, share.count);
     assert_whole(f, whole);
 }
 
@@ -358,6 +451,10 @@ int main(void)
         cmocka_unit_test(test_stretches),
         cmocka_unit_test_setup_teardown(test_lists, make_fixture, free_fixture),
         cmocka_unit_test_setup_teardown(test_stopped, make_fixture, free_fixture),
+        cmocka_unit_test_setup_teardown(test_one_shard, make_fixture, free_fixture),
+        cmocka_unit_test(test_shards),
+        cmocka_unit_test(test_even_shards),
+        cmocka_unit_test(test_shard_words),
         cmocka_unit_test(test_list_schedule),
         cmocka_unit_test(test_one_rank),
         cmocka_unit_test(test_queues),

@@ -16,6 +16,11 @@ static void print_head(const struct results *r)
         printf("case %" PRIu64, r->index);
     else
         printf("%" PRIu64 " case%s", r->cases, r->cases == 1 ? "" : "s");
+    if (r->shard.count > 0 && r->shard.count <= r->cases) {
+        const struct shard shard = shard_of(&r->shard, r->cases);
+        printf(", of which shard %" PRIu64 "/%" PRIu64 " has %" PRIu64, shard.number, shard.count,
+               shard_rows(&shard));
+    }
     printf(", stance %s (%s), %s, %d rank%s\n", r->version, r->revision, r->date, r->ranks,
            r->ranks == 1 ? "" : "s");
 }
@@ -158,8 +163,8 @@ static bool print_outcomes(const struct summary *summary, const struct results *
                summary->inferred, 100 * (double)summary->inferred / (double)counts->done);
     }
     if (counts->kind[RESULTS_PENDING] > 0)
-        printf("  %-11s%12" PRIu64 "  not computed yet\n", "pending",
-               counts->kind[RESULTS_PENDING]);
+        printf("  %-11s%12" PRIu64 "  not computed yet%s\n", "pending",
+               counts->kind[RESULTS_PENDING], r->shard.count > 1 ? ", or of other shards" : "");
     for (int f = 0; f < SUMMARY_FAILURES; f++) {
         if (summary->failures[f] > 0) {
             printf("  %-11s%12" PRIu64 "  %s: %s\n", "failed", summary->failures[f],

@@ -132,6 +132,33 @@ bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
     return true;
 }
 
+bool plan_cut(struct plan *plan, const struct shard *shard, struct plan_error *error)
+{
+    const struct scenario *s = plan->scenario;
+    if (s->refine.given) {
+        complain(
+            &error->message,
+            "sweep.refine: cells need the outcomes of neighbours, which other shards have: run "
+            "it under mpirun, or an array along an axis (scenarios/cluster/array.sh)");
+        scenario_place(s, error->message.text, &error->line, &error->column);
+        return false;
+    }
+    if (shard->count > plan->rows) {
+        return complain(&error->message, "--shard: there are %llu shards but only %llu case%s",
+                        (unsigned long long)shard->count, (unsigned long long)plan->rows,
+                        plan->rows == 1 ? "" : "s");
+    }
+    plan->shard = shard_of(shard, plan->rows);
+    return true;
+}
+
+struct rows plan_share(const struct plan *plan)
+{
+    const bool cut = plan->shard.count > 0;
+    return (struct rows){.count = cut ? shard_rows(&plan->shard) : plan->rows,
+                         .shard = cut ? &plan->shard : NULL};
+}
+
 void plan_free(struct plan *plan)
 {
     free(plan->design);

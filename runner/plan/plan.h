@@ -8,6 +8,7 @@
 #define STANCE_PLAN_PLAN_H
 
 #include "resolve.h"
+#include "rows.h"
 
 #include "runner/ranks/parallel.h"
 
@@ -16,6 +17,7 @@ struct plan {
     bool single;          /* --only: the file holds one case */
     uint64_t single_case; /* its flat index */
     uint64_t rows;        /* cases in the file: 1, or all of the scenario's */
+    struct shard shard;   /* --shard: those of them that are computed */
 
     size_t ancestors; /* scenarios that the file was made from before this one, see
                          changed_scenario.h */
@@ -55,6 +57,11 @@ int plan_error_print(const struct scenario *s, const struct plan_error *error);
 bool plan_make(struct plan *plan, const struct scenario *scenario, bool single,
                uint64_t single_case, bool trace, struct plan_error *error);
 void plan_free(struct plan *plan);
+
+/* Makes it the plan of a shard of the sweep; false: it cannot be cut so. */
+bool plan_cut(struct plan *plan, const struct shard *shard, struct plan_error *error);
+/* The rows that are computed: all, or those of the shard. */
+struct rows plan_share(const struct plan *plan);
 
 /* Flat index of the case in a row of the file; design that a case uses, and the first case that
  * uses a design. */

@@ -104,7 +104,10 @@ bool schedule_draw(struct schedule *schedule, uint64_t k)
 
 size_t schedule_take(struct schedule *schedule, size_t most, uint64_t *first)
 {
-    const uint64_t left = schedule->end - schedule->next;
+    const struct rows *rows = &schedule->rows;
+    uint64_t left = schedule->end - schedule->next;
+    if (rows->shard && shard_run(rows->shard, schedule->next) < left)
+        left = shard_run(rows->shard, schedule->next); /* one write for each variable */
     const size_t count = left < most ? (size_t)left : most;
     *first = schedule->next;
     schedule->next += count;

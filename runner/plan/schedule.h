@@ -35,7 +35,8 @@ struct schedule {
 struct schedule schedule_make(uint64_t rows, int ranks, const struct rows *only);
 /* Takes chunk k in hand; false: there is none. */
 bool schedule_draw(struct schedule *schedule, uint64_t k);
-/* The next stretch of the chunk in hand, of at most `most` places; 0: nothing is left of it. */
+/* The next stretch of the chunk in hand, of at most `most` places, of a shard of one stripe; 0:
+ * nothing is left of it. */
 size_t schedule_take(struct schedule *schedule, size_t most, uint64_t *first);
 /* Rows of the largest block that a rank keeps in memory and writes at once, of rows of that many
  * bytes. */

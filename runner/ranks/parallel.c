@@ -45,6 +45,19 @@ enum { PIECE = 1 << 28 };
 static const char *const rank_told[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 enum { RANK_TOLD = sizeof rank_told / sizeof rank_told[0] };
 
+static bool is_one(const char *name)
+{
+    const char *number = getenv(name);
+    return number && strcmp(number, "1") == 0;
+}
+
+/* srun tells the one task of a step its rank, too, and need not know this MPI. */
+static bool is_only_rank(void)
+{
+    return is_one("PMI_SIZE") || (is_one("SLURM_STEP_NUM_TASKS") && !getenv("PMI_SIZE") &&
+                                  !getenv("OMPI_COMM_WORLD_SIZE"));
+}
+
 static bool was_launched(void)
 {
     bool told = false;
@@ -52,7 +65,7 @@ static bool was_launched(void)
     for (size_t i = 0; i < RANK_TOLD; i++)
         told = told || getenv(rank_told[i]);
 #endif
-    return told;
+    return told && !is_only_rank();
 }
 
 bool parallel_is_first(void)

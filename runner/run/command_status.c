@@ -25,30 +25,34 @@ struct state {
     struct search_file search; /* where `searches`: what there is is candidates, not cases */
     bool searches;
     bool refined; /* a map whose boundary is being sought: the cases left are not all simulated */
+    struct shard shard;      /* whose cases alone are counted; count 0: none */
     double rate, mean, left; /* cases/s of late, since the job's start, and s; negative: unknown */
 };
 
-static bool is_refined(const char *file)
+static uint64_t count_pending(const struct state *state)
+{
+    return state->counts.cases - state->counts.done - state->counts.failed;
+}
+
+/* What the file says of the run: which cases are its own, and how it finds them. */
+static void read_origin(const char *file, struct state *state)
 {
     struct store_origin origin;
     stance_message ignored;
     struct scenario *s = calloc(1, sizeof *s);
-    bool refined = false;
 
     if (s && store_read_origin(file, &origin, &ignored)) {
-        if (scenario_read(s, file, origin.scenario, NULL, 0, NULL)) {
-            refined = s->refine.given;
+        if (origin.shard.count > 0 && origin.shard.count <= state->counts.cases) {
+            state->shard = shard_of(&origin.shard, state->counts.cases);
+            state->counts.cases = shard_rows(&state->shard);
+        }
+        if (count_pending(state) > 0 && scenario_read(s, file, origin.scenario, NULL, 0, NULL)) {
+            state->refined = s->refine.given;
             scenario_free(s);
         }
         store_origin_free(&origin);
     }
     free(s);
-    return refined;
-}
-
-static uint64_t count_pending(const struct state *state)
-{
-    return state->counts.cases - state->counts.done - state->counts.failed;
 }
 
 /* By the cases that its generations have taken, of those that it may take. */
@@ -78,7 +82,7 @@ static bool read_state(const char *file, struct state *state, stance_message *me
         return read_search(file, state, message);
     if (!store_count(file, &state->counts, message) || !store_check(file, false, message))
         return false;
-    state->refined = count_pending(state) > 0 && is_refined(file);
+    read_origin(file, state);
     if (note->running && note->exists) {
         state->rate = note->rate;
         state->mean =
@@ -122,7 +126,10 @@ static json_t *run_json(const char *file, const struct state *state)
     const struct store_counts *c = &state->counts;
     const struct heartbeat_note *note = &state->note;
     const bool known = note->exists && note->running;
-    return json_pack("{s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "file", file, "cases",
+    char shard[SHARD_TEXT];
+    shard_text(&state->shard, shard);
+    return json_pack("{s:s, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "file", file, "shard",
+                     state->shard.count > 0 ? json_string(shard) : json_null(), "cases",
                      (json_int_t)c->cases, "done", (json_int_t)c->done, "failed",
                      (json_int_t)c->failed, "pending",
                      state->refined ? json_null() : json_integer((json_int_t)count_pending(state)),
@@ -209,8 +216,11 @@ static void print_text(const char *file, const struct state *state)
     const struct heartbeat_note *note = &state->note;
     const uint64_t pending = count_pending(state);
 
-    printf("%s: %" PRIu64 " of %" PRIu64 " cases done, %" PRIu64 " failed, ", file, c->done,
-           c->cases, c->failed);
+    printf("%s: ", file);
+    if (state->shard.count > 0)
+        printf("shard %" PRIu64 "/%" PRIu64 ", ", state->shard.number, state->shard.count);
+    printf("%" PRIu64 " of %" PRIu64 " cases done, %" PRIu64 " failed, ", c->done, c->cases,
+           c->failed);
     if (state->refined)
         fputs("others to be simulated or inferred as the map is refined; ", stdout);
     else
@@ -287,6 +297,7 @@ const struct command command_status = {
     "  --watch  again every 5 s, as long as the file is being written\n"
     "  --json   the same as JSON, with the keys\n"
     "    file                     as given\n"
+    "    shard                    K/N of a shard's file, of whose share all is told; else null\n"
     "    cases, done, failed      numbers of cases\n"
     "    pending                  the others; null where a map is refined and not complete, for\n"
     "                             most of them will not be simulated\n"

@@ -28,6 +28,7 @@ static struct estimate estimate(const struct plan *plan, int ranks)
     for (size_t d = 0; d < plan->designs; d++)
         e.designs_failed += plan->design_status[d] == STANCE_FAILED;
     e.seconds = plan_cost(plan, PLAN_PATIENCE_COST, &e.bound);
+    e.seconds *= (double)plan_share(plan).count / (double)plan->rows;
     e.seconds += e.seconds >= 0 ? plan->design_seconds : 0;
     e.capture = plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
     e.compiled = kernels_compiled(plan);
@@ -197,6 +198,10 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
         scenario_axis_text(&s->axis[a], s->axis[a].count - 1, 0, last, sizeof last);
         fprintf(out, "  %-32s %8zu  %s ... %s %s\n", s->axis[a].name, s->axis[a].count, first, last,
                 s->axis[a].words || strcmp(s->axis[a].unit, "1") == 0 ? "" : s->axis[a].unit);
+    }
+    if (plan->shard.count > 0) {
+        fprintf(out, "shard       %" PRIu64 "/%" PRIu64 ", %" PRIu64 " cases\n", plan->shard.number,
+                plan->shard.count, plan_share(plan).count);
     }
     report_designs(plan, e, out);
     if (plan->record_cases > 0) {

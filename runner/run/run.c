@@ -54,7 +54,8 @@ static void stage_options(struct run *run)
         run_fail(run, EXIT_IO, "stance run: not enough memory");
     /* Rank 0 first: it says what is wrong, and the others need not. */
     if (run->parallel.rank == 0 && o->sets)
-        good = run_read_options(o, run->argc, run->argv);
+        good = run_read_options(o, run->argc, run->argv) &&
+               (o->help || run_read_shard(o, run->argc, run->argv));
     parallel_broadcast(&run->parallel, &good, sizeof good);
     if (!good) {
         run->failure.code = run->failure.code ? run->failure.code : EXIT_USAGE;
@@ -65,6 +66,7 @@ static void stage_options(struct run *run)
     if (run->parallel.rank != 0 && !help && o->sets)
         run_read_options(o, run->argc, run->argv);
     o->help = help;
+    parallel_broadcast(&run->parallel, &o->shard, sizeof o->shard);
     deadline_limit(o->time_limit - (clock_seconds() - run->start));
     if (!help && !instruction_set_check(&run->message))
         run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
@@ -129,6 +131,9 @@ static void name_file(struct run *run)
     } else if (o->extend_count > 0) {
         snprintf(run->file, sizeof run->file, "results/%s-%" PRIu64 ".h5", run->scenario->name,
                  o->extend_count);
+    } else if (o->shard.count > 0) {
+        snprintf(run->file, sizeof run->file, "results/%s.shard-%" PRIu64 "-of-%" PRIu64 ".h5",
+                 run->scenario->name, o->shard.number, o->shard.count);
     } else {
         snprintf(run->file, sizeof run->file, "results/%s.h5", run->scenario->name);
     }
@@ -189,6 +194,24 @@ void run_warn_of_revision(const char *file, const char *revision)
     }
 }
 
+/* A file keeps to the shard that it was made for, or to all cases. */
+static bool same_shard(struct run *run)
+{
+    const struct shard *own = &run->origin.shard, *asked = &run->options.shard;
+    char text[SHARD_TEXT];
+    if (own->number == asked->number && own->count == asked->count)
+        return true;
+    shard_text(own, text);
+    if (own->count == 0)
+        return run_fail(run, EXIT_USAGE,
+                        "stance run: %.200s is not of a shard: go on with it without --shard",
+                        run->file);
+    return run_fail(run, EXIT_USAGE,
+                    "stance run: %.200s is of shard %s: go on with it by --shard %s, or merge it "
+                    "with the others",
+                    run->file, text, text);
+}
+
 /* An existing file that is to be gone on with. */
 static void look_into_file(struct run *run)
 {
@@ -204,7 +227,7 @@ static void look_into_file(struct run *run)
         run_fail_io(run);
         return;
     }
-    if (!run_same_scenario(run, run->file, run->origin.scenario))
+    if (!same_shard(run) || !run_same_scenario(run, run->file, run->origin.scenario))
         return;
     if ((run->succeed &&
          !changed_scenario_check_sweep(run->file, &run->origin, run->scenario, &run->message)) ||
@@ -293,7 +316,8 @@ static void stage_plan(struct run *run)
     share_axes(run);
     if (!parallel_share(&run->parallel))
         run_fail(run, EXIT_IO, "stance run: not enough memory");
-    else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error))
+    else if (!plan_make(&run->plan, run->scenario, o->single, o->single_case, o->trace, &error) ||
+             (o->shard.count > 0 && !plan_cut(&run->plan, &o->shard, &error)))
         fail_scenario(run, &error);
     run->plan.ancestors = run->origin.ancestors;
     parallel_broadcast(&run->parallel, &run->plan.ancestors, sizeof run->plan.ancestors);
@@ -476,8 +500,9 @@ static void stage_compute(struct run *run)
         .time_limit = run->options.time_limit,
     };
     const bool refined = run->scenario->refine.given && !run->plan.single;
+    const struct rows share = plan_share(&run->plan);
     if (refined ? !refinement_run(&run->work, &run->message)
-                : !work_run(&run->work, NULL, NULL, &run->message))
+                : !work_run(&run->work, &share, NULL, &run->message))
         run_fail_io(run);
 }
 
@@ -594,7 +619,7 @@ static int run_run(int argc, char **argv)
 const struct command command_run = {
     "run",
     "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume [--force-scenario]]\n"
-    "           [--extend COUNT [--from FILE]]\n"
+    "           [--extend COUNT [--from FILE]] [--shard K/N]\n"
     "           [--time-limit TIME] [--only CASE [--trace]] [--dry-run] [--quiet]",
     "compute every case of a scenario; alone or under mpirun -n N",
     run_run,
@@ -618,6 +643,12 @@ const struct command command_run = {
     "                     same scenario with fewer points holds, and computes the rest. That file\n"
     "                     need not be complete and stays as it is. Not for method lhs\n"
     "  --from FILE        ... that file; default results/<scenario name>.h5\n"
+    "  --shard K/N        compute the Kth of N equal shares of the cases, by default into\n"
+    "                     results/<scenario name>.shard-K-of-N.h5, which takes the disk of its "
+    "share\n"
+    "                     alone; `merge` makes the file of one run of these. slurm instead of "
+    "K/N:\n"
+    "                     in the tasks of an array 1-N, as Slurm tells. Not of refined maps\n"
     "  --dry-run          plan and estimate as `check` does, within seconds; write nothing\n"
     "  --quiet            neither progress nor summary\n"
     "\n"

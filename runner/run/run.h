@@ -18,6 +18,9 @@ struct options {
     size_t set_count;
     bool force, force_scenario, resume, single, trace, dry_run, quiet, help;
     uint64_t single_case;
+    struct shard shard;     /* count 0: none */
+    const char *shard_word; /* of --shard, as given */
+    char shard_name[SHARD_TEXT];
     double time_limit;     /* s, INFINITY: none */
     uint64_t extend_count; /* --extend; 0: not given */
     char extend_set[64];   /* the same as the --set that it stands for */
@@ -54,6 +57,8 @@ struct run {
 
 /* run_options.c. Prints what is wrong with them on standard error; false then. */
 bool run_read_options(struct options *o, int argc, char **argv);
+/* On rank 0, whose environment may tell: --shard, in whose place argv then has its number. */
+bool run_read_shard(struct options *o, int argc, char **argv);
 
 /* What ends the run, in a line (run, code, format, ...). Returns false. */
 #define run_fail(run, exit_code, ...)                                                              \

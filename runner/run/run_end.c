@@ -87,7 +87,8 @@ int run_conclude(struct run *run)
                         .damaged = work->damaged};
     memcpy(sums.outcome, work->outcome, sizeof sums.outcome);
     parallel_sum(&run->parallel, (uint64_t *)&sums, sizeof sums / sizeof(uint64_t));
-    bool complete = sums.finished == run->plan.rows;
+    const uint64_t share = plan_share(&run->plan).count;
+    const bool complete = sums.finished == share;
 
     if (sums.damaged > 0)
         say_damaged(run, sums.damaged);
@@ -96,7 +97,7 @@ int run_conclude(struct run *run)
             print_summary(run, &sums);
         if (!complete) {
             snprintf(stopped, sizeof stopped, "stopped at %" PRIu64 " of %" PRIu64 " cases",
-                     sums.finished, run->plan.rows);
+                     sums.finished, share);
             run_say_stopped(run, stopped);
         } else if (sums.failed > 0) {
             fprintf(stderr,

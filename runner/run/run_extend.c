@@ -234,7 +234,7 @@ bool run_extend_copy(struct run *run, stance_message *message)
             target[n++] = to;
         }
         if (n == STORE_ROWS || (n > 0 && r + 1 == e->plan.rows)) {
-            const struct rows rows = {row, n, 0};
+            const struct rows rows = {.row = row, .count = n};
             good = store_copy(old, &rows, run->store, target, &copied, message);
             n = 0;
         }

@@ -39,6 +39,59 @@ static bool check_extend(struct options *o, const char *extend, const char *only
     return true;
 }
 
+/* What asks for other cases than a share of the sweep's. */
+static bool check_shard(const struct options *o)
+{
+    if (o->single || o->extend_count > 0)
+        return usage(o->single ? "--shard and --only exclude each other"
+                               : "--shard and --extend exclude each other",
+                     NULL);
+    return !o->force_scenario ||
+           usage("--shard and --force-scenario exclude each other: merge the shards first", NULL);
+}
+
+/* A whole number that Slurm tells; 0 where it does not. */
+static uint64_t told_by_slurm(const char *name)
+{
+    uint64_t number;
+    const char *text = getenv(name);
+    return text && parse_number(text, &number) ? number : 0;
+}
+
+/* Of an array 1-N. Parts of one, as when some tasks are repeated, do not say how many there are. */
+static bool shard_of_slurm(struct options *o)
+{
+    const uint64_t last = told_by_slurm("SLURM_ARRAY_TASK_MAX");
+    if (!getenv("SLURM_ARRAY_TASK_ID"))
+        return usage("--shard slurm is for the tasks of an array: sbatch --array=1-N", NULL);
+    if (told_by_slurm("SLURM_ARRAY_TASK_MIN") != 1 ||
+        told_by_slurm("SLURM_ARRAY_TASK_COUNT") != last)
+        return usage("--shard slurm: this array is not the whole of 1-N: give --shard "
+                     "$SLURM_ARRAY_TASK_ID/N",
+                     NULL);
+    snprintf(o->shard_name, sizeof o->shard_name, "%" PRIu64 "/%" PRIu64,
+             told_by_slurm("SLURM_ARRAY_TASK_ID"), last);
+    return shard_parse(&o->shard, o->shard_name) ||
+           usage("--shard slurm: there is no shard", o->shard_name);
+}
+
+bool run_read_shard(struct options *o, int argc, char **argv)
+{
+    if (!o->shard_word)
+        return true;
+    if (strcmp(o->shard_word, "slurm") == 0) {
+        if (!shard_of_slurm(o))
+            return false;
+        for (int i = 0; i < argc; i++) /* said when it stops: to be typed where there is no array */
+            if (argv[i] == o->shard_word)
+                argv[i] = o->shard_name;
+        return true;
+    }
+    return shard_parse(&o->shard, o->shard_word) ||
+           usage("--shard takes K/N, the shard K of N, 1 <= K <= N <= 1000000, or slurm; not",
+                 o->shard_word);
+}
+
 /* Results are not drawn or tabled by `run`, though a file's ending says so. */
 static bool check_output(const char *output)
 {
@@ -78,7 +131,8 @@ static bool check_options(struct options *o, const char *only, const char *limit
 bool run_read_options(struct options *o, int argc, char **argv)
 {
     const char *limit = NULL, *only = NULL, *extend = NULL;
-    size_t extends, froms, outputs, limits, onlys, force, force_scenario, resume, trace, dry_run;
+    size_t shards, extends, froms, outputs, limits, onlys, force, force_scenario, resume, trace,
+        dry_run;
     size_t quiet, operands;
     const struct option_spec specs[] = {
         {"-o", true, &o->output, 1, &outputs},
@@ -93,6 +147,7 @@ bool run_read_options(struct options *o, int argc, char **argv)
         {"--quiet", false, NULL, 0, &quiet},
         {"--extend", true, &extend, 1, &extends},
         {"--from", true, &o->from, 1, &froms},
+        {"--shard", true, &o->shard_word, 1, &shards},
     };
     o->time_limit = INFINITY;
     if (!command_options(&command_run, argc, argv, specs, sizeof specs / sizeof specs[0],
@@ -106,5 +161,6 @@ bool run_read_options(struct options *o, int argc, char **argv)
     o->quiet = quiet > 0;
     if (!o->help && operands != 1)
         return usage("a scenario file must be given", NULL);
-    return o->help || (check_options(o, only, limit) && check_extend(o, extend, only));
+    return o->help || (check_options(o, only, limit) && check_extend(o, extend, only) &&
+                       (!o->shard_word || check_shard(o)));
 }

@@ -181,7 +181,7 @@ const struct command command_merge = {
     run,
     "The files' scenarios may\n"
     "\n"
-    "  be equal                 each file has computed some of the cases\n"
+    "  be equal                 each file has computed some of the cases: `stance run --shard`\n"
     "  differ along one axis    each file has some of its points: an array of tasks with\n"
     "                           --set sweep.grid[0].from=... or --set sweep.grid[0].values=...\n"
     "  differ in one value      which becomes the first axis: tasks with --set "

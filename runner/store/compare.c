@@ -398,7 +398,7 @@ static bool compare_attributes(struct comparison *comparison, const struct resul
     static const char *const provenance[] = {
         "program_version", "git_revision", "compiler", "library_versions",
         "instruction_set", "ranks",        "hosts",    "date",
-        "merged_from",     "merge_note",   NULL};
+        "merged_from",     "merge_note",   "shard",    NULL};
     struct names names = {0};
     bool good = true;
     char name[192];

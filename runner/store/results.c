@@ -399,6 +399,10 @@ static bool read_provenance(struct results *r, stance_message *message)
     results_copy_attribute(id, "date", r->date, sizeof r->date);
     results_copy_attribute(id, "hosts", r->hosts, sizeof r->hosts);
     r->ranks = hdf_whole(id, "ranks", 0);
+    char shard[SHARD_TEXT];
+    results_copy_attribute(id, "shard", shard, sizeof shard);
+    if (!shard_parse(&r->shard, shard))
+        r->shard.count = 0;
     return true;
 }
 

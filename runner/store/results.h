@@ -66,6 +66,7 @@ struct results {
     int varied;
     struct results_varied *vary; /* [varied], in the order of the scenario */
     uint64_t cases;
+    struct shard shard;         /* whose file it is; count 0: all cases' */
     struct store_damage damage; /* cases that do not verify, and therefore count as pending */
     uint8_t *kind;              /* [cases] enum results_kind, row-major over the axes */
     uint8_t *failure;           /* [cases] enum stance_failure, or NULL: not stored */

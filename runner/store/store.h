@@ -27,7 +27,8 @@
  *   root attributes: Conventions "CF-1.8", title, format_version (int 1), program_version,
  *     git_revision, compiler (with flags), library_versions, instruction_set (of rank 0), ranks,
  *     hosts, date, seed, scenario (text), axes (comma-separated dimension names, in order),
- *     scenario_sha256.
+ *     scenario_sha256. Of the file of a shard (shard.h) `shard`, "2/8", too: the other shards'
+ *     cases stay pending, and no space is taken for them.
  *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
  *     gives, merge_note.
  *   group `history`, in a file that went on with another scenario: the texts of the earlier ones,
@@ -63,13 +64,14 @@ void store_library(char *text, size_t size);
 /* The directory that a file is in. */
 void store_directory(const char *file, char *directory, size_t size);
 
-/* Bytes that the file of a plan takes, near enough to say whether it fits. */
+/* Bytes that the file of a plan takes on the disk, near enough to say whether it fits. */
 uint64_t store_size(const struct plan *plan, int ranks);
 
 /* Every function below writes the one-line reason of a failure into *message. */
 
 /* Rank 0 alone: creates the file, which must not exist, with everything but the cases, and
- * reserves its space. On failure nothing is left behind. Designs must have been computed. */
+ * reserves its space, but for a shard, whose file has holes. On failure nothing is left behind.
+ * Designs must have been computed. */
 bool store_create(const char *file, const struct plan *plan, int ranks, const char *hosts,
                   stance_message *message);
 
@@ -91,6 +93,7 @@ struct store_origin {
     char *scenario; /* resolved text */
     char revision[80], date[40];
     char *title, *hosts;
+    struct shard shard;
     char *generator; /* of the points of its sample, doe_generator; NULL: none is named */
     int ranks;
     size_t ancestors; /* scenarios before that one, the first one first */
@@ -137,11 +140,13 @@ bool store_write_trajectory(struct store *store, uint64_t place,
  * cases are verified, too. */
 bool store_verify(struct store *store, const struct rows *rows, stance_result *results, bool *whole,
                   stance_message *message);
+/* Statuses of `count` rows from `first` on, as the file has them. */
+bool store_statuses(struct store *store, uint64_t first, size_t count, uint8_t *status,
+                    stance_message *message);
 /* What became of rows that were to be copied; the numbers add up over calls. */
 struct store_copied {
     uint64_t copied;
     uint64_t same;        /* were there already */
-    uint64_t pending;     /* are in neither file */
     uint64_t damaged;     /* are not as their checksums say, and were left out */
     uint64_t conflicting; /* differ from what was there; left as they were */
     uint64_t conflict;    /* where the first of these is, in the file that is written */

@@ -64,7 +64,6 @@ static void choose_rows(struct store *from, struct store *to, const uint64_t *ta
         wanted[i] = whole[i] && !there[i];
         if (!whole[i]) {
             copied->damaged += is_finished(from->checked, i);
-            copied->pending += !is_finished(from->checked, i) && !there[i];
         } else if (!there[i]) {
             copied->copied++;
         } else if (same_row(from->checked, to->checked, i)) {
@@ -81,7 +80,7 @@ bool store_copy(struct store *from, const struct rows *rows, struct store *to,
 {
     bool whole[STORE_ROWS], there[STORE_ROWS], wanted[STORE_ROWS];
     uint64_t kept[STORE_ROWS], place, to_place;
-    const struct rows aims = {target, rows->count, 0};
+    const struct rows aims = {.row = target, .count = rows->count};
     stance_result *results = malloc(STORE_ROWS * sizeof *results);
     size_t count = 0;
 
@@ -103,7 +102,7 @@ bool store_copy(struct store *from, const struct rows *rows, struct store *to,
         kept[count] = target[i];
         take_row(from->checked, i, to->checked, count++); /* count <= i: a slot already looked at */
     }
-    const struct rows written = {kept, count, 0};
+    const struct rows written = {.row = kept, .count = count};
     return count == 0 || store_write(to, to->checked, 0, &written, message);
 }
 

@@ -22,7 +22,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { FORMAT_VERSION = 1, METADATA_SIZE = 96 * 1024, DATASET_SIZE = 1024 };
+enum { FORMAT_VERSION = 1, METADATA_SIZE = 96 * 1024, DATASET_SIZE = 1024, DISK_BLOCK = 4096 };
 
 struct layout {
     const struct plan *plan;
@@ -475,7 +475,7 @@ static bool put_provenance(struct layout *layout)
     const struct plan *plan = layout->plan;
     const struct scenario *s = plan->scenario;
     char axes[SCENARIO_MAX_AXES * 98 + 8] = "case", compiler[1024], date[40], hash[80];
-    char libraries[BUILD_LIBRARIES_SIZE];
+    char libraries[BUILD_LIBRARIES_SIZE], shard[SHARD_TEXT];
     time_t now = time(NULL);
     struct tm utc;
     size_t used = 0;
@@ -487,6 +487,7 @@ static bool put_provenance(struct layout *layout)
     snprintf(compiler, sizeof compiler, "%s; %s", build_compiler(), build_flags());
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     build_libraries(libraries);
+    shard_text(&plan->shard, shard);
     checksum_sha256(s->text, strlen(s->text), hash);
     return put_text(layout->file, "Conventions", "CF-1.8") &&
            put_text(layout->file, "title", s->title) &&
@@ -499,13 +500,16 @@ static bool put_provenance(struct layout *layout)
            put_int(layout->file, "ranks", layout->ranks) &&
            put_text(layout->file, "hosts", layout->hosts) && put_text(layout->file, "date", date) &&
            put_number(layout->file, "seed", KIND_uint64_t, &s->seed) &&
-           put_text(layout->file, "axes", axes) && put_text(layout->file, "scenario", s->text) &&
+           put_text(layout->file, "axes", axes) &&
+           (plan->shard.count == 0 || put_text(layout->file, "shard", shard)) &&
+           put_text(layout->file, "scenario", s->text) &&
            put_text(layout->file, "scenario_sha256", hash);
 }
 
 /* ---- creation ----------------------------------------------------------------------------- */
 
-uint64_t store_size(const struct plan *plan, int ranks)
+/* Without holes. */
+static uint64_t whole_size(const struct plan *plan, int ranks)
 {
     const struct scenario *s = plan->scenario;
     uint64_t size = METADATA_SIZE + 16 * (uint64_t)ranks + 2 * strlen(s->text);
@@ -526,6 +530,34 @@ uint64_t store_size(const struct plan *plan, int ranks)
     size += plan->record_cases * (12 + (uint64_t)plan->record_rows * per_instant);
     return size + plan->rows * per_row + datasets * DATASET_SIZE +
            plan->designs * sizeof(struct resolved_design);
+}
+
+/* What rows of a plan take that a shard leaves out, but for the ends of its stripes. */
+static uint64_t holes(const struct plan *plan)
+{
+    const struct scenario *s = plan->scenario;
+    const struct shard *shard = &plan->shard;
+    uint64_t size = 0;
+    if (shard->count == 0)
+        return 0;
+    const uint64_t rows = shard_rows(shard), stripes = rows / shard->stripe + 1;
+    for (int c = 0; c < COLUMNS; c++) {
+        const uint64_t width =
+            store_has_column(s, c) ? store_column_width(s, c) * store_columns[c].size : 0;
+        const uint64_t taken = rows * width + stripes * DISK_BLOCK;
+        size += plan->rows * width > taken ? plan->rows * width - taken : 0;
+    }
+    for (int v = 0; v < TRAJECTORIES; v++) {
+        const uint64_t width = sizeof(double) * store_trajectory_width(s->scene, v);
+        const uint64_t left_out = plan->record_cases - plan->record_cases / shard->count;
+        size += left_out * (uint64_t)plan->record_rows * width;
+    }
+    return size;
+}
+
+uint64_t store_size(const struct plan *plan, int ranks)
+{
+    return whole_size(plan, ranks) - holes(plan);
 }
 
 hid_t store_create_hdf(const char *file)
@@ -552,7 +584,7 @@ bool store_create(const char *file, const struct plan *plan, int ranks, const ch
         return store_system_failed(message, file, "create", EEXIST);
     snprintf(part, sizeof part, "%s.part", file);
     unlink(part); /* of a creation that was killed */
-    if (!store_fits(file, store_size(plan, ranks), message))
+    if (!store_fits(file, store_size(plan, ranks), whole_size(plan, ranks), message))
         return false;
     layout.file = store_create_hdf(part);
     if (layout.file < 0)
@@ -563,7 +595,7 @@ bool store_create(const char *file, const struct plan *plan, int ranks, const ch
     good = good || store_failed(message, file, "lay out");
     if (H5Fclose(layout.file) < 0 && good)
         good = store_failed(message, file, "write the layout");
-    good = good && store_reserve(part, message) &&
+    good = good && (plan->shard.count > 0 || store_reserve(part, message)) &&
            (rename(part, file) == 0 || store_system_failed(message, file, "create", errno));
     if (!good)
         unlink(part);

@@ -30,6 +30,15 @@ bool store_check(const char *file, bool resume, stance_message *message)
     return good;
 }
 
+/* Whether it can be read, where there is one. */
+static bool read_shard(hid_t id, struct shard *shard)
+{
+    char *text = H5Aexists(id, "shard") != 0 ? hdf_text(id, "shard") : NULL;
+    const bool good = text ? shard_parse(shard, text) : H5Aexists(id, "shard") == 0;
+    free(text);
+    return good;
+}
+
 bool store_read_origin(const char *file, struct store_origin *origin, stance_message *message)
 {
     *origin = (struct store_origin){0};
@@ -47,6 +56,7 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
     hdf_close(sample);
     const bool good =
+        (read_shard(id, &origin->shard) || store_failed(message, file, "read its shard")) &&
         (store_read_history(id, origin) || store_failed(message, file, "read its history")) &&
         (origin->scenario || not_resumable(id, file, message));
     H5Fclose(id);
@@ -112,6 +122,13 @@ bool store_read_axis(const char *file, struct scenario_axis *axis, stance_messag
                         file);
     }
     return good || store_failed(message, file, "read an axis");
+}
+
+bool store_statuses(struct store *store, uint64_t first, size_t count, uint8_t *status,
+                    stance_message *message)
+{
+    return hdf_move(store->column[COLUMN_STATUS], H5T_STD_U8LE, first, count, HDF_READ, status) ||
+           store_failed(message, store->file, "read the results");
 }
 
 /* Reads the status variable, whatever its shape, in pieces. */

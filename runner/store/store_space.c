@@ -28,7 +28,7 @@ void store_directory(const char *file, char *directory, size_t size)
         slash[slash == directory] = '\0';
 }
 
-bool store_fits(const char *file, uint64_t size, stance_message *message)
+bool store_fits(const char *file, uint64_t size, uint64_t length, stance_message *message)
 {
     struct statvfs system;
     struct rlimit limit;
@@ -41,8 +41,9 @@ bool store_fits(const char *file, uint64_t size, stance_message *message)
         return complain(message, "%.100s: needs about %s but only %s are free: %s", file, needed,
                         there, strerror(ENOSPC));
     }
+    text_of_bytes(needed, sizeof needed, (double)length);
     if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY &&
-        limit.rlim_cur < size) {
+        limit.rlim_cur < length) {
         text_of_bytes(there, sizeof there, (double)limit.rlim_cur);
         return complain(message, "%.100s: needs about %s but the limit on file sizes is %s: %s",
                         file, needed, there, strerror(EFBIG));
