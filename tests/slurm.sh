@@ -268,6 +268,27 @@ assert s.shape[0] == 3 and (s == 1).all(), s' >log 2>&1
     result $? "... of all cases"
 fi
 
+# Shards that know of no MPI, and the job that waits for all of them.
+export SHARDS=4
+RESULTS=results/shards
+undisturbed alone.h5 small.yaml
+submit --nodelist=n2 --array=1-$SHARDS "$scripts/shards.sh"
+shards=$job
+submit --nodelist=n2 --array=1 --dependency="afterok:$shards" "$scripts/shards.sh" merge
+await_end "${job}_1"
+cat "$work"/*"-$shards-"*.log "$work"/*"-$job-1.log" >log 2>&1
+says "shards are merged by a job that waits for them" '^results/shards.h5: [0-9]* cases from 4 files$'
+same "... into the file of one run" alone.h5 results/shards.h5
+rm results/shards.shard-3-of-4.h5
+submit --nodelist=n2 --array=2,3 "$scripts/shards.sh"
+for k in 2 3; do
+    await_end "${job}_$k"
+done
+cat "$work"/*"-$job-2.log" >log
+says "a shard that is done ends at once" '; 0 of them computed now;'
+cat "$work"/*"-$job-3.log" >log
+says "... one that was lost is computed again" 'results/shards.shard-3-of-4.h5: [0-9]* cases: [^;]*; [0-9.]* s on 1 rank'
+
 await_end "$requeued"
 if (($(known "$requeued" Restarts) < 2)); then
     echo "# too quick: once more, with more cases"
