@@ -3,6 +3,7 @@
 #include "page_template.h"
 
 #include "runner/base/command.h"
+#include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/store/search_file.h"
 
@@ -64,18 +65,44 @@ static int end(struct writing *w, bool good, const stance_message *message)
     return EXIT_IO;
 }
 
+/* Adds all of `from`, which is closed; false: it could not be read or had not been written whole.
+ */
+static bool append(FILE *from, FILE *to)
+{
+    char piece[1 << 16];
+    bool good = fflush(from) == 0 && !ferror(from);
+    rewind(from);
+    for (size_t n; good && (n = fread(piece, 1, sizeof piece, from)) > 0;)
+        fwrite(piece, 1, n, to);
+    good = good && !ferror(from);
+    fclose(from);
+    return good;
+}
+
 /* r NULL: of a search. */
 static int write_page(const struct request *request, const struct results *r)
 {
-    const char *const template = page_template(), *const place = strstr(template, PAGE_PLACE);
+    const char *const template = page_template(), *const data = strstr(template, PAGE_DATA),
+                      *const more = strstr(template, PAGE_MORE);
     stance_message message = {""};
     struct writing w;
-    if (!begin(&w, request->out))
+    FILE *const rest = tmpfile(); /* what stands behind the script, told of in the head before it */
+    if (!rest) {
+        failed("a temporary file", "write");
         return EXIT_IO;
-    fwrite(template, 1, (size_t)(place - template), w.out);
-    const bool good = r ? page_data_write(w.out, r, &request->page, &message)
-                        : page_search_write(w.out, request->file, &message);
-    fputs(place + strlen(PAGE_PLACE), w.out);
+    }
+    if (!begin(&w, request->out)) {
+        fclose(rest);
+        return EXIT_IO;
+    }
+    const char *const script = data + strlen(PAGE_DATA);
+    fwrite(template, 1, (size_t)(data - template), w.out);
+    bool good = r ? page_data_write(w.out, rest, r, &request->page, &message)
+                  : page_search_write(w.out, request->file, &message);
+    fwrite(script, 1, (size_t)(more - script), w.out);
+    if (!append(rest, w.out) && good)
+        good = complain(&message, "%s: cannot write a temporary file: %s", w.name, strerror(errno));
+    fputs(more + strlen(PAGE_MORE), w.out);
     return end(&w, good, &message);
 }
 
@@ -271,7 +298,7 @@ static int run(int argc, char **argv)
                       "a results file", request.files, 1, MOST_FILES, &request.count);
     if (begun != COMMAND_GOES_ON)
         return begun;
-    if (!strstr(page_template(), PAGE_PLACE)) {
+    if (!strstr(page_template(), PAGE_DATA)) {
         fputs("stance view: this program was built without the page; `make web` builds both "
               "(analysis/README.md says what that takes)\n",
               stderr);

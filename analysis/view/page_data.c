@@ -19,7 +19,7 @@
 enum { MOST_LISTED = 100, ROWS = 4096 };
 
 struct page {
-    FILE *out;
+    FILE *out, *more; /* see page_data_write */
     const struct results *r;
     const struct page_request *request;
     struct scenario scenario;
@@ -44,7 +44,7 @@ static json_t *number_of(double x)
 static bool put_block(struct page *p, const char *name, const char *type, const void *numbers,
                       size_t size, size_t count)
 {
-    return page_block(p->out, p->blocks, name, type, numbers, size, count, SIZE_MAX, NULL) ||
+    return page_block(p->more, p->blocks, name, type, numbers, size, count, SIZE_MAX, NULL) ||
            no_memory(p->message);
 }
 
@@ -161,7 +161,8 @@ static bool put_engine(struct page *p)
     size_t size;
     const uint8_t *const engine = page_engine(scene->mechanism ? "runtime" : scene->name, &size);
     if (engine)
-        page_base64(p->out, "engine", engine, size);
+        page_base64(p->more, "engine", engine, size);
+    json_object_set_new(p->head, "engine", json_boolean(engine != NULL));
     json_object_set_new(p->head, "stored", json_integer((json_int_t)(p->scenario.answers)));
     return put_axis_values(p) && put_designs(p);
 }
@@ -242,7 +243,7 @@ static bool put_answer(struct page *p, int answer, json_t *list)
     snprintf(name, sizeof name, "answer-%s", a->name);
     const bool carried = asked || (p->request->answers == 0 && limit > 0);
     good = good && (!carried ||
-                    page_block(p->out, p->blocks, name, code ? "u8" : "f32", numbers,
+                    page_block(p->more, p->blocks, name, code ? "u8" : "f32", numbers,
                                code ? 1 : sizeof(float), cases, limit, &bytes) ||
                     no_memory(p->message));
     free(numbers);
@@ -283,16 +284,23 @@ static bool put_scenario_numbers(struct page *p)
     return good;
 }
 
+/* A code of each case that the map is drawn from. */
+static bool put_drawn(struct page *p, const char *name, const void *code)
+{
+    return page_block(p->out, p->blocks, name, "u8", code, 1, (size_t)p->r->cases, SIZE_MAX,
+                      NULL) ||
+           no_memory(p->message);
+}
+
 static bool put_cases(struct page *p)
 {
-    const size_t cases = (size_t)p->r->cases;
     uint64_t count;
     bool *inferred;
     if (!statistics_inferred(p->r, &count, &inferred, p->message))
         return false;
-    bool good = put_block(p, "kind", "u8", p->r->kind, 1, cases) &&
-                (!inferred || put_block(p, "inferred", "u8", inferred, 1, cases)) &&
-                put_checksums(p) && put_scenario_numbers(p);
+    bool good = put_drawn(p, "kind", p->r->kind) &&
+                (!inferred || put_drawn(p, "inferred", inferred)) && put_checksums(p) &&
+                put_scenario_numbers(p);
     free(inferred);
     json_t *const list = json_array();
     for (int a = 0; good && a < STANCE_ANSWER_COUNT; a++)
@@ -336,13 +344,13 @@ static bool put_provenance(struct page *p)
     return good;
 }
 
-bool page_data_write(FILE *out, const struct results *r, const struct page_request *request,
-                     stance_message *message)
+bool page_data_write(FILE *out, FILE *more, const struct results *r,
+                     const struct page_request *request, stance_message *message)
 {
     struct page *const p = calloc(1, sizeof *p); /* large */
     if (!p)
         return no_memory(message);
-    *p = (struct page){.out = out, .r = r, .request = request, .message = message};
+    *p = (struct page){.out = out, .more = more, .r = r, .request = request, .message = message};
     p->head = json_object(), p->blocks = json_object(), p->left_out = json_array();
     json_t *const charts = page_charts(r, message);
     const bool good = charts && put_provenance(p) && put_engine(p) && put_cases(p);

@@ -1,5 +1,5 @@
 // build.mjs - makes the page's template: script and style in one HTML file without data, in which `stance view`
-// replaces the line <!--stance:data-->.
+// replaces the lines <!--stance:data-->, of what the map is drawn from, and <!--stance:more-->.
 //
 //   node build.mjs MODULES OUT
 //     MODULES  folder node_modules that `npm ci` has made from package-lock.json, wherever it is
@@ -53,5 +53,6 @@ const parts = {
   script,
 };
 const page = read(here, 'page.html').replace(/\{\{(\w+)\}\}/g, (_, name) => parts[name]);
-if (page.split('<!--stance:data-->').length !== 2) throw new Error('the template has not one place for data');
+for (const place of ['data', 'more'])
+  if (page.split(`<!--stance:${place}-->`).length !== 2) throw new Error(`the template has not one place for ${place}`);
 writeFileSync(out, page);

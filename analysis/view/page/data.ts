@@ -1,4 +1,5 @@
 // data.ts - the data of the page: its head, and its blocks of numbers, each unpacked when it is first asked for.
+// What the map is drawn from stands before the script, all else behind it: the map is there while that is being read.
 // A block is base64 of a zlib stream of little-endian numbers, those of more than one byte shuffled: all first bytes, then
 // all second ones, ...
 import type { FileAxis, Head } from './format';
@@ -15,8 +16,16 @@ function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
+// All of the page has been read; it ends with the mark of its end, unless it was cut off.
+export const whole = new Promise<void>((done) => {
+  if (document.readyState === 'loading') document.addEventListener('DOMContentLoaded', () => done());
+  else done();
+});
+export const isCut = (): boolean => !document.getElementById('end');
+
 // The bytes of a script element of the page.
 export async function unpack(id: string): Promise<Uint8Array<ArrayBuffer>> {
+  if (!document.getElementById(id)?.nextElementSibling) await whole;
   const element = document.getElementById(id);
   if (!element) throw new Error(`the page has no part "${id}": it is damaged`);
   const packed = new Blob([bytesOf((element.textContent ?? '').trim())]);
@@ -38,7 +47,7 @@ function unshuffle(bytes: Uint8Array, size: number): ArrayBuffer {
 // What a page of charts alone has not.
 const absent: Partial<Head> = {
   file_program: '', file_revision: '', date: '', scenario: '', wire: null, command_file: '', cases: 0, single: false, index: 0, axes: [], sample: -1,
-  varied: [], designs: { count: 0, numbers: 0 }, kinds: [], answers: [], checksums: false, left_out: [], stored: 0, number: -1, blocks: {}, recorded: [],
+  varied: [], designs: { count: 0, numbers: 0 }, kinds: [], answers: [], checksums: false, left_out: [], engine: false, stored: 0, number: -1, blocks: {}, recorded: [],
 };
 
 export interface Axis extends FileAxis {

@@ -85,6 +85,7 @@ export interface Head {
   answers: Answer[];
   checksums: boolean;
   left_out: string[];
+  engine: boolean; // the page carries one
   stored: number;
   number: number; // of the scenario, where the file was made from several: block 'number' has each case's; else -1
   blocks: Record<string, { type: BlockType; count: number }>;

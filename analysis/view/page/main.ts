@@ -1,7 +1,7 @@
 // main.ts - the page: reads its data, its state from the address, and puts the parts together.
 import { Cases } from './cases';
 import { chartsPage } from './charts';
-import { Data } from './data';
+import { Data, isCut, whole } from './data';
 import { byId, complain, el } from './dom';
 import type { ViewText } from './format';
 import { Live } from './live';
@@ -103,7 +103,7 @@ async function start(): Promise<void> {
 
 // The map, the cases that are played, and what may be changed.
 function cases(data: Data, store: Store, parts: (() => void)[]): void {
-  const lack = data.head.wire === null ? 'The scenario in the file is of another version: the page shows what the file has, and simulates nothing.' : lacking();
+  const lack = data.head.wire === null ? 'The scenario in the file is of another version: the page shows what the file has, and simulates nothing.' : lacking(data.head.engine);
   if (lack) byId('case-part').append(el('p', { class: 'sentence', id: 'lacking' }, lack));
   let live: Live | null = null;
   let first!: () => void;
@@ -151,6 +151,7 @@ function cases(data: Data, store: Store, parts: (() => void)[]): void {
 }
 
 byId('reading').remove();
+void whole.then(() => isCut() && complain(new Error('The page is not whole: its file was cut off.')));
 window.addEventListener('error', (e) => complain(e.error ?? e.message));
 window.addEventListener('unhandledrejection', (e) => complain(e.reason));
 byId('problem-close').addEventListener('click', () => (byId('problem').hidden = true));

@@ -46,12 +46,12 @@ interface Job {
   reject: (e: unknown) => void;
 }
 
-// What a browser lacks, in a sentence; null: nothing.
-export function lacking(): string | null {
+// What a browser, or a page, lacks to simulate, in a sentence; null: nothing.
+export function lacking(engine: boolean): string | null {
   // A module with one simd128 instruction.
   const simd = [0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11];
   const can = typeof WebAssembly === 'object' && WebAssembly.validate(new Uint8Array(simd)) && typeof Worker === 'function';
-  if (can && document.getElementById('engine')?.textContent?.trim()) return null;
+  if (can && engine) return null;
   return can
     ? 'This page was made without the engine: it shows what the file has, and simulates nothing.'
     : 'To simulate, this page needs a browser with WebAssembly and its 128-bit vectors: Chrome or Edge 91, Firefox 89, Safari 16.4, or later.';
