@@ -347,6 +347,15 @@ typedef struct stance_tree_numbers {
                                          * instant,  in the ground's axes; s: from, to */
 } stance_tree_numbers;
 
+/* What restitution e asks of contacts that meet the ground: normal velocities -e times those
+ * before, by the largest e' <= e by which impulses add no energy; that whatever they add; or, as
+ * the first, with e for tangential velocities, too (core/contact/impact.h). */
+typedef enum stance_impacts {
+    STANCE_IMPACTS_LIMITED,
+    STANCE_IMPACTS_NEWTON,
+    STANCE_IMPACTS_MOREAU
+} stance_impacts;
+
 typedef struct stance_case {
     double robot[STANCE_MAX_ROBOT];
     /* Of a mechanism, in place of robot: */
@@ -354,7 +363,8 @@ typedef struct stance_case {
     const struct stance_tree *tree; /* the same in all cases of a stream, as ... */
     const stance_scene *scene;
     double friction;    /* Coulomb coefficient, >= 0 */
-    double restitution; /* Newton's, 0 ... 1 */
+    double restitution; /* 0 ... 1 */
+    stance_impacts impacts;
     /* Where several motions obey the contact laws: false, the one that leaves the least kinetic
      * energy; true, the most. */
     bool most_energy;
@@ -451,6 +461,8 @@ typedef struct stance_case {
     X(least_normal_force, double, MIN, own, "N", "smallest normal force on the support foot")      \
     X(impact_energy, double, MAX, rare, "J",                                                       \
       "largest kinetic energy added by contact impulses in one step")                              \
+    X(limited_impacts, int64_t, SUM, rare, "1",                                                    \
+      "impacts with less restitution than asked for, which would have added energy")               \
     X(projection_energy, double, SUM, touching, "J",                                               \
       "sum of |energy| added by position projection")                                              \
     X(events, int64_t, SUM, rare, "1", "changes of contact mode that the method handled")          \

@@ -16,7 +16,7 @@ import netCDF4
 import numpy
 import xarray
 
-COUNTS = ["steps", "iterations", "ambiguous_steps", "unranked_steps", "subdivided_steps", "degraded_samples", "events", "evaluations"]
+COUNTS = ["steps", "iterations", "ambiguous_steps", "unranked_steps", "subdivided_steps", "degraded_samples", "limited_impacts", "events", "evaluations"]
 MEASURES = {"end_time": "s", "settle_time": "s", "fall_time": "s", "max_penetration": "m",
             "slip_distance": "m", "excursion": "rad", "peak_torque": "N m", "friction_used": "1", "least_normal_force": "N",
             "impact_energy": "J", "projection_energy": "J", "energy_gain": "J",

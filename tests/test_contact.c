@@ -152,12 +152,12 @@ static void random_problem(uint64_t *seed, bool default_robot, bool rebounds, st
 static void solve(const struct problem *p, int contacts, bool stood, bool most, double *r,
                   bool *ambiguous, bool *unsolved)
 {
-    double D[2][2][2][2], uf[2][2], out[2][2], shift[2];
+    double D[2][2][2][2], uf[2][2], out[2][2], shift[2][2] = {{0}};
     const double before[2][2] = {{1, 0}, {1, 0}};
     const bool active[2] = {true, contacts == 2};
     struct contact_verdict verdict;
     for (int c = 0; c < 2; c++) {
-        shift[c] = p->e[c];
+        shift[c][0] = p->e[c];
         for (int a = 0; a < 2; a++) {
             uf[c][a] = p->v[2 * c + a] + (a == 0 ? p->e[c] : 0);
             for (int j = 0; j < 4; j++)
@@ -166,7 +166,7 @@ static void solve(const struct problem *p, int contacts, bool stood, bool most, 
     }
     const struct contact_rule rule = {.friction = p->friction,
                                       .prefer = most ? -1 : 1,
-                                      .shift = shift,
+                                      .shift = (const double(*)[2])shift,
                                       .before = stood ? before : NULL};
     solve_contacts(&rule, (const double(*)[2][2][2])D, (const double(*)[2])uf,
                    contacts == 2 ? 3 : 1, LANES_ALL, active, out, &verdict);

@@ -209,7 +209,7 @@ static struct contact_verdict solve(const struct problem *p, bool stood, bool mo
                                     const double (*last)[2], double *r, bool *unique)
 {
     static double D[CONTACTS][CONTACTS][2][2];
-    double uf[CONTACTS][2] = {{0}}, out[CONTACTS][2], shift[CONTACTS] = {0}, before[CONTACTS][2];
+    double uf[CONTACTS][2] = {{0}}, out[CONTACTS][2], shift[CONTACTS][2] = {{0}}, before[CONTACTS][2];
     bool active[CONTACTS] = {false};
     int axis[ROWS] = {0};
     contact_set touching = 0;
@@ -222,7 +222,7 @@ static struct contact_verdict solve(const struct problem *p, bool stood, bool mo
         const int c = p->contact[i];
         uf[c][axis[i]] = p->v[i] + p->e[i];
         if (axis[i] == 0)
-            active[c] = true, shift[c] = p->e[i];
+            active[c] = true, shift[c][0] = p->e[i];
         touching |= contact_with(c);
         for (int j = 0; j < p->rows; j++)
             D[c][p->contact[j]][axis[i]][axis[j]] = p->D[i][j];
@@ -231,7 +231,7 @@ static struct contact_verdict solve(const struct problem *p, bool stood, bool mo
         before[c][0] = 1, before[c][1] = 0;
     const struct contact_rule rule = {.friction = p->friction,
                                       .prefer = most ? -1 : 1,
-                                      .shift = shift,
+                                      .shift = (const double(*)[2])shift,
                                       .before = stood ? (const double(*)[2])before : NULL,
                                       .last = last};
     solve_contacts(&rule, (const double(*)[CONTACTS][2][2])D, (const double(*)[2])uf, touching,

@@ -607,7 +607,7 @@ static void several_errors_are_sorted(void **state)
             "bad.yaml:4:28: initial.state.x: expected a number, found 'y'\n"
             "bad.yaml:5:20: ground.friction: 11 is out of range (0 ... 10)\n"
             "bad.yaml:5:24: ground: unknown key 'grip' (known: friction, restitution, slope, "
-            "gravity, lands, prefer, contacts)\n"
+            "gravity, law, lands, prefer, contacts)\n"
             "--set method.step=1: method.step: 1 is out of range (more than 0, at most 0.1 s)\n"
             "--set seed=-1: seed: -1 is out of range (0 ... 9223372036854775807)\n");
 

@@ -51,6 +51,7 @@ struct summary_numbers {
     X(iterations, NULL, NULL)                                                                      \
     X(evaluations, NULL, NULL)                                                                     \
     X(events, "events_cases", "events, changes of contact mode")                                   \
+    X(limited_impacts, "limited_cases", "impacts with less restitution than asked for")            \
     X(degraded_samples, "degraded_cases",                                                          \
       "samples at which decoupling could not do what it promises")                                 \
     X(subdivided_steps, "subdivided_cases", "steps that had to be subdivided")                     \

@@ -215,6 +215,8 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
     add_number(c, "ground.slope", scene->mechanism ? v->robot[STANCE_ROBOT_SLOPE] : NAN, "rad");
     add_number(c, "ground.gravity", scene->mechanism ? v->robot[STANCE_ROBOT_GRAVITY] : NAN,
                "m/s^2");
+    if (v->impacts != STANCE_IMPACTS_LIMITED)
+        add_text(c, "ground.law", v->impacts == STANCE_IMPACTS_NEWTON ? "newton" : "moreau");
     if (v->prefer)
         add_text(c, "ground.prefer", "most-energy");
     if (v->lands)

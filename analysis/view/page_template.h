@@ -9,7 +9,8 @@
 #define PAGE_DATA "<!--stance:data-->"
 #define PAGE_MORE "<!--stance:more-->"
 
-/* HTML as `make web` made it, with PAGE_DATA and then PAGE_MORE once; "": this program was built without. */
+/* HTML as `make web` made it, with PAGE_DATA and then PAGE_MORE once; "": this program was built
+ * without. */
 const char *page_template(void);
 
 /* The engine of a scene, "runtime" for described ones: a WebAssembly module, deflated (zlib).

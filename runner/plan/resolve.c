@@ -568,6 +568,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
     *out = (stance_case){
         .friction = values->friction,
         .restitution = values->restitution,
+        .impacts = (stance_impacts)values->impacts,
         .most_energy = values->prefer != 0,
         .lands_ahead = values->lands != 0,
         .contacts = (uint32_t)values->contacts,

@@ -47,6 +47,7 @@ struct scenario_equilibrium {
 struct scenario_values {
     double robot[STANCE_MAX_ROBOT];
     double friction, restitution;
+    int impacts;  /* stance_impacts */
     int prefer;   /* of several motions: 0 least energy, 1 most */
     int lands;    /* of feet in the air: 0 anywhere, 1 ahead of those on the ground */
     int contacts; /* bit mask */

@@ -10,6 +10,7 @@ static const char *const design_words[] = {"place", "place-schur", "lqr", "gains
 static const char *const design_time_words[] = {"continuous", "sampled"};
 static const char *const branch_words[] = {"upper", "lower"};
 static const char *const prefer_words[] = {"least-energy", "most-energy"};
+static const char *const impacts_words[] = {"limited", "newton", "moreau"};
 static const char *const lands_words[] = {"anywhere", "ahead"};
 static const char *const spacing_words[] = {"linear", "log"};
 static const char *const truth_words[] = {"false", "true"};
@@ -65,8 +66,8 @@ const struct row schema_rows[] = {
     {0, {.path = "ground.friction", .type = FIELD_NUMBER, .sweep = true, VALUE(friction),
          .unit = "1", .fallback = 0.8, RANGE(0, 10), .text = "Coulomb coefficient of friction"}},
     {0, {.path = "ground.restitution", .type = FIELD_NUMBER, .sweep = true, VALUE(restitution),
-         .unit = "1", .fallback = 0, RANGE(0, 1), .text = "Newton's coefficient of restitution",
-         .more = "Together with friction it can create energy in impacts; 0 never does."}},
+         .unit = "1", .fallback = 0, RANGE(0, 1), .text = "coefficient of restitution",
+         .more = "Of the velocity with which a contact meets the ground: see ground.law."}},
     {0, {.path = "ground.slope", .type = FIELD_NUMBER, .design = true, .sweep = true,
          VALUE(robot[STANCE_ROBOT_SLOPE]), .unit = "rad", .fallback = 0, RANGE(-RIGHT, RIGHT),
          .text = "slope of the ground, positive: +x is downhill",
@@ -74,6 +75,12 @@ const struct row schema_rows[] = {
     {0, {.path = "ground.gravity", .type = FIELD_NUMBER, .design = true, .sweep = true,
          VALUE(robot[STANCE_ROBOT_GRAVITY]), .unit = "m/s^2", .fallback = STANCE_GRAVITY,
          RANGE(0, 1e4), .text = "acceleration of gravity", .more = "Only of a mechanism."}},
+    {0, {.path = "ground.law", .type = FIELD_WORD, .sweep = true, VALUE(impacts), .fallback = 0,
+         WORDS(impacts_words), .text = "what restitution asks for",
+         .more = "newton: normal velocities, -e times those before, whatever energy friction then "
+                 "adds. limited: the same with the largest e that adds none, where e would "
+                 "(limited_impacts counts them). moreau: of tangential velocities the same as of "
+                 "normal ones, by which nothing is added."}},
     {0, {.path = "ground.lands", .type = FIELD_WORD, .sweep = true, VALUE(lands), .fallback = 0,
          WORDS(lands_words), .text = "where a foot in the air may come to the ground",
          .more = "ahead: only where it is further along the ground than all other feet on it, as "

@@ -1,8 +1,8 @@
 /* contact.h - the planar Signorini-Coulomb problem of a step: what contacts there are, what is
  * asked, and the linear equations that are left once each contact's mode is known.
  *
- * Given the velocities without contact impulses uf (normal, tangential for each contact; the
- * normal one already shifted by the restitution term e U-) and the Delassus operator D, find
+ * Given the velocities without contact impulses uf (normal, tangential for each contact, already
+ * shifted by what restitution asks for: impact.h) and the Delassus operator D, find
  * impulses r and velocities u = uf + D r such that for each active contact
  *
  *   0 <= u_N  _|_  r_N >= 0      (Signorini, at velocity level),
@@ -332,8 +332,8 @@ struct contact_rule {
     /* NULL, or for each grip 0 or the sign of a slip that goes on whatever the impulse: for
      * accelerations, where D and uf are those of the contacts and r are forces. */
     const lanes *sliding;
-    const lanes *shift; /* NULL, or the restitution term in each contact's normal uf, m/s, <= 0 */
-    bool indefinite;    /* D is neither symmetric nor positive */
+    const lanes (*shift)[2]; /* NULL, or what restitution adds to each contact's uf, m/s */
+    bool indefinite;         /* D is neither symmetric nor positive */
     /* Impulses in the step before, zero where not known: what stood goes on standing; NULL: nothing
      * is known. And impulses of which the mode may be the solution's, NULL: none. */
     const lanes (*before)[2], (*last)[2];

@@ -552,15 +552,15 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     /* With copies: what is passed on by address stays in memory. */
     struct contact_rule own = *rule;
     lanes D1[CONTACTS][CONTACTS][2][2], uf1[CONTACTS][2], r1[CONTACTS][2];
-    lanes sliding[CONTACTS], shift[CONTACTS], before[CONTACTS][2], last[CONTACTS][2];
+    lanes sliding[CONTACTS], shift[CONTACTS][2], before[CONTACTS][2], last[CONTACTS][2];
     mask part[CONTACTS];
     struct contact_verdict verdict = *v;
     EACH (c, 0, SCENE_CONTACTS) {
         part[c] = touching >> c & 1 ? active[c] : MASK_NONE;
         sliding[c] = rule->sliding ? rule->sliding[c] : none;
-        shift[c] = rule->shift ? rule->shift[c] : none;
         EACH (a, 0, 2) {
             r1[c][a] = r[c][a];
+            shift[c][a] = rule->shift ? rule->shift[c][a] : none;
             before[c][a] = rule->before ? rule->before[c][a] : none;
             last[c][a] = rule->last ? rule->last[c][a] : none;
         }
@@ -573,7 +573,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
                 memcpy(D1[c][k], D[c][k], sizeof D1[c][k]);
     }
     own.sliding = rule->sliding ? sliding : NULL;
-    own.shift = rule->shift ? shift : NULL;
+    own.shift = rule->shift ? (const lanes(*)[2])shift : NULL;
     own.before = rule->before ? (const lanes(*)[2])before : NULL;
     own.last = rule->last ? (const lanes(*)[2])last : NULL;
     solve_rest(&own, (const lanes(*)[CONTACTS][2][2])D1, (const lanes(*)[2])uf1, touching, part,

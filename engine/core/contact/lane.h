@@ -101,7 +101,7 @@ static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTAC
     for (int i = 0; i < p->rows; i++) {
         const int c = p->contact[i], a = p->axis[i];
         p->uf[i] = lane_get(&uf[c][a], lane);
-        p->shift[i] = a == 0 && rule->shift ? lane_get(&rule->shift[c], lane) : 0;
+        p->shift[i] = rule->shift ? lane_get(&rule->shift[c][a], lane) : 0;
         largest = fmax(fabs(p->uf[i]), largest);
         for (int j = 0; j < p->rows; j++)
             p->D[i][j] = lane_get(&D[c][p->contact[j]][a][p->axis[j]], lane);
@@ -417,7 +417,7 @@ static bool lane_stick_is_least(const struct lane_problem *p)
 {
     bool may = !p->indefinite && p->prefer > 0;
     for (int i = 0; i < p->rows; i++)
-        may &= p->shift[i] >= 0 && p->element[p->of[i]].slide == 0;
+        may &= p->shift[i] == 0 && p->element[p->of[i]].slide == 0;
     return may;
 }
 

@@ -23,8 +23,19 @@ struct iterate {
     lanes shift;                               /* how far impulses moved with it, as a velocity */
     lanes approach[CONTACTS], energy, kinetic; /* at the end, see struct motion */
     const lanes (*before)[2];                  /* see contact_rule */
-    const int *corner;                         /* see law_inside */
+    const lanes *along; /* NULL, or what restitution adds to tangential velocities, m/s */
+    const int *corner;  /* see law_inside */
 };
+
+/* The tangential velocity of contact c that Coulomb's law is about: u[1] but for Moreau's impacts.
+ */
+HOT lanes iterate_slip(const struct iterate *it, int c, const lanes u[2])
+{
+    lanes slip = u[1];
+    if (it->along)
+        slip = slip + it->along[c];
+    return slip;
+}
 
 /* What corrections are measured by: the largest velocity, at least 1. */
 HOT lanes iterate_speed(const struct iterate *it)
@@ -71,10 +82,12 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
                           mask running, bool coupled, contact_set touching, const scene_matrix *J,
                           const scene_trig *direction, lanes lever, lanes *dw, struct iterate *it)
 {
-    lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS];
-    EACH (c, 0, SCENE_CONTACTS)
+    lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
+    EACH (c, 0, SCENE_CONTACTS) {
+        rebound[c][0] = rebound[c][1] = lanes_of(0);
         EACH (i, 0, SCENE_COORDINATES)
-            rebound[c] = response[c][0][i] = response[c][1][i] = lanes_of(0);
+            response[c][0][i] = response[c][1][i] = lanes_of(0);
+    }
     lanes D[CONTACTS][CONTACTS][2][2], uf[CONTACTS][2]; /* of those in `touching` */
     EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
@@ -85,9 +98,11 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
             continue;
         scene_contact_velocity(&set->body, &it->end, c, it->w, now);
         scene_contact_velocity_change(&set->body, &it->end, c, it->w, lever, dw, moved);
-        rebound[c] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
-        uf[c][0] = now[0] + moved[0] + rebound[c];
+        rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
+        uf[c][0] = now[0] + moved[0] + rebound[c][0];
         uf[c][1] = now[1] + moved[1];
+        if (it->along)
+            rebound[c][1] = it->along[c], uf[c][1] += it->along[c];
         EACH (k, 0, SCENE_CONTACTS)
             EACH (b, 0, 2) {
                 if (b >= contact_unknowns(k) || !(touching >> k & 1))
@@ -102,7 +117,7 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
     struct contact_verdict now;
     const struct contact_rule rule = {.friction = set->friction,
                                       .prefer = set->prefer,
-                                      .shift = rebound,
+                                      .shift = (const lanes(*)[2])rebound,
                                       .before = it->before,
                                       .last = (const lanes(*)[2])it->r};
     solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])D, (const lanes(*)[2])uf, touching,

@@ -2,7 +2,7 @@
 #ifndef STANCE_CORE_IMPLICIT_MOTION_H
 #define STANCE_CORE_IMPLICIT_MOTION_H
 
-#include "engine/core/contact/direct.h"
+#include "engine/core/contact/impact.h"
 #include "engine/core/law/law.h"
 
 #define STEP_CLOSED 1e-12 /* m: a contact this close counts as closed */
@@ -11,7 +11,8 @@
 struct setting {
     scene_body body;
     lanes friction;
-    lanes restitution[CONTACTS]; /* Newton's, of each contact */
+    lanes restitution[CONTACTS]; /* of each contact */
+    lanes moreau, limited;       /* 1 or 0: whose restitution, see impact.h */
     lanes may_touch[CONTACTS];   /* 1 or 0 */
     lanes prefer;                /* of several contact solutions, see contact_rule */
     struct law law;

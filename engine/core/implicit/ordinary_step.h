@@ -219,6 +219,7 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
 {
     mask good = run;
     it->corner = NULL;
+    it->along = NULL;
     it->verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
     it->before = from->impulse;
     EACH (i, 0, SCENE_ACTUATORS)

@@ -233,9 +233,9 @@ HOT void grip_factor(const struct setting *set, const scene_trig *trig, contact_
 }
 
 /* What is wrong with the velocities u of contacts in `touching`, in the rows that are held;
- * rebound: NULL, or minus the normal velocities that restitution asks for. Returns the lanes where
- * it matters. */
-HOT mask project_wrong(const lanes *rebound, contact_set touching, const struct grip *g,
+ * rebound: NULL, or minus the velocities that restitution asks for. Returns the lanes where it
+ * matters. */
+HOT mask project_wrong(const lanes (*rebound)[2], contact_set touching, const struct grip *g,
                        const lanes (*u)[2], lanes (*wrong)[2])
 {
     const lanes none = lanes_of(0);
@@ -244,12 +244,12 @@ HOT mask project_wrong(const lanes *rebound, contact_set touching, const struct 
         wrong[c][0] = wrong[c][1] = none;
         if (!(touching >> c & 1))
             continue;
-        lanes normal = u[c][0];
+        lanes normal = u[c][0], along = u[c][1];
         if (rebound)
-            normal = normal + rebound[c];
+            normal = normal + rebound[c][0], along = along + rebound[c][1];
         wrong[c][0] = choose(g->rows[c][0], normal, none);
         if (contact_unknowns(c) == 2)
-            wrong[c][1] = choose(g->rows[c][1], u[c][1], none);
+            wrong[c][1] = choose(g->rows[c][1], along, none);
         EACH (a, 0, 2)
             if (a < contact_unknowns(c))
                 off |= mask_less(lanes_of(PROJECT_VELOCITY), lanes_abs(wrong[c][a]));
@@ -286,9 +286,10 @@ HOT lanes project_move_velocity(const struct setting *set, const scene_trig *tri
 }
 
 /* Once more, and again, in the lanes of `off`. */
-COLD lanes project_again(const struct setting *set, const lanes *rebound, const scene_trig *trig,
-                         contact_set touching, const struct grip *g, mask off,
-                         const lanes (*response)[2][SCENE_COORDINATES], lanes *w, lanes (*u)[2])
+COLD lanes project_again(const struct setting *set, const lanes (*rebound)[2],
+                         const scene_trig *trig, contact_set touching, const struct grip *g,
+                         mask off, const lanes (*response)[2][SCENE_COORDINATES], lanes *w,
+                         lanes (*u)[2])
 {
     lanes energy = lanes_of(0), wrong[CONTACTS][2];
     for (int round = 1; round < PROJECT_ROUNDS && mask_any(off); round++) {
@@ -304,7 +305,7 @@ COLD lanes project_again(const struct setting *set, const lanes *rebound, const 
 /* Moves the velocity at the end along the responses until the contacts' velocities u (out, of those
  * in `touching`) are what the laws ask for, in the rows that are held. *energy: the sum of what
  * that adds. */
-HOT void project_along(const struct setting *set, const lanes *rebound, contact_set touching,
+HOT void project_along(const struct setting *set, const lanes (*rebound)[2], contact_set touching,
                        const struct grip *g, const lanes (*response)[2][SCENE_COORDINATES],
                        struct iterate *it, lanes (*u)[2], lanes *energy)
 {
@@ -372,6 +373,7 @@ static inline void project_slides(const struct setting *set, const struct iterat
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
         scene_contact_velocity(&set->body, &it->end, c, it->response[c][1], moved);
         const lanes load = contact_load(c, (const lanes(*)[2])it->r);
+        u[1] = iterate_slip(it, c, u);
         g->rows[c][1] &= mask_less(lanes_fma(lanes_abs(it->r[c][1]), moved[1], lanes_abs(u[1])),
                                    set->friction * load * moved[1]);
     }
@@ -397,7 +399,7 @@ HOT mask project_loaded(const struct grip *g, int c)
 HOT mask project_turns(const struct grip *g, int c, const struct iterate *it, const lanes u[2])
 {
     return project_loaded(g, c) & LANES_NOT(g->rows[c][1]) &
-           mask_less(lanes_of(0), it->r[c][1] * u[1]);
+           mask_less(lanes_of(0), it->r[c][1] * iterate_slip(it, c, u));
 }
 
 /* Position, then velocity at the end of a step in which contacts may have come, in the lanes of
@@ -407,10 +409,12 @@ static inline mask project_far(const struct setting *set, const struct motion *f
                                lanes (*u)[2], lanes *energy)
 {
     struct grip g;
-    lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS];
+    lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
     memset(&g, 0, sizeof g);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        rebound[c] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
+        rebound[c][1] = it->along ? it->along[c] : lanes_of(0);
+    }
     project_rows(set, run, it, &g);
     project_slides(set, it, touching, &g);
     const mask near = project_position(set, from, h, touching, true, run, it, energy);
@@ -419,8 +423,8 @@ static inline mask project_far(const struct setting *set, const struct motion *f
     for (int round = 0; round < 2 + SCENE_CONTACTS; round++) {
         mask falls[CONTACTS], turns[CONTACTS], any = MASK_NONE;
         grip_factor(set, &it->end, touching, (const lanes(*)[2][SCENE_COORDINATES])response, &g);
-        project_along(set, rebound, touching, &g, (const lanes(*)[2][SCENE_COORDINATES])response,
-                      it, u, energy);
+        project_along(set, (const lanes(*)[2])rebound, touching, &g,
+                      (const lanes(*)[2][SCENE_COORDINATES])response, it, u, energy);
         for (int c = 0; c < SCENE_CONTACTS; c++) {
             falls[c] = project_falls(set, where, &g, c, it, u[c]);
             turns[c] = MASK_NONE;

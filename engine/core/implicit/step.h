@@ -40,7 +40,8 @@
     1e-6 /* m/s: a step with frozen geometry that is further off is refused */
 #define STEP_MOST_GAIN                                                                             \
     0.03 /* share of kinetic energies and work; a step that gains more is refused */
-#define STEP_MOST_REBOUND 4 /* the same for a step with a rebound, of all kinetic energy */
+#define STEP_MOST_REBOUND 4   /* the same for a step with a rebound, of all kinetic energy ... */
+#define STEP_MOST_MOREAU 1.25 /* ... and by Moreau's law, whose further roots are nearer */
 
 /* Kinetic energy that the contact impulses added: r.U - x^T A x / 2, x = A^-1 H^T r. */
 static inline lanes impact_energy(const struct setting *set, const struct iterate *it)
@@ -64,6 +65,17 @@ static inline lanes impact_energy(const struct setting *set, const struct iterat
     return work - scene_kinetic(&set->body, trig, x);
 }
 
+/* Lanes where those of a step with a rebound did add some: more than rounding. */
+static inline mask step_gains(const struct setting *set, const struct motion *from,
+                              const struct motion *to, const struct step_report *report)
+{
+    mask rebounds = MASK_NONE;
+    EACH (c, 0, SCENE_CONTACTS)
+        rebounds |= mask_less(lanes_of(0), set->restitution[c]);
+    return rebounds &
+           mask_less(IMPACT_ROUNDING * (from->kinetic + to->kinetic), report->impact_energy);
+}
+
 /* Lanes where an iterate with frozen geometry obeys the contact laws. */
 static inline mask step_obeys(const struct setting *set, const struct motion *from,
                               const struct iterate *it)
@@ -74,6 +86,7 @@ static inline mask step_obeys(const struct setting *set, const struct motion *fr
         lanes u[2];
         scene_contact_velocity(&set->body, &it->end, c, it->w, u);
         u[0] = lanes_fma(set->restitution[c], lanes_min(from->approach[c], lanes_of(0)), u[0]);
+        u[1] = iterate_slip(it, c, u);
         report_residuals(&laws, c, it->active, set->friction, (const lanes(*)[2])it->r, u);
     }
     return mask_less_equal(lanes_max(laws.signorini_residual, laws.dissipation_residual),
@@ -95,26 +108,30 @@ HOT mask step_balances(const struct motion *from, const struct iterate *it, lane
 /* The same for a step with a rebound: the place of the impact inside the step decides on its
  * energy, and Newton's restitution may add some; what multiplies the motion is another root still.
  */
-HOT mask step_rebounds(const struct motion *from, const struct iterate *it, lanes work)
+HOT mask step_rebounds(const struct setting *set, const struct motion *from,
+                       const struct iterate *it, lanes work)
 {
+    const lanes most = choose(mask_less(lanes_of(0), set->moreau), lanes_of(STEP_MOST_MOREAU),
+                              lanes_of(STEP_MOST_REBOUND));
     const lanes fallen = (it->energy - it->kinetic) - (from->energy - from->kinetic);
     const lanes source = from->kinetic + lanes_abs(work) + lanes_abs(fallen);
     const lanes rounding = lanes_abs(from->energy) + lanes_abs(it->energy);
-    return mask_less_equal(it->kinetic,
-                           lanes_fma(lanes_of(STEP_MOST_REBOUND), source,
-                                     lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12))));
+    return mask_less_equal(
+        it->kinetic, lanes_fma(most, source, lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12))));
 }
 
 /* What one contact says in a step that has arrived: velocity u, impulses r of all, where they are
  * in `part`. What hardly carries has no direction, see CONTACT_TOLERANCE. */
 HOT void report_contact(const struct setting *set, const struct motion *from, lanes h,
-                        const mask *part, lanes load, int c, const lanes u[2], const lanes (*r)[2],
-                        struct step_report *report)
+                        const mask *part, lanes load, int c, const lanes u[2],
+                        const struct iterate *it, struct step_report *report)
 {
+    const lanes(*const r)[2] = (const lanes(*)[2])it->r;
     const lanes none = lanes_of(0);
     const mask loaded = part[c] & mask_less(none, r[c][0]);
     const lanes relative[2] = {
-        lanes_fma(set->restitution[c], lanes_min(from->approach[c], none), u[0]), u[1]};
+        lanes_fma(set->restitution[c], lanes_min(from->approach[c], none), u[0]),
+        iterate_slip(it, c, u)};
     lanes carried[CONTACTS][2];
     EACH (k, 0, SCENE_CONTACTS) { /* of its grip */
         carried[k][0] = choose(mask_less(1e-6 * load, r[k][0]), r[k][0], none);
@@ -202,12 +219,12 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
             scene_contact_velocity(&set->body, &it->end, c, it->w, u[c]);
         it->approach[c] = u[c][0];
         if (here)
-            report_contact(set, from, h, part, load, c, u[c], (const lanes(*)[2])it->r, report);
+            report_contact(set, from, h, part, load, c, u[c], it, report);
     }
     it->kinetic = scene_kinetic(&set->body, &it->end, it->w);
     it->energy = it->kinetic + scene_potential(&set->body, it->s1, &it->end);
     rebounds &= somewhere;
-    converged &= (rebounds & step_rebounds(from, it, report->work)) |
+    converged &= (rebounds & step_rebounds(set, from, it, report->work)) |
                  (LANES_NOT(rebounds) & step_balances(from, it, report->work));
     report->ambiguous_steps = choose(it->verdict.ambiguous & converged, lanes_of(1), none);
     report->unranked_steps = choose(it->verdict.unranked & converged, lanes_of(1), none);
@@ -239,21 +256,41 @@ HOT void step_commit(lanes t, const struct iterate *it, bool all, mask done, mas
     to->kinetic = choose_unless(all, done, it->kinetic, to->kinetic);
 }
 
+/* What Moreau's restitution adds to the tangential velocities of an impact (zero elsewhere); false:
+ * it is nobody's in the lanes m. */
+static inline bool step_moreau(const struct setting *set, const struct motion *from, mask m,
+                               lanes *tangential)
+{
+    const mask moreau = m & mask_less(lanes_of(0), set->moreau);
+    if (!mask_any(moreau))
+        return false;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes u[2];
+        scene_contact_velocity(&set->body, &from->trig, c, from->w, u);
+        tangential[c] = lanes_of(0);
+        if (contact_unknowns(c) == 2)
+            tangential[c] = choose(moreau, set->restitution[c] * u[1], lanes_of(0));
+    }
+    return true;
+}
+
 /* Takes one step of length h from `from` in the lanes of `run`; *to and *report are written there
  * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
  * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
  * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
  * between two modes for every h. `corner`: as in law_inside; converged is then only what agrees
  * with it. Returns the lanes that converged. */
-COLD mask take_step_at(const int *corner, const struct setting *set, const struct motion *from,
-                       const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
-                       struct motion *to, struct step_report *report)
+COLD mask step_solve(const int *corner, const struct setting *set, const struct motion *from,
+                     const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
+                     struct motion *to, struct step_report *report)
 {
     struct iterate it;
     it.corner = corner;
     mask impact = MASK_NONE, running = run;
     mask closed[CONTACTS];
-    lanes before[CONTACTS][2];
+    lanes before[CONTACTS][2], tangential[CONTACTS], along[CONTACTS];
+    const bool moreau = step_moreau(set, from, run, tangential);
+    it.along = moreau ? along : NULL;
     EACH (i, 0, SCENE_COORDINATES)
         it.w[i] = from->w[i];
     EACH (i, 0, SCENE_ACTUATORS)
@@ -280,6 +317,8 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
         EACH (c, 0, SCENE_CONTACTS)
             somewhere |= it.active[c] & running;
         const contact_set touching = mask_any(somewhere) ? CONTACT_ALL : 0;
+        for (int c = 0; c < SCENE_CONTACTS && moreau; c++)
+            along[c] = choose(impact, tangential[c], lanes_of(0));
         iterate_newton(set, from, h, false, running, true, impact, coupled, k > freeze_after,
                        touching, &it);
         iterations += choose(running, lanes_of(1), lanes_of(0));
@@ -315,6 +354,55 @@ COLD mask take_step_at(const int *corner, const struct setting *set, const struc
     report->iterations = report->evaluations = iterations;
     step_commit(from->t + h, &it, false, converged, mask_less(lanes_of(0), report->landed), to);
     return converged;
+}
+
+/* The same in the lanes of `gains`, whose impact would add energy, with the largest share of the
+ * restitution by which it does not. */
+COLD mask step_limit(const int *corner, const struct setting *set, const struct motion *from,
+                     const lanes *torque, lanes h, mask gains, bool coupled, int freeze_after,
+                     struct motion *to, struct step_report *report)
+{
+    struct impact_share share = impact_share_begin();
+    struct setting law = *set;
+    lanes cost = report->iterations;
+    for (mask open; mask_any(open = impact_share_open(&share, gains));) {
+        const lanes tried = impact_share_next(&share);
+        struct motion next = *from;
+        struct step_report part;
+        EACH (c, 0, SCENE_CONTACTS)
+            law.restitution[c] = tried * set->restitution[c];
+        const mask good =
+            step_solve(corner, &law, from, torque, h, open, coupled, freeze_after, &next, &part);
+        const mask fits = good & (LANES_NOT(step_gains(set, from, &next, &part)) |
+                                  mask_less_equal(tried, lanes_of(0)));
+        cost += choose(open, part.iterations, lanes_of(0));
+        choose_all(open & fits, &next, to, sizeof next);
+        choose_all(open & fits, &part, report, sizeof part);
+        impact_share_tell(&share, open, fits);
+    }
+    report->iterations = choose(gains, cost, report->iterations);
+    report->evaluations = choose(gains, cost, report->evaluations);
+    report->limited_impacts =
+        choose(gains & impact_share_counts(&share), lanes_of(1), report->limited_impacts);
+    return gains & share.found;
+}
+
+/* One step: step_solve, with restitution that creates no energy. */
+COLD mask take_step_at(const int *corner, const struct setting *set, const struct motion *from,
+                       const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
+                       struct motion *to, struct step_report *report)
+{
+    struct motion next = *to;
+    const mask good =
+        step_solve(corner, set, from, torque, h, run, coupled, freeze_after, &next, report);
+    const mask gains =
+        good & mask_less(lanes_of(0), set->limited) & step_gains(set, from, &next, report);
+    choose_all(good & LANES_NOT(gains), &next, to, sizeof next);
+    if (!mask_any(gains))
+        return good;
+    const mask limited =
+        step_limit(corner, set, from, torque, h, gains, coupled, freeze_after, to, report);
+    return (good & LANES_NOT(gains)) | limited;
 }
 
 /* The same without `corner`. */

@@ -176,6 +176,8 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
     scene_load_body(&set->body, lane, SCENE_NUMBERS(c));
     lane_set(&set->friction, lane, c->friction);
     lane_set(&set->prefer, lane, c->most_energy ? -1 : 1);
+    lane_set(&set->moreau, lane, c->impacts == STANCE_IMPACTS_MOREAU);
+    lane_set(&set->limited, lane, c->impacts != STANCE_IMPACTS_NEWTON);
     for (int i = 0; i < SCENE_CONTACTS; i++) {
         lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
         lane_set(&set->restitution[i], lane, contact_grip(i) >= 0 ? c->restitution : 0);

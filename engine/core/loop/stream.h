@@ -219,6 +219,7 @@ COLD void stream_strike(struct bundle *b, lanes from)
         }
     b->answer.impact_energy = choose(hit, lanes_max(report.impact_energy, b->answer.impact_energy),
                                      b->answer.impact_energy);
+    b->answer.limited_impacts += choose(hit, report.limited_impacts, lanes_of(0));
     advance_forget(&b->advance, hit);
     const mask failed = hit & LANES_NOT(solved);
     b->failure = choose(failed, lanes_of(STANCE_FAILURE_CONTACT), b->failure);

@@ -327,7 +327,7 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     struct dynamics e;
     mask part[CONTACTS];
     struct contact_verdict verdict;
-    lanes torque[ACTUATORS], uf[CONTACTS][2], r[CONTACTS][2], energy = none;
+    lanes torque[ACTUATORS], rebound[CONTACTS][2], r[CONTACTS][2], energy = none;
     for (int i = 0; i < ACTUATORS; i++)
         torque[i] = none;
     scene_trigonometry(now->s, &e.trig);
@@ -337,18 +337,17 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
                   mask_less_equal(e.gap[c], lanes_of(STEP_CLOSED));
     between_project_position(set, part, now->s, &e);
     mask impact = MASK_NONE; /* else only rounding is left to remove */
-    lanes rebound[CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         scene_contact_velocity(&set->body, &e.trig, c, now->w, e.u[c]);
         impact |= part[c] & mask_less(e.u[c][0], lanes_of(-BETWEEN_REST));
-        rebound[c] = set->restitution[c] * lanes_min(e.u[c][0], none);
-        uf[c][0] = e.u[c][0] + rebound[c];
-        uf[c][1] = e.u[c][1];
     }
-    const struct contact_rule rule = {
-        .friction = set->friction, .prefer = set->prefer, .shift = rebound};
-    solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])e.D, (const lanes(*)[2])uf, CONTACT_ALL,
-                   LANES_ALL, part, r, &verdict);
+    const struct impact_rule rule = {.friction = set->friction,
+                                     .prefer = set->prefer,
+                                     .restitution = set->restitution,
+                                     .moreau = impact & mask_less(none, set->moreau),
+                                     .limited = impact & mask_less(none, set->limited)};
+    const mask limited = impact_solve(&rule, where, (const lanes(*)[CONTACTS][2][2])e.D,
+                                      (const lanes(*)[2])e.u, part, rebound, r, &verdict);
     between_push(part, (const lanes(*)[2][SCENE_COORDINATES])e.response, (const lanes(*)[2])r,
                  now->w);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -360,7 +359,8 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
             energy += choose(contact_part(c, part), 0.5 * (r[c][a] * (e.u[c][a] + after[a])), none);
             report->impulse[c][a] += choose(contact_part(c, part), r[c][a], none);
         }
-        after[0] += rebound[c];
+        after[0] += rebound[c][0];
+        after[1] = choose(rule.moreau, after[1] + rebound[c][1], after[1]);
         struct step_report laws = *report;
         report_residuals(&laws, c, part, set->friction, (const lanes(*)[2])r, after);
         choose_all(impact, &laws, report, sizeof laws);
@@ -371,6 +371,7 @@ static inline mask between_impact(const struct setting *set, mask where, struct 
     }
     report->impact_energy =
         choose(where, lanes_max(energy, report->impact_energy), report->impact_energy);
+    report->limited_impacts += choose(limited, lanes_of(1), none);
     report->ambiguous_steps =
         choose(where & verdict.ambiguous, lanes_of(1), report->ambiguous_steps);
     report->unranked_steps = choose(where & verdict.unranked, lanes_of(1), report->unranked_steps);
