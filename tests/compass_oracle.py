@@ -77,7 +77,7 @@ class Walker:
 
     def swing(self, t):
         """To the end of the step: (state there, s)."""
-        out = solve_ivp(self.rates, (0, 3), t, method="DOP853", rtol=1e-13, atol=1e-14, events=ends)
+        out = solve_ivp(self.rates, (0, 3 * np.sqrt(9.81 / self.g)), t, method="DOP853", rtol=1e-13, atol=1e-14, events=ends)
         assert out.t_events[0].size, "no step"
         return out.y_events[0][0], out.t_events[0][0]
 

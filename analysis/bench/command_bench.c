@@ -14,8 +14,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* `stance bench`, below, and `stance bench accuracy`, `failure` and `plot`. */
-extern const struct command command_bench, command_accuracy, command_failure, command_speed;
+/* `stance bench`, below, and `stance bench accuracy`, `failure`, `truth` and `plot`. */
+extern const struct command command_bench, command_accuracy, command_failure, command_truth,
+    command_speed;
 
 enum { MOST_CASES = 512, FEWEST_CASES = 16, MOST_REPEATS = 99, MOST_KERNELS = 64 };
 static const double wanted_time = 0.02; /* s, of one measurement */
@@ -246,6 +247,8 @@ static int run(int argc, char **argv)
         return command_accuracy.run(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "failure") == 0)
         return command_failure.run(argc - 1, argv + 1);
+    if (argc > 1 && strcmp(argv[1], "truth") == 0)
+        return command_truth.run(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "plot") == 0)
         return command_speed.run(argc - 1, argv + 1);
     struct selection what = {.repeats = 5};
@@ -303,8 +306,11 @@ const struct command command_bench = {
     "of them run once more to warm up.\n"
     "\n"
     "`make bench` measures all of this, the whole program and other engines, and draws it with\n"
-    "`stance bench plot`. What `stance bench accuracy -h`, `stance bench failure -h` and\n"
-    "`stance bench plot -h` tell of: error against cost, where methods fail, the picture.\n"
+    "`stance bench plot`. What `stance bench accuracy -h`, `stance bench failure -h`, `stance "
+    "bench\n"
+    "truth -h` and `stance bench plot -h` tell of: error against cost, where methods fail, "
+    "methods\n"
+    "held to published numbers, the picture.\n"
     "\n"
     "--csv: columns as in results/bench.csv.\n"
     "--json: a list of objects with keys scene, regime, method, isa, lanes, ns_per_step, ns_min,\n"

@@ -47,23 +47,27 @@ static size_t list_studies(const char *directory, char *path[MAX_STUDIES])
     return count;
 }
 
-/* Where the studies that ship are: below the working directory, or beside the program. */
-static size_t find_studies(const char *kind, char *path[MAX_STUDIES])
+bool studies_place(size_t k, const char *name, char *path, size_t size)
 {
     static const char *const bases[] = {"", "../", "../share/stance/"};
-    char program[900] = "", directory[1024];
+    char program[900] = "";
     const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
     char *slash = n > 0 ? strrchr(program, '/') : NULL;
+    if (k >= sizeof bases / sizeof *bases)
+        return false;
     if (slash)
         slash[1] = '\0';
-    for (size_t i = 0; i < sizeof bases / sizeof *bases; i++) {
-        snprintf(directory, sizeof directory, "%s%sscenarios/%s", i > 0 && slash ? program : "",
-                 bases[i], kind);
-        const size_t count = list_studies(directory, path);
-        if (count > 0)
-            return count;
-    }
-    return 0;
+    snprintf(path, size, "%s%sscenarios/%s", k > 0 && slash ? program : "", bases[k], name);
+    return true;
+}
+
+static size_t find_studies(const char *kind, char *path[MAX_STUDIES])
+{
+    char directory[1024];
+    size_t count = 0;
+    for (size_t k = 0; count == 0 && studies_place(k, kind, directory, sizeof directory); k++)
+        count = list_studies(directory, path);
+    return count;
 }
 
 /* `stance run` of one study; its exit code. */

@@ -22,4 +22,8 @@ typedef bool (*study_function)(const struct results *r, struct look *look, const
 int studies_run(const struct command *command, const char *kind, study_function study, int argc,
                 char **argv);
 
+/* Where scenarios/NAME may be, in the order in which it is looked for: k = 0, 1 ...: below the
+ * working directory or beside the program. False: nowhere else. */
+bool studies_place(size_t k, const char *name, char *path, size_t size);
+
 #endif

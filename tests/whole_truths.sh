@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# What is known from outside (scenarios/truth): the list against independent programs, every method against
+# the list (truths.py); that a wrong number shows; what is said of a list that is wrong. Speaks TAP.
+set -u
+. "$(dirname "$0")/scratch.sh"
+export STANCE_CACHE=$scratch/cache
+ln -s "$shipped" scenarios
+
+"$python" "$tests/truths.py" "$stance"
+truths=$?
+((truths <= 1)) || result 1 "truths.py ends"
+
+# ---- one truth, and what is done with it -------------------------------------------------------------
+row() { # a list of one truth that is right, edited
+    cat >list.yaml <<END
+truths:
+  - truth: ball thrown
+    scenario: scenarios/truth/projectile.yaml
+    read: z
+    value: 0.2608
+    bar: 0
+    source: Galilei
+END
+    [ $# = 0 ] || sed -i "$@" list.yaml
+}
+row 's/0.2608/0.2618/'
+expect "a number that is wrong" 0 "$stance" bench truth list.yaml --json --csv list.csv --method capturing --method midpoint
+mv log one.json
+"$python" -c "
+import csv, json, sys
+rows = json.load(open(sys.argv[1]))
+assert [r['method'] for r in rows] == ['capturing', 'midpoint']
+assert all(abs(r['error'] - 1e-3) < 1e-10 and r['microseconds_per_second'] > 0 for r in rows), rows
+assert [float(r['error']) for r in csv.DictReader(open('list.csv'))] == [r['error'] for r in rows]" one.json >log 2>&1
+result $? "... shows, in JSON and CSV"
+row
+expect "its table and its picture" 0 "$stance" bench truth list.yaml -o pictures --format png
+says "... the table" "^ball thrown .* Galilei$"
+[ -s pictures/truth.png ]
+result $? "... the picture"
+row 's/read: z/trace: [x, z]/; s/0.2608/2/'
+expect "a derivative" 0 "$stance" bench truth list.yaml --json --method midpoint
+mv log one.json
+"$python" -c "
+import json, sys
+assert json.load(open(sys.argv[1]))[0]['error'] < 1e-9" one.json >log 2>&1
+result $? "... of a flight: 1 for each coordinate"
+row 's/read: z/read: max_penetration\n    border: stop.time\n    between: [0.5, 1]/'
+expect "a border that is not there" 0 "$stance" bench truth list.yaml
+says "... says so" "ball thrown .* none"
+
+# ---- lists that are wrong ----------------------------------------------------------------------------
+wrong() { # name, what is said, sed
+    row "$3"
+    expect "$1" 2 "$stance" bench truth list.yaml
+    says "... says so" "$2"
+}
+wrong "an unknown key" "^list.yaml:4:5: unknown key 'reads'; there are truth" 's/read:/reads:/'
+wrong "no number" "^list.yaml:5:12: a number is needed" 's/0.2608/high/'
+wrong "no source" "^list.yaml:2:.*truth, scenario, value, bar and source are needed" '/source/d'
+wrong "nothing to read" "^list.yaml:2:.*either read or trace is needed" '/read/d'
+wrong "no such coordinate" "^list.yaml:2:.*nothing is called y there" 's/read: z/read: y/'
+wrong "no such scenario" "No such file" 's/projectile/projectiles/'
+wrong "a setting that does not exist" "methods" 's/read: z/read: z\n    set: [methods.step=1]/'
+expect "no list" 2 "$stance" bench truth nowhere.yaml
+expect "a method that does not exist" 2 "$stance" bench truth --method euler
+says "... says so" "unknown method 'euler'"
+expect "no number of times" 2 "$stance" bench truth --finer 0
+echo "1..$count"
+exit $((failed > 0 || truths > 0))
