@@ -106,7 +106,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon golden-web web web-page test test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
+.PHONY: all help packages demo golden golden-neon golden-web web web-page test test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(archives)
@@ -174,8 +174,11 @@ MUJOCO := $(wildcard /usr/include/mujoco/mujoco.h)
 test_sources  := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
+# Other simulators on the charts of `stance bench accuracy`.
+peer_programs = $(BUILD)/tests/peer_self $(if $(MUJOCO),$(BUILD)/tests/peer_mujoco)
+
 # What whole-program tests call.
-other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers
+other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers $(peer_programs)
 
 $(BUILD)/tests/%: tests/%.c $(shared_objects) $(archives)
 	@mkdir -p $(@D)
@@ -289,6 +292,10 @@ $(BUILD)/tests/test_export: LIBS += $(MUJOCO:%=-lmujoco)
 # ---- benchmarks: what the kernels are held to -----------------------------------------------------
 bench_programs = $(BUILD)/tests/bench_scalar $(BUILD)/tests/bench_tables $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit)
 $(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit: LIBS += -lmujoco
+# Of other simulators; they need nothing of ours but headers.
+$(BUILD)/tests/peer_mujoco: tests/peer_mujoco.c Makefile
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $< $(LDFLAGS) -lmujoco -lm
 # By hand as fast as the compiler makes it: the instructions of the one-lane kernel, contracted.
 $(BUILD)/tests/bench_scalar: BENCH_FLAGS = $(filter -m%,$(isa_flags_scalar)) -ffp-contract=fast
 $(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(archives)
@@ -419,6 +426,13 @@ bench: packages
 	@$(MAKE) bench-run
 bench-run: $(PROGRAM) $(bench_programs)
 	@$(TEST_ENVIRONMENT) bash tests/bench.sh
+# Error against cost beside other simulators, those that are installed or can be: about twenty minutes.
+bench-peers: packages
+	@$(MAKE) packages-bench || echo 'bench-peers: what needs $(PACKAGES_BENCH) and is missing is left out' >&2
+	@$(MAKE) bench-peers-run
+bench-peers-run: $(PROGRAM) $(peer_programs)
+	$(PROGRAM) bench accuracy $(addprefix scenarios/accuracy/,drop.yaml basin_one_foot.yaml basin_both_feet.yaml) \
+	    $(addprefix --peer ,$(filter-out %/peer_self,$(peer_programs))) --peer-starts 300 --peer-effort 6
 # WebAssembly under node beside this machine's kernels and MuJoCo's own WebAssembly, if npm gives it.
 MUJOCO_WEB = @mujoco/mujoco@3.14.0
 bench-web: packages-web
@@ -464,6 +478,7 @@ help:
 	@echo 'make test-slurm install Slurm, run the batch scripts of scenarios/cluster under one of its own'
 	@echo 'make test-hosts run on three hosts (network namespaces), one of them cut off in mid-run'
 	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
+	@echo 'make bench-peers  error against cost beside other simulators that are installed: results/accuracy'
 	@echo 'make bench-web  speed of the kernels as WebAssembly beside native ones and MuJoCo as WebAssembly'
 	@echo 'make bench-schedule  how a large job would go on thousands of ranks, simulated'
 	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'

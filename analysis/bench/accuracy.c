@@ -19,7 +19,7 @@ static bool path_is(const struct scenario_axis *axis, int k, const char *path)
 }
 
 /* Cases of each row: all but the first axis. */
-static size_t cases_per_row(const struct accuracy *a, const struct results *r)
+size_t accuracy_cases(const struct accuracy *a, const struct results *r)
 {
     return a->rows > 0 ? (size_t)r->cases / a->rows : 0;
 }
@@ -30,11 +30,11 @@ static bool make_rows(struct accuracy *a, const struct scenario *s, const struct
     if (s->axes < 1 || s->sample.given || !path_is(&s->axis[0], 0, "method.name"))
         return complain(message, "the first axis does not vary method.name");
     a->rows = s->axis[0].count;
-    a->truth = a->rows;
+    a->truth = a->all = a->rows;
     a->row = calloc(a->rows, sizeof *a->row);
     if (!a->row)
         return no_memory(message);
-    const size_t n = cases_per_row(a, r);
+    const size_t n = accuracy_cases(a, r);
     for (size_t k = 0; k < a->rows; k++) {
         struct accuracy_row *row = &a->row[k];
         struct scenario_values values;
@@ -58,7 +58,7 @@ static bool gather(struct accuracy *a, const struct results *r, const char *name
                    double *out, stance_message *message)
 {
     double *values;
-    const size_t n = cases_per_row(a, r);
+    const size_t n = accuracy_cases(a, r);
     if (!results_answer(r, name, &values, message))
         return false;
     for (size_t k = 0; k < a->rows; k++) {
@@ -92,7 +92,7 @@ static bool read_answers(struct accuracy *a, const struct results *r, stance_mes
     }
     free(column);
     free(time);
-    const size_t n = cases_per_row(a, r);
+    const size_t n = accuracy_cases(a, r);
     for (size_t k = 0; k < a->rows; k++) {
         for (size_t i = 0; i < n; i++) {
             const uint64_t index = k * n + i;
@@ -107,8 +107,8 @@ static bool read_answers(struct accuracy *a, const struct results *r, stance_mes
 
 /* ---- trajectories ------------------------------------------------------------------------- */
 
-static void compare_trajectories(const struct results_trajectory *truth,
-                                 const struct results_trajectory *other, struct accuracy_row *row)
+void accuracy_trajectory(const struct results_trajectory *truth,
+                         const struct results_trajectory *other, struct accuracy_row *row)
 {
     const size_t m = truth->coordinates;
     const size_t rows = truth->rows < other->rows ? truth->rows : other->rows;
@@ -130,7 +130,7 @@ static void compare_trajectories(const struct results_trajectory *truth,
 static bool compare_case(struct accuracy *a, const struct results *r, const uint64_t *list,
                          size_t i, stance_message *message)
 {
-    const size_t n = cases_per_row(a, r);
+    const size_t n = accuracy_cases(a, r);
     struct results_trajectory truth, other;
     const size_t at = a->truth * n + i;
     if (r->kind[list[at]] == RESULTS_FAILED || r->kind[list[at]] == RESULTS_PENDING)
@@ -144,7 +144,7 @@ static bool compare_case(struct accuracy *a, const struct results *r, const uint
             continue;
         good = results_trajectory(r, place, list[place], &other, message);
         if (good) {
-            compare_trajectories(&truth, &other, &a->row[k]);
+            accuracy_trajectory(&truth, &other, &a->row[k]);
             results_trajectory_free(&other);
         }
     }
@@ -181,23 +181,25 @@ static bool is_inside(const struct results *r, const uint8_t *truth, size_t cell
     return true;
 }
 
+void accuracy_label(const struct accuracy *a, const struct results *r, size_t cell, uint8_t kind,
+                    struct accuracy_row *row)
+{
+    const uint8_t *const truth = r->kind + a->truth * accuracy_cases(a, r);
+    if (truth[cell] == RESULTS_FAILED || kind == RESULTS_FAILED)
+        return;
+    row->compared++;
+    if (kind != truth[cell]) {
+        row->differ++;
+        row->inside += is_inside(r, truth, cell);
+    }
+}
+
 static void compare_labels(struct accuracy *a, const struct results *r)
 {
-    const size_t n = cases_per_row(a, r);
-    const uint8_t *truth = r->kind + a->truth * n;
-    for (size_t k = 0; k < a->rows; k++) {
-        struct accuracy_row *row = &a->row[k];
-        for (size_t i = 0; i < n; i++) {
-            const uint8_t kind = r->kind[k * n + i];
-            if (truth[i] == RESULTS_FAILED || kind == RESULTS_FAILED)
-                continue;
-            row->compared++;
-            if (kind != truth[i]) {
-                row->differ++;
-                row->inside += is_inside(r, truth, i);
-            }
-        }
-    }
+    const size_t n = accuracy_cases(a, r);
+    for (size_t k = 0; k < a->rows; k++)
+        for (size_t i = 0; i < n; i++)
+            accuracy_label(a, r, i, r->kind[k * n + i], &a->row[k]);
 }
 
 /* ---- orders ------------------------------------------------------------------------------- */
@@ -264,7 +266,7 @@ static bool measure(struct accuracy *a, const struct scenario *s, const struct r
     struct parallel alone = parallel_alone();
     struct plan plan;
     struct plan_error error = {0};
-    const size_t n = cases_per_row(a, r);
+    const size_t n = accuracy_cases(a, r);
 
     if (!plan_make(&plan, s, false, 0, false, &error))
         return complain(message, "%s", error.message.text);
@@ -287,7 +289,7 @@ static bool compare(struct accuracy *a, const struct results *r, stance_message 
     a->labels = count != r->cases;
     if (a->labels)
         compare_labels(a, r);
-    for (size_t i = 0; good && !a->labels && i < cases_per_row(a, r); i++)
+    for (size_t i = 0; good && !a->labels && i < accuracy_cases(a, r); i++)
         good = compare_case(a, r, list, i, message);
     free(list);
     return good;

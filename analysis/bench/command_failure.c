@@ -163,7 +163,7 @@ static bool study(const struct results *r, struct look *look, const char *direct
 
 static int run(int argc, char **argv)
 {
-    return studies_run(&command_failure, "failure", study, argc, argv);
+    return studies_run(&command_failure, "failure", study, NULL, argc, argv);
 }
 
 const struct command command_failure = {

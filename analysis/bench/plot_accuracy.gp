@@ -1,5 +1,6 @@
-# plot_accuracy.gp - error against cost, a line for each method with $errors<method>_<panel>: cost, error,
-# whether it is more than none, cases given up.
+# plot_accuracy.gp - error against cost, for each method, and each peer (peer[m]: 1 all its settings, 2 its
+# defaults), $errors<method>_<panel>: cost, error, whether it is more than none, cases given up; and what a line
+# joins, $line<method>_<panel>.
 left = 108
 gap = 108
 legend = 300
@@ -39,11 +40,14 @@ do for [p=1:panels] {
     eval log_tics('x', log10(0.6*cost_low[1]), log10(1.7*cost_high[1]), 6, 1, 1)
     eval log_tics('y', log10(0.6*error_low[p]), log10(1.7*error_high[p]), 10, 1, 1)
     errors(m) = sprintf('$errors%d_%d', m, p)
-    plot NaN notitle, for [m=1:methods] errors(m) using 1:2 with lines lc rgb hue[method_style[m]] lw 1.6 notitle, \
+    joined(m) = sprintf('$line%d_%d', m, p)
+    dash(m) = peer[m] == 2 ? 3 : 1
+    plot NaN notitle, for [m=1:methods] joined(m) using 1:2 with lines lc rgb hue[method_style[m]] lw (peer[m] ? 2.2 : 1.6) \
+            dt dash(m) notitle, \
         for [m=1:methods] errors(m) using 1:($3 > 0 ? NaN : $2) with points lc rgb hue[method_style[m]] \
-            pt marker[method_style[m]]-1 ps 1 notitle, \
+            pt marker[method_style[m]]-1 ps (peer[m] == 1 ? 0.7 : 1) notitle, \
         for [m=1:methods] errors(m) using 1:($3 > 0 ? $2 : NaN) with points lc rgb hue[method_style[m]] \
-            pt marker[method_style[m]] ps 0.9 notitle, \
+            pt marker[method_style[m]] ps (peer[m] == 1 ? 0.5 : 0.9) notitle, \
         for [m=1:methods] errors(m) using 1:($4 > 0 ? $2 : NaN) with points lc rgb '#b00000' pt 2 ps 1.6 lw 1.6 notitle
     unset logscale
 }

@@ -155,8 +155,8 @@ static int end(const struct request *request, int code)
                : code;
 }
 
-int studies_run(const struct command *command, const char *kind, study_function study, int argc,
-                char **argv)
+int studies_run(const struct command *command, const char *kind, study_function study,
+                const struct studies_options *own, int argc, char **argv)
 {
     const char *given[MAX_STUDIES];
     struct look_options options = {0};
@@ -164,14 +164,23 @@ int studies_run(const struct command *command, const char *kind, study_function 
     char *found[MAX_STUDIES], fallback[64];
     size_t json = 0, reuse = 0, operands;
     bool help;
-    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
-                                        {"--reuse", false, NULL, 0, &reuse},
-                                        LOOK_SPECS(options)};
-    if (!command_options(command, argc, argv, specs, sizeof specs / sizeof specs[0], given,
-                         MAX_STUDIES, &operands, &help))
+    const struct option_spec common[] = {{"--json", false, NULL, 0, &json},
+                                         {"--reuse", false, NULL, 0, &reuse},
+                                         LOOK_SPECS(options)};
+    enum { COMMON = sizeof common / sizeof common[0], MOST_OWN = 8 };
+    struct option_spec specs[COMMON + MOST_OWN];
+    memcpy(specs, common, sizeof common);
+    const size_t owns = own ? own->count : 0;
+    for (size_t i = 0; i < owns && i < MOST_OWN; i++)
+        specs[COMMON + i] = own->spec[i];
+    if (!command_options(command, argc, argv, specs, COMMON + owns, given, MAX_STUDIES, &operands,
+                         &help))
         return EXIT_USAGE;
     if (help)
         return EXIT_DONE;
+    const char *const wrong = own ? own->wrong() : NULL;
+    if (wrong)
+        return command_usage(command, wrong);
     if (!instruction_set_usable(command->name))
         return EXIT_USAGE;
     if (!look_read(command, &options, &look))

@@ -15,12 +15,19 @@
 typedef bool (*study_function)(const struct results *r, struct look *look, const char *directory,
                                const char *stem, json_t **object, stance_message *message);
 
+/* Options of one kind of studies; `wrong`, after they were read: why they cannot be, or NULL. */
+struct studies_options {
+    const struct option_spec *spec; /* [count], no more than eight */
+    size_t count;
+    const char *(*wrong)(void);
+};
+
 /* The whole of `stance bench KIND [SCENARIO]... [-o DIR] [--reuse] [--json]`, with the
- * options of pictures but for --picture: runs the scenarios
+ * options of pictures but for --picture and with `own`, which may be NULL: runs the scenarios
  * given, by default all of scenarios/KIND, into DIR (default results/KIND) and evaluates each.
  * Returns an exit code; numerical failures of cases are what such studies are about, no error. */
-int studies_run(const struct command *command, const char *kind, study_function study, int argc,
-                char **argv);
+int studies_run(const struct command *command, const char *kind, study_function study,
+                const struct studies_options *own, int argc, char **argv);
 
 /* Where scenarios/NAME may be, in the order in which it is looked for: k = 0, 1 ...: below the
  * working directory or beside the program. False: nowhere else. */
