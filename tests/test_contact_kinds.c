@@ -209,7 +209,8 @@ static struct contact_verdict solve(const struct problem *p, bool stood, bool mo
                                     const double (*last)[2], double *r, bool *unique)
 {
     static double D[CONTACTS][CONTACTS][2][2];
-    double uf[CONTACTS][2] = {{0}}, out[CONTACTS][2], shift[CONTACTS][2] = {{0}}, before[CONTACTS][2];
+    double uf[CONTACTS][2] = {{0}}, out[CONTACTS][2], shift[CONTACTS][2] = {{0}},
+           before[CONTACTS][2];
     bool active[CONTACTS] = {false};
     int axis[ROWS] = {0};
     contact_set touching = 0;

@@ -25,8 +25,8 @@ struct page_request {
     bool whole; /* all of them */
 };
 
-/* Writes the page's script elements: to `out` those that its map is drawn from, to `more` the others.
- * False: *message says why; errors of `out` and `more` are the caller's. */
+/* Writes the page's script elements: to `out` those that its map is drawn from, to `more` the
+ * others. False: *message says why; errors of `out` and `more` are the caller's. */
 bool page_data_write(FILE *out, FILE *more, const struct results *r,
                      const struct page_request *request, stance_message *message);
 
