@@ -29,7 +29,7 @@ CLANG_VERSION = $(shell clang -dumpversion 2>/dev/null | cut -d. -f1)
 PACKAGES_WEB  = clang lld llvm wasi-libc libclang-rt-$(CLANG_VERSION:%=%-)dev-wasm32 $(if $(shell command -v node),,nodejs) $(if $(shell command -v npm),,npm)
 PACKAGES_SLURM = munge slurmctld slurmd slurm-client
 PACKAGES_HOSTS = iproute2
-PACKAGES_BENCH = libmujoco-dev valgrind linux-perf
+PACKAGES_BENCH = libmujoco-dev libsiconos-kernel-dev libsiconos-numerics-dev valgrind linux-perf
 BUILD_TOOLS   = gcc make pkg-config
 
 ifeq ($(MPI),1)
@@ -171,11 +171,12 @@ $(BUILD)/revision: FORCE
 # ---- tests ---------------------------------------------------------------------------------------
 # Without MuJoCo what compares with it is skipped.
 MUJOCO := $(wildcard /usr/include/mujoco/mujoco.h)
+SICONOS := $(patsubst %/SiconosConfig.h,%,$(wildcard /usr/include/siconos/SiconosConfig.h))
 test_sources  := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
 # Other simulators on the charts of `stance bench accuracy`.
-peer_programs = $(BUILD)/tests/peer_self $(if $(MUJOCO),$(BUILD)/tests/peer_mujoco)
+peer_programs = $(BUILD)/tests/peer_self $(if $(MUJOCO),$(BUILD)/tests/peer_mujoco) $(if $(SICONOS),$(BUILD)/tests/peer_siconos)
 
 # What whole-program tests call.
 other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers $(peer_programs)
@@ -296,6 +297,10 @@ $(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit: LIBS += -lmujoco
 $(BUILD)/tests/peer_mujoco: tests/peer_mujoco.c Makefile
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $< $(LDFLAGS) -lmujoco -lm
+$(BUILD)/tests/peer_siconos: tests/peer_siconos.cpp tests/peer.h
+	@mkdir -p $(@D)
+	$(call QUIET,c++,$@)$(CXX) -std=c++17 -O2 -I. $(patsubst %,-isystem $(SICONOS)%,/ /kernel /numerics) -o $@ $< $(LDFLAGS) \
+	    -lsiconos_kernel -lsiconos_numerics
 # By hand as fast as the compiler makes it: the instructions of the one-lane kernel, contracted.
 $(BUILD)/tests/bench_scalar: BENCH_FLAGS = $(filter -m%,$(isa_flags_scalar)) -ffp-contract=fast
 $(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(archives)

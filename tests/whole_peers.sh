@@ -74,7 +74,7 @@ expect "one that cannot is no mistake" 0 "${ask[@]}" drop.yaml --reuse --peer ./
 says "... it says why" "fake cannot: no feet"
 
 # ---- those that are installed ----------------------------------------------------------------------
-for peer in mujoco; do
+for peer in mujoco siconos; do
     if [ -x "$programs/peer_$peer" ]; then
         expect "$peer computes the drop" 0 "${ask[@]}" drop.yaml --reuse --peer "$programs/peer_$peer" --peer-effort 0.2 -o self --json
         "$python" - <<'END' >told 2>&1
