@@ -34,7 +34,8 @@ assert all(abs(r['error'] - 1e-3) < 1e-10 and r['microseconds_per_second'] > 0 f
 assert [float(r['error']) for r in csv.DictReader(open('list.csv'))] == [r['error'] for r in rows]" one.json >log 2>&1
 result $? "... shows, in JSON and CSV"
 row
-expect "its table and its picture" 0 "$stance" bench truth list.yaml -o pictures --format png
+mkdir folder && sed 's|scenarios/truth/||' list.yaml >folder/truths.yaml && cp scenarios/truth/projectile.yaml folder
+expect "its table and its picture, of a folder" 0 "$stance" bench truth folder -o pictures --format png
 says "... the table" "^ball thrown .* Galilei$"
 [ -s pictures/truth.png ]
 result $? "... the picture"

@@ -147,8 +147,15 @@ static int whole(const struct request *q, const char *file)
     return code;
 }
 
-static bool find_list(char *path, size_t size)
+/* The list that is named, in a folder that is, or where the one that ships is. */
+static bool find_list(const char *given, char *path, size_t size)
 {
+    struct stat status;
+    if (given) {
+        const bool folder = stat(given, &status) == 0 && S_ISDIR(status.st_mode);
+        snprintf(path, size, "%s%s", given, folder ? "/truths.yaml" : "");
+        return true;
+    }
     for (size_t k = 0; studies_place(k, "truth/truths.yaml", path, size); k++)
         if (access(path, R_OK) == 0)
             return true;
@@ -200,12 +207,12 @@ static int run(int argc, char **argv)
     q.directory = look.directory;
     if (!choose_methods(&q, method, count[3]))
         return EXIT_USAGE;
-    if (operands == 0 && !find_list(found, sizeof found)) {
+    if (!find_list(operands ? given[0] : NULL, found, sizeof found)) {
         fputs("stance bench truth: no scenarios/truth here nor beside the program; name the list\n",
               stderr);
         return EXIT_IO;
     }
-    return whole(&q, operands ? given[0] : found);
+    return whole(&q, found);
 }
 
 const struct command command_truth = {
@@ -214,14 +221,12 @@ const struct command command_truth = {
     "           [-o DIR] [--format F,...] [--for column|page] ...",
     "every method held to published numbers and closed forms",
     run,
-    "Computes each truth of a list, by default scenarios/truth/truths.yaml, with every method, "
-    "and\n"
-    "prints one table: the number that is known and its error bar, how far off each method comes\n"
-    "out, what that costs in microseconds of one core per simulated second (by method, in the "
-    "same\n"
-    "order), the source. In place of an error: why the case failed, or `none`. Steps are the\n"
-    "scenario's or a little less, so that equal ones fill its time. Kernels of described\n"
-    "mechanisms are those that read the structure at run time.\n"
+    "Computes each truth of a list (of a folder: its truths.yaml; by default that of\n"
+    "scenarios/truth) with every method, and prints one table: the number that is known and its\n"
+    "error bar, how far off each method comes out, microseconds of one core per simulated second\n"
+    "by method in the same order, the source. In place of an error: why the case failed, or\n"
+    "`none`. Steps are the scenario's or a little less, so that equal ones fill its time. Kernels\n"
+    "of described mechanisms are those that read the structure at run time.\n"
     "\n"
     "A row of a list (YAML, `truths:`) has\n"
     "  truth, source   what it is, who says so\n"

@@ -270,9 +270,9 @@ bool truth_reach(struct truth_reached *reached, const struct truth_row *row,
     reached->cost = t.result.steps < FEW_STEPS ? NAN : 1e6 * t.cost / t.result.end_time;
     close_trial(&t);
     t.budget = 0;
-    if (good && row->kind == TRUTH_READ)
+    if (good && row->kind == TRUTH_AS_READ)
         reached->value = once;
-    else if (good && row->kind == TRUTH_TRACE_)
+    else if (good && row->kind == TRUTH_AS_TRACE)
         good = trace(&t, &reached->value, message);
     else if (good)
         good = border(&t, finer, &reached->value, message);

@@ -16,9 +16,9 @@ enum { TRUTH_SETS = 12, TRUTH_TRACE = 12, TRUTH_PATH = 1024 };
 
 /* How a number is got from what is read. */
 enum truth_kind {
-    TRUTH_READ,   /* as it is at the end */
-    TRUTH_TRACE_, /* sum over coordinates and rates of d(at the end)/d(at the beginning) */
-    TRUTH_BORDER, /* where along `border` what is read crosses `level` */
+    TRUTH_AS_READ,   /* as it is at the end */
+    TRUTH_AS_TRACE,  /* sum over coordinates and rates of d(at the end)/d(at the beginning) */
+    TRUTH_AS_BORDER, /* where along `border` what is read crosses `level` */
 };
 
 struct truth_row {

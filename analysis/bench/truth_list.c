@@ -97,7 +97,7 @@ static bool take_row(struct reading *r, struct truth_row *row, const struct tree
     bool good = true;
     for (size_t k = 0; k < node->count; k++)
         good = take_key(r, row, &node->key[k], node->item[k]) && good;
-    row->kind = row->traces > 0 ? TRUTH_TRACE_ : row->border ? TRUTH_BORDER : TRUTH_READ;
+    row->kind = row->traces > 0 ? TRUTH_AS_TRACE : row->border ? TRUTH_AS_BORDER : TRUTH_AS_READ;
     if (!good)
         return false;
     if (!row->name || !row->source || !row->scenario[0] || isnan(row->value) || isnan(row->bar))
@@ -105,7 +105,7 @@ static bool take_row(struct reading *r, struct truth_row *row, const struct tree
                            "truth, scenario, value, bar and source are needed");
     if ((row->traces > 0) == (row->read != NULL))
         return problem_add(&r->problems, node->mark, "either read or trace is needed");
-    return row->kind != TRUTH_BORDER || row->between[0] != row->between[1] ||
+    return row->kind != TRUTH_AS_BORDER || row->between[0] != row->between[1] ||
            problem_add(&r->problems, node->mark, "border needs between: [from, to]");
 }
 
