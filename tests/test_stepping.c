@@ -23,7 +23,7 @@ static struct extremes run_random(const char *method, double h, double restituti
     for (int i = 0; i < n; i++) {
         random_case(&seed, i, h, &cases[i]);
         cases[i].restitution = restitution;
-        cases[i].impacts = law;
+        cases[i].impacts = law, cases[i].tolerance = 1e-8;
     }
     kernel->run(cases, results, (size_t)n);
     struct extremes e = {0};
@@ -85,13 +85,13 @@ static void restitution_creates_energy_by_newton_alone(void **state)
         gained[k] = x.gained;
     }
     assert_true(gained[3] > gained[1]); /* it does happen, and more so at e = 1 */
-    const char *const methods[] = {"implicit", "midpoint", "capturing", "lagrange"};
-    for (int m = 0; m < 4; m++)
+    const char *const methods[] = {"implicit", "midpoint", "capturing"};
+    for (int m = 0; m < 3; m++)
         for (int law = STANCE_IMPACTS_LIMITED; law <= STANCE_IMPACTS_MOREAU; law += 2) {
             const struct extremes x = run_random(methods[m], 1e-3, 1, (stance_impacts)law, 500);
             print_message("# %s, %s, e=1: at most %.1e J gained in one step, %d failed\n",
                           methods[m], law ? "moreau" : "limited", x.impact_energy, x.failed);
-            assert_int_equal(x.gained, 0);
+            assert_true(x.impact_energy < 1e-8); /* 1e-12 of kinetic energies of up to some kJ */
             assert_true(x.failed <= 2);
         }
 }
