@@ -282,7 +282,8 @@ static int run(int argc, char **argv)
 const struct command command_accuracy = {
     "bench accuracy",
     "bench accuracy [SCENARIO]... [-o DIR] [--reuse] [--json]\n"
-    "           [--peer PROGRAM]... [--format F,...] [--for column|page] ...",
+    "           [--peer PROGRAM]... [--peer-starts N] [--peer-effort S] [--format F,...]\n"
+    "           [--for column|page] ...",
     "error against cost of every method, on scenes with known answers",
     run,
     "Runs studies of methods and steps, by default those of scenarios/accuracy, like any other\n"
