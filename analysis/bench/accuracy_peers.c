@@ -59,6 +59,21 @@ static bool choose_cases(struct asked *asked, const struct accuracy *a, const st
     return asked->count > 0 || complain(message, "no case that peers could be asked for");
 }
 
+static bool same(const double *a, const double *b, size_t n)
+{
+    size_t i = 0;
+    while (i < n && a[i] == b[i])
+        i++;
+    return i == n;
+}
+
+static bool same_law(const stance_linear_law *a, const stance_linear_law *b)
+{
+    return same(a->feedforward, b->feedforward, STANCE_MAX_ACTUATORS) &&
+           same(a->gain[0], b->gain[0], sizeof a->gain / sizeof(double)) &&
+           same(a->target, b->target, STANCE_MAX_POSTURE);
+}
+
 /* Why nobody is asked; NULL: the talk has words for it. */
 static const char *unspeakable(const struct asked *asked)
 {
@@ -66,11 +81,10 @@ static const char *unspeakable(const struct asked *asked)
     bool alike = true, linear = true;
     for (size_t i = 0; i < asked->count; i++) {
         const stance_case *const c = &asked->cases[i];
-        alike &= memcmp(c->robot, first->robot, sizeof c->robot) == 0 &&
-                 memcmp(&c->near, &first->near, sizeof c->near) == 0 &&
-                 c->friction == first->friction && c->restitution == first->restitution &&
-                 c->contacts == first->contacts && c->torque_limit == first->torque_limit &&
-                 c->sample_every == first->sample_every;
+        alike &= same(c->robot, first->robot, STANCE_MAX_ROBOT) &&
+                 same_law(&c->near, &first->near) && c->friction == first->friction &&
+                 c->restitution == first->restitution && c->contacts == first->contacts &&
+                 c->torque_limit == first->torque_limit && c->sample_every == first->sample_every;
         linear &= !c->decouples && !c->switches && !c->bends && !c->tree && !c->lands_ahead &&
                   !(c->angle_noise > 0 || c->rate_noise > 0 || c->noise > 0 || c->lag > 0) &&
                   c->delay == 0 && !(c->torque_rate > 0 && isfinite(c->torque_rate));
