@@ -287,7 +287,7 @@ bool accuracy_ask(struct accuracy *a, const struct results *r, const struct accu
     struct parallel alone = parallel_alone();
     struct plan plan;
     struct plan_error error = {0};
-    struct asked asked = {NULL};
+    struct asked asked = {0};
     if (!s || !results_scenario(r, s) || !plan_make(&plan, s, false, 0, false, &error)) {
         free(s);
         return complain(message, "the file's scenario cannot be planned: %.100s",
