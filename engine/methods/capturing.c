@@ -57,6 +57,7 @@ static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 
 // clang-format off
 #include "engine/core/mode/explicit.h"
+#include "engine/core/mode/standing_step.h"
 // clang-format on
 
 #define CAPTURE_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
@@ -64,6 +65,7 @@ static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 #define CAPTURE_ATTEMPTS 20000  /* in one step, then the case fails */
 #define CAPTURE_INSTANT 0x1p-10 /* of the tolerance: what moves less does not move */
 #define CAPTURE_GROWTH 64       /* an error this much smaller than the tolerance: twice as long */
+#define CAPTURE_WAIT 16         /* attempts until a standing step is tried a third time */
 
 /* Where each lane is inside its step. */
 struct advance {
@@ -73,6 +75,9 @@ struct advance {
     lanes hunting;         /* 1: an event is known to lie within `part` ... */
     lanes attempts;        /* in this step */
     lanes stood[CONTACTS]; /* see between_mode */
+    lanes ordinary;        /* 1: the last step was a standing one */
+    lanes wait;            /* attempts in which none is tried ... */
+    lanes turns;           /* ... and such steps since the sines were computed anew */
     struct step_report sum;
 };
 
@@ -83,6 +88,9 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->part, lane, INFINITY);
     lane_set(&a->hunting, lane, 0);
     lane_set(&a->attempts, lane, 0);
+    lane_set(&a->ordinary, lane, 0);
+    lane_set(&a->wait, lane, 0);
+    lane_set(&a->turns, lane, 0);
     for (int i = 0; i < SCENE_CONTACTS; i++)
         lane_set(&a->stood[i], lane, 0);
     report_clear_lane(&a->sum, lane);
@@ -234,11 +242,125 @@ static inline lanes capture_size(const struct motion *now)
     return size;
 }
 
+/* ---- the standing step -----------------------------------------------------------------------*/
+
+/* Lanes of `run` that are at the beginning of a step which may be taken as a whole, with exactly
+ * the contacts in `touching` closed, which all stood. */
+HOT mask capture_stands(contact_set touching, const struct advance *a, const struct setting *set,
+                        bool coupled, lanes h, mask run, const struct motion *now)
+{
+    const lanes none = lanes_of(0);
+    mask fit = run & mask_less_equal(a->wait, none) & mask_less_equal(a->hunting, none) &
+               mask_less_equal(a->done, none) & mask_less_equal(h, a->part) &
+               mask_less_equal(h, scene_longest_step(&set->body));
+    if (coupled)
+        fit &= mask_less_equal(set->law.decouples, none);
+    EACH (c, 0, SCENE_CONTACTS) {
+        const mask closed = mask_less(none, set->may_touch[c]) &
+                            mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED));
+        fit &= touching >> c & 1 ? closed & mask_less(none, a->stood[c]) : LANES_NOT(closed);
+    }
+    return fit;
+}
+
+/* Tries a standing step in the lanes of `run`; returns those where *next and *report are its. */
+HOT mask capture_stand(contact_set touching, const struct advance *a, const struct setting *set,
+                       const lanes *torque, bool coupled, lanes h, mask run,
+                       const struct motion *now, struct motion *next, struct step_report *report)
+{
+    lanes error;
+    const mask anew = run & mask_less_equal(lanes_of(STANDING_TURNS), a->turns);
+    const mask good =
+        standing_take(touching, set, now, torque, coupled, h, run, anew, next, report, &error);
+    return good & mask_less_equal(error, a->tolerance * capture_size(now));
+}
+/* Such a step was taken in the lanes of m. */
+HOT void capture_stood(struct advance *a, mask m)
+{
+    const mask anew = mask_less_equal(lanes_of(STANDING_TURNS), a->turns);
+    a->turns = choose(m, choose(anew, lanes_of(0), a->turns + 1), a->turns);
+    a->ordinary = choose(m, lanes_of(1), a->ordinary);
+}
+
+/* Compiled for sets of contacts. */
+#define CAPTURE_STAND(name, there, touching)                                                       \
+    COLD mask capture_##name(const struct advance *a, const struct setting *set,                   \
+                             const lanes *torque, bool coupled, lanes h, mask run,                 \
+                             const struct motion *now, struct motion *next,                        \
+                             struct step_report *report)                                           \
+    {                                                                                              \
+        if (!(there))                                                                              \
+            return MASK_NONE;                                                                      \
+        return capture_stand(touching, a, set, torque, coupled, h, run, now, next, report);        \
+    }
+CONTACT_SETS(CAPTURE_STAND)
+
+/* One standing step of all lanes; false: it is none in some, and nothing has happened. */
+#define ADVANCE_ORDINARY
+static bool advance_was_ordinary(const struct advance *a, int lane)
+{
+    return lane_get(&a->ordinary, lane) > 0;
+}
+HOT bool advance_ordinary(struct advance *a, const struct setting *set, const lanes *torque,
+                          bool coupled, lanes h, mask live, contact_set touching,
+                          struct motion *now, struct step_report *report)
+{
+    struct motion next;
+    mask good = MASK_NONE;
+    if (mask_any(live & LANES_NOT(capture_stands(touching, a, set, coupled, h, live, now))))
+        return false;
+#define TRY(name, there, contacts)                                                                 \
+    if ((there) && touching == (contacts))                                                         \
+        good = capture_##name(a, set, torque, coupled, h, live, now, &next, report);               \
+    else
+    CONTACT_SETS(TRY)
+    return false;
+#undef TRY
+    if (mask_any(live & LANES_NOT(good)))
+        return false;
+    *now = next;
+    capture_stood(a, live);
+    return true;
+}
+
+/* Standing steps in the lanes of `run` where there are such; returns them. */
+COLD mask capture_standing(struct advance *a, const struct setting *set, const lanes *torque,
+                           bool coupled, lanes h, mask run, struct motion *now,
+                           struct step_report *report)
+{
+    mask done = MASK_NONE, tried = MASK_NONE;
+    struct motion from = *now, next;
+    struct step_report part;
+#define TRY(name, there, touching)                                                                 \
+    if (there) {                                                                                   \
+        const mask fit =                                                                           \
+            capture_stands(touching, a, set, coupled, h, run & LANES_NOT(tried), &from);           \
+        if (mask_any(fit)) {                                                                       \
+            const mask good =                                                                      \
+                capture_##name(a, set, torque, coupled, h, fit, &from, &next, &part);              \
+            choose_all(good, &next, now, sizeof next);                                             \
+            choose_all(good, &part, report, sizeof part);                                          \
+            tried |= fit;                                                                          \
+            done |= good;                                                                          \
+        }                                                                                          \
+    }
+    CONTACT_SETS(TRY)
+#undef TRY
+    const mask others = run & LANES_NOT(done);
+    const lanes longer =
+        choose(mask_less(lanes_of(0), a->ordinary), lanes_of(0), lanes_of(CAPTURE_WAIT));
+    const lanes less = lanes_max(a->wait - 1, lanes_of(0));
+    a->wait = choose(others, choose(tried, longer, less), a->wait);
+    a->ordinary = choose(others, lanes_of(0), a->ordinary);
+    capture_stood(a, done);
+    return done;
+}
+
 /* One attempt in every lane: at a smooth step and, over an interval known to hold an event, at the
  * implicit law. */
-static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
-                           lanes h, mask live, bool coupled, struct motion *now,
-                           struct step_report *report, mask *failed)
+static inline mask capture_attempt(struct advance *a, const struct setting *set,
+                                   const lanes *torque, lanes h, mask live, bool coupled,
+                                   struct motion *now, struct step_report *report, mask *failed)
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
     const lanes tolerance = a->tolerance * capture_size(now);
@@ -310,6 +432,23 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
     return arrived;
 }
 
+/* One attempt in every lane, at what is ordinary first. */
+static inline mask advance(struct advance *a, const struct setting *set, const lanes *torque,
+                           lanes h, mask live, bool coupled, struct motion *now,
+                           struct step_report *report, mask *failed)
+{
+    struct step_report told;
+    report_clear(&told);
+    *failed = MASK_NONE;
+    const mask stood = capture_standing(a, set, torque, coupled, h, live, now, &told);
+    const mask rest = live & LANES_NOT(stood);
+    mask arrived = MASK_NONE;
+    if (mask_any(rest))
+        arrived = capture_attempt(a, set, torque, h, rest, coupled, now, report, failed);
+    choose_all(stood, &told, report, sizeof told);
+    return arrived | stood;
+}
+
 // clang-format off
 #include "engine/core/loop/stream.h"
 // clang-format on
@@ -317,7 +456,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 #ifdef STANCE_DESCRIBE_METHOD
 WEAK const stance_method stance_method_capturing = {
     .name = "capturing",
-    .text = "order 5 between events; the implicit law, refined to tolerance, across them",
+    .text = "order 4 or 5 between events; the implicit law, refined to tolerance, across them",
     .order_smooth = 5,
     .tolerance = 1e-8,
 };

@@ -1,11 +1,12 @@
 /* direct.h - contact problems solved where the solution is certainly the one that is wanted; what
  * is left is left to lane.h and, of more than four elements, to crowd.h.
  *
- * One point. With D_N+- = D_NN +- mu D_NT > 0, D_NN > 0 and det D > 0 the problem of contact.h
- * has exactly one solution: uf_N >= 0: open. Slip with r_N > 0 would need uf_N < 0, and sticking 0
- * = u_N >= uf_N + D_N r_N, of D_N the smaller, the same; uf_N < 0: u_N = 0 makes u_T a function of
- * r_T with slope det D / D_NN > 0 on the interval of |r_T| <= mu r_N: it sticks where u_T = 0 is
- * reached inside, else it slips at that end of the interval beyond which the sticking impulse lies.
+ * One point. With D_N+- = D_NN +- mu D_NT > 0, D_NN > 0 and det D > 0 - whatever else D is - the
+ * problem of contact.h has exactly one solution: uf_N >= 0: open. Slip with r_N > 0 would need uf_N
+ * < 0, and sticking 0 = u_N >= uf_N + D_N r_N, of D_N the smaller, the same; uf_N < 0: u_N = 0
+ * makes u_T a function of r_T with slope det D / D_NN > 0 on the interval of |r_T| <= mu r_N: it
+ * sticks where u_T = 0 is reached inside, else it slips at that end of the interval beyond which
+ * the sticking impulse lies.
  *
  * All stick. What stood still in the step before, all of it, goes on standing as long as the
  * impulses that takes lie in the cones, whatever else would satisfy the laws: what stands has no
@@ -500,9 +501,7 @@ HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTAC
     }
     const mask one = any & LANES_NOT(many); /* one point */
     const contact_set points = touching;
-    if (rule->indefinite) {
-        unsure = any;
-    } else if (points && (points & (points - 1)) == 0 && !mask_any(many)) { /* no stop */
+    if (points && (points & (points - 1)) == 0 && !mask_any(many)) { /* no stop */
         EACH (c, 0, SCENE_CONTACTS) {
             if (!(touching >> c & 1) || !contact_is_point(c))
                 continue;

@@ -108,9 +108,13 @@ COLD mask fixed_subdivide(const struct setting *set, const struct motion *from, 
 /* One ordinary step in all lanes, of which all have the contacts in `touching` closed; false: it is
  * not ordinary in all, or not all have, and nothing has happened. */
 #define ADVANCE_ORDINARY
+static bool advance_was_ordinary(const struct advance *a, int lane)
+{
+    return lane_get(&a->quick.known, lane) > 0;
+}
 HOT bool advance_ordinary(struct advance *a, const struct setting *set, const lanes *torque,
-                          lanes h, mask live, contact_set touching, struct motion *now,
-                          struct step_report *report)
+                          bool coupled, lanes h, mask live, contact_set touching,
+                          struct motion *now, struct step_report *report)
 {
     struct iterate it;
     mask apart = MASK_NONE;
@@ -120,7 +124,7 @@ HOT bool advance_ordinary(struct advance *a, const struct setting *set, const la
     if (mask_any(apart))
         return false;
     const mask good =
-        ordinary_try(&a->quick, set, now, torque, h, live, touching, true, &it, report);
+        ordinary_try(&a->quick, set, now, torque, h, coupled, live, touching, true, &it, report);
     if (mask_any(live & LANES_NOT(good)))
         return false;
     ordinary_keep(&a->quick, &it, h, true, good, now);
@@ -131,13 +135,11 @@ COLD mask advance(struct advance *a, const struct setting *set, const lanes *tor
                   mask live, bool coupled, struct motion *now, struct step_report *report,
                   mask *failed)
 {
-    mask ok = MASK_NONE;
-    if (!coupled) {
-        struct iterate it;
-        ok = ordinary_try(&a->quick, set, now, torque, h, live, step_touching(set, now->gap, live),
-                          false, &it, report);
-        ordinary_keep(&a->quick, &it, h, false, ok, now);
-    }
+    struct iterate it;
+    const mask ok = ordinary_try(&a->quick, set, now, torque, h, coupled, live,
+                                 step_touching(set, now->gap, live), false, &it, report);
+    ordinary_keep(&a->quick, &it, h, false, ok, now);
+    mask arrived = ok;
     const mask other = live & LANES_NOT(ok);
     *failed = MASK_NONE;
     if (mask_any(other)) {
@@ -151,10 +153,10 @@ COLD mask advance(struct advance *a, const struct setting *set, const lanes *tor
         choose_all(other, &slow, report, sizeof slow);
         choose_all(there, &next, now, sizeof next);
         *failed = other & LANES_NOT(there);
-        ok |= there;
+        arrived |= there;
         ordinary_forget(&a->quick, other);
     }
-    return ok;
+    return arrived;
 }
 
 #endif

@@ -10,8 +10,10 @@
  *   K h |d|^2 with the scene's bound K on the equation's curvature (scene_curvature), so one
  *   iteration is enough where |d|^2 <= ORDINARY_ERROR / (K h), relative to the speed: about 1e-5.
  * - Sines and cosines at the end are those of the beginning turned by h w, an angle of
- *   ORDINARY_ANGLE at most, by series; every ORDINARY_TURNS steps they are computed anew, so that
+ *   TRIG_TURNED at most, by series; every ORDINARY_TURNS steps they are computed anew, so that
  *   rounding does not add up.
+ * - A linear law that acts inside the step is part of the equation, and bends it at the torque
+ *   limits alone: an iteration counts where each torque stays at its limit, or at none.
  * - Contacts are those of the bundle: `touching` is known to the compiler.
  * - Position errors are mended along the directions of the last iteration: they may be off by
  *   1e-4 of what is mended, a billionth of the speed at 5 ms.
@@ -26,10 +28,9 @@
 #include "step.h"
 
 #define ORDINARY_ITERATIONS 4
-#define ORDINARY_ERROR 1e-11  /* of the velocity, left by Newton */
-#define ORDINARY_ANGLE 0.0625 /* rad: the series' rounding error is then below 1e-17 */
-#define ORDINARY_TURNS 32     /* steps between sines computed anew */
-#define ORDINARY_SMALL 1e-6   /* rad: a last correction that turns further is not ordinary */
+#define ORDINARY_ERROR 1e-11 /* of the velocity, left by Newton */
+#define ORDINARY_TURNS 32    /* steps between sines computed anew */
+#define ORDINARY_SMALL 1e-6  /* rad: a last correction that turns further is not ordinary */
 
 /* What is remembered of the steps before. */
 struct ordinary {
@@ -49,26 +50,6 @@ static inline void ordinary_forget(struct ordinary *q, mask m)
     }
     q->known = choose(m, none, q->known);
     q->turns = choose(m, lanes_of(ORDINARY_TURNS), q->turns);
-}
-
-/* Sines and cosines after turning by d[], at most ORDINARY_ANGLE. */
-HOT void ordinary_turn(const scene_trig *from, const lanes *d, scene_trig *to)
-{
-    EACH (a, 0, SCENE_ANGLES) {
-        if (SCENE_SLIDES(a)) {
-            to->sine[a] = from->sine[a] + d[a], to->cosine[a] = from->cosine[a];
-            continue;
-        }
-        const lanes x = d[a], t = x * x, s = from->sine[a], c = from->cosine[a];
-        lanes sine = lanes_fma(t, lanes_of(-1. / 5040), lanes_of(1. / 120));
-        sine = lanes_fma(t, sine, lanes_of(-1. / 6));
-        sine = lanes_fma(x * t, sine, x);
-        lanes less = lanes_fma(t, lanes_of(1. / 40320), lanes_of(-1. / 720)); /* cosine - 1 */
-        less = lanes_fma(t, less, lanes_of(1. / 24));
-        less = t * lanes_fma(t, less, lanes_of(-0.5));
-        to->sine[a] = s + lanes_fma(c, sine, s * less);
-        to->cosine[a] = c + lanes_fnma(s, sine, c * less);
-    }
 }
 
 /* Takes sines and cosines over where m holds, or everywhere. */
@@ -101,10 +82,10 @@ HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lan
         return;
     }
     scene_trig end, middle;
-    ordinary_turn(&from->trig, d, &middle);
+    trig_turned(&from->trig, d, &middle);
     if (METHOD_THETA != 1)
-        ordinary_turn(&middle, d, &end);
-    const mask anew = LANES_NOT(mask_less_equal(farthest, lanes_of(ORDINARY_ANGLE))) |
+        trig_turned(&middle, d, &end);
+    const mask anew = LANES_NOT(mask_less_equal(farthest, lanes_of(TRIG_TURNED))) |
                       mask_less_equal(lanes_of(ORDINARY_TURNS), q->turns);
     if (mask_any(m & anew)) {
         scene_trig exact;
@@ -135,33 +116,61 @@ HOT mask ordinary_arrive(const struct motion *from, lanes h, const lanes *old, s
     return mask_less_equal(farthest, lanes_of(ORDINARY_SMALL));
 }
 
+/* A law that acts inside the step: its torques at the iterate, in the lanes of m. Returns the lanes
+ * where those that the last iteration was taken with are at the same limits, or at none: elsewhere
+ * it says nothing of the error left. */
+COLD mask ordinary_law(const struct setting *set, const struct motion *from, lanes h, mask m,
+                       struct iterate *it)
+{
+    lanes u[SCENE_COORDINATES], v[SCENE_COORDINATES], torque[ACTUATORS];
+    mask same = LANES_ALL;
+    EACH (i, 0, SCENE_COORDINATES) {
+        v[i] = step_velocity(from->w[i], it->w[i]);
+        u[i] = from->s[i] + (METHOD_THETA * h) * v[i];
+    }
+    law_torque(&set->law, u, v, torque);
+    law_clip(&set->law, torque);
+    EACH (i, 0, SCENE_ACTUATORS) {
+        const lanes limit = set->law.limit[i], before = it->torque[i], now = torque[i];
+        const mask high = mask_less_equal(limit, before), low = mask_less_equal(before, -limit);
+        const mask free = LANES_NOT(high | low);
+        same &= (high & mask_less_equal(limit, now)) | (low & mask_less_equal(now, -limit)) |
+                (free & mask_less(lanes_abs(now), limit));
+        it->torque[i] = choose(m, now, before);
+    }
+    return same;
+}
+
 /* One iteration in the lanes of m; `all`: whatever becomes of the others. `old` is where it
  * started. Returns the lanes where the error left is certainly small. */
 HOT mask ordinary_iterate(const struct ordinary *q, const struct setting *set,
-                          const struct motion *from, lanes h, bool all, mask m,
+                          const struct motion *from, lanes h, bool coupled, bool all, mask m,
                           contact_set touching, lanes *old, struct iterate *it)
 {
     ordinary_place(q, from, h, all, m, it);
     EACH (i, 0, SCENE_COORDINATES)
         old[i] = choose_unless(all, m, it->w[i], old[i]);
-    iterate_newton(set, from, h, all, m, false, MASK_NONE, false, false, touching, it);
+    iterate_newton(set, from, h, all, m, false, MASK_NONE, coupled, false, touching, it);
     const lanes left = (h * scene_curvature(&set->body) * it->size) * (it->size + it->shift);
-    const mask small = mask_less_equal(left, lanes_of(ORDINARY_ERROR));
-    if (!mask_any(m & LANES_NOT(small)))
-        return small;
-    return small | mask_less_equal(left, ORDINARY_ERROR * iterate_speed(it));
+    mask small = mask_less_equal(left, lanes_of(ORDINARY_ERROR));
+    if (mask_any(m & LANES_NOT(small)))
+        small |= mask_less_equal(left, ORDINARY_ERROR * iterate_speed(it));
+    if (coupled)
+        small &= ordinary_law(set, from, h, m, it);
+    return small;
 }
 
 /* Further iterations, where one was not enough; returns the lanes where they got there. */
 COLD mask ordinary_more(const struct ordinary *q, const struct setting *set,
-                        const struct motion *from, lanes h, int first, mask running,
+                        const struct motion *from, lanes h, bool coupled, int first, mask running,
                         contact_set touching, lanes *old, lanes *iterations, struct iterate *it)
 {
     mask there = MASK_NONE;
     for (int k = first; k < ORDINARY_ITERATIONS && mask_any(running); k++) {
         if (k > 0)
             *iterations += choose(running, lanes_of(1), lanes_of(0));
-        const mask small = ordinary_iterate(q, set, from, h, false, running, touching, old, it);
+        const mask small =
+            ordinary_iterate(q, set, from, h, coupled, false, running, touching, old, it);
         there |= running & small;
         running &= LANES_NOT(small);
     }
@@ -171,8 +180,8 @@ COLD mask ordinary_more(const struct ordinary *q, const struct setting *set,
 /* Newton's iteration to its end, from the extrapolated velocity. Returns the lanes where it got
  * there. */
 HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
-                         const struct motion *from, lanes h, mask run, contact_set touching,
-                         bool full, struct iterate *it, lanes *iterations)
+                         const struct motion *from, lanes h, bool coupled, mask run,
+                         contact_set touching, bool full, struct iterate *it, lanes *iterations)
 {
     lanes old[SCENE_COORDINATES];
     EACH (i, 0, SCENE_COORDINATES)
@@ -180,13 +189,14 @@ HOT mask ordinary_newton(const struct ordinary *q, const struct setting *set,
     *iterations = lanes_of(1);
     mask there = MASK_NONE;
     if (full)
-        there = run & ordinary_iterate(q, set, from, h, true, run, touching, old, it);
+        there = run & ordinary_iterate(q, set, from, h, coupled, true, run, touching, old, it);
     const mask running = run & LANES_NOT(there);
     if (mask_any(running)) { /* with copies: what is passed on by address stays in memory */
         struct iterate copy = *it;
         lanes start[SCENE_COORDINATES], count = *iterations;
         memcpy(start, old, sizeof start);
-        there |= ordinary_more(q, set, from, h, full, running, touching, start, &count, &copy);
+        there |=
+            ordinary_more(q, set, from, h, coupled, full, running, touching, start, &count, &copy);
         *it = copy;
         *iterations = count;
         memcpy(old, start, sizeof old);
@@ -214,8 +224,9 @@ HOT mask ordinary_active(const struct setting *set, const struct motion *from, i
 /* The solution of an ordinary step's equation in the lanes of `run`, where contacts in `touching`
  * are closed in some of them or, `full`, in all. Returns the lanes where it was found. */
 HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
-                        const struct motion *from, const lanes *torque, lanes h, mask run,
-                        contact_set touching, bool full, struct iterate *it, lanes *iterations)
+                        const struct motion *from, const lanes *torque, lanes h, bool coupled,
+                        mask run, contact_set touching, bool full, struct iterate *it,
+                        lanes *iterations)
 {
     mask good = run;
     it->corner = NULL;
@@ -235,18 +246,19 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
         EACH (a, 0, 2)
             it->r[c][a] = choose(it->active[c], from->impulse[c][a], lanes_of(0));
     }
-    good &= ordinary_newton(q, set, from, h, good, touching, full, it, iterations);
+    good &= ordinary_newton(q, set, from, h, coupled, good, touching, full, it, iterations);
     return good & LANES_NOT(it->verdict.unsolved | it->verdict.ambiguous | it->verdict.unranked);
 }
 
 /* Tries one ordinary step, arguments as above. Returns the lanes where it was one. */
 HOT mask ordinary_try(const struct ordinary *q, const struct setting *set,
-                      const struct motion *from, const lanes *torque, lanes h, mask run,
-                      contact_set touching, bool full, struct iterate *it,
+                      const struct motion *from, const lanes *torque, lanes h, bool coupled,
+                      mask run, contact_set touching, bool full, struct iterate *it,
                       struct step_report *report)
 {
     lanes iterations;
-    mask good = ordinary_reach(q, set, from, torque, h, run, touching, full, it, &iterations);
+    mask good =
+        ordinary_reach(q, set, from, torque, h, coupled, run, touching, full, it, &iterations);
     EACH (c, 0, SCENE_CONTACTS)
         it->gap[c] = scene_gap(&set->body, it->s1, &it->end, c);
     good &= LANES_NOT(ordinary_arrivals(set, it));

@@ -6,6 +6,7 @@
 
 #include "iterate.h"
 
+#define TRIG_TURNED 0.0625    /* rad: the series' rounding error is then below 1e-17 */
 #define STEP_PROJECTION 1e-13 /* m: gap error left by the projection */
 #define STEP_FARTHEST 0.3     /* rad: a projection that turns the robot further is refused */
 #define STEP_APPROACH 1e-9    /* m/s: a closed contact that approaches faster is an impact */
@@ -101,6 +102,26 @@ HOT void trig_turn(scene_trig *trig, mask where, const lanes *d)
         const lanes half = 0.5 * (x * x);
         trig->sine[a] = choose(where, s + (x * c - half * s), s);
         trig->cosine[a] = choose(where, c - (x * s + half * c), c);
+    }
+}
+
+/* Sines and cosines after turning by d[], at most TRIG_TURNED. */
+HOT void trig_turned(const scene_trig *from, const lanes *d, scene_trig *to)
+{
+    EACH (a, 0, SCENE_ANGLES) {
+        if (SCENE_SLIDES(a)) {
+            to->sine[a] = from->sine[a] + d[a], to->cosine[a] = from->cosine[a];
+            continue;
+        }
+        const lanes x = d[a], t = x * x, s = from->sine[a], c = from->cosine[a];
+        lanes sine = lanes_fma(t, lanes_of(-1. / 5040), lanes_of(1. / 120));
+        sine = lanes_fma(t, sine, lanes_of(-1. / 6));
+        sine = lanes_fma(x * t, sine, x);
+        lanes less = lanes_fma(t, lanes_of(1. / 40320), lanes_of(-1. / 720)); /* cosine - 1 */
+        less = lanes_fma(t, less, lanes_of(1. / 24));
+        less = t * lanes_fma(t, less, lanes_of(-0.5));
+        to->sine[a] = s + lanes_fma(c, sine, s * less);
+        to->cosine[a] = c + lanes_fnma(s, sine, c * less);
     }
 }
 

@@ -1,5 +1,6 @@
 /* regroup.h - moves cases between bundles so that those side by side have the same contacts: a
- * bundle in which one robot stands on two feet pays for two feet in every lane.
+ * bundle in which one robot stands on two feet pays for two feet in every lane, and one whose step
+ * is not ordinary has all lanes take the slow way.
  *
  * A case's arithmetic is its lane's alone, so that it may move whenever no step is under way.
  */
@@ -8,8 +9,9 @@
 
 #include "bundle.h"
 
-/* What a lane's next step will cost: its closed contacts; idle lanes come last. */
-enum { REGROUP_KEYS = (1 << SCENE_CONTACTS) + 1 };
+/* What a lane's next step will cost: its closed contacts, and whether it is ordinary if it is like
+ * the last one; idle lanes come last. */
+enum { REGROUP_KEYS = 2 * (1 << SCENE_CONTACTS) + 1 };
 
 static int regroup_key(const struct bundle *b, int lane)
 {
@@ -22,7 +24,11 @@ static int regroup_key(const struct bundle *b, int lane)
             touching |= 1 << c;
     for (; touching; touching >>= 1) /* its place in Gray's code: neighbours share contacts */
         rank ^= touching;
-    return rank;
+#ifdef ADVANCE_ORDINARY
+    return 2 * rank + advance_was_ordinary(&b->advance, lane);
+#else
+    return 2 * rank;
+#endif
 }
 
 _Static_assert(sizeof(struct bundle) % sizeof(lanes) == 0 &&

@@ -13,9 +13,10 @@
  *                                         *failed,
  *   void advance_free(a)                  at the end of all,
  *
- * and may define ADVANCE_ORDINARY (see stream_ordinary), ADVANCE_MOVES where struct advance
- * consists of lanes, so that cases may change lanes between steps, and ADVANCE_PIECES where a step
- * may be of any length: then pushes begin and end, and blows fall, at their instants.
+ * and may define ADVANCE_ORDINARY (see stream_ordinary) with advance_was_ordinary, ADVANCE_MOVES
+ * where struct advance consists of lanes, so that cases may change lanes between steps, and
+ * ADVANCE_PIECES where a step may be of any length: then pushes begin and end, and blows fall, at
+ * their instants.
  */
 #ifndef STANCE_CORE_LOOP_STREAM_H
 #define STANCE_CORE_LOOP_STREAM_H
@@ -91,46 +92,41 @@ HOT void stream_follow(struct bundle *b, bool all, mask ok, mask failed, bool or
 
 #ifdef ADVANCE_ORDINARY
 /* One step of all lanes, if it is ordinary in all; false: nothing has happened. */
-HOT bool stream_ordinary(struct bundle *b, contact_set touching)
+HOT bool stream_ordinary(struct bundle *b, bool coupled, contact_set touching)
 {
     struct step_report report;
-    if (!advance_ordinary(&b->advance, &b->set, b->torque, b->h, b->live, touching, &b->now,
-                          &report))
+    if (!advance_ordinary(&b->advance, &b->set, b->torque, coupled, b->h, b->live, touching,
+                          &b->now, &report))
         return false;
+    for (int i = 0; i < SCENE_ACTUATORS && coupled; i++)
+        b->torque[i] = report.torque[i];
     stream_follow(b, true, b->live, MASK_NONE, true, touching, &report);
     return true;
 }
 
-/* The same compiled for the sets of contacts that matter: none, each grip alone, all of them. Each
- * a function of its own: in one the compiler takes twice as long. */
+/* The same compiled for sets of contacts. Each a function of its own: in one the compiler takes
+ * twice as long. */
 #define STREAM_ORDINARY(name, there, touching)                                                     \
-    COLD bool stream_##name(struct bundle *b)                                                      \
+    COLD bool stream_##name(struct bundle *b, bool coupled)                                        \
     {                                                                                              \
-        return (there) && stream_ordinary(b, touching);                                            \
+        return (there) && stream_ordinary(b, coupled, touching);                                   \
     }
-#define STREAM_ALL (CONTACT_ALL & ~contact_leaning(-1))
-#define STREAM_GRIP(c) STREAM_ORDINARY(grip##c, (c) < SCENE_CONTACTS, contact_ends((c) % CONTACTS))
-#ifdef TREE_RUNTIME
-#define STREAM_GRIPS(X)
-#else
-#define STREAM_GRIPS(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11)
-#endif
-STREAM_ORDINARY(apart, true, 0)
-STREAM_ORDINARY(all, SCENE_CONTACTS > 1, STREAM_ALL)
-STREAM_GRIPS(STREAM_GRIP)
+CONTACT_SETS(STREAM_ORDINARY)
 
-HOT bool stream_try_ordinary(struct bundle *b)
+HOT bool stream_try_ordinary(struct bundle *b, bool coupled)
 {
-    const contact_set touching = step_touching(&b->set, b->now.gap, b->live);
-    if (touching == 0)
-        return stream_apart(b);
-#define TRY(c)                                                                                     \
-    if ((c) < SCENE_CONTACTS && contact_grip((c) % CONTACTS) == (c) &&                             \
-        touching == contact_ends(c))                                                               \
-        return stream_grip##c(b);
-    STREAM_GRIPS(TRY)
+    const contact_set now = step_touching(&b->set, b->now.gap, b->live);
+#ifdef ADVANCE_PIECES
+    if (SCENE_PUSHES > 0 &&
+        mask_any(b->live & (mask_less(lanes_of(0), b->piece_from) | mask_less(b->piece_to, b->h))))
+        return false;
+#endif
+#define TRY(name, there, touching)                                                                 \
+    if ((there) && now == (touching))                                                              \
+        return stream_##name(b, coupled);
+    CONTACT_SETS(TRY)
 #undef TRY
-    return touching == STREAM_ALL && stream_all(b);
+    return false;
 }
 #endif
 
@@ -254,16 +250,16 @@ HOT int stream_step(struct bundle *b, bool coupled)
     stream_push(b);
     bundle_sample(b, b->live);
 #ifdef ADVANCE_ORDINARY
-    if (!coupled && stream_try_ordinary(b))
+    if (stream_try_ordinary(b, coupled))
         return 1;
 #endif
     stream_any(b, coupled);
     return STREAM_SLOW;
 }
 
-/* A stream's bundles: one for the cases whose law acts inside the step, some for the others. */
+/* A stream's bundles: for the cases whose law acts inside the step [1], and the others [0]. */
 struct stream {
-    struct bundle bundle[STREAM_BUNDLES], coupled;
+    struct bundle bundle[2][STREAM_BUNDLES];
     const stance_feed *feed;
     const stance_case *ahead; /* drawn, but no lane of its bundle is free */
     stance_result *result;
@@ -315,15 +311,16 @@ COLD bool stream_go(struct stream *stream)
     bool leave = false, running = true;
     while (running && !leave) {
         running = false;
-        for (int k = 0; k < STREAM_BUNDLES; k++) {
-            stream_advance(stream, &stream->bundle[k], false);
-            running |= stream->bundle[k].filled > 0;
+        for (int coupled = 0; coupled < (SCENE_ACTUATORS > 0 ? 2 : 1); coupled++) {
+            struct bundle *const b = stream->bundle[coupled];
+            for (int k = 0; k < STREAM_BUNDLES; k++) {
+                stream_advance(stream, &b[k], coupled);
+                running |= b[k].filled > 0;
+            }
+            if (STREAM_BUNDLES > 1)
+                regroup(b, STREAM_BUNDLES);
         }
-        if (SCENE_ACTUATORS > 0)
-            stream_advance(stream, &stream->coupled, true);
-        running |= stream->coupled.filled > 0 || stream->ahead || !stream->drained;
-        if (STREAM_BUNDLES > 1)
-            regroup(stream->bundle, STREAM_BUNDLES);
+        running |= stream->ahead || !stream->drained;
         leave = feed->leave && feed->leave(feed->context);
     }
     return !leave;
@@ -332,15 +329,15 @@ COLD bool stream_go(struct stream *stream)
 static bool bundle_stream(const stance_feed *feed)
 {
     struct stream stream;
+    struct bundle *const all = &stream.bundle[0][0];
     memset(&stream, 0, sizeof stream);
-    stream.feed = stream.coupled.feed = feed;
-    for (int k = 0; k < STREAM_BUNDLES; k++)
-        stream.bundle[k].feed = feed;
-    const bool all = stream_go(&stream);
-    for (int k = 0; k < STREAM_BUNDLES; k++)
-        advance_free(&stream.bundle[k].advance);
-    advance_free(&stream.coupled.advance);
-    return all;
+    stream.feed = feed;
+    for (int k = 0; k < 2 * STREAM_BUNDLES; k++)
+        all[k].feed = feed;
+    const bool done = stream_go(&stream);
+    for (int k = 0; k < 2 * STREAM_BUNDLES; k++)
+        advance_free(&all[k].advance);
+    return done;
 }
 
 /* An array as a feed. */

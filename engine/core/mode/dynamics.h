@@ -32,7 +32,7 @@ struct dynamics {
     lanes degraded, several; /* 1: not quite what it promises, not unique: see decoupling.h */
 };
 
-/* Contact terms of the contacts that are not in `touching`: zero, so that sums may run over all. */
+/* Contact terms of the contacts that are not in `touching` become zero. */
 static inline void dynamics_clear(contact_set touching, struct dynamics *e)
 {
     for (int c = 0; c < SCENE_CONTACTS; c++)
@@ -49,52 +49,72 @@ static inline void dynamics_clear(contact_set touching, struct dynamics *e)
         }
 }
 
-/* Evaluates what e->trig, s and w lead to. Contact terms of the contacts in `touching`; `pushes`:
- * responses to the actuators too. */
-static inline void dynamics_evaluate(const struct setting *set, lanes t, const lanes *s,
-                                     const lanes *w, const lanes *torque, contact_set touching,
-                                     bool pushes, struct dynamics *e)
+/* What follows from e->trig alone: the inertia, factored, and how the contacts in `touching` and,
+ * `pushes`, the actuators act on it. */
+HOT void dynamics_place(const struct setting *set, contact_set touching, bool pushes,
+                        scene_matrix *A, struct dynamics *e)
 {
-    lanes load[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        e->torque[i] = torque[i];
-    scene_matrix A;
-    scene_forces(&set->body, t, s, &e->trig, w, e->torque, load);
-    scene_inertia(&set->body, &e->trig, &A);
-    scene_solve(&A, false, load, e->acceleration);
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
-        e->integral_rate[i] = lanes_of(0);
-    e->degraded = e->several = lanes_of(0);
+    scene_inertia(&set->body, &e->trig, A);
 #ifdef SCENE_SERVOS
     for (int i = 0; i < OWN_ACTUATORS && pushes; i++)
-        scene_actuator_response(&set->body, &A, i, e->push[i]);
+        scene_actuator_response(&set->body, A, i, e->push[i]);
 #else
     (void)pushes;
 #endif
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        e->gap[c] = scene_gap(&set->body, s, &e->trig, c);
-        scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
-        e->force[c][0] = e->force[c][1] = lanes_of(0);
-    }
-    dynamics_clear(touching, e);
-    for (int c = 0; c < SCENE_CONTACTS; c++)
+    EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
-            scene_contact_response(&set->body, &A, false, &e->trig, c, e->response[c]);
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        lanes curvature[2], forced[2];
-        if (!(touching >> c & 1))
-            continue;
-        scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
-        scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, forced);
-        for (int a = 0; a < 2; a++)
-            e->free[c][a] = forced[a] + curvature[a];
-        for (int k = 0; k < SCENE_CONTACTS; k++)
-            for (int b = 0; b < contact_unknowns(k) && touching >> k & 1; b++) {
+            scene_contact_response(&set->body, A, false, &e->trig, c, e->response[c]);
+    EACH (c, 0, SCENE_CONTACTS)
+        EACH (k, 0, SCENE_CONTACTS)
+            EACH (b, 0, 2) {
                 lanes u[2];
+                if (!(touching >> c & touching >> k & 1) || b >= contact_unknowns(k))
+                    continue;
                 scene_contact_velocity(&set->body, &e->trig, c, e->response[k][b], u);
                 e->D[c][k][0][b] = u[0];
                 e->D[c][k][1][b] = u[1];
             }
+}
+
+/* What follows from velocities and torques there; contact terms but u of the contacts in `touching`
+ * only. */
+HOT void dynamics_motion(const struct setting *set, lanes t, const lanes *s, const lanes *w,
+                         const lanes *torque, contact_set touching, const scene_matrix *A,
+                         struct dynamics *e)
+{
+    lanes load[SCENE_COORDINATES];
+    EACH (i, 0, SCENE_ACTUATORS)
+        e->torque[i] = torque[i];
+    scene_forces(&set->body, t, s, &e->trig, w, e->torque, load);
+    scene_solve(A, false, load, e->acceleration);
+    EACH (c, 0, SCENE_CONTACTS) {
+        lanes curvature[2], forced[2];
+        scene_contact_velocity(&set->body, &e->trig, c, w, e->u[c]);
+        if (!(touching >> c & 1))
+            continue;
+        scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
+        scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, forced);
+        EACH (a, 0, 2)
+            e->free[c][a] = forced[a] + curvature[a];
+    }
+}
+
+/* Evaluates what e->trig, s and w lead to. Contact terms of the contacts in `touching`, zero of the
+ * others, so that sums may run over all; `pushes`: responses to the actuators too. */
+static inline void dynamics_evaluate(const struct setting *set, lanes t, const lanes *s,
+                                     const lanes *w, const lanes *torque, contact_set touching,
+                                     bool pushes, struct dynamics *e)
+{
+    scene_matrix A;
+    dynamics_place(set, touching, pushes, &A, e);
+    dynamics_motion(set, t, s, w, torque, touching, &A, e);
+    dynamics_clear(touching, e);
+    for (int i = 0; i < SCENE_ACTUATORS; i++)
+        e->integral_rate[i] = lanes_of(0);
+    e->degraded = e->several = lanes_of(0);
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        e->gap[c] = scene_gap(&set->body, s, &e->trig, c);
+        e->force[c][0] = e->force[c][1] = lanes_of(0);
     }
 }
 

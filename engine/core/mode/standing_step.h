@@ -1,0 +1,313 @@
+/* standing_step.h - a smooth step in which what touches stands and nothing else comes near: the
+ * ordinary step of a method that is of high order between events.
+ *
+ * Steps that a controller's samples bound are short against the motion, and an order that fits them
+ * is enough. With accelerations a(s, w) Nystrom's formula of order 4 (E. J. Nystrom 1925; E.
+ * Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, section II.14),
+ *
+ *   a1 = a(s, w),                                a2 = a(s + h w / 2 + h^2 a1 / 8, w + h a1 / 2),
+ *   a3 = a(the same place, w + h a2 / 2),        a4 = a(s + h w + h^2 a3 / 2, w + h a3),
+ *   s + h w + h^2 (a1 + a2 + a3) / 6,            w + h (a1 + 2 a2 + 2 a3 + a4) / 6,
+ *
+ * has three places, and what depends on the place alone - sines, inertia, how the contacts act on
+ * it - is most of an evaluation. The last is off the end by less than the error of order 3, so that
+ * nothing has to be evaluated at the end: forces there, and the directions along which position and
+ * velocity are put back onto the contacts, are those of the last place.
+ *
+ * Error. With the second difference d2 = a1 - (a2 + a3) + a4, about h^2 a'' / 4, h d2 / 6 is the
+ * error of a formula of order 2. Each order more makes errors smaller by about the ratio q of d2 to
+ * the first difference d1 = a4 - a1; q h d2 / 6, that of order 3, is what the step is judged by,
+ * where q is 1 at most. Its own error is about q^2 h d2 / 6.
+ *
+ * The mode lasts from one end to the other if normal forces and the room to both edges of the cone,
+ * as parabolas through the three places, have Bernstein coefficients that are not small
+ * (missed_events.h), and if no open contact could come to the ground at the speed it has at either
+ * end. Where any of this does not hold, nor that the contact's operator is regular, the step is
+ * left to those who look closer, whatever the neighbours do.
+ */
+#ifndef STANCE_CORE_MODE_STANDING_STEP_H
+#define STANCE_CORE_MODE_STANDING_STEP_H
+
+#include "missed_events.h"
+
+#define STANDING_ROOM 1e-4  /* of the largest load: forces are this far inside the cone */
+#define STANDING_DRIFT 1e-7 /* m: a step that leaves the contacts by more is not of this kind */
+#define STANDING_TURNS 32   /* steps between sines computed anew */
+
+enum { STANDING_PLACES = 3, STANDING_EVALUATIONS = 4 };
+
+/* The operator that holds the contacts in `touching`, factored. Returns the lanes where it is
+ * regular. */
+HOT mask standing_factor(contact_set touching, const struct dynamics *e, struct contact_factors *f)
+{
+    lanes M[CONTACTS][CONTACTS][2][2];
+    mask rows[CONTACTS][2];
+    EACH (c, 0, SCENE_CONTACTS)
+        rows[c][0] = rows[c][1] = LANES_ALL;
+    contact_matrix(touching, (const lanes(*)[CONTACTS][2][2])e->D, (const mask(*)[2])rows, NULL, M);
+    contact_factor(touching, CONTACT_PLAIN, M, f);
+    return f->regular;
+}
+
+/* Forces that hold the contacts in `touching` where they are, and the accelerations with them. */
+HOT void standing_hold(contact_set touching, const struct contact_factors *f, struct dynamics *e)
+{
+    contact_back(touching, f, (const lanes(*)[2])e->free, e->force);
+    EACH (c, 0, SCENE_CONTACTS)
+        EACH (a, 0, 2)
+            if (touching >> c & 1 && a < contact_unknowns(c))
+                EACH (i, 0, SCENE_COORDINATES)
+                    e->acceleration[i] =
+                        lanes_fma(e->response[c][a][i], e->force[c][a], e->acceleration[i]);
+}
+
+/* Lanes where contacts of `touching` are at rest. */
+HOT mask standing_rests(contact_set touching, const lanes (*u)[2])
+{
+    lanes fastest = lanes_of(0);
+    EACH (c, 0, SCENE_CONTACTS)
+        EACH (a, 0, 2)
+            if (touching >> c & 1 && a < contact_unknowns(c))
+                fastest = lanes_max(lanes_abs(u[c][a]), fastest);
+    return mask_less_equal(fastest, lanes_of(BETWEEN_REST));
+}
+
+/* Least Bernstein coefficient of the parabola through f at 0, 1/2, 1. */
+HOT lanes standing_parabola(const lanes f[STANDING_PLACES])
+{
+    const lanes ends = f[0] + f[2];
+    return lanes_min(lanes_min(f[0], f[2]), lanes_fms(lanes_of(2), f[1], 0.5 * ends));
+}
+
+/* Lanes where the forces of the contacts in `touching` at the three places are those of contacts
+ * that stand all the time; what they tell of themselves goes into *report. */
+HOT mask standing_forces(contact_set touching, const struct setting *set,
+                         const lanes (*force)[CONTACTS][2], struct step_report *report)
+{
+    mask stands = LANES_ALL;
+    EACH (c, 0, SCENE_CONTACTS) {
+        if (!(touching >> c & 1))
+            continue;
+        lanes normal[STANDING_PLACES], low[STANDING_PLACES], high[STANDING_PLACES];
+        EACH (k, 0, STANDING_PLACES)
+            normal[k] = force[k][c][0];
+        const lanes least = lanes_min(lanes_min(normal[0], normal[1]), normal[2]);
+        const lanes most = lanes_max(lanes_max(normal[0], normal[1]), normal[2]);
+        report->least[c] = least;
+        stands &= mask_less(lanes_of(0), least) &
+                  mask_less(STANDING_ROOM * most, standing_parabola(normal));
+        if (contact_unknowns(c) == 1)
+            continue;
+        lanes largest = lanes_of(0), used = lanes_of(0), under = lanes_of(1);
+        EACH (k, 0, STANDING_PLACES) {
+            const lanes load = contact_load(c, force[k]), along = force[k][c][1];
+            const lanes size = lanes_abs(along);
+            low[k] = lanes_fma(set->friction, load, along);
+            high[k] = lanes_fms(set->friction, load, along);
+            largest = lanes_max(load, largest);
+            const mask more = mask_less(used * load, size * under); /* |rT| / rN of two places */
+            used = choose(more, size, used);
+            under = choose(more, load, under);
+        }
+        report->friction_used = lanes_max(used / under, report->friction_used);
+        const lanes room = lanes_min(standing_parabola(low), standing_parabola(high));
+        stands &= mask_less((STANDING_ROOM * set->friction) * largest, room);
+    }
+    return stands;
+}
+
+/* Puts the end back onto the contacts in `touching`, along the directions of *e, evaluated and held
+ * near it. Returns the lanes where that is a little way, and where the ground is then. */
+HOT mask standing_project(contact_set touching, const struct setting *set, const struct dynamics *e,
+                          const struct contact_factors *f, struct motion *end,
+                          struct step_report *report)
+{
+    const lanes none = lanes_of(0);
+    lanes error[CONTACTS], multiplier[CONTACTS], u[CONTACTS][2], r[CONTACTS][2], far = none;
+    lanes d[SCENE_COORDINATES];
+    const lanes *along[CONTACTS];
+    mask held[CONTACTS];
+    EACH (c, 0, SCENE_CONTACTS) {
+        held[c] = LANES_ALL;
+        along[c] = e->response[c][0];
+        error[c] = none;
+        if (!(touching >> c & 1))
+            continue;
+        error[c] = -scene_gap(&set->body, end->s, &end->trig, c);
+        far = lanes_max(lanes_abs(error[c]), far);
+    }
+    project_multipliers(set, &e->trig, touching, along, held, error, multiplier);
+    EACH (i, 0, SCENE_COORDINATES) {
+        d[i] = none;
+        EACH (c, 0, SCENE_CONTACTS)
+            if (touching >> c & 1)
+                d[i] = lanes_fma(e->response[c][0][i], multiplier[c], d[i]);
+        end->s[i] += d[i];
+    }
+    trig_turn(&end->trig, LANES_ALL, d);
+    EACH (c, 0, SCENE_CONTACTS) {
+        u[c][0] = u[c][1] = none;
+        if (touching >> c & 1)
+            scene_contact_velocity(&set->body, &end->trig, c, end->w, u[c]);
+    }
+    contact_back(touching, f, (const lanes(*)[2])u, r);
+    EACH (c, 0, SCENE_CONTACTS)
+        EACH (a, 0, 2)
+            if (touching >> c & 1 && a < contact_unknowns(c))
+                EACH (i, 0, SCENE_COORDINATES)
+                    end->w[i] = lanes_fma(e->response[c][a][i], r[c][a], end->w[i]);
+    mask there = mask_less(far, lanes_of(STANDING_DRIFT));
+    EACH (c, 0, SCENE_CONTACTS) {
+        if (!(touching >> c & 1))
+            continue;
+        end->gap[c] = scene_gap(&set->body, end->s, &end->trig, c);
+        scene_contact_velocity(&set->body, &end->trig, c, end->w, u[c]);
+        end->approach[c] = u[c][0];
+        report->signorini_residual = lanes_max(lanes_abs(u[c][0]), report->signorini_residual);
+        if (contact_unknowns(c) == 2)
+            report->dissipation_residual =
+                lanes_max(lanes_abs(u[c][1]), report->dissipation_residual);
+        there &= mask_less_equal(end->gap[c], lanes_of(STEP_CLOSED));
+    }
+    return there & standing_rests(touching, (const lanes(*)[2])u);
+}
+
+/* Lanes where no contact outside `touching` may come to the ground on the way. */
+HOT mask standing_clear(contact_set touching, const struct setting *set, lanes h,
+                        const struct motion *from, const struct motion *end)
+{
+    mask clear = LANES_ALL;
+    EACH (c, 0, SCENE_CONTACTS)
+        if (!(touching >> c & 1))
+            clear &= LANES_NOT(mask_less(lanes_of(0), set->may_touch[c])) |
+                     (mask_less(h * lanes_abs(from->approach[c]), from->gap[c]) &
+                      mask_less(h * lanes_abs(end->approach[c]), end->gap[c]));
+    return clear;
+}
+
+/* Torques at a state: those that are held or, `coupled`, of a linear law that acts all the time. */
+HOT void standing_torque(const struct setting *set, const lanes *held, bool coupled, const lanes *s,
+                         const lanes *w, lanes *torque)
+{
+    EACH (i, 0, SCENE_ACTUATORS)
+        torque[i] = held[i];
+    if (coupled) {
+        law_torque(&set->law, s, w, torque);
+        law_clip(&set->law, torque);
+    }
+}
+
+/* Tries a step of length h from `from`, where exactly the contacts in `touching` are closed and all
+ * of them stood; `anew`: lanes whose sines are to be computed anew. Returns the lanes where *end
+ * and *report are defined, *error its estimate. */
+HOT mask standing_take(contact_set touching, const struct setting *set, const struct motion *from,
+                       const lanes *held, bool coupled, lanes h, mask run, mask anew,
+                       struct motion *end, struct step_report *report, lanes *error)
+{
+    lanes a[STANDING_PLACES][SCENE_COORDINATES]; /* at the second the sum of two */
+    lanes force[STANDING_PLACES][CONTACTS][2], s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    lanes farthest = lanes_of(0);
+    struct dynamics e;
+    struct contact_factors factors;
+    scene_matrix A;
+    mask good = run;
+    report_clear_answers(report);
+    report->work = report->failure = report->landed = lanes_of(0);
+    EACH (c, 0, SCENE_CONTACTS) {
+        report->impulse[c][0] = report->impulse[c][1] = report->slip[c] = lanes_of(0);
+        report->least[c] = lanes_of(0);
+    }
+    EACH (i, 0, SCENE_COORDINATES) {
+        s[i] = end->s[i] = from->s[i];
+        w[i] = end->w[i] = from->w[i];
+    }
+    e.trig = from->trig;
+    EACH (k, 0, STANDING_PLACES) {
+        const lanes t = from->t + (0.5 * k) * h, part = h * (k == 1 ? 1.0 / 3 : 1.0 / 6);
+        dynamics_place(set, touching, false, &A, &e);
+        good &= standing_factor(touching, &e, &factors);
+        EACH (again, 0, 2) {
+            lanes moved[SCENE_COORDINATES], torque[ACTUATORS];
+            if (again && k != 1)
+                continue;
+            standing_torque(set, held, coupled, s, w, torque);
+            dynamics_motion(set, t, s, w, torque, touching, &A, &e);
+            if (k == 0)
+                good &= standing_rests(touching, (const lanes(*)[2])e.u);
+            standing_hold(touching, &factors, &e);
+            EACH (i, 0, SCENE_COORDINATES) {
+                a[k][i] = again ? (lanes)(a[k][i] + e.acceleration[i]) : e.acceleration[i];
+                moved[i] = part * w[i];
+                end->s[i] += moved[i];
+                end->w[i] = lanes_fma(part, e.acceleration[i], end->w[i]);
+            }
+            report->work += scene_work(&set->body, part, t, &e.trig, torque, moved);
+            EACH (c, 0, SCENE_CONTACTS)
+                EACH (b, 0, 2) {
+                    force[k][c][b] = lanes_of(0);
+                    if (!(touching >> c & 1) || b >= contact_unknowns(c))
+                        continue;
+                    force[k][c][b] = e.force[c][b];
+                    report->impulse[c][b] = lanes_fma(part, e.force[c][b], report->impulse[c][b]);
+                }
+            EACH (i, 0, SCENE_COORDINATES)
+                w[i] = lanes_fma(h * (k == 1 && again ? 1 : 0.5), e.acceleration[i], from->w[i]);
+        }
+        if (k == 2)
+            break;
+        lanes turn[SLOTS(SCENE_ANGLES)];
+        const lanes ahead = h * (k == 0 ? 0.5 : 1);
+        EACH (i, 0, SCENE_COORDINATES) { /* the last acceleration is a1 or a3 */
+            const lanes move = ahead * lanes_fma(0.5 * ahead, e.acceleration[i], from->w[i]);
+            s[i] = from->s[i] + move;
+            if (i < FIRST_ANGLE)
+                continue;
+            turn[i - FIRST_ANGLE] = move;
+            if (!SCENE_SLIDES(i - FIRST_ANGLE))
+                farthest = lanes_max(lanes_abs(move), farthest);
+        }
+        trig_turned(&from->trig, turn, &e.trig);
+    }
+    good &= standing_forces(touching, set, (const lanes(*)[CONTACTS][2])force, report);
+    lanes first = lanes_of(0), second = lanes_of(0), turn[SCENE_COORDINATES];
+    EACH (i, 0, SCENE_COORDINATES) {
+        first = lanes_max(lanes_abs(a[2][i] - a[0][i]), first);
+        second = lanes_max(lanes_abs((a[0][i] - a[1][i]) + a[2][i]), second);
+        turn[i] = end->s[i] - s[i];
+    }
+    *error = (h * second) * (1.0 / 6) * lanes_min(second / lanes_max(first, second), lanes_of(1));
+    end->trig = e.trig;
+    trig_turn(&end->trig, LANES_ALL, turn); /* by an error of the step */
+    if (mask_any(anew)) {
+        scene_trig exact;
+        scene_trigonometry(end->s, &exact);
+        EACH (i, 0, SCENE_ANGLES) {
+            end->trig.sine[i] = choose(anew, exact.sine[i], end->trig.sine[i]);
+            end->trig.cosine[i] = choose(anew, exact.cosine[i], end->trig.cosine[i]);
+        }
+    }
+    if (touching)
+        good &= standing_project(touching, set, &e, &factors, end, report);
+    EACH (c, 0, SCENE_CONTACTS) {
+        EACH (b, 0, 2)
+            end->impulse[c][b] = from->impulse[c][b];
+        if (touching >> c & 1)
+            continue;
+        lanes u[2];
+        scene_contact_velocity(&set->body, &end->trig, c, end->w, u);
+        end->approach[c] = u[0];
+        end->gap[c] = scene_gap(&set->body, end->s, &end->trig, c);
+    }
+    EACH (i, 0, SCENE_ACTUATORS)
+        end->integral[i] = from->integral[i];
+    standing_torque(set, held, coupled, end->s, end->w, report->torque);
+    end->energy = from->energy, end->kinetic = from->kinetic;
+    end->t = from->t + h;
+    report->evaluations = lanes_of(STANDING_EVALUATIONS);
+    /* Turns of more are not what the series are for; comparisons are false for what is no number.
+     */
+    return good & mask_less(farthest, lanes_of(TRIG_TURNED)) & scene_angles_in_range(end->s) &
+           standing_clear(touching, set, h, from, end);
+}
+
+#endif
