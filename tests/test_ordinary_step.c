@@ -85,6 +85,73 @@ static void direct_is_exact(void **state)
     }
 }
 
+/* Every mode of two points in lanes finds what trying every mode alone does, and says the same of
+ * other solutions: operators of any kind, legs that are parallel, slips that go on, impacts. */
+static void pairs_are_exact(void **state)
+{
+    (void)state;
+    enum { TRIES = 100000 };
+    uint64_t seed = 11;
+    int found = 0, several = 0, solved = 0, unlike = 0;
+    double worst = 0;
+    for (int i = 0; i < TRIES; i++) {
+        double D[2][2][2][2], uf[2][2], r[2][2] = {{0}}, sliding[2], shift[2][2];
+        const double friction = i % 7 == 0 ? 0 : uniform(&seed, 0, 3);
+        random_operator(&seed, 4, i % 5 == 0 ? 0.5 : i % 2 ? 1e-2 : 0, D);
+        if (i % 4 == 0) /* both at one place, seen from two legs */
+            for (int a = 0; a < 2; a++)
+                for (int b = 0; b < 2; b++)
+                    D[0][1][a][b] = D[1][0][b][a] = D[1][1][a][b] = D[0][0][a][b];
+        for (int c = 0; c < 2; c++) {
+            uf[c][0] = uniform(&seed, -1, 0.5), uf[c][1] = uniform(&seed, -1, 1);
+            shift[c][0] = -uniform(&seed, 0, 0.5), shift[c][1] = 0;
+            sliding[c] = floor(uniform(&seed, -1, 2));
+        }
+        if (i % 4 == 0) {
+            memcpy(uf[1], uf[0], sizeof uf[0]);
+            sliding[1] = sliding[0];
+        }
+        const struct contact_rule rule = {.friction = friction,
+                                          .prefer = i % 11 == 0 ? -1 : 1,
+                                          .sliding = i % 3 == 0 ? sliding : NULL,
+                                          .shift = i % 3 == 1 ? (const double(*)[2])shift : NULL,
+                                          .indefinite = i % 5 == 0 && i % 4 != 0};
+        const mask active[2] = {true, i % 13 != 0};
+        const double(*const op)[2][2][2] = (const double(*)[2][2][2])D;
+        const double(*const free)[2] = (const double(*)[2])uf;
+        struct lane_problem problem;
+        struct lane_choice best;
+        double alone[2][2] = {{0}};
+        mask ambiguous = false;
+        lane_gather(&rule, op, free, active[1] ? 3 : 1, 0, &problem);
+        lane_choose_none(&best);
+        lane_enumerate(&problem, &best);
+        lane_clip(&problem, best.r);
+        for (int row = 0; row < problem.rows; row++)
+            alone[problem.contact[row]][problem.axis[row]] = best.r[row];
+        const bool valid = best.violation <= problem.tolerance;
+        solved += valid;
+        if (!direct_pair(&rule, op, free, 3, 0, 1, active, problem.tolerance, true, r, &ambiguous))
+            continue;
+        found++;
+        several += ambiguous;
+        assert_true(best.violation <= 1e3 * problem.tolerance);
+        double off = 0, u[2][2], v[2][2];
+        direct_velocities(op, free, 3, (const double(*)[2])r, u);
+        direct_velocities(op, free, 3, (const double(*)[2])alone, v);
+        for (int c = 0; c < 2; c++)
+            for (int a = 0; a < 2 && active[c]; a++)
+                off = fmax(off, fabs(u[c][a] - v[c][a]));
+        unlike += off > 1e-6 || ambiguous != best.ambiguous;
+        worst = off > 1e-6 ? worst : fmax(off, worst);
+    }
+    print_message("# two points: %d of %d found, %d have a solution, %d several; velocities off by "
+                  "%.1e, %d unlike\n",
+                  found, TRIES, solved, several, worst, unlike);
+    assert_true(found > 0.99 * solved && several > TRIES / 100);
+    assert_true(unlike <= 1e-4 * found && worst < 1e-8);
+}
+
 /* A biped that stands on one foot or two or flies, at random. */
 static void random_motion(uint64_t *seed, int i, double h, struct bundle *b)
 {
@@ -213,6 +280,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(direct_is_exact),
+        cmocka_unit_test(pairs_are_exact),
         cmocka_unit_test(ordinary_steps_are_converged),
         cmocka_unit_test(with_a_law_inside),
     };
