@@ -535,7 +535,8 @@ COLD mask direct_pair(const struct contact_rule *rule, const lanes (*D)[CONTACTS
         }
         const lanes violation = direct_violation(
             rule, D, touching, active, (const lanes(*)[2])candidate, (const lanes(*)[2])u);
-        lanes sum = none; /* not finite where the mode is singular, of which violation says nothing */
+        lanes sum =
+            none; /* not finite where the mode is singular, of which violation says nothing */
         for (int k = 0; k < 2; k++)
             for (int a = 0; a < 2; a++)
                 sum += candidate[point[k]][a] + u[point[k]][a];
@@ -548,6 +549,31 @@ COLD mask direct_pair(const struct contact_rule *rule, const lanes (*D)[CONTACTS
     const mask done = todo & best.have & LANES_NOT(verge);
     *ambiguous = done & best.ambiguous;
     direct_take(rule->friction, touching, (const lanes(*)[2])best.r, done, r);
+    return done;
+}
+
+/* The same in the lanes where two points are active and no other contact is: whatever else is in
+ * `touching`, for other lanes. */
+static inline mask direct_pairs(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
+                                const lanes (*uf)[2], contact_set touching, const mask *active,
+                                lanes tolerance, mask todo, lanes (*r)[2], mask *ambiguous)
+{
+    mask done = MASK_NONE;
+    for (int a = 0; a < SCENE_CONTACTS; a++)
+        for (int b = a + 1; b < SCENE_CONTACTS; b++) {
+            if (!(touching >> a & touching >> b & 1) || !contact_is_point(a) ||
+                !contact_is_point(b))
+                continue;
+            mask both = todo & active[a] & active[b], several;
+            for (int c = 0; c < SCENE_CONTACTS; c++)
+                if (c != a && c != b && touching >> c & 1)
+                    both &= LANES_NOT(active[c]);
+            if (!mask_any(both))
+                continue;
+            done |= direct_pair(rule, D, uf, 1u << a | 1u << b, a, b, active, tolerance, both, r,
+                                &several);
+            *ambiguous |= several;
+        }
     return done;
 }
 
@@ -578,21 +604,9 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
         if (mask_any(todo))
             done |= direct_modes(rule, D, uf, touching, active, tolerance, todo, r);
     }
-    int point[2] = {0}, points = 0;
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        if (touching >> c & 1) {
-            if (points < 2)
-                point[points] = c;
-            points += contact_is_point(c) ? 1 : 3;
-        }
     mask left = unsure & LANES_NOT(done);
-    if (points == 2 && mask_any(left & LANES_NOT(stood))) {
-        mask ambiguous;
-        const mask found = direct_pair(rule, D, uf, touching, point[0], point[1], active, tolerance,
-                                       left & LANES_NOT(stood), r, &ambiguous);
-        v->ambiguous |= ambiguous;
-        left &= LANES_NOT(found);
-    }
+    left &= LANES_NOT(direct_pairs(rule, D, uf, touching, active, tolerance,
+                                   left & LANES_NOT(stood), r, &v->ambiguous));
     for (int lane = 0; lane < LANES && mask_any(left); lane++) {
         if (!mask_get(left, lane))
             continue;
