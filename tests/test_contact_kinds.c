@@ -18,7 +18,7 @@ enum {
 };
 #define SCENE_GRIPS
 static const int scene_grip[SCENE_CONTACTS] = {0, 1, 2, 3, 4, 5, 6, 6, 8, 8, -1, -1};
-#include "engine/core/contact/direct.h"
+#include "engine/core/contact/solve.h"
 #define DENSE_ROWS 18
 #include "dense.h"
 #include "support.h"

@@ -131,7 +131,8 @@ static void pairs_are_exact(void **state)
             alone[problem.contact[row]][problem.axis[row]] = best.r[row];
         const bool valid = best.violation <= problem.tolerance;
         solved += valid;
-        if (!direct_pair(&rule, op, free, 3, 0, 1, active, problem.tolerance, true, r, &ambiguous))
+        if (!pair_enumerate(&rule, op, free, 3, 0, 1, active, problem.tolerance, true, r,
+                            &ambiguous))
             continue;
         found++;
         several += ambiguous;

@@ -22,7 +22,7 @@
 #ifndef STANCE_CORE_CONTACT_IMPACT_H
 #define STANCE_CORE_CONTACT_IMPACT_H
 
-#include "direct.h"
+#include "solve.h"
 
 #define IMPACT_SCAN 16
 #define IMPACT_FINE 0x1p-40

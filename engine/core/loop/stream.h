@@ -104,12 +104,16 @@ HOT bool stream_ordinary(struct bundle *b, bool coupled, contact_set touching)
     return true;
 }
 
-/* The same compiled for sets of contacts. Each a function of its own: in one the compiler takes
- * twice as long. */
+/* The same compiled for sets of contacts, and for laws that are sampled or act inside the step.
+ * Each a function of its own: in one the compiler takes twice as long. */
 #define STREAM_ORDINARY(name, there, touching)                                                     \
-    COLD bool stream_##name(struct bundle *b, bool coupled)                                        \
+    COLD bool stream_##name(struct bundle *b)                                                      \
     {                                                                                              \
-        return (there) && stream_ordinary(b, coupled, touching);                                   \
+        return (there) && stream_ordinary(b, false, touching);                                     \
+    }                                                                                              \
+    COLD bool stream_##name##_inside(struct bundle *b)                                             \
+    {                                                                                              \
+        return (there) && SCENE_ACTUATORS > 0 && stream_ordinary(b, true, touching);               \
     }
 CONTACT_SETS(STREAM_ORDINARY)
 
@@ -123,7 +127,7 @@ HOT bool stream_try_ordinary(struct bundle *b, bool coupled)
 #endif
 #define TRY(name, there, touching)                                                                 \
     if ((there) && now == (touching))                                                              \
-        return stream_##name(b, coupled);
+        return coupled ? stream_##name##_inside(b) : stream_##name(b);
     CONTACT_SETS(TRY)
 #undef TRY
     return false;

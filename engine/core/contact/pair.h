@@ -1,0 +1,156 @@
+/* pair.h - two points of which no certain solution is known: every mode of both, as lane.h tries
+ * them, in lanes. On parallel legs, whose feet are at one place, the laws often have several
+ * solutions or redundant ones, and such robots are many in a map.
+ */
+#ifndef STANCE_CORE_CONTACT_PAIR_H
+#define STANCE_CORE_CONTACT_PAIR_H
+
+#include "direct.h"
+
+#define PAIR_VERGE 1e3 /* tolerances: a mode is this near to a solution, or is none */
+
+/* The best solution so far, as in lane.h. */
+struct pair_choice {
+    lanes r[CONTACTS][2], u[CONTACTS][2], energy;
+    mask have, ambiguous;
+};
+
+/* Takes r with the velocities u, where it is `valid` and better than the choice. */
+static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)[2],
+                              lanes tolerance, contact_set touching, const mask *active,
+                              const lanes (*r)[2], const lanes (*u)[2], mask valid,
+                              struct pair_choice *best)
+{
+    const lanes none = lanes_of(0);
+    lanes energy = none, apart = none;
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2 && touching >> c & 1; a++) {
+            lanes own = 0.5 * (r[c][a] * (uf[c][a] + u[c][a]));
+            if (rule->shift)
+                own -= r[c][a] * rule->shift[c][a];
+            if (rule->indefinite)
+                own = choose(mask_less(none, r[c][0]), lanes_of(-0.5), none);
+            energy += choose(active[c], own, none);
+            apart = lanes_max(choose(active[c], lanes_abs(u[c][a] - best->u[c][a]), none), apart);
+        }
+    if (!rule->indefinite)
+        energy = rule->prefer * energy;
+    const lanes tie = 1e-12 * (lanes_abs(energy) + lanes_abs(best->energy));
+    const mask other = valid & best->have & mask_less(16 * tolerance, apart);
+    const mask take =
+        (valid & LANES_NOT(best->have)) | (other & mask_less(energy, best->energy - tie));
+    best->ambiguous |= other;
+    best->have |= valid;
+    best->energy = choose(take, energy, best->energy);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < 2; a++) {
+            best->r[c][a] = choose(take, r[c][a], best->r[c][a]);
+            best->u[c][a] = choose(take, u[c][a], best->u[c][a]);
+        }
+}
+
+/* As lane_enumerate, in lanes, where the contacts in `touching` are two points, first and second.
+ * Impulses r in the lanes that are returned, *ambiguous among them; elsewhere a mode is on the
+ * verge of a solution, or there is none. */
+COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
+                         const lanes (*uf)[2], contact_set touching, int first, int second,
+                         const mask *active, lanes tolerance, mask todo, lanes (*r)[2],
+                         mask *ambiguous)
+{
+    enum { OPEN, STICK, FORWARD, BACKWARD, MODES };
+    const lanes none = lanes_of(0);
+    struct pair_choice best = {.have = MASK_NONE, .ambiguous = MASK_NONE, .energy = none};
+    lanes candidate[CONTACTS][2], u[CONTACTS][2], edge[CONTACTS];
+    mask verge = MASK_NONE, never[CONTACTS][MODES], closed[CONTACTS], sticks[CONTACTS];
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        closed[c] = sticks[c] = MASK_NONE;
+        edge[c] = none;
+        for (int a = 0; a < 2; a++)
+            best.r[c][a] = best.u[c][a] = candidate[c][a] = none;
+        never[c][OPEN] = MASK_NONE;
+        never[c][STICK] = never[c][FORWARD] = never[c][BACKWARD] = LANES_NOT(active[c]);
+        if (rule->sliding) {
+            const lanes slide = rule->sliding[c];
+            never[c][STICK] |= mask_less(none, lanes_abs(slide));
+            never[c][FORWARD] |= mask_less(slide, none);
+            never[c][BACKWARD] |= mask_less(none, slide);
+        }
+    }
+    const mask holds = direct_hold(rule->friction, tolerance, D, uf, touching, active, candidate) &
+                       LANES_NOT(never[first][STICK] | never[second][STICK]);
+    direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
+    pair_offer(rule, uf, tolerance, touching, active, (const lanes(*)[2])candidate,
+               (const lanes(*)[2])u, todo & holds, &best);
+    for (int mode = 0; mode < MODES * MODES; mode++) {
+        const int of[2] = {mode / MODES, mode % MODES}, point[2] = {first, second};
+        const mask may = todo & LANES_NOT(never[first][of[0]] | never[second][of[1]]);
+        if ((of[0] == STICK && of[1] == STICK) || !mask_any(may))
+            continue;
+        for (int k = 0; k < 2; k++) {
+            closed[point[k]] = of[k] == OPEN ? MASK_NONE : active[point[k]];
+            sticks[point[k]] = of[k] == STICK ? LANES_ALL : MASK_NONE;
+            edge[point[k]] = rule->friction * (of[k] == FORWARD ? -1 : of[k] == BACKWARD ? 1 : 0);
+        }
+        struct contact_factors f;
+        mask rows[CONTACTS][2];
+        lanes M[CONTACTS][CONTACTS][2][2];
+        contact_mode_rows(closed, sticks, rows);
+        direct_factor(touching, CONTACT_PLAIN, D, (const mask(*)[2])rows, edge, 0, M, &f);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                candidate[c][a] = none, u[c][a] = uf[c][a];
+        for (int round = 0; round < 2; round++) { /* once more with what is left */
+            lanes x[CONTACTS][2];
+            direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
+            for (int k = 0; k < 2; k++) {
+                const int c = point[k];
+                candidate[c][0] = candidate[c][0] + x[c][0];
+                candidate[c][1] = candidate[c][1] + lanes_fma(edge[c], x[c][0], x[c][1]);
+            }
+            direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
+        }
+        const lanes violation = direct_violation(
+            rule, D, touching, active, (const lanes(*)[2])candidate, (const lanes(*)[2])u);
+        lanes sum =
+            none; /* not finite where the mode is singular, of which violation says nothing */
+        for (int k = 0; k < 2; k++)
+            for (int a = 0; a < 2; a++)
+                sum += candidate[point[k]][a] + u[point[k]][a];
+        const mask regular = may & mask_finite(sum);
+        const mask valid = regular & mask_less_equal(violation, tolerance);
+        verge |= regular & LANES_NOT(valid) & mask_less_equal(violation, PAIR_VERGE * tolerance);
+        pair_offer(rule, uf, tolerance, touching, active, (const lanes(*)[2])candidate,
+                   (const lanes(*)[2])u, valid, &best);
+    }
+    const mask done = todo & best.have & LANES_NOT(verge);
+    *ambiguous = done & best.ambiguous;
+    direct_take(rule->friction, touching, (const lanes(*)[2])best.r, done, r);
+    return done;
+}
+
+/* The same in the lanes where two points are active and no other contact is: whatever else is in
+ * `touching`, for other lanes. */
+static inline mask pair_every(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
+                              const lanes (*uf)[2], contact_set touching, const mask *active,
+                              lanes tolerance, mask todo, lanes (*r)[2], mask *ambiguous)
+{
+    mask done = MASK_NONE;
+    for (int a = 0; a < SCENE_CONTACTS; a++)
+        for (int b = a + 1; b < SCENE_CONTACTS; b++) {
+            if (!(touching >> a & touching >> b & 1) || !contact_is_point(a) ||
+                !contact_is_point(b))
+                continue;
+            mask both = todo & active[a] & active[b], several;
+            for (int c = 0; c < SCENE_CONTACTS; c++)
+                if (c != a && c != b && touching >> c & 1)
+                    both &= LANES_NOT(active[c]);
+            if (!mask_any(both))
+                continue;
+            done |= pair_enumerate(rule, D, uf, 1u << a | 1u << b, a, b, active, tolerance, both, r,
+                                   &several);
+            *ambiguous |= several;
+        }
+    return done;
+}
+
+#endif

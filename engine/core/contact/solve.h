@@ -1,0 +1,170 @@
+/* solve.h - contact problems of all lanes: directly where that is certain to be right, two points
+ * by every mode in lanes, the rest lane by lane.
+ */
+#ifndef STANCE_CORE_CONTACT_SOLVE_H
+#define STANCE_CORE_CONTACT_SOLVE_H
+
+#include "pair.h"
+
+#define SOLVE_ENUMERATED 4 /* elements: more are not enumerated */
+
+/* What is not decided in the hot loop, in the lanes of `unsure`. */
+COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
+                     const lanes (*uf)[2], contact_set touching, const mask *active, mask unsure,
+                     lanes (*r)[2], struct contact_verdict *v)
+{
+    const lanes none = lanes_of(0);
+    lanes stick[CONTACTS][2], scale = lanes_of(1);
+    for (int c = 0; c < SCENE_CONTACTS; c++)
+        for (int a = 0; a < contact_unknowns(c) && touching >> c & 1; a++)
+            scale = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), scale);
+    const lanes tolerance = CONTACT_TOLERANCE * scale;
+    const mask stood = unsure & direct_stood(rule, touching, active);
+    mask done = MASK_NONE;
+    if (mask_any(stood)) {
+        done = stood & direct_hold(rule->friction, tolerance, D, uf, touching, active, stick);
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            for (int a = 0; a < 2; a++)
+                r[c][a] = choose(done, stick[c][a], r[c][a]);
+    }
+    if (!rule->indefinite && mask_any(unsure & LANES_NOT(done))) {
+        const mask todo =
+            unsure & LANES_NOT(done) & direct_unique(rule->friction, D, touching, active);
+        if (mask_any(todo))
+            done |= direct_modes(rule, D, uf, touching, active, tolerance, todo, r);
+    }
+    mask left = unsure & LANES_NOT(done);
+    left &= LANES_NOT(pair_every(rule, D, uf, touching, active, tolerance, left & LANES_NOT(stood),
+                                 r, &v->ambiguous));
+    for (int lane = 0; lane < LANES && mask_any(left); lane++) {
+        if (!mask_get(left, lane))
+            continue;
+        struct lane_problem p;
+        struct lane_choice best;
+        contact_set here = 0;
+        for (int c = 0; c < SCENE_CONTACTS; c++)
+            here |= touching >> c & 1 && mask_get(active[c], lane) ? 1u << c : 0;
+        lane_gather(rule, D, uf, here, lane, &p);
+        lane_choose_none(&best);
+        if ((mask_get(stood, lane) || (p.elements > SOLVE_ENUMERATED && lane_stick_is_least(&p))) &&
+            lane_hold(&p, best.r)) {
+            best.violation = 0;
+        } else if (p.elements <= SOLVE_ENUMERATED) {
+            lane_enumerate(&p, &best);
+        } else {
+            crowd_solve(&p, &best);
+            v->unranked |= mask_of_lane(lane);
+        }
+        lane_clip(&p, best.r);
+        for (int i = 0; i < p.rows; i++)
+            lane_set(&r[p.contact[i]][p.axis[i]], lane, best.r[i]);
+        if (best.ambiguous)
+            v->ambiguous |= mask_of_lane(lane);
+        if (!(best.violation <= 1e3 * p.tolerance))
+            v->unsolved |= mask_of_lane(lane);
+    }
+}
+
+/* Impulses of the active contacts for the linearised step, in the lanes of `where`; zero of other
+ * contacts. `rule` is about all contacts, D and uf are of those in `touching`. */
+HOT void solve_contacts(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
+                        const lanes (*uf)[2], contact_set touching, mask where, const mask *active,
+                        lanes (*r)[2], struct contact_verdict *v)
+{
+    const lanes none = lanes_of(0);
+    mask any = MASK_NONE, many = MASK_NONE, unsure = MASK_NONE;
+    v->ambiguous = v->unsolved = v->unranked = MASK_NONE;
+    EACH (c, 0, SCENE_CONTACTS) {
+        r[c][0] = r[c][1] = none;
+        if (!(touching >> c & 1))
+            continue;
+        many |= active[c] & any;
+        if (!contact_is_point(c))
+            many |= active[c];
+        any |= active[c];
+    }
+    const mask one = any & LANES_NOT(many); /* one point */
+    const contact_set points = touching;
+    if (points && (points & (points - 1)) == 0 && !mask_any(many)) { /* no stop */
+        EACH (c, 0, SCENE_CONTACTS) {
+            if (!(touching >> c & 1) || !contact_is_point(c))
+                continue;
+            lanes alone[2];
+            unsure = one & LANES_NOT(direct_one(D[c][c], uf[c], rule->friction,
+                                                rule->sliding ? &rule->sliding[c] : NULL, alone));
+            EACH (a, 0, 2)
+                r[c][a] = choose(one, alone[a], none);
+        }
+    } else {
+        if (mask_any(one)) {
+            lanes D1[2][2], uf1[2], sliding1 = none, alone[2];
+            EACH (a, 0, 2)
+                uf1[a] = D1[a][0] = D1[a][1] = none;
+            EACH (c, 0, SCENE_CONTACTS) {
+                if (!(touching >> c & 1) || !contact_is_point(c))
+                    continue;
+                if (rule->sliding)
+                    sliding1 = choose(active[c], rule->sliding[c], sliding1);
+                EACH (a, 0, 2) {
+                    uf1[a] = choose(active[c], uf[c][a], uf1[a]);
+                    EACH (b, 0, 2)
+                        D1[a][b] = choose(active[c], D[c][c][a][b], D1[a][b]);
+                }
+            }
+            unsure |= one & LANES_NOT(direct_one((const lanes(*)[2])D1, uf1, rule->friction,
+                                                 rule->sliding ? &sliding1 : NULL, alone));
+            EACH (c, 0, SCENE_CONTACTS)
+                EACH (a, 0, 2)
+                    if (a < 2 && (contact_is_point(c) && touching >> c & 1))
+                        r[c][a] = choose(one & active[c], alone[a], r[c][a]);
+        }
+        if (mask_any(many)) {
+            lanes all[CONTACTS][2];
+            const mask stays = many & direct_stick(rule, D, uf, touching, active, all) &
+                               direct_stood(rule, touching, active);
+            unsure |= many & LANES_NOT(stays);
+            EACH (c, 0, SCENE_CONTACTS)
+                EACH (a, 0, 2)
+                    if (a < contact_unknowns(c) && (touching >> c & 1))
+                        r[c][a] = choose(stays, all[c][a], r[c][a]);
+        }
+    }
+    unsure &= where;
+    if (!mask_any(unsure))
+        return;
+    /* With copies: what is passed on by address stays in memory. */
+    struct contact_rule own = *rule;
+    lanes D1[CONTACTS][CONTACTS][2][2], uf1[CONTACTS][2], r1[CONTACTS][2];
+    lanes sliding[CONTACTS], shift[CONTACTS][2], before[CONTACTS][2], last[CONTACTS][2];
+    mask part[CONTACTS];
+    struct contact_verdict verdict = *v;
+    EACH (c, 0, SCENE_CONTACTS) {
+        part[c] = touching >> c & 1 ? active[c] : MASK_NONE;
+        sliding[c] = rule->sliding ? rule->sliding[c] : none;
+        EACH (a, 0, 2) {
+            r1[c][a] = r[c][a];
+            shift[c][a] = rule->shift ? rule->shift[c][a] : none;
+            before[c][a] = rule->before ? rule->before[c][a] : none;
+            last[c][a] = rule->last ? rule->last[c][a] : none;
+        }
+        if (!(touching >> c & 1))
+            continue;
+        EACH (a, 0, 2)
+            uf1[c][a] = uf[c][a];
+        EACH (k, 0, SCENE_CONTACTS)
+            if (touching >> k & 1)
+                memcpy(D1[c][k], D[c][k], sizeof D1[c][k]);
+    }
+    own.sliding = rule->sliding ? sliding : NULL;
+    own.shift = rule->shift ? (const lanes(*)[2])shift : NULL;
+    own.before = rule->before ? (const lanes(*)[2])before : NULL;
+    own.last = rule->last ? (const lanes(*)[2])last : NULL;
+    solve_rest(&own, (const lanes(*)[CONTACTS][2][2])D1, (const lanes(*)[2])uf1, touching, part,
+               unsure, r1, &verdict);
+    EACH (c, 0, SCENE_CONTACTS)
+        EACH (a, 0, 2)
+            r[c][a] = r1[c][a];
+    *v = verdict;
+}
+
+#endif
