@@ -362,6 +362,12 @@ for attempt in $(seq $attempts); do
 done 2>/dev/null
 ((tried == attempts))
 result $? "killed while it changes, the file goes on with one scenario or the other ($changed of $attempts changed)"
+cp before.h5 killed.h5 && cp before.h5 killed.h5.next
+"$stance" run short.yaml -o killed.h5 --resume --quiet >log 2>&1 && [ ! -e killed.h5.next ]
+result $? "a successor that was left is cleared by whoever goes on with the file"
+echo mine >killed.h5.next
+"$stance" run short.yaml -o killed.h5 --resume --quiet >log 2>&1 && [ "$(cat killed.h5.next)" = mine ]
+result $? "... but what is no successor is left alone"
 rm -f killed.h5*
 expect "another scenario, forced" 0 mpirun -n 2 "$stance" run short.yaml "${other[@]}" -o changed.h5 \
     --resume --force-scenario

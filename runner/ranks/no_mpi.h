@@ -6,9 +6,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef int MPI_Win, MPI_Request;
+typedef int MPI_Win, MPI_Request, MPI_Comm;
 typedef ptrdiff_t MPI_Aint;
-enum { MPI_COMM_WORLD, MPI_BYTE, MPI_INT, MPI_INT64_T, MPI_UINT64_T, MPI_UINT8_T };
+enum {
+    MPI_COMM_WORLD,
+    MPI_COMM_TYPE_SHARED,
+    MPI_BYTE,
+    MPI_INT,
+    MPI_INT64_T,
+    MPI_UINT64_T,
+    MPI_UINT8_T
+};
 enum { MPI_SUM, MPI_MAX, MPI_MIN, MPI_REPLACE, MPI_NO_OP };
 enum { MPI_IN_PLACE, MPI_INFO_NULL, MPI_STATUS_IGNORE, MPI_MAX_LIBRARY_VERSION_STRING = 64 };
 
@@ -21,6 +29,8 @@ static inline void never_called(int ignored, ...)
 #define MPI_Init(argc, argv) never_called(0)
 #define MPI_Comm_rank(...) never_called(0, __VA_ARGS__)
 #define MPI_Comm_size(...) never_called(0, __VA_ARGS__)
+#define MPI_Comm_split_type(...) never_called(0, __VA_ARGS__)
+#define MPI_Comm_free(...) never_called(0, __VA_ARGS__)
 #define MPI_Initialized(flag) (*(flag) = 0)
 #define MPI_Finalize() never_called(0)
 #define MPI_Bcast(...) never_called(0, __VA_ARGS__)

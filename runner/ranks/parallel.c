@@ -242,6 +242,18 @@ bool parallel_agree(const struct parallel *parallel, bool good, char *text, size
     return false;
 }
 
+bool parallel_on_one_host(const struct parallel *parallel)
+{
+    int here = 1;
+    if (parallel->size == 1)
+        return true;
+    MPI_Comm host;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, parallel->rank, MPI_INFO_NULL, &host);
+    MPI_Comm_size(host, &here);
+    MPI_Comm_free(&host);
+    return here == parallel->size;
+}
+
 bool parallel_share(struct parallel *parallel)
 {
     struct parallel_shared *shared = calloc(1, sizeof *shared);

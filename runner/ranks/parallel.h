@@ -68,6 +68,8 @@ void parallel_beats(const struct parallel *parallel, int64_t *number);
  * or so. */
 void parallel_meet(const struct parallel *parallel, void (*wait)(void *context), void *context);
 
+/* Collective: do all ranks share a host? */
+bool parallel_on_one_host(const struct parallel *parallel);
 /* Name of this machine. */
 void parallel_host(char *name, size_t size);
 /* Name and version of the MPI library, or "no MPI". */

@@ -253,6 +253,7 @@ static void take_file(struct run *run)
         run_fail_io(run);
         return;
     }
+    changed_scenario_clear(run->file);
     if (!heartbeat_begin(&run->heartbeat, &run->lock, &run->parallel, "starting")) {
         run_fail(run, EXIT_IO, "stance run: not enough memory");
         return;
@@ -473,9 +474,12 @@ static void stage_open(struct run *run)
 {
     if (run->parallel.rank == 0)
         heartbeat_guard(&run->heartbeat, run->file);
+    const bool one_host = parallel_on_one_host(&run->parallel);
     if (!store_open(&run->store, run->file, &run->plan, run->parallel.size, &run->message) ||
         !store_read_designs(run->store, &run->plan, &run->message))
         run_fail_io(run);
+    else
+        store_set_spans(run->store, one_host);
 }
 
 /* Rows of the old file. */

@@ -306,6 +306,38 @@ static bool make(struct making *making, struct plan *before, int ranks, const ch
     return good;
 }
 
+static void name_made(struct making *making)
+{
+    snprintf(making->made, sizeof making->made, "%s.next", making->real);
+}
+
+/* What a successor begins with, or nothing yet: whatever else has its name is somebody's own. */
+static bool is_ours(const char *file)
+{
+    static const char signature[8] = "\211HDF\r\n\032\n";
+    char begin[sizeof signature] = {0};
+    const int descriptor = open(file, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    struct stat found;
+    const bool regular =
+        descriptor >= 0 && fstat(descriptor, &found) == 0 && S_ISREG(found.st_mode);
+    const bool begun =
+        regular && (found.st_size == 0 || (read(descriptor, begin, sizeof begin) == sizeof begin &&
+                                           memcmp(begin, signature, sizeof begin) == 0));
+    if (descriptor >= 0)
+        close(descriptor);
+    return begun;
+}
+
+void changed_scenario_clear(const char *file)
+{
+    struct making making = {.file = file};
+    if (!realpath(file, making.real))
+        return;
+    name_made(&making);
+    if (is_ours(making.made))
+        unlink(making.made);
+}
+
 bool changed_scenario_make(const char *file, const struct store_origin *origin, struct plan *plan,
                            int ranks, const char *hosts, struct changed_scenario_counts *counts,
                            stance_message *message)
@@ -325,7 +357,7 @@ bool changed_scenario_make(const char *file, const struct store_origin *origin, 
     } else if (!scenario_read(old, file, origin->scenario, NULL, 0, NULL)) {
         refuse(message, file, "a scenario that this version cannot read");
     } else {
-        snprintf(making.made, sizeof making.made, "%s.next", making.real);
+        name_made(&making);
         if (!plan_make(&before, old, plan->single, plan->single_case, plan->record_rows > 0,
                        &error)) {
             *message = error.message;

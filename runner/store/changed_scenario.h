@@ -35,5 +35,7 @@ struct changed_scenario_counts { /* rows that were copied; that did not verify a
 bool changed_scenario_make(const char *file, const struct store_origin *origin, struct plan *plan,
                            int ranks, const char *hosts, struct changed_scenario_counts *counts,
                            stance_message *message);
+/* On rank 0, with the lock: removes a successor that an attempt which was killed has left. */
+void changed_scenario_clear(const char *file);
 
 #endif

@@ -317,14 +317,12 @@ bool store_close(struct store *store, stance_message *message)
 
 /* ---- rows --------------------------------------------------------------------------------- */
 
-/* Moves n rows of one column, from `slot` of the block on, between the block and the file. */
-static bool move_column(struct store *store, int c, struct store_block *block, size_t slot,
-                        hid_t space, size_t n, enum hdf_direction way, stance_message *message)
+/* Moves n elements of a variable between memory and a selection of it. */
+static bool move_elements(struct store *store, int c, hid_t space, hsize_t n,
+                          enum hdf_direction way, void *data, stance_message *message)
 {
     const hid_t dataset = store->column[c], type = hdf_type(store_columns[c].kind);
-    hsize_t elements = n * store->width[c];
-    char *data = (char *)block->column[c] + slot * store->width[c] * store_columns[c].size;
-    const hid_t memory = H5Screate_simple(1, &elements, NULL);
+    const hid_t memory = H5Screate_simple(1, &n, NULL);
     const herr_t status = memory < 0 ? -1
                           : way == HDF_WRITE
                               ? H5Dwrite(dataset, type, memory, space, H5P_DEFAULT, data)
@@ -334,6 +332,14 @@ static bool move_column(struct store *store, int c, struct store_block *block, s
                                     way == HDF_WRITE ? "write the results" : "read the results");
     hdf_close(memory);
     return good;
+}
+
+/* Moves n rows of one column, from `slot` of the block on, between the block and the file. */
+static bool move_column(struct store *store, int c, struct store_block *block, size_t slot,
+                        hid_t space, size_t n, enum hdf_direction way, stance_message *message)
+{
+    char *data = (char *)block->column[c] + slot * store->width[c] * store_columns[c].size;
+    return move_elements(store, c, space, n * store->width[c], way, data, message);
 }
 
 /* All columns, in order: the checksum and then the status are the last ones. */
@@ -426,10 +432,75 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
     ((uint32_t *)block->column[COLUMN_CHECKSUM])[slot] = store_row_checksum(block, slot);
 }
 
+/* Rows that are scattered are written with what lies between them, read before and written back: a
+ * call of the system for each element of each row takes longer. Up to so many rows at once, of
+ * which at least one in SPAN_SPARSEST is new. */
+enum { SPAN_ROWS = 1 << 16, SPAN_SPARSEST = 1 << 12 };
+
+/* How many rows from a place of the list on, which ascend, are written in one span. */
+static uint64_t span_of(const struct rows *rows, uint64_t place)
+{
+    const uint64_t first = rows_at(rows, place);
+    uint64_t n = 1;
+    while (place + n < rows->count && rows_at(rows, place + n) > rows_at(rows, place + n - 1) &&
+           rows_at(rows, place + n) - first < SPAN_ROWS &&
+           rows_at(rows, place + n) - rows_at(rows, place + n - 1) <= SPAN_SPARSEST)
+        n++;
+    return n;
+}
+
+/* Writes rows of the block, from `slot` on, and what lies between them as it is. */
+static bool write_span(struct store *store, const struct store_block *block, size_t slot,
+                       const struct rows *rows, char *between, stance_message *message)
+{
+    const uint64_t first = rows_at(rows, 0);
+    const struct rows span = {.first = first, .count = rows_at(rows, rows->count - 1) - first + 1};
+    const size_t state = 2 * (size_t)store->plan->scenario->scene->coordinates;
+    hid_t narrow = hdf_select_rows(store->rank, store->length, 1, &span);
+    hid_t wide = hdf_select_rows(store->rank, store->length, state, &span);
+    bool good = (narrow >= 0 && wide >= 0) ||
+                store_failed(message, store->file, "select rows of the results");
+    for (int c = 0; good && c < COLUMNS; c++) {
+        if (store->column[c] < 0)
+            continue;
+        const size_t width = store->width[c], size = width * store_columns[c].size;
+        const hid_t space = width > 1 ? wide : narrow;
+        const char *const own = (const char *)block->column[c] + slot * size;
+        good = move_elements(store, c, space, span.count * width, HDF_READ, between, message);
+        for (uint64_t k = 0; good && k < rows->count; k++)
+            memcpy(between + (rows_at(rows, k) - first) * size, own + k * size, size);
+        good =
+            good && move_elements(store, c, space, span.count * width, HDF_WRITE, between, message);
+    }
+    hdf_close(narrow, wide);
+    return good;
+}
+
+void store_set_spans(struct store *store, bool spans)
+{
+    store->spans = spans;
+}
+
 bool store_write(struct store *store, struct store_block *block, size_t slot,
                  const struct rows *rows, stance_message *message)
 {
-    return store_move_rows(store, block, slot, rows, HDF_WRITE, message);
+    if (!store->spans || !rows->row || rows->count < 2)
+        return store_move_rows(store, block, slot, rows, HDF_WRITE, message);
+    size_t widest = 0;
+    for (int c = 0; c < COLUMNS; c++)
+        if (store->column[c] >= 0 && store->width[c] * store_columns[c].size > widest)
+            widest = store->width[c] * store_columns[c].size;
+    char *const between = malloc(SPAN_ROWS * widest);
+    bool good = between != NULL || no_memory(message);
+    for (uint64_t at = 0, n; good && at < rows->count; at += n) {
+        n = span_of(rows, at);
+        const struct rows part = rows_part(rows, at, n);
+        good = n < 2 || rows_at(&part, n - 1) - rows_at(&part, 0) + 1 == n
+                   ? store_move_rows(store, block, slot + at, &part, HDF_WRITE, message)
+                   : write_span(store, block, slot + at, &part, between, message);
+    }
+    free(between);
+    return good;
 }
 
 /* ---- trajectories ------------------------------------------------------------------------- */

@@ -112,7 +112,10 @@ bool store_read_axis(const char *file, struct scenario_axis *axis, stance_messag
 /* Collective when `ranks` > 1: opens a file of this plan for writing. */
 bool store_open(struct store **store, const char *file, const struct plan *plan, int ranks,
                 stance_message *message);
-/* The same, alone and for reading only. */
+/* Whether store_write may write back what lies between the rows of a list: only where all ranks see
+ * each other's writes at once, on one host, and nobody writes rows between those of a list. */
+void store_set_spans(struct store *store, bool spans);
+/* Opens one alone and for reading only. */
 bool store_open_to_read(struct store **store, const char *file, const struct plan *plan,
                         stance_message *message);
 /* Collective: ends the writing; the store is freed in any case. After a failed write call

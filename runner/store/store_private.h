@@ -102,6 +102,7 @@ struct store {
     const struct plan *plan;
     hid_t id;
     int ranks;                      /* that have it open together */
+    bool spans;                     /* see store_set_spans */
     hid_t column[COLUMNS];          /* -1: not stored */
     size_t width[COLUMNS];          /* elements per case */
     struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
