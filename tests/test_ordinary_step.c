@@ -6,7 +6,7 @@
 #define STANCE_ISA inside
 #define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
 #include "engine/methods/implicit.c"
-#include "support.h"
+#include "inside.h"
 
 /* A random operator: symmetric and positive, of condition up to 1e4, bent a little. */
 static void random_operator(uint64_t *seed, int n, double bend, double D[2][2][2][2])
@@ -153,34 +153,6 @@ static void pairs_are_exact(void **state)
     assert_true(unlike <= 1e-4 * found && worst < 1e-8);
 }
 
-/* A biped that stands on one foot or two or flies, at random. */
-static void random_motion(uint64_t *seed, int i, double h, struct bundle *b)
-{
-    stance_case c = {.robot = {0.5, 0.5, 1, 1, 3}, .step = h, .steps = 1, .torque_limit = 10};
-    const stance_scene *const scene = stance_scene_find("biped");
-    for (int k = 0; k < scene->robot_count; k++)
-        c.robot[k] = scene->robot[k].fallback * uniform(seed, 0.7, 1.4);
-    c.contacts = i % 3;
-    if (c.contacts == 2)
-        c.contacts = 3;
-    c.friction = uniform(seed, 0, 1.2);
-    c.position[1] = 2;
-    c.position[2] = uniform(seed, -0.6, 0.6);
-    c.position[3] = uniform(seed, 0.2, 0.8), c.position[4] = uniform(seed, -0.8, -0.2);
-    for (int k = 2; k < 5; k++)
-        c.velocity[k] = uniform(seed, -2, 2);
-    if (c.contacts)
-        scene->stand(scene, c.robot, 1, c.position, c.velocity);
-    static const stance_feed feed;
-    static stance_case kept;
-    static stance_result result;
-    memset(b, 0, sizeof *b);
-    b->feed = &feed;
-    kept = c;
-    bundle_load(b, 0, &kept, &result);
-    bundle_begin(b, true);
-}
-
 /* A law that acts inside the step: gains of either sign, limits that are reached now and then. */
 static void random_law(uint64_t *seed, struct law *law)
 {
@@ -207,7 +179,7 @@ static void steps_are_converged(bool coupled)
             struct bundle b;
             const double h = steps[k];
             double torque[2] = {uniform(&seed, -5, 5), uniform(&seed, -5, 5)};
-            random_motion(&seed, i, h, &b);
+            random_motion(&seed, i % 3 == 2 ? 3 : (uint32_t)(i % 3), 0, 1.2, h, &b);
             if (coupled)
                 random_law(&seed, &b.set.law);
             for (int n = 0; n < LENGTH; n++) {

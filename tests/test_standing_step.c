@@ -7,36 +7,15 @@
 #define STANCE_ISA inside
 #define STANCE_SCENE_LANES "engine/scenes/biped_lanes.h"
 #include "engine/methods/capturing.c"
-#include "support.h"
+#include "inside.h"
 
 enum { PARTS = 32 };
 
-/* A biped that stands on contacts of a set - none, or the first foot - at random, and torques. */
+/* A robot at random, and torques. */
 static contact_set random_robot(uint64_t *seed, contact_set on, double h, struct bundle *b,
                                 double *torque)
 {
-    stance_case c = {.robot = {0.5, 0.5, 1, 1, 3}, .step = h, .steps = 1, .torque_limit = 10};
-    const stance_scene *const scene = stance_scene_find("biped");
-    static const stance_feed feed;
-    static stance_case kept;
-    static stance_result result;
-    for (int k = 0; k < scene->robot_count; k++)
-        c.robot[k] = scene->robot[k].fallback * uniform(seed, 0.7, 1.4);
-    c.contacts = on;
-    c.friction = uniform(seed, 0.5, 1.5);
-    c.tolerance = 1e-8;
-    c.position[1] = 2;
-    c.position[2] = uniform(seed, -0.6, 0.6);
-    c.position[3] = uniform(seed, 0.2, 0.8), c.position[4] = uniform(seed, -0.8, -0.2);
-    for (int k = 2; k < 5; k++)
-        c.velocity[k] = uniform(seed, -2, 2);
-    if (c.contacts)
-        scene->stand(scene, c.robot, 1, c.position, c.velocity);
-    memset(b, 0, sizeof *b);
-    b->feed = &feed;
-    kept = c;
-    bundle_load(b, 0, &kept, &result);
-    bundle_begin(b, true);
+    random_motion(seed, on, 0.5, 1.5, h, b);
     for (int a = 0; a < 2; a++)
         torque[a] = uniform(seed, -5, 5);
     return step_touching(&b->set, b->now.gap, true);

@@ -269,7 +269,7 @@ HOT mask capture_stand(contact_set touching, const struct advance *a, const stru
                        const struct motion *now, struct motion *next, struct step_report *report)
 {
     lanes error;
-    const mask anew = run & mask_less_equal(lanes_of(STANDING_TURNS), a->turns);
+    const mask anew = run & mask_less_equal(lanes_of(TRIG_TURNS), a->turns);
     const mask good =
         standing_take(touching, set, now, torque, coupled, h, run, anew, next, report, &error);
     return good & mask_less_equal(error, a->tolerance * capture_size(now));
@@ -277,7 +277,7 @@ HOT mask capture_stand(contact_set touching, const struct advance *a, const stru
 /* Such a step was taken in the lanes of m. */
 HOT void capture_stood(struct advance *a, mask m)
 {
-    const mask anew = mask_less_equal(lanes_of(STANDING_TURNS), a->turns);
+    const mask anew = mask_less_equal(lanes_of(TRIG_TURNS), a->turns);
     a->turns = choose(m, choose(anew, lanes_of(0), a->turns + 1), a->turns);
     a->ordinary = choose(m, lanes_of(1), a->ordinary);
 }

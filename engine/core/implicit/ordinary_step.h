@@ -10,7 +10,7 @@
  *   K h |d|^2 with the scene's bound K on the equation's curvature (scene_curvature), so one
  *   iteration is enough where |d|^2 <= ORDINARY_ERROR / (K h), relative to the speed: about 1e-5.
  * - Sines and cosines at the end are those of the beginning turned by h w, an angle of
- *   TRIG_TURNED at most, by series; every ORDINARY_TURNS steps they are computed anew, so that
+ *   TRIG_TURNED at most, by series; every TRIG_TURNS steps they are computed anew, so that
  *   rounding does not add up.
  * - A linear law that acts inside the step is part of the equation, and bends it at the torque
  *   limits alone: an iteration counts where each torque stays at its limit, or at none.
@@ -29,7 +29,6 @@
 
 #define ORDINARY_ITERATIONS 4
 #define ORDINARY_ERROR 1e-11 /* of the velocity, left by Newton */
-#define ORDINARY_TURNS 32    /* steps between sines computed anew */
 #define ORDINARY_SMALL 1e-6  /* rad: a last correction that turns further is not ordinary */
 
 /* What is remembered of the steps before. */
@@ -49,7 +48,7 @@ static inline void ordinary_forget(struct ordinary *q, mask m)
         q->before[i] = choose(m, none, q->before[i]);
     }
     q->known = choose(m, none, q->known);
-    q->turns = choose(m, lanes_of(ORDINARY_TURNS), q->turns);
+    q->turns = choose(m, lanes_of(TRIG_TURNS), q->turns);
 }
 
 /* Takes sines and cosines over where m holds, or everywhere. */
@@ -86,7 +85,7 @@ HOT void ordinary_place(const struct ordinary *q, const struct motion *from, lan
     if (METHOD_THETA != 1)
         trig_turned(&middle, d, &end);
     const mask anew = LANES_NOT(mask_less_equal(farthest, lanes_of(TRIG_TURNED))) |
-                      mask_less_equal(lanes_of(ORDINARY_TURNS), q->turns);
+                      mask_less_equal(lanes_of(TRIG_TURNS), q->turns);
     if (mask_any(m & anew)) {
         scene_trig exact;
         scene_trigonometry(halfway, &exact);
@@ -280,8 +279,7 @@ HOT void ordinary_keep(struct ordinary *q, const struct iterate *it, lanes h, bo
         q->change[i] = change;
     }
     q->known = lanes_of(1);
-    q->turns =
-        choose(mask_less_equal(lanes_of(ORDINARY_TURNS), q->turns), lanes_of(1), q->turns + 1);
+    q->turns = choose(mask_less_equal(lanes_of(TRIG_TURNS), q->turns), lanes_of(1), q->turns + 1);
     step_commit(now->t + h, it, all, good, MASK_NONE, now);
 }
 

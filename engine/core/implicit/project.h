@@ -7,6 +7,7 @@
 #include "iterate.h"
 
 #define TRIG_TURNED 0.0625    /* rad: the series' rounding error is then below 1e-17 */
+#define TRIG_TURNS 32         /* steps between sines that are computed anew */
 #define STEP_PROJECTION 1e-13 /* m: gap error left by the projection */
 #define STEP_FARTHEST 0.3     /* rad: a projection that turns the robot further is refused */
 #define STEP_APPROACH 1e-9    /* m/s: a closed contact that approaches faster is an impact */

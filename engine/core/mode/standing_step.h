@@ -32,7 +32,6 @@
 
 #define STANDING_ROOM 1e-4  /* of the largest load: forces are this far inside the cone */
 #define STANDING_DRIFT 1e-7 /* m: a step that leaves the contacts by more is not of this kind */
-#define STANDING_TURNS 32   /* steps between sines computed anew */
 
 enum { STANDING_PLACES = 3, STANDING_EVALUATIONS = 4 };
 
