@@ -379,6 +379,8 @@ fuzz_sources := $(filter-out runner/main.c,$(program_sources)) $(filter-out engi
 fuzz_objects := $(fuzz_sources:%.c=$(FUZZ)/%.o)
 # The sanitizers as a library, so that a crash tells their functions from ours; none: no fuzzing.
 fuzz_library := $(filter /%,$(shell $(FUZZ_CC) -print-file-name=libclang_rt.asan-$(MACHINE).so 2>/dev/null))
+# Where a command is to stay in the process: see tests/fuzz_results.c.
+fuzz_wrapped  = sandbox sandbox_limit gnuplot_end parallel_start parallel_finish crash_watch
 fuzz_programs = $(if $(fuzz_library),$(FUZZ)/fuzz_scenario $(FUZZ)/fuzz_results)
 
 $(FUZZ)/%.o: %.c Makefile
@@ -387,9 +389,9 @@ $(FUZZ)/%.o: %.c Makefile
 $(FUZZ)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
 $(FUZZ)/fuzz_scenario: $(FUZZ)/tests/fuzz_scenario.o $(FUZZ)/tests/fuzz_mutate.o $(fuzz_objects) $(archives)
 	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined,fuzzer $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
-$(FUZZ)/fuzz_results: $(FUZZ)/tests/fuzz_results.o $(FUZZ)/tests/damage.o $(fuzz_objects) $(archives)
+$(FUZZ)/fuzz_results: $(FUZZ)/tests/fuzz_results.o $(FUZZ)/tests/fuzz_numbers.o $(FUZZ)/tests/damage.o $(fuzz_objects) $(archives)
 	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined -shared-libasan -Wl,-rpath,$(dir $(fuzz_library)) \
-	    $(foreach f,sandbox sandbox_limit gnuplot_end,-Wl,--wrap=$(f)) $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
+	    $(foreach f,$(fuzz_wrapped),-Wl,--wrap=$(f)) $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
 
 # A longer campaign: FUZZ_SECONDS=3600, or FUZZ_RUNS=1000000; `test` runs a share, too.
 fuzz: packages-test

@@ -16,6 +16,7 @@ mkdir -p "$programs/found" "$programs/corpus"
 scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
 cd "$scratch" || exit 1
 unset ASAN_OPTIONS UBSAN_OPTIONS
+export OPENBLAS_NUM_THREADS=1 # threads that never work cost each change of the memory's map an interrupt
 count=0
 result() { # status, name, log
     count=$((count + 1))

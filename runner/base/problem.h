@@ -14,7 +14,7 @@ struct mark {
 
 enum {
     PROBLEMS_SHOWN = 20, /* lines that are printed; the rest is counted */
-    PROBLEMS_KEPT = 200,
+    PROBLEMS_KEPT = 40,
     PROBLEM_TEXT = 700,
     SHOWN_SIZE = 64,
 };

@@ -265,10 +265,10 @@ static void clear_design(struct resolved_design *design)
 bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_values *values,
                                 bool sampled)
 {
-    struct schema *schema = malloc(sizeof *schema);
-    const bool good = schema && schema_build(schema, scene);
+    struct schema *own;
+    const struct schema *const schema = schema_of(scene, &own);
     const double sample_time = values->sample_time;
-    for (size_t k = 0; good && k < schema->count; k++) {
+    for (size_t k = 0; schema && k < schema->count; k++) {
         const struct scenario_field *field = &schema->field[k];
         const size_t items =
             (field->items ? field->items : 1) * (field->columns ? field->columns : 1);
@@ -276,10 +276,10 @@ bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_value
             memset((char *)values + field->offset, 0,
                    items * (field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int)));
     }
-    free(schema);
+    free(own);
     values->settle = 0;
     values->sample_time = sampled ? sample_time : 0;
-    return good;
+    return schema != NULL;
 }
 
 bool resolve_design(const stance_scene *scene, const struct scenario_values *values,

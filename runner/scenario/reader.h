@@ -26,7 +26,8 @@ struct reader {
     struct scenario *s;
     struct tree tree;
     struct problems problems;
-    struct schema schema;
+    const struct schema *schema;
+    struct schema *own_schema; /* of a mechanism of the file */
     struct seen seen[SCHEMA_MAX_FIELDS];
     struct seen nothing; /* of paths that the scene lacks */
     struct swept_field swept[SCENARIO_MAX_AXES][SCENARIO_MAX_PATHS];

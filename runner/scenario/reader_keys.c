@@ -34,7 +34,7 @@ static bool mended_key(struct reader *r, const struct tree_node *map, size_t i, 
         first--;
     if (first < i && map->item[first]->kind == TREE_SCALAR) {
         snprintf(below, sizeof below, "%s%s%.64s", path, path[0] ? "." : "", map->key[first].name);
-        const struct scenario_field *field = schema_find(&r->schema, below);
+        const struct scenario_field *field = schema_find(r->schema, below);
         const enum field_type type = field ? field->type : FIELD_MAP;
         if (type == FIELD_WORDS || type == FIELD_POLES || type == FIELD_NUMBERS ||
             type == FIELD_PATHS || type == FIELD_VALUES) {
@@ -54,8 +54,8 @@ static bool mended_key(struct reader *r, const struct tree_node *map, size_t i, 
             return true;
         }
     }
-    for (size_t k = 0; empty && k < r->schema.count; k++) {
-        const struct scenario_field *child = &r->schema.field[k];
+    for (size_t k = 0; empty && k < r->schema->count; k++) {
+        const struct scenario_field *child = &r->schema->field[k];
         const size_t length = strlen(path);
         if (strncmp(child->path, path, length) != 0 || child->path[length] != '.' ||
             strchr(child->path + length + 1, '.') || child->type != FIELD_WORD)
@@ -70,7 +70,7 @@ static bool mended_key(struct reader *r, const struct tree_node *map, size_t i, 
     }
     if (empty && mend_pair(key->name, word, sizeof word, mend)) {
         snprintf(below, sizeof below, "%s%s%s", path, path[0] ? "." : "", word);
-        if (schema_find(&r->schema, below)) {
+        if (schema_find(r->schema, below)) {
             problem_add(&r->problems, key->mark,
                         "%s%sa colon and a blank stand after a key; write %.160s", name, separator,
                         mend);
@@ -78,14 +78,14 @@ static bool mended_key(struct reader *r, const struct tree_node *map, size_t i, 
         }
     }
     snprintf(below, sizeof below, "sweep.grid[].%.64s", key->name);
-    if (strcmp(path, "sweep") == 0 && schema_find(&r->schema, below)) {
+    if (strcmp(path, "sweep") == 0 && schema_find(r->schema, below)) {
         problem_add(&r->problems, key->mark,
                     "sweep: %s belongs to an axis; write grid: and below it - {%s: ...}", key->name,
                     key->name);
         return true;
     }
     const char *dot = path[0] ? NULL : strchr(key->name, '.');
-    if (dot && schema_find(&r->schema, key->name) && !strchr(dot + 1, '.') &&
+    if (dot && schema_find(r->schema, key->name) && !strchr(dot + 1, '.') &&
         strlen(key->name) < 64) {
         problem_add(&r->problems, key->mark,
                     "a path is for sweeps and --set; here keys stand in each other; write %.*s: "
@@ -99,7 +99,7 @@ static bool mended_key(struct reader *r, const struct tree_node *map, size_t i, 
 /* A key that is unknown here but stands elsewhere in the format, or NULL. */
 static const struct scenario_field *elsewhere(const struct reader *r, const char *key)
 {
-    const struct schema *const schema = &r->schema;
+    const struct schema *const schema = r->schema;
     for (size_t i = 0; i < schema->count; i++)
         if (!strchr(schema->field[i].path, '[') && !reader_described(r, schema->field[i].path) &&
             !(r->s->own_scene && strncmp(schema->field[i].path, "controller.model.", 17) == 0) &&
@@ -138,9 +138,9 @@ static void unknown_key(struct reader *r, const struct tree_key *key, const char
     field_unknown(&r->problems, name, "key", key->name, key->mark, known, count);
     if (near) {
         snprintf(near_path, sizeof near_path, "%s%s%s", path, path[0] ? "." : "", near);
-        const struct scenario_field *field = schema_find(&r->schema, near_path);
+        const struct scenario_field *field = schema_find(r->schema, near_path);
         if (field)
-            r->seen[field - r->schema.field].excused = true;
+            r->seen[field - r->schema->field].excused = true;
     }
 }
 
@@ -148,7 +148,7 @@ void reader_check_keys(struct reader *r, const struct tree_node *map, const char
                        const char *name)
 {
     const char *known[SCHEMA_MAX_FIELDS];
-    size_t count = schema_children(&r->schema, path, known, SCHEMA_MAX_FIELDS);
+    size_t count = schema_children(r->schema, path, known, SCHEMA_MAX_FIELDS);
 
     for (size_t i = 0; i < map->count; i++) {
         bool found = false;
@@ -166,7 +166,7 @@ void reader_no_mapping(struct reader *r, const struct scenario_field *field,
     const char *wanted =
         field->type == FIELD_MAP ? "a mapping" : "\"off\", or a mapping with angle, rate, hold";
     const char *known[SCHEMA_MAX_FIELDS];
-    const size_t count = schema_children(&r->schema, field->path, known, SCHEMA_MAX_FIELDS);
+    const size_t count = schema_children(r->schema, field->path, known, SCHEMA_MAX_FIELDS);
     char name[TREE_MAX_NAME], mend[MEND_SIZE], path[PATH_SIZE], word[SHOWN_SIZE];
     double number;
     bool finite;
@@ -174,7 +174,7 @@ void reader_no_mapping(struct reader *r, const struct scenario_field *field,
 
     for (size_t k = 0; k < count && node->kind == TREE_SCALAR; k++) {
         snprintf(path, sizeof path, "%s.%s", field->path, known[k]);
-        const struct scenario_field *child = schema_find(&r->schema, path);
+        const struct scenario_field *child = schema_find(r->schema, path);
         bool meant = pair && strcmp(name, known[k]) == 0;
         for (size_t w = 0; !pair && child && w < child->word_count && !meant; w++) {
             meant = strcmp(child->words[w], node->text) == 0;

@@ -40,13 +40,13 @@ static bool read_tree(struct reader *r, const char *file, const char *given)
 
 struct seen *reader_seen(struct reader *r, const char *path)
 {
-    const struct scenario_field *field = schema_find(&r->schema, path);
-    return field ? &r->seen[field - r->schema.field] : &r->nothing;
+    const struct scenario_field *field = schema_find(r->schema, path);
+    return field ? &r->seen[field - r->schema->field] : &r->nothing;
 }
 
 bool reader_value(struct reader *r, const char *path, double *value)
 {
-    const struct scenario_field *field = schema_find(&r->schema, path);
+    const struct scenario_field *field = schema_find(r->schema, path);
     const struct tree_node *node = reader_seen(r, path)->node;
 
     *value = field->fallback;
@@ -109,7 +109,7 @@ static bool read_items(struct reader *r, const struct scenario_field *field,
     char path[PATH_SIZE], name[PATH_SIZE];
 
     snprintf(path, sizeof path, "%s%s", field->path, matrix ? "[][]" : "[]");
-    const struct scenario_field *item = schema_find(&r->schema, path);
+    const struct scenario_field *item = schema_find(r->schema, path);
     double *number = (double *)(void *)((char *)&r->s->base + item->offset);
     const size_t items =
         field->fewer && node->kind == TREE_LIST && node->count > 0 && node->count < field->items
@@ -139,11 +139,11 @@ static bool read_items(struct reader *r, const struct scenario_field *field,
 static void read_value(struct reader *r, const struct scenario_field *field,
                        const struct tree_key *key, const struct tree_node *node)
 {
-    struct seen *seen = &r->seen[field - r->schema.field];
+    struct seen *seen = &r->seen[field - r->schema->field];
 
     seen->node = node;
     seen->key = key->mark;
-    if (field->by_scene && !r->schema.scene)
+    if (field->by_scene && !r->schema->scene)
         return;
     const bool map = field->type == FIELD_MAP || field->type == FIELD_MAP_OR_WORD;
     if (map && node->kind == TREE_MAP) {
@@ -173,7 +173,7 @@ static void read_map(struct reader *r, const struct tree_node *map, const char *
         char below[PATH_SIZE];
         snprintf(below, sizeof below, "%s%s%.64s", path, path[0] ? "." : "", map->key[i].name);
         const struct scenario_field *field =
-            strpbrk(map->key[i].name, ".[") ? NULL : schema_find(&r->schema, below);
+            strpbrk(map->key[i].name, ".[") ? NULL : schema_find(r->schema, below);
         if (field)
             read_value(r, field, &map->key[i], map->item[i]);
     }
@@ -187,8 +187,8 @@ static void set_defaults(struct reader *r)
         stance_robot_fallback(r->s->scene, base->robot);
     for (int i = 0; i < STANCE_MAX_ROBOT; i++)
         base->model[i] = NAN;
-    for (size_t i = 0; i < r->schema.count; i++) {
-        const struct scenario_field *field = &r->schema.field[i];
+    for (size_t i = 0; i < r->schema->count; i++) {
+        const struct scenario_field *field = &r->schema->field[i];
         if (field->offset == NO_OFFSET || reader_described(r, field->path))
             continue;
         char *place = (char *)base + field->offset;
@@ -249,20 +249,20 @@ static void read_record(struct reader *r)
     if (cases && cases->kind == TREE_SCALAR && isdigit((unsigned char)cases->text[0])) {
         field_list(&r->problems, "record.cases", "none, all or a list of cases", cases);
     } else if (cases && cases->kind == TREE_SCALAR) {
-        field_word(&r->problems, schema_find(&r->schema, "record.cases"), "record.cases", cases,
+        field_word(&r->problems, schema_find(r->schema, "record.cases"), "record.cases", cases,
                    &word);
         s->record_cases = word ? RECORD_ALL : RECORD_NONE;
     } else if (cases) {
         read_record_list(r, cases);
     }
     if (every) {
-        field_number(&r->problems, schema_find(&r->schema, "record.every"), "record.every", every,
+        field_number(&r->problems, schema_find(r->schema, "record.every"), "record.every", every,
                      &s->record_every);
     } else if (s->record_cases != RECORD_NONE) {
         s->record_every = DEFAULT_RECORD_EVERY;
     }
     s->answers = UINT32_MAX;
-    if (answers && field_words(&r->problems, schema_find(&r->schema, "record.answers"),
+    if (answers && field_words(&r->problems, schema_find(r->schema, "record.answers"),
                                "record.answers", answers, &s->answers))
         s->answers |= (s->answers >> SCENARIO_FINAL_STATE & 1) << 31;
 }
@@ -310,35 +310,42 @@ static bool read_version(struct reader *r)
     return true;
 }
 
-static void read_scene(struct reader *r)
+/* False: out of memory. */
+static bool read_scene(struct reader *r)
 {
     const struct tree_node *scene = tree_find(r->tree.root, "scene");
     int place;
 
-    schema_build(&r->schema, NULL);
+    r->schema = schema_of(NULL, &r->own_schema);
+    if (!r->schema)
+        return problem_no_memory(&r->problems);
     if (scene &&
-        field_word(&r->problems, schema_find(&r->schema, "scene"), "scene", scene, &place)) {
+        field_word(&r->problems, schema_find(r->schema, "scene"), "scene", scene, &place)) {
         r->s->scene = stance_scenes()[place]; /* NULL behind the last one */
         if (!r->s->scene)
             r->s->scene = r->s->own_scene = mechanism_read(r);
-        if (r->s->scene && !schema_build(&r->schema, r->s->scene)) {
+        const struct schema *const known =
+            r->s->scene ? schema_of(r->s->scene, &r->own_schema) : NULL;
+        if (known)
+            r->schema = known;
+        else if (r->s->scene) {
             problem_add(&r->problems, scene->mark, "scene: %s has more names than fit",
                         r->s->scene->name);
             r->s->scene = NULL;
-            schema_build(&r->schema, NULL);
         }
     }
+    return true;
 }
 
 /* Remembers where keys stand. Without memory later errors point at the mapping instead. */
 static void note_places(struct reader *r)
 {
     struct scenario *s = r->s;
-    s->place = calloc(r->schema.count, sizeof *s->place);
-    for (size_t i = 0; s->place && i < r->schema.count; i++) {
+    s->place = calloc(r->schema->count, sizeof *s->place);
+    for (size_t i = 0; s->place && i < r->schema->count; i++) {
         if (r->seen[i].node && r->seen[i].key.set == 0) {
             struct scenario_place *place = &s->place[s->places++];
-            snprintf(place->path, sizeof place->path, "%s", r->schema.field[i].path);
+            snprintf(place->path, sizeof place->path, "%s", r->schema->field[i].path);
             place->line = r->seen[i].key.line;
             place->column = r->seen[i].key.column;
         }
@@ -407,16 +414,15 @@ static void read_all(struct reader *r, const char *file, const char *text, const
                     "a scenario is a mapping that begins with \"stance: 1\"");
         return;
     }
-    if (!read_version(r))
+    if (!read_version(r) || !read_scene(r))
         return;
-    read_scene(r);
     set_defaults(r);
     read_map(r, r->tree.root, "");
     read_by_hand(r);
     scenario_cross_check(r);
     note_places(r);
     if (r->problems.count == 0) {
-        sort_keys(&r->schema, r->tree.root, "");
+        sort_keys(r->schema, r->tree.root, "");
         s->text = tree_write(r->tree.root);
         if (!s->text)
             problem_no_memory(&r->problems);
@@ -468,6 +474,7 @@ bool scenario_read(struct scenario *s, const char *file, const char *text, const
         scenario_free(s);
     }
     tree_free(&r->tree);
+    free(r->own_schema);
     free(r);
     return good;
 }

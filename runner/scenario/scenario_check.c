@@ -24,8 +24,8 @@ struct situation {
 static bool any_below(struct reader *r, const char *prefix, bool (*test)(const struct seen *))
 {
     size_t length = strlen(prefix);
-    for (size_t i = 0; i < r->schema.count; i++) {
-        const char *path = r->schema.field[i].path;
+    for (size_t i = 0; i < r->schema->count; i++) {
+        const char *path = r->schema->field[i].path;
         if (strncmp(path, prefix, length) == 0 && (path[length] == '.' || !path[length]) &&
             test(&r->seen[i]))
             return true;
@@ -88,14 +88,14 @@ static struct situation find_situation(struct reader *r)
 
 static const char *law_word(const struct reader *r)
 {
-    return schema_find(&r->schema, "controller.kind")->words[r->s->base.law];
+    return schema_find(r->schema, "controller.kind")->words[r->s->base.law];
 }
 
 /* Whether no controller.design is of the use; then *instead is one that there is. */
 static bool design_misfits(const struct reader *r, const struct situation *is, enum field_use use,
                            const char **instead)
 {
-    const struct scenario_field *design = schema_find(&r->schema, "controller.design");
+    const struct scenario_field *design = schema_find(r->schema, "controller.design");
     const bool fits = use == USE_PLACE   ? is->places
                       : use == USE_LQR   ? is->regulates
                       : use == USE_MODEL ? is->models
@@ -123,7 +123,7 @@ static const char *obstacle(const struct reader *r, const struct situation *is,
         misfits = is->law_known && is->law == none;
         break;
     case USE_LAW:
-        return is->law_known && is->law != own && is->far != own ? r->schema.kind_of[field->law]
+        return is->law_known && is->law != own && is->far != own ? r->schema->kind_of[field->law]
                                                                  : NULL;
     case USE_FAR:
         misfits = is->law_known && is->far == none;
@@ -166,15 +166,15 @@ static bool parent_has_use(const struct reader *r, const struct scenario_field *
     if (!dot)
         return false;
     *dot = '\0';
-    const struct scenario_field *parent = schema_find(&r->schema, path);
+    const struct scenario_field *parent = schema_find(r->schema, path);
     return parent && parent->use == field->use && parent->law == field->law;
 }
 
 static void check_uses(struct reader *r, const struct situation *is)
 {
     const char *needed, *instead;
-    for (size_t i = 0; i < r->schema.count; i++) {
-        const struct scenario_field *field = &r->schema.field[i];
+    for (size_t i = 0; i < r->schema->count; i++) {
+        const struct scenario_field *field = &r->schema->field[i];
         if (!r->seen[i].node || parent_has_use(r, field))
             continue;
         needed = obstacle(r, is, field, &instead);
@@ -229,8 +229,8 @@ static void check_required(struct reader *r, const struct situation *is)
         [USE_PLACE] = " (controller.design place and place-schur need it)",
         [USE_GAINS] = " (controller.design gains needs it)",
     };
-    for (size_t i = 0; i < r->schema.count; i++) {
-        const struct scenario_field *field = &r->schema.field[i];
+    for (size_t i = 0; i < r->schema->count; i++) {
+        const struct scenario_field *field = &r->schema->field[i];
         const char *instead;
         struct mark mark;
         bool known = field->use == USE_ALWAYS || is->law_known;
@@ -331,7 +331,7 @@ static void check_start(struct reader *r, const struct situation *is)
         return;
     if (!is->from_state && !is->from_equilibrium) {
         problem_add(&r->problems, initial->node ? initial->key : r->tree.root->mark,
-                    schema_find(&r->schema, "initial.equilibrium")
+                    schema_find(r->schema, "initial.equilibrium")
                         ? "initial: give an equilibrium or a state"
                         : "initial: give a state");
         return;
@@ -398,7 +398,7 @@ static struct mark where(struct reader *r, const char *path)
 /* Is a number of the controller other than without an effect (zero, or no limit) in some case? */
 static bool is_on(struct reader *r, const char *path)
 {
-    const struct scenario_field *const field = schema_find(&r->schema, path);
+    const struct scenario_field *const field = schema_find(r->schema, path);
     double least, largest;
     int whole, k;
     if (!field) /* a scene without actuators */
@@ -619,7 +619,7 @@ static void check_world(struct reader *r)
         {"controller.model.gravity", "9.81"},
     };
     for (size_t i = 0; i < sizeof fixed / sizeof fixed[0]; i++) {
-        const struct scenario_field *const field = schema_find(&r->schema, fixed[i].path);
+        const struct scenario_field *const field = schema_find(r->schema, fixed[i].path);
         const double usual = i % 2 ? STANCE_GRAVITY : 0;
         double least, largest;
         if (!field || !reader_given(reader_seen(r, fixed[i].path)) || r->axes_bad ||

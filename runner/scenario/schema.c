@@ -247,7 +247,8 @@ static bool add_row(struct schema *schema, const struct row *row)
 
 bool schema_build(struct schema *schema, const stance_scene *scene)
 {
-    *schema = (struct schema){.scene = scene};
+    memset(schema, 0, offsetof(struct schema, field));
+    schema->scene = scene;
     schema->pattern = scene && scene->mechanism && scene->mechanism->numbers == 0;
     for (size_t i = 0; i < SCHEMA_MAX_WORDS - 1 && stance_scenes()[i]; i++)
         schema->scenes[schema->scene_count++] = stance_scenes()[i]->name;

@@ -85,8 +85,6 @@ struct schema {
     const stance_scene *scene; /* NULL: unknown; fields by scene are left out then */
     /* A mechanism without a number is that of the documentation: its names stand for any. */
     bool pattern;
-    size_t count;
-    struct scenario_field field[SCHEMA_MAX_FIELDS];
     const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
     const char *laws[STANCE_MAX_LAWS], *far_laws[STANCE_MAX_LAWS];
     size_t scene_count, method_count, law_count, far_law_count;
@@ -96,11 +94,18 @@ struct schema {
     const char *selections[STANCE_MAX_SELECTIONS];
     const char *bodies[STANCE_MAX_BODIES], *elements[STANCE_MAX_ELEMENTS]; /* of a mechanism */
     char tolerance[400]; /* what there is to know of method.tolerance */
+    size_t count;
+    struct scenario_field field[SCHEMA_MAX_FIELDS]; /* [count]; what lies behind is not set */
 };
 
 /* Writes the table out for a scene. False: it has more rows than fit (a scene that is too large).
  */
 bool schema_build(struct schema *schema, const stance_scene *scene);
+
+/* The table of a scene. Those of stance_scenes() and of no known scene (NULL) are written once and
+ * kept; that of a mechanism goes to *own, else NULL, to be freed by the caller. NULL: it has more
+ * rows than fit, or out of memory. */
+const struct schema *schema_of(const stance_scene *scene, struct schema **own);
 
 /* The row of a path, "[]" for indices; NULL: none. */
 const struct scenario_field *schema_find(const struct schema *schema, const char *path);

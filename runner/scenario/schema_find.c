@@ -53,17 +53,36 @@ const struct scenario_field *schema_find_concrete(const struct schema *schema, c
     return schema_find(schema, general);
 }
 
+const struct schema *schema_of(const stance_scene *scene, struct schema **own)
+{
+    static struct schema *kept[SCHEMA_MAX_WORDS]; /* of no scene, then as stance_scenes() */
+    const stance_scene *const *scenes = stance_scenes();
+    size_t i = 0;
+    *own = NULL;
+    if (scene)
+        while (i < SCHEMA_MAX_WORDS && (i == 0 || scenes[i - 1] != scene))
+            i = i > 0 && !scenes[i - 1] ? SCHEMA_MAX_WORDS : i + 1;
+    if (i < SCHEMA_MAX_WORDS && kept[i])
+        return kept[i];
+    struct schema *schema = malloc(sizeof *schema);
+    if (!schema || !schema_build(schema, scene)) {
+        free(schema);
+        return NULL;
+    }
+    *(i < SCHEMA_MAX_WORDS ? &kept[i] : own) = schema;
+    return schema;
+}
+
 const stance_scene *schema_scene_with(const char *path)
 {
-    const stance_scene *found = NULL;
-    struct schema *schema = malloc(sizeof *schema);
+    struct schema *own;
     size_t index[2];
-    for (const stance_scene *const *scene = stance_scenes(); schema && !found && *scene; scene++)
-        if (schema_build(schema, *scene) &&
-            (schema_find(schema, path) || schema_find_concrete(schema, path, index)))
-            found = *scene;
-    free(schema);
-    return found;
+    for (const stance_scene *const *scene = stance_scenes(); *scene; scene++) {
+        const struct schema *const schema = schema_of(*scene, &own);
+        if (schema && (schema_find(schema, path) || schema_find_concrete(schema, path, index)))
+            return *scene;
+    }
+    return NULL;
 }
 
 const char *schema_last_name(const char *path)

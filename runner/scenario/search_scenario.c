@@ -99,7 +99,7 @@ static bool add_weights(struct axis_reader *a)
 /* The parameters of the scenario's law that are numbers and may be swept. */
 static bool add_law(struct axis_reader *a)
 {
-    const struct schema *const schema = &a->r->schema;
+    const struct schema *const schema = a->r->schema;
     const int before = a->axis->paths, law = a->r->s->base.law;
     bool good = true;
     for (size_t i = 0; good && i < schema->count; i++) {
@@ -130,8 +130,8 @@ static bool read_word(struct axis_reader *a)
 {
     static bool (*const add[])(struct axis_reader *) = {add_gains, add_poles, add_weights, add_law};
     int word;
-    return field_word(&a->r->problems, schema_find(&a->r->schema, "optimise.vary"), a->name,
-                      a->node, &word) &&
+    return field_word(&a->r->problems, schema_find(a->r->schema, "optimise.vary"), a->name, a->node,
+                      &word) &&
            add[word](a);
 }
 
@@ -143,7 +143,7 @@ static bool read_number(struct axis_reader *a, const char *key, double *value)
     snprintf(path, sizeof path, "optimise.vary[].%s", key);
     snprintf(name, sizeof name, "%s.%s", a->name, key);
     return !node ||
-           field_number(&a->r->problems, schema_find(&a->r->schema, path), name, node, value);
+           field_number(&a->r->problems, schema_find(a->r->schema, path), name, node, value);
 }
 
 /* {path, from, to, spacing, unit} */
@@ -243,7 +243,7 @@ static bool read_grow(struct reader *r)
         char name[32];
         double number = 0;
         snprintf(name, sizeof name, "optimise.grow[%zu]", i);
-        good = field_integer(&r->problems, schema_find(&r->schema, "optimise.grow[]"), name,
+        good = field_integer(&r->problems, schema_find(r->schema, "optimise.grow[]"), name,
                              grow->item[i], &number) &&
                good;
         search->grow[i] = (uint64_t)number;
@@ -260,7 +260,7 @@ static void read_prices(struct reader *r)
     for (int i = 0; i < STANCE_ANSWER_COUNT; i++) {
         char path[96];
         snprintf(path, sizeof path, "optimise.price.%s", stance_answers[i].name);
-        if (schema_find(&r->schema, path))
+        if (schema_find(r->schema, path))
             reader_value(r, path, &r->s->search.price[i]);
     }
     reader_value(r, "optimise.price.gain", &r->s->search.gain_price);

@@ -24,7 +24,7 @@ const char *axis_key(const struct scenario *s, int axis, char name[AXIS_NAME])
 
 static bool unknown_path(struct axis_reader *a, const struct tree_node *node)
 {
-    const struct schema *schema = &a->r->schema;
+    const struct schema *schema = a->r->schema;
     char path[SCHEMA_MAX_FIELDS][96], word[SHOWN_SIZE];
     const char *known[SCHEMA_MAX_FIELDS], *near;
     size_t n = 0;
@@ -108,7 +108,7 @@ bool axis_read_path(struct axis_reader *a, const struct tree_node *node)
 
     if (node->kind != TREE_SCALAR)
         return field_mismatch(&a->r->problems, a->name, "a path such as ground.friction", node);
-    swept.field = schema_find_concrete(&a->r->schema, node->text, swept.index);
+    swept.field = schema_find_concrete(a->r->schema, node->text, swept.index);
     if (!swept.field)
         return unknown_path(a, node);
     if (!swept.field->sweep) {
@@ -133,7 +133,7 @@ bool axis_read_path(struct axis_reader *a, const struct tree_node *node)
     axis->design = axis->design || swept.field->design;
 
     if (!is_sought(a)) {
-        struct seen *seen = &a->r->seen[swept.field - a->r->schema.field];
+        struct seen *seen = &a->r->seen[swept.field - a->r->schema->field];
         seen->swept = true;
         seen->sweep = node->mark;
     }
@@ -244,8 +244,8 @@ bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log)
     int word = 0;
 
     snprintf(name, sizeof name, "%s.spacing", a->name);
-    const bool good = !spacing || field_word(&a->r->problems, schema_find(&a->r->schema, path),
-                                             name, spacing, &word);
+    const bool good = !spacing || field_word(&a->r->problems, schema_find(a->r->schema, path), name,
+                                             spacing, &word);
     *log = word != 0;
     return good;
 }
@@ -326,7 +326,7 @@ static bool read_range(struct axis_reader *a, bool rows)
     if (!count)
         return axis_complain(a, "count is missing");
     snprintf(text, sizeof text, "%s.count", a->name);
-    good = field_integer(&a->r->problems, schema_find(&a->r->schema, "sweep.grid[].count"), text,
+    good = field_integer(&a->r->problems, schema_find(a->r->schema, "sweep.grid[].count"), text,
                          count, &number) &&
            good;
     good = axis_read_spacing(a, "sweep.grid[].spacing", &axis->log) && good;

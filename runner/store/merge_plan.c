@@ -447,9 +447,9 @@ static bool set_recorded(struct merge *m, const struct scenario *first, struct t
     char *text = NULL;
     size_t size = 0;
     bool good = collect_recorded(m, first->record_cases == RECORD_ALL, &list, message);
-    const bool same =
-        list.count == first->record_count &&
-        (!list.row || memcmp(list.row, first->record_list, list.count * sizeof *list.row) == 0);
+    const bool same = list.count == first->record_count &&
+                      (list.count == 0 ||
+                       memcmp(list.row, first->record_list, list.count * sizeof *list.row) == 0);
     FILE *out = good && !same ? open_memstream(&text, &size) : NULL;
     if (out) {
         fputs("record.cases=", out);
