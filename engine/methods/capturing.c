@@ -247,14 +247,12 @@ static inline lanes capture_size(const struct motion *now)
 /* Lanes of `run` that are at the beginning of a step which may be taken as a whole, with exactly
  * the contacts in `touching` closed, which all stood. */
 HOT mask capture_stands(contact_set touching, const struct advance *a, const struct setting *set,
-                        bool coupled, lanes h, mask run, const struct motion *now)
+                        lanes h, mask run, const struct motion *now)
 {
     const lanes none = lanes_of(0);
     mask fit = run & mask_less_equal(a->wait, none) & mask_less_equal(a->hunting, none) &
                mask_less_equal(a->done, none) & mask_less_equal(h, a->part) &
                mask_less_equal(h, scene_longest_step(&set->body));
-    if (coupled)
-        fit &= mask_less_equal(set->law.decouples, none);
     EACH (c, 0, SCENE_CONTACTS) {
         const mask closed = mask_less(none, set->may_touch[c]) &
                             mask_less_equal(now->gap[c], lanes_of(STEP_CLOSED));
@@ -307,7 +305,7 @@ HOT bool advance_ordinary(struct advance *a, const struct setting *set, const la
 {
     struct motion next;
     mask good = MASK_NONE;
-    if (mask_any(live & LANES_NOT(capture_stands(touching, a, set, coupled, h, live, now))))
+    if (mask_any(live & LANES_NOT(capture_stands(touching, a, set, h, live, now))))
         return false;
 #define TRY(name, there, contacts)                                                                 \
     if ((there) && touching == (contacts))                                                         \
@@ -333,8 +331,7 @@ COLD mask capture_standing(struct advance *a, const struct setting *set, const l
     struct step_report part;
 #define TRY(name, there, touching)                                                                 \
     if (there) {                                                                                   \
-        const mask fit =                                                                           \
-            capture_stands(touching, a, set, coupled, h, run & LANES_NOT(tried), &from);           \
+        const mask fit = capture_stands(touching, a, set, h, run & LANES_NOT(tried), &from);       \
         if (mask_any(fit)) {                                                                       \
             const mask good =                                                                      \
                 capture_##name(a, set, torque, coupled, h, fit, &from, &next, &part);              \

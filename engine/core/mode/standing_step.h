@@ -28,6 +28,7 @@
 #ifndef STANCE_CORE_MODE_STANDING_STEP_H
 #define STANCE_CORE_MODE_STANDING_STEP_H
 
+#include "decoupling.h"
 #include "missed_events.h"
 
 #define STANDING_ROOM 1e-4  /* of the largest load: forces are this far inside the cone */
@@ -184,7 +185,8 @@ HOT mask standing_clear(contact_set touching, const struct setting *set, lanes h
     return clear;
 }
 
-/* Torques at a state: those that are held or, `coupled`, of a linear law that acts all the time. */
+/* Torques at a state: those that are held or, `coupled`, of a linear law that acts all the time;
+ * none where a decoupling law is to add its own. */
 HOT void standing_torque(const struct setting *set, const lanes *held, bool coupled, const lanes *s,
                          const lanes *w, lanes *torque)
 {
@@ -193,7 +195,28 @@ HOT void standing_torque(const struct setting *set, const lanes *held, bool coup
     if (coupled) {
         law_torque(&set->law, s, w, torque);
         law_clip(&set->law, torque);
+        EACH (i, 0, SCENE_ACTUATORS)
+            torque[i] = choose(mask_less(lanes_of(0), set->law.decouples), lanes_of(0), torque[i]);
     }
+}
+
+/* The decoupling law in the lanes where it acts, with the contacts in `touching` standing: torques
+ * and what they do go into *e, evaluated with pushes and without torques there. Returns the lanes
+ * where it is what it promises. */
+COLD mask standing_decouple(contact_set touching, const struct setting *set, lanes t,
+                            const lanes *s, const lanes *w, const lanes *integral,
+                            struct dynamics *e)
+{
+    const mask decouples = mask_less(lanes_of(0), set->law.decouples);
+    struct contact_state stands;
+    EACH (c, 0, SCENE_CONTACTS) {
+        stands.closed[c] = touching >> c & 1 ? LANES_ALL : MASK_NONE;
+        stands.slide[c] = lanes_of(0);
+    }
+    dynamics_clear(touching, e);
+    decouple(set, decouples, t, s, w, integral, touching, &stands, e);
+    decoupling_apply(set, decouples, touching, e);
+    return LANES_NOT(decouples) | mask_less_equal(e->degraded + e->several, lanes_of(0));
 }
 
 /* Tries a step of length h from `from`, where exactly the contacts in `touching` are closed and all
@@ -205,7 +228,9 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
 {
     lanes a[STANDING_PLACES][SCENE_COORDINATES]; /* at the second the sum of two */
     lanes force[STANDING_PLACES][CONTACTS][2], s[SCENE_COORDINATES], w[SCENE_COORDINATES];
-    lanes farthest = lanes_of(0);
+    lanes farthest = lanes_of(0), integral[ACTUATORS];
+    const mask decouples = mask_less(lanes_of(0), set->law.decouples);
+    const bool servos = SCENE_ACTUATORS > 0 && coupled && mask_any(decouples);
     struct dynamics e;
     struct contact_factors factors;
     scene_matrix A;
@@ -220,10 +245,12 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
         s[i] = end->s[i] = from->s[i];
         w[i] = end->w[i] = from->w[i];
     }
+    EACH (i, 0, SCENE_ACTUATORS)
+        integral[i] = end->integral[i] = from->integral[i];
     e.trig = from->trig;
     EACH (k, 0, STANDING_PLACES) {
         const lanes t = from->t + (0.5 * k) * h, part = h * (k == 1 ? 1.0 / 3 : 1.0 / 6);
-        dynamics_place(set, touching, false, &A, &e);
+        dynamics_place(set, touching, servos, &A, &e);
         good &= standing_factor(touching, &e, &factors);
         EACH (again, 0, 2) {
             lanes moved[SCENE_COORDINATES], torque[ACTUATORS];
@@ -233,6 +260,15 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
             dynamics_motion(set, t, s, w, torque, touching, &A, &e);
             if (k == 0)
                 good &= standing_rests(touching, (const lanes(*)[2])e.u);
+            if (servos) {
+                good &= standing_decouple(touching, set, t, s, w, integral, &e);
+                EACH (i, 0, SCENE_ACTUATORS) {
+                    const lanes ahead = h * (k == 1 && again ? 1 : 0.5);
+                    const lanes rate = choose(decouples, e.integral_rate[i], lanes_of(0));
+                    end->integral[i] = lanes_fma(part, rate, end->integral[i]);
+                    integral[i] = lanes_fma(ahead, rate, from->integral[i]);
+                }
+            }
             standing_hold(touching, &factors, &e);
             EACH (i, 0, SCENE_COORDINATES) {
                 a[k][i] = again ? (lanes)(a[k][i] + e.acceleration[i]) : e.acceleration[i];
@@ -240,7 +276,7 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
                 end->s[i] += moved[i];
                 end->w[i] = lanes_fma(part, e.acceleration[i], end->w[i]);
             }
-            report->work += scene_work(&set->body, part, t, &e.trig, torque, moved);
+            report->work += scene_work(&set->body, part, t, &e.trig, e.torque, moved);
             EACH (c, 0, SCENE_CONTACTS)
                 EACH (b, 0, 2) {
                     force[k][c][b] = lanes_of(0);
@@ -297,9 +333,10 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
         end->approach[c] = u[0];
         end->gap[c] = scene_gap(&set->body, end->s, &end->trig, c);
     }
-    EACH (i, 0, SCENE_ACTUATORS)
-        end->integral[i] = from->integral[i];
     standing_torque(set, held, coupled, end->s, end->w, report->torque);
+    EACH (i, 0, SCENE_ACTUATORS)
+        if (servos) /* as forces, of the last place */
+            report->torque[i] = choose(decouples, e.torque[i], report->torque[i]);
     end->energy = from->energy, end->kinetic = from->kinetic;
     end->t = from->t + h;
     report->evaluations = lanes_of(STANDING_EVALUATIONS);
