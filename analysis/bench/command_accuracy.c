@@ -79,10 +79,15 @@ static void add_row(struct table *t, const struct accuracy *a, size_t k)
 static void print_against(const struct accuracy *a, const struct accuracy_row *best,
                           const char *which)
 {
-    const double error = accuracy_error(a, best);
-    const char *const unit = a->labels ? "of the cells" : "m or rad";
-    printf("  %s, %s (%s, %g s): error %.2g %s at %.3g us per s.\n    As exact:", maker(a, best),
-           which, best->setting, best->step, error, unit, best->cost.median);
+    const char *const unit = a->labels ? " of the cells" : " m or rad";
+    printf("  %s, %s (%s, %g s): ", maker(a, best), which, best->setting, best->step);
+    if (a->labels && best->differ == 0) /* no number tells how much fewer than one */
+        printf("none of %" PRIu64 " cells unlike, taken as one,", best->compared);
+    else if (a->labels)
+        printf("%" PRIu64 " of %" PRIu64 " cells unlike", best->differ, best->compared);
+    else
+        printf("error %.2g%s", accuracy_error(a, best), unit);
+    printf(" at %.3g us per s.\n    As exact:", best->cost.median);
     const char *comma = "";
     for (size_t m = 0; stance_methods()[m]; m++) {
         const struct accuracy_against x = accuracy_compare(a, best, stance_methods()[m]);
@@ -99,8 +104,8 @@ static void print_against(const struct accuracy *a, const struct accuracy_row *b
     for (size_t m = 0; stance_methods()[m]; m++) {
         const struct accuracy_against x = accuracy_compare(a, best, stance_methods()[m]);
         if (!isnan(x.error)) {
-            printf("%s %s has %s%.2g", comma, stance_methods()[m]->name,
-                   x.at_most ? "at most " : "", x.error);
+            printf("%s %s has %s%.2g%s", comma, stance_methods()[m]->name,
+                   x.at_most ? "at most " : "", x.error, *comma ? "" : unit);
             comma = ",";
         }
     }
