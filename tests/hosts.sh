@@ -4,7 +4,7 @@
 # in mid-run; what comes out in the end is compared, bit by bit, with a run on one host.
 #
 # Nothing outside these namespaces is changed. Speaks TAP, ends with "N passed, N failed"; takes
-# some three minutes. Needs root and iproute2.
+# some three minutes, with STANCE_TEST_LONG=1 a quarter of an hour. Needs root and iproute2.
 # Usage: tests/hosts.sh   (make test-hosts)
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -218,13 +218,32 @@ result $? "the host of rank 0 and mpirun is cut off: all ranks end (after $((SEC
 cable 1 up
 goes_on first.h5
 
-# A frozen host answers every question of the network: only the time limit ends this.
+# A frozen host answers every question of the network: only time ends this.
 begin_run frozen.h5 --time-limit 10s
 # shellcheck disable=SC2046 # a list of numbers
 kill -STOP $(ip netns pids "$name-1")
 await_ranks 2 3
 result $? "the host of rank 0 is frozen: the limit ends the others (after $((SECONDS - begin)) s)"
 goes_on frozen.h5
+
+# Without a limit a rank that says nothing is waited for for five minutes.
+if [ -n "${STANCE_TEST_LONG:-}" ]; then
+    patience=360
+    begin_run frozen.h5
+    # shellcheck disable=SC2046
+    kill -STOP $(ip netns pids "$name-1")
+    await_ranks 2 3
+    result $? "the same without a limit: the others leave (after $((SECONDS - begin)) s)"
+    goes_on frozen.h5
+    begin_run silent.h5
+    # shellcheck disable=SC2046
+    kill -STOP $(ip netns pids "$name-2")
+    await_ranks 1 3
+    result $? "another host is frozen: the others stop without it (after $((SECONDS - begin)) s)"
+    cp out log
+    says "... and rank 0 says which" "rank 1 has said nothing"
+    goes_on silent.h5
+fi
 
 echo "1..$count"
 echo "$((count - failed)) passed, $failed failed"

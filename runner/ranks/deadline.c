@@ -6,18 +6,47 @@
 
 #include <signal.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/time.h>
+#include <time.h>
 #include <unistd.h>
 
-static const double longest = 1e9; /* s, what alarm() takes on any system */
-static volatile sig_atomic_t prepared;
-static char last_words[240];
+enum { RESCUE = 10 }; /* s, that a rescue may take */
 
-static void ring(int number)
+static const double longest = 1e9;                                /* s: what is later is never */
+static volatile int64_t due = INT64_MAX, waits_since = INT64_MAX; /* s of the monotonic clock */
+static void (*volatile rescue)(void *context);
+static void *volatile rescue_context;
+static volatile sig_atomic_t rescued;
+static bool prepared;
+static char told[240], lost[240];
+
+static int64_t now(void)
 {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (int64_t)t.tv_sec;
+}
+
+static void tick(int number)
+{
+    const int64_t t = now();
+    const bool late = t >= due;
+    const bool waits = waits_since < INT64_MAX && t >= waits_since + DEADLINE_LOST;
     (void)number;
-    if (write(STDERR_FILENO, last_words, strlen(last_words)) < 0) {
+    if (!late && (!waits || rescued))
+        return;
+    void (*const last)(void *) = waits_since < INT64_MAX ? rescue : NULL;
+    if (last) { /* once: should it get stuck, the next tick after its time ends the process */
+        rescue = NULL;
+        rescued = 1;
+        due = t + RESCUE;
+        last(rescue_context);
+    }
+    const char *const words = waits ? lost : told;
+    if (write(STDERR_FILENO, words, strlen(words)) < 0) {
         /* Nobody hears it. */
     }
     _exit(EXIT_INTERRUPTED);
@@ -25,25 +54,48 @@ static void ring(int number)
 
 void deadline_prepare(int rank)
 {
-    struct sigaction action = {.sa_handler = ring};
+    const struct itimerval each = {{1, 0}, {1, 0}};
+    struct sigaction action = {.sa_handler = tick, .sa_flags = SA_RESTART | SA_NODEFER};
     char host[100];
     parallel_host(host, sizeof host);
-    snprintf(last_words, sizeof last_words,
+    snprintf(told, sizeof told,
              "stance run: rank %d on %s: told to stop, and in %d s not every rank has come: left; "
              "what is marked done is whole, --resume goes on\n",
              rank, host, (int)DEADLINE_PATIENCE);
+    snprintf(
+        lost, sizeof lost,
+        "stance run: rank %d on %s: rank 0 has not answered for %d s: left; what is marked done "
+        "is whole, --resume goes on\n",
+        rank, host, (int)DEADLINE_LOST);
     sigemptyset(&action.sa_mask);
-    prepared = sigaction(SIGALRM, &action, NULL) == 0;
+    prepared = sigaction(SIGALRM, &action, NULL) == 0 && setitimer(ITIMER_REAL, &each, NULL) == 0;
 }
 
 void deadline_begin(void)
 {
     if (prepared)
-        alarm(DEADLINE_PATIENCE);
+        due = now() + DEADLINE_PATIENCE;
 }
 
 void deadline_limit(double seconds)
 {
     if (prepared && seconds < longest)
-        alarm((unsigned)(seconds > 0 ? seconds : 0) + 1 + DEADLINE_PATIENCE);
+        due = now() + (int64_t)(seconds > 0 ? seconds : 0) + 1 + DEADLINE_PATIENCE;
+}
+
+void deadline_waits(void)
+{
+    waits_since = now();
+}
+
+void deadline_comes(void)
+{
+    waits_since = INT64_MAX;
+}
+
+void deadline_rescue(void (*last)(void *context), void *context)
+{
+    rescue = NULL;
+    rescue_context = context;
+    rescue = last;
 }

@@ -1,24 +1,38 @@
-/* deadline.h - the latest end of one rank of several that has been told to stop.
+/* deadline.h - the latest end of one rank of several: when it has been told to stop, or waits for a
+ * machine that is gone.
  *
  * A rank that stops writes what has ended and then meets the others, who may never come: their
- * machine is cut off or frozen. MPI has no way out of such a wait, so an alarm ends the process.
- * One that waits for a counter of a rank 0 that is gone leaves so, too; it loses what has ended
- * since its last write, a second or so.
+ * machine is cut off or frozen. One that asks a counter on rank 0's machine may wait as long. MPI
+ * has no way out of such waits, so a timer looks each second, and ends the process. What it has in
+ * hand is written first.
  */
 #ifndef STANCE_RANKS_DEADLINE_H
 #define STANCE_RANKS_DEADLINE_H
 
-/* For this process, one of several ranks: when an alarm rings, one line on standard error and exit
- * code EXIT_INTERRUPTED. Without this call, as for a single rank, no alarm is ever set. */
+enum {
+    DEADLINE_PATIENCE = 30, /* s, with ranks that were told to stop as this one was */
+    DEADLINE_LOST = 300,    /* s, until a machine that says nothing is taken for lost */
+};
+
+/* For this process, one of several ranks: when its time has come, one line on standard error and
+ * exit code EXIT_INTERRUPTED. Without this call, as for a single rank, it never comes. */
 void deadline_prepare(int rank);
 
-/* Told to stop: the alarm rings DEADLINE_PATIENCE seconds from now, whatever was set before. May be
- * called from a signal handler. */
+/* Told to stop: the time comes DEADLINE_PATIENCE from now, whatever was set before. May be called
+ * from a signal handler. */
 void deadline_begin(void);
 
-/* The alarm rings DEADLINE_PATIENCE after the time limit, `seconds` from now (INFINITY: never). */
+/* The time comes DEADLINE_PATIENCE after the time limit, `seconds` from now (INFINITY: never). */
 void deadline_limit(double seconds);
 
-enum { DEADLINE_PATIENCE = 30 };
+/* From now to deadline_comes this rank waits within MPI for rank 0's machine, DEADLINE_LOST at
+ * most (parallel_add). */
+void deadline_waits(void);
+void deadline_comes(void);
+
+/* Should this rank have to leave while it waits so, rescue(context) is called first, from a signal
+ * handler that interrupted MPI alone: it may do what takes neither MPI nor more than a few seconds.
+ * NULL: nothing any more. */
+void deadline_rescue(void (*rescue)(void *context), void *context);
 
 #endif

@@ -5,6 +5,8 @@
  */
 #include "parallel.h"
 
+#include "deadline.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -307,9 +309,11 @@ int64_t parallel_add(const struct parallel *parallel, enum parallel_counter coun
         parallel->shared->counter[counter] += value;
         return before;
     }
+    deadline_waits();
     MPI_Fetch_and_op(&value, &before, MPI_INT64_T, 0, (MPI_Aint)counter, MPI_SUM,
                      parallel->shared->window);
     MPI_Win_flush(0, parallel->shared->window);
+    deadline_comes();
     return before;
 }
 
@@ -319,9 +323,11 @@ void parallel_beat(const struct parallel *parallel, int64_t number)
         parallel->shared->counter[COUNTERS] = number;
         return;
     }
+    deadline_waits();
     MPI_Accumulate(&number, 1, MPI_INT64_T, 0, COUNTERS + (MPI_Aint)parallel->rank, 1, MPI_INT64_T,
                    MPI_REPLACE, parallel->shared->window);
     MPI_Win_flush(0, parallel->shared->window);
+    deadline_comes();
 }
 
 void parallel_beats(const struct parallel *parallel, int64_t *number)

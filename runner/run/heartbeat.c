@@ -4,6 +4,7 @@
 #include "runner/base/message.h"
 #include "runner/base/units.h"
 #include "runner/plan/plan.h"
+#include "runner/ranks/deadline.h"
 
 #include <jansson.h>
 #include <stdio.h>
@@ -58,14 +59,25 @@ static int count_alive(struct heartbeat *heartbeat, double now)
         return ranks;
     }
     parallel_beats(heartbeat->parallel, number);
+    const bool away = now - heartbeat->counted > HEARTBEAT_SILENCE; /* it was this rank then */
+    heartbeat->counted = now;
     for (int rank = 0; rank < ranks; rank++) {
-        if (number[rank] != heartbeat->beat[rank] || number[rank] == HEARTBEAT_WAITS || rank == 0)
+        if (number[rank] != heartbeat->beat[rank] || number[rank] == HEARTBEAT_WAITS || away ||
+            rank == 0)
             heartbeat->beat_at[rank] = now;
         heartbeat->beat[rank] = number[rank];
         alive += now - heartbeat->beat_at[rank] < HEARTBEAT_SILENCE;
     }
     free(number);
     return alive;
+}
+
+int heartbeat_lost(const struct heartbeat *heartbeat, double now)
+{
+    for (int rank = 1; heartbeat && rank < heartbeat->parallel->size; rank++)
+        if (now - heartbeat->beat_at[rank] >= DEADLINE_LOST)
+            return rank;
+    return 0;
 }
 
 static void write_note(const struct heartbeat *heartbeat, uint64_t computed, int round)
@@ -100,6 +112,7 @@ bool heartbeat_begin(struct heartbeat *heartbeat, struct lock *lock,
         return false;
     for (size_t rank = 0; rank < ranks; rank++)
         heartbeat->beat_at[rank] = now;
+    heartbeat->counted = now;
     heartbeat->due = now + HEARTBEAT_INTERVAL;
     write_note(heartbeat, 0, 0);
     return true;

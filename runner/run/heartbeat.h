@@ -37,6 +37,7 @@ struct heartbeat {
     ino_t inode;
     int64_t *beat;   /* [ranks] as last seen */
     double *beat_at; /* [ranks] when it last changed */
+    double counted;  /* when that was last looked at */
     int alive;
     /* Cases computed, at the latest times. */
     struct heartbeat_sample {
@@ -57,6 +58,9 @@ void heartbeat_guard(struct heartbeat *heartbeat, const char *file);
  * process writes it. */
 bool heartbeat_beat(struct heartbeat *heartbeat, double now, uint64_t finished, uint64_t computed,
                     int round, stance_message *message);
+
+/* The first rank that has neither beaten nor waited for DEADLINE_LOST; 0: none, or no heartbeat. */
+int heartbeat_lost(const struct heartbeat *heartbeat, double now);
 
 /* ---- the other side ----------------------------------------------------------------------- */
 

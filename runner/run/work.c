@@ -274,8 +274,9 @@ static void write_ended(struct job *job, double now)
 }
 
 /* All that has ended. */
-static void write_open(struct job *job)
+static void write_open(void *context)
 {
+    struct job *const job = context;
     for (struct block *block = job->oldest; block; block = block->next)
         write_block(job, block, 1);
 }
@@ -584,11 +585,19 @@ static void wait_for_others(void *context)
 {
     struct job *job = context;
     const double now = clock_seconds();
-    if (!job->told && asked_to_stop(job->work, now)) {
-        parallel_add(job->work->parallel, COUNTER_STOP, 1);
-        job->told = true;
-    }
     keep_pulse(job, now);
+    const int lost = heartbeat_lost(job->work->heartbeat, now);
+    if (lost > 0 && !job->told)
+        fprintf(stderr, "stance run: rank %d has said nothing for %d s: stops without it\n", lost,
+                (int)DEADLINE_LOST);
+    bool stop = lost > 0 || asked_to_stop(job->work, now);
+    if (!job->told && (stop || now >= job->look_at)) {
+        job->look_at = now + schedule_look_interval(job->work->parallel->size);
+        stop |= parallel_add(job->work->parallel, COUNTER_STOP, stop) != 0;
+        if (stop)
+            deadline_begin();
+        job->told = stop;
+    }
     show_progress(job, now);
 }
 
@@ -674,7 +683,9 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
     }
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++)
         job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
+    deadline_rescue(write_open, &job);
     run_streams(&job);
+    deadline_rescue(NULL, NULL);
     write_open(&job);
     if (job.leaving)
         deadline_begin();
