@@ -30,7 +30,7 @@ static bool describe(const char *path, bool json_schema)
 }
 
 /* The schema of a scene; freed by the caller. */
-static struct schema *schema_of(const stance_scene *scene)
+static struct schema *built_schema(const stance_scene *scene)
 {
     struct schema *schema = malloc(sizeof *schema);
     assert_non_null(schema);
@@ -47,7 +47,7 @@ static void every_path_is_described(void **state)
 {
     (void)state;
     for (int k = 0; stance_scenes()[k]; k++) {
-        struct schema *schema = schema_of(stance_scenes()[k]);
+        struct schema *schema = built_schema(stance_scenes()[k]);
         char head[64], first[32];
         snprintf(head, sizeof head, "scene: %.40s\n", schema->scene->name);
         for (size_t i = 0; i < schema->count; i++) {
@@ -89,7 +89,7 @@ static void scenes_have_their_own_keys(void **state)
     assert_ptr_equal(schema_scene_with("controller.poles[2]"), stance_scene_find("biped"));
     assert_ptr_equal(schema_scene_with("robot.slope"), stance_scene_find("block"));
     assert_null(schema_scene_with("robot.hipmass"));
-    struct schema *schema = schema_of(stance_scene_find("rod"));
+    struct schema *schema = built_schema(stance_scene_find("rod"));
     static const char *const missing[] = {
         "initial.equilibrium",    "initial.offset",   "initial.support_foot", "controller.poles",
         "controller.sample_time", "stop.fall_height", "stop.settle.angle"};
@@ -146,7 +146,7 @@ static void check_number_schema(const struct scenario_field *field, json_t *obje
 
 static void check_scene_schema(json_t *root, const stance_scene *scene)
 {
-    struct schema *schema = schema_of(scene);
+    struct schema *schema = built_schema(scene);
     const char *names[SCHEMA_MAX_FIELDS];
     assert_non_null(root);
     assert_int_equal(json_object_size(json_object_get(root, "properties")),

@@ -317,6 +317,21 @@ for launch in "" "mpirun -n 3"; do
         rm -f limit.h5
     }
 done
+# A quota shows in what is refused, not in the room that a disk has.
+if ! grep -q __asan_init "$stance" && gcc -D_GNU_SOURCE -shared -fPIC -o quota.so "$tests/quota.c" -ldl 2>log; then
+    expect "a quota that leaves no room" 3 env QUOTA=reserve LD_PRELOAD=./quota.so "$stance" run long.yaml -o quota.h5
+    says "... says so once" 'stance run: quota.h5.part: cannot reserve its space: Disk quota exceeded'
+    [ -z "$(ls quota.h5* 2>/dev/null)" ]
+    result $? "... and leaves nothing"
+    expect "a quota that is used up in mid-run" 3 env QUOTA=1000000 LD_PRELOAD=./quota.so "$stance" run long.yaml -o quota.h5 --quiet
+    says "... says so once" 'stance run: quota.h5: cannot write .*: Disk quota exceeded'
+    tool "... and what is marked done is whole" whole quota.h5
+    expect "... it goes on" 0 "$stance" run long.yaml -o quota.h5 --resume --quiet
+    expect "... to the same end" 0 "$stance" compare long.h5 quota.h5
+    rm -f quota.h5
+else
+    skip "a quota" "nothing can be preloaded"
+fi
 ln -sf nowhere/kept.h5 link.h5
 expect "--force replaces a symbolic link" 0 "$stance" run square.yaml -o link.h5 --force
 [ -f link.h5 ] && [ ! -L link.h5 ]

@@ -15,8 +15,9 @@
 
 enum { RESCUE = 10 }; /* s, that a rescue may take */
 
-static const double longest = 1e9;                                /* s: what is later is never */
-static volatile int64_t due = INT64_MAX, waits_since = INT64_MAX; /* s of the monotonic clock */
+static const double longest = 1e9;       /* s: what is later is never */
+static volatile int64_t due = INT64_MAX; /* s of the monotonic clock */
+static volatile sig_atomic_t waiting; /* 0, or ticks of this wait from 1: a job may be suspended */
 static void (*volatile rescue)(void *context);
 static void *volatile rescue_context;
 static volatile sig_atomic_t rescued;
@@ -33,12 +34,12 @@ static int64_t now(void)
 static void tick(int number)
 {
     const int64_t t = now();
-    const bool late = t >= due;
-    const bool waits = waits_since < INT64_MAX && t >= waits_since + DEADLINE_LOST;
+    const bool late = t >= due, waits = waiting > DEADLINE_LOST;
+    waiting += waiting > 0 && !waits;
     (void)number;
     if (!late && (!waits || rescued))
         return;
-    void (*const last)(void *) = waits_since < INT64_MAX ? rescue : NULL;
+    void (*const last)(void *) = waiting ? rescue : NULL;
     if (last) { /* once: should it get stuck, the next tick after its time ends the process */
         rescue = NULL;
         rescued = 1;
@@ -85,12 +86,12 @@ void deadline_limit(double seconds)
 
 void deadline_waits(void)
 {
-    waits_since = now();
+    waiting = 1;
 }
 
 void deadline_comes(void)
 {
-    waits_since = INT64_MAX;
+    waiting = 0;
 }
 
 void deadline_rescue(void (*last)(void *context), void *context)
