@@ -325,7 +325,7 @@ if ! grep -q __asan_init "$stance" && gcc -D_GNU_SOURCE -shared -fPIC -o quota.s
     result $? "... and leaves nothing"
     expect "a quota that is used up in mid-run" 3 env QUOTA=1000000 LD_PRELOAD=./quota.so "$stance" run long.yaml -o quota.h5 --quiet
     says "... says so once" 'stance run: quota.h5: cannot write .*: Disk quota exceeded'
-    tool "... and what is marked done is whole" whole quota.h5
+    tool "... and what is marked done is whole" whole quota.h5 0
     expect "... it goes on" 0 "$stance" run long.yaml -o quota.h5 --resume --quiet
     expect "... to the same end" 0 "$stance" compare long.h5 quota.h5
     rm -f quota.h5

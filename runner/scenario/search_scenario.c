@@ -243,10 +243,10 @@ static bool read_grow(struct reader *r)
         char name[32];
         double number = 0;
         snprintf(name, sizeof name, "optimise.grow[%zu]", i);
-        good = field_integer(&r->problems, schema_find(r->schema, "optimise.grow[]"), name,
-                             grow->item[i], &number) &&
-               good;
-        search->grow[i] = (uint64_t)number;
+        const bool fits = field_integer(&r->problems, schema_find(r->schema, "optimise.grow[]"),
+                                        name, grow->item[i], &number);
+        search->grow[i] = fits ? (uint64_t)number : 0;
+        good &= fits;
         if (good && i > 0 && search->grow[i] <= search->grow[i - 1])
             good = problem_add(&r->problems, grow->item[i]->mark,
                                "%s: %.0f is not more than the stage before has", name, number);
