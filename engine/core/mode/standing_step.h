@@ -216,7 +216,11 @@ COLD mask standing_decouple(contact_set touching, const struct setting *set, lan
     dynamics_clear(touching, e);
     decouple(set, decouples, t, s, w, integral, touching, &stands, e);
     decoupling_apply(set, decouples, touching, e);
-    return LANES_NOT(decouples) | mask_less_equal(e->degraded + e->several, lanes_of(0));
+    /* Sums of errors stop and go on at limits, which accelerations do not show: not judged here. */
+    lanes sums = lanes_of(0);
+    EACH (i, 0, SCENE_ACTUATORS)
+        sums += lanes_abs(set->law.servo[i].ki);
+    return LANES_NOT(decouples) | mask_less_equal(e->degraded + e->several + sums, lanes_of(0));
 }
 
 /* Tries a step of length h from `from`, where exactly the contacts in `touching` are closed and all
