@@ -13,10 +13,13 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { RESCUE = 10 }; /* s, that a rescue may take */
+enum {
+    RESCUE = 10, /* s, that a rescue may take */
+    PAUSE = 5,   /* s between ticks: the process did not run in between */
+};
 
-static const double longest = 1e9;       /* s: what is later is never */
-static volatile int64_t due = INT64_MAX; /* s of the monotonic clock */
+static const double longest = 1e9;               /* s: what is later is never */
+static volatile int64_t due = INT64_MAX, ticked; /* s of the monotonic clock */
 static volatile sig_atomic_t waiting; /* 0, or ticks of this wait from 1: a job may be suspended */
 static void (*volatile rescue)(void *context);
 static void *volatile rescue_context;
@@ -34,6 +37,9 @@ static int64_t now(void)
 static void tick(int number)
 {
     const int64_t t = now();
+    if (t - ticked > PAUSE && due < INT64_MAX)
+        due += t - ticked; /* a job that was suspended goes on where it was */
+    ticked = t;
     const bool late = t >= due, waits = waiting > DEADLINE_LOST;
     waiting += waiting > 0 && !waits;
     (void)number;
@@ -69,6 +75,7 @@ void deadline_prepare(int rank)
         "is whole, --resume goes on\n",
         rank, host, (int)DEADLINE_LOST);
     sigemptyset(&action.sa_mask);
+    ticked = now();
     prepared = sigaction(SIGALRM, &action, NULL) == 0 && setitimer(ITIMER_REAL, &each, NULL) == 0;
 }
 
