@@ -144,6 +144,48 @@ static void sampling_converges(void **state)
     }
 }
 
+/* Where a foot's slip comes to rest or turns, errors go on shrinking with the tolerance: law and
+ * contact mode agree about which slip is none. */
+static void slips_turn(void **state)
+{
+    (void)state;
+    static const double tolerance[2] = {1e-6, 1e-9}, bound[2] = {3e-5, 3e-8};
+    const stance_scene *scene = stance_scene_find("biped");
+    const double posture[3] = {-0.41, 0.570127, 0.82};
+    double worst[2] = {0, 0};
+    int turned = 0;
+    for (int k = 0; k < 8; k++) {
+        stance_case c = pair_case(5, posture, true, 0); /* z and q1 */
+        stance_result truth, r;
+        c.friction = 0.15;
+        c.step = 1e-3;
+        c.steps = 300;
+        memset(c.velocity, 0, sizeof c.velocity);
+        c.velocity[3] = -0.25 + 0.25 * k;
+        scene->stand(scene, c.robot, 1, c.position, c.velocity);
+        for (int i = 0; i < 2; i++) {
+            c.servo[i].setpoint = c.position[c.servo[i].coordinate];
+            c.servo[i].ramp = 0;
+            c.servo[i].kd = 20;
+        }
+        c.tolerance = 1e-11;
+        kernel_of("event-driven", NULL)->run(&c, &truth, 1);
+        assert_int_equal(truth.status, STANCE_DONE);
+        turned += truth.events > 0;
+        for (int t = 0; t < 2; t++) {
+            c.tolerance = tolerance[t];
+            kernel_of("capturing", NULL)->run(&c, &r, 1);
+            assert_int_equal(r.status, STANCE_DONE);
+            for (int i = 0; i < scene->coordinates; i++) {
+                worst[t] = fmax(fabs(r.position[i] - truth.position[i]), worst[t]);
+                worst[t] = fmax(fabs(r.velocity[i] - truth.velocity[i]), worst[t]);
+            }
+        }
+    }
+    print_message("# %d slips that turn: off by %.1e, %.1e\n", turned, worst[0], worst[1]);
+    assert_true(turned > 5 && worst[0] < bound[0] && worst[1] < bound[1]);
+}
+
 /* The inertia matrix against the kinetic energy. */
 static void inertia_is_energy(void **state)
 {
@@ -448,6 +490,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pairs_follow),
         cmocka_unit_test(sampling_converges),
+        cmocka_unit_test(slips_turn),
         cmocka_unit_test(inertia_is_energy),
         cmocka_unit_test(singular_is_survived),
         cmocka_unit_test(integrals_are_bounded),

@@ -24,11 +24,25 @@ size_t accuracy_cases(const struct accuracy *a, const struct results *r)
     return a->rows > 0 ? (size_t)r->cases / a->rows : 0;
 }
 
-static bool make_rows(struct accuracy *a, const struct scenario *s, const struct results *r,
-                      stance_message *message)
+bool accuracy_fits(const struct scenario *s, stance_message *message)
 {
     if (s->axes < 1 || s->sample.given || !path_is(&s->axis[0], 0, "method.name"))
         return complain(message, "the first axis does not vary method.name");
+    const size_t rows = s->axis[0].count;
+    for (size_t k = 0; k < rows; k++) {
+        struct scenario_values values;
+        scenario_case_values(s, k * (s->cases / rows), &values);
+        if (strcmp(stance_methods()[values.method]->name, "event-driven") == 0)
+            return true;
+    }
+    return complain(message, "no row of event-driven to compare with");
+}
+
+static bool make_rows(struct accuracy *a, const struct scenario *s, const struct results *r,
+                      stance_message *message)
+{
+    if (!accuracy_fits(s, message))
+        return false;
     a->rows = s->axis[0].count;
     a->truth = a->all = a->rows;
     a->row = calloc(a->rows, sizeof *a->row);
@@ -48,7 +62,7 @@ static bool make_rows(struct accuracy *a, const struct scenario *s, const struct
         if (a->truth == a->rows && strcmp(row->method->name, "event-driven") == 0)
             a->truth = k;
     }
-    return a->truth < a->rows || complain(message, "no row of event-driven to compare with");
+    return true;
 }
 
 /* ---- answers ------------------------------------------------------------------------------ */

@@ -63,6 +63,9 @@ struct accuracy {
     struct accuracy_order order[ACCURACY_METHODS];
 };
 
+/* Whether its results would be of this kind. false: *message says why not. */
+bool accuracy_fits(const struct scenario *s, stance_message *message);
+
 /* Reads the answers and measures what every row costs, for about `budget` seconds each. False when
  * the file is not of this kind, or its truth failed altogether. */
 bool accuracy_make(struct accuracy *a, const struct results *r, double budget,

@@ -275,13 +275,14 @@ static const char *wrong_options(void)
 
 static int run(int argc, char **argv)
 {
+    static const struct study_kind kind = {"accuracy", accuracy_fits, study};
     const struct option_spec spec[] = {
         {"--peer", true, asking.program, ACCURACY_PEERS, &asking.programs},
         {"--peer-starts", true, &starts_text, 1, &starts_given},
         {"--peer-effort", true, &effort_text, 1, &effort_given},
     };
     const struct studies_options own = {spec, sizeof spec / sizeof *spec, wrong_options};
-    return studies_run(&command_accuracy, "accuracy", study, &own, argc, argv);
+    return studies_run(&command_accuracy, &kind, &own, argc, argv);
 }
 
 const struct command command_accuracy = {

@@ -201,7 +201,7 @@ static int run(int argc, char **argv)
         .form = table_form(count[0], 0), .finer = 1, .budget = 0.003, .csv = csv, .look = &look};
     char *end = NULL;
     if (finer && (!((q.finer = strtod(finer, &end)) > 0) || *end || q.finer > 1e4))
-        return command_usage(&command_truth, "--finer takes a number from 0 to 10000");
+        return command_usage(&command_truth, "--finer takes a number above 0, at most 10000");
     if (look.file)
         return command_usage(&command_truth, "-o takes a directory: there are several files");
     q.directory = look.directory;

@@ -64,12 +64,19 @@ static bool answers_read(struct answers *x, const struct results *r, const stanc
            complain(message, "final_state was not recorded");
 }
 
+bool failure_fits(const struct scenario *s, stance_message *message)
+{
+    return (s->axes == 3 && !s->sample.given && strcmp(s->axis[0].path[0], "method.name") == 0) ||
+           complain(message, "three axes are needed: method.name, then the two of the map");
+}
+
 static bool make_rows(struct failure *f, const struct scenario *s, const struct results *r,
                       stance_message *message)
 {
-    if (s->axes != 3 || s->sample.given || r->single ||
-        strcmp(s->axis[0].path[0], "method.name") != 0)
-        return complain(message, "three axes are needed: method.name, then the two of the map");
+    if (!failure_fits(s, message))
+        return false;
+    if (r->single)
+        return complain(message, "the file holds a single case");
     for (int a = 0; a < 3; a++)
         f->count[a] = s->axis[a].count;
     f->rows = f->count[0];

@@ -72,6 +72,9 @@ struct failure {
     struct failure_line line;
 };
 
+/* Whether its results would be of this kind. false: *message says why not. */
+bool failure_fits(const struct scenario *s, stance_message *message);
+
 /* Reads the answers and judges them. False when the file is not of this kind. */
 bool failure_make(struct failure *f, const struct results *r, stance_message *message);
 void failure_free(struct failure *f);

@@ -81,7 +81,7 @@ static int run_study(const char *scenario, const char *file)
 
 struct request {
     const struct command *command;
-    study_function study;
+    const struct study_kind *kind;
     const char *directory;
     struct look *look;
     bool json, reuse;
@@ -95,13 +95,30 @@ static bool evaluate(const struct request *request, const char *file, const char
     json_t *object = NULL;
     if (!results_open(&r, file, message))
         return false;
-    const bool good = request->study(&r, request->look, request->directory, stem,
-                                     request->json ? &object : NULL, message);
+    const bool good = request->kind->evaluate(&r, request->look, request->directory, stem,
+                                              request->json ? &object : NULL, message);
     if (good && object)
         json_array_append_new(all, object);
     fflush(stdout);
     results_close(&r);
     return good;
+}
+
+/* Before a long run for nothing. Returns an exit code. */
+static int check_study(const struct request *request, const char *scenario)
+{
+    struct scenario *s = calloc(1, sizeof *s);
+    stance_message message = {""};
+    if (!s || !scenario_read(s, scenario, NULL, NULL, 0, stderr)) {
+        free(s);
+        return access(scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
+    }
+    const bool fits = request->kind->fits(s, &message);
+    if (!fits)
+        fprintf(stderr, "stance %s: %.300s: %s\n", request->command->name, scenario, message.text);
+    scenario_free(s);
+    free(s);
+    return fits ? EXIT_DONE : EXIT_USAGE;
 }
 
 static int one_study(const struct request *request, const char *scenario, json_t *all)
@@ -110,10 +127,13 @@ static int one_study(const struct request *request, const char *scenario, json_t
     char file[1024], stem[256];
     stance_message message = {""};
 
+    int code = check_study(request, scenario);
+    if (code != EXIT_DONE)
+        return code;
     snprintf(stem, sizeof stem, "%.*s", (int)(strlen(base) - (ends_in_yaml(base) ? 5 : 0)), base);
     snprintf(file, sizeof file, "%s/%s.h5", request->directory, stem);
     if (!request->reuse || access(file, R_OK) != 0) {
-        const int code = run_study(scenario, file);
+        code = run_study(scenario, file);
         if (code != EXIT_DONE && code != EXIT_CASES_FAILED)
             return code;
     }
@@ -155,7 +175,7 @@ static int end(const struct request *request, int code)
                : code;
 }
 
-int studies_run(const struct command *command, const char *kind, study_function study,
+int studies_run(const struct command *command, const struct study_kind *kind,
                 const struct studies_options *own, int argc, char **argv)
 {
     const char *given[MAX_STUDIES];
@@ -187,18 +207,18 @@ int studies_run(const struct command *command, const char *kind, study_function 
         return EXIT_USAGE;
     if (look.file)
         return command_usage(command, "-o takes a directory: there are several files");
-    snprintf(fallback, sizeof fallback, "results/%s", kind);
-    const struct request request = {command, study,    look.directory ? look.directory : fallback,
+    snprintf(fallback, sizeof fallback, "results/%s", kind->name);
+    const struct request request = {command, kind,     look.directory ? look.directory : fallback,
                                     &look,   json > 0, reuse > 0};
     if ((!look.directory && !make_directory("results")) || !make_directory(request.directory))
         return EXIT_IO;
     if (operands > 0)
         return end(&request, all_studies(&request, (char *const *)given, operands));
-    const size_t count = find_studies(kind, found);
+    const size_t count = find_studies(kind->name, found);
     if (count == 0) {
         fprintf(stderr,
                 "stance %s: no scenarios/%s here nor beside the program; name the scenarios\n",
-                command->name, kind);
+                command->name, kind->name);
         return EXIT_IO;
     }
     const int code = all_studies(&request, found, count);

@@ -15,6 +15,14 @@
 typedef bool (*study_function)(const struct results *r, struct look *look, const char *directory,
                                const char *stem, json_t **object, stance_message *message);
 
+/* What all of one kind share. */
+struct study_kind {
+    const char *name; /* of their directory below scenarios and results */
+    /* Whether a scenario is of this kind: asked before it is run. false: one line in *message. */
+    bool (*fits)(const struct scenario *s, stance_message *message);
+    study_function evaluate;
+};
+
 /* Options of one kind of studies; `wrong`, after they were read: why they cannot be, or NULL. */
 struct studies_options {
     const struct option_spec *spec; /* [count], no more than eight */
@@ -26,7 +34,7 @@ struct studies_options {
  * options of pictures but for --picture and with `own`, which may be NULL: runs the scenarios
  * given, by default all of scenarios/KIND, into DIR (default results/KIND) and evaluates each.
  * Returns an exit code; numerical failures of cases are what such studies are about, no error. */
-int studies_run(const struct command *command, const char *kind, study_function study,
+int studies_run(const struct command *command, const struct study_kind *kind,
                 const struct studies_options *own, int argc, char **argv);
 
 /* Where scenarios/NAME may be, in the order in which it is looked for: k = 0, 1 ...: below the

@@ -346,6 +346,7 @@ static enum event_result event_march(struct advance *a, struct event_point *here
         *here = to;
         report_forces(a->report, a->problem.mode.contact.closed, (const double(*)[2])here->e.force);
         a->report->degraded_samples = fmax(here->e.degraded, a->report->degraded_samples);
+        a->report->ambiguous_steps = fmax(here->e.several, a->report->ambiguous_steps);
         split &= !event_rise(&a->problem, here);
         if (here->tau >= target)
             target = end, fresh = true;

@@ -25,7 +25,7 @@ static void (*volatile rescue)(void *context);
 static void *volatile rescue_context;
 static volatile sig_atomic_t rescued;
 static bool prepared;
-static char told[240], lost[240];
+static char told[300], lost[300];
 
 static int64_t now(void)
 {
@@ -67,7 +67,7 @@ void deadline_prepare(int rank)
     parallel_host(host, sizeof host);
     snprintf(told, sizeof told,
              "stance run: rank %d on %s: told to stop, and in %d s not every rank has come: left; "
-             "what is marked done is whole, --resume goes on\n",
+             "what its file, if there is one, marks as done is whole: --resume goes on\n",
              rank, host, (int)DEADLINE_PATIENCE);
     snprintf(
         lost, sizeof lost,

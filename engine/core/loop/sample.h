@@ -8,6 +8,8 @@
 
 #include <Random123/philox.h>
 
+#define SAMPLE_REST 1e-6 /* m/s: more than an implicit step leaves of a contact at rest */
+
 /* Uniform in [-1, 1), keyed as stance.h says: of sampling instant k the `count` numbers of a
  * stream; the noise of torques is stream 0, that of measurements 1. */
 static inline double noise_value(uint64_t bits)
@@ -88,7 +90,7 @@ static void bundle_decouple(struct bundle *b, mask due, const lanes *s, const la
         scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, e.u[c]);
         e.gap[c] = scene_gap(&b->set.body, b->now.s, &b->now.trig, c);
     }
-    decoupling_contacts(&b->set, &e, &contact);
+    decoupling_contacts(&b->set, &e, lanes_of(SAMPLE_REST), &contact);
     e.trig = *trig;
     const mask servos =
         law_command(&b->set, due, b->now.t, s, w, b->now.integral, &contact, &e, command);

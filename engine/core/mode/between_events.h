@@ -67,8 +67,8 @@ static inline void between_evaluate(const struct setting *set, lanes t, const la
     if (!servos)
         return;
     struct contact_state now;
-    if (!drive->mode)
-        decoupling_contacts(set, e, &now);
+    if (!drive->mode) /* of a slip that turns, law and mode must think the same */
+        decoupling_contacts(set, e, lanes_of(BETWEEN_REST), &now);
     decouple(set, decouples, t, s, w, integral, touching, drive->mode ? drive->mode : &now, e);
     decoupling_apply(set, decouples, touching, e);
 }

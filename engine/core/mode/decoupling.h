@@ -33,13 +33,13 @@
 #include "dynamics.h"
 
 #define DECOUPLING_CONDITION STANCE_ILL_CONDITIONED /* of G: then its inverse is damped */
-#define DECOUPLING_REST 1e-6 /* m/s: contact velocities below it are zero to the law */
 
-/* What each contact does in the state that *e belongs to. */
+/* What each contact does in the state that *e belongs to; contact velocities up to `rest` are
+ * zero. */
 static inline void decoupling_contacts(const struct setting *set, const struct dynamics *e,
-                                       struct contact_state *contact)
+                                       lanes rest, struct contact_state *contact)
 {
-    const lanes none = lanes_of(0), rest = lanes_of(DECOUPLING_REST);
+    const lanes none = lanes_of(0);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const lanes slip = e->u[c][1];
         contact->closed[c] = mask_less(none, set->may_touch[c]) &
