@@ -79,12 +79,15 @@ def must_be_same(good, file):
 
 def main(campaign, options):
     """Runs campaign(options, folder), which yields (name, error or None) and returns its report."""
-    bad = 0
+    bad = count = 0
     with tempfile.TemporaryDirectory() as folder:
         steps = campaign(options, folder)
         try:
             while True:
                 name, error = next(steps)
+                count += 1
+                if count % 50 == 0:
+                    print(f"# {name}, {bad} bad so far", file=sys.stderr, flush=True)
                 if error:
                     bad += 1
                     print(f"# {name}: {error}", flush=True)

@@ -47,7 +47,7 @@ names() {
 
 # One more at a time than there are cores, as some wait for others; those that take longest first.
 tests=$(
-    for name in whole_runner whole_program whole_objects whole_robust whole_view whole_adding test_stepping test_balance test_rest test_lanes; do
+    for name in whole_program whole_robust whole_view whole_adding whole_runner whole_ranges whole_objects whole_install test_stepping test_balance test_rest test_lanes; do
         names tests/$name.*
     done
     names tests/whole_*.sh tests/test_*.c

@@ -16,7 +16,8 @@ export const browser = programs.find((p) => p && existsSync(p)) ?? null;
 async function launch() {
   const profile = mkdtempSync(join(tmpdir(), 'stance-web-'));
   const child = spawn(browser, ['--headless=new', '--no-sandbox', '--disable-gpu', '--no-first-run', '--disable-dev-shm-usage', '--hide-scrollbars',
-    '--remote-debugging-pipe', `--user-data-dir=${profile}`, 'about:blank'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'], detached: true });
+    '--remote-debugging-pipe', `--user-data-dir=${profile}`, 'about:blank'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'], detached: true,
+    env: { ...process.env, TMPDIR: profile } });
   const waiting = new Map();
   const listeners = [];
   let next = 0;
