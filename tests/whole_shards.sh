@@ -81,6 +81,7 @@ says "... are equal" "; $((cases / 3)) were in several files, and equal$"
 expect "... in the same file" 0 "$stance" compare one.h5 twice.h5
 expect "a shard is missing" 0 "$stance" merge open.h5 results/set.shard-[13]-of-3.h5
 says "... its cases are counted" "; $((cases / 3)) are not computed yet$"
+says "... and it is named" 'stance merge: not among the files: shard 2/3$'
 expect "... and resumed without shards" 0 "$stance" run set.yaml -o open.h5 --resume --quiet
 expect "... to the same file" 0 "$stance" compare one.h5 open.h5
 for k in 3 4 5; do

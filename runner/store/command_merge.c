@@ -21,6 +21,37 @@ struct request {
     bool force;
 };
 
+/* Of shards of one sweep: those that no file is of. */
+static void name_missing_shards(const struct merge *m)
+{
+    enum { NAMED = 8 };
+    const uint64_t count = m->part[0].origin.shard.count;
+    bool *const there = count > 0 ? calloc(count + 1, 1) : NULL;
+    uint64_t missing = count;
+
+    for (size_t p = 0; there && p < m->parts; p++) {
+        const struct shard *const shard = &m->part[p].origin.shard;
+        if (shard->count != count) {
+            missing = 0;
+            break;
+        }
+        missing -= !there[shard->number];
+        there[shard->number] = true;
+    }
+    if (there && missing > 0) {
+        uint64_t named = 0;
+        fputs("stance merge: not among the files:", stderr);
+        for (uint64_t k = 1; k <= count && named < NAMED; k++)
+            if (!there[k])
+                fprintf(stderr, "%s %llu/%llu", named++ ? "," : " shard", (unsigned long long)k,
+                        (unsigned long long)count);
+        if (missing > named)
+            fprintf(stderr, " and %llu more", (unsigned long long)(missing - named));
+        fputc('\n', stderr);
+    }
+    free(there);
+}
+
 static void print_result(const struct request *request, const struct merge *m)
 {
     const struct store_copied *copied = &m->copied;
@@ -34,6 +65,7 @@ static void print_result(const struct request *request, const struct merge *m)
     if (done < m->scenario.cases)
         printf("; %llu are not computed yet", (unsigned long long)(m->scenario.cases - done));
     putchar('\n');
+    name_missing_shards(m);
     if (copied->damaged > 0) {
         fprintf(stderr, "stance merge: %llu case%s not as %s checksum%s left out\n",
                 (unsigned long long)copied->damaged, copied->damaged == 1 ? " is" : "s are",
