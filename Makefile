@@ -458,9 +458,10 @@ profile: $(PROGRAM)
 lint: packages-test
 	@+bash tests/lint.sh
 
-# What gcc infers of lengths it infers worse of instrumented code.
+# What gcc infers of lengths it infers worse of instrumented code, and full debugging information of
+# kernels takes it minutes each.
 sanitize: packages-test
-	+STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g -Wno-format-truncation' KERNEL_CFLAGS='-O1 -g' \
+	+STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g -Wno-format-truncation' KERNEL_CFLAGS='-O1 -g1' \
 	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' FUZZ_CC=none check
 
 STAGE = $(BUILD)/stage

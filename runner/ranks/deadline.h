@@ -12,6 +12,7 @@
 enum {
     DEADLINE_PATIENCE = 30, /* s, with ranks that were told to stop as this one was */
     DEADLINE_LOST = 300,    /* s, until a machine that says nothing is taken for lost */
+    DEADLINE_START = 600,   /* s, until MPI, which has not started on all ranks, never will */
 };
 
 /* For this process, one of several ranks: when its time has come, one line on standard error and

@@ -7,6 +7,8 @@
 
 #include "deadline.h"
 
+#include "runner/base/command.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,16 +118,23 @@ bool parallel_misses_launcher(bool *first)
 #endif
 }
 
-/* A rank whose launcher dies while MPI starts waits in MPI_Init for ever (in PMIx, Open MPI 4):
- * until MPI has started, and looks after that itself, an alarm sees each second who the parent is.
+/* A rank whose launcher dies while MPI starts waits in MPI_Init for ever (in PMIx, Open MPI 4), and
+ * so do all when one of them dies before the launcher has noted that it lives: until MPI has
+ * started, and looks after that itself, an alarm sees each second who the parent is, and how long
+ * it has been.
  */
 static pid_t launcher;
+static volatile sig_atomic_t looked;
 
 static void look_for_launcher(int number)
 {
+    static const char late[] =
+        "stance: MPI has not started on all ranks: left; nothing was begun\n";
     (void)number;
     if (getppid() != launcher)
         _exit(EXIT_FAILURE); /* nothing has been begun, and nobody waits for the code */
+    if (++looked > DEADLINE_START)
+        _exit(write(STDERR_FILENO, late, sizeof late - 1) < 0 ? EXIT_FAILURE : EXIT_INTERRUPTED);
 }
 
 static void watch_launcher(bool begin)
