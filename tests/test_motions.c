@@ -498,7 +498,8 @@ static void rail_ends(void **state)
         struct robot r =
             robot_of("body cart slide - 2 0 0 0 0 0 axis 4 -3 armature 0.5 limits -1 1\n", 0.4);
         stance_trajectory way = {
-            0.5, 3, (double[3]){0}, (double[3]){0}, (double[3]){0}, (double[6]){0}, (double[3]){0}};
+            0.5,           3, (double[3]){0}, (double[3]){0}, (double[3]){0}, (double[12]){0},
+            (double[6]){0}};
         r.c.trajectory = &way;
         const stance_result end = run(&r, *m, 1e-3, 1);
         near((*m)->name, "rate after half a second", way.velocity[1], 2 * G * 0.6 / 2.5 * 0.5,
