@@ -104,6 +104,22 @@ import json, sys
 orders = {o['method']: o['position'] for o in json.load(open(sys.argv[1]))['studies'][0]['orders']}
 assert 0.8 < orders['implicit'] < 1.2 and orders['midpoint'] > 0.9, orders
 assert orders['lagrange'] > 3.5 and 0.6 < orders['capturing'] < 1.3, orders" "$work/accuracy.json"
+mkdir "$work/other" && sed 's/^title.*/title: Another block/' scenarios/accuracy/block.yaml >"$work/other/block.yaml"
+refused() { # name, code, words, arguments of bench accuracy ...: before anything is simulated
+    local name=$1 code=$2 words=$3 said status
+    shift 3
+    said=$("$stance" bench accuracy "$@" 2>&1)
+    status=$?
+    check "bench accuracy: $name" test "$status $said" = "$code $words"
+}
+refused "one is no study" 2 "stance bench accuracy: scenarios/ball_bounce.yaml: the first axis does not vary method.name" \
+    scenarios/accuracy/ball.yaml scenarios/ball_bounce.yaml -o "$work/accuracy"
+refused "one is missing" 3 "nosuch.yaml: No such file or directory" scenarios/accuracy/ball.yaml nosuch.yaml -o "$work/accuracy"
+refused "two of a name" 2 "stance bench accuracy: scenarios/accuracy/block.yaml and $work/other/block.yaml would write the same files" \
+    scenarios/accuracy/block.yaml "$work/other/block.yaml" -o "$work/accuracy"
+refused "another's file" 3 "stance bench accuracy: $work/other/block.yaml: $work/accuracy/block.h5 is of another scenario" \
+    "$work/other/block.yaml" -o "$work/accuracy" --reuse
+check "... nothing was simulated" test ! -e "$work/accuracy/ball.h5"
 
 # Cells of a grid are counted: no interval, and none that are unlike is fewer than one.
 sed 's/- \[\(implicit\|lagrange\|capturing\).*//; s/count: 64/count: 6/; s/^title.*/title: Few cells/' \

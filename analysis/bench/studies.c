@@ -1,6 +1,7 @@
 /* studies.c - finds, runs and reports the scenarios of `stance bench accuracy` and `failure`. */
 #include "studies.h"
 
+#include "runner/base/message.h"
 #include "runner/plan/instruction_set.h"
 #include "runner/run/run.h"
 
@@ -13,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MAX_STUDIES = 64 };
+enum { MAX_STUDIES = 64, STEM = 256, FILE_NAME = 1024 };
 
 /* ---- where they are ----------------------------------------------------------------------- */
 
@@ -104,36 +105,77 @@ static bool evaluate(const struct request *request, const char *file, const char
     return good;
 }
 
-/* Before a long run for nothing. Returns an exit code. */
-static int check_study(const struct request *request, const char *scenario)
+/* Before a long run for nothing; of a file that is there and is to be taken, whether it is the
+ * scenario's. Returns an exit code. */
+static int check_study(const struct request *request, const char *scenario, const char *there)
 {
     struct scenario *s = calloc(1, sizeof *s);
+    struct results r;
     stance_message message = {""};
     if (!s || !scenario_read(s, scenario, NULL, NULL, 0, stderr)) {
         free(s);
         return access(scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
     }
-    const bool fits = request->kind->fits(s, &message);
-    if (!fits)
+    int code = request->kind->fits(s, &message) ? EXIT_DONE : EXIT_USAGE;
+    if (code == EXIT_DONE && there && results_open(&r, there, &message)) {
+        if (strcmp(r.scenario, s->text) != 0) {
+            complain(&message, "%.200s is of another scenario", there);
+            code = EXIT_IO;
+        }
+        results_close(&r);
+    } else if (code == EXIT_DONE && there) {
+        code = EXIT_IO;
+    }
+    if (code != EXIT_DONE)
         fprintf(stderr, "stance %s: %.300s: %s\n", request->command->name, scenario, message.text);
     scenario_free(s);
     free(s);
-    return fits ? EXIT_DONE : EXIT_USAGE;
+    return code;
+}
+
+/* What its files are called. */
+static void name_study(const char *scenario, char stem[STEM])
+{
+    const char *slash = strrchr(scenario, '/'), *base = slash ? slash + 1 : scenario;
+    snprintf(stem, STEM, "%.*s", (int)(strlen(base) - (ends_in_yaml(base) ? 5 : 0)), base);
+}
+
+static void name_file(const struct request *request, const char *stem, char file[FILE_NAME])
+{
+    snprintf(file, FILE_NAME, "%s/%s.h5", request->directory, stem);
+}
+
+static int check_studies(const struct request *request, char *const *path, size_t count)
+{
+    int code = EXIT_DONE;
+    for (size_t i = 0; i < count && code == EXIT_DONE; i++) {
+        char stem[STEM], other[STEM], file[FILE_NAME];
+        name_study(path[i], stem);
+        for (size_t k = 0; k < i && code == EXIT_DONE; k++) {
+            name_study(path[k], other);
+            if (strcmp(stem, other) == 0) {
+                fprintf(stderr, "stance %s: %.300s and %.300s would write the same files\n",
+                        request->command->name, path[k], path[i]);
+                code = EXIT_USAGE;
+            }
+        }
+        name_file(request, stem, file);
+        if (code == EXIT_DONE)
+            code = check_study(request, path[i],
+                               request->reuse && access(file, R_OK) == 0 ? file : NULL);
+    }
+    return code;
 }
 
 static int one_study(const struct request *request, const char *scenario, json_t *all)
 {
-    const char *slash = strrchr(scenario, '/'), *base = slash ? slash + 1 : scenario;
-    char file[1024], stem[256];
+    char file[FILE_NAME], stem[STEM];
     stance_message message = {""};
 
-    int code = check_study(request, scenario);
-    if (code != EXIT_DONE)
-        return code;
-    snprintf(stem, sizeof stem, "%.*s", (int)(strlen(base) - (ends_in_yaml(base) ? 5 : 0)), base);
-    snprintf(file, sizeof file, "%s/%s.h5", request->directory, stem);
+    name_study(scenario, stem);
+    name_file(request, stem, file);
     if (!request->reuse || access(file, R_OK) != 0) {
-        code = run_study(scenario, file);
+        const int code = run_study(scenario, file);
         if (code != EXIT_DONE && code != EXIT_CASES_FAILED)
             return code;
     }
@@ -147,7 +189,7 @@ static int one_study(const struct request *request, const char *scenario, json_t
 static int all_studies(const struct request *request, char *const *path, size_t count)
 {
     json_t *all = json_array();
-    int code = EXIT_DONE;
+    int code = check_studies(request, path, count);
     for (size_t i = 0; i < count && code == EXIT_DONE; i++)
         code = one_study(request, path[i], all);
     if (request->json && code == EXIT_DONE) {

@@ -21,11 +21,11 @@ struct request {
     bool force;
 };
 
-/* Of shards of one sweep: those that no file is of. */
+/* Where all files are shards of one sweep, of one number of shards: those that no file is of. */
 static void name_missing_shards(const struct merge *m)
 {
     enum { NAMED = 8 };
-    const uint64_t count = m->part[0].origin.shard.count;
+    const uint64_t count = m->kind == MERGE_EQUAL ? m->part[0].origin.shard.count : 0;
     bool *const there = count > 0 ? calloc(count + 1, 1) : NULL;
     uint64_t missing = count;
 
