@@ -185,7 +185,9 @@ stance_error stance_hautus(int n, int m, const double *A, const double *B, enum 
 {
     const size_t side = (size_t)n, nn = side * side;
     double *re = matrix_room(4 * side + nn);
-    double _Complex *matrix = calloc(side * (side + (size_t)m), sizeof *matrix);
+    /* A column to spare: OpenBLAS 0.3.21 (zgemv for Haswell) reads a stride beyond the last one,
+     * now and then in a page that is not there. */
+    double _Complex *matrix = calloc(side * (side + (size_t)m + 1), sizeof *matrix);
     const double norm = frobenius(n * n, A);
     int rank = 0;
 
