@@ -74,7 +74,8 @@ static void world_make(struct world *w, const char *const *sets, size_t count)
 {
     stance_message message = {""};
     const char *all[16] = {"stop.capture=estimated"};
-    memcpy(all + 1, sets, count * sizeof *sets);
+    for (size_t k = 0; k < count; k++)
+        all[k + 1] = sets[k];
     if (!read_as(&w->s, "scenarios/basin_one_foot.yaml", NULL, all, count + 1))
         fail_msg("refused: %s", errors);
     if (!resolve_design(w->s.scene, &w->s.base, &w->design, &message) ||

@@ -249,9 +249,9 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
 static void report_search(const struct scenario *s, const struct estimate *e, int ranks, FILE *out)
 {
     char text[40] = "";
-    const double cases = scenario_search_cases(s);
     if (!s->search.given)
         return;
+    const double cases = scenario_search_cases(s);
     if (e->seconds >= 0)
         text_of_seconds(text, sizeof text, e->seconds * cases / (double)s->cases / ranks);
     fprintf(out,
