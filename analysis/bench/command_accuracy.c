@@ -309,7 +309,7 @@ const struct command command_accuracy = {
     "builds and asks those that are installed; analysis/bench/peer.h has the words.\n"
     "\n"
     "  -o DIR     where the results files and pictures go, default results/accuracy\n"
-    "  --reuse    take results files that are there as they are\n"
+    "  --reuse    take results files of the same scenario that are there\n"
     "  --peer P   a program that drives another simulator (build/tests/peer_mujoco); repeatable\n"
     "  --peer-starts N   of a map peers compute no more cells than these, evenly spread; default "
     "1024\n"

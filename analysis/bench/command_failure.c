@@ -193,7 +193,7 @@ const struct command command_failure = {
     "second picture shows the energy that discretisation created.\n"
     "\n"
     "  -o DIR     where the results files and pictures go, default results/failure\n"
-    "  --reuse    take results files that are there as they are\n" LOOK_HELP_DRAWN
+    "  --reuse    take results files of the same scenario that are there\n" LOOK_HELP_DRAWN
     "  --json     the same as JSON, without pictures: a list `studies` of\n"
     "    name, title, file   strings\n"
     "    axes                the two of the map: name, unit, values\n"

@@ -112,7 +112,11 @@ static int check_study(const struct request *request, const char *scenario, cons
     struct scenario *s = calloc(1, sizeof *s);
     struct results r;
     stance_message message = {""};
-    if (!s || !scenario_read(s, scenario, NULL, NULL, 0, stderr)) {
+    if (!s) {
+        fprintf(stderr, "stance %s: not enough memory\n", request->command->name);
+        return EXIT_IO;
+    }
+    if (!scenario_read(s, scenario, NULL, NULL, 0, stderr)) {
         free(s);
         return access(scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
     }

@@ -119,9 +119,9 @@ bool parallel_misses_launcher(bool *first)
 }
 
 /* A rank whose launcher dies while MPI starts waits in MPI_Init for ever (in PMIx, Open MPI 4), and
- * so do all when one of them dies before the launcher has noted that it lives: until MPI has
- * started, and looks after that itself, an alarm sees each second who the parent is, and how long
- * it has been.
+ * now and then all do when some are killed while the launcher starts them: until MPI has started,
+ * and looks after that itself, an alarm sees each second who the parent is, and how long it has
+ * been.
  */
 static pid_t launcher;
 static volatile sig_atomic_t looked;

@@ -8,7 +8,7 @@
 
 #include <Random123/philox.h>
 
-#define SAMPLE_REST 1e-6 /* m/s: more than an implicit step leaves of a contact at rest */
+#define SAMPLE_REST 1e-6 /* m/s: contact velocities below it are zero to a sampled law */
 
 /* Uniform in [-1, 1), keyed as stance.h says: of sampling instant k the `count` numbers of a
  * stream; the noise of torques is stream 0, that of measurements 1. */
