@@ -186,6 +186,50 @@ static void slips_turn(void **state)
     assert_true(turned > 5 && worst[0] < bound[0] && worst[1] < bound[1]);
 }
 
+/* Near a singular posture the torques wanted jump, and what is left of it by their limits is thrown
+ * from one end to the other inside a step: errors go on shrinking with the tolerance. */
+static void limits_turn(void **state)
+{
+    (void)state;
+    static const double tolerance[2] = {1e-6, 1e-8}, bound[2] = {1e-5, 1e-7};
+    const stance_scene *scene = stance_scene_find("biped");
+    const double posture[3] = {-0.41, 0.570127, 0.82};
+    double worst[2] = {0, 0};
+    int thrown = 0;
+    for (int k = 0; k < 8; k++) {
+        stance_case c = pair_case(2, posture, true, 0); /* x and q1 */
+        stance_result truth, r;
+        c.friction = 0.5;
+        c.steps = 24;
+        c.torque_limit = 10;
+        memset(c.velocity, 0, sizeof c.velocity);
+        c.velocity[2] = -1 - 0.05 * k;
+        c.velocity[3] = 1;
+        c.velocity[4] = -2;
+        scene->stand(scene, c.robot, 1, c.position, c.velocity);
+        for (int i = 0; i < 2; i++) {
+            c.servo[i].setpoint = i ? posture[1] : 0.127954;
+            c.servo[i].ramp = 0;
+            c.servo[i].kd = 20;
+        }
+        c.tolerance = 1e-11;
+        kernel_of("event-driven", NULL)->run(&c, &truth, 1);
+        assert_int_equal(truth.status, STANCE_DONE);
+        thrown += truth.peak_torque >= 10;
+        for (int t = 0; t < 2; t++) {
+            c.tolerance = tolerance[t];
+            kernel_of("capturing", NULL)->run(&c, &r, 1);
+            assert_int_equal(r.status, STANCE_DONE);
+            for (int i = 0; i < scene->coordinates; i++) {
+                worst[t] = fmax(fabs(r.position[i] - truth.position[i]), worst[t]);
+                worst[t] = fmax(fabs(r.velocity[i] - truth.velocity[i]), worst[t]);
+            }
+        }
+    }
+    print_message("# %d limits that turn: off by %.1e, %.1e\n", thrown, worst[0], worst[1]);
+    assert_true(thrown == 8 && worst[0] < bound[0] && worst[1] < bound[1]);
+}
+
 /* The inertia matrix against the kinetic energy. */
 static void inertia_is_energy(void **state)
 {
@@ -491,6 +535,7 @@ int main(void)
         cmocka_unit_test(pairs_follow),
         cmocka_unit_test(sampling_converges),
         cmocka_unit_test(slips_turn),
+        cmocka_unit_test(limits_turn),
         cmocka_unit_test(inertia_is_energy),
         cmocka_unit_test(singular_is_survived),
         cmocka_unit_test(integrals_are_bounded),

@@ -56,6 +56,13 @@ for ranks in 1 2; do
     expect "... is the same" 0 "$stance" compare results/set.shard-2-of-3.h5 ranks.h5
 done
 
+cp results/set.shard-2-of-3.h5 damaged.h5
+"$python" -c 'import h5py; h5py.File("damaged.h5", "r+").attrs["shard"] = b"2 of 3"'
+for way in "status damaged.h5" "merge all2.h5 damaged.h5 results/set.shard-1-of-3.h5"; do
+    expect "${way%% *} of one whose share is damaged" 3 "$stance" $way
+    says "... says so" "damaged.h5: .* attribute .shard.*is damaged"
+done
+
 # ---- what others say of it -----------------------------------------------------------------------
 expect "status of a shard" 0 "$stance" status results/set.shard-2-of-3.h5
 says "... is of its cases" "shard 2/3, $((cases / 3)) of $((cases / 3)) cases done, 0 failed, 0 pending; complete"

@@ -63,9 +63,15 @@ wrong "nothing to read" "^list.yaml:2:.*either read or trace is needed" '/read/d
 wrong "no such coordinate" "^list.yaml:2:.*nothing is called y there" 's/read: z/read: y/'
 wrong "no such scenario" "No such file" 's/projectile/projectiles/'
 wrong "a setting that does not exist" "methods" 's/read: z/read: z\n    set: [methods.step=1]/'
-expect "no list" 2 "$stance" bench truth nowhere.yaml
+wrong "a bar below 0" "^list.yaml:2:.*bar is 0 (exact) or more" 's/bar: .*/bar: -1/'
+{ cat scenarios/truth/projectile.yaml && echo 'sweep: {grid: [{path: initial.state.z, values: [1, 2]}]}'; } >sweep.yaml
+wrong "a sweep" "sweep.yaml has a sweep" 's|scenarios/truth/projectile|sweep|'
+echo 'truths: []' >list.yaml
+expect "an empty list" 2 "$stance" bench truth list.yaml
+says "... says so" "no truth is in the list"
+expect "no list" 3 "$stance" bench truth nowhere.yaml
 expect "a method that does not exist" 2 "$stance" bench truth --method euler
 says "... says so" "unknown method 'euler'"
-expect "no number of times" 2 "$stance" bench truth --finer 0
+expect "no number of times" 2 "$stance" bench truth --finer 0.001
 echo "1..$count"
 exit $((failed > 0 || truths > 0))

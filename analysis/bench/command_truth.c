@@ -200,8 +200,8 @@ static int run(int argc, char **argv)
     struct request q = {
         .form = table_form(count[0], 0), .finer = 1, .budget = 0.003, .csv = csv, .look = &look};
     char *end = NULL;
-    if (finer && (!((q.finer = strtod(finer, &end)) > 0) || *end || q.finer > 1e4))
-        return command_usage(&command_truth, "--finer takes a number above 0, at most 10000");
+    if (finer && (!((q.finer = strtod(finer, &end)) >= 0.01) || *end || q.finer > 1e4))
+        return command_usage(&command_truth, "--finer takes a number from 0.01 to 10000");
     if (look.file)
         return command_usage(&command_truth, "-o takes a directory: there are several files");
     q.directory = look.directory;
@@ -210,6 +210,10 @@ static int run(int argc, char **argv)
     if (!find_list(operands ? given[0] : NULL, found, sizeof found)) {
         fputs("stance bench truth: no scenarios/truth here nor beside the program; name the list\n",
               stderr);
+        return EXIT_IO;
+    }
+    if (access(found, R_OK) != 0) {
+        fprintf(stderr, "stance bench truth: %s: %s\n", found, strerror(errno));
         return EXIT_IO;
     }
     return whole(&q, found);
@@ -241,7 +245,7 @@ const struct command command_truth = {
     "  value, bar      the number, and how far it may be off\n"
     "\n"
     "  --method NAME  only this one; repeatable\n"
-    "  --finer N  steps N times as short\n"
+    "  --finer N  steps N times as short, 0.01 to 10000\n"
     "  --csv FILE the table, a line for each truth and method\n"
     "  -o DIR     draws the errors into DIR, truth.svg and truth.png\n" LOOK_HELP_DRAWN
     "  --json     a list of objects with keys truth, scenario, value, bar, source, method, step,\n"

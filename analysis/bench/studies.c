@@ -74,8 +74,8 @@ static size_t find_studies(const char *kind, char *path[MAX_STUDIES])
 /* `stance run` of one study; its exit code. */
 static int run_study(const char *scenario, const char *file)
 {
-    char *argv[] = {"run", (char *)scenario, "--force", "--quiet", "-o", (char *)file, NULL};
-    return command_run.run(6, argv);
+    char *argv[] = {"run", "--force", "--quiet", "-o", (char *)file, "--", (char *)scenario, NULL};
+    return command_run.run(7, argv);
 }
 
 /* ---- one after the other ------------------------------------------------------------------ */

@@ -62,7 +62,9 @@ static bool read_scenario(struct trial *t, const char *more, stance_message *mes
     t->scenario = calloc(1, sizeof *t->scenario);
     if (!t->scenario)
         return no_memory(message);
-    return scenario_read(t->scenario, t->row->scenario, NULL, set, sets, stderr);
+    return scenario_read(t->scenario, t->row->scenario, NULL, set, sets, stderr) &&
+           (t->scenario->axes == 0 ||
+            complain(message, "%.100s has a sweep; a truth is of one case", t->row->scenario));
 }
 
 /* Equal steps that fill the time, no longer than a `finer`-th of the scenario's. */

@@ -105,6 +105,8 @@ static bool take_row(struct reading *r, struct truth_row *row, const struct tree
                            "truth, scenario, value, bar and source are needed");
     if ((row->traces > 0) == (row->read != NULL))
         return problem_add(&r->problems, node->mark, "either read or trace is needed");
+    if (row->bar < 0)
+        return problem_add(&r->problems, node->mark, "bar is 0 (exact) or more");
     return row->kind != TRUTH_AS_BORDER || row->between[0] != row->between[1] ||
            problem_add(&r->problems, node->mark, "border needs between: [from, to]");
 }
@@ -115,6 +117,8 @@ static bool take_rows(struct reading *r)
     const struct tree_node *const all = root->kind == TREE_MAP ? tree_find(root, "truths") : NULL;
     if (!all || all->kind != TREE_LIST)
         return problem_add(&r->problems, root->mark, "a list `truths` is needed");
+    if (all->count == 0)
+        return problem_add(&r->problems, all->mark, "no truth is in the list");
     r->list->row = calloc(all->count + 1, sizeof *r->list->row);
     if (!r->list->row)
         return problem_no_memory(&r->problems);
