@@ -50,7 +50,8 @@ ifneq ($(V),1)
 QUIET = @echo '  $(1) $(2)';
 endif
 
-ALLFLAGS = -I. $(STRICT) $(WARNINGS) $(SANITIZE)
+# gcc infers worse how long numbers are in instrumented code.
+ALLFLAGS = -I. $(STRICT) $(WARNINGS) $(SANITIZE) $(if $(SANITIZE),-Wno-format-truncation)
 
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
 SCENES  = ball block rod biped
@@ -458,10 +459,9 @@ profile: $(PROGRAM)
 lint: packages-test
 	@+bash tests/lint.sh
 
-# What gcc infers of lengths it infers worse of instrumented code, and full debugging information of
-# kernels takes it minutes each.
+# Full debugging information of instrumented kernels takes gcc minutes each.
 sanitize: packages-test
-	+STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g -Wno-format-truncation' KERNEL_CFLAGS='-O1 -g1' \
+	+STANCE_SLOW=1 $(MAKE) BUILD=build/sanitize PROGRAM=build/sanitize/bin/stance CFLAGS='-O1 -g' KERNEL_CFLAGS='-O1 -g1' \
 	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=undefined' FUZZ_CC=none check
 
 STAGE = $(BUILD)/stage

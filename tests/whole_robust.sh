@@ -6,6 +6,8 @@
 set -u
 . "$(dirname "$0")/scratch.sh"
 chmod 755 "$scratch"
+# Under a sanitizer too it is the program that says where it crashed.
+export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}handle_segv=0:handle_abort=0:handle_sigfpe=0:handle_sigbus=0
 # Which of many alike are tried; STANCE_TEST_LONG: all.
 crashes=(SEGV:139:3 ABRT:134:0) signals=(TERM) attempts=4 fills=(2)
 losses=("0 rm folder/gone.h5" "2 mv folder moved")
