@@ -49,15 +49,18 @@ static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)
         }
 }
 
-/* As lane_enumerate, in lanes, where the contacts in `touching` are two points, first and second.
+/* As lane_enumerate, in lanes, where the contacts in `two` are two points, first and second.
  * Impulses r in the lanes that are returned, *ambiguous among them; elsewhere a mode is on the
  * verge of a solution, or there is none. */
 COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                         const lanes (*uf)[2], contact_set touching, int first, int second,
+                         const lanes (*uf)[2], contact_set two, int first, int second,
                          const mask *active, lanes tolerance, mask todo, lanes (*r)[2],
                          mask *ambiguous)
 {
     enum { OPEN, STICK, FORWARD, BACKWARD, MODES };
+    /* Where the scene has no other contacts these are known to the compiler, which then unrolls. */
+    const bool known = SCENE_CONTACTS == 2;
+    const contact_set touching = known ? CONTACT_ALL : two;
     const lanes none = lanes_of(0);
     struct pair_choice best = {.have = MASK_NONE, .ambiguous = MASK_NONE, .energy = none};
     lanes candidate[CONTACTS][2], u[CONTACTS][2], edge[CONTACTS];
@@ -86,7 +89,9 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
         const mask may = todo & LANES_NOT(never[first][of[0]] | never[second][of[1]]);
         if ((of[0] == STICK && of[1] == STICK) || !mask_any(may))
             continue;
+        contact_set carries = 0; /* what is open has no part in the equations */
         for (int k = 0; k < 2; k++) {
+            carries |= of[k] == OPEN ? 0 : contact_with(point[k]);
             closed[point[k]] = of[k] == OPEN ? MASK_NONE : active[point[k]];
             sticks[point[k]] = of[k] == STICK ? LANES_ALL : MASK_NONE;
             edge[point[k]] = rule->friction * (of[k] == FORWARD ? -1 : of[k] == BACKWARD ? 1 : 0);
@@ -95,13 +100,25 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
         mask rows[CONTACTS][2];
         lanes M[CONTACTS][CONTACTS][2][2];
         contact_mode_rows(closed, sticks, rows);
-        direct_factor(touching, CONTACT_PLAIN, D, (const mask(*)[2])rows, edge, 0, M, &f);
+        const bool all = known && carries == CONTACT_ALL;
+        if (all) {
+            contact_matrix(CONTACT_ALL, D, (const mask(*)[2])rows, edge, M);
+            contact_factor(CONTACT_ALL, CONTACT_PLAIN, M, &f);
+        } else
+            direct_factor(carries, CONTACT_PLAIN, D, (const mask(*)[2])rows, edge, 0, M, &f);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 candidate[c][a] = none, u[c][a] = uf[c][a];
-        for (int round = 0; round < 2; round++) { /* once more with what is left */
+        for (int round = 0; round < 2 && carries; round++) { /* once more with what is left */
             lanes x[CONTACTS][2];
-            direct_back(touching, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
+            if (all) {
+                lanes part[CONTACTS][2];
+                EACH (c, 0, SCENE_CONTACTS)
+                    EACH (a, 0, 2)
+                        part[c][a] = choose(rows[c][a], u[c][a], none);
+                contact_back(CONTACT_ALL, &f, (const lanes(*)[2])part, x);
+            } else
+                direct_back(carries, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
             for (int k = 0; k < 2; k++) {
                 const int c = point[k];
                 candidate[c][0] = candidate[c][0] + x[c][0];
@@ -119,8 +136,9 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
         const mask regular = may & mask_finite(sum);
         const mask valid = regular & mask_less_equal(violation, tolerance);
         verge |= regular & LANES_NOT(valid) & mask_less_equal(violation, PAIR_VERGE * tolerance);
-        pair_offer(rule, uf, tolerance, touching, active, (const lanes(*)[2])candidate,
-                   (const lanes(*)[2])u, valid, &best);
+        if (mask_any(valid))
+            pair_offer(rule, uf, tolerance, touching, active, (const lanes(*)[2])candidate,
+                       (const lanes(*)[2])u, valid, &best);
     }
     const mask done = todo & best.have & LANES_NOT(verge);
     *ambiguous = done & best.ambiguous;
