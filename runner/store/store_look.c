@@ -15,20 +15,13 @@ static bool not_resumable(hid_t id, const char *file, stance_message *message)
         id, file, "a results file that can be resumed or merged; run --force replaces it", message);
 }
 
-/* Whether it can be read, where there is one. */
-static bool read_shard(hid_t id, struct shard *shard)
+/* Leaves *shard as it is where there is none. */
+static bool read_shard(hid_t id, const char *file, struct shard *shard, stance_message *message)
 {
     char *text = H5Aexists(id, "shard") != 0 ? hdf_text(id, "shard") : NULL;
     const bool good = text ? shard_parse(shard, text) : H5Aexists(id, "shard") == 0;
     free(text);
-    return good;
-}
-
-static bool check_shard(hid_t id, const char *file, struct shard *shard, stance_message *message)
-{
-    return read_shard(id, shard) ||
-           complain(message,
-                    "%.100s: what says which shard it is (its attribute `shard`) is damaged", file);
+    return good || complain(message, "%.100s: its attribute `shard` is damaged", file);
 }
 
 bool store_check(const char *file, bool resume, stance_message *message)
@@ -40,7 +33,7 @@ bool store_check(const char *file, bool resume, stance_message *message)
     /* The last attribute written says that the creation came to its end. */
     char *hash = hdf_text(id, "scenario_sha256"), *scenario = hdf_text(id, "scenario");
     bool good = !resume || (hash && scenario) || not_resumable(id, file, message);
-    good = good && check_shard(id, file, &shard, message) &&
+    good = good && read_shard(id, file, &shard, message) &&
            file_checksums_verify(id, file, scenario, scenario ? hash : NULL, resume, message);
     free(hash);
     free(scenario);
@@ -65,7 +58,7 @@ bool store_read_origin(const char *file, struct store_origin *origin, stance_mes
     snprintf(origin->date, sizeof origin->date, "%s", date ? date : "unknown");
     hdf_close(sample);
     const bool good =
-        check_shard(id, file, &origin->shard, message) &&
+        read_shard(id, file, &origin->shard, message) &&
         (store_read_history(id, origin) || store_failed(message, file, "read its history")) &&
         (origin->scenario || not_resumable(id, file, message));
     H5Fclose(id);

@@ -147,14 +147,20 @@ COLD void direct_factor(contact_set touching, enum contact_care care,
 }
 
 /* The unknowns x that bring the velocities u to rest in `rows`, zero in others. */
+HOT void direct_rest(contact_set touching, const mask (*rows)[2], const struct contact_factors *f,
+                     const lanes (*u)[2], lanes (*x)[2])
+{
+    lanes part[CONTACTS][2];
+    EACH (c, 0, SCENE_CONTACTS)
+        EACH (a, 0, 2)
+            part[c][a] = choose(rows[c][a], u[c][a], lanes_of(0));
+    contact_back(touching, f, (const lanes(*)[2])part, x);
+}
+/* ... compiled once. */
 COLD void direct_back(contact_set touching, const mask (*rows)[2], const struct contact_factors *f,
                       const lanes (*u)[2], lanes (*x)[2])
 {
-    lanes part[CONTACTS][2];
-    for (int c = 0; c < SCENE_CONTACTS; c++)
-        for (int a = 0; a < 2; a++)
-            part[c][a] = choose(rows[c][a], u[c][a], lanes_of(0));
-    contact_back(touching, f, (const lanes(*)[2])part, x);
+    direct_rest(touching, rows, f, u, x);
 }
 
 /* What can be exchanged between contacts in `rows` without any change of velocity: n with D n = 0,

@@ -49,18 +49,15 @@ static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)
         }
 }
 
-/* As lane_enumerate, in lanes, where the contacts in `two` are two points, first and second.
+/* As lane_enumerate, in lanes, where the contacts in `touching` are two points, first and second.
  * Impulses r in the lanes that are returned, *ambiguous among them; elsewhere a mode is on the
  * verge of a solution, or there is none. */
 COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
-                         const lanes (*uf)[2], contact_set two, int first, int second,
+                         const lanes (*uf)[2], contact_set touching, int first, int second,
                          const mask *active, lanes tolerance, mask todo, lanes (*r)[2],
                          mask *ambiguous)
 {
     enum { OPEN, STICK, FORWARD, BACKWARD, MODES };
-    /* Where the scene has no other contacts these are known to the compiler, which then unrolls. */
-    const bool known = SCENE_CONTACTS == 2;
-    const contact_set touching = known ? CONTACT_ALL : two;
     const lanes none = lanes_of(0);
     struct pair_choice best = {.have = MASK_NONE, .ambiguous = MASK_NONE, .energy = none};
     lanes candidate[CONTACTS][2], u[CONTACTS][2], edge[CONTACTS];
@@ -100,7 +97,7 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
         mask rows[CONTACTS][2];
         lanes M[CONTACTS][CONTACTS][2][2];
         contact_mode_rows(closed, sticks, rows);
-        const bool all = known && carries == CONTACT_ALL;
+        const bool all = SCENE_CONTACTS == 2 && carries == CONTACT_ALL; /* a constant: unrolled */
         if (all) {
             contact_matrix(CONTACT_ALL, D, (const mask(*)[2])rows, edge, M);
             contact_factor(CONTACT_ALL, CONTACT_PLAIN, M, &f);
@@ -111,13 +108,9 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
                 candidate[c][a] = none, u[c][a] = uf[c][a];
         for (int round = 0; round < 2 && carries; round++) { /* once more with what is left */
             lanes x[CONTACTS][2];
-            if (all) {
-                lanes part[CONTACTS][2];
-                EACH (c, 0, SCENE_CONTACTS)
-                    EACH (a, 0, 2)
-                        part[c][a] = choose(rows[c][a], u[c][a], none);
-                contact_back(CONTACT_ALL, &f, (const lanes(*)[2])part, x);
-            } else
+            if (all)
+                direct_rest(CONTACT_ALL, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
+            else
                 direct_back(carries, (const mask(*)[2])rows, &f, (const lanes(*)[2])u, x);
             for (int k = 0; k < 2; k++) {
                 const int c = point[k];
