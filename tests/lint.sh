@@ -13,6 +13,8 @@ grep -nE '#include *[<"](mpi|hdf5|yaml)\.h' $(git ls-files engine) && complain "
     complain "only runner/ranks/parallel.c includes mpi.h"
 [ "$(git ls-files runner analysis | xargs grep -lE '#include *<hdf5(_hl)?\.h>' | grep -v '^runner/store/')" = "" ] ||
     complain "only runner/store includes hdf5.h"
+[ "$(git ls-files engine | xargs grep -l TREE_RUNTIME | tr '\n' ' ')" = "engine/core/lanes/lanes.h engine/scenes/runtime_lanes.h engine/scenes/tree_lanes.h " ] ||
+    complain "what is computed must not depend on whether the structure is read at run time: TREE_RUNTIME"
 bash tests/rooms.sh || complain "rooms are out of order, see tests/rooms.sh"
 
 for f in "${sources[@]}"; do

@@ -262,9 +262,10 @@ HOT mask capture_stands(contact_set touching, const struct advance *a, const str
 }
 
 /* Tries a standing step in the lanes of `run`; returns those where *next and *report are its. */
-HOT mask capture_stand(contact_set touching, const struct advance *a, const struct setting *set,
-                       const lanes *torque, bool coupled, lanes h, mask run,
-                       const struct motion *now, struct motion *next, struct step_report *report)
+PER_SET mask capture_stand(contact_set touching, const struct advance *a, const struct setting *set,
+                           const lanes *torque, bool coupled, lanes h, mask run,
+                           const struct motion *now, struct motion *next,
+                           struct step_report *report)
 {
     lanes error;
     const mask anew = run & mask_less_equal(lanes_of(TRIG_TURNS), a->turns);

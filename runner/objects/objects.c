@@ -26,6 +26,7 @@ struct making {
     char name[CACHE_NAME];          /* of its file */
     struct image_label label;
     enum object_origin origin;
+    bool checked; /* on this rank */
 };
 
 /* What rank 0 tells all before the images: how long each is (0: there is none) and where it comes
@@ -91,7 +92,7 @@ static uint64_t number_of(const char *tables)
 /* ---- rank 0 -------------------------------------------------------------------------------- */
 
 /* Runs the checks of a fresh image and seals it. What rank 0 does not want is checked by those who
- * do. */
+ * do, what is kept by all who take it: it was checked with other numbers. */
 static bool check(const struct objects_request *request, struct making *m, stance_message *message)
 {
     struct object object = {.kernel = {request->scene, m->method, m->isa, 0, NULL, NULL},
@@ -101,6 +102,7 @@ static bool check(const struct objects_request *request, struct making *m, stanc
                       load_check(&object, m->reference, request, message);
     objects_release(&object, 1);
     m->label.checked = m->reference && request->checks > 0;
+    m->checked = good;
     return good && (image_seal(&m->image, &m->label) || no_memory(message));
 }
 
@@ -255,23 +257,32 @@ static bool share(const struct parallel *ranks, bool good, struct making *making
     return true;
 }
 
-/* The kernel that this rank wants, from its image. */
+/* The kernel that this rank wants, from its image; *differs: it computes something else than the
+ * reference, and is not taken. */
 static bool take(const struct objects_request *request, const struct making *m,
-                 const stance_kernel *reference, struct object *object, stance_message *message)
+                 const stance_kernel *reference, struct object *object, bool *differs,
+                 stance_message *message)
 {
     struct image_label label;
+    *differs = false;
     if (!image_label(&m->image, &label))
         return complain(message, "a compiled kernel did not arrive whole");
     object->origin = m->origin;
     memcpy(object->key, label.key, sizeof object->key);
     memcpy(object->compiler, label.compiler, sizeof object->compiler);
-    return load_object(&m->image, object, message) &&
-           (label.checked || load_check(object, reference, request, message));
+    if (!load_object(&m->image, object, message))
+        return false;
+    *differs = !m->checked && !load_check(object, reference, request, message);
+    if (*differs)
+        objects_release(object, 1);
+    return true;
 }
 
-/* What this rank wants, from what there is. */
+/* What this rank wants, from what there is; *differs: something of it is not taken, `message` says
+ * why. */
 static enum exit_code take_all(const struct objects_request *request, const struct making *making,
-                               size_t count, struct object *object, stance_message *message)
+                               size_t count, struct object *object, bool *differs,
+                               stance_message *message)
 {
     for (size_t k = 0; k < request->count; k++) {
         const struct objects_wanted *const wanted = &request->wanted[k];
@@ -280,18 +291,19 @@ static enum exit_code take_all(const struct objects_request *request, const stru
             if (making[i].method == wanted->method && strcmp(making[i].isa, wanted->isa) == 0 &&
                 making[i].image.size > 0)
                 found = &making[i];
-        if (found && !take(request, found, wanted->reference, &object[k], message))
+        bool refused = false;
+        if (found && !take(request, found, wanted->reference, &object[k], &refused, message))
             return EXIT_IO;
+        *differs |= refused;
         if (!found && !wanted->reference) {
             if (!on_demand(wanted->method)) /* else make has said why */
                 complain(message, "%s is not compiled on demand, and none of this size is built in",
                          wanted->method->name);
             return EXIT_USAGE;
         }
-        if (!found) {
-            object[k].kernel = *wanted->reference;
-            object[k].origin = OBJECT_REFERENCE;
-        }
+        if (!found || refused)
+            object[k] = (struct object){
+                .kernel = *wanted->reference, .origin = OBJECT_REFERENCE, .memory = -1};
     }
     return EXIT_DONE;
 }
@@ -312,7 +324,7 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
     struct making making[OBJECTS_MOST];
     const size_t count = list_wanted(ranks, request, making);
     uint8_t code = EXIT_IO;
-    bool missing = false;
+    bool missing = false, differs = false;
     for (size_t k = 0; k < request->count; k++)
         object[k] = (struct object){.kernel = {.scene = request->scene,
                                                .method = request->wanted[k].method,
@@ -323,12 +335,14 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
     parallel_meet(ranks, nothing, NULL); /* until then the cores are the compiler's */
     if (share(ranks, made, making, count, message)) {
         stance_message why = *message;
-        code = (uint8_t)take_all(request, making, count, object, message);
+        code = (uint8_t)take_all(request, making, count, object, &differs, message);
+        if (differs)
+            why = *message;
         parallel_agree(ranks, code == EXIT_DONE, message->text, sizeof message->text);
         parallel_largest(ranks, &code, 1);
         for (size_t i = 0; i < count; i++)
-            missing |= making[i].image.size == 0;
-        if (code == EXIT_DONE && missing && ranks->rank == 0 && !request->brief)
+            missing |= making[i].image.size == 0 && !request->brief;
+        if (code == EXIT_DONE && (missing || differs) && ranks->rank == 0)
             cache_say("%s; kernels that are built in compute instead, more slowly", why.text);
     }
     for (size_t i = 0; i < count; i++)

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHECKS = 64, CHECK_STEPS = 50 };
+enum { FEW_CHECKS = 8, OWN_CHECKS = 64, CHECKS = 256, CHECK_STEPS = 50 };
 
 /* Steps that kernels which are built in compute in less time than it takes to compile others. */
 static const double brief_steps = 2e6;
@@ -18,6 +18,14 @@ static bool listed(const char *word, const char *const *list, size_t count)
 {
     for (size_t i = 0; i < count; i++)
         if (strcmp(word, list[i]) == 0)
+            return true;
+    return false;
+}
+
+static bool runs_here(const char *isa)
+{
+    for (int rank = 0; stance_isa(rank); rank++)
+        if (strcmp(isa, stance_isa(rank)) == 0)
             return true;
     return false;
 }
@@ -45,22 +53,93 @@ static size_t list_methods(const struct plan *plan, const struct kernels_choice 
             wanted[count++] = (struct objects_wanted){
                 .method = stance_methods()[m],
                 .isa = isa[i],
-                .reference = stance_kernel_find(s->scene, stance_methods()[m], NULL),
+                .reference = runs_here(isa[i])
+                                 ? stance_kernel_find(s->scene, stance_methods()[m], NULL)
+                                 : NULL,
             };
         }
     }
     return count;
 }
 
-/* Some cases, evenly spread, for a moment each. *steps: about as many as all have. */
+/* ---- checks: what an object computes is held to what the reference does --------------------- */
+
+/* Spread evenly over [-size, size], the k-th of a sequence of each `kind`. */
+static double spread(uint64_t k, int kind, double size)
+{
+    const double turns = (double)k * 0.6180339887498949 + kind * 0.7548776662466927;
+    return size * (2 * (turns - floor(turns)) - 1);
+}
+
+static bool beyond_stop(const stance_case *c, const stance_scene *scene)
+{
+    double gap[STANCE_MAX_CONTACTS];
+    bool beyond = false;
+    scene->gaps(scene, c->robot, c->position, gap);
+    for (int k = 0; k < scene->contacts; k++)
+        beyond |= scene->grip[k] < 0 && gap[k] < 0;
+    return beyond;
+}
+
+/* Moves and turns a case so that it stands on one support after the other, on all and on none, at
+ * rest, disturbed, sliding and landing, with other friction and impacts than its scenario's: an
+ * object may be taken by scenarios of other numbers and starts. */
+static void disturb(const stance_scene *scene, uint64_t k, stance_case *c)
+{
+    enum manner { AT_REST, DISTURBED, SLIDING, LANDING, MANNERS };
+    const bool free = scene->postures < scene->coordinates;
+    const int first = scene->coordinates - scene->postures; /* the others move it as a whole */
+    uint32_t support[STANCE_MAX_CONTACTS + 2] = {0}, contacts = 0;
+    double before[STANCE_MAX_COORDINATES], gap[STANCE_MAX_CONTACTS];
+    uint64_t supports = 2; /* none and all */
+    for (int g = 0; g < scene->contacts; g++)
+        if (scene->grip[g] == g) {
+            for (int end = g; end < scene->contacts; end++)
+                support[supports] |= scene->grip[end] == g ? 1u << end : 0;
+            support[1] |= support[supports++];
+        }
+    const enum manner manner = (enum manner)(k / supports % MANNERS);
+    const uint32_t stands = support[k % supports];
+    memcpy(before, c->position, sizeof before);
+    for (int i = 0; i < scene->coordinates; i++) {
+        if (i >= first)
+            c->position[i] += spread(k, i, 0.3);
+        c->velocity[i] = manner == AT_REST ? 0 : spread(k + 7, i, 1);
+    }
+    if (beyond_stop(c, scene))
+        memcpy(c->position, before, sizeof before);
+    if (free && stands)
+        scene->stand(scene, c->robot, stands, c->position, c->velocity);
+    if (free && manner == SLIDING)
+        c->velocity[0] += k % 2 ? 0.5 : -0.5;
+    if (free && manner == LANDING)
+        c->position[1] += 2e-3, c->velocity[1] -= 0.5;
+    scene->gaps(scene, c->robot, c->position, gap);
+    for (int end = 0; end < scene->contacts; end++) {
+        bool above = true; /* with what shares its friction */
+        for (int other = 0; other < scene->contacts && scene->grip[end] >= 0; other++)
+            above &= gap[other] >= -1e-12 || scene->grip[other] != scene->grip[end];
+        contacts |= above ? 1u << end : 0;
+    }
+    c->contacts = contacts;
+    c->settle = false;
+    if (k % 3 == 1)
+        c->friction = k % 2 ? 0.2 : 1.5;
+    if (k % 5 == 2)
+        c->restitution = 0.4, c->impacts = (stance_impacts)(k % 3);
+}
+
+/* Some cases of the plan, evenly spread, for a moment each, and as many disturbed ones for each:
+ * check[CHECKS]. *steps: about as many as all cases have. */
 static size_t list_checks(const struct plan *plan, stance_case *check, double *steps)
 {
-    const uint64_t tried = plan->rows < CHECKS ? plan->rows : CHECKS;
+    const uint64_t tried = plan->rows < OWN_CHECKS ? plan->rows : OWN_CHECKS;
     size_t count = 0;
     *steps = 0;
     for (uint64_t i = 0; i < tried; i++) {
         int method;
-        const uint64_t row = tried == plan->rows ? i : (uint64_t)((double)plan->rows * i / CHECKS);
+        const uint64_t row =
+            tried == plan->rows ? i : (uint64_t)((double)plan->rows * i / OWN_CHECKS);
         if (plan->design_status[plan_design(plan, plan_case(plan, row))] != STANCE_DONE ||
             !plan_resolve(plan, row, &check[count], &method))
             continue;
@@ -68,6 +147,10 @@ static size_t list_checks(const struct plan *plan, stance_case *check, double *s
         if (check[count].steps > CHECK_STEPS)
             check[count].steps = CHECK_STEPS;
         count++;
+    }
+    for (size_t own = count; own > 0 && count < CHECKS; count++) {
+        check[count] = check[(count - own) % own];
+        disturb(plan->scenario->scene, count - own, &check[count]);
     }
     return count;
 }
@@ -97,10 +180,12 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
     stance_case *const check = calloc(CHECKS, sizeof *check);
     if (!check)
         abort(); /* the others wait */
-    double steps = INFINITY;
-    const size_t checks = parallel->rank == 0 ? list_checks(plan, check, &steps) : 0;
+    double steps;
+    size_t checks = list_checks(plan, check, &steps);
     const size_t count = list_methods(plan, choice, wanted);
     bool brief = !choice && steps <= brief_steps;
+    if (brief) /* a small part of the work */
+        checks = (size_t)fmin((double)checks, fmax(FEW_CHECKS, steps / (16 * CHECK_STEPS)));
     for (size_t k = 0; k < count; k++)
         brief &= wanted[k].reference != NULL;
     stance_tree_text(scene->tree, scenario_law(base)->servos || scenario_far(base)->servos, tables);

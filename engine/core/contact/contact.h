@@ -81,15 +81,13 @@ HOT contact_set contact_with(int c)
 {
     return 1u << c | (contact_grip(c) >= 0 ? 1u << contact_grip(c) : 0);
 }
-/* The sets of contacts that code is compiled for, X(name, whether there is such a one, set): none,
- * all, each grip's alone. What is known when it runs only is not compiled for. */
+/* The sets of contacts that have steps of their own, X(name, whether there is such a one, set):
+ * none, all on the ground, each grip's alone. They are part of the method, and the same where the
+ * structure is read at run time: a step is tried for them alone. */
 #define CONTACT_ON_GROUND (CONTACT_ALL & ~contact_leaning(-1))
 #define CONTACT_SET_OF(X, c)                                                                       \
     X(grip##c, (c) < SCENE_CONTACTS && contact_grip((c) % CONTACTS) == (c),                        \
       contact_ends((c) % CONTACTS))
-#ifdef TREE_RUNTIME
-#define CONTACT_SETS(X) X(apart, true, 0) X(all, SCENE_CONTACTS > 1, CONTACT_ON_GROUND)
-#else
 #define CONTACT_SETS(X)                                                                            \
     X(apart, true, 0)                                                                              \
     X(all, SCENE_CONTACTS > 1, CONTACT_ON_GROUND)                                                  \
@@ -105,7 +103,7 @@ HOT contact_set contact_with(int c)
     CONTACT_SET_OF(X, 9)                                                                           \
     CONTACT_SET_OF(X, 10)                                                                          \
     CONTACT_SET_OF(X, 11)
-#endif
+_Static_assert(SCENE_CONTACTS <= 12, "each grip has its set");
 /* Impulse normal to the ground that grip g may lean on, of impulses r[c][normal, tangential]. */
 HOT lanes contact_load(int g, const lanes (*r)[2])
 {

@@ -48,6 +48,12 @@ enum { LANES = STANCE_LANES };
 #else
 #define COLD static __attribute__((noinline, noclone))
 #endif
+/* Functions of a set of contacts: compiled anew for each that is a constant. */
+#ifdef TREE_RUNTIME
+#define PER_SET COLD
+#else
+#define PER_SET HOT
+#endif
 
 /* for (int i = from; i < to; i++), unrolled so early that arrays of the bodies live in registers,
  * and that what is structure folds. Not where there are very many contacts, nor where the structure

@@ -92,7 +92,7 @@ HOT void stream_follow(struct bundle *b, bool all, mask ok, mask failed, bool or
 
 #ifdef ADVANCE_ORDINARY
 /* One step of all lanes, if it is ordinary in all; false: nothing has happened. */
-HOT bool stream_ordinary(struct bundle *b, bool coupled, contact_set touching)
+PER_SET bool stream_ordinary(struct bundle *b, bool coupled, contact_set touching)
 {
     struct step_report report;
     if (!advance_ordinary(&b->advance, &b->set, b->torque, coupled, b->h, b->live, touching,
