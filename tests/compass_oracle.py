@@ -11,7 +11,8 @@ hip. The foot that stands rolls:
 Swing: Lagrange's equations from these points' Jacobians, by Dormand and Prince's formula of order 8 to
 1e-13. It ends where both centres are level again with the swing foot ahead, t1 + t2 = 0 < t2. Impact:
 plastic, without slip, in the coordinates of hip and both angles; the other foot leaves. The fixed point
-of the map from step to step by Newton's iteration, its derivative by central differences.
+of the map from step to step by Newton's iteration, its derivative by central differences of order 6: steps
+are good to 1e-14 or so, the differences to 1e-10.
 
 Compared with `stance run` of the same walker (ground.lands: ahead), begun on the cycle after a part of
 the step: the state a period later; the derivative of that state by the one it begins with, whose
@@ -88,8 +89,9 @@ class Walker:
         assert end[1] > 0 and leaves > 0
         return after[[0, 2, 3]], seconds
 
-    def derivative(self, x, h=1e-6):
-        return np.array([(self.step(x + h * e)[0] - self.step(x - h * e)[0]) / (2 * h) for e in np.eye(3)]).T
+    def derivative(self, x, h=2e-4):
+        return np.array([sum(c / h * (self.step(x + k * h * e)[0] - self.step(x - k * h * e)[0])
+                             for k, c in ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))) for e in np.eye(3)]).T
 
     def cycle(self, x):
         for _ in range(30):
