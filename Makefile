@@ -170,8 +170,9 @@ $(BUILD)/revision: FORCE
 -include $(shell find $(BUILD) -name '*.d' -type f 2>/dev/null)
 
 # ---- tests ---------------------------------------------------------------------------------------
-# Without MuJoCo what compares with it is skipped.
-MUJOCO := $(wildcard /usr/include/mujoco/mujoco.h)
+# Other simulators, where they are installed when make begins: nothing else asks. Without them what compares
+# with them is skipped.
+MUJOCO  := $(if $(wildcard /usr/include/mujoco/mujoco.h),-lmujoco)
 SICONOS := $(patsubst %/SiconosConfig.h,%,$(wildcard /usr/include/siconos/SiconosConfig.h))
 test_sources  := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
@@ -288,16 +289,20 @@ web: packages packages-web
 	    $(MPI_ENVIRONMENT) mpirun -n $(CORES) $(PROGRAM) run --quiet --force scenarios/$$s.yaml -o $(GALLERY_DIRECTORY)/$$(basename $$s).h5 || exit 1; done
 	@echo "Studies to click through:"; $(PROGRAM) view $(patsubst %,$(GALLERY_DIRECTORY)/%.h5,$(notdir $(GALLERY))) -o $(GALLERY_DIRECTORY)
 
-# Models of ours in MuJoCo.
-$(BUILD)/tests/test_export: LIBS += $(MUJOCO:%=-lmujoco)
+# Models of ours in MuJoCo; made anew when it comes or goes.
+$(BUILD)/tests/test_export: LIBS += $(MUJOCO)
+$(BUILD)/tests/test_export: EXTRA = $(MUJOCO:%=-DSTANCE_MUJOCO)
+$(BUILD)/tests/test_export: $(BUILD)/simulators
+$(BUILD)/simulators: FORCE
+	@mkdir -p $(@D); echo '$(MUJOCO)' | cmp -s - $@ || echo '$(MUJOCO)' > $@
 
 # ---- benchmarks: what the kernels are held to -----------------------------------------------------
 bench_programs = $(BUILD)/tests/bench_scalar $(BUILD)/tests/bench_tables $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit)
-$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit: LIBS += -lmujoco
+$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit: LIBS += $(MUJOCO)
 # Of other simulators; they need nothing of ours but headers.
 $(BUILD)/tests/peer_mujoco: tests/peer_mujoco.c Makefile
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $< $(LDFLAGS) -lmujoco -lm
+	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $< $(LDFLAGS) $(MUJOCO) -lm
 $(BUILD)/tests/peer_siconos: tests/peer_siconos.cpp tests/peer.h
 	@mkdir -p $(@D)
 	$(call QUIET,c++,$@)$(CXX) -std=c++17 -O2 -I. $(patsubst %,-isystem $(SICONOS)%,/ /kernel /numerics) -o $@ $< $(LDFLAGS) \

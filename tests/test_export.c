@@ -11,7 +11,7 @@
 #include "runner/plan/mjcf.h"
 #include "runner/plan/plan.h"
 
-#if __has_include(<mujoco/mujoco.h>)
+#ifdef STANCE_MUJOCO
 #include "mujoco_model.h"
 
 enum { STATES = 200, STATES_RABBIT = 2000 };
