@@ -1,9 +1,12 @@
 /* sandbox.c - one child process per command that reads a results file. */
 #include "sandbox.h"
 #include "command.h"
+#include "progress.h"
+#include "units.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
@@ -15,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST_SECONDS = 10 };
+enum { MOST_SECONDS = 10, FIRST_SECONDS = 3, WORDS = 320 };
 
 void sandbox_limit(bool begin)
 {
@@ -45,7 +48,9 @@ static bool is_crash(int number)
 static void work_and_exit(int (*work)(void *context), void *context, int messages, pid_t parent)
 {
     const struct rlimit none = {0, 0};
-    prctl(PR_SET_PDEATHSIG, SIGKILL); /* no work goes on without the command */
+    /* No work goes on without the command; nor does a compiler that was started for it, so that
+     * the end is asked for. */
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent)
         _exit(EXIT_IO);
     setrlimit(RLIMIT_CORE, &none);
@@ -74,21 +79,22 @@ static void pass_on(FILE *messages)
     free(line);
 }
 
-/* Waits for the child, the only holder of the other end of `alive`. On a terminal seconds are
- * counted from the third on, so that who waits sees that something goes on; what is printed next
- * stands in their place. */
-static void wait_for(pid_t child, int alive, int *status)
+/* Waits for the child, the only holder of the other end of `alive`. From the third second on these
+ * are counted, with what the child says of its work. */
+static void wait_for(pid_t child, int alive, const char *words, int *status)
 {
-    const bool terminal = alive >= 0 && isatty(STDERR_FILENO) == 1;
     struct pollfd end = {.fd = alive, .events = POLLIN};
-    int seconds = 0;
-    while (terminal && poll(&end, 1, 1000) <= 0)
-        if (++seconds > 2)
-            fprintf(stderr, "%d s\r", seconds);
+    struct progress progress = progress_begin(false);
+    progress.due += FIRST_SECONDS;
+    while (alive >= 0 && poll(&end, 1, 500) <= 0) {
+        const double now = clock_seconds();
+        if (progress_due(&progress, now))
+            progress_say(&progress, "%.0f s%s%.300s", floor(now - progress.from),
+                         words && words[0] ? ": " : "", words ? words : "");
+    }
     while (waitpid(child, status, 0) < 0 && errno == EINTR) {
     }
-    if (seconds > 2)
-        fputs("\033[K", stderr);
+    progress_end(&progress);
 }
 
 int sandbox(int (*work)(void *context), void *context, const char *files)
@@ -97,14 +103,20 @@ int sandbox(int (*work)(void *context), void *context, const char *files)
     int status = 0, descriptor = memfd_create("messages", MFD_CLOEXEC);
     FILE *messages = descriptor < 0 ? NULL : fdopen(descriptor, "r");
     pid_t parent = getpid();
+    char *const words =
+        mmap(NULL, WORDS, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    const bool told = words != MAP_FAILED;
 
     fflush(stdout);
     fflush(stderr);
     if (pipe2(alive, O_CLOEXEC) != 0)
         alive[0] = alive[1] = -1;
     pid_t child = fork();
-    if (child == 0)
+    if (child == 0) {
+        if (told)
+            progress_redirect(words, WORDS);
         work_and_exit(work, context, messages ? descriptor : -1, parent);
+    }
     if (child < 0) {
         fprintf(stderr, "stance: no process can be started: %s\n", strerror(errno));
         status = EXIT_IO;
@@ -112,7 +124,9 @@ int sandbox(int (*work)(void *context), void *context, const char *files)
     if (alive[1] >= 0)
         close(alive[1]);
     if (child > 0)
-        wait_for(child, alive[0], &status);
+        wait_for(child, alive[0], told ? words : NULL, &status);
+    if (told)
+        munmap(words, WORDS);
     if (alive[0] >= 0)
         close(alive[0]);
     bool crashed = child > 0 && WIFSIGNALED(status) && is_crash(WTERMSIG(status));

@@ -11,7 +11,8 @@
 /* Runs work(context), which returns an exit code, in a child process, and returns that code. A
  * child that crashes gives exit code EXIT_IO and the one line "FILES: damaged: ..."; `files` names
  * what it reads. What it writes to standard error comes out when it ends, line by line where
- * sandbox_own_line; on a terminal seconds are counted there until then. */
+ * sandbox_own_line; until then seconds are counted there, with what the child tells of its work
+ * (progress.h). */
 int sandbox(int (*work)(void *context), void *context, const char *files);
 
 /* Begins and ends a part that takes a few seconds of computing at the most; a supervised process

@@ -27,7 +27,6 @@
 extern const struct command command_optimise; /* below */
 
 #define SAVE_INTERVAL 1.0 /* s */
-static const double progress_terminal = 0.5, progress_elsewhere = 60;
 static const double most_undecided = 1e-3;
 
 struct options {
@@ -51,8 +50,8 @@ struct optimise {
     struct search search;
     bool made;
     double start, before; /* of clock_seconds(); s that earlier parts of the search took */
-    double save_at, show_at;
-    bool terminal;
+    double save_at;
+    struct progress progress;
     char doing[40];
     stance_message message;
     int code; /* of this rank's failure */
@@ -302,23 +301,21 @@ static void describe_work(struct optimise *o, char *text, size_t size)
     else if (g == 0)
         snprintf(text, size, "first generation");
     else
-        snprintf(text, size, "generation %zu of %zu, best %.4g", g + 1, o->search.generations,
-                 f->objective[f->best[g - 1]]);
+        snprintf(text, size, "generation %zu of at most %zu, best %.4g", g + 1,
+                 o->search.generations, f->objective[f->best[g - 1]]);
 }
 
 static void show_progress(struct optimise *o, double now)
 {
-    if (o->options.quiet || now < o->show_at)
+    if (!progress_due(&o->progress, now))
         return;
-    char text[80], left[32] = "?";
+    char text[80], time[32], left[64] = "";
+    const double seconds = outlook_left(&o->search.outlook);
     describe_work(o, text, sizeof text);
-    const double part = (double)o->search.trials.cases / scenario_search_cases(o->first);
-    if (part > 0.01 && part < 1)
-        text_of_seconds(left, sizeof left, (now - o->start) * (1 - part) / part);
-    fprintf(stderr, "%s%s; about %s left%s", o->terminal ? "\r" : "", text, left,
-            o->terminal ? "\033[K" : "\n");
-    fflush(stderr);
-    o->show_at = now + (o->terminal ? progress_terminal : progress_elsewhere);
+    text_of_seconds(time, sizeof time, seconds);
+    if (seconds >= 0)
+        snprintf(left, sizeof left, "; at most about %s left", time);
+    progress_say(&o->progress, "%s%s", text, left);
 }
 
 /* Rank 0, about every millisecond. */
@@ -329,6 +326,7 @@ static bool attend(void *context, double now)
     if (now >= o->heartbeat.due) {
         describe_work(o, o->doing, sizeof o->doing);
         o->heartbeat.doing = o->doing;
+        o->heartbeat.left = outlook_left(&o->search.outlook);
         if (!heartbeat_beat(&o->heartbeat, now, candidates, candidates, 0, &o->message))
             return !fail(o, EXIT_IO);
     }
@@ -370,8 +368,7 @@ static bool stage_make(struct optimise *o)
     o->search.save = save;
     o->search.context = o;
     o->before = o->search.record.seconds;
-    o->terminal = isatty(STDERR_FILENO) == 1;
-    o->show_at = o->start + (o->terminal ? progress_terminal : progress_elsewhere);
+    o->progress = progress_begin(o->options.quiet);
     if (o->parallel.rank == 0 &&
         o->first->search.candidates < (uint64_t)search_lambda(&o->search)) {
         char line[120];
@@ -388,8 +385,7 @@ static bool stage_make(struct optimise *o)
 static bool stage_search(struct optimise *o)
 {
     const enum trials_end end = search_run(&o->search, &o->message);
-    if (o->terminal && !o->options.quiet && o->parallel.rank == 0)
-        fputs("\r\033[K", stderr);
+    progress_end(&o->progress);
     if (o->code != EXIT_DONE) /* the file is not ours any more */
         return false;
     if (end == TRIALS_BROKEN)

@@ -238,6 +238,35 @@ static void blank(double *value, size_t n)
         value[i] = NAN;
 }
 
+/* What will be simulated at most once all generations are through. */
+static double cases_at_end(const struct search *search)
+{
+    const struct scenario *const s = search->scenario;
+    double elsewhere = 0;
+    for (int e = 0; e < ELSEWHERE_MOST; e++)
+        elsewhere += elsewhere_exists(s, (enum elsewhere)e) ? 1 : 0;
+    const double confirmed = 1 + 2.0 * s->search.stages * (s->search.restarts + 1);
+    return confirmed * (double)search->trials.circumstances * (double)s->search.confirm +
+           elsewhere * COMPARED * (double)elsewhere_starts(s);
+}
+
+/* Cases of a stage's generations. */
+static double cases_of_stage(const struct search *search, int restart, int stage)
+{
+    return (double)stage_generations(search, restart, stage) * lambda_of(search, restart) *
+           (double)search->trials.circumstances * (double)search->scenario->search.grow[stage];
+}
+
+/* Cases that are planned from a stage on, that one not counted. */
+static double cases_behind(const struct search *search, int restart, int stage)
+{
+    double cases = cases_at_end(search);
+    for (int r = restart; r <= search->scenario->search.restarts; r++)
+        for (int k = r == restart ? stage + 1 : 0; k < search->scenario->search.stages; k++)
+            cases += cases_of_stage(search, r, k);
+    return cases;
+}
+
 /* Rank 0: tries value[candidates][paths]. */
 static enum trials_end try_all(struct search *search, size_t candidates, const double *coordinate,
                                double *value, enum trials_starts which, uint64_t starts,
@@ -249,7 +278,13 @@ static enum trials_end try_all(struct search *search, size_t candidates, const d
         value[i] = space_value(&search->space, (int)(i % n), coordinate[i]);
     parallel_broadcast(search->parallel, &order, sizeof order);
     parallel_broadcast(search->parallel, value, candidates * n * sizeof *value);
-    return trials_run(&search->trials, candidates, value, which, starts, message);
+    const struct trials *const t = &search->trials;
+    const double before = (double)t->cases, compiling = t->compiling;
+    outlook_begin(&search->outlook, (double)candidates * (double)t->circumstances * (double)starts);
+    const enum trials_end end =
+        trials_run(&search->trials, candidates, value, which, starts, message);
+    outlook_end(&search->outlook, (double)t->cases - before, t->compiling - compiling);
+    return end;
 }
 
 /* Other ranks: do as they are told until it is over. */
@@ -499,7 +534,10 @@ static enum trials_end run_stage(struct search *search, struct course *at, const
     at->best = -1;
     at->stale = 0;
     *why = "as many candidates as were asked for";
+    const double of_stage = cases_of_stage(search, at->restart, at->stage),
+                 behind = cases_behind(search, at->restart, at->stage);
     for (size_t i = 0; i < most && !over; i++) {
+        search->outlook.ahead = behind + of_stage * (double)(most - i) / (double)most;
         if (at->generation >= at->known) {
             const enum trials_end end = try_generation(search, at, message);
             if (end != TRIALS_DONE)
@@ -551,6 +589,7 @@ static enum trials_end confirm(struct search *search, stance_message *message)
     struct search_file *const f = &search->record;
     const uint64_t starts = search->scenario->search.confirm;
     search->confirming = true;
+    search->outlook.ahead = cases_at_end(search);
     const size_t k = f->length[SEARCH_CONFIRMED], n = (size_t)search->space.n;
     const size_t circumstances = search->trials.circumstances;
     double *const coordinate = malloc(k * n * sizeof *coordinate);
@@ -608,6 +647,7 @@ static enum trials_end try_elsewhere(struct search *search, stance_message *mess
             continue;
         parallel_broadcast(search->parallel, &order, sizeof order);
         parallel_broadcast(search->parallel, value, COMPARED * n * sizeof *value);
+        outlook_begin(&search->outlook, (double)(COMPARED * elsewhere_starts(search->scenario)));
         end = elsewhere_run(search->scenario, &search->trials, (enum elsewhere)e, COMPARED, value,
                             share, message);
         const size_t k = f->length[SEARCH_ELSEWHERE];

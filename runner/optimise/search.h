@@ -10,6 +10,7 @@
 #ifndef STANCE_OPTIMISE_SEARCH_H
 #define STANCE_OPTIMISE_SEARCH_H
 
+#include "outlook.h"
 #include "space.h"
 #include "trials.h"
 
@@ -28,6 +29,7 @@ struct search {
     size_t generations; /* most that there can be */
     size_t candidates;
     bool confirming; /* fresh starts are being tried */
+    struct outlook outlook;
     /* After each generation and (`last`) at the end, may be NULL: false, and *message says why. */
     bool (*save)(void *context, bool last, stance_message *message);
     void *context;

@@ -369,8 +369,10 @@ static bool take_kernels(struct trials *t, const struct plan *plan, stance_messa
     if (t->has_kernels)
         return true;
     const struct kernels_choice all = {NULL, NULL, 0, 0};
+    const double begin = clock_seconds();
     t->has_kernels =
         kernels_take(&t->kernels, plan, &all, t->parallel, t->quiet, message) == EXIT_DONE;
+    t->compiling += clock_seconds() - begin;
     return t->has_kernels;
 }
 

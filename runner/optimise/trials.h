@@ -39,7 +39,8 @@ struct trials {
     uint8_t *label;
     int64_t *worth; /* sum over stabilised starts of weight times value, in TRIALS_WORTH */
     struct trials_loop *loop;
-    uint64_t cases; /* simulated so far, by all ranks */
+    uint64_t cases;   /* simulated so far, by all ranks */
+    double compiling; /* s, that the kernels took */
     /* Told about every millisecond, on rank 0: true, to stop. */
     bool (*attend)(void *context, double now);
     void *context;

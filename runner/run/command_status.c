@@ -55,17 +55,11 @@ static void read_origin(const char *file, struct state *state)
     free(s);
 }
 
-/* By the cases that its generations have taken, of those that it may take. */
 static bool read_search(const char *file, struct state *state, stance_message *message)
 {
-    struct search_file *const f = &state->search;
-    double cases = 0;
-    state->searches = search_file_read(f, file, message);
-    for (size_t g = 0; state->searches && g < f->length[SEARCH_GENERATION]; g++)
-        cases += (double)(f->candidates[g] - (g > 0 ? f->candidates[g - 1] : 0)) *
-                 (double)f->starts[g] * (double)f->length[SEARCH_CIRCUMSTANCE];
-    if (state->searches && state->note.running && cases > 0 && cases < f->most_cases)
-        state->left = f->seconds * (f->most_cases - cases) / cases;
+    state->searches = search_file_read(&state->search, file, message);
+    if (state->searches && state->note.running)
+        state->left = state->note.left;
     return state->searches;
 }
 

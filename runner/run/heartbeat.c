@@ -7,6 +7,7 @@
 #include "runner/ranks/deadline.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,11 +87,11 @@ static void write_note(const struct heartbeat *heartbeat, uint64_t computed, int
     const double now = wall_clock();
     parallel_host(host, sizeof host);
     json_t *note =
-        json_pack("{s:s, s:i, s:s, s:f, s:f, s:i, s:i, s:i, s:I, s:I, s:f}", "host", host, "pid",
-                  (int)getpid(), "doing", heartbeat->doing, "start", heartbeat->start, "time", now,
-                  "ranks", heartbeat->parallel->size, "alive", heartbeat->alive, "round", round,
-                  "kept", (json_int_t)heartbeat->kept, "computed", (json_int_t)computed, "rate",
-                  recent_rate(heartbeat));
+        json_pack("{s:s, s:i, s:s, s:f, s:f, s:i, s:i, s:i, s:I, s:I, s:f, s:f}", "host", host,
+                  "pid", (int)getpid(), "doing", heartbeat->doing, "start", heartbeat->start,
+                  "time", now, "ranks", heartbeat->parallel->size, "alive", heartbeat->alive,
+                  "round", round, "kept", (json_int_t)heartbeat->kept, "computed",
+                  (json_int_t)computed, "rate", recent_rate(heartbeat), "left", heartbeat->left);
     char *text = note ? json_dumps(note, JSON_COMPACT | JSON_REAL_PRECISION(15)) : NULL;
     if (text)
         lock_write_note(heartbeat->lock, text);
@@ -103,7 +104,7 @@ bool heartbeat_begin(struct heartbeat *heartbeat, struct lock *lock,
 {
     const size_t ranks = (size_t)parallel->size;
     const double now = clock_seconds();
-    *heartbeat = (struct heartbeat){.lock = lock, .parallel = parallel, .doing = doing};
+    *heartbeat = (struct heartbeat){.lock = lock, .parallel = parallel, .doing = doing, .left = -1};
     heartbeat->start = wall_clock();
     heartbeat->alive = parallel->size;
     heartbeat->beat = calloc(ranks, sizeof *heartbeat->beat);
@@ -180,16 +181,18 @@ static void take_note(struct heartbeat_note *note, const char *text)
     json_int_t kept, computed;
     json_t *root = json_loads(text, JSON_DISABLE_EOF_CHECK, NULL);
     note->exists =
-        root && json_unpack(root, "{s:s, s:s, s:F, s:F, s:i, s:i, s:i, s:I, s:I, s:F}", "host",
-                            &host, "doing", &doing, "start", &start, "time", &time, "ranks",
-                            &note->ranks, "alive", &note->alive, "round", &note->round, "kept",
-                            &kept, "computed", &computed, "rate", &note->rate) == 0;
+        root &&
+        json_unpack(root, "{s:s, s:s, s:F, s:F, s:i, s:i, s:i, s:I, s:I, s:F, s?F}", "host", &host,
+                    "doing", &doing, "start", &start, "time", &time, "ranks", &note->ranks, "alive",
+                    &note->alive, "round", &note->round, "kept", &kept, "computed", &computed,
+                    "rate", &note->rate, "left", &note->left) == 0;
     if (note->exists) {
         copy_word(note->host, sizeof note->host, host);
         copy_word(note->doing, sizeof note->doing, doing);
         note->age = wall_clock() - time;
         note->age = note->age > 0 ? note->age : 0;
         note->spent = time - start;
+        note->left = note->left >= 0 ? fmax(0, note->left - note->age) : -1;
         note->kept = (uint64_t)kept;
         note->computed = (uint64_t)computed;
     }
@@ -199,7 +202,7 @@ static void take_note(struct heartbeat_note *note, const char *text)
 void heartbeat_read(const char *file, struct heartbeat_note *note)
 {
     char text[LOCK_NOTE], host[80];
-    *note = (struct heartbeat_note){.rate = -1};
+    *note = (struct heartbeat_note){.rate = -1, .left = -1};
     note->running = note->here = lock_is_held(file, text);
     take_note(note, text);
     parallel_host(host, sizeof host);

@@ -31,6 +31,7 @@ struct heartbeat {
     const char *doing; /* the job, in a word or two */
     double start;      /* s since 1970 */
     double due;        /* when to write next, of clock_seconds() */
+    double left;       /* s until the end, where the job knows better than by its rate; negative */
     uint64_t kept;     /* cases that were finished when the job began */
     char file[1024];   /* "": not there yet */
     dev_t device;      /* of that file */
@@ -73,6 +74,7 @@ struct heartbeat_note {
     double age;        /* s since the last sign of life */
     double spent;      /* s from the job's start to that */
     double rate;       /* computed cases per second of late; negative: not known yet */
+    double left;       /* s from now on, as the job reckons; negative: it does not */
     uint64_t kept;     /* cases that were finished when the job began */
     uint64_t computed; /* by this job */
     int ranks, alive, round;

@@ -30,7 +30,6 @@ enum {
     MAX_METHODS = 32,
     BLOCKS_OF_METHODS = 16, /* open at once where methods are swept */
 };
-static const double progress_terminal = 0.5, progress_elsewhere = 60;
 
 static volatile sig_atomic_t stop_asked;
 
@@ -87,11 +86,6 @@ struct task {
     struct task *next, *next_idle;
 };
 
-struct progress {
-    bool terminal;
-    double start;
-};
-
 /* All that the callbacks of a stream know. */
 struct job {
     struct work *work;
@@ -114,7 +108,7 @@ struct job {
     bool told;                      /* ... and the others know that we are to stop */
     bool lost;                      /* the file or its lock is; *message says why */
     stance_message *message;
-    struct progress progress;
+    double start; /* of clock_seconds() */
 };
 
 /* No more, with the reason in *job->message. */
@@ -494,22 +488,18 @@ static bool next_case(void *context, const stance_case **input, stance_result **
 static void show_progress(struct job *job, double now)
 {
     struct work *work = job->work;
-    const struct progress *progress = &job->progress;
-    if (work->quiet || work->parallel->rank != 0 || now < work->progress_due)
+    if (work->parallel->rank != 0 || !progress_due(&work->progress, now))
         return;
     char left[32] = "?", round[32] = "";
     uint64_t finished = (uint64_t)parallel_add(work->parallel, COUNTER_DONE, 0);
     uint64_t kept = (uint64_t)parallel_add(work->parallel, COUNTER_KEPT, 0);
-    double rate = (double)(finished - kept) / (now - progress->start);
+    double rate = (double)(finished - kept) / (now - job->start);
     if (rate > 0)
         text_of_seconds(left, sizeof left, (double)(job->schedule.rows.count - finished) / rate);
     if (work->round > 0)
         snprintf(round, sizeof round, "round %d: ", work->round);
-    fprintf(stderr, "%s%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left%s",
-            progress->terminal ? "\r" : "", round, finished, job->schedule.rows.count, rate, left,
-            progress->terminal ? "\033[K" : "\n");
-    fflush(stderr);
-    work->progress_due = now + (progress->terminal ? progress_terminal : progress_elsewhere);
+    progress_say(&work->progress, "%s%" PRIu64 " of %" PRIu64 " cases, %.0f cases/s, %s left",
+                 round, finished, job->schedule.rows.count, rate, left);
 }
 
 /* Tells the counters what has ended. */
@@ -672,15 +662,13 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
         .label = label,
         .message = message,
         .capacity = schedule_block_rows(store_row_size(work->store)),
-        .progress = {.terminal = isatty(STDERR_FILENO) == 1, .start = start},
+        .start = start,
     };
     uint64_t first, largest;
     if (schedule_chunk(job.schedule.rows.count, work->parallel->size, 0, &first, &largest))
         job.capacity = job.capacity < largest ? job.capacity : (size_t)largest;
-    if (work->progress_due <= 0) {
-        work->progress_due =
-            start + (job.progress.terminal ? progress_terminal : progress_elsewhere);
-    }
+    if (work->progress.from <= 0)
+        work->progress = progress_begin(work->quiet);
     for (int m = 0; m < MAX_METHODS && stance_methods()[m]; m++)
         job.kernel[m] = instruction_set_kernel(work->plan->scenario->scene, stance_methods()[m]);
     deadline_rescue(write_open, &job);
@@ -692,8 +680,7 @@ bool work_run(struct work *work, const struct rows *only, uint8_t *label, stance
     report(&job);
     work->seconds += clock_seconds() - start - job.checking;
     meet(&job);
-    if (job.progress.terminal && !work->quiet && work->parallel->rank == 0)
-        fputs("\r\033[K", stderr);
+    progress_end(&work->progress);
     job_free(&job);
     return !job.broken && !job.lost;
 }

@@ -9,6 +9,7 @@
 
 #include "heartbeat.h"
 
+#include "runner/base/progress.h"
 #include "runner/base/units.h"
 #include "runner/plan/plan.h"
 #include "runner/plan/schedule.h"
@@ -25,8 +26,8 @@ struct work {
     double start;                    /* clock_seconds() when the program began */
     double time_limit;               /* s since then, INFINITY: none */
     struct heartbeat *heartbeat;     /* on rank 0, may be NULL: signs of life of the job */
-    int round;           /* of several, counted from 1, for the progress; 0: there is one only */
-    double progress_due; /* when to show it next; 0: not shown yet */
+    int round; /* of several, counted from 1, for the progress; 0: there is one only */
+    struct progress progress; /* all 0: not begun */
 
     /* What came out, for this rank's cases. */
     uint64_t finished; /* cases with an answer in the file, kept ones included */
