@@ -181,7 +181,15 @@ refused() { # name, what is said, what the job is started with
     is "... and nothing kept" test -z "$(others "$STANCE_CACHE")"
 }
 compiler fusing 'exec cc "$@" -ffp-contract=fast'
-refused "a compiler that fuses" 'computes another [a-z_]* in check [0-9]*: refused' CC=./fusing
+CC=./fusing expect "a compiler that fuses: the kernel that is built in computes" 0 "$job" ball lagrange $isa
+says "... with the right bits" 'built in, the same bits'
+says "... and that is said" 'computes another [a-z_]* in check [0-9]*: refused.*kernels that are built in compute instead, more slowly'
+is "... and remembered, nothing else" test "$(others "$STANCE_CACHE")" = "$(ls "$STANCE_CACHE/lagrange-$isa"-*.refused)"
+CC=./fusing expect "... so that the next job does not compile" 0 "$job" ball lagrange $isa
+says "... but says what to do" 'refused.*(known from before; stance build tries again); kernels that are built in compute'
+is "... and not that it compiles" test -z "$(grep compiling log)"
+compiles "... nor does another compiler mind" 0 ball lagrange $isa
+rm -rf "$STANCE_CACHE"
 CC=./fusing expect "... whose results are others indeed" 1 "$job" ball lagrange $isa alone
 rm -rf "$STANCE_CACHE"
 compiler failing 'echo "x.c:1:2: note: before" >&2; echo "x.c:3:4: error: no such thing" >&2; echo "  3 | here" >&2; exit 1'
@@ -222,9 +230,42 @@ expect "what takes less time than compiling" 0 "$stance" run --quiet -o built_in
 is "... is computed without" test -z "$(others "$STANCE_CACHE")"
 expect "... stance build compiles all the same" 0 "$stance" build "$pole"
 expect "... what is kept then computes" 0 "$stance" run --quiet -o kept.h5 "$pole" "${few[@]}"
+isas() { "$python" -c 'import h5py, sys; print(*(h5py.File(f).attrs["instruction_set"].decode() for f in sys.argv[1:]))' "$@"; }
+is "... each file names what computed" test "$(isas built_in.h5 kept.h5)" = "scalar $fastest"
 is "... the same bits, beside cases at the other stop, too" cmp <("$stance" table built_in.h5) <("$stance" table kept.h5)
 
-# ---- kills ----------------------------------------------------------------------------------------
+CC=./failing expect "... whose compiler fails exits 3" 3 "$stance" build "$pole" --isa scalar --method implicit
+says "... and says why" 'failing does not compile implicit for scalar'
+says "... and what computes" 'implicit *scalar *none: the one built in computes'
+STANCE_CACHE=/sys/stance expect "... whose object cannot be kept exits 3" 3 "$stance" build "$pole"
+says "... and says so" 'for this run alone'
+says "... and what computes" 'midpoint .* compiled, but not kept'
+
+# ---- signals, and kills ---------------------------------------------------------------------------
+# A compiler that starts others and does not end.
+compiler slow 'echo $$ >compiling; sleep 1000 & wait'
+stopped() { # name, exit code, whom to tell, command ...
+    local group own
+    CC=$scratch/slow timeout "$patience" "${@:4}" >log 2>&1 &
+    own=$!
+    until [ -s "$(echo "$STANCE_CACHE"/compile-*/compiling)" ]; do sleep 0.1; done
+    group=$(cat "$STANCE_CACHE"/compile-*/compiling)
+    eval "kill -TERM $3"
+    wait $own
+    result $(($? != $2)) "$1: exit code $2"
+    is "... the compiler is gone, and what it started" test -z "$(ps -o pid= -g "$group")"
+    is "... and its directory" test -z "$(others "$STANCE_CACHE")"
+}
+rm -rf "$STANCE_CACHE"
+many=(--set 'sweep.grid[0].count=401' --set 'sweep.grid[1].count=401')
+stopped "a run that is told to stop while it compiles" 4 '$(pgrep -P $own)' "$stance" run --quiet -o stopped.h5 "$pole" "${many[@]}"
+says "... says how to go on" 'stopped while kernels were compiled: nothing is stored; go on with'
+stopped "stance build that is told to stop" 143 '$(pgrep -P $own)' "$stance" build "$pole"
+for rank in 1 2; do
+    stopped "of two ranks rank $((rank - 1)) that is told to stop" 4 '$(pgrep -P $(pgrep -P $own) stance | sed -n ${rank}p)' \
+        mpirun -n 2 "$stance" run --quiet -o stopped.h5 "$pole" "${many[@]}"
+done
+
 compiler slow 'echo $$ >compiling; exec sleep 60'
 rm -rf "$STANCE_CACHE"
 CC=./slow "$job" ball lagrange $isa >/dev/null 2>&1 &

@@ -310,7 +310,7 @@ static int prepare(const struct request *request, const struct scenario *s)
     struct kernels kernels;
     struct plan_error error = {0};
     stance_message message = {""};
-    const struct kernels_choice all = {NULL, NULL, 0, 0};
+    const struct kernels_choice all = {NULL, NULL, 0, 0, false};
     if (!plan_make(&plan, s, false, 0, false, &error))
         return plan_error_print(s, &error);
     plan.patience = PLAN_PATIENCE_DESIGNS;

@@ -3,6 +3,7 @@
 #include "sources.h"
 
 #include "runner/base/message.h"
+#include "runner/base/units.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -19,7 +20,7 @@
 
 static const time_t unused = 90 * 86400, abandoned = 3600; /* s */
 static const off_t largest = 256 << 20;                    /* bytes, of all objects */
-enum { PATIENCE = 120, TURNS = 20 };                       /* s; a second */
+static const double patience = 120;                        /* s, with another job */
 
 void cache_say(const char *format, ...)
 {
@@ -33,8 +34,9 @@ void cache_say(const char *format, ...)
 
 /* ---- the directory ------------------------------------------------------------------------- */
 
-/* Its name; directories that it is to be made in are made. false: there is none to be had. */
-static bool name_directory(char *path, size_t size)
+/* Its name; directories that it is to be made in are made, if anything is. false: there is none to
+ * be had. */
+static bool name_directory(char *path, size_t size, bool make)
 {
     const char *const own = getenv("STANCE_CACHE"), *const caches = getenv("XDG_CACHE_HOME");
     const char *const home = getenv("HOME");
@@ -42,11 +44,12 @@ static bool name_directory(char *path, size_t size)
     if (own && own[0]) {
         n = snprintf(path, size, "%s", own);
     } else if (caches && caches[0] == '/') {
-        mkdir(caches, 0700);
+        if (make)
+            mkdir(caches, 0700);
         n = snprintf(path, size, "%s/stance", caches);
     } else if (home && home[0]) {
         n = snprintf(path, size, "%s/.cache", home);
-        if (n > 0 && (size_t)n < size)
+        if (make && n > 0 && (size_t)n < size)
             mkdir(path, 0700);
         n = snprintf(path, size, "%s/.cache/stance", home);
     }
@@ -62,16 +65,17 @@ static bool trusted(const struct stat *information)
     return information->st_uid == geteuid() && !(information->st_mode & (S_IWGRP | S_IWOTH));
 }
 
-bool cache_open(struct cache *cache, stance_message *message)
+bool cache_open(struct cache *cache, bool looks, stance_message *message)
 {
     struct stat information;
+    cache->looks = looks;
     cache->directory = cache->lock = -1;
     cache->why.text[0] = cache->path[0] = '\0';
-    if (!name_directory(cache->path, sizeof cache->path)) {
+    if (!name_directory(cache->path, sizeof cache->path, !looks)) {
         complain(&cache->why, "no cache: neither STANCE_CACHE nor HOME names a directory");
         return true;
     }
-    const int made = mkdir(cache->path, 0700) == 0 ? 0 : errno;
+    const int made = looks || mkdir(cache->path, 0700) == 0 ? 0 : errno;
     if (lstat(cache->path, &information) == 0 && S_ISLNK(information.st_mode))
         return complain(message,
                         "%.100s: a symbolic link: not used as cache; name the directory "
@@ -124,8 +128,8 @@ static bool read_object(const struct cache *cache, const char *name, struct imag
         *bad = "something else under this name";
     if (*bad)
         image_free(image);
-    else
-        (void)futimens(file, NULL); /* used now: see sweep_objects */
+    else if (!cache->looks)
+        (void)futimens(file, NULL); /* used now: see sweep_object */
     close(file);
     return !*bad;
 }
@@ -137,7 +141,7 @@ static bool take_object(const struct cache *cache, const char *name, struct imag
     *image = (struct image){NULL, 0};
     if (read_object(cache, name, image, &bad))
         return true;
-    if (bad) {
+    if (bad && !cache->looks) {
         (void)unlinkat(cache->directory, name, 0);
         cache_say("%.100s/%s: %s: thrown away", cache->path, name, bad);
     }
@@ -161,10 +165,12 @@ static bool each_name(int directory, bool (*visit)(int directory, const char *na
     return found;
 }
 
-static bool is_object(const char *name)
+static const char of_object[] = ".so", of_refusal[] = ".refused";
+
+static bool ends(const char *name, const char *end)
 {
-    const size_t n = strlen(name);
-    return n > 3 && n < CACHE_NAME && strcmp(name + n - 3, ".so") == 0;
+    const size_t n = strlen(name), m = strlen(end);
+    return n > m && n < CACHE_NAME && strcmp(name + n - m, end) == 0;
 }
 
 struct search {
@@ -176,7 +182,7 @@ static bool try_object(int directory, const char *name, void *context)
 {
     const struct search *const s = context;
     (void)directory;
-    return is_object(name) && strncmp(name, s->stem, strlen(s->stem)) == 0 &&
+    return ends(name, of_object) && strncmp(name, s->stem, strlen(s->stem)) == 0 &&
            take_object(s->cache, name, s->image);
 }
 
@@ -190,18 +196,69 @@ bool cache_find(const struct cache *cache, const char *name, bool stem, struct i
                 : take_object(cache, name, image);
 }
 
-void cache_keep(const struct cache *cache, const struct place *place, const char *name,
+/* Written under another name in a directory of the cache, and renamed. */
+static bool keep_file(const struct cache *cache, int directory, const char *name,
+                      const struct image *image)
+{
+    char sealed[32];
+    uint64_t number;
+    if (getrandom(&number, sizeof number, 0) != (ssize_t)sizeof number)
+        return false;
+    snprintf(sealed, sizeof sealed, "compile-%016" PRIx64, number);
+    if (sources_write_file(directory, sealed, image->bytes, image->size) &&
+        renameat(directory, sealed, cache->directory, name) == 0)
+        return true;
+    const int error = errno;
+    (void)unlinkat(directory, sealed, 0);
+    errno = error;
+    return false;
+}
+
+/* ---- keeping, and what was refused -------------------------------------------------------- */
+
+static void refusal_name(const char *object, char name[CACHE_NAME])
+{
+    snprintf(name, CACHE_NAME, "%.*s%s", (int)(strlen(object) - strlen(of_object)), object,
+             of_refusal);
+}
+
+bool cache_keep(const struct cache *cache, const struct place *place, const char *name,
                 const struct image *image)
 {
-    static const char sealed[] = "sealed";
-    if (!place->kept)
-        return;
-    if (!sources_write_file(place->directory, sealed, image->bytes, image->size) ||
-        renameat(place->directory, sealed, cache->directory, name) != 0) {
+    const bool good = place->kept && keep_file(cache, place->directory, name, image);
+    char refusal[CACHE_NAME];
+    refusal_name(name, refusal);
+    if (good)
+        (void)unlinkat(cache->directory, refusal, 0); /* of another try */
+    else if (place->kept)
         cache_say("%.100s: a compiled kernel cannot be kept there: %s", cache->path,
                   strerror(errno));
-        (void)unlinkat(place->directory, sealed, 0);
-    }
+    return good;
+}
+
+void cache_refuse(const struct cache *cache, const char *object, const struct image_label *label,
+                  const char *why)
+{
+    struct image image = {strdup(why), strlen(why) + 1};
+    char name[CACHE_NAME];
+    refusal_name(object, name);
+    if (cache->directory >= 0)
+        (void)unlinkat(cache->directory, object, 0);
+    if (cache->directory >= 0 && image.bytes && image_seal(&image, label))
+        (void)keep_file(cache, cache->directory, name, &image);
+    image_free(&image);
+}
+
+bool cache_refused(const struct cache *cache, const char *object, stance_message *why)
+{
+    struct image image = {NULL, 0};
+    char name[CACHE_NAME];
+    refusal_name(object, name);
+    if (cache->directory < 0 || !take_object(cache, name, &image))
+        return false;
+    complain(why, "%.180s (known from before; stance build tries again)", image.bytes);
+    image_free(&image);
+    return true;
 }
 
 /* ---- places to compile in ------------------------------------------------------------------ */
@@ -335,7 +392,7 @@ static bool sweep_object(int directory, const char *name, void *context)
 {
     struct sweep *const sweep = context;
     struct stat information;
-    if (!is_object(name))
+    if (!ends(name, of_object) && !ends(name, of_refusal))
         return false;
     if (is_old(directory, name, sweep->age))
         (void)unlinkat(directory, name, 0);
@@ -344,22 +401,25 @@ static bool sweep_object(int directory, const char *name, void *context)
     return false;
 }
 
-void cache_lock(struct cache *cache, uint64_t mechanism)
+bool cache_lock(struct cache *cache, uint64_t mechanism, struct watch *watch)
 {
-    const struct timespec pause = {.tv_nsec = 1000000000 / TURNS};
+    const double begin = clock_seconds();
+    bool said = false;
     if (cache->directory < 0)
-        return;
+        return true;
     cache->lock = openat(cache->directory, "lock", O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
     struct flock range = range_of(mechanism);
-    for (int turn = 0; cache->lock >= 0 && fcntl(cache->lock, F_OFD_SETLK, &range) != 0; turn++) {
+    while (cache->lock >= 0 && fcntl(cache->lock, F_OFD_SETLK, &range) != 0) {
         const bool held = errno == EAGAIN || errno == EACCES;
-        if (turn == 0 && held)
+        if (!said && held)
             cache_say("another job compiles the same; waiting for it");
-        if (!held || turn == PATIENCE * TURNS) {
+        said = true;
+        if (!held || clock_seconds() - begin > patience) {
             cache_say("%.100s: goes on without a lock: %s", cache->path, strerror(errno));
             break;
         }
-        nanosleep(&pause, NULL);
+        if (watch_wait(watch))
+            return false;
     }
     each_name(cache->directory, sweep_place, cache);
     struct sweep sweep = {unused, 0};
@@ -368,6 +428,7 @@ void cache_lock(struct cache *cache, uint64_t mechanism)
         each_name(cache->directory, sweep_object, &sweep);
         sweep.age /= 2;
     } while (sweep.left > largest && sweep.age > 0);
+    return true;
 }
 
 void cache_unlock(struct cache *cache)

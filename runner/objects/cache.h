@@ -3,6 +3,7 @@
  * $STANCE_CACHE, else $XDG_CACHE_HOME/stance, else ~/.cache/stance; made with mode 0700. In it
  *
  *     implicit-avx2-0123...-4567....so   an object with its label (image.h), one for each key
+ *     ....refused                        why that object is none: it computes something else
  *     compile-0123...-89ab...            where a compiler is at work
  *     lock                               bytes of it are locked by those who compile
  *
@@ -16,6 +17,7 @@
 #define STANCE_OBJECTS_CACHE_H
 
 #include "image.h"
+#include "watch.h"
 
 #include "engine/stance.h"
 
@@ -25,11 +27,13 @@ struct cache {
     char path[3000];
     int directory; /* negative: there is none, for the reason in `why` */
     int lock;      /* negative: none */
+    bool looks;    /* nothing is made, touched or thrown away */
     stance_message why;
 };
 
-/* Opens it, or makes it. false: what is there cannot be trusted; the message names the mend. */
-bool cache_open(struct cache *cache, stance_message *message);
+/* Opens it, or (unless it only `looks`) makes it. false: what is there cannot be trusted; the
+ * message names the mend. */
+bool cache_open(struct cache *cache, bool looks, stance_message *message);
 void cache_close(struct cache *cache);
 
 /* The file of an object: NAME-KEY.so, key as in its label. */
@@ -40,8 +44,8 @@ enum { CACHE_NAME = 160 };
 bool cache_find(const struct cache *cache, const char *name, bool stem, struct image *image);
 
 /* Waits, two minutes at most, until no other job compiles for this mechanism (a number that stands
- * for it); then nobody else does until cache_unlock. Sweeps. */
-void cache_lock(struct cache *cache, uint64_t mechanism);
+ * for it); then nobody else does until cache_unlock. Sweeps. false: told to stop meanwhile. */
+bool cache_lock(struct cache *cache, uint64_t mechanism, struct watch *watch);
 void cache_unlock(struct cache *cache);
 
 /* A directory of this process alone. */
@@ -57,9 +61,15 @@ bool cache_place(const struct cache *cache, uint64_t mechanism, size_t room, str
                  stance_message *message);
 void cache_leave(struct place *place);
 
-/* Keeps a sealed image under this name; says so where it cannot. */
-void cache_keep(const struct cache *cache, const struct place *place, const char *name,
+/* Keeps a sealed image under this name. false, said: it cannot. */
+bool cache_keep(const struct cache *cache, const struct place *place, const char *name,
                 const struct image *image);
+
+/* Remembers that the object of this name is refused, and why; and whether it is. Both hold for the
+ * compiler and the sources that are in the name. */
+void cache_refuse(const struct cache *cache, const char *object, const struct image_label *label,
+                  const char *why);
+bool cache_refused(const struct cache *cache, const char *object, stance_message *why);
 
 /* One line for the user on standard error. */
 void cache_say(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -8,6 +8,7 @@
 #include <fcntl.h>
 #include <limits.h>
 #include <sched.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,32 +87,47 @@ static char **environment(void)
 static pid_t start(char *const *argument, int directory, int output)
 {
     posix_spawn_file_actions_t actions;
+    posix_spawnattr_t group; /* of its own, to be ended as a whole */
     pid_t child = -1;
     char **const variables = environment();
     int error = variables ? posix_spawn_file_actions_init(&actions) : ENOMEM;
+    if (error == 0 && (error = posix_spawnattr_init(&group)) != 0)
+        posix_spawn_file_actions_destroy(&actions);
     if (error == 0) {
-        error = posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+        error = posix_spawnattr_setflags(&group, POSIX_SPAWN_SETPGROUP);
+        error = error ? error : posix_spawnattr_setpgroup(&group, 0);
+        error = error ? error
+                      : posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null",
+                                                         O_RDONLY, 0);
         error = error ? error : posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
         error = error ? error : posix_spawn_file_actions_adddup2(&actions, output, STDERR_FILENO);
         if (directory >= 0)
             error = error ? error : posix_spawn_file_actions_addfchdir_np(&actions, directory);
-        error =
-            error ? error : posix_spawnp(&child, argument[0], &actions, NULL, argument, variables);
+        error = error ? error
+                      : posix_spawnp(&child, argument[0], &actions, &group, argument, variables);
         posix_spawn_file_actions_destroy(&actions);
+        posix_spawnattr_destroy(&group);
     }
     free(variables);
     errno = error;
     return error == 0 ? child : -1;
 }
 
-/* Its status as of waitpid, -1 when there is none. */
-static int await(pid_t child)
+/* Its status as of waitpid, -1 when there is none. Where the watch (NULL: nobody) says stop it is
+ * ended. */
+static int await(pid_t child, struct watch *watch)
 {
     int status = -1;
-    while (child > 0 && waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
+    while (child > 0) {
+        const pid_t found = waitpid(child, &status, watch && !watch->stopped ? WNOHANG : 0);
+        if (found == child)
+            return status;
+        if (found < 0 && errno != EINTR)
             return -1;
-    return child > 0 ? status : -1;
+        if (found == 0 && watch_wait(watch))
+            kill(-child, SIGKILL);
+    }
+    return -1;
 }
 
 /* What a program wrote, up to OUTPUT bytes, as text. Closes the file. */
@@ -135,7 +151,7 @@ static bool ask(const struct compiler *compiler, char *option, char text[OUTPUT]
     const int output = memfd_create("compiler", MFD_CLOEXEC);
     if (output < 0)
         return false;
-    const int status = await(start(argument, -1, output));
+    const int status = await(start(argument, -1, output), NULL);
     read_output(output, text);
     return status == 0 && text[0];
 }
@@ -244,10 +260,12 @@ static struct running begin(const struct compiler *compiler, int directory,
 }
 
 static void end(const struct compiler *compiler, int directory, struct running running,
-                struct compilation *c)
+                struct compilation *c, struct watch *watch)
 {
     char name[80], said[OUTPUT] = "";
-    const int status = await(running.child);
+    if (watch->stopped && running.child > 0)
+        kill(-running.child, SIGKILL);
+    const int status = await(running.child, watch);
     if (running.output >= 0)
         read_output(running.output, said);
     object_name(c, name);
@@ -266,17 +284,17 @@ static size_t cores(void)
 }
 
 void compiler_run(const struct compiler *compiler, int directory, struct compilation *wanted,
-                  size_t count)
+                  size_t count, struct watch *watch)
 {
     enum { MANY = 64 };
     struct running running[MANY] = {{.child = -1}};
     const size_t most = cores() < MANY ? cores() : MANY;
-    for (size_t begun = 0, ended = 0; ended < count;) {
-        if (begun < count && begun - ended < most) {
+    for (size_t begun = 0, ended = 0; ended < (watch->stopped ? begun : count);) {
+        if (begun < count && begun - ended < most && !watch->stopped) {
             running[begun % MANY] = begin(compiler, directory, &wanted[begun]);
             begun++;
         } else {
-            end(compiler, directory, running[ended % MANY], &wanted[ended]);
+            end(compiler, directory, running[ended % MANY], &wanted[ended], watch);
             ended++;
         }
     }

@@ -7,6 +7,7 @@
 #define STANCE_OBJECTS_COMPILER_H
 
 #include "image.h"
+#include "watch.h"
 
 #include "engine/stance.h"
 
@@ -40,8 +41,9 @@ struct compilation {
 #define COMPILER_TABLES "tables.h"
 
 /* Compiles in `directory`, which holds the sources and COMPILER_TABLES; as many at a time as this
- * process has cores. */
+ * process has cores. Where it is to stop, all that were started are ended, with what they have
+ * started themselves. */
 void compiler_run(const struct compiler *compiler, int directory, struct compilation *wanted,
-                  size_t count);
+                  size_t count, struct watch *watch);
 
 #endif

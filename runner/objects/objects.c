@@ -34,7 +34,8 @@ struct making {
 struct tidings {
     uint64_t size[OBJECTS_MOST];
     enum object_origin origin[OBJECTS_MOST];
-    bool stop; /* the job, for the reason in `why`, which else says why some are missing */
+    enum exit_code code; /* EXIT_DONE, or the job ends, for the reason in `why`, which else says why
+                            some are missing */
     stance_message why;
 };
 
@@ -93,36 +94,40 @@ static uint64_t number_of(const char *tables)
 
 /* Runs the checks of a fresh image and seals it. What rank 0 does not want is checked by those who
  * do, what is kept by all who take it: it was checked with other numbers. */
-static bool check(const struct objects_request *request, struct making *m, stance_message *message)
+static bool check(const struct objects_request *request, const struct cache *cache,
+                  struct making *m, stance_message *message)
 {
     struct object object = {.kernel = {request->scene, m->method, m->isa, 0, NULL, NULL},
                             .memory = -1};
     snprintf(object.compiler, sizeof object.compiler, "%s", m->label.compiler);
-    const bool good = load_object(&m->image, &object, message) &&
-                      load_check(&object, m->reference, request, message);
+    const bool loads = load_object(&m->image, &object, message),
+               good = loads && load_check(&object, m->reference, request, message);
     objects_release(&object, 1);
     m->label.checked = m->reference && request->checks > 0;
     m->checked = good;
+    if (loads && !good)
+        cache_refuse(cache, m->name, &m->label, message->text);
     return good && (image_seal(&m->image, &m->label) || no_memory(message));
 }
 
-static void tell(const struct making *const *missing, size_t count, const struct compiler *compiler)
+/* "implicit (avx2), midpoint (avx2)" */
+static void list_missing(struct making *const *missing, size_t count, char list[300])
 {
-    char list[300] = "";
     size_t used = 0;
-    for (size_t i = 0; i < count && used < sizeof list; i++)
-        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s (%s)", i ? ", " : "",
+    list[0] = '\0';
+    for (size_t i = 0; i < count && used < 300; i++)
+        used += (size_t)snprintf(list + used, 300 - used, "%s%s (%s)", i ? ", " : "",
                                  missing[i]->method->name, missing[i]->isa);
-    cache_say("compiling %s with %s", list, compiler->version);
 }
 
 /* Compiles those. What cannot be had stays without an image. */
 static void compile(const struct objects_request *request, const struct cache *cache,
                     const struct compiler *compiler, struct making *const *missing, size_t count,
-                    stance_message *why)
+                    struct watch *watch, stance_message *why)
 {
     struct compilation wanted[OBJECTS_MOST];
     struct place place;
+    char list[300], doing[340];
     if (!cache_place(cache, number_of(request->tables), ROOM * count, &place, why))
         return;
     if (!sources_write_file(place.directory, COMPILER_TABLES, request->tables,
@@ -131,45 +136,77 @@ static void compile(const struct objects_request *request, const struct cache *c
         cache_leave(&place);
         return;
     }
+    list_missing(missing, count, list);
+    snprintf(doing, sizeof doing, "compiling %s", list);
     if (!request->quiet)
-        tell((const struct making *const *)missing, count, compiler);
+        cache_say("%s with %s", doing, compiler->version);
+    watch->doing = doing;
     for (size_t i = 0; i < count; i++)
         wanted[i] =
             (struct compilation){.method = missing[i]->method->name, .isa = missing[i]->isa};
-    compiler_run(compiler, place.directory, wanted, count);
+    compiler_run(compiler, place.directory, wanted, count, watch);
     for (size_t i = 0; i < count; i++) {
         struct making *const m = missing[i];
         m->image = wanted[i].image;
-        m->origin = OBJECT_COMPILED;
+        m->origin = OBJECT_UNKEPT;
         if (!m->image.bytes)
             *why = wanted[i].message;
-        else if (check(request, m, why))
-            cache_keep(cache, &place, m->name, &m->image);
+        else if (!watch->stopped && check(request, cache, m, why))
+            m->origin =
+                cache_keep(cache, &place, m->name, &m->image) ? OBJECT_COMPILED : OBJECT_UNKEPT;
         else
             image_free(&m->image);
     }
     cache_leave(&place);
 }
 
-/* Which of them have no image, after a look into the cache. */
-static size_t look(const struct cache *cache, bool stem, struct making *making, size_t count,
-                   struct making **missing)
+/* Which of them have no image and may get one, after a look into the cache. `why`: one is refused,
+ * as is known. */
+static size_t look(const struct objects_request *request, const struct cache *cache, bool stem,
+                   struct making *making, size_t count, struct making **missing,
+                   stance_message *why)
 {
     size_t n = 0;
     for (size_t i = 0; i < count; i++) {
         struct making *const m = &making[i];
         char name[CACHE_NAME];
         snprintf(name, sizeof name, "%.*s", stem ? (int)m->stem : CACHE_NAME, m->name);
-        if (!m->image.bytes && !cache_find(cache, name, stem, &m->image))
+        if (m->image.bytes || cache_find(cache, name, stem, &m->image))
+            continue;
+        if (request->again || !cache_refused(cache, m->name, why))
             missing[n++] = m;
     }
     return n;
 }
 
-/* Finds or makes the objects. false: the job has to stop; `why` says why, or why some are missing.
- */
-static bool make(const struct objects_request *request, struct making *making, size_t count,
-                 stance_message *why)
+/* Compiles what another job has not made meanwhile. */
+static enum exit_code compile_missing(const struct objects_request *request, struct cache *cache,
+                                      const struct compiler *compiler, struct making *making,
+                                      size_t count, stance_message *why)
+{
+    struct making *missing[OBJECTS_MOST];
+    const uint64_t mechanism = number_of(request->tables);
+    struct watch watch = {.stop = request->stop,
+                          .context = request->context,
+                          .doing = "waiting for another job that compiles the same",
+                          .progress = progress_begin(request->quiet)};
+    watch_begin(&watch);
+    if (cache_lock(cache, mechanism, &watch)) {
+        const size_t n = look(request, cache, false, making, count, missing, why);
+        if (n > 0)
+            compile(request, cache, compiler, missing, n, &watch, why);
+    }
+    cache_close(cache);
+    watch_end(&watch);
+    if (watch.stopped)
+        complain(why, "stopped while kernels were compiled");
+    return watch.stopped ? EXIT_INTERRUPTED : EXIT_DONE;
+}
+
+/* Finds or makes the objects. Not EXIT_DONE: the job has to end; `why` says why, or why some are
+ * missing. */
+static enum exit_code make(const struct objects_request *request, struct making *making,
+                           size_t count, stance_message *why)
 {
     struct making *missing[OBJECTS_MOST];
     struct compiler compiler = {.identity = ""};
@@ -177,17 +214,14 @@ static bool make(const struct objects_request *request, struct making *making, s
     const bool compiles = compiler_find(&compiler, why);
     for (size_t i = 0; i < count; i++)
         if (!name_object(&making[i], request->tables, &compiler))
-            return no_memory(why);
-    if (!cache_open(&cache, why))
-        return false;
-    size_t n = look(&cache, !compiles, making, count, missing);
-    if (n > 0 && request->brief) {
-        why->text[0] = '\0';
+            return no_memory(why) ? EXIT_DONE : EXIT_IO;
+    if (!cache_open(&cache, request->looks, why))
+        return request->looks ? EXIT_DONE : EXIT_IO;
+    const size_t n = look(request, &cache, !compiles, making, count, missing, why);
+    if (request->brief || request->looks) {
+        why->text[0] = '\0'; /* nothing is missed */
     } else if (n > 0 && compiles) {
-        cache_lock(&cache, number_of(request->tables));
-        n = look(&cache, false, making, count, missing); /* another job may have made it */
-        if (n > 0)
-            compile(request, &cache, &compiler, missing, n, why);
+        return compile_missing(request, &cache, &compiler, making, count, why);
     } else if (n > 0) {
         const size_t used = strlen(why->text);
         snprintf(why->text + used, sizeof why->text - used,
@@ -195,7 +229,7 @@ static bool make(const struct objects_request *request, struct making *making, s
                  missing[0]->name);
     }
     cache_close(&cache);
-    return true;
+    return EXIT_DONE;
 }
 
 /* ---- all ranks ----------------------------------------------------------------------------- */
@@ -229,10 +263,10 @@ static size_t list_wanted(const struct parallel *ranks, const struct objects_req
 }
 
 /* Rank 0's images reach every rank. Collective; `why` as of make, on every rank. */
-static bool share(const struct parallel *ranks, bool good, struct making *making, size_t count,
-                  stance_message *why)
+static enum exit_code share(const struct parallel *ranks, enum exit_code code,
+                            struct making *making, size_t count, stance_message *why)
 {
-    struct tidings tidings = {.stop = !good, .why = *why};
+    struct tidings tidings = {.code = code, .why = *why};
     bool room = true;
     for (size_t i = 0; i < count; i++) {
         tidings.size[i] = making[i].image.size;
@@ -240,8 +274,8 @@ static bool share(const struct parallel *ranks, bool good, struct making *making
     }
     parallel_broadcast(ranks, &tidings, sizeof tidings);
     *why = tidings.why;
-    if (tidings.stop)
-        return false;
+    if (tidings.code != EXIT_DONE)
+        return tidings.code;
     for (size_t i = 0; i < count && ranks->rank > 0; i++) {
         struct image *const image = &making[i].image;
         making[i].origin = tidings.origin[i];
@@ -251,20 +285,18 @@ static bool share(const struct parallel *ranks, bool good, struct making *making
     if (!room)
         no_memory(why);
     if (!parallel_agree(ranks, room, why->text, sizeof why->text))
-        return false;
+        return EXIT_IO;
     for (size_t i = 0; i < count; i++)
         parallel_broadcast(ranks, making[i].image.bytes, making[i].image.size);
-    return true;
+    return EXIT_DONE;
 }
 
-/* The kernel that this rank wants, from its image; *differs: it computes something else than the
- * reference, and is not taken. */
+/* The kernel that this rank wants, from its image. *refused: it computes something else. */
 static bool take(const struct objects_request *request, const struct making *m,
-                 const stance_kernel *reference, struct object *object, bool *differs,
+                 const stance_kernel *reference, struct object *object, uint8_t *refused,
                  stance_message *message)
 {
     struct image_label label;
-    *differs = false;
     if (!image_label(&m->image, &label))
         return complain(message, "a compiled kernel did not arrive whole");
     object->origin = m->origin;
@@ -272,45 +304,79 @@ static bool take(const struct objects_request *request, const struct making *m,
     memcpy(object->compiler, label.compiler, sizeof object->compiler);
     if (!load_object(&m->image, object, message))
         return false;
-    *differs = !m->checked && !load_check(object, reference, request, message);
-    if (*differs)
-        objects_release(object, 1);
-    return true;
+    *refused |= !m->checked && !load_check(object, reference, request, message);
+    return !*refused;
 }
 
-/* What this rank wants, from what there is; *differs: something of it is not taken, `message` says
- * why. */
+/* The kernel that is built in, in place of an object. */
+static void take_reference(const struct objects_wanted *wanted, bool missing, struct object *object)
+{
+    objects_release(object, 1);
+    object->kernel = *wanted->reference;
+    object->origin = missing ? OBJECT_MISSING : OBJECT_REFERENCE;
+    object->key[0] = object->compiler[0] = '\0';
+}
+
+/* What this rank wants, from what there is. refused[count]: what it must not have. */
 static enum exit_code take_all(const struct objects_request *request, const struct making *making,
-                               size_t count, struct object *object, bool *differs,
+                               size_t count, struct object *object, uint8_t *refused,
                                stance_message *message)
 {
     for (size_t k = 0; k < request->count; k++) {
         const struct objects_wanted *const wanted = &request->wanted[k];
-        const struct making *found = NULL;
-        for (size_t i = 0; i < count; i++)
-            if (making[i].method == wanted->method && strcmp(making[i].isa, wanted->isa) == 0 &&
-                making[i].image.size > 0)
-                found = &making[i];
-        bool refused = false;
-        if (found && !take(request, found, wanted->reference, &object[k], &refused, message))
+        size_t at = 0;
+        while (at < count &&
+               (making[at].method != wanted->method || strcmp(making[at].isa, wanted->isa) != 0))
+            at++;
+        const bool found = at < count && making[at].image.size > 0;
+        if (found &&
+            !take(request, &making[at], wanted->reference, &object[k], &refused[at], message) &&
+            !refused[at])
             return EXIT_IO;
-        *differs |= refused;
         if (!found && !wanted->reference) {
             if (!on_demand(wanted->method)) /* else make has said why */
                 complain(message, "%s is not compiled on demand, and none of this size is built in",
                          wanted->method->name);
             return EXIT_USAGE;
         }
-        if (!found || refused)
-            object[k] = (struct object){
-                .kernel = *wanted->reference, .origin = OBJECT_REFERENCE, .memory = -1};
+        if (!found || refused[at]) /* refused by a reference */
+            take_reference(wanted, at < count, &object[k]);
     }
     return EXIT_DONE;
 }
 
-static void nothing(void *context)
+/* Objects of the cache that a rank refuses are not taken again. Collective: `why` is that of the
+ * first such rank. true: there are any. */
+static bool forget(const struct parallel *ranks, const struct making *making, size_t count,
+                   uint8_t *refused, stance_message *why)
 {
-    (void)context;
+    bool any = false;
+    struct cache cache;
+    stance_message ignored;
+    parallel_largest(ranks, refused, count);
+    for (size_t i = 0; i < count; i++)
+        any |= refused[i] > 0;
+    if (!any || ranks->rank > 0 || !cache_open(&cache, false, &ignored))
+        return any;
+    for (size_t i = 0; i < count; i++) {
+        struct image_label label;
+        char name[CACHE_NAME];
+        if (!refused[i] || !image_label(&making[i].image, &label))
+            continue;
+        snprintf(name, sizeof name, "%s-%s-%s.so", making[i].method->name, making[i].isa,
+                 label.key);
+        cache_refuse(&cache, name, &label, why->text);
+    }
+    cache_close(&cache);
+    return any;
+}
+
+/* The signal to stop may be this rank's own. */
+static void ask_to_stop(void *context)
+{
+    const struct objects_request *const request = context;
+    if (request->stop)
+        request->stop(request->context); /* which tells rank 0 */
 }
 
 const char *objects_isa(size_t index)
@@ -323,26 +389,30 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
 {
     struct making making[OBJECTS_MOST];
     const size_t count = list_wanted(ranks, request, making);
-    uint8_t code = EXIT_IO;
-    bool missing = false, differs = false;
+    bool missing = false;
     for (size_t k = 0; k < request->count; k++)
         object[k] = (struct object){.kernel = {.scene = request->scene,
                                                .method = request->wanted[k].method,
                                                .isa = request->wanted[k].isa},
                                     .memory = -1};
     message->text[0] = '\0';
-    const bool made = ranks->rank > 0 || make(request, making, count, message);
-    parallel_meet(ranks, nothing, NULL); /* until then the cores are the compiler's */
-    if (share(ranks, made, making, count, message)) {
+    const enum exit_code made = ranks->rank > 0 ? EXIT_DONE : make(request, making, count, message);
+    parallel_meet(ranks, ask_to_stop, (void *)(uintptr_t)request); /* till then the cores are the
+                                                                      compiler's */
+    uint8_t code = (uint8_t)share(ranks, made, making, count, message);
+    if (code == EXIT_DONE) {
+        uint8_t refused[OBJECTS_MOST] = {0}, own = 0;
         stance_message why = *message;
-        code = (uint8_t)take_all(request, making, count, object, &differs, message);
-        if (differs)
-            why = *message;
-        parallel_agree(ranks, code == EXIT_DONE, message->text, sizeof message->text);
-        parallel_largest(ranks, &code, 1);
+        code = (uint8_t)take_all(request, making, count, object, refused, message);
         for (size_t i = 0; i < count; i++)
-            missing |= making[i].image.size == 0 && !request->brief;
-        if (code == EXIT_DONE && (missing || differs) && ranks->rank == 0)
+            own |= refused[i];
+        parallel_agree(ranks, code == EXIT_DONE && !own, message->text, sizeof message->text);
+        parallel_largest(ranks, &code, 1);
+        if (code == EXIT_DONE && forget(ranks, making, count, refused, message))
+            why = *message;
+        for (size_t i = 0; i < count; i++)
+            missing |= making[i].image.size == 0 || refused[i];
+        if (code == EXIT_DONE && missing && ranks->rank == 0 && why.text[0] && !request->looks)
             cache_say("%s; kernels that are built in compute instead, more slowly", why.text);
     }
     for (size_t i = 0; i < count; i++)

@@ -7,7 +7,8 @@
  *
  * Trust: the tables are made by the engine and hold nothing but integers; a cache that others can
  * change is refused; a file in it is taken if it is whole (SHA-256) and the user's own. Whatever
- * the compiler, an object computes what the reference computes, to the bit, or is refused.
+ * the compiler, an object computes what the reference computes, to the bit, or is refused; that it
+ * is is remembered.
  *
  * What does not go as planned is said in one line each on standard error, by rank 0.
  */
@@ -42,10 +43,24 @@ struct objects_request {
     /* On rank 0: so little is to be computed that compiling would take longer. What is not kept is
      * then computed by the references. */
     bool brief;
+    bool again; /* on rank 0: what was refused before is compiled again */
+    bool looks; /* on rank 0: nothing is compiled, and the cache stays as it is, too */
+    /* Told several times a second while rank 0 compiles, on every rank: true, to stop. NULL:
+     * signals alone end it, and with it the process. */
+    bool (*stop)(void *context);
+    void *context;
 };
 
-/* Where a kernel comes from. */
-enum object_origin { OBJECT_KEPT, OBJECT_COMPILED, OBJECT_REFERENCE };
+/* Where a kernel comes from: the cache; a compiler, and is in the cache now, or could not be kept
+ * there; or it is the reference, as there is none of this method or of that size, or as none that
+ * computes the same can be had. */
+enum object_origin {
+    OBJECT_KEPT,
+    OBJECT_COMPILED,
+    OBJECT_UNKEPT,
+    OBJECT_REFERENCE,
+    OBJECT_MISSING
+};
 
 struct object {
     stance_kernel kernel;
@@ -63,8 +78,8 @@ const char *objects_isa(size_t index);
 /* Collective: the kernels of a request, object[count]. All ranks give the same tables; what they
  * want of them may differ. A method that is not compiled on demand is its reference.
  * EXIT_DONE: all there. EXIT_USAGE: there is no reference either, and no compiler or one that
- * fails. EXIT_IO: the cache is refused, no memory. Then `message` is the same on every rank, and
- * there is nothing to be released. */
+ * fails. EXIT_IO: the cache is refused, no memory. EXIT_INTERRUPTED: told to stop. Then `message`
+ * is the same on every rank, and there is nothing to be released. */
 enum exit_code objects_take(const struct parallel *ranks, const struct objects_request *request,
                             struct object *object, stance_message *message);
 

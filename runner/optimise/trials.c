@@ -364,16 +364,20 @@ static bool take_room(struct trials *t, size_t pairs, uint64_t starts)
     return t->label && t->worth && t->loop;
 }
 
-static bool take_kernels(struct trials *t, const struct plan *plan, stance_message *message)
+static enum trials_end take_kernels(struct trials *t, const struct plan *plan,
+                                    stance_message *message)
 {
     if (t->has_kernels)
-        return true;
-    const struct kernels_choice all = {NULL, NULL, 0, 0};
+        return TRIALS_DONE;
+    const struct kernels_choice all = {NULL, NULL, 0, 0, false};
     const double begin = clock_seconds();
-    t->has_kernels =
-        kernels_take(&t->kernels, plan, &all, t->parallel, t->quiet, message) == EXIT_DONE;
+    const enum exit_code code =
+        kernels_take(&t->kernels, plan, &all, t->parallel, t->quiet, message);
+    t->has_kernels = code == EXIT_DONE;
     t->compiling += clock_seconds() - begin;
-    return t->has_kernels;
+    return code == EXIT_DONE          ? TRIALS_DONE
+           : code == EXIT_INTERRUPTED ? TRIALS_STOPPED
+                                      : TRIALS_BROKEN;
 }
 
 enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
@@ -410,9 +414,10 @@ enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
     if (end == TRIALS_DONE) {
         good = look_at_loops(t, candidates, starts) ||
                complain(message, "not enough memory for the loops");
-        good = parallel_agree(t->parallel, good, message->text, sizeof message->text) &&
-               take_kernels(t, &plan, message);
-        end = good ? simulate(t, &plan, starts, t->weight[which], message) : TRIALS_BROKEN;
+        good = parallel_agree(t->parallel, good, message->text, sizeof message->text);
+        end = good ? take_kernels(t, &plan, message) : TRIALS_BROKEN;
+        if (end == TRIALS_DONE)
+            end = simulate(t, &plan, starts, t->weight[which], message);
     }
     plan_free(&plan);
     at->axis[0].value = NULL;

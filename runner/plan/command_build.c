@@ -69,11 +69,15 @@ static int take(struct plan *plan, const struct kernels_choice *choice)
     } else {
         static const char *const said[] = {[OBJECT_KEPT] = "in the cache",
                                            [OBJECT_COMPILED] = "compiled",
-                                           [OBJECT_REFERENCE] = "built in"};
+                                           [OBJECT_UNKEPT] = "compiled, but not kept",
+                                           [OBJECT_REFERENCE] = "built in",
+                                           [OBJECT_MISSING] = "none: the one built in computes"};
         for (size_t i = 0; i < kernels->count; i++) {
             const struct object *const o = &kernels->object[i];
             printf("%-12s %-8s %s%s%s\n", o->kernel.method->name, o->kernel.isa, said[o->origin],
                    o->key[0] ? "  " : "", o->key);
+            if (o->origin == OBJECT_UNKEPT || o->origin == OBJECT_MISSING)
+                code = EXIT_IO; /* it has been said why */
         }
         kernels_give_back(kernels);
     }
@@ -119,8 +123,8 @@ static int run(int argc, char **argv)
     }
     code = EXIT_USAGE;
     if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
-        code =
-            build(s, &(struct kernels_choice){methods.word, isas.word, methods.count, isas.count});
+        code = build(
+            s, &(struct kernels_choice){methods.word, isas.word, methods.count, isas.count, true});
         scenario_free(s);
     } else if (access(file, R_OK) != 0) {
         code = EXIT_IO;
@@ -145,5 +149,13 @@ const struct command command_build = {
     "  --method NAME  that method; otherwise those of the scenario\n"
     "  --isa NAME     for that instruction set, also one that this machine does not run;\n"
     "                 otherwise the one in use (stance --version)\n"
-    "  --set          replaces a value, as everywhere\n",
+    "  --set          replaces a value, as everywhere\n"
+    "\n"
+    "What is compiled is tried on cases of the scenario before it is kept: an object that "
+    "computes\n"
+    "something else than the kernel that is built in is refused. That is remembered for the\n"
+    "compiler and the version, and the kernel that is built in computes, more slowly, until CC\n"
+    "names another compiler or this command, which tries again, has an object that is right. Exit\n"
+    "codes: 0 all there, 2 bad use or scenario, 3 something is not in the cache now, for the\n"
+    "reason that is said.\n",
 };

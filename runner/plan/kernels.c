@@ -1,8 +1,6 @@
 /* kernels.c - what a plan asks of runner/objects. */
 #include "kernels.h"
 
-#include "instruction_set.h"
-
 #include "engine/tree.h"
 
 #include <math.h>
@@ -30,6 +28,39 @@ static bool runs_here(const char *isa)
     return false;
 }
 
+/* Whether cases of the plan have a method. */
+static bool uses_method(const struct plan *plan, int method)
+{
+    const struct scenario *const s = plan->scenario;
+    int k;
+    const struct scenario_axis *const axis =
+        scenario_axis_of(s, offsetof(struct scenario_values, method), &k);
+    if (plan->single || !axis)
+        return plan_method(plan, 0) == method;
+    for (size_t i = 0; i < axis->count; i++)
+        if ((int)scenario_axis_value(axis, i, k) == method)
+            return true;
+    return false;
+}
+
+void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SETS_SIZE])
+{
+    size_t used = 0;
+    const char *last = "";
+    text[0] = '\0';
+    for (int m = 0; stance_methods()[m]; m++) {
+        const stance_kernel *const kernel =
+            uses_method(plan, m)
+                ? instruction_set_kernel(plan->scenario->scene, stance_methods()[m])
+                : NULL;
+        if (!kernel || strcmp(kernel->isa, last) == 0 || used >= INSTRUCTION_SETS_SIZE)
+            continue;
+        last = kernel->isa;
+        used += (size_t)snprintf(text + used, INSTRUCTION_SETS_SIZE - used, "%s%s",
+                                 used ? ", " : "", last);
+    }
+}
+
 /* Methods that are chosen, or that cases of the plan have. */
 static size_t list_methods(const struct plan *plan, const struct kernels_choice *choice,
                            struct objects_wanted *wanted)
@@ -37,14 +68,9 @@ static size_t list_methods(const struct plan *plan, const struct kernels_choice 
     const char *const own = instruction_set(), *const *isa = &own;
     size_t isas = 1;
     const struct scenario *s = plan->scenario;
-    const struct scenario_axis *axis;
     size_t count = 0;
-    int k;
-    axis = scenario_axis_of(s, offsetof(struct scenario_values, method), &k);
     for (int m = 0; stance_methods()[m]; m++) {
-        bool used = !axis && s->base.method == m;
-        for (size_t i = 0; axis && i < axis->count; i++)
-            used |= (int)scenario_axis_value(axis, i, k) == m;
+        bool used = uses_method(plan, m);
         if (choice && choice->methods > 0)
             used = listed(stance_methods()[m]->name, choice->method, choice->methods);
         if (choice && choice->isas > 0)
@@ -198,6 +224,9 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
         .checks = checks,
         .quiet = quiet,
         .brief = brief,
+        .again = choice && choice->again,
+        .stop = plan->stop,
+        .context = plan->stop_context,
     };
     const enum exit_code code = objects_take(parallel, &request, kernels->object, message);
     free(check);

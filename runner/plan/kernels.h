@@ -3,6 +3,7 @@
 #ifndef STANCE_PLAN_KERNELS_H
 #define STANCE_PLAN_KERNELS_H
 
+#include "instruction_set.h"
 #include "plan.h"
 
 #include "runner/objects/objects.h"
@@ -17,6 +18,7 @@ struct kernels {
 struct kernels_choice {
     const char *const *method, *const *isa;
     size_t methods, isas;
+    bool again; /* compiles what was refused before */
 };
 
 /* Collective: takes what the plan's methods (choice NULL: without compiling where the plan's cases
@@ -30,6 +32,8 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
 /* Whether `run` computes the plan with compiled kernels, which take a fraction of the time of those
  * that read a described scene as they go. Needs the designs. */
 bool kernels_compiled(const struct plan *plan);
+/* "avx2", "avx512, scalar": what the plan's methods compute with. */
+void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SETS_SIZE]);
 void kernels_give_back(struct kernels *kernels);
 
 #endif

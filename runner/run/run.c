@@ -389,7 +389,10 @@ static void stage_kernels(struct run *run)
         return;
     const enum exit_code code =
         kernels_take(&run->kernels, &run->plan, NULL, &run->parallel, run->options.quiet, &message);
-    if (code != EXIT_DONE)
+    if (code == EXIT_INTERRUPTED)
+        stop_early(run, run->resume ? "stopped while kernels were compiled"
+                                    : "stopped while kernels were compiled: nothing is stored");
+    else if (code != EXIT_DONE)
         run_fail(run, code, "stance run: %s", message.text);
 }
 

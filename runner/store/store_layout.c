@@ -11,7 +11,7 @@
 #include "runner/base/checksum.h"
 #include "runner/base/command.h"
 #include "runner/base/problem.h"
-#include "runner/plan/instruction_set.h"
+#include "runner/plan/kernels.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -475,7 +475,7 @@ static bool put_provenance(struct layout *layout)
     const struct plan *plan = layout->plan;
     const struct scenario *s = plan->scenario;
     char axes[SCENARIO_MAX_AXES * 98 + 8] = "case", compiler[1024], date[40], hash[80];
-    char libraries[BUILD_LIBRARIES_SIZE], shard[SHARD_TEXT];
+    char libraries[BUILD_LIBRARIES_SIZE], shard[SHARD_TEXT], isas[INSTRUCTION_SETS_SIZE];
     time_t now = time(NULL);
     struct tm utc;
     size_t used = 0;
@@ -487,6 +487,7 @@ static bool put_provenance(struct layout *layout)
     snprintf(compiler, sizeof compiler, "%s; %s", build_compiler(), build_flags());
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     build_libraries(libraries);
+    kernels_instruction_sets(plan, isas);
     shard_text(&plan->shard, shard);
     checksum_sha256(s->text, strlen(s->text), hash);
     return put_text(layout->file, "Conventions", "CF-1.8") &&
@@ -496,7 +497,7 @@ static bool put_provenance(struct layout *layout)
            put_text(layout->file, "git_revision", build_revision()) &&
            put_text(layout->file, "compiler", compiler) &&
            put_text(layout->file, "library_versions", libraries) &&
-           put_text(layout->file, "instruction_set", instruction_set()) &&
+           put_text(layout->file, "instruction_set", isas) &&
            put_int(layout->file, "ranks", layout->ranks) &&
            put_text(layout->file, "hosts", layout->hosts) && put_text(layout->file, "date", date) &&
            put_number(layout->file, "seed", KIND_uint64_t, &s->seed) &&
