@@ -138,7 +138,7 @@ struct design_report *search_loop(const struct search_study *study)
     if (!study->best || !scenario_law(&study->best->base)->designed)
         return NULL;
     struct design_report *const report = malloc(sizeof *report);
-    if (report && !design_loop(report, study->best, &ignored)) {
+    if (report && !design_loop(report, study->best, NULL, &ignored)) {
         free(report);
         return NULL;
     }

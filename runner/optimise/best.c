@@ -49,7 +49,7 @@ char *best_first(const struct scenario *s, stance_message *message)
         text = strdup(s->text);
     } else {
         struct design_report *const report = malloc(sizeof *report);
-        if (report && !design_loop(report, s, message)) {
+        if (report && !design_loop(report, s, NULL, message)) {
             free(report);
             return NULL;
         }

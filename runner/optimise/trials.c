@@ -124,7 +124,7 @@ static void look_at_loop(const struct trials *t, uint64_t index, struct scenario
     scenario_case_values(t->at, index, &one->base);
     if (!scenario_law(&one->base)->designed)
         return;
-    loop->exists = design_loop(report, one, &ignored);
+    loop->exists = design_loop(report, one, NULL, &ignored);
     loop->stable = loop->exists && report->stable;
     loop->tried = loop->stable;
     loop->short_of = !loop->exists ? MOST_SHORT : loop->stable ? 0 : 1 + instability(report);

@@ -92,8 +92,10 @@ static void find_allowed(struct design_report *r)
 
 /* ---- the loop -------------------------------------------------------------------------------- */
 
-/* K, of a law that is not designed too: what it is as a gain matrix; and where it bends. */
-static bool gains(struct design_report *r, stance_message *message)
+/* K, of a law that is not designed too: what it is as a gain matrix; and where it bends. known: the
+ * design, NULL: it is made. */
+static bool gains(struct design_report *r, const struct resolved_design *known,
+                  stance_message *message)
 {
     const stance_scene *const scene = r->scenario->scene;
     const struct scenario_values *const values = &r->scenario->base;
@@ -102,7 +104,7 @@ static bool gains(struct design_report *r, stance_message *message)
 
     r->how = (struct resolved_gains){0, NAN};
     const stance_law *const law = scenario_law(values);
-    if (law->designed &&
+    if (law->designed && !known &&
         !resolve_gains(scene, values, &r->equilibrium, r->A, r->B, r->K, &r->how, message))
         return false;
     if (!law->designed && r->states < 2 * scene->postures)
@@ -114,9 +116,13 @@ static bool gains(struct design_report *r, stance_message *message)
     for (int j = 0; j < r->states; j++)
         r->plane[j] = c.bend.normal[resolve_state(scene, &r->equilibrium, j)];
     memcpy(r->push, c.bend.push, sizeof r->push);
-    for (int i = 0; i < r->inputs && !law->designed; i++)
+    const double(*const gain)[2 * STANCE_MAX_POSTURE] =
+        !law->designed ? (const double(*)[2 * STANCE_MAX_POSTURE]) c.near.gain
+        : known        ? (const double(*)[2 * STANCE_MAX_POSTURE]) known->gain
+                       : NULL;
+    for (int i = 0; i < r->inputs && gain; i++)
         for (int j = 0; j < r->states; j++)
-            r->K[i * r->states + j] = c.near.gain[i][resolve_state(scene, &r->equilibrium, j)];
+            r->K[i * r->states + j] = gain[i][resolve_state(scene, &r->equilibrium, j)];
     return true;
 }
 
@@ -337,7 +343,8 @@ static bool confirmed(struct design_report *r, stance_message *message)
 }
 
 /* Gains, eigenvalues, and whether it is stable as the controller acts. */
-static bool loop(struct design_report *r, stance_message *message)
+static bool loop(struct design_report *r, const struct resolved_design *known,
+                 stance_message *message)
 {
     const int n = r->states, m = r->inputs;
     double matrix[DESIGN_STATES * DESIGN_STATES];
@@ -347,7 +354,7 @@ static bool loop(struct design_report *r, stance_message *message)
     r->lag = r->scenario->base.lag;
     if (!r->closed)
         return true;
-    if (!gains(r, message))
+    if (!gains(r, known, message))
         return false;
     stance_error error = resolve_loop(n, m, r->A, r->B, r->K, 0, matrix);
     if (error == STANCE_OK)
@@ -380,14 +387,15 @@ bool design_plant(struct design_report *r, const struct scenario *s, stance_mess
     return open_loop(r, message);
 }
 
-bool design_loop(struct design_report *r, const struct scenario *s, stance_message *message)
+bool design_loop(struct design_report *r, const struct scenario *s,
+                 const struct resolved_design *known, stance_message *message)
 {
-    return design_plant(r, s, message) && loop(r, message);
+    return design_plant(r, s, message) && loop(r, known, message);
 }
 
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message)
 {
-    if (!design_loop(r, s, message))
+    if (!design_loop(r, s, NULL, message))
         return false;
     find_allowed(r);
     return !r->closed || bounds(r, message);

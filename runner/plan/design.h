@@ -112,9 +112,11 @@ void design_selections_print(const struct design_selections *d);
 json_t *design_selections_json(const struct design_selections *d);
 
 /* false: `message` says what does not exist. design_plant: up to `rank`, whatever the law;
- * design_loop: without `allowed`, `critical`, `set` and `capture`, which take longer. */
+ * design_loop: without `allowed`, `critical`, `set` and `capture`, which take longer, and with the
+ * gains of a design that is known (NULL: none is), which took long perhaps. */
 bool design_plant(struct design_report *r, const struct scenario *s, stance_message *message);
-bool design_loop(struct design_report *r, const struct scenario *s, stance_message *message);
+bool design_loop(struct design_report *r, const struct scenario *s,
+                 const struct resolved_design *known, stance_message *message);
 bool design_compute(struct design_report *r, const struct scenario *s, stance_message *message);
 
 /* The set itself, of the report's linearisation and limits; NULL: `message` says why not. */

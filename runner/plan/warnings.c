@@ -106,8 +106,10 @@ static void look_at_noise(const struct design_report *r, uint64_t index, struct 
     }
 }
 
-static void look_at(const struct scenario *s, uint64_t index, struct troubles *t)
+static void look_at(const struct plan *plan, uint64_t index, struct troubles *t)
 {
+    const struct scenario *const s = plan->scenario;
+    const struct resolved_design design = plan_design_at(plan, plan_design(plan, index));
     struct scenario *const at = malloc(sizeof *at);
     struct design_report *const r = malloc(sizeof *r);
     stance_message message = {""};
@@ -115,7 +117,7 @@ static void look_at(const struct scenario *s, uint64_t index, struct troubles *t
     if (at && r) {
         *at = *s;
         scenario_case_values(s, index, &at->base);
-        if (scenario_law(&at->base)->designed && design_loop(r, at, &message)) {
+        if (scenario_law(&at->base)->designed && design_loop(r, at, &design, &message)) {
             if (!r->stable && first_of(t, UNSTABLE, index) && r->sampled > 0)
                 snprintf(t->what[UNSTABLE], sizeof t->what[UNSTABLE],
                          "the loop is unstable: spectral radius %s at a sample time of %.3g s%s%s",
@@ -229,7 +231,7 @@ bool warnings_print(const struct plan *plan, const char *who, FILE *out)
             tried < 2 ? 0 : (uint64_t)((double)(plan->rows - 1) * (double)k / (double)(tried - 1));
         const uint64_t index = plan_case(plan, row);
         if (plan->design_status[plan_design(plan, index)] == STANCE_DONE)
-            look_at(plan->scenario, index, &t);
+            look_at(plan, index, &t);
     }
     bool any = false;
     for (int k = 0; k < TROUBLES; k++) {
