@@ -45,8 +45,10 @@ def consistent(f):
         assert f["best"][g] == best
         first = last[g]
     chosen = int(f.attrs["chosen"][0])
-    objective = f["confirmed_objective"][()]
-    assert chosen == np.argmax(f["confirmed_score"][()]) and objective[chosen] == objective.max()
+    objective, choice = f["confirmed_objective"][()], f["choice_objective"][()]
+    assert chosen == np.argmax(f["choice_score"][()]) and choice[chosen] == choice.max()
+    # From other starts: not the same shares, nor far from them.
+    assert (choice != objective).any() and abs(choice - objective).max() < 0.12
     outcome = f["confirmed_outcome"][()]
     for i, word in enumerate(words(f, "kind")):
         assert ((outcome == i).sum(axis=-1) == kinds(f, "confirmed_count")[word]).all()

@@ -145,6 +145,54 @@ def circumstances():
         assert "linear theory allows any" in text and "possible" not in text, text
 
 
+def limits():
+    """Beside a share stands the limit of the circumstances in which it was counted, with the name of the worst."""
+    grid = "sweep.grid=[{path: controller.torque_limit, values: [10, 8]}]"
+    for over, whole in (("mean", np.mean), ("worst", np.min)):
+        printed = call("optimise", "box.yaml", "--set", grid, "--set", f"optimise.over={over}", "--set", "optimise.confirm=256", "--set", "optimise.candidates=11",
+                       "--set", "optimise.grow=[32]", "--force", "-o", "limits-search.h5")[0][0]
+        said = summary("limits-search.h5")
+        allowed = [row["allowed"] for row in said["circumstances"]]
+        limit, place = whole(allowed), "controller.torque_limit = 8"
+        assert allowed[1] < allowed[0] - 0.05 and math.isclose(said["linear_limit"], limit), said["circumstances"]
+        assert said["linear_limit_in"] == (place if over == "worst" else None), said["linear_limit_in"]
+        wanted = f"linear theory allows any {100 * limit:.2f} %" + (f" in its worst circumstance ({place});" if over == "worst" else ";")
+        assert wanted in printed, printed
+        with h5py.File("limits-search.h5", "a") as f: # files of earlier versions have that of the first
+            f.attrs["linear_limit"] = [allowed[0]]
+        assert math.isclose(summary("limits-search.h5")["linear_limit"], limit)
+        text = " ".join("\n".join(call("summary", "limits-search.h5")[0]).split())
+        assert f"{100 * limit:.2f} % is what linear theory allows any controller " + (f"in its worst circumstance, {place}:" if over == "worst" else "there:") in text, text
+
+
+def honest():
+    """The chosen one is chosen by starts of its own: few of them promise too much, the fresh ones do not."""
+    choice, fresh, best = [], [], []
+    for seed in range(1, 17):
+        search("honest", f"seed={seed}", "optimise.confirm=16", "optimise.candidates=33", "optimise.grow=[8]", "optimise.restarts=1", "optimise.first_step=0.02")
+        rows = summary("honest-search.h5")["confirmed"]
+        place, = (k for k, row in enumerate(rows) if row["chosen"])
+        assert place == np.argmax([row["choice"] for row in rows])
+        choice.append(rows[place]["choice"] - rows[0]["choice"])
+        fresh.append(rows[place]["objective"] - rows[0]["objective"])
+        best.append(max(row["objective"] for row in rows) - rows[0]["objective"])
+    print(f"# gain over the first, mean of 16 searches: {np.mean(choice):.3f} by the starts of the choice, {np.mean(fresh):.3f} of fresh ones; the largest of these {np.mean(best):.3f}")
+    assert np.mean(fresh) < np.mean(choice) and np.mean(fresh) < np.mean(best)
+
+
+def older():
+    """A file of a version that chose by the fresh starts is read, and told as such."""
+    shutil.copy("one-search.h5", "older-search.h5")
+    with h5py.File("older-search.h5", "a") as f:
+        del f["choice_score"], f["choice_objective"]
+    said, new = summary("older-search.h5"), summary("one-search.h5")
+    assert all(row.pop("choice") is None for row in said["confirmed"]) and all(row.pop("choice") is not None for row in new["confirmed"])
+    assert said["confirmed"] == new["confirmed"]
+    text, now = ("\n".join(call("summary", f"{name}-search.h5")[0]) for name in ("older", "one"))
+    assert "chosen, by these very starts, as in files of earlier versions: too high" in text and " choice" not in text, text
+    assert "chosen, for the largest choice: the objective of as many other starts" in now, now
+
+
 def other_aims():
     """What is no share is printed as a number beside the share."""
     search("priced", "optimise.price.friction_used=0.3", "optimise.confirm=64")
@@ -201,7 +249,7 @@ def status():
     line, = call("status", "cut-search.h5")[0]
     assert line.startswith(f"cut-search.h5: generation {said['generations']} of at most ") and "not running (stance optimise --resume goes on)" in line, line
     line, = call("status", "one-search.h5")[0]
-    chosen = max(row["objective"] for row in summary("one-search.h5")["confirmed"])
+    chosen, = (row["objective"] for row in summary("one-search.h5")["confirmed"] if row["chosen"])
     assert f"best {chosen:.4g} of 512 fresh starts; finished: " in line, line
 
 
@@ -336,5 +384,5 @@ def fronts():
 
 
 if __name__ == "__main__":
-    tap([shares, gains_to_paste, circumstances, other_aims, numbers_beside_gains, unfinished, damaged, status, running, other_commands, convergence, marginal_shares,
+    tap([shares, gains_to_paste, circumstances, limits, honest, older, other_aims, numbers_beside_gains, unfinished, damaged, status, running, other_commands, convergence, marginal_shares,
          sizes_of_pictures, fronts])

@@ -30,6 +30,7 @@ bool plot_search_front(const struct search_front *front, struct look *look, cons
     for (size_t i = 0; i < front->count; i++) {
         const struct search_study *const study = &front->study[i];
         const size_t k[] = {0, (size_t)study->f.chosen};
+        const char *where;
         double row[8] = {plot_axis_place(&along, i)};
         for (int c = 0; c < 2; c++) {
             const struct interval interval = search_interval(study, k[c], SEARCH_OVERALL);
@@ -38,7 +39,7 @@ bool plot_search_front(const struct search_front *front, struct look *look, cons
             row[3 + 3 * c] = 100 * interval.high;
             most = fmax(most, 100 * interval.high);
         }
-        row[7] = 100 * search_limit(study);
+        row[7] = 100 * search_limit(study, k[1], &where);
         limited = limited && isfinite(row[7]);
         most = isfinite(row[7]) ? fmax(most, row[7]) : most;
         gnuplot_row(&g, row, 8);

@@ -282,7 +282,8 @@ void search_front_table(struct table *t, const struct search_front *front)
         const struct search_study *const study = &front->study[i];
         const struct search_file *const f = &study->f;
         const size_t chosen = (size_t)f->chosen, circumstances = f->length[SEARCH_CIRCUMSTANCE];
-        const double allowed = search_limit(study);
+        const char *where;
+        const double allowed = search_limit(study, chosen, &where);
         TABLE_FACTS(t, {{front->against.name, schema_last_name(front->against.name), .width = 10},
                         as_number(front->at[i])});
         share_facts(t, study, 0, (const char *[]){"first", "first_low", "first_high"}, "first %");

@@ -92,6 +92,8 @@ bool search_print_json(const struct search_study *study)
     const struct search_file *const f = &study->f;
     const int64_t best = search_best(study);
     char aim[600];
+    const char *where = NULL;
+    const double limit = study->done ? search_limit(study, (size_t)f->chosen, &where) : NAN;
     search_aim(study, aim, sizeof aim);
     json_t *const root = TABLE_OBJECT(
         {"file", as_text(study->file)}, {"title", as_text(f->title)},
@@ -107,7 +109,7 @@ bool search_print_json(const struct search_study *study)
         {"stages", as_tree(table_of(study, search_table_stages))},
         {"fresh_starts", as_whole(f->length[SEARCH_START])},
         {"confirmed", as_tree(table_of(study, search_table_confirmed))},
-        {"linear_limit", as_number(study->done ? f->linear_limit : NAN)},
+        {"linear_limit", as_number(limit)}, {"linear_limit_in", as_text(where)},
         {"circumstances", as_tree(table_of(study, search_table_circumstances))},
         {"elsewhere", as_tree(table_of(study, search_table_elsewhere))},
         {"chosen", as_tree(study->done ? chosen(study) : NULL)});

@@ -4,6 +4,7 @@
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/optimise/best.h"
+#include "runner/optimise/linear_limit.h"
 #include "runner/optimise/search.h"
 
 #include <math.h>
@@ -197,18 +198,20 @@ struct search_gain search_gain(const struct search_study *study, size_t circumst
     return gain;
 }
 
-double search_limit(const struct search_study *study)
+double search_limit(const struct search_study *study, size_t k, const char **circumstance)
 {
     const struct search_file *const f = &study->f;
-    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE],
-                 worst = search_worst(study, (size_t)f->chosen);
-    const double *const allowed = &f->confirmed_allowed[(size_t)f->chosen * circumstances];
-    double least = INFINITY, sum = 0;
-    for (size_t c = 0; c < circumstances; c++) {
-        least = fmin(least, isnan(allowed[c]) ? INFINITY : allowed[c]);
-        sum += allowed[c];
-    }
-    return worst == SEARCH_OVERALL ? sum / (double)circumstances : isinf(least) ? NAN : least;
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    size_t least;
+    const double limit = linear_limit_overall(counts_worst(study), circumstances,
+                                              &f->confirmed_allowed[k * circumstances], &least);
+    *circumstance = least < circumstances ? f->circumstance[least] : NULL;
+    return limit;
+}
+
+bool search_chosen_apart(const struct search_study *study)
+{
+    return study->done && !isnan(study->f.choice_objective[study->f.chosen]);
 }
 
 /* ---- words -------------------------------------------------------------------------------- */

@@ -61,10 +61,13 @@ size_t search_worst(const struct search_study *study, size_t k);
 void search_circumstances(const struct search_study *study, size_t circumstance, size_t *from,
                           size_t *to);
 
-/* Share from which linear theory allows any controller to recover, about the chosen one's
- * equilibrium, overall: no more than in the worst circumstance, or the mean. NAN: it sets no bound.
- */
-double search_limit(const struct search_study *study);
+/* Share from which linear theory allows any controller to recover, about the equilibrium of
+ * confirmed candidate k, overall: no more than in the worst circumstance, which *circumstance
+ * names, or the mean, NULL. NAN: it sets no bound. */
+double search_limit(const struct search_study *study, size_t k, const char **circumstance);
+/* Whether the chosen one was chosen by other starts than the fresh ones; by these in files of
+ * earlier versions, whose share of it is too large. */
+bool search_chosen_apart(const struct search_study *study);
 /* Of each fresh start the share of the circumstances that count for the chosen candidate in which
  * linear theory allows any controller to recover, allowed[starts]. False: it sets no bound. */
 bool search_allowed(const struct search_study *study, double *allowed);

@@ -35,7 +35,7 @@ bool search_has_gains(const struct search_study *study);
     "gains, as a scenario takes them, poles and critical sample time. A search that is not\n"      \
     "finished tells how far it is.\n"                                                              \
     "  --csv    a row for each candidate that was tried from fresh starts: which, candidate,\n"    \
-    "           share, low, high, objective, training, gap\n"                                      \
+    "           share, low, high, objective, training, gap, choice\n"                              \
     "  --json   keys\n"                                                                            \
     "    file, title, revision, date, seconds, finished, note (why it ended)\n"                    \
     "    generations, most_generations, candidates\n"                                              \
@@ -46,10 +46,11 @@ bool search_has_gains(const struct search_study *study);
     "                 step}]\n"                                                                    \
     "    fresh_starts how many\n"                                                                  \
     "    confirmed    [{which, candidate (null: a mean), share, low, high, objective, training,\n" \
-    "                 gap, chosen}]; share: of fresh starts that are stabilised, in the worst\n"   \
-    "                 circumstance or the mean of them, as the search counts\n"                    \
+    "                 gap, choice, chosen}]; share: of fresh starts that are stabilised, in the\n" \
+    "                 worst circumstance or the mean of them, as the search counts; choice: the\n" \
+    "                 objective of as many other starts, by which one is chosen\n"                 \
     "    linear_limit share of the fresh starts from which linear theory allows any controller\n"  \
-    "                 to recover\n"                                                                \
+    "                 to recover, counted like share; linear_limit_in: the circumstance\n"         \
     "    circumstances  [{circumstance, first, chosen, chosen_low, chosen_high, gain, gain_low,\n" \
     "                 gain_high, won, lost, allowed, of_allowed, critical_first,\n"                \
     "                 critical_chosen}]; gain: chosen - first, start by start, of which so many\n" \

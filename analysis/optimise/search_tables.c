@@ -77,6 +77,8 @@ void search_table_confirmed(struct table *t, const struct search_study *study)
              as_number(f->confirmed_training[k])},
             {{"gap", "gap", study->plain ? "%+.2f" : "%+.6g", .width = 6, .percent = study->plain},
              as_number(f->confirmed_training[k] - f->confirmed_objective[k])},
+            {{"choice", "choice", .format = format, .width = 7, .percent = study->plain},
+             as_number(f->choice_objective[k])},
             {{"chosen", .hidden = TABLE_NO_CSV}, as_truth(chosen)});
         table_end_row(t);
     }

@@ -160,17 +160,21 @@ static void print_gain(const struct search_study *study)
 /* The limit is that of a posture, which may be varied, too. */
 static void print_limit(const struct search_study *study)
 {
-    const struct search_file *const f = &study->f;
-    const double allowed = f->linear_limit, before = f->confirmed_allowed[0];
+    const size_t chosen = (size_t)study->f.chosen;
+    const char *where, *first_where;
+    const double allowed = search_limit(study, chosen, &where),
+                 before = search_limit(study, 0, &first_where),
+                 first = search_share(study, 0, SEARCH_OVERALL);
     if (!(allowed > 0))
         return;
-    printf("  %.2f %% is what linear theory allows any controller there: chosen %.1f %% of that",
-           100 * allowed, 100 * search_share(study, (size_t)f->chosen, 0) / allowed);
+    printf("  %.2f %% is what linear theory allows any controller %s%s: chosen %.1f %% of that",
+           100 * allowed, where ? "in its worst circumstance,\n  " : "there", where ? where : "",
+           100 * search_share(study, chosen, SEARCH_OVERALL) / allowed);
     if (before == allowed)
-        printf(", first %.1f %%", 100 * search_share(study, 0, 0) / before);
+        printf(", first %.1f %%", 100 * first / before);
     else if (before > 0)
         printf(";\n  at the first one's posture it is %.2f %%, of which it has %.1f %%",
-               100 * before, 100 * search_share(study, 0, 0) / before);
+               100 * before, 100 * first / before);
     putchar('\n');
 }
 
@@ -195,17 +199,17 @@ static bool print_confirmed(const struct search_study *study)
     struct table t = {0};
     printf("\nFrom %zu fresh starts, with 95 %% intervals\n", f->length[SEARCH_START]);
     search_table_confirmed(&t, study);
-    const bool good = table_write_text(
-        &t, stdout,
-        study->plain ? "mark which candidate share low high training gap"
-                     : "mark which candidate share low high objective training gap",
-        0);
+    const bool apart = search_chosen_apart(study);
+    char view[90];
+    snprintf(view, sizeof view, "mark which candidate share low high%s training gap%s",
+             study->plain ? "" : " objective", apart ? " choice" : "");
+    const bool good = table_write_text(&t, stdout, view, 0);
     table_free(&t);
-    puts("  (* chosen; training: objective of the starts by which the search chose; gap: training "
-         "- fresh)");
+    puts("  (training: objective of the starts by which the search went; gap: training - fresh;");
+    puts(apart ? "  * chosen, for the largest choice: the objective of as many other starts)"
+               : "  * chosen, by these very starts, as in files of earlier versions: too high)");
     print_gain(study);
-    if (f->length[SEARCH_CIRCUMSTANCE] == 1)
-        print_limit(study);
+    print_limit(study);
     print_counts(study);
     return good;
 }

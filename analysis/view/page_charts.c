@@ -314,7 +314,10 @@ static void put_confirmed(json_t *charts, const struct search_study *study, doub
         json_decref(training.x), json_decref(training.y), json_decref(training.low),
             json_decref(training.high);
     json_array_append_new(charts, chart("What is left of it from fresh starts",
-                                        "Shares of starts by which nothing was chosen",
+                                        search_chosen_apart(study)
+                                            ? "Shares of starts by which nothing was chosen"
+                                            : "Shares of the starts by which one was chosen, "
+                                              "whose share is too high",
                                         axis("candidate", "", false, names),
                                         axis("recovered starts", "%", false, NULL), series));
 }

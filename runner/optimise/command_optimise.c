@@ -2,6 +2,7 @@
  * search and the scenario of its best candidate, on one rank or many.
  */
 #include "best.h"
+#include "linear_limit.h"
 #include "search.h"
 
 #include "runner/base/command.h"
@@ -497,6 +498,22 @@ static void print_objective(const struct optimise *o, double value)
         printf("%.6g", value);
 }
 
+/* Beside the share of the worst circumstance what is allowed in that which allows least. */
+static void print_limit(const struct optimise *o)
+{
+    const struct search_file *const f = &o->search.record;
+    const size_t circumstances = f->length[SEARCH_CIRCUMSTANCE];
+    size_t least;
+    const double limit =
+        linear_limit_overall(o->first->search.worst, circumstances,
+                             &f->confirmed_allowed[(size_t)f->chosen * circumstances], &least);
+    if (!isfinite(limit))
+        return;
+    printf(", linear theory allows any %.2f %%", 100 * limit);
+    if (least < circumstances)
+        printf(" in its worst circumstance (%s)", f->circumstance[least]);
+}
+
 static int conclude(struct optimise *o)
 {
     const struct search_file *const f = &o->search.record;
@@ -512,8 +529,8 @@ static int conclude(struct optimise *o)
     print_objective(o, f->confirmed_objective[f->chosen]);
     printf(" of %zu fresh starts, the first ", f->length[SEARCH_START]);
     print_objective(o, f->confirmed_objective[0]);
-    if (plain && isfinite(f->linear_limit))
-        printf(", linear theory allows any %.2f %%", 100 * f->linear_limit);
+    if (plain)
+        print_limit(o);
     printf("; %.1f s on %d rank%s\n%s: the scenario of the best\n", clock_seconds() - o->start,
            o->parallel.size, o->parallel.size == 1 ? "" : "s", o->best);
     return EXIT_DONE;
@@ -604,8 +621,11 @@ const struct command command_optimise = {
     "better (stance describe optimise); sweep.sample are the starts that all candidates get,\n"
     "sweep.grid the circumstances. The scenario as it is, with the gains of its design, is the\n"
     "first candidate. An evolution strategy (CMA-ES) proposes the others, a generation at a time;\n"
-    "at the end the first, and of each stage the best and the mean, are compared from fresh "
-    "starts.\n"
+    "at the end the first, and of each stage the best and the mean, are compared from as many "
+    "starts\n"
+    "that the search has not seen, and what they recover is told of others: fresh starts, by "
+    "which\n"
+    "nothing was chosen.\n"
     "\n"
     "  -o FILE            file of the search; default results/<scenario name>-search.h5. stance\n"
     "                     summary and stance plot read it. Beside it <scenario name>-best.yaml,\n"

@@ -19,6 +19,21 @@ static double share_in(const struct trials *t, size_t circumstance, uint64_t sta
     return share;
 }
 
+double linear_limit_overall(bool worst, size_t circumstances, const double *share, size_t *least)
+{
+    double sum = 0;
+    *least = circumstances;
+    for (size_t c = 0; c < circumstances; c++) {
+        sum += share[c];
+        if (!isnan(share[c]) && (*least == circumstances || share[c] < share[*least]))
+            *least = c;
+    }
+    if (worst && circumstances > 1)
+        return *least < circumstances ? share[*least] : NAN;
+    *least = circumstances;
+    return sum / (double)circumstances;
+}
+
 void linear_limit_shares(struct trials *t, double *value, uint64_t starts, double *share)
 {
     struct scenario_axis *const candidate = &t->at->axis[0];

@@ -181,11 +181,11 @@ static void share_points(struct search *search)
 {
     const struct scenario *const s = search->scenario;
     const size_t paths = (size_t)s->axis[s->axes - 1].paths;
-    const uint64_t count[TRIALS_STARTS] = {s->search.grow[s->search.stages - 1], s->search.confirm};
     for (int k = 0; k < TRIALS_STARTS; k++) {
+        const uint64_t count = trials_count(s, (enum trials_starts)k);
         parallel_broadcast(search->parallel, search->trials.start[k],
-                           count[k] * paths * sizeof(double));
-        parallel_broadcast(search->parallel, search->trials.weight[k], count[k] * sizeof(int64_t));
+                           count * paths * sizeof(double));
+        parallel_broadcast(search->parallel, search->trials.weight[k], count * sizeof(int64_t));
     }
     for (int a = 0; a + 1 < s->axes; a++) {
         const struct scenario_axis *const axis = &s->axis[a];
@@ -238,14 +238,15 @@ static void blank(double *value, size_t n)
         value[i] = NAN;
 }
 
-/* What will be simulated at most once all generations are through. */
+/* What will be simulated at most once all generations are through: the best, to choose and to
+ * report. */
 static double cases_at_end(const struct search *search)
 {
     const struct scenario *const s = search->scenario;
     double elsewhere = 0;
     for (int e = 0; e < ELSEWHERE_MOST; e++)
         elsewhere += elsewhere_exists(s, (enum elsewhere)e) ? 1 : 0;
-    const double confirmed = 1 + 2.0 * s->search.stages * (s->search.restarts + 1);
+    const double confirmed = 2 * (1 + 2.0 * s->search.stages * (s->search.restarts + 1));
     return confirmed * (double)search->trials.circumstances * (double)s->search.confirm +
            elsewhere * COMPARED * (double)elsewhere_starts(s);
 }
@@ -494,7 +495,7 @@ static bool is_over(const struct search *search, const struct course *at, const 
     return stale || cma_stop(at->cma) != CMA_GOES_ON;
 }
 
-/* Adds to what is compared from fresh starts: a candidate, or (-1) a mean. */
+/* Adds to what is compared at the end: a candidate, or (-1) a mean. */
 static void confirm_later(struct search *search, int64_t candidate, int64_t generation,
                           const double *coordinate)
 {
@@ -511,8 +512,7 @@ static void confirm_later(struct search *search, int64_t candidate, int64_t gene
     f->length[SEARCH_CONFIRMED]++;
 }
 
-/* A record of what is known so far; what is to be compared from fresh starts is not, before it has
- * been. */
+/* A record of what is known so far; what is to be compared is not, before it has been. */
 static bool keep(struct search *search, bool last, stance_message *message)
 {
     struct search_file *const f = &search->record;
@@ -582,39 +582,69 @@ static enum trials_end run_beginning(struct search *search, struct course *at, c
     return end;
 }
 
-/* ---- fresh starts --------------------------------------------------------------------------- */
+/* ---- the choice, and fresh starts ------------------------------------------------------------ */
+
+/* The largest of several shares is too large as the share of what has it: one is chosen by starts
+ * of its own, and what all of them recover is told of others. */
+static enum trials_end try_confirmed(struct search *search, const double *coordinate,
+                                     enum trials_starts which, stance_message *message)
+{
+    struct search_file *const f = &search->record;
+    const bool fresh = which == TRIALS_FRESH;
+    int64_t *const score = fresh ? f->confirmed_score : f->choice_score;
+    double *const objective = fresh ? f->confirmed_objective : f->choice_objective;
+    const uint64_t starts = trials_count(search->scenario, which);
+    const size_t k = f->length[SEARCH_CONFIRMED], n = (size_t)search->space.n;
+    const enum trials_end end =
+        try_all(search, k, coordinate, f->confirmed_value, which, starts, message);
+    for (size_t i = 0; end == TRIALS_DONE && i < k; i++)
+        score[i] = score_of(search, i, &coordinate[i * n], which, starts, &objective[i]);
+    return end;
+}
+
+static void choose(struct search_file *f)
+{
+    f->chosen = 0;
+    for (size_t i = 1; i < f->length[SEARCH_CONFIRMED]; i++)
+        if (f->choice_score[i] > f->choice_score[f->chosen])
+            f->chosen = (int64_t)i;
+}
+
+static void note_fresh(struct search *search)
+{
+    struct search_file *const f = &search->record;
+    const uint64_t starts = trials_count(search->scenario, TRIALS_FRESH);
+    const size_t k = f->length[SEARCH_CONFIRMED], circumstances = search->trials.circumstances;
+    for (size_t i = 0; i < k; i++) {
+        count_labels(search, i, starts, &f->confirmed_count[i * circumstances * TRIAL_LABELS],
+                     &f->confirmed_critical[i * circumstances]);
+        blank(&f->confirmed_allowed[i * circumstances], circumstances);
+    }
+    f->length[SEARCH_START] = starts;
+    memcpy(f->confirmed_outcome, search->trials.label, k * circumstances * starts);
+    memcpy(f->start_value, search->trials.start[TRIALS_FRESH],
+           starts * f->length[SEARCH_VARIED] * sizeof *f->start_value);
+}
 
 static enum trials_end confirm(struct search *search, stance_message *message)
 {
     struct search_file *const f = &search->record;
-    const uint64_t starts = search->scenario->search.confirm;
+    const size_t size = f->length[SEARCH_CONFIRMED] * (size_t)search->space.n * sizeof(double);
+    double *const coordinate = malloc(size);
     search->confirming = true;
     search->outlook.ahead = cases_at_end(search);
-    const size_t k = f->length[SEARCH_CONFIRMED], n = (size_t)search->space.n;
-    const size_t circumstances = search->trials.circumstances;
-    double *const coordinate = malloc(k * n * sizeof *coordinate);
     if (!coordinate) {
         no_memory(message);
         return TRIALS_BROKEN;
     }
-    memcpy(coordinate, f->confirmed_value, k * n * sizeof *coordinate);
-    const enum trials_end end =
-        try_all(search, k, coordinate, f->confirmed_value, TRIALS_FRESH, starts, message);
-    for (size_t i = 0; end == TRIALS_DONE && i < k; i++) {
-        f->confirmed_score[i] = score_of(search, i, &coordinate[i * n], TRIALS_FRESH, starts,
-                                         &f->confirmed_objective[i]);
-        count_labels(search, i, starts, &f->confirmed_count[i * circumstances * TRIAL_LABELS],
-                     &f->confirmed_critical[i * circumstances]);
-        blank(&f->confirmed_allowed[i * circumstances], circumstances);
-        if (f->chosen < 0 || f->confirmed_score[i] > f->confirmed_score[f->chosen])
-            f->chosen = (int64_t)i;
-    }
+    memcpy(coordinate, f->confirmed_value, size);
+    enum trials_end end = try_confirmed(search, coordinate, TRIALS_CHOICE, message);
     if (end == TRIALS_DONE) {
-        f->length[SEARCH_START] = starts;
-        memcpy(f->confirmed_outcome, search->trials.label, k * circumstances * starts);
-        memcpy(f->start_value, search->trials.start[TRIALS_FRESH],
-               starts * f->length[SEARCH_VARIED] * sizeof *f->start_value);
+        choose(f);
+        end = try_confirmed(search, coordinate, TRIALS_FRESH, message);
     }
+    if (end == TRIALS_DONE)
+        note_fresh(search);
     free(coordinate);
     return end;
 }
@@ -630,7 +660,9 @@ static void find_allowed(struct search *search)
     for (int i = 0; i < COMPARED; i++)
         linear_limit_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
                             &f->confirmed_allowed[which[i] * circumstances]);
-    f->linear_limit = f->confirmed_allowed[which[1] * circumstances];
+    size_t least;
+    f->linear_limit = linear_limit_overall(search->scenario->search.worst, circumstances,
+                                           &f->confirmed_allowed[which[1] * circumstances], &least);
 }
 
 static enum trials_end try_elsewhere(struct search *search, stance_message *message)

@@ -58,9 +58,6 @@ static double *take_points(struct scenario *s, uint64_t count, uint64_t seed)
 
 bool trials_make(struct trials *t, const struct scenario *scenario, const struct parallel *parallel)
 {
-    const struct scenario_search *const search = &scenario->search;
-    const uint64_t count[TRIALS_STARTS] = {search->grow[search->stages - 1], search->confirm};
-    const uint64_t seed[TRIALS_STARTS] = {scenario->seed, trials_fresh_seed(scenario)};
     *t = (struct trials){
         .scenario = scenario, .parallel = parallel, .circumstances = 1, .until = INFINITY};
     t->at = malloc(sizeof *t->at);
@@ -71,14 +68,15 @@ bool trials_make(struct trials *t, const struct scenario *scenario, const struct
     at->axis[at->axes - 1].value = NULL; /* points of its own */
     bool good = true;
     for (int k = 0; k < TRIALS_STARTS; k++) {
-        t->start[k] = take_points(at, count[k], seed[k]);
-        t->weight[k] = t->start[k] ? make_weights(scenario, count[k], t->start[k]) : NULL;
+        const uint64_t count = trials_count(scenario, (enum trials_starts)k);
+        t->start[k] = take_points(at, count, trials_seed(scenario, (enum trials_starts)k));
+        t->weight[k] = t->start[k] ? make_weights(scenario, count, t->start[k]) : NULL;
         good = good && t->start[k] && t->weight[k];
     }
     for (int a = 0; a + 1 < scenario->axes; a++)
         t->circumstances *= scenario->axis[a].count;
     memmove(&at->axis[1], &at->axis[0], (size_t)scenario->axes * sizeof at->axis[0]);
-    at->axis[0] = search->axis;
+    at->axis[0] = scenario->search.axis;
     at->axis[0].count = 1;
     at->axes = scenario->axes + 1;
     at->record_cases = RECORD_NONE;
@@ -393,7 +391,7 @@ enum trials_end trials_run(struct trials *t, size_t candidates, double *value,
     sample->value = t->start[which];
     sample->count = starts;
     at->cases = pairs * starts;
-    at->seed = which == TRIALS_FRESH ? trials_fresh_seed(t->scenario) : t->scenario->seed;
+    at->seed = trials_seed(t->scenario, which);
     bool good = plan_make(&plan, at, false, 0, false, &error);
     if (!good)
         *message = error.message;

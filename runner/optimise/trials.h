@@ -13,8 +13,9 @@
 /* Labels of a case: not simulated, outcome + 1, failed. */
 enum { TRIAL_REFUSED = 0, TRIAL_FAILED = STANCE_OUTCOME_COUNT + 1, TRIAL_LABELS };
 
-/* The starts: those of the search, or fresh ones, made with the next seed. */
-enum trials_starts { TRIALS_SEARCH, TRIALS_FRESH, TRIALS_STARTS };
+/* The starts: those of the search; those by which one of the best is chosen, made with a seed that
+ * no scenario can have; and those by which nothing was, made with the next one. */
+enum trials_starts { TRIALS_SEARCH, TRIALS_CHOICE, TRIALS_FRESH, TRIALS_STARTS };
 
 enum trials_end { TRIALS_DONE, TRIALS_STOPPED, TRIALS_BROKEN };
 
@@ -65,10 +66,17 @@ void trials_free(struct trials *trials);
 enum trials_end trials_run(struct trials *trials, size_t candidates, double *value,
                            enum trials_starts which, uint64_t starts, stance_message *message);
 
-/* The seed of the fresh starts. */
-static inline uint64_t trials_fresh_seed(const struct scenario *s)
+/* Of one of the three: how many there are at most, and their seed. */
+static inline uint64_t trials_count(const struct scenario *s, enum trials_starts which)
 {
-    return s->seed + 1;
+    return which == TRIALS_SEARCH ? s->search.grow[s->search.stages - 1] : s->search.confirm;
+}
+
+static inline uint64_t trials_seed(const struct scenario *s, enum trials_starts which)
+{
+    return which == TRIALS_SEARCH   ? s->seed
+           : which == TRIALS_CHOICE ? s->seed ^ ((uint64_t)1 << 63)
+                                    : s->seed + 1;
 }
 
 #endif

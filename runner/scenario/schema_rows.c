@@ -464,7 +464,8 @@ const struct row schema_rows[] = {
          RANGE(1, 1 << 20), .text = "starts of a stage"}},
     {0, {.path = "optimise.confirm", .type = FIELD_INTEGER, BY_HAND, .unit = "1", .fallback = NAN,
          .fallback_text = "eight times the last stage's", RANGE(1, 1 << 20),
-         .text = "fresh starts with which the best candidates are compared"}},
+         .text = "starts by which the best candidates are compared, and as many fresh ones from "
+                 "which they are reported"}},
     {0, {.path = "optimise.restarts", .type = FIELD_INTEGER, BY_HAND, .fallback = 0, RANGE(0, SCENARIO_MAX_RESTARTS),
          .text = "times that the search begins again at its best with twice the candidates a "
                  "generation"}},

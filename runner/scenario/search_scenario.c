@@ -509,7 +509,8 @@ double scenario_search_cases(const struct scenario *s)
 {
     const struct scenario_search *const search = &s->search;
     const double circumstances = (double)s->cases / (double)s->axis[s->axes - 1].count;
-    double starts = (1 + 2.0 * search->stages * (search->restarts + 1)) * (double)search->confirm;
+    const double compared = 1 + 2.0 * search->stages * (search->restarts + 1);
+    double starts = 2 * compared * (double)search->confirm; /* to choose by, and fresh ones */
     for (int k = 0; k < search->stages; k++) {
         const double part =
             scenario_search_until(s, k) - (k > 0 ? scenario_search_until(s, k - 1) : 0);

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -33,10 +34,12 @@ static const struct entry table[] = {
      offsetof(struct search_file, name),                                                           \
      KIND_##type,                                                                                  \
      {SEARCH_##a, SEARCH_##b, SEARCH_##c}},
-    SEARCH_VARIABLES(ENTRY)
+    SEARCH_VARIABLES(ENTRY) SEARCH_ADDED(ENTRY)
 #undef ENTRY
 };
-enum { ENTRIES = sizeof table / sizeof *table };
+#define ONE(...) +1
+enum { ENTRIES = sizeof table / sizeof *table, ENTRIES_AT_FIRST = 0 SEARCH_VARIABLES(ONE) };
+#undef ONE
 
 /* Offset of a dimension's words; 0: its points are numbered. */
 static const struct {
@@ -218,11 +221,22 @@ static bool read_length(hid_t file, struct search_file *f, int d)
     return good && has_words;
 }
 
+/* What an older file lacks. */
+static bool leave_out(struct search_file *f, const struct entry *e)
+{
+    double *const number = *place_of(f, e);
+    for (size_t i = 0; e->kind == KIND_double && i < elements_of(f, e); i++)
+        number[i] = NAN;
+    return true;
+}
+
 static bool read_variable(hid_t file, struct search_file *f, const struct entry *e)
 {
     hsize_t length[H5S_MAX_RANK];
     if (elements_of(f, e) == 0)
         return true;
+    if (e >= table + ENTRIES_AT_FIRST && !hdf_exists(file, e->name))
+        return leave_out(f, e);
     const hid_t dataset = H5Dopen2(file, e->name, H5P_DEFAULT);
     int rank = 0;
     while (rank < MOST_OVER && e->over[rank] != SEARCH_NO)

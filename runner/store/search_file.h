@@ -6,8 +6,8 @@
  * Attributes: Conventions, title, search_version, git_revision, date, scenario (text, with the
  * section optimise), first_scenario (the first candidate, gains written out), chosen,
  * most_generations, most_cases, finished, wall_time, linear_limit (share of the fresh starts from
- * which linear theory allows any controller to recover; none: it tells none), note (why the search
- * ended).
+ * which linear theory allows any controller to recover, in the worst circumstance or their mean as
+ * the search counts; none: it tells none), note (why the search ended).
  */
 #ifndef STANCE_STORE_SEARCH_FILE_H
 #define STANCE_STORE_SEARCH_FILE_H
@@ -67,7 +67,8 @@ enum search_dimension {
       "fresh starts by what became of them")                                                       \
     X(confirmed_critical, double, CONFIRMED, CIRCUMSTANCE, NO, "s",                                \
       "critical sample time of its loop without delay")                                            \
-    X(confirmed_score, int64_t, CONFIRMED, NO, NO, "1", "what is compared, a whole number")        \
+    X(confirmed_score, int64_t, CONFIRMED, NO, NO, "1",                                            \
+      "worth of the fresh starts, a whole number")                                                 \
     X(confirmed_objective, double, CONFIRMED, NO, NO, "1", "the same, of each fresh start")        \
     X(confirmed_training, double, CONFIRMED, NO, NO, "1",                                          \
       "objective of the starts of the search; NAN: it had none")                                   \
@@ -81,11 +82,19 @@ enum search_dimension {
     X(elsewhere_chosen, double, ELSEWHERE, NO, NO, "1",                                            \
       "share of fresh starts that the chosen one recovers there")
 
+/* The same, of files since one is chosen by starts of its own: read from older ones, where it is
+ * chosen by the fresh starts, they are nothing (NAN, 0). */
+#define SEARCH_ADDED(X)                                                                            \
+    X(choice_score, int64_t, CONFIRMED, NO, NO, "1",                                               \
+      "by which one is chosen, a whole number, of starts of its own")                              \
+    X(choice_objective, double, CONFIRMED, NO, NO, "1", "the same, of each such start")
+
 struct search_file {
     size_t length[SEARCH_DIMENSION_COUNT]; /* 0: variables over it are left out */
     char **parameter, **circumstance, **kind, **varied, **elsewhere; /* words of dimensions */
 #define SEARCH_FIELD(name, type, ...) type *name;
     SEARCH_VARIABLES(SEARCH_FIELD)
+    SEARCH_ADDED(SEARCH_FIELD)
 #undef SEARCH_FIELD
     char *title, *scenario, *first_scenario, *revision, *date, *note;
     int64_t chosen;           /* place among `confirmed`; -1: none yet */
