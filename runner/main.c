@@ -33,7 +33,8 @@ static void print_usage(FILE *out)
     for (size_t i = 0; i < COMMANDS; i++)
         fprintf(out, "  %-12s %s\n", commands[i]->name, commands[i]->summary);
     fputs(
-        "\nstance COMMAND -h explains a command; stance --version says what was built.\n"
+        "\nstance COMMAND -h, or stance help COMMAND, explains a command; stance --version says "
+        "what was built.\n"
         "Exit codes: 0 done, 1 some cases failed numerically (compare: files differ),\n"
         "2 bad use or bad scenario, 3 input or output failed, 4 interrupted and resumable.\n"
         "The environment variable STANCE_ISA, if set, names the instruction set to compute with;\n"
@@ -96,6 +97,7 @@ static int checked_output(int code)
 
 int main(int argc, char **argv)
 {
+    static char help_option[] = "-h";
     /* A write beyond the file size limit is to fail with an error, not to kill the process. */
     signal(SIGXFSZ, SIG_IGN);
     if (!hold_standard_streams())
@@ -104,10 +106,15 @@ int main(int argc, char **argv)
         print_usage(stderr);
         return EXIT_USAGE;
     }
-    if (strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "--help") == 0 ||
-        strcmp(argv[1], "help") == 0) {
+    const bool helps = strcmp(argv[1], "help") == 0;
+    if (strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "--help") == 0 || (helps && argc == 2)) {
         print_usage(stdout);
         return checked_output(EXIT_DONE);
+    }
+    if (helps) { /* stance help COMMAND: stance COMMAND -h */
+        argv[1] = argv[2];
+        argv[2] = help_option;
+        argc = 3;
     }
     if (strcmp(argv[1], "--version") == 0) {
         print_version();

@@ -225,7 +225,8 @@ static void held_coordinates_have_no_gains(void **state)
     }
     assert_int_equal(held, 1);
     resolve(good, sets, 5, &design, &c,
-            "controller.poles: 4 of them; where the contacts hold there are 8 states");
+            "controller.poles: 4 of them; where the contacts hold there are 8 states; idle there, "
+            "with their rates: shank2");
 }
 
 /* A target on both feet is reached on both. */
@@ -278,7 +279,8 @@ static void states_stand(void **state)
     s.scene->gaps(s.scene, c.robot, c.position, gap);
     assert_near(gap[0], 0, 1e-15);
     scenario_free(&s);
-    resolve(good, sets, 3, &design, &c, "shank1_high would start 0.1 beyond");
+    resolve(good, sets, 3, &design, &c,
+            "initial.state.shank1: shank1 would start at 0.1 rad, above its upper limit of 0 rad");
 }
 
 /* ---- wrong ones ------------------------------------------------------------------------------ */

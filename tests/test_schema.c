@@ -43,25 +43,39 @@ static bool begins(const char *text, const char *path)
     return strncmp(text, path, strlen(path)) == 0 && text[strlen(path)] == '\n';
 }
 
+/* What is described of a scene, alone or with others that have the same; NULL: nothing. */
+static const char *section_of(const char *scene)
+{
+    char line[200], word[64];
+    snprintf(word, sizeof word, " %.40s,", scene);
+    for (const char *at = described; at; at = strstr(at + 1, "scene: ")) {
+        const size_t length = strcspn(at, "\n");
+        if (strncmp(at, "scene: ", 7) != 0)
+            continue;
+        snprintf(line, sizeof line, "%.*s,", (int)length, at);
+        if (strstr(line, word))
+            return at + length + 1;
+    }
+    return NULL;
+}
+
 static void every_path_is_described(void **state)
 {
     (void)state;
     for (int k = 0; stance_scenes()[k]; k++) {
         struct schema *schema = built_schema(stance_scenes()[k]);
         char head[64], first[32];
-        snprintf(head, sizeof head, "scene: %.40s\n", schema->scene->name);
         for (size_t i = 0; i < schema->count; i++) {
             const char *path = schema->field[i].path;
             assert_true(describe(path, false));
-            const char *at = strstr(described, head);
-            assert_true(begins(at ? at + strlen(head) : described, path));
+            const char *at = section_of(schema->scene->name);
+            assert_true(begins(at ? at : described, path));
             snprintf(first, sizeof first, "%.20s", schema->field[i].text);
             assert_non_null(strstr(at ? at : described, first));
             assert_true(describe(NULL, false));
             snprintf(head, sizeof head, "scene: %.40s (", schema->scene->name);
             at = schema->field[i].by_scene ? strstr(described, head) : described;
             assert_true(at && strstr(at, path));
-            snprintf(head, sizeof head, "scene: %.40s\n", schema->scene->name);
         }
         free(schema);
     }
@@ -69,6 +83,34 @@ static void every_path_is_described(void **state)
     assert_false(describe("controler.kp", false));
     assert_string_equal(errors, "stance describe: unknown path 'controler.kp'; did you mean "
                                 "'controller.kp'?\n");
+}
+
+/* Names of a robot of one's own are those of the pattern; what several scenes have alike is said
+ * once. */
+static void own_names_are_described(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path, *begins;
+    } paths[] = {
+        {"robot.bodies.trunk", "scene: mechanism\nrobot.bodies.BODY\n"},
+        {"robot.bodies.trunk.limits[1]", "scene: mechanism\nrobot.bodies.BODY.limits[]\n"},
+        {"robot.contacts.toe.radius", "scene: mechanism\nrobot.contacts.CONTACT.radius\n"},
+        {"initial.state.trunk", "scene: mechanism\ninitial.state.BODY\n"},
+        {"initial.state.vtrunk", "scene: mechanism\ninitial.state.vBODY\n"},
+        {"controller.weights.trunk", "scene: mechanism\ncontroller.weights.BODY\n"},
+        {"controller.gains.hip.trunk", "scene: mechanism\ncontroller.gains.ACTUATOR.BODY\n"},
+        {"controller.poles[]", "scene: biped, mechanism\ncontroller.poles[]\n"},
+        {"controller.poles[2]", "scene: biped, mechanism\ncontroller.poles[]\n"},
+    };
+    for (size_t i = 0; i < sizeof paths / sizeof paths[0]; i++) {
+        assert_true(describe(paths[i].path, false));
+        assert_true(strncmp(described, paths[i].begins, strlen(paths[i].begins)) == 0);
+        assert_null(strstr(described + 1, "scene: "));
+    }
+    assert_false(describe("robot.bodies.trunk.mas", false));
+    assert_false(describe("robot.bodies.trunk.mass.x", false));
+    assert_false(describe("controller.gains.hip.trunk[0]", false));
 }
 
 /* A scene's own keys are described for every scene that has them, and for no other. */
@@ -134,7 +176,7 @@ static json_t *json_at(json_t *root, const char *path)
 
 static void check_number_schema(const struct scenario_field *field, json_t *object)
 {
-    if (field->words)
+    if (json_object_get(object, "anyOf")) /* or a word, or a complex number */
         object = json_array_get(json_object_get(object, "anyOf"), 0);
     assert_string_equal(json_string_value(json_object_get(object, "type")),
                         field->type == FIELD_INTEGER ? "integer" : "number");
@@ -217,6 +259,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_path_is_described),
+        cmocka_unit_test(own_names_are_described),
         cmocka_unit_test(scenes_have_their_own_keys),
         cmocka_unit_test(tolerance_names_its_methods),
         cmocka_unit_test(schema_agrees_with_the_table),

@@ -18,6 +18,19 @@ cp "$shipped/mechanisms/cart_pole.yaml" cart.yaml
 head -c 5000 ball.h5 >cut.h5
 : >empty.h5
 
+cat >lamp.yaml <<'YAML'
+stance: 1
+scene: mechanism
+robot:
+  bodies:
+    foot: {joint: free, mass: 1, inertia: 0.01, centre: [0.05, 0.02]}
+    arm: {joint: hinge, parent: foot, mass: 3, inertia: 0.1, at: [0, 0.1], centre: [0, 0.5], limits: [-0.3, 1]}
+  contacts: {plate: {body: foot, from: [-0.1, 0], to: [0.2, 0]}}
+  actuators: {ankle: {body: arm, limit: 10}}
+initial: {equilibrium: {arm: 0.5}}
+stop: {time: 1}
+YAML
+
 # Three lines for each: the wrong command, the right one, what the one line on standard error says.
 mend() { # wrong, right, said
     local status lines
@@ -272,6 +285,26 @@ no equilibrium at pole = 180 rad, more than a turn: angles are in radians (are t
 stance check cart.yaml --set initial.equilibrium.pole=3.14159
 stance check cart.yaml --set initial.equilibrium.pole=3.141592653589793
 pole cannot be balanced: 1.3e-06 N m are left on it
+
+stance check lamp.yaml
+stance check lamp.yaml --set initial.equilibrium.arm=0.3046
+plate_toe would have to pull, with 8.80082 N; there is one with arm from -0.3 to 0.3046 rad
+
+stance design lamp.yaml --set initial.equilibrium.arm=-0.35
+stance design lamp.yaml --set initial.equilibrium.arm=-0.3
+arm would be at -0.35 rad, beyond its limits -0.3 ... 1; there is one with arm from -0.3 to 0.3046 rad
+
+stance check lamp.yaml --set initial='{state: {arm: -0.5}, support: [plate]}'
+stance check lamp.yaml --set initial='{state: {arm: -0.2}, support: [plate]}'
+initial.state.arm: arm would start at -0.5 rad, below its lower limit of -0.3 rad
+
+stance help ruun
+stance help run
+unknown command 'ruun'; did you mean 'run'?
+
+stance describe robot.bodies.trunk.mas
+stance describe robot.bodies.trunk.mass
+unknown path 'robot.bodies.trunk.mas'
 
 stance check
 stance check ball_bounce.yaml

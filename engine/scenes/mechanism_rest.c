@@ -396,7 +396,7 @@ static stance_error check(const struct search *s, const stance_equilibrium *e,
     for (int c = 0; c < s->scene->contacts; c++) {
         if ((e->supports >> c & 1) && !(e->force[c][0] > 0)) {
             return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
-                                 "no equilibrium: %s would have to pull, with %.6g",
+                                 "no equilibrium: %s would have to pull, with %.6g N",
                                  s->scene->contact_name[c], -e->force[c][0]);
         }
     }
@@ -408,15 +408,16 @@ static stance_error check(const struct search *s, const stance_equilibrium *e,
         if (!(q >= limits[0] - at_limit && q <= limits[1] + at_limit)) {
             return stance_refuse(
                 message, STANCE_NO_EQUILIBRIUM,
-                "no equilibrium: %s would be at %.6g, beyond its limits %.6g ... %.6g",
-                s->m->body[b].name, q, limits[0], limits[1]);
+                "no equilibrium: %s would be at %.6g %s, beyond its limits %.6g ... %.6g",
+                s->m->body[b].name, q, pose.turns[b] ? "rad" : "m", limits[0], limits[1]);
         }
     }
     for (int k = 0; k < s->m->actuators; k++) {
         if (!(fabs(e->torque[k]) <= pose.number.limit[k] * (1 + 1e-12))) {
             return stance_refuse(message, STANCE_NO_EQUILIBRIUM,
-                                 "no equilibrium: it takes %.6g from %s, whose limit is %.6g",
-                                 e->torque[k], s->m->actuator[k].name, pose.number.limit[k]);
+                                 "no equilibrium: it takes %.6g %s from %s, whose limit is %.6g",
+                                 e->torque[k], pose.turns[s->m->actuator[k].body] ? "N m" : "N",
+                                 s->m->actuator[k].name, pose.number.limit[k]);
         }
     }
     return STANCE_OK;

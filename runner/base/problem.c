@@ -1,6 +1,8 @@
 /* problem.c - errors of a scenario, collected while it is read and printed in order of position. */
 #include "problem.h"
+#include "words.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -43,22 +45,30 @@ static int by_position(const void *left, const void *right)
     return a->order < b->order ? -1 : a->order > b->order;
 }
 
-/* Cut to `limit` bytes, never inside a character; control characters become '?'. */
+/* Cut to some `limit` bytes, never inside a character; control characters become '?', others that
+ * cannot be seen their number: at most ROOM bytes more, with the zero. */
+enum { ROOM = 16 };
 static void clean(char *to, size_t limit, const char *from)
 {
-    size_t n = 0;
-    while (n < limit && from[n]) {
-        unsigned char c = (unsigned char)from[n];
-        to[n] = (c < 0x20 || c == 0x7f) ? '?' : (char)c;
-        n++;
+    size_t n = 0, left = strlen(from);
+    while (left > 0) {
+        const unsigned char c = (unsigned char)*from;
+        uint32_t letter = c;
+        const size_t whole = utf8_letter(from, left, &letter), length = whole ? whole : 1;
+        bool blank;
+        if (n + length > limit)
+            break;
+        if (whole > 1 && hidden_letter(letter, &blank)) {
+            n += (size_t)snprintf(to + n, ROOM, "<U+%04" PRIX32 ">", letter);
+        } else {
+            memcpy(to + n, from, length);
+            to[n] = (c < 0x20 || c == 0x7f) ? '?' : (char)c;
+            n += length;
+        }
+        from += length;
+        left -= length;
     }
-    if (from[n]) {
-        while (n > 0 && ((unsigned char)from[n] & 0xc0) == 0x80)
-            n--;
-        memcpy(to + n, "...", 3);
-        n += 3;
-    }
-    to[n] = '\0';
+    memcpy(to + n, left > 0 ? "..." : "", left > 0 ? 4 : 1);
 }
 
 void problems_print(struct problems *problems, const char *file, const char *const *sets, FILE *out)
@@ -69,8 +79,8 @@ void problems_print(struct problems *problems, const char *file, const char *con
     for (size_t i = 0; i < shown_count; i++) {
         const struct problem *problem = &problems->list[i];
         if (problem->mark.set > 0) {
-            char set[260];
-            clean(set, 250, sets[problem->mark.set - 1]);
+            char set[250 + ROOM];
+            clean(set, sizeof set - ROOM, sets[problem->mark.set - 1]);
             fprintf(out, "--set %s: %s\n", set, problem->text);
         } else if (problem->mark.line > 0) {
             fprintf(out, "%s:%d:%d: %s\n", file, problem->mark.line, problem->mark.column,
@@ -86,7 +96,7 @@ void problems_print(struct problems *problems, const char *file, const char *con
 
 const char *shown(char buffer[SHOWN_SIZE], const char *text)
 {
-    clean(buffer, 44, text);
+    clean(buffer, SHOWN_SIZE - ROOM - 4, text);
     return buffer;
 }
 

@@ -52,7 +52,7 @@ void problems_print(struct problems *problems, const char *file, const char *con
                     FILE *out);
 
 /* Text from a file made fit for a one-line message: cut to some 40 characters, control characters
- * shown as '?'. Returns `buffer`. */
+ * shown as '?', others that cannot be seen as <U+200B>. Returns `buffer`. */
 const char *shown(char buffer[SHOWN_SIZE], const char *text);
 
 /* `count` words with a separator between them; of those that do not fit, how many more there are.

@@ -1,4 +1,4 @@
-/* words.c - edit distances to known words. */
+/* words.c - edit distances to known words; letters. */
 #include "words.h"
 
 #include <string.h>
@@ -79,4 +79,57 @@ size_t utf8_letter(const char *text, size_t left, uint32_t *character)
         return 0;
     *character = c;
     return length;
+}
+
+const char *hidden_letter(uint32_t character, bool *blank)
+{
+    static const struct {
+        uint32_t first, last;
+        bool blank;
+        const char *name;
+    } hidden[] = {
+        {0x85, 0x85, true, "next line"},
+        {0xa0, 0xa0, true, "no-break space"},
+        {0xad, 0xad, false, "soft hyphen"},
+        {0x34f, 0x34f, false, "combining grapheme joiner"},
+        {0x61c, 0x61c, false, "Arabic letter mark"},
+        {0x115f, 0x1160, false, "Hangul filler"},
+        {0x1680, 0x1680, true, "Ogham space"},
+        {0x17b4, 0x17b5, false, "Khmer inherent vowel"},
+        {0x180b, 0x180f, false, "Mongolian mark"},
+        {0x2000, 0x2006, true, "quad or em space"},
+        {0x2007, 0x2007, true, "figure space"},
+        {0x2008, 0x2008, true, "punctuation space"},
+        {0x2009, 0x2009, true, "thin space"},
+        {0x200a, 0x200a, true, "hair space"},
+        {0x200b, 0x200b, false, "zero width space"},
+        {0x200c, 0x200c, false, "zero width non-joiner"},
+        {0x200d, 0x200d, false, "zero width joiner"},
+        {0x200e, 0x200f, false, "direction mark"},
+        {0x2028, 0x2028, true, "line separator"},
+        {0x2029, 0x2029, true, "paragraph separator"},
+        {0x202a, 0x202e, false, "direction mark"},
+        {0x202f, 0x202f, true, "narrow no-break space"},
+        {0x205f, 0x205f, true, "mathematical space"},
+        {0x2060, 0x2060, false, "word joiner"},
+        {0x2061, 0x2064, false, "invisible operator"},
+        {0x2065, 0x206f, false, "direction mark"},
+        {0x2800, 0x2800, true, "blank Braille pattern"},
+        {0x3000, 0x3000, true, "ideographic space"},
+        {0x3164, 0x3164, false, "Hangul filler"},
+        {0xfe00, 0xfe0f, false, "variation selector"},
+        {0xfeff, 0xfeff, false, "byte order mark"},
+        {0xffa0, 0xffa0, false, "Hangul filler"},
+        {0xfff0, 0xfffb, false, "annotation mark"},
+        {0x1bca0, 0x1bca3, false, "format mark"},
+        {0x1d173, 0x1d17a, false, "format mark"},
+        {0xe0000, 0xe0fff, false, "tag or variation selector"},
+    };
+    for (size_t i = 0; i < sizeof hidden / sizeof hidden[0]; i++) {
+        if (character >= hidden[i].first && character <= hidden[i].last) {
+            *blank = hidden[i].blank;
+            return hidden[i].name;
+        }
+    }
+    return NULL;
 }

@@ -2,6 +2,7 @@
 #ifndef STANCE_BASE_WORDS_H
 #define STANCE_BASE_WORDS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -12,5 +13,9 @@ const char *nearest_word(const char *word, const char *const *known, size_t coun
 /* Decodes one letter of UTF-8 of at most `left` bytes; returns its length, 0 when it is malformed.
  */
 size_t utf8_letter(const char *text, size_t left, uint32_t *character);
+
+/* What a letter that cannot be seen, or not told from a blank, is called; NULL: it is seen.
+ * `blank`: it takes room as a blank does. */
+const char *hidden_letter(uint32_t character, bool *blank);
 
 #endif

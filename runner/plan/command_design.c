@@ -3,6 +3,7 @@
  */
 #include "design.h"
 #include "instruction_set.h"
+#include "standing.h"
 
 #include "runner/base/command.h"
 #include "runner/base/message.h"
@@ -83,8 +84,10 @@ static int design(const struct scenario *s, bool json)
     }
     if (scenario_law(&s->base) == stance_law_find("decoupling"))
         return design_decoupling(s, json);
-    if (!design_compute(&report, s, &message))
+    if (!design_compute(&report, s, &message)) {
+        standing_ranges(s, &s->base, &message);
         return report_at(s, message.text);
+    }
     if (json)
         return print_json(design_json(&report));
     design_print(&report);

@@ -130,9 +130,10 @@ static void put_design(const struct design_report *r, json_t *controller)
     json_object_set_new(controller, "design", json_string(designs[design]));
     if (design != DESIGN_GAINS)
         json_object_set_new(controller, "design_time", json_string(times[values->design_time]));
+    double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
     if (design == DESIGN_PLACE || design == DESIGN_PLACE_SCHUR) {
         json_object_set_new(controller, "poles",
-                            json_complex(r->states, values->pole_re, values->pole_im));
+                            json_complex(scenario_poles(values, re, im), re, im));
     }
     if (design == DESIGN_LQR) {
         json_object_set_new(controller, "weights",

@@ -359,8 +359,9 @@ static void print_closed_loop(const struct design_report *r)
     }
     print_matrix(r, "K", r->inputs, r->states, r->K, true, false);
     putchar('\n');
-    if (places)
-        print_complex("wanted poles", r->states, values->pole_re, values->pole_im);
+    double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
+    if (places && scenario_poles(values, re, im) == r->states)
+        print_complex("wanted poles", r->states, re, im);
     else if (law->designed && values->design == DESIGN_LQR)
         print_weights(r);
     print_complex("closed loop", r->states, r->closed_re, r->closed_im);

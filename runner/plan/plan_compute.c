@@ -2,6 +2,7 @@
 #include "instruction_set.h"
 #include "known_basin.h"
 #include "plan.h"
+#include "standing.h"
 
 #include "runner/base/command.h"
 #include "runner/base/message.h"
@@ -34,6 +35,15 @@ static void place_error(const struct scenario *s, const char *otherwise, const c
                         struct plan_error *error)
 {
     error->line = error->column = 1;
+    for (int a = 0; a < s->axes; a++)
+        for (int k = 0; k < s->axis[a].paths; k++) {
+            const size_t length = strlen(s->axis[a].path[k]);
+            if (strncmp(message, s->axis[a].path[k], length) == 0 && message[length] == ':') {
+                error->line = s->axis[a].line;
+                error->column = s->axis[a].column;
+                return;
+            }
+        }
     if (!scenario_place(s, message, &error->line, &error->column))
         scenario_place(s, otherwise, &error->line, &error->column);
 }
@@ -51,6 +61,8 @@ static void blame_design(const struct plan *plan, size_t design, struct plan_err
     values.law = 0;
     bool law = resolve_design(s->scene, &values, &result, &ignored);
     place_error(s, law ? "controller:" : "initial:", error->message.text, error);
+    values.law = s->base.law;
+    standing_ranges(s, &values, &error->message);
 }
 
 /* This rank's block of the designs. */

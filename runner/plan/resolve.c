@@ -160,7 +160,10 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     const int n = 2 * equilibrium->freedoms, m = scene->actuators;
     double weights[2 * STANCE_MAX_POSTURE];
     const bool places = values->design == DESIGN_PLACE || values->design == DESIGN_PLACE_SCHUR;
-    const double *re = values->pole_re, *im = values->pole_im, T = values->sample_time;
+    double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
+    const double T = values->sample_time;
+    const int poles = scenario_poles(values, re, im);
+    char idle[260];
     const bool sampled = values->design_time == DESIGN_SAMPLED;
     const stance_placement method =
         values->design == DESIGN_PLACE_SCHUR ? STANCE_SCHUR : STANCE_ROBUST;
@@ -172,10 +175,11 @@ bool resolve_gains(const stance_scene *scene, const struct scenario_values *valu
     stance_error error = STANCE_OK;
     for (int j = 0; j < n; j++)
         weights[j] = values->state_weights[resolve_state(scene, equilibrium, j)];
-    if (places && scene->mechanism && values->poles != n)
+    if (places && poles != n)
         return complain(message,
-                        "controller.poles: %d of them; where the contacts hold there are %d states",
-                        values->poles, n);
+                        "controller.poles: %d of them; where the contacts hold there are %d "
+                        "states%.100s",
+                        poles, n, scenario_idle(scene, equilibrium, idle, sizeof idle));
     if (values->design == DESIGN_GAINS) {
         if (!take_gains(scene, values, equilibrium, K, message))
             return false;
@@ -373,7 +377,34 @@ static bool passes_through(const stance_scene *scene, const stance_case *out, in
     return behind;
 }
 
-static bool check_start(const stance_scene *scene, const stance_case *out, stance_message *message)
+/* Contact c, a stop of a joint, lies behind the start: says by which key, and how far it may be. */
+static bool beyond_stop(const stance_scene *scene, const struct scenario_values *values,
+                        const stance_case *out, int c, stance_message *message)
+{
+    const stance_mechanism *const m = scene->mechanism;
+    stance_mechanism_numbers number;
+    int body = 0, side = 0, i = 0;
+    for (int before = c; before >= 0 && scene->grip[before] < 0; before--)
+        side++; /* which of all stops, from 1 */
+    for (int k = 0; side > 0; k++) {
+        body = k / 2;
+        side -= stance_mechanism_stops(m, body, k % 2);
+        i = k % 2;
+    }
+    side = i;
+    for (i = 0; strcmp(scene->coordinate[i].name, m->body[body].name) != 0;)
+        i++;
+    stance_mechanism_expand(m, out->robot, &number);
+    const char *const unit = scene->coordinate[i].unit;
+    return complain(message, "initial.%s.%s: %s would start at %.6g %s, %s limit of %.6g %s",
+                    values->state_given ? "state" : "offset", m->body[body].name,
+                    m->body[body].name, out->position[i], unit,
+                    side ? "above its upper" : "below its lower", number.body[body].limits[side],
+                    unit);
+}
+
+static bool check_start(const stance_scene *scene, const struct scenario_values *values,
+                        const stance_case *out, stance_message *message)
 {
     double gap[STANCE_MAX_CONTACTS];
     for (int i = 0; i < scene->coordinates; i++) {
@@ -393,7 +424,7 @@ static bool check_start(const stance_scene *scene, const stance_case *out, stanc
         }
         const bool stop = scene->grip && scene->grip[c] < 0;
         if (stop && gap[c] < -DEEPEST_START)
-            return complain(message, "%s would start %.6g beyond", scene->contact_name[c], -gap[c]);
+            return beyond_stop(scene, values, out, c, message);
         if ((out->contacts >> c & 1) && gap[c] < -DEEPEST_START &&
             !passes_through(scene, out, c, gap)) {
             return complain(message, "%s would start %.6g m inside the ground",
@@ -603,7 +634,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
                                  "within 0 ... 1");
     }
     resolve_start(scene, values, design, out->position, out->velocity);
-    if (!check_start(scene, out, message) || !set_laws(scene, values, design, out, message))
+    if (!check_start(scene, values, out, message) || !set_laws(scene, values, design, out, message))
         return false;
     return resolve_time(values, out, message) && check_law(scene, out, message);
 }

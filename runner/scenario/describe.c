@@ -78,7 +78,7 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
         [FIELD_VALUES] = {"list of numbers, words or lists of these", ""},
     };
     char range[96], words[400] = "", count[2][24];
-    const char *unit = strcmp(field->unit, "1") != 0 && field->columns == 0 ? field->unit : "";
+    const char *unit = strcmp(field->unit, "1") != 0 ? field->unit : "";
 
     word_list(words, sizeof words, field->words, field->word_count);
     schema_range_text(field, range, sizeof range);
@@ -167,7 +167,9 @@ static bool is_common(const struct schema *schemas, size_t count,
 static void print_all(FILE *out, const struct schema *schemas, size_t count)
 {
     fputs("The scenario format, version 1. Units are SI; [] stands for an index from 0.\n"
-          "stance describe PATH tells more; stance describe --schema prints JSON Schema.\n",
+          "stance describe PATH tells more; stance describe --schema prints JSON Schema.\n"
+          "Keys that begin with x- are passed over: under them stands what aliases (*NAME) repeat\n"
+          "and << merges into a mapping, whose own keys come first.\n",
           out);
     /* What is the same in every scene is said once, before what each brings. */
     for (size_t k = 0; k <= count; k++) {
@@ -272,8 +274,20 @@ static json_t *complex_schema(const struct schema *schema)
                      "pattern", pattern);
 }
 
+/* A list whose items may be given by name, too. */
+static json_t *or_named(const struct schema *schema, const struct scenario_field *field,
+                        json_t *list)
+{
+    const char *name;
+    if (schema_children(schema, field->path, &name, 1) == 0)
+        return list;
+    return json_pack("{s:[o,o]}", "anyOf", list, map_schema(schema, field->path));
+}
+
 static json_t *type_schema(const struct schema *schema, const struct scenario_field *field)
 {
+    if (strncmp(field->path, "controller.poles.", 17) == 0)
+        return complex_schema(schema);
     switch (field->type) {
     case FIELD_MAP:
         return map_schema(schema, field->path);
@@ -290,16 +304,19 @@ static json_t *type_schema(const struct schema *schema, const struct scenario_fi
         return list;
     }
     case FIELD_POLES:
-        return list_schema(complex_schema(schema), field->items);
+        return or_named(schema, field, list_schema(complex_schema(schema), field->items));
     case FIELD_NUMBERS: {
         char item[sizeof field->path + 2];
         snprintf(item, sizeof item, "%s[]", field->path);
-        return list_schema(number_schema(schema_find(schema, item)), field->items);
+        return or_named(schema, field,
+                        list_schema(number_schema(schema_find(schema, item)), field->items));
     }
     case FIELD_MATRIX:
-        return list_schema(
-            list_schema(number_schema(schema_find(schema, "controller.gains[][]")), field->columns),
-            field->items);
+        return or_named(
+            schema, field,
+            list_schema(list_schema(number_schema(schema_find(schema, "controller.gains[][]")),
+                                    field->columns),
+                        field->items));
     case FIELD_MAP_OR_WORD:
         return json_pack("{s:[o,o]}", "anyOf", words_schema(field),
                          map_schema(schema, field->path));
@@ -417,6 +434,7 @@ static json_t *scene_schema(const struct schema *schema)
     json_t *object = map_schema(schema, "");
     json_t *scene = json_object_get(json_object_get(object, "properties"), "scene");
     json_object_set_new(scene, "enum", json_pack("[s]", schema->scene->name));
+    json_object_set_new(object, "patternProperties", json_pack("{s:b}", "^x-", 1));
     return object;
 }
 
@@ -517,21 +535,84 @@ static void explain_path(const char *path, FILE *errors, const struct schema *sc
     }
 }
 
+/* Whether a path is the one of a row, in which any name may stand for one of the pattern's. */
+static bool fits_pattern(const struct schema *schema, const char *row, const char *path)
+{
+    for (;; row++, path++) {
+        const size_t length = strcspn(row, ".["), own = strcspn(path, ".[");
+        char name[sizeof schema->field->path];
+        snprintf(name, sizeof name, "%.*s", (int)length, row);
+        if (!(length == own && strncmp(row, path, own) == 0) &&
+            !(own > 0 && is_pattern(schema, name) && (name[0] != 'v' || path[0] == 'v')))
+            return false;
+        row += length;
+        path += own;
+        if (*row != *path || !*row)
+            return *row == *path;
+    }
+}
+
+/* The row of a path, with indices or "[]", in which names of a robot of one's own may stand for
+ * those of the pattern. */
+static const struct scenario_field *find_row(const struct schema *schema, const char *path)
+{
+    char general[sizeof schema->field->path];
+    size_t index[2], n = 0;
+    const struct scenario_field *field = schema_find(schema, path);
+    field = field ? field : schema_find_concrete(schema, path, index);
+    for (const char *at = path; *at && n < sizeof general - 1; n++) {
+        general[n] = *at++;
+        if (general[n] == '[')
+            at += strspn(at, "0123456789");
+    }
+    general[n] = '\0';
+    const bool exact = field != NULL;
+    for (size_t i = 0; i < schema->count && schema->pattern && !exact; i++)
+        if (fits_pattern(schema, schema->field[i].path, general))
+            field = &schema->field[i]; /* a rate comes after its coordinate */
+    return field;
+}
+
+/* Whether two scenes say the same of a path. */
+static bool say_the_same(const char *path, const struct schema *a, const struct schema *b)
+{
+    const struct schema *const of[] = {a, b};
+    char *text[2] = {NULL, NULL};
+    for (int i = 0; i < 2; i++) {
+        const struct scenario_field *const field = find_row(of[i], path);
+        size_t size = 0;
+        FILE *const out = field ? open_memstream(&text[i], &size) : NULL;
+        if (out)
+            print_field(out, of[i], field);
+        if (out)
+            fclose(out);
+    }
+    const bool same = text[0] && text[1] && strcmp(text[0], text[1]) == 0;
+    free(text[0]);
+    free(text[1]);
+    return same;
+}
+
 /* A path, for every scene where it stands for something else. */
 static bool print_path(const char *path, FILE *out, FILE *errors, const struct schema *schemas,
                        size_t count)
 {
-    size_t index[2];
     bool found = false;
-
     for (size_t k = 0; k < count; k++) {
-        const struct scenario_field *field = schema_find(&schemas[k], path);
-        field = field ? field : schema_find_concrete(&schemas[k], path, index);
-        if (!field)
+        const struct scenario_field *const field = find_row(&schemas[k], path);
+        const bool common = field && is_common(schemas, count, field);
+        bool said = false;
+        for (size_t i = 0; i < k && !said; i++)
+            said = say_the_same(path, &schemas[i], &schemas[k]);
+        if (!field || said)
             continue;
-        bool common = is_common(schemas, count, field);
         if (!common)
-            fprintf(out, "%sscene: %s\n", found ? "\n" : "", schemas[k].scene->name);
+            fprintf(out, "%sscene: %s", found ? "\n" : "", schemas[k].scene->name);
+        for (size_t i = k + 1; i < count && !common; i++)
+            if (say_the_same(path, &schemas[i], &schemas[k]))
+                fprintf(out, ", %s", schemas[i].scene->name);
+        if (!common)
+            fputc('\n', out);
         print_field(out, &schemas[k], field);
         found = true;
         if (common)

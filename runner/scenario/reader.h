@@ -22,10 +22,20 @@ struct swept_field {
     struct mark mark;
 };
 
+/* A list of a mechanism that has another length than it should: reported when it is known which
+ * states are idle. */
+struct misfit {
+    char path[96];
+    const struct tree_node *node;
+    size_t items;
+    const char *what;
+};
+
 struct reader {
     struct scenario *s;
     struct tree tree;
     struct problems problems;
+    struct problems hidden; /* letters that cannot be seen: where there are problems, their cause */
     const struct schema *schema;
     struct schema *own_schema; /* of a mechanism of the file */
     struct seen seen[SCHEMA_MAX_FIELDS];
@@ -33,6 +43,8 @@ struct reader {
     struct swept_field swept[SCENARIO_MAX_AXES][SCENARIO_MAX_PATHS];
     struct swept_field sought[SCENARIO_MAX_PATHS]; /* of optimise */
     bool axes_bad;                                 /* the number of cases is not known */
+    struct misfit misfit[2 + STANCE_MAX_ACTUATORS];
+    size_t misfits;
 };
 
 /* What is known of the field at a path of the schema ("[]" for indices); never NULL, for a path
@@ -52,9 +64,19 @@ static inline bool reader_given(const struct seen *seen)
 void reader_check_keys(struct reader *r, const struct tree_node *map, const char *path,
                        const char *name);
 
+/* Place of pole i of a list or a mapping in the base values, and its path. */
+size_t reader_pole(const struct reader *r, const struct tree_node *poles, size_t i, char path[96]);
+
 /* Reports something else where the mapping of `field` is wanted. */
 void reader_no_mapping(struct reader *r, const struct scenario_field *field,
                        const struct tree_node *node);
+
+/* named.c: weights and gains by name become lists, in the tree; then those --set are done that wait
+ * for that (named_waits). False: a problem. */
+bool named_read(struct reader *r, const char *const *sets, size_t set_count);
+bool named_waits(const char *set);
+/* Says what list does not fit, and which states are idle. */
+void named_misfit(struct reader *r, const struct misfit *misfit);
 
 /* What mechanism_read has read: where keys stand is noted by the reader, no more. */
 bool reader_described(const struct reader *r, const char *path);

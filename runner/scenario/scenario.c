@@ -7,6 +7,7 @@
 #include "scenario.h"
 #include "mechanism.h"
 #include "reader.h"
+#include "schema_mechanism.h"
 
 #include "runner/base/command.h"
 #include "runner/base/numbers.h"
@@ -30,8 +31,10 @@ static bool read_tree(struct reader *r, const char *file, const char *given)
 
     if (good && length > TREE_MAX_BYTES)
         good = problem_add(&r->problems, (struct mark){0}, "larger than 1 MiB");
-    good = good && tree_check_text(text, length, &r->problems) &&
-           tree_parse(&r->tree, text, length, &r->problems);
+    good = good && tree_check_text(text, length, &r->problems);
+    if (good)
+        tree_find_hidden(text, length, 0, &r->hidden);
+    good = good && tree_parse(&r->tree, text, length, &r->problems);
     free(own);
     return good;
 }
@@ -64,9 +67,12 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
     char *place = (char *)&r->s->base + field->offset;
     double number = 0;
     uint32_t mask = 0;
-    bool good = field->type == FIELD_WORDS
-                    ? field_words(&r->problems, field, field->path, node, &mask)
-                    : field_value(&r->problems, field, field->path, node, &number);
+    const size_t pole = (field->offset - offsetof(struct scenario_values, pole_re)) / sizeof number;
+    bool good =
+        pole < SCENARIO_MAX_POLES
+            ? field_pole(&r->problems, field, field->path, node, &number, &r->s->base.pole_im[pole])
+        : field->type == FIELD_WORDS ? field_words(&r->problems, field, field->path, node, &mask)
+                                     : field_value(&r->problems, field, field->path, node, &number);
     if (good && field->type == FIELD_WORDS && r->s->scene->mechanism)
         mask = mechanism_contacts(r->s->scene, mask);
     if (good && field->type == FIELD_NUMBER) {
@@ -78,27 +84,66 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
     return good;
 }
 
+size_t reader_pole(const struct reader *r, const struct tree_node *poles, size_t i, char path[96])
+{
+    if (poles->kind == TREE_LIST) {
+        snprintf(path, 96, "controller.poles[%zu]", i);
+        return i;
+    }
+    snprintf(path, 96, "controller.poles.%.64s", poles->key[i].name);
+    const struct scenario_field *const field = schema_find(r->schema, path);
+    return field ? (field->offset - offsetof(struct scenario_values, pole_re)) / sizeof(double)
+                 : SCENARIO_MAX_POLES - 1;
+}
+
 static bool check_conjugates(struct reader *r, const struct tree_node *node)
 {
     const struct scenario_values *base = &r->s->base;
     bool taken[SCENARIO_MAX_POLES] = {false}, good = true;
-    char word[SHOWN_SIZE];
+    char word[SHOWN_SIZE], path[96], other[96];
 
-    for (size_t i = 0; i < node->count; i++) {
+    for (size_t n = 0; n < node->count; n++) {
+        const size_t i = reader_pole(r, node, n, path);
         bool paired = taken[i] || base->pole_im[i] == 0;
-        for (size_t k = i + 1; k < node->count && !paired; k++) {
+        for (size_t m = n + 1; m < node->count && !paired; m++) {
+            const size_t k = reader_pole(r, node, m, other);
             paired = !taken[k] && base->pole_re[k] == base->pole_re[i] &&
                      base->pole_im[k] == -base->pole_im[i];
             taken[k] = taken[k] || paired;
         }
         good = good && paired;
         if (!paired) {
-            problem_add(&r->problems, node->item[i]->mark,
-                        "controller.poles[%zu]: %s lacks its conjugate", i,
-                        shown(word, node->item[i]->text));
+            problem_add(&r->problems, node->item[n]->mark, "%s: %s lacks its conjugate", path,
+                        shown(word, node->item[n]->text));
         }
     }
     return good;
+}
+
+int scenario_poles(const struct scenario_values *values, double re[SCENARIO_MAX_POLES],
+                   double im[SCENARIO_MAX_POLES])
+{
+    int count = 0;
+    for (int i = 0; i < SCENARIO_MAX_POLES; i++) {
+        if (isnan(values->pole_re[i]) || values->pole_re[i] == 0)
+            continue;
+        re[count] = values->pole_re[i];
+        im[count++] = values->pole_im[i];
+    }
+    return count;
+}
+
+/* Keeps a list of states that has another length than it should, to be reported later. */
+static bool misfits(struct reader *r, const char *path, const struct tree_node *node, size_t items,
+                    const char *what)
+{
+    if (!r->s->scene->mechanism || node->kind != TREE_LIST || node->count == items ||
+        r->misfits == sizeof r->misfit / sizeof r->misfit[0])
+        return false;
+    struct misfit *const misfit = &r->misfit[r->misfits++];
+    *misfit = (struct misfit){.node = node, .items = items, .what = what};
+    snprintf(misfit->path, sizeof misfit->path, "%.90s", path);
+    return true;
 }
 
 /* A list of fixed length: numbers, poles, rows of numbers. Its items have a row of their own. */
@@ -115,7 +160,9 @@ static bool read_items(struct reader *r, const struct scenario_field *field,
         field->fewer && node->kind == TREE_LIST && node->count > 0 && node->count < field->items
             ? node->count
             : field->items;
-    bool good = field_items(&r->problems, field->path, node, items,
+    const bool states = field->items == 2 * (size_t)r->s->scene->postures && !matrix;
+    bool good = !(states && misfits(r, field->path, node, items, poles ? "poles" : "numbers")) &&
+                field_items(&r->problems, field->path, node, items,
                             matrix  ? "rows"
                             : poles ? "poles"
                                     : "numbers");
@@ -124,15 +171,14 @@ static bool read_items(struct reader *r, const struct scenario_field *field,
         snprintf(name, sizeof name, "%s[%zu]", field->path, i);
         good = poles ? field_pole(&r->problems, item, name, row, &number[i], &r->s->base.pole_im[i])
                : !matrix ? field_number(&r->problems, item, name, row, &number[i])
-                         : field_items(&r->problems, name, row, item->columns, "numbers");
+                         : !misfits(r, name, row, item->columns, "numbers") &&
+                               field_items(&r->problems, name, row, item->columns, "numbers");
         for (size_t k = 0; good && matrix && k < item->columns; k++) {
             snprintf(name, sizeof name, "%s[%zu][%zu]", field->path, i, k);
             good = field_number(&r->problems, item, name, row->item[k],
                                 &number[i * item->columns + k]);
         }
     }
-    if (poles)
-        r->s->base.poles = (int)items;
     return good && (!poles || check_conjugates(r, node));
 }
 
@@ -148,6 +194,14 @@ static void read_value(struct reader *r, const struct scenario_field *field,
     const bool map = field->type == FIELD_MAP || field->type == FIELD_MAP_OR_WORD;
     if (map && node->kind == TREE_MAP) {
         read_map(r, node, field->path);
+    } else if (field->type == FIELD_POLES && node->kind == TREE_MAP) {
+        read_map(r, node, field->path);
+        for (size_t i = 0; i < node->count; i++) {
+            char path[96];
+            snprintf(path, sizeof path, "controller.poles.%.64s", node->key[i].name);
+            seen->bad = seen->bad || reader_seen(r, path)->bad || !schema_find(r->schema, path);
+        }
+        seen->bad = seen->bad || !check_conjugates(r, node);
     } else if (reader_described(r, field->path)) {
         return;
     } else if (field->type == FIELD_MAP_OR_WORD && node->kind == TREE_SCALAR &&
@@ -310,7 +364,29 @@ static bool read_version(struct reader *r)
     return true;
 }
 
-/* False: out of memory. */
+/* Whether the robot is one of the scene's kind: described by its bodies, or by the numbers of a
+ * scene that is known. */
+static bool robot_fits(struct reader *r, const struct tree_node *scene)
+{
+    const struct tree_node *const robot = tree_find(r->tree.root, "robot");
+    char path[PATH_SIZE];
+    if (!robot || robot->kind != TREE_MAP || robot->count == 0)
+        return true;
+    if (r->s->scene) {
+        return !tree_find(robot, "bodies") ||
+               problem_add(&r->problems, scene->mark,
+                           "scene: robot.bodies is given, which %s has not; write scene: %s",
+                           r->s->scene->name, MECHANISM_WORD);
+    }
+    snprintf(path, sizeof path, "robot.%.64s", robot->key[0].name);
+    const stance_scene *const of = tree_find(robot, "bodies") ? NULL : schema_scene_with(path);
+    return !of || problem_add(&r->problems, scene->mark,
+                              "scene: %s is a number of the scene %s, a %s has bodies; write "
+                              "scene: %s",
+                              path, of->name, MECHANISM_WORD, of->name);
+}
+
+/* False: out of memory, or nothing more is to be said. */
 static bool read_scene(struct reader *r)
 {
     const struct tree_node *scene = tree_find(r->tree.root, "scene");
@@ -322,6 +398,8 @@ static bool read_scene(struct reader *r)
     if (scene &&
         field_word(&r->problems, schema_find(r->schema, "scene"), "scene", scene, &place)) {
         r->s->scene = stance_scenes()[place]; /* NULL behind the last one */
+        if (!robot_fits(r, scene))
+            return false;
         if (!r->s->scene)
             r->s->scene = r->s->own_scene = mechanism_read(r);
         const struct schema *const known =
@@ -407,14 +485,17 @@ static void read_all(struct reader *r, const char *file, const char *text, const
 
     if (!read_tree(r, file, text))
         return;
-    for (size_t i = 0; i < set_count; i++)
-        tree_set(&r->tree, sets[i], (int)i + 1, &r->problems);
+    for (size_t i = 0; i < set_count; i++) {
+        if (!named_waits(sets[i]))
+            tree_set(&r->tree, sets[i], (int)i + 1, &r->problems);
+        tree_find_hidden(sets[i], strlen(sets[i]), (int)i + 1, &r->hidden);
+    }
     if (r->tree.root->kind != TREE_MAP) {
         problem_add(&r->problems, r->tree.root->mark,
                     "a scenario is a mapping that begins with \"stance: 1\"");
         return;
     }
-    if (!read_version(r) || !read_scene(r))
+    if (!read_version(r) || !read_scene(r) || !named_read(r, sets, set_count))
         return;
     set_defaults(r);
     read_map(r, r->tree.root, "");
@@ -470,7 +551,7 @@ bool scenario_read(struct scenario *s, const char *file, const char *text, const
     bool good = r->problems.count == 0;
     if (!good) {
         if (errors)
-            problems_print(&r->problems, file, sets, errors);
+            problems_print(r->hidden.count ? &r->hidden : &r->problems, file, sets, errors);
         scenario_free(s);
     }
     tree_free(&r->tree);

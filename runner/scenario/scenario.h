@@ -65,8 +65,8 @@ struct scenario_values {
     int design_time;                /* enum scenario_design_time: the model of the design */
     double model[STANCE_MAX_ROBOT]; /* the robot that the design believes in; NAN: as robot */
     struct scenario_equilibrium design_point; /* controller.equilibrium; not given: initial's */
+    /* In the order of a list, or in their states' places; NAN or 0: none. */
     double pole_re[SCENARIO_MAX_POLES], pole_im[SCENARIO_MAX_POLES];
-    int poles;                        /* that are given */
     double gains[SCENARIO_MAX_GAINS]; /* [actuators][2 postures] */
     double state_weights[SCENARIO_MAX_POLES], torque_weights[STANCE_MAX_ACTUATORS]; /* lqr */
     /* Of each law (stance_laws) its parameters as stance_law.set takes them; NAN: as it is at the
@@ -262,6 +262,17 @@ bool scenario_same_scene(const struct scenario *a, const struct scenario *b);
 
 /* The contacts that the robot stands on, a bit each; 0: none has to carry it. */
 uint32_t scenario_supports(const stance_scene *scene, const struct scenario_values *values);
+
+/* The poles that are given; returns how many. */
+int scenario_poles(const struct scenario_values *values, double re[SCENARIO_MAX_POLES],
+                   double im[SCENARIO_MAX_POLES]);
+/* Name of an angle of the posture or, behind them all, of its rate: as a list has them. */
+const char *scenario_state_name(const stance_scene *scene, int i, char name[SCENARIO_NAME]);
+
+/* "; idle there, with their rates: foot1": coordinates that are no states while the contacts of an
+ * equilibrium hold; empty: all are. Returns `text`. */
+const char *scenario_idle(const stance_scene *scene, const stance_equilibrium *e, char *text,
+                          size_t size);
 
 /* The law that acts, and the one far from its target: `none` where there is no other. */
 const stance_law *scenario_law(const struct scenario_values *values);

@@ -370,8 +370,10 @@ static void check_controller(struct reader *r, const struct situation *is)
     for (int a = 0; a < r->s->axes; a++) {
         for (int k = 0; k < r->s->axis[a].paths; k++) {
             const struct swept_field *swept = &r->swept[a][k];
-            if (strcmp(swept->field->path, "controller.poles[]") == 0 &&
-                base->pole_im[swept->index[0]] != 0) {
+            const size_t pole =
+                (r->s->axis[a].offset[k] - offsetof(struct scenario_values, pole_re)) /
+                sizeof(double);
+            if (pole < SCENARIO_MAX_POLES && base->pole_im[pole] != 0) {
                 char name[AXIS_NAME];
                 problem_add(&r->problems, swept->mark,
                             "%s: %s is complex; only a real pole can be swept",
@@ -466,16 +468,20 @@ static void check_multiplicity(struct reader *r, const struct situation *is)
     if (!is->law->designed || !is->design_known || !is->places_robustly || !poles->node ||
         poles->bad)
         return;
-    for (size_t i = 0; i < poles->node->count; i++) {
+    for (size_t n = 0; n < poles->node->count; n++) {
+        char path[96], before[96];
+        const size_t i = reader_pole(r, poles->node, n, path);
         size_t times = 1;
-        for (size_t k = 0; k < i; k++)
+        for (size_t m = 0; m < n; m++) {
+            const size_t k = reader_pole(r, poles->node, m, before);
             times += base->pole_re[k] == base->pole_re[i] && base->pole_im[k] == base->pole_im[i];
+        }
         if (times > most) {
             char word[SHOWN_SIZE];
-            problem_add(&r->problems, poles->node->item[i]->mark,
-                        "controller.poles[%zu]: %s stands here %zu times; controller.design place "
+            problem_add(&r->problems, poles->node->item[n]->mark,
+                        "%s: %s stands here %zu times; controller.design place "
                         "can repeat a pole as often as there are actuators, %zu times",
-                        i, shown(word, poles->node->item[i]->text), times, most);
+                        path, shown(word, poles->node->item[n]->text), times, most);
             return;
         }
     }
@@ -659,5 +665,7 @@ void scenario_cross_check(struct reader *r)
         check_world(r);
     }
     check_lands(r);
+    for (size_t i = 0; i < r->misfits; i++)
+        named_misfit(r, &r->misfit[i]);
     search_check(r);
 }

@@ -111,6 +111,78 @@ static bool add_postures(struct schema *schema, const struct row *row)
     return true;
 }
 
+/* A weight, a pole or a gain by the name of what it is of; `unit` where the row has none. */
+static bool add_item(struct schema *schema, const struct row *row, const char *prefix,
+                     const char *name, size_t place, const char *unit, const char *text)
+{
+    char path[sizeof row->field.path];
+    const size_t stem = strcspn(row->field.path, "*");
+    snprintf(path, sizeof path, "%.*s%s%s", (int)stem, row->field.path, prefix, name);
+    if (schema_find(schema, path)) /* a coordinate that is called `states`: in the list alone */
+        return true;
+    struct scenario_field *const field = schema_add(schema, &row->field, prefix, name);
+    if (!field)
+        return false;
+    field->offset += place * sizeof(double);
+    if (!row->field.unit[0])
+        snprintf(field->unit, sizeof field->unit, "%s", unit);
+    const char *const format = row->field.text, *const at = strstr(format, "%s");
+    snprintf(field->text, sizeof field->text, "%.*s%.120s", (int)(at - format), format, text);
+    return true;
+}
+
+/* The unit of what is so much `of` (N m) per unit of a state. */
+static void unit_per(char unit[24], const char *of, const char *state, bool rate)
+{
+    snprintf(unit, 24, rate ? "%.8s s/%.8s" : "%.8s/%.8s", of, state);
+}
+
+static bool add_named(struct schema *schema, const struct row *row)
+{
+    const stance_scene *const scene = schema->scene;
+    const int states = 2 * scene->postures;
+    char name[SCENARIO_NAME], text[160], unit[24];
+    for (int i = 0; i < scene->actuators && row->family == FAMILY_INPUTS; i++) {
+        const char *const of = scene->coordinate[scene->actuated[i]].unit;
+        snprintf(unit, sizeof unit, "1/%s", strcmp(of, "m") == 0 ? "N^2" : "(N m)^2");
+        snprintf(text, sizeof text, "the torque of %.100s", scene->actuator_name[i]);
+        if (!add_item(schema, row, "", scene->actuator_name[i], (size_t)i, unit, text))
+            return false;
+    }
+    for (int i = 0; i < (row->family == FAMILY_GAINS ? scene->actuators : 1); i++) {
+        char actuator[STANCE_NAME + 8] = "";
+        if (row->family == FAMILY_INPUTS)
+            break;
+        if (row->family == FAMILY_GAINS) {
+            struct scenario_field *const map =
+                schema_add(schema, &row->field, "", scene->actuator_name[i]);
+            if (!map)
+                return false;
+            map->type = FIELD_MAP;
+            map->sweep = false;
+            map->offset = NO_OFFSET;
+            snprintf(map->text, sizeof map->text, "gains of %.100s", scene->actuator_name[i]);
+            snprintf(actuator, sizeof actuator, "%s.", scene->actuator_name[i]);
+        }
+        for (int j = 0; j < states; j++) {
+            const stance_quantity *const q =
+                &scene->coordinate[scene->posture[j % scene->postures]];
+            const bool rate = j >= scene->postures;
+            const bool slides = row->family == FAMILY_GAINS &&
+                                strcmp(scene->coordinate[scene->actuated[i]].unit, "m") == 0;
+            if (row->family == FAMILY_GAINS)
+                unit_per(unit, slides ? "N" : "N m", q->unit, rate);
+            else
+                snprintf(unit, sizeof unit, rate ? "s^2/%.8s^2" : "1/%.8s^2", q->unit);
+            snprintf(text, sizeof text, "%s%.100s", rate ? "rate of " : "", q->text);
+            if (!add_item(schema, row, actuator, scenario_state_name(scene, j, name),
+                          (size_t)(i * states + j), unit, text))
+                return false;
+        }
+    }
+    return true;
+}
+
 /* Which methods read method.tolerance, and what it is by default there. */
 static const char *describe_tolerance(char *text, size_t size)
 {
@@ -240,6 +312,10 @@ static bool add_row(struct schema *schema, const struct row *row)
         return schema_add_laws(schema, &row->field);
     case FAMILY_POSTURE:
         return add_postures(schema, row);
+    case FAMILY_STATES:
+    case FAMILY_INPUTS:
+    case FAMILY_GAINS:
+        return !schema->scene || add_named(schema, row);
     default:
         return add_single(schema, row);
     }

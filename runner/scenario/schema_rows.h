@@ -17,6 +17,9 @@ enum family {
     FAMILY_POLES,     /* 2 postures items */
     FAMILY_ACTUATORS, /* one item for each */
     FAMILY_MATRIX,    /* actuators x 2 postures */
+    FAMILY_STATES,    /* of such a list each item by the name of its state ... */
+    FAMILY_INPUTS,    /* ... or actuator ... */
+    FAMILY_GAINS,     /* ... or of both: a mapping for each actuator */
     FAMILY_SCENES,
     FAMILY_METHODS,
     FAMILY_KINDS,      /* the words are laws */

@@ -39,6 +39,16 @@ static bool add_path(struct axis_reader *a, const struct tree_node *node)
     return true;
 }
 
+static bool add_varied(struct axis_reader *a, const struct tree_node *node,
+                       enum scenario_scale scale, double unit)
+{
+    if (!add_path(a, node))
+        return false;
+    last_varied(a)->scale = scale;
+    last_varied(a)->unit = unit;
+    return true;
+}
+
 /* Paths that a word stands for: LIST[i], or with columns LIST[i][j]. */
 static bool add_paths(struct axis_reader *a, const char *list, size_t rows, size_t columns,
                       enum scenario_scale scale, double unit)
@@ -53,11 +63,7 @@ static bool add_paths(struct axis_reader *a, const char *list, size_t rows, size
                 snprintf(path + used, sizeof path - (size_t)used, "[%zu]", j);
             node.text = path;
             node.kind = TREE_SCALAR;
-            good = add_path(a, &node);
-            if (good) {
-                last_varied(a)->scale = scale;
-                last_varied(a)->unit = unit;
-            }
+            good = add_varied(a, &node, scale, unit);
         }
     }
     return good;
@@ -76,13 +82,26 @@ static bool add_gains(struct axis_reader *a)
 static bool add_poles(struct axis_reader *a)
 {
     const struct scenario_values *const base = &a->r->s->base;
+    const struct tree_node *const poles = reader_seen(a->r, "controller.poles")->node;
+    double re[SCENARIO_MAX_POLES], im[SCENARIO_MAX_POLES];
+    const int count = scenario_poles(base, re, im);
+    bool good = true;
     if (base->design != DESIGN_PLACE && base->design != DESIGN_PLACE_SCHUR)
         return axis_complain(a, "poles are those of controller.design place or place-schur");
-    for (int i = 0; i < base->poles; i++)
-        if (base->pole_im[i] != 0)
+    for (int i = 0; i < count; i++)
+        if (im[i] != 0)
             return axis_complain(a, "poles that are not real cannot be varied; give real ones");
-    return add_paths(a, "controller.poles", (size_t)base->poles, 0, SCALE_NEGATIVE_RATIO,
-                     pole_unit);
+    if (!poles || poles->kind != TREE_MAP)
+        return add_paths(a, "controller.poles", (size_t)count, 0, SCALE_NEGATIVE_RATIO, pole_unit);
+    for (size_t i = 0; good && i < poles->count; i++) {
+        char path[96];
+        struct tree_node node = *a->node;
+        reader_pole(a->r, poles, i, path);
+        node.text = path;
+        node.kind = TREE_SCALAR;
+        good = add_varied(a, &node, SCALE_NEGATIVE_RATIO, pole_unit);
+    }
+    return good;
 }
 
 static bool add_weights(struct axis_reader *a)

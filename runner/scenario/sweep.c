@@ -82,13 +82,14 @@ static bool is_sought(const struct axis_reader *a)
     return a->axis == &a->r->s->search.axis;
 }
 
-static bool swept_before(struct axis_reader *a, const struct tree_node *node)
+/* Under this name or another: a.b[0], a.theta. */
+static bool swept_before(struct axis_reader *a, const struct tree_node *node, size_t offset)
 {
     for (int i = 0; i <= a->number + is_sought(a); i++) {
         const bool other = i <= a->number;
         const struct scenario_axis *axis = other ? &a->r->s->axis[i] : a->axis;
         for (int k = 0; k < axis->paths; k++) {
-            if (strcmp(axis->path[k], node->text) == 0) {
+            if (strcmp(axis->path[k], node->text) == 0 || axis->offset[k] == offset) {
                 char first[AXIS_NAME];
                 problem_add(&a->r->problems, node->mark, "%s: %s is %s twice (first in %s)",
                             a->name, node->text, other && !is_sought(a) ? "swept" : "varied",
@@ -115,20 +116,19 @@ bool axis_read_path(struct axis_reader *a, const struct tree_node *node)
         return problem_add(&a->r->problems, node->mark, "%s: %s cannot be %s", a->name,
                            shown(word, node->text), is_sought(a) ? "varied" : "swept");
     }
-    if (beyond_end(a, node, &swept) || swept_before(a, node))
+    const bool integer = swept.field->type != FIELD_NUMBER;
+    const size_t columns = swept.field->columns ? swept.field->columns : 1;
+    const size_t offset = swept.field->offset +
+                          (integer ? swept.index[0] * sizeof(int)
+                                   : (swept.index[0] * columns + swept.index[1]) * sizeof(double));
+    if (beyond_end(a, node, &swept) || swept_before(a, node, offset))
         return false;
     int k = axis->paths++;
     a->swept[k] = swept;
     snprintf(axis->path[k], sizeof axis->path[k], "%s", node->text);
-    axis->integer[k] = swept.field->type != FIELD_NUMBER;
+    axis->integer[k] = integer;
     axis->enumeration[k] = swept.field->type == FIELD_WORD;
-    axis->offset[k] = swept.field->offset;
-    if (axis->integer[k]) {
-        axis->offset[k] += swept.index[0] * sizeof(int);
-    } else {
-        size_t columns = swept.field->columns ? swept.field->columns : 1;
-        axis->offset[k] += (swept.index[0] * columns + swept.index[1]) * sizeof(double);
-    }
+    axis->offset[k] = offset;
     axis->words = axis->words || axis->enumeration[k];
     axis->design = axis->design || swept.field->design;
 

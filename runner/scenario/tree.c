@@ -114,7 +114,19 @@ bool tree_parse(struct tree *tree, const char *text, size_t length, struct probl
         text += 3;
         length -= 3;
     }
-    return tree_read(tree, text, length, 0, problems, &tree->root);
+    if (!tree_read(tree, text, length, 0, problems, &tree->root))
+        return false;
+    struct tree_node *const root = tree->root;
+    size_t kept = 0;
+    for (size_t i = 0; root->kind == TREE_MAP && i < root->count; i++) {
+        if (strncmp(root->key[i].name, "x-", 2) == 0)
+            continue; /* it holds what aliases stand for */
+        root->key[kept] = root->key[i];
+        root->item[kept++] = root->item[i];
+    }
+    if (root->kind == TREE_MAP)
+        root->count = kept;
+    return true;
 }
 
 /* ---- paths and edits ------------------------------------------------------------------------- */

@@ -46,6 +46,10 @@ struct tree {
 /* Checks that `text` is UTF-8 without control characters; adds a problem and returns false. */
 bool tree_check_text(const char *text, size_t length, struct problems *problems);
 
+/* Adds of every line of such a text, in the file or in --set number `set`, the first letter that
+ * cannot be seen where blanks, keys and values stand: not in quotes, in a comment or the title. */
+void tree_find_hidden(const char *text, size_t length, int set, struct problems *hidden);
+
 /* Parses `text`, already checked, into tree->root, initialised by {0}. False when there is no tree
  * to go on with; a duplicate key is a problem but leaves one. */
 bool tree_parse(struct tree *tree, const char *text, size_t length, struct problems *problems);

@@ -26,7 +26,13 @@ bool tree_check_text(const char *text, size_t length, struct problems *problems)
             return problem_add(problems, mark, "not UTF-8 text (byte 0x%02x)",
                                (unsigned char)text[i]);
         }
+        bool blank;
+        const char *const hidden = hidden_letter(c, &blank);
         if (!printable(c) && !(i == 0 && c == 0xfeff)) {
+            if (hidden)
+                return problem_add(problems, mark,
+                                   "U+%04X (%s) stands here and cannot be seen; remove it", c,
+                                   hidden);
             return problem_add(problems, mark, "not text: the control character U+%04X stands here",
                                c);
         }
@@ -38,6 +44,89 @@ bool tree_check_text(const char *text, size_t length, struct problems *problems)
         }
     }
     return true;
+}
+
+/* The line about text[at], without blanks around it, as it is without letters that cannot be seen.
+ * False: it is too long to be shown. */
+static bool mended_line(const char *text, size_t length, size_t at, char line[160])
+{
+    size_t n = 0;
+    while (at > 0 && text[at - 1] != '\n')
+        at--;
+    while (at < length && text[at] != '\n' && text[at] != '\r') {
+        uint32_t c = 0;
+        bool blank = true;
+        const size_t letter = utf8_letter(text + at, length - at, &c);
+        if (letter == 0 || n + letter >= 160)
+            return false;
+        const bool hidden = hidden_letter(c, &blank);
+        const char *const from = text + at;
+        at += letter;
+        if (hidden && blank && n > 0 && at < length && !strchr(" ,]}", text[at]))
+            line[n++] = ' ';
+        else if (!hidden && !(n == 0 && c == ' '))
+            memcpy(line + n, from, letter), n += letter;
+    }
+    while (n > 0 && line[n - 1] == ' ')
+        n--;
+    line[n] = '\0';
+    return true;
+}
+
+/* What stands around a letter: whether it is text that may hold anything. */
+struct surroundings {
+    char quote; /* that it stands in; 0: none */
+    bool comment, title, escaped;
+    char before;
+};
+
+static void pass(struct surroundings *in, const char *at)
+{
+    const bool begins = strchr(" \t\n[{,:(=", in->before) != NULL;
+    if (*at == '\n')
+        in->comment = in->title = false;
+    if (in->quote && in->escaped)
+        in->escaped = false;
+    else if (in->quote == '"' && *at == '\\')
+        in->escaped = true;
+    else if (in->quote && *at == in->quote)
+        in->quote = '\0';
+    else if (!in->quote && !in->comment && strchr("\"'", *at) && (begins || in->before == *at))
+        in->quote = *at; /* two of them in quotes are one */
+    else if (!in->quote && begins && *at == '#')
+        in->comment = true;
+    in->title |= begins && strncmp(at, "title: ", 7) == 0;
+    in->before = *at;
+}
+
+void tree_find_hidden(const char *text, size_t length, int set, struct problems *hidden)
+{
+    struct surroundings in = {.before = '\n'};
+    struct mark mark = {set, 1, 1};
+    bool said = strncmp(text, "title=", 6) == 0; /* of this line, or in no need of it */
+    for (size_t i = 0; i < length;) {
+        uint32_t c = 0;
+        bool blank;
+        const size_t n = utf8_letter(text + i, length - i, &c);
+        const char *const name = hidden_letter(c, &blank);
+        char line[160];
+        if (name && !said && i > 0 && !in.quote && !in.comment && !in.title) {
+            const bool whole = mended_line(text, length, i, line);
+            problem_add(hidden, mark, "U+%04X (%s) %s %d%s%s%s", c, name,
+                        set ? "is letter" : "stands in column", mark.column,
+                        blank ? ": it is no blank" : ": it cannot be seen", whole ? "; write " : "",
+                        whole ? line : "");
+            said = true;
+        }
+        pass(&in, text + i);
+        i += n ? n : 1;
+        mark.column++;
+        if (c == '\n') {
+            said = false;
+            mark.line++;
+            mark.column = 1;
+        }
+    }
 }
 
 bool tree_name_letter(char c)

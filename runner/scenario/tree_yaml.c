@@ -2,12 +2,22 @@
 #include "mend.h"
 #include "tree_nodes.h"
 
+#include "runner/base/words.h"
+
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <yaml.h>
 
 /* ---- parsing --------------------------------------------------------------------------------- */
+
+/* {a:} and {a:{b: 1}} are YAML 1.2, but not 1.1, which libyaml reads: there a blank is put after
+ * the colon, so that what follows in the line is further right than in the file. */
+enum { MOST_BARE = 64 };
+struct bare {
+    char *text; /* with blanks; NULL: as it was given */
+    size_t count, line[MOST_BARE], column[MOST_BARE];
+};
 
 struct parse {
     struct tree *tree;
@@ -17,6 +27,7 @@ struct parse {
     const char *text;
     size_t length;
     int set;
+    struct bare *bare;
     size_t anchors;
     struct {
         char *name;
@@ -24,10 +35,45 @@ struct parse {
     } anchor[TREE_MAX_ANCHORS];
 };
 
+/* Where a line and a column from 0 are in the file. */
+static struct mark mark_at(const struct parse *parse, size_t line, size_t column)
+{
+    int blanks = 0;
+    for (size_t i = 0; i < parse->bare->count; i++)
+        blanks += parse->bare->line[i] == line && parse->bare->column[i] < column;
+    return (struct mark){parse->set, (int)line + 1, (int)column + 1 - blanks};
+}
+
 static struct mark event_mark(const struct parse *parse)
 {
-    const yaml_mark_t at = parse->event.start_mark;
-    return (struct mark){parse->set, (int)at.line + 1, (int)at.column + 1};
+    return mark_at(parse, parse->event.start_mark.line, parse->event.start_mark.column);
+}
+
+/* Whether the parser gave up at a bare colon, which has a blank after it now. */
+static bool mend_bare(struct parse *parse)
+{
+    const yaml_mark_t at = parse->parser.problem_mark;
+    struct bare *const bare = parse->bare;
+    size_t place = 0, n = 1;
+    uint32_t c = 0;
+    if (strcmp(parse->parser.problem, "found unexpected ':'") != 0 || bare->count == MOST_BARE)
+        return false;
+    for (size_t i = 0; i <= at.index && place < parse->length && n > 0; i++)
+        place += n = utf8_letter(parse->text + place, parse->length - place, &c);
+    if (c != ':' || place == parse->length || !strchr(",[]{}", parse->text[place]))
+        return false;
+    char *const text = malloc(parse->length + 2);
+    if (!text)
+        return false;
+    memcpy(text, parse->text, place);
+    text[place] = ' ';
+    memcpy(text + place + 1, parse->text + place, parse->length - place);
+    text[parse->length + 1] = '\0';
+    free(bare->text);
+    bare->text = text;
+    bare->line[bare->count] = at.line;
+    bare->column[bare->count++] = at.column + 1;
+    return true;
 }
 
 static bool next(struct parse *parse)
@@ -39,6 +85,8 @@ static bool next(struct parse *parse)
     if (parse->parser.error == YAML_MEMORY_ERROR)
         return problem_no_memory(parse->problems);
     const yaml_parser_t *parser = &parse->parser;
+    if (parser->problem && mend_bare(parse))
+        return false;
     const bool has_mark = parser->problem_mark.index || parser->problem_mark.line;
     const yaml_mark_t at = has_mark ? parser->problem_mark : parser->context_mark;
     struct misread misread = {
@@ -52,13 +100,18 @@ static bool next(struct parse *parse)
     };
     char mend[MEND_SIZE];
     const bool mended = mend_yaml(&misread, mend);
-    const struct mark mark = {parse->set, (int)misread.line + 1, (int)misread.column + 1};
-    return problem_add(parse->problems, mark, "not YAML: %s", mended ? mend : misread.problem);
+    return problem_add(parse->problems, mark_at(parse, misread.line, misread.column),
+                       "not YAML: %s", mended ? mend : misread.problem);
 }
 
 static bool too_deep(struct problems *problems, struct mark mark)
 {
     return problem_add(problems, mark, "nested deeper than %d levels", TREE_MAX_DEPTH);
+}
+
+static bool too_many_keys(struct parse *parse, struct mark mark)
+{
+    return problem_add(parse->problems, mark, "more than %d keys in one mapping", TREE_MAX_KEYS);
 }
 
 /* What an alias stands for, as a copy of its own. */
@@ -169,8 +222,31 @@ static bool read_list(struct parse *parse, int depth, struct tree_node *node)
     }
 }
 
+/* `<<`: the keys of a mapping, or of several, the first one's first, that are not in the file. */
+static bool merge(struct parse *parse, struct tree_node *node, const struct tree_node *from)
+{
+    const bool several = from->kind == TREE_LIST;
+    for (size_t k = 0; k < (several ? from->count : 1); k++) {
+        const struct tree_node *const map = several ? from->item[k] : from;
+        size_t at;
+        if (map->kind != TREE_MAP)
+            return problem_add(parse->problems, from->mark,
+                               "<< takes a mapping, or a list of mappings, such as *NAME");
+        for (size_t i = 0; i < map->count; i++) {
+            if (tree_place(node, map->key[i].name, &at))
+                continue;
+            if (node->count == TREE_MAX_KEYS)
+                return too_many_keys(parse, map->key[i].mark);
+            if (!tree_append(parse->tree, node, &map->key[i], map->item[i]))
+                return problem_no_memory(parse->problems);
+        }
+    }
+    return true;
+}
+
 static bool read_map(struct parse *parse, int depth, struct tree_node *node)
 {
+    struct tree_node *merged = NULL;
     for (;;) {
         struct tree_key key;
         struct tree_node *item;
@@ -179,17 +255,23 @@ static bool read_map(struct parse *parse, int depth, struct tree_node *node)
         if (!next(parse))
             return false;
         if (parse->event.type == YAML_MAPPING_END_EVENT)
-            return true;
+            return !merged || merge(parse, node, merged);
         key.mark = event_mark(parse);
         if (parse->event.type != YAML_SCALAR_EVENT || parse->event.data.scalar.tag)
             return problem_add(parse->problems, key.mark, "a key must be a plain word");
-        if (node->count == TREE_MAX_KEYS) {
-            return problem_add(parse->problems, key.mark, "more than %d keys in one mapping",
-                               TREE_MAX_KEYS);
-        }
-        if (!read_text(parse, &key.name) || !next(parse) || !read_node(parse, depth + 1, &item))
+        if (node->count == TREE_MAX_KEYS)
+            return too_many_keys(parse, key.mark);
+        const bool merges = parse->event.data.scalar.style == YAML_PLAIN_SCALAR_STYLE &&
+                            strcmp((const char *)parse->event.data.scalar.value, "<<") == 0;
+        if (!read_text(parse, &key.name))
             return false;
-        if (tree_place(node, key.name, &first)) {
+        if (!next(parse) || !read_node(parse, depth + 1, &item))
+            return false;
+        if (merges && !merged)
+            merged = item;
+        else if (merges)
+            problem_add(parse->problems, key.mark, "duplicate key '<<'; write <<: [*A, *B]");
+        else if (tree_place(node, key.name, &first)) {
             problem_add(parse->problems, key.mark, "duplicate key '%s' (first in line %d)",
                         shown(word, key.name), node->key[first].mark.line);
         } else if (!tree_append(parse->tree, node, &key, item)) {
@@ -259,8 +341,9 @@ static bool read_document(struct parse *parse, struct tree_node **root)
     return true;
 }
 
-bool tree_read(struct tree *tree, const char *text, size_t length, int set,
-               struct problems *problems, struct tree_node **root)
+/* One attempt; false, without a problem: another is to follow, with one more blank. */
+static bool attempt(struct tree *tree, const char *text, size_t length, int set, struct bare *bare,
+                    struct problems *problems, struct tree_node **root)
 {
     struct parse *parse = calloc(1, sizeof *parse);
     if (!parse || !yaml_parser_initialize(&parse->parser)) {
@@ -272,11 +355,27 @@ bool tree_read(struct tree *tree, const char *text, size_t length, int set,
     parse->set = set;
     parse->text = text;
     parse->length = length;
+    parse->bare = bare;
     yaml_parser_set_encoding(&parse->parser, YAML_UTF8_ENCODING);
     yaml_parser_set_input_string(&parse->parser, (const unsigned char *)text, length);
     bool good = read_document(parse, root);
     yaml_event_delete(&parse->event);
     yaml_parser_delete(&parse->parser);
     free(parse);
+    return good;
+}
+
+bool tree_read(struct tree *tree, const char *text, size_t length, int set,
+               struct problems *problems, struct tree_node **root)
+{
+    struct bare bare = {0};
+    const size_t before = problems->count, copied = tree->copied;
+    bool good = false;
+    for (size_t tried = 0; tried <= bare.count && !good && problems->count == before; tried++) {
+        const char *const given = bare.text ? bare.text : text;
+        tree->copied = copied;
+        good = attempt(tree, given, length + bare.count, set, &bare, problems, root);
+    }
+    free(bare.text);
     return good;
 }
