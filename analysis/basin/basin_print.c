@@ -192,9 +192,8 @@ const char *basin_asked(const struct basin *basin)
 void basin_print_axis(const struct results_axis *axis)
 {
     char first[64], last[64];
-    results_value_text(axis, 0, false, first, sizeof first);
-    results_value_text(axis, axis->count - 1, true, last, sizeof last);
-    printf("  %-24s %s ... %s, %zu places", axis->name, first, last, axis->count);
+    const char *const order = results_ends_text(axis, first, last, sizeof first);
+    printf("  %-24s %s ... %s, %zu places%s", axis->name, first, last, axis->count, order);
 }
 
 void basin_print_factor(const struct basin_factor *factor, const char *otherwise)

@@ -62,10 +62,10 @@ static void print_axes(const struct results *r)
             print_varied(r, width > 2 ? width - 2 : width);
             continue;
         }
-        results_value_text(axis, 0, false, first, sizeof first);
-        results_value_text(axis, axis->count - 1, true, last, sizeof last);
-        printf("  %-*s  %s ... %s, %zu value%s%s%s\n", width, axis->name, first, last, axis->count,
-               axis->count == 1 ? "" : "s", axis->text[0] ? "; " : "", axis->text);
+        const char *const order = results_ends_text(axis, first, last, sizeof first);
+        printf("  %-*s  %s ... %s, %zu value%s%s%s%s\n", width, axis->name, first, last,
+               axis->count, axis->count == 1 ? "" : "s", order, axis->text[0] ? "; " : "",
+               axis->text);
     }
 }
 

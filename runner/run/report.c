@@ -177,6 +177,19 @@ static void report_designs(const struct plan *plan, const struct estimate *e, FI
             plan->pending);
 }
 
+static void report_axis(const struct scenario_axis *axis, FILE *out)
+{
+    char first[64], last[64];
+    size_t ends[2];
+    const bool sorted =
+        scenario_ends(axis->words ? NULL : axis->value, axis->count, (size_t)axis->paths, ends);
+    scenario_axis_text(axis, ends[0], 0, first, sizeof first);
+    scenario_axis_text(axis, ends[1], 0, last, sizeof last);
+    fprintf(out, "  %-32s %8zu  %s ... %s %s%s\n", axis->name, axis->count, first, last,
+            axis->words || strcmp(axis->unit, "1") == 0 ? "" : axis->unit,
+            sorted ? "" : " (not sorted)");
+}
+
 static void report_text(const struct plan *plan, const struct estimate *e, int ranks,
                         const char *file, FILE *out)
 {
@@ -188,17 +201,11 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
     for (int a = 0; !plan->single && a < s->axes; a++)
         fprintf(out, "%s%zu", a ? " x " : ": ", s->axis[a].count);
     fputc('\n', out);
-    for (int a = 0; !plan->single && a < s->axes; a++) {
-        char first[64], last[64];
-        if (s->axis[a].sample) {
+    for (int a = 0; !plan->single && a < s->axes; a++)
+        if (s->axis[a].sample)
             report_sample(s, out);
-            continue;
-        }
-        scenario_axis_text(&s->axis[a], 0, 0, first, sizeof first);
-        scenario_axis_text(&s->axis[a], s->axis[a].count - 1, 0, last, sizeof last);
-        fprintf(out, "  %-32s %8zu  %s ... %s %s\n", s->axis[a].name, s->axis[a].count, first, last,
-                s->axis[a].words || strcmp(s->axis[a].unit, "1") == 0 ? "" : s->axis[a].unit);
-    }
+        else
+            report_axis(&s->axis[a], out);
     if (plan->shard.count > 0) {
         fprintf(out, "shard       %" PRIu64 "/%" PRIu64 ", %" PRIu64 " cases\n", plan->shard.number,
                 plan->shard.count, plan_share(plan).count);

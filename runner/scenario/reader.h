@@ -105,6 +105,9 @@ bool axis_begin(struct axis_reader *a, const char *path, const char *wanted);
 bool axis_read_path(struct axis_reader *a, const struct tree_node *node);
 /* sweep.c: `values`, where it stands, stands alone. */
 bool axis_check_alone(struct axis_reader *a);
+/* No two points of an axis may be the same: those of a list, of a range (distinct.c). */
+bool axis_check_values(struct axis_reader *a, const struct tree_node *values);
+bool axis_check_points(struct axis_reader *a);
 /* sweep.c: values of the paths from `first` on of one point; of several (`rows`) a list. `key`, not
  * NULL: an end of a range, whose numbers are finite. False: a problem. */
 bool axis_read_row(struct axis_reader *a, const char *key, const struct tree_node *node, int first,

@@ -236,6 +236,10 @@ bool scenario_place(const struct scenario *s, const char *text, int *line, int *
 
 /* Value k of point `i` of an axis (k < paths); for words the enumeration's number. */
 double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k);
+/* Between which two places the values of an axis lie: its first and its last where it is sorted,
+ * rising or falling (or `value` is NULL: a range, words); else, false, its least and its largest.
+ */
+bool scenario_ends(const double *value, size_t count, size_t stride, size_t ends[2]);
 /* The axis that varies the field at an offset, which is its path *k; NULL: none does. */
 const struct scenario_axis *scenario_axis_of(const struct scenario *s, size_t offset, int *k);
 /* Least and largest value that a number takes, base or swept. */

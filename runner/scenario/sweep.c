@@ -234,7 +234,7 @@ static bool read_values(struct axis_reader *a, const struct tree_node *values, b
         return problem_no_memory(&a->r->problems);
     for (size_t i = 0; i < values->count; i++)
         good = read_point(a, values->item[i], i, rows) && good;
-    return good;
+    return good && axis_check_values(a, values);
 }
 
 bool axis_read_spacing(struct axis_reader *a, const char *path, bool *log)
@@ -338,7 +338,8 @@ static bool read_range(struct axis_reader *a, bool rows)
     for (int k = 0; k < axis->paths; k++)
         if (!check_range(a, k, first[k], last[k]))
             return false;
-    return (!axis->log && axis->paths == 1) || compute_points(a, first, last);
+    return ((!axis->log && axis->paths == 1) || compute_points(a, first, last)) &&
+           axis_check_points(a);
 }
 
 /* ---- axes ------------------------------------------------------------------------------------ */
@@ -497,6 +498,22 @@ double scenario_axis_value(const struct scenario_axis *axis, size_t i, int k)
     if (i + 1 == axis->count)
         return axis->to;
     return axis->from + (double)i * (axis->to - axis->from) / (double)(axis->count - 1);
+}
+
+bool scenario_ends(const double *value, size_t count, size_t stride, size_t ends[2])
+{
+    size_t low = 0, high = 0, rises = 0, falls = 0;
+    for (size_t i = 1; value && i < count; i++) {
+        const double here = value[i * stride], before = value[(i - 1) * stride];
+        low = here < value[low * stride] ? i : low;
+        high = here > value[high * stride] ? i : high;
+        rises += here >= before;
+        falls += here <= before;
+    }
+    const bool sorted = !value || count < 2 || rises == count - 1 || falls == count - 1;
+    ends[0] = sorted ? 0 : low;
+    ends[1] = sorted ? count - 1 : high;
+    return sorted;
 }
 
 bool scenario_is_start(const char *path)

@@ -108,6 +108,10 @@ void results_number_text(double value, double gap, char *buffer, size_t size);
 /* Text of a value of an axis, with its unit when `unit`; no other of the axis has the same. */
 void results_value_text(const struct results_axis *axis, size_t i, bool unit, char *buffer,
                         size_t size);
+/* Of the two between which the values of an axis lie, the second with its unit. Returns what to say
+ * of their order: ", not sorted", or nothing. */
+const char *results_ends_text(const struct results_axis *axis, char *first, char *last,
+                              size_t size);
 /* The same of a point of a sample. */
 void results_varied_text(const struct results_varied *v, size_t i, bool unit, char *buffer,
                          size_t size);

@@ -74,6 +74,15 @@ void results_value_text(const struct results_axis *axis, size_t i, bool unit, ch
     }
 }
 
+const char *results_ends_text(const struct results_axis *axis, char *first, char *last, size_t size)
+{
+    size_t ends[2];
+    const bool sorted = scenario_ends(axis->value, axis->count, 1, ends);
+    results_value_text(axis, ends[0], false, first, size);
+    results_value_text(axis, ends[1], true, last, size);
+    return sorted ? "" : ", not sorted";
+}
+
 void results_varied_text(const struct results_varied *v, size_t i, bool unit, char *buffer,
                          size_t size)
 {
