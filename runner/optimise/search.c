@@ -246,8 +246,10 @@ static double cases_at_end(const struct search *search)
     double elsewhere = 0;
     for (int e = 0; e < ELSEWHERE_MOST; e++)
         elsewhere += elsewhere_exists(s, (enum elsewhere)e) ? 1 : 0;
-    const double confirmed = 2 * (1 + 2.0 * s->search.stages * (s->search.restarts + 1));
-    return confirmed * (double)search->trials.circumstances * (double)s->search.confirm +
+    const double confirmed = 1 + 2.0 * s->search.stages * (s->search.restarts + 1);
+    const double starts =
+        (double)trials_count(s, TRIALS_CHOICE) + (double)trials_count(s, TRIALS_FRESH);
+    return confirmed * (double)search->trials.circumstances * starts +
            elsewhere * COMPARED * (double)elsewhere_starts(s);
 }
 
