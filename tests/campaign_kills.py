@@ -17,9 +17,9 @@ import subprocess
 import tempfile
 import time
 
-from campaign import Bad, PATIENCE, STANCE, arguments, finish, main, must_be_same, references, \
-    run_line
+from campaign import Bad, STANCE, arguments, finish, main, must_be_same, references, run_line
 import results_tools
+from tap import PATIENCE
 
 
 def children(process):

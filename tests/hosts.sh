@@ -84,7 +84,7 @@ on_hosts() { # 1,2,3 command ...: a rank on each of these hosts; mpirun on the f
 }
 on_one_host=(mpirun --oversubscribe -n)
 
-count=0 patience=120
+count=0
 # shellcheck source=tests/outside.sh
 . "$tests/outside.sh"
 same() { # name, file, file
@@ -164,24 +164,15 @@ begin_run() { # file, options: in the background; sets job, begin
     rm -f "$file"
     (on_hosts 1,2,3 "$stance" run sweep.yaml -o "$file" --quiet "$@") >out 2>&1 </dev/null &
     job=$!
-    for _ in $(seq 200); do
-        "$stance" status "$file" 2>/dev/null | grep -q ': [1-9][0-9]* of .*running' && break
-        sleep 0.1
-    done
+    await $job computing "$file"
     done_then=$(value "done" "$file")
     begin=$SECONDS
 }
-await_ranks() { # hosts: until none is left there
-    local left
-    for _ in $(seq $((2 * patience))); do
-        left=0
-        for i in "$@"; do
-            left=$((left + $(ranks "$i")))
-        done
-        ((left == 0)) && return 0
-        sleep 0.5
+none_left() { # hosts
+    local i
+    for i in "$@"; do
+        (($(ranks "$i") == 0)) || return 1
     done
-    return 1
 }
 # What must hold when a run has lost a host: nothing that had been done is lost, the rest follows.
 # shellcheck disable=SC2046 # a list of numbers
@@ -200,20 +191,16 @@ goes_on() { # file
 
 begin_run cut.h5
 cable 3 down
-for _ in $(seq $((2 * patience))); do
-    kill -0 $job 2>/dev/null || break
-    sleep 0.5
-done
-! kill -0 $job 2>/dev/null
+await - gone $job
 result $? "a host is cut off: mpirun notices and ends the job (after $((SECONDS - begin)) s)"
-await_ranks 1 2 3
+await - none_left 1 2 3
 result $? "... on every host, cut off or not"
 cable 3 up
 goes_on cut.h5
 
 begin_run first.h5
 cable 1 down
-await_ranks 1 2 3
+await - none_left 1 2 3
 result $? "the host of rank 0 and mpirun is cut off: all ranks end (after $((SECONDS - begin)) s)"
 cable 1 up
 goes_on first.h5
@@ -222,23 +209,22 @@ goes_on first.h5
 begin_run frozen.h5 --time-limit 10s
 # shellcheck disable=SC2046 # a list of numbers
 kill -STOP $(ip netns pids "$name-1")
-await_ranks 2 3
+await - none_left 2 3
 result $? "the host of rank 0 is frozen: the limit ends the others (after $((SECONDS - begin)) s)"
 goes_on frozen.h5
 
 # Without a limit a rank that says nothing is waited for for five minutes.
 if [ -n "${STANCE_TEST_LONG:-}" ]; then
-    patience=360
     begin_run frozen.h5
     # shellcheck disable=SC2046
     kill -STOP $(ip netns pids "$name-1")
-    await_ranks 2 3
+    await - none_left 2 3
     result $? "the same without a limit: the others leave (after $((SECONDS - begin)) s)"
     goes_on frozen.h5
     begin_run silent.h5
     # shellcheck disable=SC2046
     kill -STOP $(ip netns pids "$name-2")
-    await_ranks 1 3
+    await - none_left 1 3
     result $? "another host is frozen: the others stop without it (after $((SECONDS - begin)) s)"
     cp out log
     says "... and rank 0 says which" "rank 1 has said nothing"

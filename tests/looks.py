@@ -8,6 +8,7 @@ In the current folder; needs poppler-utils. Speaks TAP.
 import os
 import pty
 import re
+import select
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,7 @@ import h5py
 import numpy as np
 
 from drawn import Picture, gif
-from tap import tap
+from tap import PATIENCE, tap
 
 SVG = "{http://www.w3.org/2000/svg}"
 STANCE, SCENARIOS = sys.argv[1:]
@@ -436,9 +437,9 @@ def under_mpirun():
         return
     for arguments, lines in ((["plot", "map.h5", "--picture", "map", "-o", "ranks"], ["ranks/map-map.svg", "ranks/map-map.png"]),
                              (["replay", "map.h5", "--case", "85", "--picture", "gaps", "-o", "ranks.svg"], ["ranks.svg"])):
-        ran = subprocess.run(["mpirun", "-n", "2", STANCE, *arguments], capture_output=True, text=True, check=False, timeout=100)
+        ran = subprocess.run(["mpirun", "-n", "2", STANCE, *arguments], capture_output=True, text=True, check=False, timeout=PATIENCE)
         assert ran.returncode == 0 and ran.stdout.splitlines() == lines, (ran.stdout, ran.stderr)
-    ran = subprocess.run(["mpirun", "-n", "2", STANCE, "plot", "map.h5", "--nonsense"], capture_output=True, text=True, check=False, timeout=100)
+    ran = subprocess.run(["mpirun", "-n", "2", STANCE, "plot", "map.h5", "--nonsense"], capture_output=True, text=True, check=False, timeout=PATIENCE)
     assert ran.returncode == 2 and ran.stderr.count("unknown option") == 1, ran.stderr
 
 
@@ -446,15 +447,21 @@ def progress():
     """Who waits at a terminal sees that something goes on; nobody else does."""
     os.makedirs("slow", exist_ok=True)
     with open("slow/gnuplot", "w", encoding="utf-8") as file:
-        file.write("#!/bin/sh\nsleep 4\nexit 1\n")
+        file.write("#!/bin/sh\nuntil [ -e '%s/slow/go' ]; do sleep 0.1; done\nexit 1\n" % os.getcwd())
     os.chmod("slow/gnuplot", 0o755)
     environment = dict(os.environ, PATH=f"{os.getcwd()}/slow:{os.environ['PATH']}")
     ours, theirs = pty.openpty()
-    with subprocess.Popen([STANCE, "plot", "map.h5", "-o", "slow"], stderr=theirs, stdout=subprocess.DEVNULL, env=environment) as ran, \
-            subprocess.Popen([STANCE, "plot", "map.h5", "-o", "slow"], stderr=subprocess.PIPE, env=environment) as heard:
-        assert ran.wait() == 3 and heard.wait() == 3
-        said = os.read(ours, 4000).decode()
-        assert re.fullmatch(r"3 s\r(4 s\r)?\x1b\[K.*gnuplot failed.*\r\n", said), said
+    with subprocess.Popen([STANCE, "plot", "map.h5", "-o", "slow"], stderr=subprocess.PIPE, env=environment) as heard, \
+            subprocess.Popen([STANCE, "plot", "map.h5", "-o", "slow"], stderr=theirs, stdout=subprocess.DEVNULL, env=environment) as ran:
+        said = ""
+        while "4 s" not in said:
+            assert select.select([ours], [], [], PATIENCE)[0], said
+            said += os.read(ours, 4000).decode()
+        with open("slow/go", "w", encoding="ascii"):
+            pass
+        assert ran.wait(PATIENCE) == 3 and heard.wait(PATIENCE) == 3
+        said += os.read(ours, 4000).decode()
+        assert re.fullmatch(r"3 s\r4 s\r(\d+ s\r)*\x1b\[K.*gnuplot failed.*\r\n", said), said
         assert heard.stderr.read().decode().startswith("gnuplot failed")
 
 

@@ -1,8 +1,9 @@
 # shellcheck shell=bash disable=SC2154
-# What tests of the whole program share: commands with the exit codes and lines that they must give.
-# Sourced in a scratch folder by a script that sets count=0, patience (s), python and tests; failed
-# counts what was not ok.
+# What tests of the whole program share: commands with the exit codes and lines that they must give, and
+# events that they wait for. Sourced in a scratch folder by a script that sets count=0, stance, python and
+# tests; failed counts what was not ok.
 failed=0
+read -r patience _ <"$tests/patience" # s
 
 result() { # status, name
     count=$((count + 1))
@@ -14,15 +15,37 @@ result() { # status, name
         sed 's/^/# /' log 2>/dev/null | tail -n 20
     fi
 }
+# Milliseconds that a command takes here and now: by which others are killed on their way.
+span() { # command ...
+    local begin=${EPOCHREALTIME//[.,]/}
+    "$@" >/dev/null 2>&1 </dev/null
+    echo $(((${EPOCHREALTIME//[.,]/} - begin) / 1000))
+}
+seconds() { printf '%d.%03d' $(($1 / 1000)) $(($1 % 1000)); } # milliseconds
 # Runs a command, not for ever; ok when it exits with this code.
 expect() { # name, code, command ...
     local name=$1 code=$2 status
     shift 2
-    timeout $patience "$@" >log 2>&1 </dev/null
+    timeout "$patience" "$@" >log 2>&1 </dev/null
     status=$?
     ((status == code)) || echo "exit code $status, expected $code" >>log
     result $((status != code)) "$name"
 }
+# Waits until a command succeeds; false: the process on which that depends (-: none) has ended before.
+await() { # process, command ...
+    local process=$1 end=$((SECONDS + patience))
+    shift
+    until "$@"; do
+        if ((SECONDS > end)) || { [ "$process" != - ] && gone "$process"; }; then
+            echo "waited in vain for: $*" >>log
+            return 1
+        fi
+        sleep 0.05
+    done
+}
+gone() { ! kill -0 "$1" 2>/dev/null; } # process
+running() { "$stance" status "$1" 2>/dev/null | grep -v 'not running' | grep -q running; } # file: a job is at it
+computing() { "$stance" status "$1" 2>/dev/null | grep -v 'not running' | grep -q ': [1-9][0-9]* of .*running'; } # ... and has stored cases
 # The log has exactly one line of the program, and it matches.
 says() { # name, pattern
     [ "$(grep -c -- "$2" log)" = 1 ]

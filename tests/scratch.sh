@@ -8,8 +8,7 @@ export STANCE=${STANCE:-$PWD/bin/stance}
 stance=$STANCE
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export PMIX_MCA_gds=hash OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
-count=0 patience=180 # seconds that a command may take
-[ -n "${STANCE_SLOW:-}" ] && patience=300
+count=0
 
 scratch=$(mktemp -d)
 disk=$scratch/disk

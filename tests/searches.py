@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 
 from drawn import Picture
-from tap import tap
+from tap import PATIENCE, tap
 
 STANCE = sys.argv[1]
 STABILISED = 2 # place in `kind`
@@ -57,7 +57,7 @@ seed: 1
 
 def call(*arguments, code=0, **environment):
     """Lines of what is printed, and of what is said."""
-    ran = subprocess.run([STANCE, *arguments], capture_output=True, text=True, check=False, timeout=300, env=dict(os.environ, **environment))
+    ran = subprocess.run([STANCE, *arguments], capture_output=True, text=True, check=False, timeout=PATIENCE, env=dict(os.environ, **environment))
     assert ran.returncode == code, (arguments, ran.returncode, ran.stdout, ran.stderr)
     return ran.stdout.splitlines(), ran.stderr.splitlines()
 
@@ -262,7 +262,7 @@ def running():
             line = ran.stdout
         said = json.loads("\n".join(call("status", "long-search.h5", "--json")[0]))
         process.send_signal(signal.SIGTERM)
-        assert process.wait(60) == 4
+        assert process.wait(PATIENCE) == 4
     assert re.search(r"generation \d+ of at most \d+, \d+ candidates, best .* starts; running on 1 rank.* left$", line.strip()), line
     assert said["running"] and said["ranks"] == 1 and said["seconds_left"] > 0, said
 

@@ -118,7 +118,7 @@ export PMIX_MCA_gds=hash OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_
 export OMPI_MCA_hwloc_base_binding_policy=none
 
 cd "$work" || exit 1
-count=0 patience=300
+count=0
 # shellcheck source=tests/outside.sh
 . "$tests/outside.sh"
 die() {
@@ -137,14 +137,8 @@ start_node() { slurmd -f "$SLURM_CONF" -N "$1" || die "slurmd does not start"; }
 start_node n1
 start_node n2
 idle_nodes() { sinfo --noheader --Node --states=idle --format=%N 2>/dev/null | wc -l; }
-await_nodes() {
-    for _ in $(seq 60); do
-        (($(idle_nodes) == 2)) && return 0
-        sleep 1
-    done
-    return 1
-}
-await_nodes || die "the nodes do not come up"
+both_idle() { (($(idle_nodes) == 2)); }
+await - both_idle || die "the nodes do not come up"
 sinfo | note
 
 # ---- jobs ----------------------------------------------------------------------------------------
@@ -158,19 +152,16 @@ submit() { # options and script; sets job
 }
 # Until the job is in none of the states of one that is not over; notes what squeue says meanwhile.
 await_end() { # job
-    local state last=
-    for _ in $(seq 900); do
-        state=$(known "$1" JobState)
-        [ "$state" = "$last" ] || watch "$1" | note
-        last=$state
-        case $state in
-        PENDING | RUNNING | COMPLETING | SUSPENDED | CONFIGURING | REQUEUED) ;;
-        *) return 0 ;;
-        esac
-        sleep 1
-    done
-    echo "job $1 is still $state" >>log
-    return 1
+    state=
+    await - is_over "$1"
+}
+is_over() { # job
+    local last=$state
+    state=$(known "$1" JobState)
+    [ "$state" = "$last" ] || watch "$1" | note
+    case $state in
+    PENDING | RUNNING | COMPLETING | SUSPENDED | CONFIGURING | REQUEUED) sleep 1 && return 1 ;;
+    esac
 }
 ended() { # name, job, state
     await_end "$2"
@@ -180,14 +171,6 @@ ended() { # name, job, state
     tail -n 15 "$work"/*"-$2.log" >>log 2>&1
     [ "$state" = "$3" ]
     result $? "$1"
-}
-# Until a job's run has written some cases to this file.
-await_cases() { # file
-    for _ in $(seq 600); do
-        "$stance" status "$1" 2>/dev/null | grep -q ': [1-9][0-9]* of .*running' && return 0
-        sleep 0.1
-    done
-    return 1
 }
 pending() { "$stance" status "$1" --json 2>/dev/null | sed -n 's/.*"pending": \([0-9]*\).*/\1/p'; }
 logged() { # name, job, least, pattern
@@ -313,7 +296,7 @@ scenario "$(points 16)" 5 >middle.yaml
 undisturbed middle.h5 middle.yaml
 SCENARIO=middle.yaml RESULTS=results/cancelled.h5
 submit --ntasks=2 --time=10 "$scripts/requeue.sh"
-await_cases results/cancelled.h5
+await - computing results/cancelled.h5
 scancel "$job"
 ended "a job cancelled in mid-run" "$job" CANCELLED
 left=$(pending results/cancelled.h5)
@@ -330,7 +313,7 @@ same "... and ends with the same file" middle.h5 results/cancelled.h5
 # ---- power of a node cut off ---------------------------------------------------------------------
 RESULTS=results/node.h5
 submit --ntasks=2 --time=10 "$scripts/requeue.sh"
-await_cases results/node.h5
+await - computing results/node.h5
 node=$(known "$job" NodeList)
 # shellcheck disable=SC2046
 kill -9 "$(cat "$cluster/$node.pid")" $(job_processes)
@@ -343,7 +326,7 @@ echo "$node, then $other" >log
 result $? "... and goes on on another node"
 same "... and ends with the same file" middle.h5 results/node.h5
 start_node "$node"
-await_nodes
+await - both_idle
 result $? "the node comes back"
 
 # ---- a rank killed -------------------------------------------------------------------------------
@@ -360,13 +343,13 @@ kill_rank() { # of the one job there is
 }
 RESULTS=results/rank.h5
 submit --ntasks=2 --time=10 "$scripts/requeue.sh"
-await_cases results/rank.h5
+await - computing results/rank.h5
 kill_rank
 ended "a job one of whose ranks is killed soon" "$job" FAILED
 logged "... is not put back, and says so" "$job" 1 'crashed within 600 s: not put back'
 rm results/rank.h5
 submit --ntasks=2 --time=10 --export=ALL,SHORTEST_TURN=0 "$scripts/requeue.sh"
-await_cases results/rank.h5
+await - computing results/rank.h5
 kill_rank
 ended "a job one of whose ranks is killed later" "$job" COMPLETED
 (($(known "$job" Restarts) == 1))
@@ -395,10 +378,8 @@ result $? "... has exit code 4"
 logged "... and says how to go on" "$job" 1 'go on with: mpirun -n 2 .*stance run .*--resume'
 left=$(pending results/one.h5)
 submit --ntasks=2 --time=10 "$scripts/one_job.sh"
-for _ in $(seq 600); do
-    (($(pending results/one.h5) < left)) && break
-    sleep 0.1
-done
+fewer_left() { (($(pending results/one.h5) < left)); }
+await - fewer_left
 scancel --batch --signal=USR1 "$job"
 ended "submitted again, and told to stop by Slurm's signal" "$job" FAILED
 [ "$(known "$job" ExitCode)" = 4:0 ]

@@ -1,5 +1,9 @@
-"""Checks as the lines of TAP that tests/run.sh reads."""
+"""Checks as the lines of TAP that tests/run.sh reads, and how long they wait."""
+import os
 import traceback
+
+with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "patience"), encoding="ascii") as text:
+    PATIENCE = int(text.read().split()[0])  # s
 
 
 def tap(checks):

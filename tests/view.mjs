@@ -13,7 +13,6 @@ const assert = (good, text) => {
   if (!good) throw new Error(text);
 };
 const same = (a, b, what) => assert(a === b, `${what}: ${JSON.stringify(a)} instead of ${JSON.stringify(b)}`);
-const wait = (ms) => new Promise((done) => setTimeout(done, ms));
 const shift = 8;
 
 // With a page, closed in the end; no check leaves an error on the console or asks the network.
@@ -106,11 +105,18 @@ check('a case plays by itself, slowly if asked', () =>
     await p.until(played);
     await p.until(`parseFloat(document.querySelector('#clock').textContent) > 0.05`);
     await p.set('.transport select', '0.02');
-    await wait(100);
-    const begin = parseFloat(await p.text('#clock'));
-    await wait(500);
-    const passed = parseFloat(await p.text('#clock')) - begin;
-    assert(passed > 0 && passed < 0.1, `in half a second ${passed} s at a fiftieth of the speed`);
+    // By the page's own frames, however far apart they are: at a fiftieth of the speed.
+    const [passed, seconds] = await p.evaluate(`new Promise((done) => {
+      const clock = () => parseFloat(document.querySelector('#clock').textContent);
+      let begin;
+      const frame = (now) => {
+        begin ??= [clock(), now];
+        if (clock() - begin[0] >= 0.02) done([clock() - begin[0], (now - begin[1]) / 1000]);
+        else requestAnimationFrame(frame);
+      };
+      requestAnimationFrame(() => requestAnimationFrame(frame));
+    })`);
+    assert(passed < 0.1 * seconds, `in ${seconds} s ${passed} s at a fiftieth of the speed`);
   }));
 
 check('only keys: arrows, Enter, and a second case beside the first', () =>
@@ -171,7 +177,7 @@ check('wheel and pan stay within the map', () =>
     await p.until(`location.hash.match(/zoom=([^&]*)/)?.[1].split(',').reduce((a, v, k) => a + [-1, 1, 0, 0][k] * v, 0) < 41 * Math.exp(-0.85)`);
     const before = await zoom();
     await p.drag(x, y, x - 50, y, shift);
-    await wait(500);
+    await p.until(`Number(location.hash.match(/zoom=([^,]*)/)?.[1]) > ${before[0]}`);
     const after = await zoom();
     assert(after[0] > before[0] && Math.abs(after[1] - after[0] - before[1] + before[0]) < 1e-3, `panned from ${before} to ${after}`);
     for (let k = 0; k < 40; k++) await p.call('Input.dispatchMouseEvent', { type: 'mouseWheel', x, y, deltaX: 0, deltaY: 300 });
@@ -182,7 +188,7 @@ check('live: friction changes the map; the difference is counted; the command co
   on('map.html', { motion: false }, async (p) => {
     await p.until(fields);
     await p.set(field('ground.friction'), '0.15');
-    await p.until(computed, 120);
+    await p.until(computed);
     const here = await p.evaluate(count('stabilised'));
     assert(/^\d+ of \d+ cases simulated, [\d.]+ s: done$/.test(await p.text('#progress')), await p.text('#progress'));
     await p.evaluate(choose('difference'));
@@ -200,20 +206,19 @@ check('live: friction changes the map; the difference is counted; the command co
 
 check('live: every case simulated is the file again, answer for answer', () =>
   on('map.html', { hash: '#map=0,all' }, async (p) => {
-    await p.until(computed, 120);
+    await p.until(computed);
     await p.evaluate(choose('difference'));
     await p.until(`document.querySelector('#legend').innerText.includes('as in the file')`);
     same(await p.evaluate(count('as in the file')), head('map.html').cases, 'cases as in the file');
-    const h = head('map.html');
     await p.move(...(await p.spot('#map', 0.5, 0.5)));
     await p.until(`document.querySelector('#readout').innerText.includes('friction_used')`);
     const here = await p.text('#readout');
     await p.evaluate(choose('file'));
-    await wait(100);
+    await p.until(`!document.querySelector('#legend').innerText.includes('as in the file')`);
     await p.move(...(await p.spot('#map', 0.51, 0.9)));
+    await p.until(`![${JSON.stringify(here)}, ''].includes(document.querySelector('#readout').innerText)`);
     await p.move(...(await p.spot('#map', 0.5, 0.5)));
-    await wait(200);
-    same(await p.text('#readout'), here, `readout of one of ${h.cases}`);
+    await p.until(`document.querySelector('#readout').innerText === ${JSON.stringify(here)}`);
   }));
 
 check('live: two fields within a moment are two changes', () =>
@@ -228,7 +233,7 @@ check('live: a map of what is in sight, stopped and started', () =>
   on('map.html', { hash: '#zoom=5,15,5,15' }, async (p) => {
     await p.until(fields);
     await p.press('#compute');
-    await p.until(computed, 120);
+    await p.until(computed);
     assert(/map=64,refined,5,15,5,15/.test(await p.evaluate('location.hash')), 'the window is in the address');
     same(await p.evaluate(`document.querySelector('#map').dataset.cases`), '4096', 'cases of the window');
     await p.evaluate(`document.querySelector('#cells').value = '256'; document.querySelector('#cells').dispatchEvent(new Event('change'))`);
@@ -256,7 +261,7 @@ check('live: another mass keeps the controller; a controller without a design sa
     await p.set('#search', 'trunk_mass');
     await p.set(field('robot.trunk_mass'), '1.9');
     await p.until(`document.querySelector('#changes').innerText.includes('the controller stays the one designed for robot.trunk_mass = 1.8')`);
-    await p.until(computed, 120);
+    await p.until(computed);
     // Taken back, the design would have to be made anew.
     await p.evaluate(`document.querySelector('#changes button[aria-label="Take back controller.model.trunk_mass"]').click()`);
     await p.until(`[...document.querySelectorAll('#live-part .error')].some((e) => !e.hidden && /design/.test(e.innerText))`);
@@ -264,7 +269,7 @@ check('live: another mass keeps the controller; a controller without a design sa
 
 check('a case with changes beside the file\'s', () =>
   on('map.html', { motion: false, hash: '#set=controller.torque_limit=20&map=32,refined' }, async (p) => {
-    await p.until(computed, 120);
+    await p.until(computed);
     await p.evaluate(choose('file'));
     await p.click(...(await p.spot('#map', 0.9, 0.9)));
     await p.until(played);
@@ -312,7 +317,7 @@ check('a sample: points over two of its paths, simulated as in the file', () =>
     await p.until(played);
     same(await p.evaluate(badges), 'identical to the file', 'badge');
     await p.set(field('controller.noise'), '0.5');
-    await p.until(computed, 120);
+    await p.until(computed);
     same(await p.evaluate(`document.querySelector('#map').dataset.computed`), 'true', 'computed');
   }));
 
@@ -326,7 +331,7 @@ check('a file of two scenarios: each case is held against its own', () =>
 
 check('a file without outcomes differs in none of them', () =>
   on('bare.html', { hash: '#map=0,all&show=difference' }, async (p) => {
-    await p.until(computed, 120);
+    await p.until(computed);
     await p.until(`document.querySelector('#legend').innerText.includes('the file has no outcome')`);
   }));
 

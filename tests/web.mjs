@@ -4,12 +4,13 @@
 //   const page = await open('page.html', { width: 1400, height: 900 });
 //   await page.until(`document.querySelector('#legend')`); ... await page.close();
 import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const programs = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+const patience = parseInt(readFileSync(new URL('patience', import.meta.url), 'utf8')); // s
 export const browser = programs.find((p) => p && existsSync(p)) ?? null;
 
 // A browser of its own; `close` ends it.
@@ -78,11 +79,11 @@ export async function open(file, { width = 1400, height = 900, dark = false, has
     return r.result.value;
   };
   // Until an expression is true; its value.
-  const until = async (expression, seconds = 60) => {
-    for (const end = Date.now() + 1000 * seconds; ; await new Promise((done) => setTimeout(done, 30))) {
+  const until = async (expression) => {
+    for (const end = Date.now() + 1000 * patience; ; await new Promise((done) => setTimeout(done, 30))) {
       const value = await evaluate(expression).catch(() => false);
       if (value) return value;
-      if (Date.now() > end) throw new Error(`in ${seconds} s never true: ${expression}; the page says: ${await evaluate('document.body.innerText.slice(0, 600)')}`);
+      if (Date.now() > end) throw new Error(`in ${patience} s never true: ${expression}; the page says: ${await evaluate('document.body.innerText.slice(0, 600)')}`);
     }
   };
   const visit = async (address) => {

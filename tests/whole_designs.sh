@@ -97,9 +97,10 @@ for ranks in 2 3; do
     expect "... gives the same bits" 0 "$stance" compare one.h5 ranks.h5
 done
 "$stance" run set.yaml -o killed.h5 --quiet --force --set sweep.sample.count=$((10 * points)) 2>/dev/null &
-sleep 0.5
-kill -9 $! 2>/dev/null
-wait 2>/dev/null
+job=$!
+await $job computing killed.h5
+kill -9 $job 2>/dev/null
+wait $job 2>/dev/null
 expect "a killed run is resumed" 0 "$stance" run set.yaml -o killed.h5 --quiet --resume \
     --set sweep.sample.count=$((10 * points))
 expect "... on two ranks from the beginning" 0 mpirun -n 2 "$stance" run set.yaml -o long.h5 --quiet \

@@ -18,6 +18,7 @@ cd "$scratch" || exit 1
 unset ASAN_OPTIONS UBSAN_OPTIONS
 export OPENBLAS_NUM_THREADS=1 # threads that never work cost each change of the memory's map an interrupt
 count=0
+read -r patience _ <"$root/tests/patience"
 result() { # status, name, log
     count=$((count + 1))
     if (($1 == 0)); then
@@ -70,7 +71,7 @@ scenario_limit=(-max_total_time="$seconds") results_limit=(-seconds "$seconds" -
 # The seeds are joined by what earlier campaigns on this machine reached.
 fuzz_scenarios() {
     ASAN_OPTIONS=quarantine_size_mb=1:thread_local_quarantine_size_kb=64:allocator_release_to_os_interval_ms=-1 \
-        UBSAN_OPTIONS=print_stacktrace=1 nice -n 5 "$programs/fuzz_scenario" -timeout=100 -rss_limit_mb=2048 \
+        UBSAN_OPTIONS=print_stacktrace=1 nice -n 5 "$programs/fuzz_scenario" -timeout="$patience" -rss_limit_mb=2048 \
         -malloc_limit_mb=512 -max_len=4096 -print_final_stats=1 -artifact_prefix="$programs/found/" \
         "${scenario_limit[@]}" "$programs/corpus" "$root/tests/fuzz/scenario" \
         "$root/tests/fuzz/found" "$root/tests/bad" "$root/scenarios" >scenarios.log 2>&1

@@ -10,15 +10,18 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export PMIX_MCA_gds=hash OMPI_MCA_btl_vader_single_copy_mechanism=none OMPI_MCA_rmaps_base_oversubscribe=1
 scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
 cd "$scratch" || exit 1
-# Sanitizers reserve addresses by the terabyte.
-count=0 patience=20 memory=2000000 # kB
-[ -n "${STANCE_SLOW:-}" ] && patience=120 memory=unlimited
+read -r patience _ <"$root/tests/patience"
+# "At once" is said of the processor's time, which others do not lengthen. Sanitizers reserve addresses
+# by the terabyte.
+count=0 computing=20 memory=2000000 # s, kB
+[ -n "${STANCE_SLOW:-}" ] && computing=120 memory=unlimited
+limited() { ulimit -v "$memory" && ulimit -t "$computing" && exec timeout "$patience" "$@"; } # in a subshell
 
 # A command that must fail with this code and say exactly one line, which matches.
 refused() { # name, code, pattern, command ...
     local name=$1 code=$2 pattern=$3 status
     shift 3
-    (ulimit -v "$memory" && exec timeout "$patience" "$@") >out 2>errors </dev/null
+    (limited "$@") >out 2>errors </dev/null
     status=$?
     count=$((count + 1))
     if ((status == code)) && [ "$(wc -l <errors)" = 1 ] && grep -q -- "$pattern" errors && [ ! -s out ]; then
@@ -32,7 +35,7 @@ refused() { # name, code, pattern, command ...
 accepted() { # name, command ...
     local name=$1
     shift
-    (ulimit -v "$memory" && exec timeout "$patience" "$@") >out 2>errors
+    (limited "$@") >out 2>errors
     local status=$?
     count=$((count + 1))
     if ((status == 0)) && ! grep -qv ': warning: ' errors; then
@@ -66,7 +69,7 @@ refused "a --set of a megabyte" 2 "is not a path\|longer than" bash -c "'$stance
 
 # Thousands of wrong words: the first ones are shown, the others counted, none takes long.
 { printf 'stance: 1\nscene: biped\nrecord: {answers: [' && seq -f 'word%.0fxxxxxxxxxxxxxxxx, ' -s '' 30000 && echo ']}'; } >words.yaml
-timeout "$patience" "$stance" check words.yaml >out 2>errors
+(limited "$stance" check words.yaml) >out 2>errors
 status=$?
 count=$((count + 1))
 if ((status == 2)) && [ "$(wc -l <errors)" = 21 ] && tail -n 1 errors | grep -q 'more errors$'; then

@@ -60,14 +60,21 @@ says "... with the command that goes on" 'go on with:.* optimise box.yaml -o sto
 search "... which does" 0 box.yaml -o stopped.h5 --resume
 "$python" "$tests/search.py" same one.h5 stopped.h5 >log 2>&1
 result $? "... to the same end, to the bit"
+# Some moment after a generation more than what there was is in the file: it comes to its end.
+generations() { "$stance" status killed.h5 --json 2>/dev/null | sed -n 's/.*"generations": *\([0-9]*\).*/\1/p'; }
+further() { (($(generations) + 0 > before)); }
 same=0
 for ((k = 0; k < kills; k++)); do
-    rm -f killed.h5
+    rm -f killed.h5*
     for ((try = 0; try < 40; try++)); do
+        before=$(($(generations) + 0))
         mpirun -n $((1 + k % 2)) "$stance" optimise box.yaml -o killed.h5 --resume --quiet >/dev/null 2>&1 </dev/null &
         job=$!
-        sleep "$(awk -v r=$RANDOM -v t=$try 'BEGIN { print 0.3 + 1.5 * r / 32768 + 0.2 * t }')"
-        pkill -9 -f 'optimise box.yaml -o killed.h5' 2>/dev/null || true
+        if await $job further; then
+            sleep "$(seconds $((RANDOM % 500)))"
+            # shellcheck disable=SC2046 # a list of numbers
+            kill -9 $job $(pgrep -P $job) 2>/dev/null
+        fi
         { wait $job; } 2>/dev/null && break
     done
     "$python" "$tests/search.py" same one.h5 killed.h5 >log 2>&1 && same=$((same + 1))

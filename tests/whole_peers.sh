@@ -46,9 +46,9 @@ result $? "... draws both"
 fake() { # NAME COMMANDS
     printf '#!/bin/sh\n%s\n' "$2" >"$1" && chmod +x "$1"
 }
-wrong() { # WHAT EXPECTED COMMANDS
+wrong() { # WHAT EXPECTED COMMANDS OPTIONS ...: it has ten minutes to say it, unless there is a --peer-effort
     fake peer "$3"
-    expect "$1" 3 "${ask[@]}" drop.yaml --reuse --peer ./peer --peer-effort 0.1 -o self
+    expect "$1" 3 "${ask[@]}" drop.yaml --reuse --peer ./peer "${@:4}" -o self
     says "... says so" "$2"
     lines=$(grep -c 'stance bench accuracy: drop.yaml: ' log)
     [ "$lines" = 1 ] && [ "$(wc -l <log)" = 1 ]
@@ -62,7 +62,7 @@ wrong "numbers that are none" "line 3 is not understood: acceleration 0 1 2 z" '
 wrong "one that stops in the middle" "stopped in the middle" 'echo peer fake'
 wrong "one that dies" "died of signal 9" 'echo peer fake; kill -9 $$'
 wrong "one that gives up" "ended with exit code 7" 'echo peer fake; exit 7'
-wrong "one that is silent" "has said nothing for 1 s" 'exec sleep 60'
+wrong "one that is silent" "has said nothing for 1 s" 'exec sleep 1000' --peer-effort 0.1
 wrong "cases that are missing" "2 of 2 cases are missing" "\"$programs/peer_self\" | grep -v '^case'"
 wrong "states that are missing" "has 120 of 121 states" "\"$programs/peer_self\" | grep -v '^state 1 120 '"
 wrong "no time" ".midpoint.: no time" "\"$programs/peer_self\" | grep -v '^time'"
@@ -76,7 +76,7 @@ says "... it says why" "fake cannot: no feet"
 # ---- those that are installed ----------------------------------------------------------------------
 for peer in mujoco siconos; do
     if [ -x "$programs/peer_$peer" ]; then
-        expect "$peer computes the drop" 0 "${ask[@]}" drop.yaml --reuse --peer "$programs/peer_$peer" --peer-effort 0.2 -o self --json
+        expect "$peer computes the drop" 0 "${ask[@]}" drop.yaml --reuse --peer "$programs/peer_$peer" -o self --json
         "$python" - <<'END' >told 2>&1
 import json
 study = json.loads("{" + open("log").read().split("{", 1)[1])["studies"][0]

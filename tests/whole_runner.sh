@@ -134,20 +134,12 @@ expect "the whole job" 0 mpirun -n 2 "$stance" run long.yaml -o long.h5
 expect "status of a finished file" 0 "$stance" status long.h5 --json
 says "status counts 40000 cases" '"done": 40000'
 
-# Waits until some cases of $1 are done.
-await() {
-    for _ in $(seq 200); do
-        "$stance" status "$1" 2>/dev/null | grep -q ': [1-9][0-9]* of .*running' && return 0
-        sleep 0.05
-    done
-    return 1
-}
 for n in 0 2; do
     if ((n == 0)); then launch=() name="alone"; else launch=(mpirun -n $n) name="of $n ranks"; fi
     rm -f killed.h5
     "${launch[@]}" "$stance" run long.yaml -o killed.h5 --quiet >/dev/null 2>&1 &
     job=$!
-    await killed.h5 2>log
+    await "$job" computing killed.h5 2>log
     result $? "status sees a run $name while it runs"
     victim=$job
     ((n > 0)) && victim=$(pgrep -P $job stance | tail -n 1)
@@ -227,10 +219,7 @@ for launch in "" "mpirun -n 2"; do
 done
 "$stance" run endless.yaml -o endless.h5 --resume --quiet >log 2>&1 &
 job=$!
-for _ in $(seq 200); do
-    "$stance" status endless.h5 2>/dev/null | grep -v 'not running' | grep -q running && break
-    sleep 0.05
-done
+await "$job" running endless.h5
 kill -TERM $job
 wait $job
 (($? == 4))
@@ -239,7 +228,7 @@ for signal in INT TERM USR1; do
     rm -f signal.h5
     "$stance" run long.yaml -o signal.h5 --quiet >log 2>&1 &
     job=$!
-    await signal.h5
+    await "$job" computing signal.h5
     kill -$signal $job
     wait $job
     (($? == 4))
@@ -249,7 +238,7 @@ done
 rm -f signal.h5
 mpirun -n 2 "$stance" run long.yaml -o signal.h5 --quiet >log 2>&1 &
 job=$!
-await signal.h5
+await "$job" computing signal.h5
 kill -USR1 $job
 wait $job
 (($? == 4))
@@ -304,7 +293,7 @@ for launch in "" "mpirun -n 3"; do
         # Taken away while it runs: the writes of one rank fail.
         $launch "$stance" run long.yaml -o limit.h5 --quiet >log 2>&1 &
         job=$!
-        await limit.h5
+        await "$job" computing limit.h5
         victim=$(pgrep -P "$(pgrep -P $job | head -n 1)" | tail -n 1)
         [ -z "$launch" ] && victim=$job
         [ -z "$victim" ] && victim=$(pgrep -P $job | tail -n 1)

@@ -22,8 +22,12 @@ make_page tiny basin_one_foot.yaml --set 'sweep={grid: [{path: initial.offset.vt
 make_page delays controllers/delay.yaml --set 'sweep={grid: [{path: initial.offset.theta, from: -0.1, to: 0.1, count: 9}, {path: controller.delay, from: 0, to: 2, count: 3}]}'
 make_page pairs basin_one_foot.yaml --set 'sweep={grid: [{paths: [method.name, method.step], values: [[implicit, 0.002], [lagrange, 0.001]]}, {path: initial.offset.q1, from: -0.1, to: 0.1, count: 5}, {path: controller.torque_limit, values: [none, 5]}]}'
 make_page bare basin_one_foot.yaml --set 'sweep.grid[0].count=9' --set 'sweep.grid[1].count=9' --set 'record={answers: [end_time]}'
-slow=(--set 'sweep.grid[0].count=60' --set 'sweep.grid[1].count=120' --set controller.sample_time=0.0005 --set method.step=0.0001)
-"$stance" run "$shipped/basin_one_foot.yaml" "${slow[@]}" --time-limit 1s -o scenarios.h5 >/dev/null 2>&1
-"$stance" run "$shipped/basin_one_foot.yaml" "${slow[@]}" --set ground.friction=0.15 --resume --force-scenario -o scenarios.h5 >/dev/null 2>&1
+# The first half by one scenario, the other by another.
+few=(--set 'sweep.grid[0].count=12' --set 'sweep.grid[1].count=12')
+"$stance" run "$shipped/basin_one_foot.yaml" "${few[@]}" -o scenarios.h5 >/dev/null 2>&1
+"$python" -c 'import h5py
+with h5py.File("scenarios.h5", "r+") as f:
+    status = f["status"][...]; status[6:] = 0; f["status"][...] = status'
+"$stance" run "$shipped/basin_one_foot.yaml" "${few[@]}" --set ground.friction=0.15 --resume --force-scenario -o scenarios.h5 >/dev/null 2>&1
 "$stance" view scenarios.h5 -o scenarios.html >/dev/null
 "$node" "$tests/view.mjs" "$scratch" "$@"
