@@ -24,10 +24,9 @@ for f in "${sources[@]}"; do
 done
 
 make -s build/libstance.a build/libstance_control.a || complain "the engine does not build"
-nm -g --defined-only build/libstance.a build/libstance_control.a 2>/dev/null | awk 'NF == 3 && $3 !~ /^stance_/ {print $3}' | sort -u |
-    while read -r symbol; do echo "lint: exported engine symbol without stance_: $symbol"; done | tee /tmp/lint.$$
-[ -s /tmp/lint.$$ ] && bad=1
-rm -f /tmp/lint.$$
+for symbol in $(nm -g --defined-only build/libstance.a build/libstance_control.a 2>/dev/null | awk 'NF == 3 && $3 !~ /^stance_/ {print $3}' | sort -u); do
+    complain "exported engine symbol without stance_: $symbol"
+done
 
 cppcheck --quiet -j "$(nproc)" --std=c11 --error-exitcode=1 --inline-suppr --enable=warning,performance,portability \
     --suppress=missingIncludeSystem --suppress=unknownMacro --suppress=ctuuninitvar -DSTANCE_LANES=1 -DSTANCE_MPI -D__x86_64__ -I. \
