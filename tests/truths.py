@@ -260,7 +260,7 @@ slow, shape = slow_mode()
 TRUTHS = {
     "ball thrown, height": 1 + 3 * 0.8 - G * 0.8**2 / 2,
     "ball thrown, energy": 0.5 * 18 + G,
-    "bouncing ball, fourth bounce": 0.1 + bounces(0.5, 0.5, 0.875),
+    "bouncing ball, after three impacts": 0.1 + bounces(0.5, 0.5, 0.875),
     "bouncing ball, Zeno time": zeno(0.5, 0.5, 0.002),
     "bouncing ball, Zeno time, e 0.8": zeno(0.5, 0.8, 0.002),
     "block slides to rest, distance": 4 / (2 * 0.3 * G),

@@ -314,6 +314,58 @@ stance summary
 stance summary ball.h5
 a results file is needed
 END
+# Several files, names as long as a file system takes, shards without a case.
+expect "status of several files" 0 "$stance" status ball.h5 robot.h5
+[ "$(grep -c 'complete$' log)" = 2 ]
+result $? "... tells each"
+expect "... as JSON, one of which is not there" 3 bash -c '"$0" status ball.h5 none.h5 robot.h5 --json 2>/dev/null' "$stance"
+"$python" -c 'import json; d = json.load(open("log")); assert [x and x["file"] for x in d] == ["ball.h5", None, "robot.h5"], d' 2>>log
+result $? "... is a list"
+long=$(printf 'a%.0s' $(seq 247))
+cp ball_bounce.yaml "$long.yaml"
+expect "a name of 252 letters" 0 "$stance" run --quiet "$long.yaml"
+[ -s "results/$long.h5" ]
+result $? "... names its results"
+"$stance" run ball_bounce.yaml --dry-run >/dev/null
+for k in 1 2; do
+    "$stance" run ball_bounce.yaml --quiet -o "shard$k.h5" --shard $k/2 && cp "shard$k.h5" "empty$k.h5"
+    "$python" -c 'import h5py, sys; f = h5py.File(sys.argv[1], "a"); f["status"][...] = 0' "empty$k.h5"
+done
+expect "shards with cases" 0 "$stance" merge whole.h5 shard1.h5 shard2.h5
+expect "shards without" 2 "$stance" merge none.h5 empty1.h5 empty2.h5
+says "... are told" "none of the 2 files has a case that is computed"
+[ ! -e none.h5 ] && [ ! -e none.h5.merging ]
+result $? "... and leave nothing"
+# What check says of what is asked for.
+expect "a study without a controller" 0 "$stance" check ball_bounce.yaml
+says "... has no designs" "^controller  none$"
+expect "very many trajectories" 0 "$stance" check ball_bounce.yaml --set record='{cases: all, every: 0.01}' \
+    --set 'sweep.grid=[{path: ground.friction, from: 0, to: 1, count: 10000}, {path: ground.restitution, from: 0, to: 0.9, count: 10000}]'
+says "... are warned of" "warning: .*\(needs about 4.5 TB but only\|the file takes about 4.5 TB\)"
+expect "a sample time that is no number of steps" 0 "$stance" check balance_falls.yaml --set controller.sample_time=0.003 --set method.step=0.002
+says "... is cut" "^step        0.0015 s: a sample of 0.003 s is cut into 2 steps of at most 0.002 s"
+expect "one that is" 0 "$stance" check balance_falls.yaml --set controller.sample_time=0.004 --set method.step=0.002
+! grep -q '^step' log
+result $? "... is not told"
+expect "a body without inertia" 0 "$stance" check lamp.yaml --set initial.equilibrium.arm=0.1 --set 'robot.bodies.arm={joint: hinge, parent: foot, mass: 3, at: [0, 0.1], centre: [0, 0.5]}'
+[ "$(grep -c 'warning: arm: no inertia is given, which makes a point mass of it; if meant so, write inertia: 0' log)" = 1 ]
+result $? "... is a point mass"
+cat >box.yaml <<'YAML'
+stance: 1
+scene: mechanism
+robot:
+  bodies: {box: {joint: free, mass: 2, inertia: 0.05, centre: [0.1, 0.2]}}
+  contacts: {sole: {body: box, from: [-0.1, 0], to: [0.1, 0]}}
+initial: {state: {box: 0}}
+stop: {time: 2}
+YAML
+expect "a box above the edge of its sole" 0 "$stance" check box.yaml
+says "... is warned of" "warning: the robot begins with its centre of mass above the very edge"
+for x in 0.0999 0.1001; do
+    expect "one beside it, $x" 0 "$stance" check box.yaml --set "robot.bodies.box.centre[0]=$x"
+    ! grep -q warning log
+    result $? "... is not"
+done
 # A lone case that has no length.
 expect "a start that has fallen" 0 "$stance" check cart.yaml --set 'sweep.grid=[{path: initial.offset.pole, values: [0]}]' --set robot.points.tip.lowest=2
 says "... has a cost" "^cost *\(at most \)\?about"

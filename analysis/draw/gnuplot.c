@@ -670,8 +670,9 @@ bool gnuplot_end(struct gnuplot *g, const char *directory, const char *stem,
                      strerror(errno));
         } else if (status != 0) {
             read_complaint(g, complaint);
-            snprintf(message->text, sizeof message->text, "%s%s",
-                     status == TOO_SMALL ? "" : "gnuplot failed: ", complaint);
+            snprintf(message->text, sizeof message->text, "%s%.190s%s",
+                     status == TOO_SMALL ? "" : "gnuplot failed: ", complaint,
+                     status == TOO_SMALL ? ": a larger --size, or shorter --labels" : "");
         } else {
             good = fetch(g, directory, stem, message);
         }

@@ -137,7 +137,8 @@ const struct command command_sensitivity = {
     "sensitivity",
     "sensitivity FILE [--answer A] [--of OUTCOME] [--by PATH]... [--failed drop|fallen]\n"
     "           [--resamples N] [--level L] [--seed N]\n"
-    "           [--json | --csv | -o PLACE] [--format F,...] [--for column|page] ...",
+    "           [--json | --csv | -o PLACE] [--format F,...] [--for column|page]\n"
+    "           [--labels NAME=TEXT]... ...",
     "which factor of a sampled study decides its result",
     run,
     "For files of a scenario with sweep.sample. The response of a sample point is the share of\n"

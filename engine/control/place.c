@@ -552,8 +552,12 @@ static stance_error finish(problem *p, double *K, candidate *c, stance_message *
 {
     if (!climb(p, TOLERANCE, MAX_SWEEPS, FLAT, &c->sweeps)) {
         return c->sweeps >= MAX_SWEEPS
-                   ? stance_refuse(message, STANCE_NOT_CONVERGED,
-                                   "pole placement did not converge in %d sweeps", MAX_SWEEPS)
+                   ? stance_refuse(
+                         message, STANCE_NOT_CONVERGED,
+                         "pole placement did not converge in %d sweeps: set the poles further "
+                         "apart, or take controller.design place-schur, which does not "
+                         "iterate",
+                         MAX_SWEEPS)
                    : not_independent(message);
     }
     c->height = log_height(p);

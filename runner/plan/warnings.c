@@ -4,6 +4,7 @@
 #include "design.h"
 #include "instruction_set.h"
 
+#include "runner/base/problem.h"
 #include "runner/base/units.h"
 
 #include <inttypes.h>
@@ -222,6 +223,77 @@ static void look_at_lines(const struct scenario *s, const char *who, FILE *out)
     }
 }
 
+/* Whether a body turns: it, or one that it hangs from, does. */
+static bool turns(const stance_mechanism *m, int b)
+{
+    while (b >= 0 && m->body[b].joint != STANCE_HINGE && m->body[b].joint != STANCE_FREE)
+        b = m->body[b].parent;
+    return b >= 0;
+}
+
+/* Bodies of a mass whose inertia was not given: that of a point. */
+static void look_at_inertia(const struct scenario *s, const char *who, FILE *out)
+{
+    const stance_mechanism *const m = s->scene->mechanism;
+    const char *point[STANCE_MAX_BODIES];
+    char list[300];
+    size_t count = 0;
+    for (int b = 0; m && b < m->bodies; b++) {
+        const double *const numbers = (const double *)(const void *)&m->value;
+        const int place = (int)(&m->value.body[b].inertia - numbers);
+        bool given = false;
+        for (int i = 0; i < m->numbers; i++)
+            given = given || m->number[i] == place;
+        if (!given && m->value.body[b].mass > 0 && turns(m, b))
+            point[count++] = m->body[b].name;
+    }
+    if (count > 0)
+        fprintf(
+            out,
+            "%s: warning: %s: no inertia is given, which makes %s; if meant so, write inertia: 0\n",
+            who, word_list(list, sizeof list, point, count),
+            count > 1 ? "point masses of them" : "a point mass of it");
+}
+
+/* Whether what touches the ground at the start carries the robot there on a slope that is steeper
+ * by `more`, its joints as they are. */
+static bool carried(const struct plan *plan, const stance_case *c, double more)
+{
+    const stance_scene *const scene = plan->scenario->scene;
+    double robot[STANCE_MAX_ROBOT], gap[STANCE_MAX_CONTACTS];
+    stance_equilibrium_choice choice = {.supports = 0};
+    stance_equilibrium e;
+    stance_message ignored;
+    memcpy(robot, c->robot, sizeof robot);
+    robot[STANCE_ROBOT_SLOPE] += more;
+    scene->gaps(scene, robot, c->position, gap);
+    for (int i = 0; i < scene->contacts; i++)
+        if (scene->grip[i] >= 0 && (c->contacts >> i & 1) && fabs(gap[i]) < 1e-4)
+            choice.supports |= UINT32_C(1) << i;
+    for (int k = 0; k < scene->postures; k++) /* a free root turns with the ground */
+        choice.posture[k] = k == 0 ? NAN : c->position[scene->posture[k]];
+    return choice.supports && scene->equilibrium(scene, robot, &choice, &e, &ignored) == STANCE_OK;
+}
+
+/* A first start at rest whose centre of mass is exactly above the edge of what it stands on. */
+static void look_at_edge(const struct plan *plan, const char *who, FILE *out)
+{
+    const stance_scene *const scene = plan->scenario->scene;
+    const double trifle = 1e-6; /* rad */
+    stance_case *const c = malloc(sizeof *c);
+    int method;
+    bool rests = c && scene->mechanism && scene->mechanism->body[0].joint == STANCE_FREE &&
+                 plan_resolve(plan, 0, c, &method);
+    for (int i = 0; rests && i < scene->coordinates; i++)
+        rests = c->velocity[i] == 0;
+    if (rests && carried(plan, c, trifle) != carried(plan, c, -trifle))
+        fprintf(out,
+                "%s: warning: the robot begins with its centre of mass above the very edge of what "
+                "it stands on: what becomes of it is decided by rounding\n",
+                who);
+    free(c);
+}
+
 bool warnings_print(const struct plan *plan, const char *who, FILE *out)
 {
     const uint64_t tried = plan->rows < TRIED ? plan->rows : TRIED;
@@ -244,6 +316,8 @@ bool warnings_print(const struct plan *plan, const char *who, FILE *out)
                     t.count[k], tried, tried < plan->rows ? ", evenly spread" : "");
         fputc('\n', out);
     }
+    look_at_inertia(plan->scenario, who, out);
+    look_at_edge(plan, who, out);
     if (!plan->single) {
         look_at_counts(plan->scenario, who, out);
         look_at_lines(plan->scenario, who, out);

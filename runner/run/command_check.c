@@ -31,7 +31,7 @@ static int check(const struct scenario *s, bool json)
     }
     if (good) {
         snprintf(file, sizeof file, "results/%s.h5", s->name);
-        report_plan(&plan, 1, file, json, stdout);
+        report_plan(&plan, 1, file, json, "stance check", stdout);
         if (!warnings_print(&plan, "stance check", stderr) && !s->search.given)
             warnings_try(&plan, "stance check", stderr);
     } else {
@@ -82,6 +82,8 @@ const struct command command_check = {
     "evenly\n"
     "spread, are computed for 1.5 s, and what is left unchecked is said (`run` computes all of\n"
     "them). Each error is one line, FILE:LINE:COLUMN: message.\n"
+    "\n"
+    "A file beyond 100 GB or what is free, and months of work, are warned of, too.\n"
     "\n"
     "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
     "  --json             the same as JSON, with the keys\n"

@@ -259,28 +259,50 @@ static int say(void *context)
     return request->watch && state.note.running ? STILL_RUNNING : EXIT_DONE;
 }
 
+/* All files, once; STILL_RUNNING: at least one is being written. */
+static int say_all(struct request *request, const char *const *files, size_t count)
+{
+    int worst = EXIT_DONE, running = 0;
+    for (size_t i = 0; i < count; i++) {
+        request->file = files[i];
+        if (request->json && count > 1)
+            fputs(i ? ",\n" : "[\n", stdout);
+        fflush(stdout);
+        const int code = sandbox(say, request, files[i]);
+        if (request->json && count > 1 && code != EXIT_DONE && code != STILL_RUNNING)
+            fputs("null", stdout);
+        running += code == STILL_RUNNING;
+        worst = code != STILL_RUNNING && code > worst ? code : worst;
+    }
+    if (request->json && count > 1)
+        fputs("]\n", stdout);
+    return running > 0 ? STILL_RUNNING : worst;
+}
+
 static int run_status(int argc, char **argv)
 {
-    const char *file;
+    const char **const files = calloc((size_t)argc, sizeof *files);
     size_t json = 0, watch = 0, operands;
     const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
                                         {"--watch", false, NULL, 0, &watch}};
-    int code = command_begin(&command_status, argc, argv, specs, 2, "a results file", &file, 1, 1,
-                             &operands);
-    if (code != COMMAND_GOES_ON)
-        return code;
-    struct request request = {file, json > 0, watch > 0};
-    code = sandbox(say, &request, file);
-    while (code == STILL_RUNNING) {
-        sleep(WATCH_INTERVAL);
-        code = sandbox(say, &request, file);
+    if (!files) {
+        fputs("stance status: not enough memory\n", stderr);
+        return EXIT_IO;
     }
+    int code = command_begin(&command_status, argc, argv, specs, 2, "a results file", files, 1,
+                             (size_t)argc, &operands);
+    if (code == COMMAND_GOES_ON) {
+        struct request request = {NULL, json > 0, watch > 0};
+        while ((code = say_all(&request, files, operands)) == STILL_RUNNING)
+            sleep(WATCH_INTERVAL);
+    }
+    free(files);
     return code;
 }
 
 const struct command command_status = {
     "status",
-    "status FILE [--json] [--watch]",
+    "status FILE... [--json] [--watch]",
     "how far a run or a search is: what is done, time left, ranks alive",
     run_status,
     "Reads the results file, which a run may be writing, and FILE.lock, where the run gives a "
@@ -289,7 +311,7 @@ const struct command command_status = {
     "running until it was silent for 30 s. The rate is that of the last minute.\n"
     "\n"
     "  --watch  again every 5 s, as long as the file is being written\n"
-    "  --json   the same as JSON, with the keys\n"
+    "  --json   the same as JSON, of several files a list (null: cannot be read), with the keys\n"
     "    file                     as given\n"
     "    shard                    K/N of a shard's file, of whose share all is told; else null\n"
     "    cases, done, failed      numbers of cases\n"

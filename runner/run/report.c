@@ -160,7 +160,12 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
 static void report_designs(const struct plan *plan, const struct estimate *e, FILE *out)
 {
     const size_t computed = plan->designs - plan->pending;
-    fprintf(out, "designs     %zu distinct", plan->designs);
+    const stance_law *const law = scenario_law(&plan->scenario->base);
+    if (!law->designed && plan->designs == 1) {
+        fprintf(out, "controller  %s", law->name);
+        return;
+    }
+    fprintf(out, "%s %zu distinct", law->designed ? "designs    " : "equilibria ", plan->designs);
     if (plan->pending == 0) {
         if (e->designs_failed > 0)
             fprintf(out, ", of which %zu do not exist: their cases will fail", e->designs_failed);
@@ -190,6 +195,21 @@ static void report_axis(const struct scenario_axis *axis, FILE *out)
             sorted ? "" : " (not sorted)");
 }
 
+/* What becomes of a sample time that is no whole number of steps, where neither is swept. */
+static void report_step(const struct scenario *s, FILE *out)
+{
+    const double interval = s->base.sample_time, step = s->base.step;
+    const double pieces = fmax(1, ceil(interval / step - 1e-9));
+    int k;
+    if (s->base.law == 0 || !(interval > 0) || fabs(interval / pieces - step) <= 1e-9 * step ||
+        scenario_axis_of(s, offsetof(struct scenario_values, sample_time), &k) ||
+        scenario_axis_of(s, offsetof(struct scenario_values, step), &k))
+        return;
+    fprintf(out,
+            "\nstep        %.9g s: a sample of %.9g s is cut into %.0f step%s of at most %.9g s",
+            interval / pieces, interval, pieces, pieces > 1 ? "s" : "", step);
+}
+
 static void report_text(const struct plan *plan, const struct estimate *e, int ranks,
                         const char *file, FILE *out)
 {
@@ -211,6 +231,7 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
                 plan->shard.count, plan_share(plan).count);
     }
     report_designs(plan, e, out);
+    report_step(s, out);
     if (plan->record_cases > 0) {
         fprintf(out, "\nrecorded    %" PRIu64 " trajectories of %" PRId64 " instants",
                 plan->record_cases, plan->record_rows);
@@ -272,7 +293,33 @@ static void report_search(const struct scenario *s, const struct estimate *e, in
             text, s->file);
 }
 
-void report_plan(const struct plan *plan, int ranks, const char *file, bool json, FILE *out)
+/* A file or a time that hardly anybody wants. */
+static void warn_of_size(const struct plan *plan, const struct estimate *e, int ranks,
+                         const char *file, const char *who)
+{
+    const double much = 1e11, long_time = 30 * 86400; /* bytes, s */
+    stance_message full = {""};
+    char size[40], text[40];
+    text_of_bytes(size, sizeof size, (double)e->size);
+    const bool fits = store_fits(file, e->size, 0, &full);
+    if (!fits)
+        fprintf(stderr, "%s: warning: %s\n", who, full.text);
+    else if ((double)e->size > much)
+        fprintf(stderr,
+                "%s: warning: the file takes about %s: record.answers and record.cases choose "
+                "what it holds, sweep.refine and sweep.sample take fewer cases\n",
+                who, size);
+    if (e->seconds / ranks > long_time && e->coarse == 0) {
+        text_of_seconds(text, sizeof text, e->seconds / ranks);
+        fprintf(stderr,
+                "%s: warning: %" PRIu64 " cases take %s %s on %d rank%s: sweep.refine "
+                "and sweep.sample take fewer\n",
+                who, plan->rows, e->bound ? "at most" : "about", text, ranks, ranks > 1 ? "s" : "");
+    }
+}
+
+void report_plan(const struct plan *plan, int ranks, const char *file, bool json, const char *who,
+                 FILE *out)
 {
     struct estimate e = estimate(plan, ranks);
     if (json)
@@ -281,4 +328,6 @@ void report_plan(const struct plan *plan, int ranks, const char *file, bool json
         report_text(plan, &e, ranks, file, out);
     if (!json)
         report_search(plan->scenario, &e, ranks, out);
+    fflush(out);
+    warn_of_size(plan, &e, ranks, file, who);
 }

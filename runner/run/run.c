@@ -374,7 +374,7 @@ static void stage_designs(struct run *run)
     if (!good)
         fail_scenario(run, &error);
     else if (run->options.dry_run && run->parallel.rank == 0)
-        report_plan(&run->plan, run->parallel.size, run->file, false, stdout);
+        report_plan(&run->plan, run->parallel.size, run->file, false, "stance run", stdout);
     if (good && run->parallel.rank == 0)
         run->warned = warnings_print(&run->plan, "stance run", stderr);
 }

@@ -181,8 +181,8 @@ struct scenario_place {
 };
 
 struct scenario {
-    char file[512];
-    char name[128]; /* file name without directory and .yaml */
+    char file[1024];
+    char name[256]; /* file name without directory and .yaml */
     char title[256];
     const stance_scene *scene;
     stance_scene *own_scene; /* that the file describes; NULL: `scene` is one of stance_scenes() */

@@ -126,6 +126,11 @@ static int write_file(const struct request *request, struct merge *m)
     }
     unlink(made);
     bool good = merge_write(m, made, &usage, &message);
+    if (good && m->copied.copied == 0) {
+        usage = true;
+        unlink(made);
+        good = complain(&message, "none of the %zu files has a case that is computed", m->parts);
+    }
     if (good && rename(made, request->output) != 0) {
         complain(&message, "%.150s: %s", request->output, strerror(errno));
         unlink(made);

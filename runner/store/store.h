@@ -193,4 +193,8 @@ struct store_counts {
 };
 bool store_count(const char *file, struct store_counts *counts, stance_message *message);
 
+/* Whether a file of that size on the disk, and that length, can fit at all, before HDF5 begins what
+ * it could not end. */
+bool store_fits(const char *file, uint64_t size, uint64_t length, stance_message *message);
+
 #endif

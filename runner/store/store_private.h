@@ -65,9 +65,6 @@ bool store_read_history(hid_t file, struct store_origin *origin);
 
 /* "FILE: cannot ...: reason" of a system call. Returns false. */
 bool store_system_failed(stance_message *message, const char *file, const char *what, int error);
-/* Whether a file of that size on the disk, and that length, can fit at all, before HDF5 begins what
- * it could not end. */
-bool store_fits(const char *file, uint64_t size, uint64_t length, stance_message *message);
 /* Reserves the space of the whole file and brings it to the disk. */
 bool store_reserve(const char *file, stance_message *message);
 
