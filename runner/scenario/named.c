@@ -222,10 +222,11 @@ static void put_indices(struct reader *r, const char *given, int set, char *out,
     if (kind == 'g' && i >= 0) {
         const bool whole = !next_name(&at, name);
         const int j = whole ? 0 : state_of(scene, name);
-        char zeros[64] = "[0";
-        for (size_t k = 1; k < states; k++)
-            strcat(zeros, ",0");
-        strcat(zeros, "]");
+        char zeros[3 * STANCE_MAX_POSTURE * 2 + 4];
+        size_t used = 0;
+        for (size_t k = 0; k < states; k++)
+            used += (size_t)snprintf(zeros + used, sizeof zeros - used, "%s0", k ? "," : "[");
+        snprintf(zeros + used, sizeof zeros - used, "]");
         if (!controller || !tree_find(controller, "gains"))
             put_list(r, "controller.gains", inputs, zeros, set);
         snprintf(name, sizeof name, "[%d]", j);

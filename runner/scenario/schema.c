@@ -176,7 +176,7 @@ static bool add_named(struct schema *schema, const struct row *row)
                 snprintf(unit, sizeof unit, rate ? "s^2/%.8s^2" : "1/%.8s^2", q->unit);
             snprintf(text, sizeof text, "%s%.100s", rate ? "rate of " : "", q->text);
             if (!add_item(schema, row, actuator, scenario_state_name(scene, j, name),
-                          (size_t)(i * states + j), unit, text))
+                          (size_t)i * (size_t)states + (size_t)j, unit, text))
                 return false;
         }
     }
