@@ -55,11 +55,10 @@ static void ask(struct asked *asked, const char *scene, char *methods, const cha
 
 static int job(char **word)
 {
-    static const char *const origin[] = {[OBJECT_KEPT] = "kept",
-                                         [OBJECT_COMPILED] = "compiled",
-                                         [OBJECT_UNKEPT] = "compiled",
-                                         [OBJECT_REFERENCE] = "built in",
-                                         [OBJECT_MISSING] = "built in"};
+    static const char *const origin[] = {
+        [OBJECT_KEPT] = "kept",        [OBJECT_COMPILED] = "compiled",
+        [OBJECT_UNKEPT] = "compiled",  [OBJECT_REFERENCE] = "built in",
+        [OBJECT_MISSING] = "built in", [OBJECT_REFUSED] = "built in"};
     struct asked asked;
     struct object object[MOST];
     stance_message message;

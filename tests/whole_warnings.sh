@@ -50,8 +50,20 @@ expect "run" 0 mpirun -n 2 "$stance" run --quiet -o run.h5 "$map" --set controll
 [ "$(grep -c 'stance run: warning' log)" = 1 ]
 result $? "... warns once, whatever the ranks"
 
+export STANCE_CACHE=$scratch/cache
 expect "the cost of a robot of one's own" 0 "$stance" check "$shipped/mechanisms/cart_pole.yaml"
-says "... is without the kernel that is compiled" "^cost *at most about .* that run compiles for this robot"
+says "... is with the kernel that is compiled" "^cost *.*about .* that run compiles for this robot first"
+says "... which takes its own time" "^compiling *about .* first, once for robots of this structure"
+[ ! -e "$STANCE_CACHE" ]
+result $? "... and nothing is made"
+expect "with that kernel in the cache" 0 "$stance" build "$shipped/mechanisms/cart_pole.yaml"
+kept() { stat -c '%n %y' "$STANCE_CACHE" "$STANCE_CACHE"/*; }
+kept >before
+expect "... its cost" 0 "$stance" check "$shipped/mechanisms/cart_pole.yaml"
+! grep -q '^compiling\|compiles' log && grep -q '^cost *about [0-9.]* s on 1 rank$' log
+result $? "... is measured"
+cmp before <(kept)
+result $? "... and nothing is touched"
 
 # What a design stands on, where it is not level earth.
 expect "the design on a slope of the moon" 0 "$stance" design "$shipped/mechanisms/pushed.yaml" --set ground.slope=0.1 --set ground.gravity=1.62

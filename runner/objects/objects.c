@@ -156,6 +156,7 @@ static void compile(const struct objects_request *request, const struct cache *c
                 cache_keep(cache, &place, m->name, &m->image) ? OBJECT_COMPILED : OBJECT_UNKEPT;
         else
             image_free(&m->image);
+        m->origin = m->image.bytes ? m->origin : OBJECT_MISSING;
     }
     cache_leave(&place);
 }
@@ -173,7 +174,9 @@ static size_t look(const struct objects_request *request, const struct cache *ca
         snprintf(name, sizeof name, "%.*s", stem ? (int)m->stem : CACHE_NAME, m->name);
         if (m->image.bytes || cache_find(cache, name, stem, &m->image))
             continue;
-        if (request->again || !cache_refused(cache, m->name, why))
+        m->origin =
+            !request->again && cache_refused(cache, m->name, why) ? OBJECT_REFUSED : OBJECT_MISSING;
+        if (m->origin == OBJECT_MISSING)
             missing[n++] = m;
     }
     return n;
@@ -218,6 +221,8 @@ static enum exit_code make(const struct objects_request *request, struct making 
     if (!cache_open(&cache, request->looks, why))
         return request->looks ? EXIT_DONE : EXIT_IO;
     const size_t n = look(request, &cache, !compiles, making, count, missing, why);
+    for (size_t i = 0; i < n && !compiles; i++)
+        missing[i]->origin = OBJECT_REFUSED; /* as good as */
     if (request->brief || request->looks) {
         why->text[0] = '\0'; /* nothing is missed */
     } else if (n > 0 && compiles) {
@@ -309,11 +314,12 @@ static bool take(const struct objects_request *request, const struct making *m,
 }
 
 /* The kernel that is built in, in place of an object. */
-static void take_reference(const struct objects_wanted *wanted, bool missing, struct object *object)
+static void take_reference(const struct objects_wanted *wanted, enum object_origin origin,
+                           struct object *object)
 {
     objects_release(object, 1);
     object->kernel = *wanted->reference;
-    object->origin = missing ? OBJECT_MISSING : OBJECT_REFERENCE;
+    object->origin = origin;
     object->key[0] = object->compiler[0] = '\0';
 }
 
@@ -340,7 +346,11 @@ static enum exit_code take_all(const struct objects_request *request, const stru
             return EXIT_USAGE;
         }
         if (!found || refused[at]) /* refused by a reference */
-            take_reference(wanted, at < count, &object[k]);
+            take_reference(wanted,
+                           at == count   ? OBJECT_REFERENCE
+                           : refused[at] ? OBJECT_REFUSED
+                                         : making[at].origin,
+                           &object[k]);
     }
     return EXIT_DONE;
 }
@@ -408,7 +418,7 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
             own |= refused[i];
         parallel_agree(ranks, code == EXIT_DONE && !own, message->text, sizeof message->text);
         parallel_largest(ranks, &code, 1);
-        if (code == EXIT_DONE && forget(ranks, making, count, refused, message))
+        if (code == EXIT_DONE && !request->looks && forget(ranks, making, count, refused, message))
             why = *message;
         for (size_t i = 0; i < count; i++)
             missing |= making[i].image.size == 0 || refused[i];

@@ -52,14 +52,15 @@ struct objects_request {
 };
 
 /* Where a kernel comes from: the cache; a compiler, and is in the cache now, or could not be kept
- * there; or it is the reference, as there is none of this method or of that size, or as none that
- * computes the same can be had. */
+ * there; or it is the reference, as there is none of this method, or none now, or none that
+ * computes the same. */
 enum object_origin {
     OBJECT_KEPT,
     OBJECT_COMPILED,
     OBJECT_UNKEPT,
     OBJECT_REFERENCE,
-    OBJECT_MISSING
+    OBJECT_MISSING,
+    OBJECT_REFUSED
 };
 
 struct object {

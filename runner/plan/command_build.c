@@ -71,12 +71,13 @@ static int take(struct plan *plan, const struct kernels_choice *choice)
                                            [OBJECT_COMPILED] = "compiled",
                                            [OBJECT_UNKEPT] = "compiled, but not kept",
                                            [OBJECT_REFERENCE] = "built in",
-                                           [OBJECT_MISSING] = "none: the one built in computes"};
+                                           [OBJECT_MISSING] = "none: the one built in computes",
+                                           [OBJECT_REFUSED] = "none: the one built in computes"};
         for (size_t i = 0; i < kernels->count; i++) {
             const struct object *const o = &kernels->object[i];
             printf("%-12s %-8s %s%s%s\n", o->kernel.method->name, o->kernel.isa, said[o->origin],
                    o->key[0] ? "  " : "", o->key);
-            if (o->origin == OBJECT_UNKEPT || o->origin == OBJECT_MISSING)
+            if (o->origin == OBJECT_UNKEPT || o->origin >= OBJECT_MISSING)
                 code = EXIT_IO; /* it has been said why */
         }
         kernels_give_back(kernels);

@@ -29,9 +29,14 @@ struct kernels_choice {
 enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
                             const struct kernels_choice *choice, const struct parallel *parallel,
                             bool quiet, stance_message *message);
-/* Whether `run` computes the plan with compiled kernels, which take a fraction of the time of those
- * that read a described scene as they go. Needs the designs. */
-bool kernels_compiled(const struct plan *plan);
+/* What `run` would have before it computes: `kernels` are those that there are now, from the cache
+ * or built in; nothing is compiled, touched or said. Of those that run would compile first, about
+ * how many seconds that takes (0: it compiles none) and what they take of the time of those that
+ * compute here. */
+struct kernels_outlook {
+    double compiling, share;
+};
+struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *plan);
 /* "avx2", "avx512, scalar": what the plan's methods compute with. */
 void kernels_instruction_sets(const struct plan *plan, char text[INSTRUCTION_SETS_SIZE]);
 void kernels_give_back(struct kernels *kernels);

@@ -76,7 +76,7 @@ uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
  * and to the cost, of which plan_cost may take five times as much. */
 #define PLAN_PATIENCE_DESIGNS 1.5
 #define PLAN_PATIENCE_CAPTURE 1.0
-#define PLAN_PATIENCE_COST 0.2
+#define PLAN_PATIENCE_COST 0.6
 
 /* Collective: computes every design whose status is pending, each rank a block, and gathers them on
  * rank 0. With patience at least one a rank, those of cases that plan_cost tries and of the corners
@@ -109,10 +109,15 @@ int plan_method(const struct plan *plan, uint64_t row);
  * because its design or its initial state does not. */
 bool plan_resolve(const struct plan *plan, uint64_t row, stance_case *out, int *method);
 
-/* Seconds on one rank, measured on cases spread over the sweep for about `budget` seconds, and five
- * times that at most. When whole cases take too long to try, beginnings are measured and *bound is
- * set: no more than that. NAN: even these take too long; negative: none of the cases tried can be
- * computed. Needs the designs. */
+/* Case i of PLAN_COST_CASES, which plan_cost tries, in an order that is spread evenly over the
+ * sweep wherever it is cut. */
+enum { PLAN_COST_CASES = 64 };
+uint64_t plan_cost_case(const struct plan *plan, uint64_t i);
+
+/* Seconds of a processor, measured on cases spread over the sweep for about `budget` seconds, and
+ * five times that at most. Where they are not over by then *bound is set: no more than that. NAN:
+ * even their beginnings take too long; negative: none of the cases tried can be computed. Needs the
+ * designs. */
 double plan_cost(const struct plan *plan, double budget, bool *bound);
 
 #endif

@@ -18,9 +18,6 @@
 enum {
     CHECKED_CASES = 4096,
     CORNER_AXES = 11, /* 2048 corners */
-    WIDEST = 8,       /* bundle of lanes */
-    COST_CASES = 64,
-    COST_STEPS = 500, /* length of the beginnings tried first */
 };
 
 static size_t smaller(size_t a, size_t b)
@@ -95,11 +92,11 @@ static uint64_t spread_case(const struct plan *plan, uint64_t i, uint64_t n)
     return n < 2 ? 0 : last / (n - 1) * i + last % (n - 1) * i / (n - 1);
 }
 
-/* Case i of COST_CASES, in an order that is spread evenly wherever it is cut: 27 and 64 have no
- * divisor. */
-static uint64_t cost_case(const struct plan *plan, uint64_t i)
+/* Case i of PLAN_COST_CASES, in an order that is spread evenly wherever it is cut: 27 and 64 have
+ * no divisor. */
+uint64_t plan_cost_case(const struct plan *plan, uint64_t i)
 {
-    return spread_case(plan, i * 27 % COST_CASES, COST_CASES);
+    return spread_case(plan, i * 27 % PLAN_COST_CASES, PLAN_COST_CASES);
 }
 
 /* A step that meets each of n numbers once, modulo n, and spreads them evenly wherever it is cut:
@@ -144,10 +141,11 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
     const double start = clock_seconds();
 
     /* Time may run out: those come first that plan_cost needs, then those of the corners. */
-    for (uint64_t i = 0; i < COST_CASES + ends + count; i++) {
-        const size_t d = i < COST_CASES          ? plan_design(plan, cost_case(plan, i))
-                         : i < COST_CASES + ends ? plan_design(plan, corner_case(s, i - COST_CASES))
-                                                 : first + (i - COST_CASES - ends) * stride % count;
+    for (uint64_t i = 0; i < PLAN_COST_CASES + ends + count; i++) {
+        const size_t d = i < PLAN_COST_CASES ? plan_design(plan, plan_cost_case(plan, i))
+                         : i < PLAN_COST_CASES + ends
+                             ? plan_design(plan, corner_case(s, i - PLAN_COST_CASES))
+                             : first + (i - PLAN_COST_CASES - ends) * stride % count;
         struct scenario_values values;
         stance_message ignored;
         if (d < first || d >= first + count || plan->design_status[d] != STANCE_PENDING)
@@ -256,73 +254,12 @@ bool plan_check_cases(const struct plan *plan, struct plan_error *error)
     return true;
 }
 
-/* ---- cost --------------------------------------------------------------------------------- */
-
-/* Copies of a case, one for each lane: lanes share the work of a bundle. */
-struct copies {
-    const stance_case *input;
-    stance_result result[WIDEST];
-    int lanes, given;
-    double until;
-};
-
-static bool copies_next(void *context, const stance_case **c, stance_result **result)
-{
-    struct copies *copies = context;
-    if (copies->given == copies->lanes)
-        return false;
-    *c = copies->input;
-    *result = &copies->result[copies->given++];
-    return true;
-}
-
-static void copies_done(void *context, const stance_case *c, stance_result *result)
-{
-    (void)context, (void)c, (void)result;
-}
+/* ---- captured sets ------------------------------------------------------------------------- */
 
 static bool is_late(void *context)
 {
     const double *until = context;
     return clock_seconds() > *until;
-}
-
-static bool copies_leave(void *context)
-{
-    return is_late(&((struct copies *)context)->until);
-}
-
-struct trial {
-    double seconds;        /* spent */
-    uint64_t steps;        /* taken */
-    uint64_t steps_asked;  /* that the cases would take to their ends */
-    uint64_t cases, begun; /* tried; of these, that have a start */
-    bool late;             /* the last one was given up, at steps that are not known */
-};
-
-/* Runs number i of COST_CASES, at most `steps` long, until the clock says `until`. */
-static void try_case(const struct plan *plan, uint64_t i, int64_t steps, double until,
-                     struct trial *trial)
-{
-    stance_case input;
-    int method;
-    const uint64_t row = plan->single ? 0 : cost_case(plan, i);
-    if (plan->design_status[plan_design(plan, plan_case(plan, row))] == STANCE_PENDING)
-        return;
-    trial->cases++;
-    if (!plan_resolve(plan, row, &input, &method))
-        return;
-    trial->begun++;
-    trial->steps_asked += (uint64_t)input.steps;
-    input.steps = input.steps < steps ? input.steps : steps;
-    const stance_kernel *kernel =
-        instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
-    struct copies copies = {
-        .input = &input, .lanes = kernel->lanes < WIDEST ? kernel->lanes : WIDEST, .until = until};
-    const double start = clock_seconds();
-    trial->late = !kernel->stream(&(stance_feed){&copies, copies_next, copies_done, copies_leave});
-    trial->seconds += (clock_seconds() - start) / copies.lanes;
-    trial->steps += trial->late ? 0 : (uint64_t)copies.result[0].steps;
 }
 
 /* A search with few simulations tells what one takes on the way to a set. */
@@ -360,32 +297,4 @@ double plan_capture_cost(const struct plan *plan, double budget)
         }
     }
     return s->base.capture && plan->pending > 0 ? NAN : 0;
-}
-
-double plan_cost(const struct plan *plan, double budget, bool *bound)
-{
-    enum { FIRST = 8, LATEST = 5 };
-    struct trial beginnings = {0}, whole = {0};
-    const double start = clock_seconds(), until = start + LATEST * budget;
-
-    *bound = false;
-    /* Beginnings first, to learn what whole cases would take. */
-    for (uint64_t i = 0; i < FIRST && !beginnings.late; i++)
-        try_case(plan, i, COST_STEPS, until, &beginnings);
-    if (beginnings.begun == 0 || (beginnings.late && beginnings.steps == 0))
-        return beginnings.late ? NAN : -1;
-    const double per_step = /* cases that end where they begin take none */
-        beginnings.steps > 0 ? beginnings.seconds / (double)beginnings.steps : 0;
-    double per_case = per_step * (double)beginnings.steps_asked / (double)beginnings.cases;
-    if (beginnings.late || per_case * WIDEST * FIRST > budget) {
-        *bound = true;
-        return per_case * (double)plan->rows;
-    }
-    for (uint64_t i = 0; i < COST_CASES && clock_seconds() - start < budget && !whole.late; i++)
-        try_case(plan, i, INT64_MAX, until, &whole);
-    if (whole.cases == 0 || whole.late) {
-        *bound = true;
-        return per_case * (double)plan->rows;
-    }
-    return whole.seconds / (double)whole.cases * (double)plan->rows;
 }

@@ -10,29 +10,44 @@
 #include <inttypes.h>
 #include <jansson.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 struct estimate {
     size_t designs_failed;
     uint64_t size;
     double seconds; /* on one rank; negative: no case can be tried, NAN: these take too long */
-    bool bound, compiled; /* run compiles kernels, check tries cases without */
-    double capture;  /* s on one rank for the captured sets; 0: none is asked for, NAN: unknown */
-    uint64_t coarse; /* points of the coarse lattice; 0: the map is not refined */
-    double probes;   /* expected number beyond these */
+    bool bound;
+    double compiling; /* s that run needs first, for kernels that it compiles; 0: it does not */
+    double capture;   /* s on one rank for the captured sets; 0: none is asked for, NAN: unknown */
+    uint64_t coarse;  /* points of the coarse lattice; 0: the map is not refined */
+    double probes;    /* expected number beyond these */
 };
+
+/* With the kernels that will compute, as far as they are there. */
+static void measure(const struct plan *plan, struct estimate *e)
+{
+    struct kernels *const kernels = calloc(1, sizeof *kernels);
+    struct kernels_outlook outlook = {0, 1};
+    if (kernels)
+        outlook = kernels_look(kernels, plan);
+    e->seconds = plan_cost(plan, PLAN_PATIENCE_COST, &e->bound);
+    e->seconds *= outlook.share * (double)plan_share(plan).count / (double)plan->rows;
+    e->seconds += e->seconds >= 0 ? plan->design_seconds : 0;
+    e->capture = outlook.share * plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
+    e->compiling = outlook.compiling;
+    if (kernels)
+        kernels_give_back(kernels);
+    free(kernels);
+}
 
 static struct estimate estimate(const struct plan *plan, int ranks)
 {
     struct estimate e = {.size = store_size(plan, ranks)};
     for (size_t d = 0; d < plan->designs; d++)
         e.designs_failed += plan->design_status[d] == STANCE_FAILED;
-    e.seconds = plan_cost(plan, PLAN_PATIENCE_COST, &e.bound);
-    e.seconds *= (double)plan_share(plan).count / (double)plan->rows;
-    e.seconds += e.seconds >= 0 ? plan->design_seconds : 0;
-    e.capture = plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
-    e.compiled = kernels_compiled(plan);
-    e.bound = e.bound || e.compiled || e.capture != 0; /* captured cases cost less */
+    measure(plan, &e);
+    e.bound = e.bound || e.capture != 0; /* captured cases cost less */
     if (plan->scenario->refine.given && !plan->single) {
         const struct refine_map map = refine_map_of(plan->scenario);
         e.coarse = refine_coarse(&map);
@@ -139,15 +154,16 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
     if (plan->single || s->axes == 0)
         json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
     json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:o, s:o, s:o}",
+        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o, s:o, "
+        "s:o}",
         "scenario", s->file, "title", s->title, "scene", s->scene->name, "cases",
         (json_int_t)plan->rows, "dimensions", dimensions, "designs", (json_int_t)plan->designs,
         "designs_computed", (json_int_t)(plan->designs - plan->pending), "designs_failed",
         (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
         file, "file_bytes", (json_int_t)e->size, "ranks", ranks, "seconds_on_one_rank",
         e->seconds >= 0 ? json_real(e->seconds) : json_null(), "seconds_is_upper_bound", e->bound,
-        "capture_seconds_on_one_rank", isnan(e->capture) ? json_null() : json_real(e->capture),
-        "refine",
+        "compile_seconds", e->compiling, "capture_seconds_on_one_rank",
+        isnan(e->capture) ? json_null() : json_real(e->capture), "refine",
         e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
                               (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
                   : json_null(),
@@ -210,6 +226,13 @@ static void report_step(const struct scenario *s, FILE *out)
             interval / pieces, interval, pieces, pieces > 1 ? "s" : "", step);
 }
 
+/* One digit: that is all that is known. */
+static double round_roughly(double x)
+{
+    const double unit = pow(10, floor(log10(x)));
+    return round(x / unit) * unit;
+}
+
 static void report_text(const struct plan *plan, const struct estimate *e, int ranks,
                         const char *file, FILE *out)
 {
@@ -244,6 +267,10 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
     }
     text_of_bytes(text, sizeof text, (double)e->size);
     fprintf(out, "\nfile        %s, about %s\n", file, text);
+    if (e->compiling > 0) {
+        text_of_seconds(text, sizeof text, round_roughly(e->compiling));
+        fprintf(out, "compiling   about %s first, once for robots of this structure\n", text);
+    }
     if (isnan(e->capture)) {
         fprintf(out, "capture     unknown: nothing was learned of its sets in the time that this "
                      "command takes\n");
@@ -270,7 +297,7 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
     text_of_seconds(text, sizeof text, e->seconds / ranks);
     fprintf(out, "cost        %s %s on %d rank%s%s\n", e->bound ? "at most about" : "about", text,
             ranks, ranks == 1 ? "" : "s",
-            e->compiled ? ", and much less with the kernel that run compiles for this robot" : "");
+            e->compiling > 0 ? ", with the kernel that run compiles for this robot first" : "");
 }
 
 /* What stance optimise makes of the scenario. */

@@ -1,0 +1,223 @@
+/* plan_cost.c - what the cases of a plan will take, from a few of them.
+ *
+ * Cases end early, most of them, and nobody knows when; a few that go on take most of the time. So
+ * cases that are spread over the sweep run for a while, and of those that have not ended as many as
+ * the budget allows run for twice as long, from the beginning; and so on. With w, the share of all
+ * that was still under way when a round began, what came to light in it counts for w of all cases:
+ *
+ *     mean = sum over rounds of w x (mean of what its cases took beyond the round before)
+ *
+ * is without bias however few of them are left, and where the last one ends it is the whole cost.
+ * Where time is up before, the rest is taken to go on to its end: a bound. All that a round runs is
+ * at least half as long as the longest, and lanes are filled with repeated cases, so that few of
+ * them idle, as in a run. Processor time is measured: others on this machine do not matter.
+ */
+#include "plan.h"
+
+#include "instruction_set.h"
+
+#include "runner/base/units.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { TRIED = PLAN_COST_CASES, WIDEST = 8 };
+#define SHORTEST 128 /* steps of the first round */
+
+static double processor_seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+struct tried {
+    stance_case input;
+    stance_result result, again; /* of its repetitions */
+    int method;
+    int64_t asked; /* steps to its end */
+    double took;   /* s, as far as it has been run */
+};
+
+struct trial {
+    struct tried *tried;
+    size_t which[TRIED]; /* in order of running */
+    double per_step;     /* s, of the last round */
+    double until;        /* of clock_seconds() */
+};
+
+/* Cases first ... first + count of which[], and again from the first on until lanes are filled. */
+struct lane_feed {
+    struct trial *trial;
+    size_t first, count, fed, most;
+};
+
+static bool feed_next(void *context, const stance_case **c, stance_result **result)
+{
+    struct lane_feed *const feed = context;
+    if (feed->fed == feed->most)
+        return false;
+    struct tried *const t =
+        &feed->trial->tried[feed->trial->which[feed->first + feed->fed % feed->count]];
+    *c = &t->input;
+    *result = feed->fed < feed->count ? &t->result : &t->again;
+    feed->fed++;
+    return true;
+}
+
+static void feed_done(void *context, const stance_case *c, stance_result *result)
+{
+    (void)context, (void)c, (void)result;
+}
+
+static bool feed_leave(void *context)
+{
+    const struct lane_feed *const feed = context;
+    return clock_seconds() > feed->trial->until;
+}
+
+/* Cases of one method, which[first ... first + count), up to `cap` steps. Adds to *more what they
+ * took beyond what they did before. false: time was up. */
+static bool run_method(const struct plan *plan, struct trial *trial, size_t first, size_t count,
+                       int64_t cap, double *more)
+{
+    const int method = trial->tried[trial->which[first]].method;
+    const stance_kernel *const kernel =
+        instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
+    const size_t lanes = (size_t)(kernel->lanes < WIDEST ? kernel->lanes : WIDEST);
+    struct lane_feed feed = {trial, first, count, 0, (count + lanes - 1) / lanes * lanes};
+    double steps = 0;
+    for (size_t i = first; i < first + count; i++) {
+        struct tried *const t = &trial->tried[trial->which[i]];
+        t->input.steps = t->asked < cap ? t->asked : cap;
+    }
+    const double begin = processor_seconds();
+    if (!kernel->stream(&(stance_feed){&feed, feed_next, feed_done, feed_leave}))
+        return false;
+    const double seconds = processor_seconds() - begin;
+    for (size_t k = 0; k < feed.most; k++)
+        steps += (double)trial->tried[trial->which[first + k % count]].result.steps;
+    trial->per_step = steps > 0 ? seconds / steps : trial->per_step;
+    for (size_t i = first; i < first + count; i++) {
+        struct tried *const t = &trial->tried[trial->which[i]];
+        /* One that ends where it begins takes no step, but some time all the same. */
+        const double took =
+            steps > 0 ? seconds * (double)t->result.steps / steps : seconds / (double)feed.most;
+        *more += fmax(0, took - t->took);
+        t->took = took;
+    }
+    return true;
+}
+
+/* The first `count` cases of which[], method by method. */
+static bool run_round(const struct plan *plan, struct trial *trial, size_t count, int64_t cap,
+                      double *more)
+{
+    *more = 0;
+    for (size_t i = 1; i < count; i++) /* stable: the order stays spread */
+        for (size_t k = i; k > 0 && trial->tried[trial->which[k]].method <
+                                        trial->tried[trial->which[k - 1]].method;
+             k--) {
+            const size_t other = trial->which[k];
+            trial->which[k] = trial->which[k - 1];
+            trial->which[k - 1] = other;
+        }
+    for (size_t first = 0, n; first < count; first += n) {
+        n = 1;
+        while (first + n < count && trial->tried[trial->which[first + n]].method ==
+                                        trial->tried[trial->which[first]].method)
+            n++;
+        if (!run_method(plan, trial, first, n, cap, more))
+            return false;
+    }
+    return true;
+}
+
+static bool is_over(const struct tried *t)
+{
+    return t->result.status != STANCE_DONE || t->result.steps < t->input.steps ||
+           t->input.steps >= t->asked;
+}
+
+/* Those of the first `count` that go on; the others are dropped. */
+static size_t keep_going(struct trial *trial, size_t count)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < count; i++)
+        if (!is_over(&trial->tried[trial->which[i]]))
+            trial->which[left++] = trial->which[i];
+    return left;
+}
+
+/* The cases, in an order that is spread wherever it is cut; *begun: of those tried, that have a
+ * start. Returns how many were tried. */
+static size_t list_cases(const struct plan *plan, struct trial *trial, size_t *begun)
+{
+    size_t tried = 0;
+    *begun = 0;
+    for (uint64_t i = 0; i < TRIED && (i == 0 || plan->rows > 1); i++) {
+        struct tried *const t = &trial->tried[*begun];
+        const uint64_t row = plan->single ? 0 : plan_cost_case(plan, i);
+        if (plan->design_status[plan_design(plan, plan_case(plan, row))] == STANCE_PENDING)
+            continue;
+        tried++;
+        if (!plan_resolve(plan, row, &t->input, &t->method))
+            continue;
+        t->asked = t->input.steps;
+        trial->which[*begun] = *begun;
+        (*begun)++;
+    }
+    return tried;
+}
+
+/* How many of those that are left the time allows to be followed to their ends. */
+static size_t affordable(const struct trial *trial, size_t left, double seconds, int64_t cap)
+{
+    double longest = 0;
+    for (size_t i = 0; i < left; i++)
+        longest = fmax(longest, (double)trial->tried[trial->which[i]].asked);
+    const double all = fmax(2 * longest - (double)cap / 2, (double)cap) * trial->per_step;
+    const double most = all > 0 ? seconds / all : INFINITY;
+    return most >= (double)left ? left
+           : most < WIDEST      ? (left < WIDEST ? left : WIDEST)
+                                : (size_t)most;
+}
+
+double plan_cost(const struct plan *plan, double budget, bool *bound)
+{
+    enum { LATEST = 5 };
+    const double start = clock_seconds();
+    struct trial trial = {.tried = calloc(TRIED, sizeof *trial.tried),
+                          .until = start + LATEST * budget};
+    size_t begun = 0, left;
+    double share = 1, mean = 0, more = 0;
+    *bound = false;
+    const size_t tried = trial.tried ? list_cases(plan, &trial, &begun) : 0;
+    left = begun;
+    if (tried > 0)
+        share = (double)begun / (double)tried;
+    for (int64_t cap = SHORTEST; left > 0; cap *= 2) {
+        const double remains = budget - (clock_seconds() - start);
+        const size_t count = cap == SHORTEST ? left : affordable(&trial, left, remains, cap);
+        const bool fits = cap == SHORTEST || (double)count * (double)cap * trial.per_step <
+                                                 trial.until - clock_seconds();
+        if (!fits || !run_round(plan, &trial, count, cap, &more)) {
+            if (cap == SHORTEST)
+                break; /* nothing is known */
+            *bound = true;
+            for (size_t i = 0; i < left; i++) {
+                const struct tried *const t = &trial.tried[trial.which[i]];
+                mean += share / (double)left * fmax(0, (double)t->asked * trial.per_step - t->took);
+            }
+            break;
+        }
+        mean += share * more / (double)count;
+        left = keep_going(&trial, count);
+        share *= (double)left / (double)count;
+    }
+    free(trial.tried);
+    const bool known = mean > 0 || left == 0;
+    return begun == 0 ? -1 : known ? mean * (double)plan->rows : NAN;
+}
