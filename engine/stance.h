@@ -408,6 +408,8 @@ typedef struct stance_case {
     double settle_angle; /* rad */
     double settle_rate;  /* rad/s, and m/s for the translation */
     double settle_hold;  /* s */
+    double settle_place; /* m along the ground that a support may be from where it began, with what
+                          * counts as stabilised; 0: anywhere */
     double fall_height;  /* see stance_scene.fallen */
 
     /* `basin_known`: a case ends as `stabilised`, evidence `inferred`, at the first step (sampling
@@ -454,6 +456,8 @@ typedef struct stance_case {
       "samples at which a decoupling law could not do what it promises")                           \
     X(max_penetration, double, MAX, own, "m", "deepest penetration at the end of a step")          \
     X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
+    X(through_ground, double, MAX, own, "m",                                                       \
+      "deepest below the ground that a contact came which the scenario leaves out")                \
     X(footfalls, int64_t, SUM, own, "1", "landings of another foot than the one that landed last") \
     X(excursion, double, MAX, own, "rad", "largest angle off its target on the way")               \
     X(peak_torque, double, MAX, own, "N m", "largest torque applied")                              \
@@ -471,6 +475,8 @@ typedef struct stance_case {
     X(energy_gain, double, MAX, own, "J",                                                          \
       "largest rise of the energy above its start and the work done")                              \
     X(signorini_residual, double, MAX, touching, "m/s",                                            \
+    X(energy_drift, double, MAX, own, "J",                                                         \
+      "largest |change of energy less work done|, summed over steps in which no contact carries")  \
       "largest normal velocity of a contact that carries, or into the ground")                     \
     X(coulomb_residual, double, MAX, touching, "1",                                                \
       "largest excess of |rT|/rN over the coefficient of friction")                                \

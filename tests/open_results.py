@@ -18,8 +18,8 @@ import xarray
 
 COUNTS = ["steps", "iterations", "ambiguous_steps", "unranked_steps", "subdivided_steps", "degraded_samples", "limited_impacts", "events", "evaluations"]
 MEASURES = {"end_time": "s", "settle_time": "s", "fall_time": "s", "max_penetration": "m",
-            "slip_distance": "m", "excursion": "rad", "peak_torque": "N m", "friction_used": "1", "least_normal_force": "N",
-            "impact_energy": "J", "projection_energy": "J", "energy_gain": "J",
+            "through_ground": "m", "slip_distance": "m", "excursion": "rad", "peak_torque": "N m", "friction_used": "1", "least_normal_force": "N",
+            "impact_energy": "J", "projection_energy": "J", "energy_gain": "J", "energy_drift": "J",
             "signorini_residual": "m/s", "coulomb_residual": "1", "dissipation_residual": "m/s"}
 FLAGS = {"status": "pending done failed",
          "outcome": "none stabilised fell rested undecided",

@@ -28,7 +28,7 @@ struct peer_request {
     double feedforward[2], gain[2][6], target[3], limit[2], sample;
     double time, every; /* s: length of a case; states are told, and outcomes judged, so often */
     int labels;         /* outcomes are asked for, not states */
-    double settle_angle, settle_rate, settle_hold, fall_height;
+    double settle_angle, settle_rate, settle_hold, place, fall_height;
     int support[PEER_CONTACTS];
     double budget, effort; /* s for each setting: repeated for so long; not begun beyond */
     int checks, cases;
@@ -104,9 +104,17 @@ static inline double peer_slip(const struct peer_request *r, const double *state
     return v[0] + lt * cos(q[2]) * v[2] + l * cos(phi) * (v[2] + v[3 + foot]);
 }
 
+/* Where a foot is along the ground. */
+static inline double peer_along(const struct peer_request *r, const double *state, int foot)
+{
+    const double *q = state, l = r->robot[0], lt = r->robot[1];
+    return q[0] + lt * sin(q[2]) + l * sin(q[2] + q[3 + foot]);
+}
+
 /* NULL: none yet. */
 static inline const char *peer_judge(const struct peer_request *r, struct peer_window window[2],
-                                     const double *state, const double *load, double t)
+                                     const double *begin, const double *state, const double *load,
+                                     double t)
 {
     double angle = 0, speed = 0;
     bool alone = true;
@@ -118,6 +126,9 @@ static inline const char *peer_judge(const struct peer_request *r, struct peer_w
         alone =
             alone && (r->support[c] ? load[c] > 0 && fabs(peer_slip(r, state, c)) <= r->settle_rate
                                     : load[c] <= 0);
+    for (int c = 0; c < PEER_CONTACTS; c++)
+        alone = alone && (!r->support[c] ||
+                          fabs(peer_along(r, state, c) - peer_along(r, begin, c)) <= r->place);
     const double all = fmax(speed, fmax(fabs(state[5]), fabs(state[6])));
     const double error = fmax(angle / r->settle_angle, speed / r->settle_rate);
     const bool settled = peer_lasts(&window[0], alone && error <= 1, error, t, r->settle_hold);
@@ -199,7 +210,9 @@ static inline void peer_read(struct peer_request *r)
             r->settle_angle = peer_number();
             r->settle_rate = peer_number();
             r->settle_hold = peer_number();
-        } else if (PEER_IS("fall_height"))
+        } else if (PEER_IS("place"))
+            r->place = peer_number();
+        else if (PEER_IS("fall_height"))
             r->fall_height = peer_number();
         else if (PEER_IS("supports"))
             for (int c = 0; c < PEER_CONTACTS; c++)
@@ -262,7 +275,8 @@ static inline double peer_case(const struct peer_engine *e, const struct peer_re
             putchar('\n');
         }
         if (r->labels && row > 0 && !outcome)
-            outcome = peer_judge(r, window, state, load, end);
+            outcome = peer_judge(r, window, r->start + (size_t)PEER_STATE * (size_t)i, state, load,
+                                 end);
     }
     if (out)
         printf("case %d %s %.17g\n", i, outcome ? outcome : r->labels ? "undecided" : "done", end);

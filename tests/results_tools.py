@@ -20,9 +20,9 @@ PROVENANCE = {"program_version", "git_revision", "compiler", "library_versions",
               "instruction_set", "ranks", "hosts", "date"}
 # The answers in the order in which the checksum takes them.
 ANSWERS = """outcome evidence failure end_time settle_time fall_time fall_cause steps iterations
-    ambiguous_steps unranked_steps subdivided_steps degraded_samples max_penetration slip_distance footfalls excursion peak_torque
+    ambiguous_steps unranked_steps subdivided_steps degraded_samples max_penetration through_ground slip_distance footfalls excursion peak_torque
     friction_used least_normal_force
-    impact_energy limited_impacts projection_energy events evaluations energy_gain signorini_residual
+    impact_energy limited_impacts projection_energy events evaluations energy_gain energy_drift signorini_residual
     coulomb_residual dissipation_residual final_state scenario_number status""".split()
 
 

@@ -200,8 +200,9 @@ static void defaults_hold(void **state)
         assert_true(isnan(v->model[i]));
     }
     check_numbers((double[]){v->friction, v->restitution, v->step, v->sample_time, v->noise,
-                             v->settle_angle, v->settle_rate, v->settle_hold, v->fall_height},
-                  (double[]){0.8, 0, 0.001, 0, 0, 0.05, 0.5, 0.5, 0.2}, 9);
+                             v->settle_angle, v->settle_rate, v->settle_hold, v->settle_place,
+                             v->fall_height},
+                  (double[]){0.8, 0, 0.001, 0, 0, 0.05, 0.5, 0.5, 0.5, 0.2}, 10);
     assert_true(isinf(v->torque_limit));
     assert_true(isnan(v->tolerance)); /* the method's own */
     assert_int_equal(v->contacts, 3);
@@ -215,7 +216,7 @@ static void defaults_hold(void **state)
     assert_string_equal(s.title, "good");
     assert_int_equal(s.record_cases, RECORD_NONE);
     check_numbers(&s.record_every, (double[]){0}, 1);
-    assert_int_equal(s.answers, UINT32_MAX);
+    assert_true(s.answers == UINT64_MAX);
     scenario_free(&s);
 
     read_good(&s, holds, NULL, 0);

@@ -108,35 +108,68 @@ static int show(struct report *report, const struct results *r, stance_message *
     return (basin_is_rays(r, &sample) ? show_rays : show_basin)(report, r, &sample, message);
 }
 
-/* Cases with the outcome but with a larger number than ANSWER=MOST allows become undecided: they
- * are not what was asked for. */
+/* "2", "2..", "1..2": the largest, the least, both; false: none of these. */
+static bool read_bounds(const char *text, double bound[2])
+{
+    const char *const dots = strstr(text, "..");
+    char least[64], *end = least;
+    bound[0] = -INFINITY, bound[1] = INFINITY;
+    snprintf(least, sizeof least, "%.*s", dots ? (int)(dots - text) : 0, text);
+    if (least[0])
+        bound[0] = strtod(least, &end);
+    bool good = *end == '\0' && !isnan(bound[0]);
+    text = dots ? dots + 2 : text;
+    if (*text) {
+        char *stop;
+        bound[1] = strtod(text, &stop);
+        good = good && stop > text && *stop == '\0' && !isnan(bound[1]);
+    }
+    return good && (isfinite(bound[0]) || isfinite(bound[1])) && bound[0] <= bound[1];
+}
+
+/* "settle_time <= 2", "0.1 <= ...": how it is said. */
+static void bounds_text(const char *name, const double bound[2], char *text, size_t size)
+{
+    char least[40] = "", most[40] = "";
+    if (isfinite(bound[0]))
+        snprintf(least, sizeof least, "%g <= ", bound[0]);
+    if (isfinite(bound[1]))
+        snprintf(most, sizeof most, " <= %g", bound[1]);
+    if (least[0] && !most[0])
+        snprintf(text, size, "%s >= %g", name, bound[0]);
+    else
+        snprintf(text, size, "%s%s%s", least, name, most);
+}
+
+/* Cases with the outcome but with another number than --within allows become undecided: they are
+ * not what was asked for. */
 static int keep_within(struct results *r, struct request *request, stance_message *message)
 {
     size_t used = 0;
     for (size_t k = 0; k < request->withins; k++) {
         const char *equals = strchr(request->within[k], '=');
-        char name[96], *end = NULL;
-        double *value = NULL;
+        char name[96], text[180];
+        double *value = NULL, bound[2];
         snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - request->within[k]) : 0,
                  request->within[k]);
-        const double most = equals ? strtod(equals + 1, &end) : NAN;
-        if (!equals || *end || end == equals + 1 || isnan(most) ||
+        if (!equals || !read_bounds(equals + 1, bound) ||
             !basin_numbers(r, name, &value, message) || !value) {
             complain(message,
-                     "stance basin: --within takes ANSWER=MOST of a number that the file stores, "
-                     "as settle_time=2, not '%.60s'",
+                     "stance basin: --within takes ANSWER=MOST or ANSWER=LEAST.. of a number that "
+                     "the file stores, as settle_time=2, not '%.60s'",
                      request->within[k]);
             return EXIT_USAGE;
         }
         for (uint64_t i = 0; i < r->cases; i++)
-            if (r->kind[i] == request->choice.of && !(value[i] <= most))
+            if (r->kind[i] == request->choice.of && !(bound[0] <= value[i] && value[i] <= bound[1]))
                 r->kind[i] =
                     request->choice.of == RESULTS_UNDECIDED ? RESULTS_FELL : RESULTS_UNDECIDED;
         free(value);
+        bounds_text(name, bound, text, sizeof text);
         if (used < sizeof request->within_text)
             used +=
                 (size_t)snprintf(request->within_text + used, sizeof request->within_text - used,
-                                 "%s%s <= %g", k ? ", " : "", name, most);
+                                 "%s%s", k ? ", " : "", text);
     }
     request->choice.within = request->within_text;
     return EXIT_DONE;
@@ -279,7 +312,7 @@ static int run(int argc, char **argv)
 
 const struct command command_basin = {
     "basin",
-    "basin FILE [--by PATH]... [--of OUTCOME] [--within ANSWER=MOST]... [--level L] [--box N]\n"
+    "basin FILE [--by PATH]... [--of OUTCOME] [--within ANSWER=BOUND]... [--level L] [--box N]\n"
     "           [--weight PATH=SIZE]... [--threshold T --of PATH | --lost PATH | --rank N |\n"
     "           --answer A | --allowed | --descend N | --boundary] [--json | --csv]",
     "how large a basin is, how sure that is, and what its boundary is like",
@@ -385,9 +418,10 @@ const struct command command_basin = {
     "                 robot far from where it is linear may do what linear theory does not allow.\n"
     "                 farthest: by how much the set would have to grow to have such a start in it\n"
     "\n"
-    "  --within A=MOST   counts as the outcome only where the number A is at most MOST, in all of\n"
-    "                 the above: settle_time=2 is the domain of stability within 2 s; may be\n"
-    "                 repeated\n"
+    "  --within A=BOUND   counts as the outcome only where the number A is at most BOUND, in all\n"
+    "                 of the above: settle_time=2 is the domain of stability within 2 s; with\n"
+    "                 BOUND LEAST.. at least that (least_normal_force=5..), with LEAST..MOST\n"
+    "                 between them; may be repeated\n"
     "  --of OUTCOME   stabilised (default; or rested, where nothing else was), rested, fell or\n"
     "                 undecided\n"
     "  --weight PATH=SIZE   distances count this start in units of SIZE; may be repeated\n"

@@ -121,8 +121,9 @@ static bool write_request(FILE *out, const struct peer_task *task)
     put(out, "limit", limit, scene->actuators);
     fprintf(out, "sample %.17g\ntime %.17g\nevery %.17g\nlabels %d\n",
             (double)c->sample_every * c->step, task->time, task->every, task->labels);
-    fprintf(out, "settle %.17g %.17g %.17g\nfall_height %.17g\n", c->settle_angle, c->settle_rate,
-            c->settle_hold, c->fall_height);
+    fprintf(out, "settle %.17g %.17g %.17g\nplace %.17g\nfall_height %.17g\n", c->settle_angle,
+            c->settle_rate, c->settle_hold, c->settle_place > 0 ? c->settle_place : INFINITY,
+            c->fall_height);
     put_bits(out, "supports", c->supports, scene->contacts);
     fprintf(out, "budget %.17g\neffort %.17g\nchecks %d\n", task->budget, task->effort,
             PEER_CHECKS);

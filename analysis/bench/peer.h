@@ -12,7 +12,7 @@
  *       T = 0: it acts all the time
  *   time T, every D                        length of a case; instants are D apart
  *   labels B                               1: outcomes are asked for; 0: states at the instants
- *   settle ANGLE RATE HOLD, fall_height H, supports B B ...    the outcome rule
+ *   settle ANGLE RATE HOLD, place P, fall_height H, supports B B ...    the outcome rule
  *   budget S, effort S                     repeat a setting for so long; leave out what takes
  * longer checks N (position velocity)...        states in flight cases N (position velocity)...
  * where the cases start end

@@ -85,6 +85,8 @@ const struct command command_summary = {
     "                 reach_end, none, unknown}: where the stabilised set ends along it; `at`\n"
     "                 the values at the point of the smallest, offsets times the scale\n"
     "    numbers      {answer: {of, unit, count, smallest, median, q90, q99, largest}}\n"
+    "    through_ground  {cases, judged}: in which a contact that ground.contacts leaves out\n"
+    "                 went through the ground; of these those of the kind judged by\n"
     "    cost         steps, iterations, iterations_per_step, evaluations, events, events_cases,\n"
     "                 limited_impacts, limited_cases, subdivided_steps, subdivided_cases,\n"
     "                 degraded_samples, degraded_cases, ambiguous_steps, ambiguous_cases,\n"

@@ -62,6 +62,11 @@ static bool collect_numbers(struct summary *summary, const struct results *r,
             return false;
         if (!values)
             continue;
+        for (uint64_t i = 0; k == SUMMARY_through_ground && i < r->cases; i++) {
+            const bool through = values[i] > SUMMARY_THROUGH; /* false for NAN, too */
+            summary->through += through;
+            summary->through_judged += through && r->kind[i] == summary->judged;
+        }
         for (uint64_t i = 0; numbers->of != RESULTS_KIND_COUNT && i < r->cases; i++)
             values[i] = r->kind[i] == numbers->of ? values[i] : NAN;
         numbers->stored = true;

@@ -18,6 +18,7 @@
     X(fall_time, RESULTS_FELL, "s")                                                                \
     X(peak_torque, RESULTS_KIND_COUNT, "N m")                                                      \
     X(max_penetration, RESULTS_KIND_COUNT, "m")                                                    \
+    X(through_ground, RESULTS_KIND_COUNT, "m")                                                     \
     X(impact_energy, RESULTS_KIND_COUNT, "J")                                                      \
     X(projection_energy, RESULTS_KIND_COUNT, "J")                                                  \
     SUMMARY_RESIDUALS(X)
@@ -27,7 +28,8 @@
     X(signorini_residual, RESULTS_KIND_COUNT, "m/s")                                               \
     X(coulomb_residual, RESULTS_KIND_COUNT, "")                                                    \
     X(dissipation_residual, RESULTS_KIND_COUNT, "m/s")                                             \
-    X(energy_gain, RESULTS_KIND_COUNT, "J")
+    X(energy_gain, RESULTS_KIND_COUNT, "J")                                                        \
+    X(energy_drift, RESULTS_KIND_COUNT, "J")
 
 enum {
 #define SUMMARY_NUMBER(name, kind, unit) SUMMARY_##name,
@@ -43,6 +45,8 @@ struct summary_numbers {
     bool stored;
     struct statistics_numbers numbers;
 };
+
+#define SUMMARY_THROUGH 1e-9 /* m: less is rounding of what lies on the ground */
 
 /* Counts per case that make up the cost: name, name in JSON of the cases that have any, text. Those
  * that are signs of trouble come last and are told even if there are none. */
@@ -104,6 +108,9 @@ struct summary {
     char cause[STANCE_MAX_WORDS][STANCE_NAME];
     uint64_t fallen_by[STANCE_MAX_WORDS];
     struct summary_numbers numbers[SUMMARY_NUMBER_COUNT];
+    /* Cases in which a contact that the scenario leaves out went through the ground; of these
+     * those that the study is judged by. */
+    uint64_t through, through_judged;
     struct summary_count count[SUMMARY_COUNT_COUNT];
     uint64_t inferred; /* from neighbours, in a refined map */
     bool timed;

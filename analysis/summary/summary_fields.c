@@ -239,6 +239,7 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
         add_number(c, "stop.settle.angle", scene->postures ? v->settle_angle : NAN, "rad");
         add_number(c, "stop.settle.rate", v->settle_rate, "rad/s");
         add_number(c, "stop.settle.hold", v->settle_hold, "s");
+        add_number(c, "stop.settle.place", scene->postures ? v->settle_place : NAN, "m");
     }
     add_number(c, "stop.fall_height", scene->fallen && !scene->mechanism ? v->fall_height : NAN,
                "");

@@ -276,7 +276,10 @@ bool summary_print_json(const struct summary *summary, const struct results *r)
             TABLE_OBJECT({"sample", as_tree(r->sample >= 0 && known ? sample(summary, r) : NULL)},
                          {"changes", as_tree(known ? changes(r) : NULL)}));
     }
+    json_t *const through = TABLE_OBJECT({"cases", as_whole(summary->through)},
+                                         {"judged", as_whole(summary->through_judged)});
     json_object_update_new(root, TABLE_OBJECT({"numbers", as_tree(numbers(summary))},
+                                              {"through_ground", as_tree(through)},
                                               {"cost", as_tree(cost(summary))}));
     return table_write_json(root, stdout);
 }

@@ -182,6 +182,14 @@ void summary_parts(struct table *t, const struct summary *summary, const struct 
 
 /* ---- numbers ------------------------------------------------------------------------------ */
 
+/* Nothing is actuated, there is no target, no contact is left out or none of them went there. */
+static bool is_idle(const struct summary *summary, int k)
+{
+    return k == SUMMARY_through_ground ? summary->through == 0
+                                       : (k == SUMMARY_peak_torque || k == SUMMARY_excursion) &&
+                                             summary->numbers[k].numbers.high == 0;
+}
+
 void summary_answers(struct table *t, const struct summary *summary, enum table_form form)
 {
     const bool text = form == TABLE_AS_TEXT;
@@ -189,9 +197,8 @@ void summary_answers(struct table *t, const struct summary *summary, enum table_
         const struct summary_numbers *row = &summary->numbers[k];
         const struct statistics_numbers *n = &row->numbers;
         char label[64];
-        if (!row->stored || (text && n->n == 0) ||
-            (text && (k == SUMMARY_peak_torque || k == SUMMARY_excursion) && n->high == 0))
-            continue; /* nothing is actuated, there is no target */
+        if (!row->stored || (text && n->n == 0) || (text && is_idle(summary, k)))
+            continue;
         snprintf(label, sizeof label, "  %s%s%s%s", row->name, row->unit[0] ? " (" : "", row->unit,
                  row->unit[0] ? ")" : "");
         TABLE_FACTS(t, {{"answer", .hidden = TABLE_NO_JSON}, as_text(row->name)},

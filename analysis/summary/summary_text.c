@@ -344,10 +344,21 @@ static bool print_numbers(const struct summary *summary)
     return good;
 }
 
+/* What no picture of outcomes shows. */
+static void print_through(const struct summary *summary)
+{
+    if (summary->through > 0)
+        printf("\nThrough the ground, with a contact that ground.contacts leaves out: %" PRIu64
+               " case%s, of which %" PRIu64 " %s\n",
+               summary->through, summary->through == 1 ? "" : "s", summary->through_judged,
+               results_kind_names[summary->judged]);
+}
+
 /* The largest of all cases, in a line. */
 static void print_residuals(const struct summary *summary)
 {
-    static const char *const names[] = {"Signorini", "Coulomb", "dissipation", "energy gained"};
+    static const char *const names[] = {"Signorini", "Coulomb", "dissipation", "energy gained",
+                                        "drifted"};
     const char *separator = "\nLargest residuals: ";
     for (int k = SUMMARY_FIRST_RESIDUAL; k < SUMMARY_NUMBER_COUNT; k++) {
         const struct summary_numbers *row = &summary->numbers[k];
@@ -539,6 +550,7 @@ bool summary_print_text(const struct summary *summary, const struct results *r)
         print_case(summary, r);
     else
         good = print_sweep(summary, r);
+    print_through(summary);
     print_residuals(summary);
     print_cost(summary);
     return good && !ferror(stdout);

@@ -89,7 +89,7 @@ static int event_rates(realtype tau, N_Vector y, N_Vector rate, void *data)
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         to[EVENT_INTEGRAL + i] = e.integral_rate[i];
     to[EVENT_WORK] =
-        scene_work(&a->problem.set->body, 1, a->problem.begin + tau, &e.trig, e.torque, w);
+        motion_work(&a->problem.set->body, 1, a->problem.begin + tau, &e.trig, e.torque, w, w);
     return isfinite(sum) ? 0 : -1;
 }
 

@@ -120,7 +120,18 @@ HOT lanes scene_energy_change(const scene_body *b, const lanes *s, const scene_t
     }
     return sum;
 }
-/* Work of the torques and of pushes over a displacement d; dampers take theirs. */
+/* What dampers take over a displacement d with rates w. */
+#define SCENE_DAMPS
+HOT lanes scene_damped(const scene_body *b, const lanes *w, const lanes *d)
+{
+    lanes sum = lanes_of(0);
+    TREE_UNROLL
+    for (int k = 0; k < tree_springs; k++)
+        sum = lanes_fma(b->spring[k][1] * tree_joint(w, tree_spring[k]),
+                        tree_joint(d, tree_spring[k]), sum);
+    return sum;
+}
+/* Work of the torques and of pushes over a displacement d. */
 HOT lanes scene_work(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
                      const lanes *torque, const lanes *d)
 {

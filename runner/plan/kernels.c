@@ -256,7 +256,8 @@ static double compiled_share(const char *isa)
     static const struct {
         const char *isa;
         double share;
-    } known[] = {{"scalar", 0.08}, {"sse2", 0.1}, {"neon", 0.07}, {"avx2", 0.045}, {"avx512", 0.03}};
+    } known[] = {
+        {"scalar", 0.08}, {"sse2", 0.1}, {"neon", 0.07}, {"avx2", 0.045}, {"avx512", 0.03}};
     for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
         if (strcmp(isa, known[i].isa) == 0)
             return known[i].share;

@@ -614,6 +614,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
         .settle_angle = values->settle_angle,
         .settle_rate = values->settle_rate,
         .settle_hold = values->settle_hold,
+        .settle_place = isinf(values->settle_place) ? 0 : values->settle_place,
         .fall_height = values->fall_height,
         .seed = seed,
         .grid_index = index,

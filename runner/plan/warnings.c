@@ -17,13 +17,16 @@ enum { TRIED = 64 }; /* cases, evenly spread */
 #define MUCH 0.005   /* of the range: that far the equilibrium may be from the nearest start */
 static const double moment = 0.5; /* s */
 
-enum trouble { UNSTABLE, WEAK, SLIPPERY, UNSETTLED, NOISY, TROUBLES };
+#define ELASTIC 0.99 /* restitution from which on little energy is meant to be lost */
+#define INSIDE 1e-9  /* m: deeper in the ground is inside */
+
+enum trouble { UNSTABLE, WEAK, SLIPPERY, UNSETTLED, NOISY, BURIED, LOSSY, TROUBLES };
 
 /* Of each trouble: how many cases have it, and of the first one the case and what is wrong. */
 struct troubles {
     size_t count[TROUBLES];
     uint64_t first[TROUBLES];
-    char what[TROUBLES][200];
+    char what[TROUBLES][240];
 };
 
 static bool first_of(struct troubles *t, enum trouble trouble, uint64_t index)
@@ -135,6 +138,49 @@ static void look_at(const struct plan *plan, uint64_t index, struct troubles *t)
     }
     free(at);
     free(r);
+}
+
+/* Contacts that the scenario leaves out, and that begin in the ground. */
+static void look_at_ground(const stance_scene *scene, const stance_case *c, uint64_t index,
+                           struct troubles *t)
+{
+    double gap[STANCE_MAX_CONTACTS];
+    scene->gaps(scene, c->robot, c->position, gap);
+    for (int k = 0; k < scene->contacts; k++) {
+        if (c->contacts >> k & 1 || (scene->grip && scene->grip[k] < 0) || !(gap[k] < -INSIDE))
+            continue;
+        if (first_of(t, BURIED, index))
+            snprintf(t->what[BURIED], sizeof t->what[BURIED],
+                     "%.40s, which ground.contacts leaves out, begins %.3g m below the ground",
+                     scene->contact_name[k], -gap[k]);
+        return;
+    }
+}
+
+/* Impacts that keep the energy, by a method that does not. */
+static void look_at_impacts(const stance_case *c, const stance_method *method, uint64_t index,
+                            struct troubles *t)
+{
+    const bool loses =
+        strcmp(method->name, "implicit") == 0 || strcmp(method->name, "midpoint") == 0;
+    if (c->restitution >= ELASTIC && loses && first_of(t, LOSSY, index))
+        snprintf(
+            t->what[LOSSY], sizeof t->what[LOSSY],
+            "restitution %.4g with %s: what it changes the energy by, of the step's length, adds "
+            "up where impacts take hardly any (see energy_drift and energy_gain); capturing "
+            "keeps it",
+            c->restitution, method->name);
+}
+
+static void look_at_start(const struct plan *plan, uint64_t row, struct troubles *t)
+{
+    stance_case *const c = malloc(sizeof *c);
+    int method;
+    if (c && plan_resolve(plan, row, c, &method)) {
+        look_at_ground(plan->scenario->scene, c, plan_case(plan, row), t);
+        look_at_impacts(c, stance_methods()[method], plan_case(plan, row), t);
+    }
+    free(c);
 }
 
 /* Initial angles of the first and the last case that are more than a turn. */
@@ -298,12 +344,15 @@ bool warnings_print(const struct plan *plan, const char *who, FILE *out)
 {
     const uint64_t tried = plan->rows < TRIED ? plan->rows : TRIED;
     struct troubles t = {{0}, {0}, {""}};
-    for (uint64_t k = 0; k < tried && plan->scenario->scene->linearise; k++) {
+    for (uint64_t k = 0; k < tried; k++) {
         const uint64_t row =
             tried < 2 ? 0 : (uint64_t)((double)(plan->rows - 1) * (double)k / (double)(tried - 1));
         const uint64_t index = plan_case(plan, row);
-        if (plan->design_status[plan_design(plan, index)] == STANCE_DONE)
+        if (plan->design_status[plan_design(plan, index)] != STANCE_DONE)
+            continue;
+        if (plan->scenario->scene->linearise)
             look_at(plan, index, &t);
+        look_at_start(plan, row, &t);
     }
     bool any = false;
     for (int k = 0; k < TROUBLES; k++) {

@@ -293,10 +293,10 @@ bool field_list(struct problems *problems, const char *name, const char *wanted,
 }
 
 bool field_words(struct problems *problems, const struct scenario_field *field, const char *name,
-                 const struct tree_node *node, uint32_t *mask)
+                 const struct tree_node *node, uint64_t *mask)
 {
     bool good = true;
-    uint32_t bits = 0;
+    uint64_t bits = 0;
 
     int one;
     if (node->kind == TREE_SCALAR && node->text[0] &&
@@ -312,7 +312,7 @@ bool field_words(struct problems *problems, const struct scenario_field *field, 
             good = problem_add(problems, node->item[i]->mark, "%s: '%s' is listed twice", name,
                                field->words[place]);
         } else {
-            bits |= (uint32_t)1 << place;
+            bits |= (uint64_t)1 << place;
         }
     }
     *mask = bits;

@@ -37,7 +37,7 @@ bool field_value(struct problems *problems, const struct scenario_field *field, 
 
 /* A list of different words as a bit mask. */
 bool field_words(struct problems *problems, const struct scenario_field *field, const char *name,
-                 const struct tree_node *node, uint32_t *mask);
+                 const struct tree_node *node, uint64_t *mask);
 
 /* One line of text of less than `size` bytes. */
 bool field_text(struct problems *problems, const char *name, const struct tree_node *node,

@@ -66,7 +66,7 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
 {
     char *place = (char *)&r->s->base + field->offset;
     double number = 0;
-    uint32_t mask = 0;
+    uint64_t mask = 0;
     const size_t pole = (field->offset - offsetof(struct scenario_values, pole_re)) / sizeof number;
     bool good =
         pole < SCENARIO_MAX_POLES
@@ -74,7 +74,7 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
         : field->type == FIELD_WORDS ? field_words(&r->problems, field, field->path, node, &mask)
                                      : field_value(&r->problems, field, field->path, node, &number);
     if (good && field->type == FIELD_WORDS && r->s->scene->mechanism)
-        mask = mechanism_contacts(r->s->scene, mask);
+        mask = mechanism_contacts(r->s->scene, (uint32_t)mask);
     if (good && field->type == FIELD_NUMBER) {
         memcpy(place, &number, sizeof number);
     } else if (good) {
@@ -315,10 +315,10 @@ static void read_record(struct reader *r)
     } else if (s->record_cases != RECORD_NONE) {
         s->record_every = DEFAULT_RECORD_EVERY;
     }
-    s->answers = UINT32_MAX;
-    if (answers && field_words(&r->problems, schema_find(r->schema, "record.answers"),
-                               "record.answers", answers, &s->answers))
-        s->answers |= (s->answers >> SCENARIO_FINAL_STATE & 1) << 31;
+    s->answers = UINT64_MAX;
+    if (answers)
+        field_words(&r->problems, schema_find(r->schema, "record.answers"), "record.answers",
+                    answers, &s->answers);
 }
 
 static void read_by_hand(struct reader *r)

@@ -25,7 +25,7 @@ enum {
     SCENARIO_NAME = STANCE_MAX_ACTUATORS * STANCE_NAME + 8,
     SCENARIO_FINAL_STATE = STANCE_ANSWER_COUNT, /* bit of `answers` for final_state */
 };
-_Static_assert(SCENARIO_FINAL_STATE < 31, "bits for all answers");
+_Static_assert(SCENARIO_FINAL_STATE < 63, "bits for all answers");
 
 /* Most points of a map that is refined: each takes two to four bytes in the memory of every rank.
  */
@@ -85,7 +85,7 @@ struct scenario_values {
 
     double stop_time;
     int settle; /* 1: judge on the way (default), 0: `off` */
-    double settle_angle, settle_rate, settle_hold, fall_height;
+    double settle_angle, settle_rate, settle_hold, settle_place, fall_height;
     int capture; /* 1: stop.capture estimated */
 };
 
@@ -200,8 +200,8 @@ struct scenario {
     enum scenario_record record_cases;
     uint64_t *record_list; /* sorted, unique, all < cases */
     size_t record_count;
-    uint32_t answers; /* bit per row of STANCE_ANSWERS, then SCENARIO_FINAL_STATE, which bit 31
-                       * stands for as well; all ones by default */
+    uint64_t answers; /* bit per row of STANCE_ANSWERS, then SCENARIO_FINAL_STATE; all ones by
+                       * default */
 
     char *text; /* resolved scenario: after --set, as YAML; what the file stores and hashes */
     /* Where fields stand, for errors found later (design, initial state). */

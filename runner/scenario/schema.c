@@ -286,6 +286,7 @@ static bool scene_has(const stance_scene *scene, const char *path)
         {"initial.support", described && touches},
         {"initial.offset", stands},
         {"stop.settle.angle", scene->postures > 0},
+        {"stop.settle.place", scene->postures > 0},
         {"stop.fall_height", scene->fallen && !described},
     };
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)

@@ -319,6 +319,12 @@ const struct row schema_rows[] = {
     {0, {.path = "stop.settle.hold", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
          VALUE(settle_hold), .unit = "s", .fallback = 0.5, RANGE(0, LARGE),
          .text = "how long it must stay settled"}},
+    {0, {.path = "stop.settle.place", .type = FIELD_NUMBER, .use = USE_SETTLE, .sweep = true,
+         VALUE(settle_place), .unit = "m", .fallback = 0.5, ABOVE(0, LARGE), WORDS(schema_none),
+         .text = "how far from where it began a support may be that counts as stabilised",
+         .more = "Along the ground, either way, however it came there: a robot that stands at its "
+                 "target further away has hopped, slid or rolled off and is rested. none: "
+                 "anywhere."}},
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
          .unit = "1", .fallback = 0.2, RANGE(0, 1),
          .text = "height of the hip, in leg lengths, below which the robot has fallen",

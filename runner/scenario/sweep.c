@@ -426,7 +426,7 @@ void sweep_read(struct reader *r, const struct tree_node *grid)
 static void check_refined_record(struct reader *r)
 {
     const struct scenario *s = r->s;
-    const uint32_t needed = 1u << STANCE_ANSWER_outcome | 1u << STANCE_ANSWER_evidence;
+    const uint64_t needed = 1u << STANCE_ANSWER_outcome | 1u << STANCE_ANSWER_evidence;
 
     if (s->record_cases == RECORD_ALL) {
         problem_add(&r->problems, reader_seen(r, "record.cases")->key,

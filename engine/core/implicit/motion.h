@@ -53,6 +53,20 @@ HOT mask motion_fallen(const scene_body *body, const lanes *s, const scene_trig 
     return fallen;
 }
 
+/* Work of all that acts but gravity, springs and contacts, about the time t, over a displacement d
+ * in a time h with rates w. */
+HOT lanes motion_work(const scene_body *body, lanes h, lanes t, const scene_trig *trig,
+                      const lanes *torque, const lanes *w, const lanes *d)
+{
+    const lanes work = scene_work(body, h, t, trig, torque, d);
+#ifdef SCENE_DAMPS
+    return work - scene_damped(body, w, d);
+#else
+    (void)w;
+    return work;
+#endif
+}
+
 /* Fills in the energies of a motion. */
 static inline void motion_energy(const struct setting *set, struct motion *m)
 {

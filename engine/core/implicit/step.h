@@ -161,6 +161,22 @@ HOT mask step_lands(const struct motion *from, contact_set touching, const struc
     return lands;
 }
 
+/* What dampers take over a step, of which `moved` is the way, or half of it where there are pushes.
+ */
+HOT lanes step_damped(const struct setting *set, const struct motion *from,
+                      const struct iterate *it, const lanes *moved)
+{
+#ifdef SCENE_DAMPS
+    lanes rate[SCENE_COORDINATES];
+    EACH (i, 0, SCENE_COORDINATES)
+        rate[i] = lanes_fma(lanes_of(METHOD_THETA), it->w[i] - from->w[i], from->w[i]);
+    return (SCENE_PUSHES > 0 ? 2 : 1) * scene_damped(&set->body, rate, moved);
+#else
+    (void)set, (void)from, (void)it, (void)moved;
+    return lanes_of(0);
+#endif
+}
+
 /* What an iterate that has arrived leaves: position errors removed, the balance of energy, the
  * report. `touching`: contacts that are active anywhere; `kind`: with STEP_ANY not all were closed
  * before, and those in `impact` are; `frozen`: the geometry was. Returns the lanes of `converged`
@@ -179,6 +195,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     report->work = scene_work(&set->body, h, middle, &it->end, it->torque, moved);
     if (SCENE_PUSHES > 0) /* whose ways bend: half of it at either end */
         report->work += scene_work(&set->body, h, middle, &from->trig, it->torque, moved);
+    const lanes damped = step_damped(set, from, it, moved);
     report_clear_answers(report);
     report->failure = none;
     EACH (i, 0, SCENE_ACTUATORS)
@@ -226,6 +243,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     rebounds &= somewhere;
     converged &= (rebounds & step_rebounds(set, from, it, report->work)) |
                  (LANES_NOT(rebounds) & step_balances(from, it, report->work));
+    report->work -= damped; /* not above: a step is not admitted the less for it */
     report->ambiguous_steps = choose(it->verdict.ambiguous & converged, lanes_of(1), none);
     report->unranked_steps = choose(it->verdict.unranked & converged, lanes_of(1), none);
     report->landed = choose(lands, lanes_of(1), none);

@@ -73,7 +73,9 @@ struct bundle {
     lanes impulse[CONTACTS][2]; /* since then */
 
     lanes judge_on_way, has_target, mine[CONTACTS]; /* 1: a contact to stand on */
-    lanes angle_scale, rate_scale;                  /* 1 / settle.angle and 1 / settle.rate */
+    lanes began[CONTACTS], place;                   /* m, along the ground: see bundle_in_place */
+    lanes left_out[CONTACTS];      /* 1: meets the ground, which the case does not let it touch */
+    lanes angle_scale, rate_scale; /* 1 / settle.angle and 1 / settle.rate */
     lanes settle_steps, fall_height;
     struct window settled, resting;
     struct known_basin capture;
@@ -83,6 +85,8 @@ struct bundle {
 
     struct gathered answer;
     lanes energy_bound; /* J, initial energy and the work since */
+    lanes excess;       /* J, by which the energy was above it at the end of the last step */
+    lanes drift;        /* J, what that has changed by in steps in which no contact carried */
     lanes failure;
     struct advance advance;
     struct actuators actuators;
@@ -187,7 +191,8 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
 
 static void bundle_clear_answers(struct bundle *b, int lane)
 {
-    lanes *const zero[] = {&b->failure, &b->n, &b->recorded_at, &b->next_sample, &b->now.t};
+    lanes *const zero[] = {&b->failure, &b->n,      &b->recorded_at, &b->next_sample,
+                           &b->now.t,   &b->excess, &b->drift};
     for (size_t i = 0; i < sizeof zero / sizeof *zero; i++)
         lane_set(zero[i], lane, 0);
 #define CLEAR(name, type, how, told, unit, text)                                                   \
@@ -267,6 +272,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     lane_set(&b->has_target, lane, c->has_target);
     for (int i = 0; i < SCENE_CONTACTS; i++) {
         lane_set(&b->mine[i], lane, c->supports >> i & 1);
+        lane_set(&b->left_out[i], lane, contact_grip(i) >= 0 && !(c->contacts >> i & 1));
         lane_set(&b->ahead[i], lane,
                  c->lands_ahead && contact_grip(i) >= 0 && (c->contacts >> i & 1));
     }
@@ -274,6 +280,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     lane_set(&b->angle_scale, lane, 1 / c->settle_angle);
     lane_set(&b->rate_scale, lane, 1 / c->settle_rate);
     lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));
+    lane_set(&b->place, lane, c->settle_place > 0 ? c->settle_place : INFINITY);
     lane_set(&b->fall_height, lane, c->fall_height);
     known_basin_load(&b->capture, lane, c);
 }
@@ -292,6 +299,8 @@ static void bundle_begin(struct bundle *b, mask fresh)
         scene_contact_velocity(&b->set.body, &trig, c, b->now.w, u);
         b->now.gap[c] = choose(fresh, scene_gap(&b->set.body, b->now.s, &trig, c), b->now.gap[c]);
         b->now.approach[c] = choose(fresh, u[0], b->now.approach[c]);
+        if (contact_grip(c) >= 0)
+            b->began[c] = choose(fresh, scene_along(&b->set.body, b->now.s, &trig, c), b->began[c]);
     }
     struct motion begin = b->now;
     motion_energy(&b->set, &begin);

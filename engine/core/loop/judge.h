@@ -50,6 +50,22 @@ HOT void account_contacts(struct bundle *b, bool all, mask ok, contact_set touch
     }
 }
 
+/* By how much the energy has drifted, either way, in steps in which nothing but what does the
+ * work that is counted acts: what contacts dissipate is theirs. */
+HOT void account_drift(struct bundle *b, bool all, mask ok, contact_set touching,
+                       const struct step_report *report, lanes excess)
+{
+    mask free = ok;
+    EACH (c, 0, SCENE_CONTACTS)
+        if (touching >> c & 1)
+            free &= mask_less_equal(report->impulse[c][0], lanes_of(0));
+    if (!touching || mask_any(free)) {
+        b->drift = choose_unless(all && !touching, free, b->drift + (excess - b->excess), b->drift);
+        account_largest(all, ok, lanes_abs(b->drift), &b->answer.energy_drift);
+    }
+    b->excess = choose_unless(all, ok, excess, b->excess);
+}
+
 /* Takes down a step of the lanes in `ok` (or, `all`, of every lane that runs), contacts in
  * `touching`; `ordinary`: nothing happened in it that happens rarely. */
 HOT void bundle_account(struct bundle *b, bool all, mask ok, bool ordinary, contact_set touching,
@@ -64,7 +80,9 @@ HOT void bundle_account(struct bundle *b, bool all, mask ok, bool ordinary, cont
 #else
     const lanes energy = scene_energy(&b->set.body, b->now.s, b->now.w, &b->now.trig);
 #endif
-    account_largest(all, ok, energy - b->energy_bound, &b->answer.energy_gain);
+    const lanes excess = energy - b->energy_bound;
+    account_largest(all, ok, excess, &b->answer.energy_gain);
+    account_drift(b, all, ok, touching, report, excess);
     EACH (i, 0, SCENE_ACTUATORS)
         account_largest(all, ok, lanes_abs(report->torque[i]), &b->answer.peak_torque);
     account_contacts(b, all, ok, touching, report);
@@ -103,6 +121,20 @@ static inline mask verdict_any(const struct verdict *v)
     return MASK_NONE STANCE_OUTCOMES(VERDICT_OR);
 }
 
+/* Lanes whose supports are no further along the ground from where they began than `place`. */
+HOT mask bundle_in_place(const struct bundle *b)
+{
+    mask in = LANES_ALL;
+    EACH (c, 0, SCENE_CONTACTS) {
+        if (contact_grip(c) < 0)
+            continue;
+        const lanes moved = scene_along(&b->set.body, b->now.s, &b->now.trig, c) - b->began[c];
+        in &= LANES_NOT(mask_less(lanes_of(0), b->mine[c])) |
+              mask_less_equal(lanes_abs(moved), b->place);
+    }
+    return in;
+}
+
 /* The outcome rules at the present state; `loaded`: contacts that carry, of those in `touching`.
  * `last`: time is up. */
 HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touching,
@@ -110,6 +142,9 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
 {
     const lanes none = lanes_of(0), one = lanes_of(1);
     lanes posture[POSTURES], rate[POSTURES], angle = none, speed = none;
+    EACH (c, 0, SCENE_CONTACTS)
+        account_largest(false, live & mask_less(none, b->left_out[c]), -b->now.gap[c],
+                        &b->answer.through_ground);
     scene_posture(b->now.s, posture);
     scene_posture(b->now.w, rate);
     EACH (i, 0, SCENE_POSTURE) {
@@ -134,9 +169,12 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
         alone &= (mine & stands) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
     }
     const lanes error = lanes_max(angle, speed);
+    const mask slow = mask_less_equal(speed, one);
+    if (mask_any(alone & slow & live)) /* who has hopped or slid away is elsewhere */
+        alone &= bundle_in_place(b);
     const mask at_target = alone & mask_less_equal(error, one);
     /* On the way to the target is not `elsewhere`, however slow. No rate is less than `speed`. */
-    mask still = LANES_NOT(alone) & mask_less_equal(speed, one);
+    mask still = LANES_NOT(alone) & slow;
     lanes all = none;
     if (mask_any(still & live)) {
         all = scene_largest_rate(&b->set.body, b->now.w, &b->now.trig) * b->rate_scale;
@@ -194,7 +232,7 @@ static mask bundle_captured(const struct bundle *b, mask live, const mask *loade
                             mask_less_equal(lanes_abs(u[1]), rest);
         in &= (mine & stands) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
     }
-    return in;
+    return mask_any(in) ? in & bundle_in_place(b) : in;
 }
 
 #endif

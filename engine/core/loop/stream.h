@@ -205,10 +205,11 @@ COLD void stream_strike(struct bundle *b, lanes from)
     if (!mask_any(hit))
         return;
     report_clear(&report);
-    const lanes given = scene_kinetic(&b->set.body, &next.trig, next.w) -
-                        scene_kinetic(&b->set.body, &next.trig, b->now.w);
+    const lanes struck = scene_kinetic(&b->set.body, &next.trig, next.w);
+    const lanes given = struck - scene_kinetic(&b->set.body, &next.trig, b->now.w);
     const mask solved = between_impact(&b->set, hit, &next, &report);
     motion_energy(&b->set, &next);
+    b->excess = choose(hit, b->excess + (next.kinetic - struck), b->excess);
     choose_all(hit, &next, &b->now, sizeof next);
     b->energy_bound = choose(hit, b->energy_bound + given, b->energy_bound);
     for (int c = 0; c < SCENE_CONTACTS; c++)

@@ -178,8 +178,8 @@ static inline void explicit_take(const struct setting *set, const struct motion 
             const lanes part = h * tableau_b[k];
             for (int i = 0; i < SCENE_COORDINATES; i++)
                 moved[i] = part * w[i];
-            out->report.work +=
-                scene_work(&set->body, part, from->t + h * tableau_c[k], &e.trig, e.torque, moved);
+            out->report.work += motion_work(&set->body, part, from->t + h * tableau_c[k], &e.trig,
+                                            e.torque, w, moved);
             explicit_add(out->end.s, out->end.w, part, ks[k], kw[k]);
             explicit_sum(sums, out->end.integral, part, kz[k]);
             for (int c = 0; c < SCENE_CONTACTS; c++) {

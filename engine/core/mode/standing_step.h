@@ -280,7 +280,7 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
                 end->s[i] += moved[i];
                 end->w[i] = lanes_fma(part, e.acceleration[i], end->w[i]);
             }
-            report->work += scene_work(&set->body, part, t, &e.trig, e.torque, moved);
+            report->work += motion_work(&set->body, part, t, &e.trig, e.torque, w, moved);
             EACH (c, 0, SCENE_CONTACTS)
                 EACH (b, 0, 2) {
                     force[k][c][b] = lanes_of(0);
