@@ -14,7 +14,7 @@ const char *const stance_failure_text[] = {STANCE_FAILURES(TEXT)};
 
 #define TYPE(type)                                                                                 \
     _Generic((type)0, uint8_t : STANCE_UINT8, int64_t : STANCE_INT64, double : STANCE_DOUBLE)
-#define NO_ANSWER(type) _Generic((type)0, double : NAN, default : 0)
+#define NO_ANSWER(type) _Generic((type)0, double : NAN, int64_t : STANCE_NO_COUNT, default : 0)
 
 const stance_answer stance_answers[] = {
 #define ANSWER(name_, type_, how, told, unit_, text_)                                              \
@@ -23,8 +23,7 @@ const stance_answer stance_answers[] = {
                                .text = text_,                                                      \
                                .type = TYPE(type_),                                                \
                                .size = sizeof(type_),                                              \
-                               .offset = offsetof(stance_result, name_),                           \
-                               .none = NO_ANSWER(type_)},
+                               .offset = offsetof(stance_result, name_)},
     STANCE_ANSWERS(ANSWER)
 #undef ANSWER
 #define CODE(name_)                                                                                \
@@ -57,4 +56,22 @@ void stance_result_clear(stance_result *result)
 #undef CLEAR
     for (int i = 0; i < STANCE_MAX_COORDINATES; i++)
         result->position[i] = result->velocity[i] = NAN;
+}
+
+double stance_answer_of(const stance_result *result, int answer)
+{
+    const stance_answer *const a = &stance_answers[answer];
+    const char *const at = (const char *)result + a->offset;
+    double number;
+    int64_t count;
+    switch (a->type) {
+    case STANCE_UINT8:
+        return (uint8_t)*at;
+    case STANCE_INT64:
+        memcpy(&count, at, sizeof count);
+        return count == STANCE_NO_COUNT ? NAN : (double)count;
+    default:
+        memcpy(&number, at, sizeof number);
+        return number;
+    }
 }

@@ -428,7 +428,8 @@ typedef struct stance_case {
 } stance_case;
 
 /* The answers of a case, in the order in which files hold them: name, type, how a case gets it,
- * which steps tell it, unit, text. Floating-point answers are NAN where there is none.
+ * which steps tell it, unit, text. Where there is none floating-point answers are NAN, counts
+ * STANCE_NO_COUNT, codes 0, which is the word `none`.
  *   END             known when the case ends
  *   SUM, MAX, MIN   gathered over the parts of steps and over steps
  *   STEPS           at most 1 in each step, summed over the steps
@@ -455,9 +456,9 @@ typedef struct stance_case {
     X(degraded_samples, int64_t, STEPS, rare, "1",                                                 \
       "samples at which a decoupling law could not do what it promises")                           \
     X(max_penetration, double, MAX, own, "m", "deepest penetration at the end of a step")          \
-    X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
     X(through_ground, double, MAX, own, "m",                                                       \
       "deepest below the ground that a contact came which the scenario leaves out")                \
+    X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
     X(footfalls, int64_t, SUM, own, "1", "landings of another foot than the one that landed last") \
     X(excursion, double, MAX, own, "rad", "largest angle off its target on the way")               \
     X(peak_torque, double, MAX, own, "N m", "largest torque applied")                              \
@@ -474,14 +475,17 @@ typedef struct stance_case {
       "evaluations of the accelerations or of the implicit equation")                              \
     X(energy_gain, double, MAX, own, "J",                                                          \
       "largest rise of the energy above its start and the work done")                              \
-    X(signorini_residual, double, MAX, touching, "m/s",                                            \
     X(energy_drift, double, MAX, own, "J",                                                         \
       "largest |change of energy less work done|, summed over steps in which no contact carries")  \
+    X(signorini_residual, double, MAX, touching, "m/s",                                            \
       "largest normal velocity of a contact that carries, or into the ground")                     \
     X(coulomb_residual, double, MAX, touching, "1",                                                \
       "largest excess of |rT|/rN over the coefficient of friction")                                \
     X(dissipation_residual, double, MAX, touching, "m/s",                                          \
       "largest slip that full friction against it does not accompany")
+
+/* What stands in place of a count where there is none. */
+#define STANCE_NO_COUNT INT64_MIN
 
 typedef struct stance_result {
     int32_t status; /* stance_status */
@@ -504,7 +508,6 @@ typedef struct stance_answer {
     const char *name, *unit, *text;
     stance_type type;
     size_t size, offset; /* bytes; in stance_result */
-    double none;         /* value of a case without one */
     /* Of an answer that is a code: the words that its numbers stand for; else NULL, 0. (Of
      * fall_cause they are the scene's: see stance_answer_words.) */
     const char *const *word;
@@ -515,8 +518,11 @@ extern const stance_answer stance_answers[STANCE_ANSWER_COUNT];
 /* The words of an answer that is a code, word[STANCE_MAX_WORDS], and how many; 0: it is none. */
 int stance_answer_words(const stance_scene *scene, int answer, const char **word);
 
-/* The result of a case that has none: every answer its `none`, the state NAN, status pending. */
+/* The result of a case that has none: no answer, the state NAN, status pending. */
 void stance_result_clear(stance_result *result);
+
+/* An answer of a result as a number; NAN: there is none. */
+double stance_answer_of(const stance_result *result, int answer);
 
 /* Names and texts of outcomes and failures. */
 extern const char *const stance_outcome_name[STANCE_OUTCOME_COUNT];

@@ -6,8 +6,16 @@
     open_results.py trajectory FILE   no sweep, with a trajectory
     open_results.py one FILE N        one case of a sweep, traced
 
-Each with h5py, xarray (netCDF-4 engine) and ncdump; says what it expected where it fails.
+    open_results.py answers FILE      any
+
+Each with h5py, xarray (netCDF-4 engine), netCDF4 and ncdump, of which all must find in every case
+the answers that `stance table` tells, true zeros and missing ones included; says what it expected
+where it fails.
 """
+import csv
+import json
+import os
+import re
 import subprocess
 import sys
 
@@ -16,7 +24,8 @@ import netCDF4
 import numpy
 import xarray
 
-COUNTS = ["steps", "iterations", "ambiguous_steps", "unranked_steps", "subdivided_steps", "degraded_samples", "limited_impacts", "events", "evaluations"]
+COUNTS = ["steps", "iterations", "ambiguous_steps", "unranked_steps", "subdivided_steps", "degraded_samples", "footfalls", "limited_impacts",
+          "events", "evaluations"]
 MEASURES = {"end_time": "s", "settle_time": "s", "fall_time": "s", "max_penetration": "m",
             "through_ground": "m", "slip_distance": "m", "excursion": "rad", "peak_torque": "N m", "friction_used": "1", "least_normal_force": "N",
             "impact_energy": "J", "projection_energy": "J", "energy_gain": "J", "energy_drift": "J",
@@ -24,6 +33,7 @@ MEASURES = {"end_time": "s", "settle_time": "s", "fall_time": "s", "max_penetrat
 FLAGS = {"status": "pending done failed",
          "outcome": "none stabilised fell rested undecided",
          "evidence": "none simulated inferred"}
+NO_COUNT = -2**63
 STATE = ["x", "z", "theta", "q1", "q2", "vx", "vz", "vtheta", "vq1", "vq2"]
 
 
@@ -41,10 +51,57 @@ def answers(data, dims):
     for name, unit in MEASURES.items():
         equal(data[name].attrs["units"], unit, f"units of {name}")
         assert numpy.isnan(data[name].attrs["_FillValue"]), name
+    for name in COUNTS:
+        equal(int(data[name].attrs["_FillValue"]), NO_COUNT, f"what {name} is missing as")
     for name, words in FLAGS.items():
         equal(data[name].attrs["flag_meanings"], words, f"flags of {name}")
+        assert "_FillValue" not in data[name].attrs, f"a word of {name} is missing"
         equal(list(data[name].attrs["flag_values"]), list(range(len(words.split()))), name)
     assert set(numpy.unique(data["status"])) <= {1, 2}, "pending cases in a finished file"
+
+
+def told(stance, name, asked):
+    """What `stance table` says of each case that is not pending, NAN where it says nothing; words
+    as their numbers in the file."""
+    text = subprocess.run([stance, "table", name, *(a for n in asked for a in ("--answer", n))], check=True, capture_output=True, text=True)
+    rows = list(csv.DictReader(text.stdout.splitlines()))
+    with h5py.File(name, "r") as file:
+        words = {n: file[n].attrs["flag_meanings"].decode().split() for n in asked if "flag_meanings" in file[n].attrs}
+    return {n: numpy.array([numpy.nan if r[n] == "" else words[n].index(r[n]) if n in words else float(r[n]) for r in rows])
+            for n in asked}
+
+
+def dumped(name, variable):
+    """The numbers that ncdump prints of a variable, NAN where it prints that there is none."""
+    text = subprocess.run(["ncdump", "-v", variable, "-p", "9,17", name], check=True, capture_output=True, text=True).stdout
+    data = re.search(rf"\n {re.escape(variable)} =(.*?);", text[text.index("\ndata:"):], re.S).group(1)
+    return numpy.array([numpy.nan if word in ("_", "NaN") else float(word) for word in re.split(r"[,\s]+", data.strip())])
+
+
+def every(name):
+    """All readers find in all cases what the program tells of them, and as many zeros."""
+    stance = os.environ.get("STANCE", "bin/stance")
+    with h5py.File(name, "r") as file:
+        asked = [n for n in [*COUNTS, *MEASURES, *FLAGS, "failure", "fall_cause"] if n in file]
+        there = file["status"][...].ravel() > 0
+        raw = {n: (file[n][...].ravel(), file[n].attrs.get("_FillValue", [None])[0]) for n in asked}
+    assert len(asked) > 20 and there.any()
+    expected = told(stance, name, asked)
+    with xarray.open_dataset(name, engine="netcdf4") as data, netCDF4.Dataset(name) as net:
+        for n in asked:
+            values, fill = raw[n]
+            seen = {"h5py": numpy.where(values == fill, numpy.nan, values) if fill is not None else values,
+                    "xarray": data[n].values.ravel(),
+                    "netCDF4": numpy.ma.filled(numpy.ma.asarray(net[n][...]).astype(float), numpy.nan).ravel(),
+                    "ncdump": dumped(name, n)}
+            for reader, found in seen.items():
+                found, wanted = found.astype(float)[there], expected[n][there]
+                assert numpy.array_equal(found, wanted, equal_nan=True), (reader, n, found[found != wanted], wanted[found != wanted])
+                equal(int((found == 0).sum()), int((wanted == 0).sum()), f"zeros of {n} in {reader}")
+        summary = json.loads(subprocess.run([stance, "summary", "--json", name], check=True, capture_output=True, text=True).stdout)
+        for n in COUNTS:
+            total = summary["cost"].get(n)
+            assert total is None or total == data[n].where(data["status"] == 1).sum(), f"sum of {n}"
 
 
 def provenance(data):
@@ -152,7 +209,8 @@ def one(name, number):
 
 if __name__ == "__main__":
     kind, file = sys.argv[1:3]
-    scales(file)
-    netCDF4.Dataset(file).close()
-    {"square": square, "words": words, "trajectory": trajectory}.get(
+    every(file)
+    if kind != "answers":
+        scales(file)
+    {"square": square, "words": words, "trajectory": trajectory, "answers": lambda name: None}.get(
         kind, lambda name: one(name, int(sys.argv[3])))(file)

@@ -54,7 +54,7 @@ function start(page, sets) {
     need(e.file_axis(a, put(values), values.length));
   });
   need(e.file_designs(put(block('designs')), put(block('design-status')), head.designs.count));
-  e.file_stored(head.stored >>> 0, -1);
+  e.file_stored(head.stored, -1);
   need(e.view_open(put(bytes(sets.map((set) => wire(set) + '\0').join('') + '\0'))));
   return { e, put, need };
 }

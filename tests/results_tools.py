@@ -85,6 +85,23 @@ def put_checksums(file):
     file["checksum"][...] = crc32c(numpy.hstack(parts)).reshape(n)
 
 
+def age(name, pending):
+    """Makes of a finished file one of an earlier version, of which so many cases are pending: fewer
+    answers, and counts of which 0 is what there is none of, as of cases that were inferred."""
+    with h5py.File(name, "r+") as file:
+        none = (file["evidence"][...] == 2) & numpy.isnan(file["end_time"][...])
+        for answer in {"through_ground", "energy_drift"} & set(file):
+            del file[answer]
+        for answer in ANSWERS:
+            if answer in file and file[answer].dtype == numpy.int64:
+                file[answer][...] = numpy.where(none, 0, file[answer][...])
+                file[answer].attrs.modify("_FillValue", numpy.zeros(1, numpy.int64))
+        put_checksums(file)
+        status = file["status"][...]
+        status.flat[:pending] = 0
+        file["status"][...] = status
+
+
 def damage(name, index):
     with h5py.File(name, "r+") as file:
         data = file["steps"][...]
@@ -137,6 +154,8 @@ if __name__ == "__main__":
     task = sys.argv[1]
     if task == "same":
         same(sys.argv[2], sys.argv[3])
+    elif task == "age":
+        age(sys.argv[2], int(sys.argv[3]))
     elif task == "whole":
         print("# {} of {} cases are marked and whole".format(
             *whole(sys.argv[2], int(sys.argv[3]) if len(sys.argv) > 3 else 1)))

@@ -166,8 +166,8 @@ static void put_point(struct listing *t, uint64_t index)
     }
 }
 
-/* What stands in the row of a pending case means nothing, and counts of an inferred one say 0 where
- * there is no answer. */
+/* What stands in the row of a pending case means nothing, and in files of earlier versions counts
+ * of an inferred one say 0 where there is no answer. */
 static bool says_something(const struct listing *t, const struct results_column *column,
                            uint64_t index)
 {

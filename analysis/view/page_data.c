@@ -147,6 +147,22 @@ static bool put_designs(struct page *p)
            put_block(p, "design-status", "u8", plan->design_status, 1, plan->designs);
 }
 
+/* Which answers a case's checksum covers, a bit each. */
+static bool put_stored(struct page *p)
+{
+    uint64_t stored = 0;
+    for (int a = 0; a <= SCENARIO_FINAL_STATE; a++) {
+        const char *const name = a < SCENARIO_FINAL_STATE ? stance_answers[a].name : "final_state";
+        struct results_column column;
+        if (!results_column_open(p->r, name, &column, p->message))
+            return false;
+        stored |= (uint64_t)(column.id >= 0) << a;
+        results_column_close(&column);
+    }
+    json_object_set_new(p->head, "stored", json_integer((json_int_t)stored));
+    return true;
+}
+
 /* Nothing of this where the scenario cannot be read: then the page shows what the file holds. */
 static bool put_engine(struct page *p)
 {
@@ -163,8 +179,7 @@ static bool put_engine(struct page *p)
     if (engine)
         page_base64(p->more, "engine", engine, size);
     json_object_set_new(p->head, "engine", json_boolean(engine != NULL));
-    json_object_set_new(p->head, "stored", json_integer((json_int_t)(p->scenario.answers)));
-    return put_axis_values(p) && put_designs(p);
+    return put_stored(p) && put_axis_values(p) && put_designs(p);
 }
 
 /* ---- cases -------------------------------------------------------------------------------- */

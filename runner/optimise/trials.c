@@ -215,18 +215,10 @@ static int64_t worth_of(const struct scenario_search *search, const stance_resul
 {
     double worth = 1;
     for (int i = 0; i < STANCE_ANSWER_COUNT; i++) {
-        const stance_answer *const answer = &stance_answers[i];
         const bool aim = search->aim == AIM_ANSWER && i == search->answer;
-        if ((search->price[i] == 0 && !aim) || answer->type == STANCE_UINT8)
+        if ((search->price[i] == 0 && !aim) || stance_answers[i].type == STANCE_UINT8)
             continue;
-        double value;
-        if (answer->type == STANCE_INT64) {
-            int64_t whole;
-            memcpy(&whole, (const char *)result + answer->offset, sizeof whole);
-            value = (double)whole;
-        } else {
-            memcpy(&value, (const char *)result + answer->offset, sizeof value);
-        }
+        double value = stance_answer_of(result, i);
         value = isnan(value) ? 0 : value;
         worth = aim ? worth - 1 + value : worth;
         worth -= search->price[i] * value;

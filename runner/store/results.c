@@ -246,6 +246,12 @@ static bool read_axes(struct results *r, stance_message *message)
 
 /* ---- status, outcome, failure ------------------------------------------------------------- */
 
+void results_no_counts(double *values, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        values[i] = values[i] == (double)STANCE_NO_COUNT ? NAN : values[i];
+}
+
 /* A number of that kind per case; *values stays NULL when the variable is not stored. */
 static bool read_cases(const struct results *r, const char *name, enum store_kind kind,
                        void **values, stance_message *message)
@@ -356,6 +362,7 @@ bool results_answer(const struct results *r, const char *name, double **values,
     void *numbers;
     const bool good = read_cases(r, name, KIND_double, &numbers, message);
     *values = numbers;
+    results_no_counts(*values, *values ? r->cases : 0);
     for (uint64_t i = 0; *values && i < r->cases; i++)
         if (r->kind[i] == RESULTS_PENDING || r->kind[i] == RESULTS_FAILED)
             (*values)[i] = NAN;

@@ -21,6 +21,8 @@ bool results_no_memory(const struct results *r, stance_message *message);
 void results_describe(hid_t dataset, const char *name, struct results_axis *axis);
 bool results_is_number(hid_t dataset);
 H5T_class_t results_class(hid_t dataset);
+/* Counts that there are none of become NAN. */
+void results_no_counts(double *values, size_t n);
 void results_copy_attribute(hid_t object, const char *name, char *buffer, size_t size);
 /* What the axis `sample` varies, once the axes have been read; nothing where there is none. */
 bool results_read_sample(struct results *r, stance_message *message);

@@ -44,7 +44,10 @@ void results_column_close(struct results_column *column)
 bool results_column_read(const struct results *r, const struct results_column *column,
                          uint64_t first, size_t rows, double *values, stance_message *message)
 {
-    return hdf_move((hid_t)column->id, hdf_type(KIND_double), first * column->width,
-                    rows * column->width, HDF_READ, values) ||
-           results_failed(r, column->name, message);
+    const size_t n = rows * column->width;
+    if (!hdf_move((hid_t)column->id, hdf_type(KIND_double), first * column->width, n, HDF_READ,
+                  values))
+        return results_failed(r, column->name, message);
+    results_no_counts(values, n);
+    return true;
 }

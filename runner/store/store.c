@@ -18,11 +18,11 @@
 /* ---- tables ------------------------------------------------------------------------------- */
 
 const struct store_column store_columns[COLUMNS] = {
-#define NONE_uint8_t 0
-#define NONE_int64_t 0
-#define NONE_double NAN
+#define FILL_uint8_t 0, false /* every number of a code is one of its words */
+#define FILL_int64_t (double)STANCE_NO_COUNT, true
+#define FILL_double NAN, true
 #define STORE_COLUMN(name, type, how, told, unit, text)                                            \
-    [STANCE_ANSWER_##name] = {#name, KIND_##type, sizeof(type), NONE_##type, true, unit, text},
+    [STANCE_ANSWER_##name] = {#name, KIND_##type, sizeof(type), FILL_##type, unit, text},
     STANCE_ANSWERS(STORE_COLUMN)[COLUMN_FINAL_STATE] =
         {"final_state", KIND_double, sizeof(double), NAN, true, NULL,
          "coordinates and their rates when the simulation stopped"},
@@ -31,7 +31,7 @@ const struct store_column store_columns[COLUMNS] = {
                                 "history, then the file's own"},
     [COLUMN_CHECKSUM] = {"checksum", KIND_uint32_t, sizeof(uint32_t), 0, false, "1",
                          "CRC-32C over the answers of the case"},
-    [COLUMN_STATUS] = {"status", KIND_uint8_t, sizeof(uint8_t), 0, true, "1",
+    [COLUMN_STATUS] = {"status", KIND_uint8_t, sizeof(uint8_t), 0, false, "1",
                        "whether the case was computed"},
 };
 
@@ -195,17 +195,25 @@ static hid_t open_for_ranks(const char *file, int ranks)
 }
 
 /* Collective: rank 0 reads where the dataset is and tells the others, lest thousands of ranks read
- * the same few bytes of the file. */
-static hid_t open_dataset(const struct store *store, const char *name)
+ * the same few bytes of the file. *there, where not NULL: whether there is one. */
+static hid_t find_dataset(const struct store *store, const char *name, bool *there)
 {
-    hid_t access = H5Pcreate(H5P_DATASET_ACCESS), dataset;
+    hid_t access = H5Pcreate(H5P_DATASET_ACCESS), dataset = -1;
 #if defined(STANCE_MPI) && defined(H5_HAVE_PARALLEL)
     if (store->ranks > 1)
         H5Pset_all_coll_metadata_ops(access, true);
 #endif
-    dataset = H5Dopen2(store->id, name, access);
+    if (there)
+        *there = H5Lexists(store->id, name, access) > 0;
+    if (!there || *there)
+        dataset = H5Dopen2(store->id, name, access);
     hdf_close(access);
     return dataset;
+}
+
+static hid_t open_dataset(const struct store *store, const char *name)
+{
+    return find_dataset(store, name, NULL);
 }
 
 static bool open_columns(struct store *store, stance_message *message)
@@ -220,13 +228,19 @@ static bool open_columns(struct store *store, stance_message *message)
             continue;
         size_t width = store->width[c] = store_column_width(s, c);
         const int rank = store->rank + (width > 1);
-        store->column[c] = open_dataset(store, store_columns[c].name);
+        const bool all = s->answers == UINT64_MAX && c < STANCE_ANSWER_COUNT;
+        bool there = true;
+        store->column[c] = find_dataset(store, store_columns[c].name, all ? &there : NULL);
+        if (!there) /* all answers that the version knew which made the file */
+            continue;
         length[store->rank] = width;
         if (store->column[c] < 0 || hdf_shape(store->column[c], found) != rank ||
             memcmp(found, length, (size_t)rank * sizeof *length) != 0) {
             return complain(message, "%.100s: variable '%s' is not as this scenario needs it",
                             store->file, store_columns[c].name);
         }
+        if (store_columns[c].kind == KIND_int64_t)
+            hdf_number(store->column[c], "_FillValue", H5T_NATIVE_INT64, &store->no_count);
     }
     return true;
 }
@@ -267,6 +281,7 @@ static bool open_store(struct store **result, hid_t id, const char *file, const 
     store->ranks = ranks;
     store->rank = store_dimensions(plan, store->length);
     store->trajectory_checksum = -1;
+    store->no_count = STANCE_NO_COUNT;
     for (int c = 0; c < COLUMNS; c++)
         store->column[c] = -1;
     for (int v = 0; v < TRAJECTORIES; v++)
@@ -417,6 +432,10 @@ void store_put(struct store_block *block, size_t slot, const stance_result *resu
         if (block->column[c]) {
             memcpy((char *)block->column[c] + slot * size,
                    (const char *)result + stance_answers[c].offset, size);
+        }
+        if (block->column[c] && store_columns[c].kind == KIND_int64_t) {
+            int64_t *const count = (int64_t *)block->column[c] + slot;
+            *count = *count == STANCE_NO_COUNT ? block->store->no_count : *count;
         }
     }
     if (block->column[COLUMN_FINAL_STATE]) {

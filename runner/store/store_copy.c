@@ -3,6 +3,7 @@
 
 #include "runner/base/message.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,12 +13,37 @@ static bool is_finished(const struct store_block *block, size_t slot)
     return status == STANCE_DONE || status == STANCE_FAILED;
 }
 
+/* What earlier versions wrote where there was no count is one, too: such a row tells by its end,
+ * which a case that was inferred from its neighbours does not have. */
+static bool has_counts(const struct store_block *block, size_t slot)
+{
+    const double *const end = block->column[STANCE_ANSWER_end_time];
+    const uint8_t *const evidence = block->column[STANCE_ANSWER_evidence];
+    return end ? isfinite(end[slot]) : !evidence || evidence[slot] != STANCE_INFERRED;
+}
+
+/* Rows of one file as the other says that there is no count. */
+static void translate(struct store_block *block, int64_t no_count, size_t rows)
+{
+    const int64_t old = block->store->no_count;
+    for (int c = 0; c < COLUMNS && old != no_count; c++) {
+        int64_t *const count = block->column[c];
+        for (size_t i = 0; count && store_columns[c].kind == KIND_int64_t && i < rows; i++)
+            if (count[i] == old && (old == STANCE_NO_COUNT || !has_counts(block, i)))
+                count[i] = no_count;
+    }
+}
+
+/* Checksums, which verify, say no more: what they are over may be said differently. */
 static bool same_row(const struct store_block *a, const struct store_block *b, size_t slot)
 {
     for (int c = 0; c < COLUMNS; c++) {
         const size_t size = a->store->width[c] * store_columns[c].size;
-        if (a->column[c] && memcmp((const char *)a->column[c] + slot * size,
-                                   (const char *)b->column[c] + slot * size, size) != 0)
+        if (c == COLUMN_CHECKSUM)
+            continue;
+        if (a->column[c] && b->column[c] &&
+            memcmp((const char *)a->column[c] + slot * size,
+                   (const char *)b->column[c] + slot * size, size) != 0)
             return false;
     }
     return true;
@@ -32,8 +58,12 @@ static void take_row(const struct store_block *from, size_t slot, struct store_b
         if (to->column[c] && from->column[c]) {
             memcpy((char *)to->column[c] + to_slot * size,
                    (const char *)from->column[c] + slot * size, size);
-        } else if (to->column[c]) { /* scenario_number */
+        } else if (to->column[c]) { /* scenario_number, or an answer that is not known there */
             memset((char *)to->column[c] + to_slot * size, 0, size);
+            if (store_columns[c].kind == KIND_double)
+                ((double *)to->column[c])[to_slot] = NAN;
+            if (store_columns[c].kind == KIND_int64_t)
+                ((int64_t *)to->column[c])[to_slot] = to->store->no_count;
         }
     }
     ((uint32_t *)to->column[COLUMN_CHECKSUM])[to_slot] = store_row_checksum(to, to_slot);
@@ -91,6 +121,7 @@ bool store_copy(struct store *from, const struct rows *rows, struct store *to,
     free(results);
     if (!good)
         return false;
+    translate(from->checked, to->no_count, (size_t)rows->count);
     choose_rows(from, to, target, (size_t)rows->count, whole, there, wanted, copied);
     for (size_t i = 0; i < rows->count; i++) {
         if (!wanted[i])

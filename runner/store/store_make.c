@@ -61,12 +61,9 @@ bool put_flags(hid_t object, const char *words)
 
 static bool put_fill(hid_t object, enum store_kind kind, double fill)
 {
-    uint8_t flag = 0;
-    int64_t count = 0;
-    const void *value = kind == KIND_uint8_t   ? (const void *)&flag
-                        : kind == KIND_int64_t ? (const void *)&count
-                                               : (const void *)&fill;
-    return put_number(object, "_FillValue", kind, value);
+    const int64_t count = kind == KIND_int64_t ? (int64_t)fill : 0;
+    return put_number(object, "_FillValue", kind,
+                      kind == KIND_int64_t ? (const void *)&count : (const void *)&fill);
 }
 
 /* ---- groups and datasets ------------------------------------------------------------------ */

@@ -98,12 +98,13 @@ struct store {
     char file[1024];
     const struct plan *plan;
     hid_t id;
-    int ranks;                      /* that have it open together */
-    bool spans;                     /* see store_set_spans */
-    hid_t column[COLUMNS];          /* -1: not stored */
-    size_t width[COLUMNS];          /* elements per case */
-    struct store_block *checked;    /* [STORE_ROWS], for store_verify; made when it is needed */
-    hid_t trajectory[TRAJECTORIES]; /* -1: not stored */
+    int ranks;                   /* that have it open together */
+    bool spans;                  /* see store_set_spans */
+    hid_t column[COLUMNS];       /* -1: not stored */
+    size_t width[COLUMNS];       /* elements per case */
+    int64_t no_count;            /* what it has for a count that there is none of: `_FillValue` */
+    struct store_block *checked; /* [STORE_ROWS], for store_verify; made when it is needed */
+    hid_t trajectory[TRAJECTORIES];       /* -1: not stored */
     size_t trajectory_size[TRAJECTORIES]; /* elements per case; 0: not stored */
     hid_t trajectory_checksum;
     int rank; /* dimensions of the cases */

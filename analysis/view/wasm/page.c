@@ -20,7 +20,7 @@ EXPORTED(message) const char *message(void);
 EXPORTED(file_open) int file_open(const char *wire, double single);
 EXPORTED(file_axis) int file_axis(int axis, const double *value, size_t numbers);
 EXPORTED(file_designs) int file_designs(const double *number, const uint8_t *status, size_t count);
-EXPORTED(file_stored) void file_stored(uint32_t answers, int number);
+EXPORTED(file_stored) void file_stored(double answers, int number);
 EXPORTED(view_open) int view_open(const char *sets);
 EXPORTED(view_cases) double view_cases(void);
 EXPORTED(run)
@@ -107,7 +107,7 @@ int file_open(const char *wire, double single)
     scenario_free(&page.file);
     free(page.wire);
     page.wire = strdup(wire);
-    page.stored = UINT32_MAX;
+    page.stored = UINT64_MAX;
     page.number = -1;
     if (!page.wire)
         return no_memory(&page.message);
@@ -146,9 +146,9 @@ int file_designs(const double *number, const uint8_t *status, size_t count)
     return 1;
 }
 
-void file_stored(uint32_t answers, int number)
+void file_stored(double answers, int number)
 {
-    page.stored = answers;
+    page.stored = (uint64_t)answers;
     page.number = number;
 }
 
@@ -232,8 +232,8 @@ uint8_t page_kind(const stance_result *result)
 
 void page_answers(const stance_result *result, double *answer)
 {
-#define ANSWER_NUMBER(name, type, how, told, unit, text) *answer++ = (double)result->name;
-    STANCE_ANSWERS(ANSWER_NUMBER)
+    for (int a = 0; a < STANCE_ANSWER_COUNT; a++)
+        answer[a] = stance_answer_of(result, a);
 }
 
 uint32_t page_checksum(const stance_result *result)

@@ -20,7 +20,7 @@ struct page {
     struct schema schema;             /* of the view */
     bool changed;                     /* the view is not the file's scenario */
     bool resweeps;                    /* ... nor are its axes */
-    uint32_t stored;                  /* answers that the file stores, a bit each */
+    uint64_t stored;                  /* answers that the file stores, a bit each */
     int number;                       /* that its newest scenario has there; -1: it has but one */
     stance_message message;
 };
