@@ -68,10 +68,10 @@ static int find_range(struct question *q, double range[2])
                     continue;
                 while (last < PLACES && stands(q, k, place(given, side, last + 1)))
                     last++;
-                const double ends[2] = {end_between(q, k, near, place(given, side, i - 1)),
-                                        last < PLACES ? end_between(q, k, place(given, side, last),
-                                                                    place(given, side, last + 1))
-                                                      : place(given, side, last)};
+                const double ends[2] = {
+                    end_between(q, k, near, place(given, side, i - 1)),
+                    end_between(q, k, place(given, side, last),
+                                place(given, side, last < PLACES ? last + 1 : last))};
                 range[0] = fmin(ends[0], ends[1]);
                 range[1] = fmax(ends[0], ends[1]);
                 return range[0] < range[1] ? k : -1;
