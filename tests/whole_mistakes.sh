@@ -4,7 +4,7 @@
 # Speaks TAP.
 set -u
 . "$(dirname "$0")/scratch.sh"
-cp "$shipped"/{ball_bounce,balance_falls}.yaml .
+cp "$shipped"/{ball_bounce,balance_falls,basin_one_foot}.yaml .
 cp "$shipped"/mechanisms/hopper.yaml .
 "$stance" run ball_bounce.yaml --quiet
 "$stance" run balance_falls.yaml --quiet
@@ -297,6 +297,10 @@ arm would be at -0.35 rad, beyond its limits -0.3 ... 1; there is one with arm f
 stance check lamp.yaml --set initial='{state: {arm: -0.5}, support: [plate]}'
 stance check lamp.yaml --set initial='{state: {arm: -0.2}, support: [plate]}'
 initial.state.arm: arm would start at -0.5 rad, below its lower limit of -0.3 rad
+
+stance design basin_one_foot.yaml --set controller.poles='[-3, -3.001, -3.002, -3.003, -3.004, -3.005]'
+stance design basin_one_foot.yaml --set controller.poles='[-3, -3.001, -3.002, -3.003, -3.004, -3.005]' --set controller.design=place-schur
+controller.poles: pole placement did not converge in 20000 sweeps: set the poles further apart, or take controller.design place-schur
 
 stance help ruun
 stance help run

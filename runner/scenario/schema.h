@@ -79,7 +79,7 @@ struct scenario_field {
 
 #define NO_OFFSET ((size_t)-1)
 
-enum { SCHEMA_MAX_FIELDS = 1024, SCHEMA_MAX_WORDS = 40 };
+enum { SCHEMA_MAX_FIELDS = 1536, SCHEMA_MAX_WORDS = 40 };
 
 struct schema {
     const stance_scene *scene; /* NULL: unknown; fields by scene are left out then */
