@@ -165,4 +165,25 @@ expect "a start in the ground" 2 "$stance" ranges "$shipped/mechanisms/hopper.ya
 says "... is said" "initial.state itself is no start: sole_heel would start 0.5 m inside the ground"
 expect "an unknown outcome" 2 "$stance" ranges "$map" --of fel
 expect "no file" 3 "$stance" ranges none.yaml
+# ---- how long it takes ----------------------------------------------------------------------------
+for limited in "ranges $map" "design $map" "build $map" "basin one_foot.h5" "sensitivity one_foot.h5"; do
+    expect "$limited without time" 4 "$stance" $limited --time-limit 0
+    says "... says so" "^stance ${limited%% *}: stopped after 0, its time limit"
+done
+expect "a time that is none" 2 "$stance" ranges "$map" --time-limit soon
+says "... is told" "--time-limit takes a duration such as 90s, 55m or 1h30m, not 'soon'"
+# Who waits at a terminal is told how far it is, and for how long it goes on.
+"$python" - "$map" <<'PY'
+import os, pty, re, subprocess, sys
+ours, theirs = pty.openpty()
+command = [os.environ["STANCE"], "ranges", sys.argv[1], "--set", "method.step=2e-5", "--set", "controller.sample_time=0.01"]
+said = ""
+with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=theirs) as ran:
+    while not re.search(r"[0-9]+ of about [0-9]+ simulations(, about [^ ]+ (s|min|h) left)?\x1b", said):
+        assert ran.poll() is None, said
+        said += os.read(ours, 4000).decode()
+    ran.terminate()
+PY
+result $? "ranges of what takes long say how far they are"
+
 echo "1..$count"

@@ -2,6 +2,7 @@
 #include "basin_ranges.h"
 
 #include "runner/base/message.h"
+#include "runner/base/units.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -13,6 +14,9 @@
 #define NOTHING 1e-6 /* windows of settling that are no distance any more */
 #define MARGIN 1.1   /* of the ranges */
 #define EVEN 0.6     /* a shorter side of this part of the longer one: the range is symmetric */
+
+/* Simulations that the end of a ray takes, about. */
+#define PER_RAY 11
 
 /* Directions that are drawn in a round: so many for each dimension, and at most. */
 enum { ROUNDS = 3, DRAWN = 16, MOST_DRAWN = 64, RAYS = MOST_DRAWN + 2 * STARTS_MOST, HALVES = 40 };
@@ -429,6 +433,26 @@ static bool measure_share(struct ranges *r, struct starts *starts)
     return good;
 }
 
+/* ---- progress ------------------------------------------------------------------------------- */
+
+/* About how many simulations there will be. */
+static double simulations(const struct ranges *r)
+{
+    const double n = r->axes > 0 ? r->axes : 2, rounds = n > 1 ? ROUNDS : 0;
+    const double rays = 2 * n + rounds * (fmin(n * DRAWN, MOST_DRAWN) + 2 * n);
+    return (double)r->parameters * (PER_RAY * rays + RANGES_STARTS);
+}
+
+static void tell(void *context, uint64_t more)
+{
+    struct ranges *const r = context;
+    char left[PROGRESS_LEFT];
+    const double done = (double)(r->simulated + more), all = simulations(r);
+    if (progress_due(&r->progress, clock_seconds()))
+        progress_say(&r->progress, "%.0f of about %.0f simulations%s", done, fmax(done, all),
+                     progress_left(&r->progress, fmin(1, done / all), left));
+}
+
 /* ---- all of it ---------------------------------------------------------------------------- */
 
 /* Whether an axis moves anything else than starts. */
@@ -622,7 +646,11 @@ bool ranges_make(struct ranges *r, const struct scenario *s, uint8_t of, stance_
                         "over initial.offset or initial.state",
                         s->scene->name);
     struct starts *starts = malloc(sizeof *starts);
+    r->progress = progress_begin(false);
+    if (starts)
+        *starts = (struct starts){.tell = tell, .context = r};
     const bool good = starts ? find(r, starts, message) : no_memory(message);
+    progress_end(&r->progress);
     free(starts);
     return good;
 }

@@ -15,6 +15,8 @@
 
 #include "basin_starts.h"
 
+#include "runner/base/progress.h"
+
 /* How far from the equilibrium is looked: angles rad, places m, rates rad/s or m/s. */
 #define RANGES_ANGLE 3.141592653589793
 #define RANGES_PLACE 10.0
@@ -70,6 +72,7 @@ struct ranges {
     size_t rays, open;       /* and those that are not lost */
     uint64_t simulated, failed, impossible; /* the last of the starts that tell the share */
     double share[2]; /* of the proposed ranges that has the outcome, least and most */
+    struct progress progress;
 };
 
 /* False: there is no equilibrium, it has another outcome itself, nothing beside it has the outcome,

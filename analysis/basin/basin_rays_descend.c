@@ -5,7 +5,10 @@
 
 #include "analysis/statistics/statistics.h"
 #include "runner/base/message.h"
+#include "runner/base/progress.h"
+#include "runner/base/units.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +20,17 @@ struct simulator {
     int n;
     size_t offset[DESCEND_DIMENSIONS]; /* of each factor in the values */
     double half[DESCEND_DIMENSIONS];   /* of its range */
+    size_t row, rows;                  /* of the table */
+    struct progress progress;
 };
+
+static void tell(void *context, uint64_t more)
+{
+    struct simulator *own = context;
+    if (progress_due(&own->progress, clock_seconds()))
+        progress_say(&own->progress, "row %zu of %zu: %" PRIu64 " simulations", own->row + 1,
+                     own->rows, more);
+}
 
 /* Starts whose simulation fails count as inside: a shorter distance is not made up. */
 static bool simulate(void *context, size_t count, const double *z, bool *inside)
@@ -61,7 +74,12 @@ static bool begin(struct simulator *own, const struct basin_rays *rays, size_t r
 #undef DESCEND_OUTCOME
     };
     const struct results *r = rays->r;
-    *own = (struct simulator){.of = outcome[rays->of], .n = (int)rays->sample.factors};
+    *own = (struct simulator){.of = outcome[rays->of],
+                              .n = (int)rays->sample.factors,
+                              .starts = {.tell = tell, .context = own},
+                              .row = row,
+                              .rows = rays->rows,
+                              .progress = progress_begin(false)};
     if (own->n > DESCEND_DIMENSIONS || !results_scenario(r, &own->s))
         return complain(message, "%.150s: its scenario cannot be simulated by this version",
                         r->file);
@@ -139,6 +157,7 @@ bool basin_rays_nearest(const struct basin_rays *rays, size_t row, size_t starts
         nearest->of[k] = nearest->end.u[k] * 0.5 * (nearest->end.low + nearest->end.high);
         nearest->at[k] = nearest->of[k] * own->half[k];
     }
+    progress_end(&own->progress);
     scenario_free(&own->s);
     free(own);
     return good;

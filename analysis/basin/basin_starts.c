@@ -10,7 +10,8 @@
 bool starts_begin(struct starts *starts, const struct scenario *s, uint64_t index,
                   stance_message *message)
 {
-    *starts = (struct starts){.s = s, .index = index};
+    *starts =
+        (struct starts){.s = s, .index = index, .tell = starts->tell, .context = starts->context};
     scenario_case_values(s, index, &starts->values);
     starts->values.offset_scale = 1;
     if (instruction_set())
@@ -42,6 +43,40 @@ bool starts_possible(struct starts *starts, size_t n, const size_t *offset, cons
     return good;
 }
 
+/* Cases at hand, and how many of them are done. */
+struct array {
+    const struct starts *starts;
+    const stance_case *cases;
+    stance_result *results;
+    size_t next, count;
+    uint64_t done;
+};
+
+static bool array_next(void *context, const stance_case **c, stance_result **result)
+{
+    struct array *const a = context;
+    if (a->next == a->count)
+        return false;
+    *c = &a->cases[a->next];
+    *result = &a->results[a->next++];
+    return true;
+}
+
+static void array_done(void *context, const stance_case *c, stance_result *result)
+{
+    struct array *const a = context;
+    (void)c, (void)result;
+    a->done++;
+}
+
+static bool array_tell(void *context)
+{
+    const struct array *const a = context;
+    if (a->starts->tell)
+        a->starts->tell(a->starts->context, a->starts->simulated + a->done);
+    return false;
+}
+
 bool starts_run(struct starts *starts, size_t n, const size_t *offset, size_t count,
                 const double *value, uint8_t *end)
 {
@@ -55,7 +90,9 @@ bool starts_run(struct starts *starts, size_t n, const size_t *offset, size_t co
         possible += made;
     }
     if (good && possible > 0)
-        starts->kernel->run(cases, results, possible);
+        starts->kernel->stream(
+            &(stance_feed){&(struct array){starts, cases, results, 0, possible, 0}, array_next,
+                           array_done, array_tell});
     for (size_t i = 0, k = 0; good && i < count; i++) {
         if (end[i] == STARTS_IMPOSSIBLE)
             continue;

@@ -17,6 +17,10 @@ struct starts {
     const stance_kernel *kernel;
     uint64_t simulated, failed;
     stance_message why; /* the last STARTS_IMPOSSIBLE is none */
+    /* Told about every millisecond while starts are simulated, with how many more are done since
+     * starts_begin; NULL: not. */
+    void (*tell)(void *context, uint64_t more);
+    void *context;
 };
 
 /* The case `index` of the sweep, with offsets not scaled. False: it has no design, or its method no

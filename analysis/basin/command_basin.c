@@ -314,7 +314,8 @@ const struct command command_basin = {
     "basin",
     "basin FILE [--by PATH]... [--of OUTCOME] [--within ANSWER=BOUND]... [--level L] [--box N]\n"
     "           [--weight PATH=SIZE]... [--threshold T --of PATH | --lost PATH | --rank N |\n"
-    "           --answer A | --allowed | --descend N | --boundary] [--json | --csv]",
+    "           --answer A | --allowed | --descend N | --boundary] [--time-limit TIME]\n"
+    "           [--json | --csv]",
     "how large a basin is, how sure that is, and what its boundary is like",
     run,
     "The starts are the axes initial.offset.* and initial.state.*, or a sample of these; every\n"
@@ -429,6 +430,7 @@ const struct command command_basin = {
     "  --boundary     instead, as CSV: a point of the boundary for each pair of neighbours with\n"
     "                 different outcomes, midway between them along the axis `along`, with half\n"
     "                 their distance as `half_width` and both outcomes\n"
+    "  --time-limit TIME  end after 90s, 55m, 1h30m ... of wall time, with exit code 4\n"
     "  --csv          a row of numbers for each row of the tables\n"
     "  --json         the same as JSON, with the keys\n"
     "    outcome, within, level, box_side, design (grid, or the sample's method), starts: "

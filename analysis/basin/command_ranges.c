@@ -379,7 +379,7 @@ static int run(int argc, char **argv)
 
 const struct command command_ranges = {
     "ranges",
-    "ranges SCENARIO [--set PATH=VALUE]... [--of OUTCOME] [--json]",
+    "ranges SCENARIO [--set PATH=VALUE]... [--of OUTCOME] [--time-limit TIME] [--json]",
     "find ranges of starts that show the domain, with the lines to paste",
     run,
     "Simulates a few hundred rays from the equilibrium (with initial.state: from that start) "
@@ -401,6 +401,7 @@ const struct command command_ranges = {
     "\n"
     "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
     "  --of OUTCOME       look for another outcome than stabilised\n"
+    "  --time-limit TIME  end after 90s, 55m, 1h30m ... of wall time, with exit code 4\n"
     "  --json             the same as JSON, with the keys\n"
     "    scenario, outcome         strings\n"
     "    chosen                    whether the axes are not the scenario's\n"

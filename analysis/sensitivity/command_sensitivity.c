@@ -136,7 +136,7 @@ static int run(int argc, char **argv)
 const struct command command_sensitivity = {
     "sensitivity",
     "sensitivity FILE [--answer A] [--of OUTCOME] [--by PATH]... [--failed drop|fallen]\n"
-    "           [--resamples N] [--level L] [--seed N]\n"
+    "           [--resamples N] [--level L] [--seed N] [--time-limit TIME]\n"
     "           [--json | --csv | -o PLACE] [--format F,...] [--for column|page]\n"
     "           [--labels NAME=TEXT]... ...",
     "which factor of a sampled study decides its result",
@@ -177,6 +177,7 @@ const struct command command_sensitivity = {
     "plot\n"
     "FILE draws these as well):\n"
     "\n" LOOK_HELP "\n"
+    "  --time-limit TIME  end after 90s, 55m, 1h30m ... of wall time, with exit code 4\n"
     "  --csv           a row for each table and factor: values of the axes kept apart, factor "
     "(its\n"
     "                  first path), estimate, _low and _high of each measure, response,\n"

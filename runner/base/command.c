@@ -1,10 +1,14 @@
 /* command.c - options of the commands. */
 #include "command.h"
 #include "problem.h"
+#include "units.h"
 #include "words.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/time.h>
+#include <unistd.h>
 
 enum { LONGEST_OPTION = 63 };
 
@@ -132,12 +136,55 @@ static bool take_option(const struct command *command, int argc, char **argv, in
     return true;
 }
 
+/* ---- time limits ---------------------------------------------------------------------------- */
+
+static char late[120];
+
+static void end_late(int number)
+{
+    (void)number;
+    if (write(STDERR_FILENO, late, strlen(late)) < 0) {
+        /* Nobody hears it. */
+    }
+    _exit(EXIT_INTERRUPTED);
+}
+
+static bool limit_time(const struct command *command, const char *limit)
+{
+    const double seconds = seconds_of_text(limit);
+    const struct sigaction action = {.sa_handler = end_late};
+    if (!(seconds >= 0) || seconds > 1e9)
+        return bad_use(command, "--time-limit takes a duration such as 90s, 55m or 1h30m, not",
+                       limit);
+    snprintf(late, sizeof late, "%sstance %s: stopped after %.30s, its time limit\n",
+             isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", command->name, limit);
+    const long whole = (long)seconds;
+    const long rest = (long)((seconds - (double)whole) * 1e6);
+    const struct itimerval timer = {.it_value = {whole, whole + rest > 0 ? rest : 1}};
+    sigaction(SIGALRM, &action, NULL);
+    setitimer(ITIMER_REAL, &timer, NULL);
+    return true;
+}
+
+/* ---- all of them ---------------------------------------------------------------------------- */
+
 bool command_options(const struct command *command, int argc, char **argv,
-                     const struct option_spec *specs, size_t spec_count, const char **operand,
+                     const struct option_spec *own, size_t spec_count, const char **operand,
                      size_t max_operands, size_t *operands, bool *help)
 {
-    bool only_operands = false;
+    enum { MOST = 40 };
+    static const char option[] = "--time-limit";
+    bool only_operands = false, limited = strstr(command->help, option) && spec_count < MOST;
+    struct option_spec specs[MOST];
+    const char *limit = NULL;
+    size_t limits = 0;
 
+    for (size_t i = 0; i < spec_count && i < MOST; i++) {
+        specs[i] = own[i];
+        limited = limited && strcmp(own[i].name, option) != 0;
+    }
+    if (limited)
+        specs[spec_count++] = (struct option_spec){option, true, &limit, 1, &limits};
     *operands = 0;
     *help = false;
     for (size_t i = 0; i < spec_count; i++)
@@ -159,7 +206,7 @@ bool command_options(const struct command *command, int argc, char **argv,
             operand[(*operands)++] = argv[i];
         }
     }
-    return true;
+    return !limit || limit_time(command, limit);
 }
 
 int command_usage(const struct command *command, const char *text)

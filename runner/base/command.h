@@ -32,6 +32,10 @@ struct option_spec {
     size_t *count; /* how often it was given */
 };
 
+/* A command whose help has "--time-limit" and whose specs have not is ended when that time is up,
+ * with one line on standard error and EXIT_INTERRUPTED; what it started in a sandbox ends with it.
+ */
+
 /* Splits argv into options and operands (operand[max_operands], *operands). On bad use prints one
  * line to standard error and returns false. -h/--help prints the command's help and sets *help. */
 bool command_options(const struct command *command, int argc, char **argv,

@@ -79,8 +79,8 @@ static void pass_on(FILE *messages)
     free(line);
 }
 
-/* Waits for the child, the only holder of the other end of `alive`. From the third second on these
- * are counted, with what the child says of its work. */
+/* Waits for the child, the only holder of the other end of `alive`. From the third second on it
+ * is said what the child says of its work, or how many there were. */
 static void wait_for(pid_t child, int alive, const char *words, int *status)
 {
     struct pollfd end = {.fd = alive, .events = POLLIN};
@@ -89,8 +89,8 @@ static void wait_for(pid_t child, int alive, const char *words, int *status)
     while (alive >= 0 && poll(&end, 1, 500) <= 0) {
         const double now = clock_seconds();
         if (progress_due(&progress, now))
-            progress_say(&progress, "%.0f s%s%.300s", floor(now - progress.from),
-                         words && words[0] ? ": " : "", words ? words : "");
+            words &&words[0] ? progress_say(&progress, "%.300s", words)
+                             : progress_say(&progress, "%.0f s", floor(now - progress.from));
     }
     while (waitpid(child, status, 0) < 0 && errno == EINTR) {
     }

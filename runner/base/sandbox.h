@@ -11,7 +11,7 @@
 /* Runs work(context), which returns an exit code, in a child process, and returns that code. A
  * child that crashes gives exit code EXIT_IO and the one line "FILES: damaged: ..."; `files` names
  * what it reads. What it writes to standard error comes out when it ends, line by line where
- * sandbox_own_line; until then seconds are counted there, with what the child tells of its work
+ * sandbox_own_line; until then seconds are counted there, or the child tells of its work
  * (progress.h). */
 int sandbox(int (*work)(void *context), void *context, const char *files);
 

@@ -8,6 +8,9 @@
 void text_of_bytes(char *text, size_t size, double bytes);
 void text_of_seconds(char *text, size_t size, double seconds);
 
+/* Seconds from "90", "90s", "55m", "1h30m", "2d"; negative when it is none of these. */
+double seconds_of_text(const char *text);
+
 /* Seconds of a clock that never jumps. */
 double clock_seconds(void);
 

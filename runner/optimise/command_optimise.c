@@ -102,7 +102,7 @@ static bool read_options(struct optimise *o)
         return usage(o, "a scenario file must be given");
     if (options->force && options->resume)
         return usage(o, "--force and --resume exclude each other");
-    if (limit && (options->time_limit = claim_duration(limit)) < 0)
+    if (limit && (options->time_limit = seconds_of_text(limit)) < 0)
         return usage(o, "--time-limit takes a duration such as 90s, 55m or 1h30m");
     return true;
 }

@@ -136,7 +136,8 @@ static int run(int argc, char **argv)
 
 const struct command command_build = {
     "build",
-    "build SCENARIO [--method NAME]... [--isa NAME]... [--set PATH=VALUE]...",
+    "build SCENARIO [--method NAME]... [--isa NAME]... [--set PATH=VALUE]...\n"
+    "           [--time-limit TIME]",
     "compiles what a scenario computes with, for machines without a compiler",
     run,
     "Kernels for what a scenario describes are compiled when they are first needed, by CC, cc, "
@@ -151,6 +152,7 @@ const struct command command_build = {
     "  --isa NAME     for that instruction set, also one that this machine does not run;\n"
     "                 otherwise the one in use (stance --version)\n"
     "  --set          replaces a value, as everywhere\n"
+    "  --time-limit TIME  end after 90s, 55m, 1h30m ... of wall time, with exit code 4\n"
     "\n"
     "What is compiled is tried on cases of the scenario before it is kept: an object that "
     "computes\n"

@@ -126,12 +126,13 @@ static int run(int argc, char **argv)
 
 const struct command command_design = {
     "design",
-    "design SCENARIO [--set PATH=VALUE]... [--json]",
+    "design SCENARIO [--set PATH=VALUE]... [--time-limit TIME] [--json]",
     "equilibrium, linearisation, Kalman rank, gains, poles, critical sample time, safe set",
     run,
     "Prints what linear control theory says about the scenario's base values; a sweep is not\n"
     "looked at. `--set` replaces a value, as everywhere.\n"
     "\n"
+    "  --time-limit TIME  end after 90s, 55m, 1h30m ... of wall time, with exit code 4\n"
     "  --json   the same as JSON, with the keys\n"
     "    scenario, title, scene   strings\n"
     "    robot                    the body that the design believes in: {parameter: value}\n"

@@ -7,7 +7,6 @@
 #include "runner/ranks/deadline.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,23 +30,6 @@ bool claim_ranks(const char *who, struct parallel *parallel)
     crash_watch(parallel->rank);
     work_catch_signals();
     return true;
-}
-
-double claim_duration(const char *text)
-{
-    double total = 0;
-    while (*text) {
-        static const char letters[] = "smhd";
-        static const double seconds[] = {1, 60, 3600, 86400};
-        char *end;
-        const double value = strtod(text, &end);
-        const char *letter = *end ? strchr(letters, *end) : letters;
-        if (end == text || !(value >= 0) || !isfinite(value) || !letter)
-            return -1;
-        total += value * seconds[letter - letters];
-        text = *end ? end + 1 : end;
-    }
-    return total;
 }
 
 bool claim_scenario(const struct parallel *parallel, struct scenario *s, const char *file,

@@ -12,9 +12,6 @@
  * launcher started several processes that are no ranks of each other; the first one has said so. */
 bool claim_ranks(const char *who, struct parallel *parallel);
 
-/* Seconds from "90", "90s", "55m", "1h30m", "2d"; negative when it is none of these. */
-double claim_duration(const char *text);
-
 /* Collective: rank 0's scenario, which it has read (`read`), is read from its text by the others.
  * false: it has not, or (*message is not empty) this rank cannot. What was read is freed then. */
 bool claim_scenario(const struct parallel *parallel, struct scenario *s, const char *file,

@@ -304,6 +304,9 @@ static bool out_of_time(void *context)
         stop = parallel_add(&run->parallel, COUNTER_STOP, stop) != 0 || stop;
         parallel_beat(&run->parallel, ++run->work.beats);
     }
+    if (run->parallel.rank == 0 && progress_due(&run->progress, now))
+        progress_say(&run->progress, "%s, %.0f s", run->heartbeat.doing,
+                     floor(now - run->progress.from));
     if (run->message.text[0])
         run_fail_io(run);
     return stop;
@@ -576,7 +579,10 @@ static int go_through(struct run *run)
         crash_stage(stage[i].doing);
         run->heartbeat.doing = stage[i].doing;
         run->heartbeat.due = 0;
+        /* A compiler has a word of its own. */
+        run->progress = progress_begin(run->options.quiet || stage[i].go == stage_kernels);
         stage[i].go(run);
+        progress_end(&run->progress);
         if (!parallel_agree(&run->parallel, run->failure.code == EXIT_DONE, (char *)&run->failure,
                             sizeof run->failure)) {
             if (run->parallel.rank == 0 && run->failure.text[0])

@@ -49,6 +49,7 @@ struct run {
     struct plan plan;
     struct kernels kernels;
     struct store *store;
+    struct progress progress; /* of stages before cases are computed */
     struct work work;
     stance_message message; /* what others say of a failure */
     struct failure failure; /* of this rank */

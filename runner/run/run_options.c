@@ -2,6 +2,7 @@
 #include "run.h"
 
 #include "runner/base/command.h"
+#include "runner/base/units.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -118,7 +119,7 @@ static bool check_options(struct options *o, const char *only, const char *limit
         return usage("--trace needs --only CASE; `record` in the scenario records a sweep", NULL);
     if (o->resume && only)
         return usage("--only computes one case: there is nothing to resume", NULL);
-    if (limit && (o->time_limit = claim_duration(limit)) < 0)
+    if (limit && (o->time_limit = seconds_of_text(limit)) < 0)
         return usage("--time-limit takes a duration such as 90s, 55m or 1h30m, not", limit);
     if (only) {
         if (!parse_number(only, &o->single_case))
