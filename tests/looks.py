@@ -245,6 +245,15 @@ def allowed():
         said = [line for line in said if "settle_time" not in line]
         assert printed == [f"{name}.svg"] and said == [f"stance: warning: {name}.h5: {why}"], said
     assert any("linear theory allows  100.0 %" == t for t in Picture("near.svg").said())
+    assert not any("glued" in t for t in Picture("near.svg").said())
+    with open(f"{SCENARIOS}/../README.md", encoding="utf-8") as page: # on a sole, which may tip
+        sole = re.search(r"^    # own.yaml\n((?:    .*\n)+)", page.read(), re.M).group(1)
+    with open("sole.yaml", "w", encoding="utf-8") as file:
+        file.write(re.sub("^    ", "", sole, flags=re.M))
+    call("run", "sole.yaml", "--quiet", "-o", "sole.h5", "--set", "stop.time=0.02", "--set", "sweep.grid=[{path: initial.offset.body, from: -0.3, to: 0.3, count: 5}, "
+         "{path: initial.offset.vbody, from: -1, to: 1, count: 5}]")
+    call("plot", "sole.h5", "--allowed", "--picture", "map", "-o", "sole.svg")
+    assert "contacts as if glued: the bound does not know where their centre of pressure may be" in " ".join(Picture("sole.svg").said())
     for arguments in ["bounce.h5"], ["sampled.h5"], ["map.h5", "--case", "1"], ["--model", f"{SCENARIOS}/drop.yaml"]:
         printed, said = call("plot", *arguments, "--allowed", "-o", "refused", code=2)
         assert not printed and len(said) == 1 and "--allowed" in said[0], (arguments, said)

@@ -35,18 +35,10 @@ static void invert(int n, const double *T, double *inverse)
             inverse[i * n + j] = work[i * 2 * n + n + j];
 }
 
-/* x' = A x + B u with the given eigenvalues (of pairs one) in a random basis, and random B. */
-static void random_plant(uint64_t *seed, int n, int m, const double *re, const double *im,
-                         double *A, double *B)
+/* A = T D T^-1 in a random basis T. */
+static void random_basis(uint64_t *seed, int n, const double *D, double *T, double *A)
 {
-    double D[K * K] = {0}, T[K * K], inverse[K * K], product[K * K];
-    for (int i = 0; i < n; i++) {
-        D[i * n + i] = re[i];
-        if (im[i] > 0) {
-            D[i * n + i + 1] = -im[i], D[(i + 1) * n + i] = im[i], D[(i + 1) * n + i + 1] = re[i];
-            i++;
-        }
-    }
+    double inverse[K * K], product[K * K];
     for (int i = 0; i < n * n; i++)
         T[i] = uniform(seed, -1, 1) + (i % (n + 1) == 0 ? 2 : 0);
     invert(n, T, inverse);
@@ -62,6 +54,21 @@ static void random_plant(uint64_t *seed, int n, int m, const double *re, const d
             for (int k = 0; k < n; k++)
                 A[i * n + j] += product[i * n + k] * inverse[k * n + j];
         }
+}
+
+/* x' = A x + B u with the given eigenvalues (of pairs one) in a random basis, and random B. */
+static void random_plant(uint64_t *seed, int n, int m, const double *re, const double *im,
+                         double *A, double *B)
+{
+    double D[K * K] = {0}, T[K * K];
+    for (int i = 0; i < n; i++) {
+        D[i * n + i] = re[i];
+        if (im[i] > 0) {
+            D[i * n + i + 1] = -im[i], D[(i + 1) * n + i] = im[i], D[(i + 1) * n + i + 1] = re[i];
+            i++;
+        }
+    }
+    random_basis(seed, n, D, T, A);
     for (int i = 0; i < n * m; i++)
         B[i] = uniform(seed, -1, 1);
 }
@@ -401,15 +408,249 @@ static void robots(void **state)
     }
 }
 
+/* ---- what no torque moves -------------------------------------------------------------------- */
+
+enum { UNSTABLE, SWINGING_UP, RESTING, DRIFTING, SWINGING, DECAYING, SWINGING_DOWN, KINDS };
+
+/* Modes side by side, in modal coordinates: D and B of them; of each coordinate, whether torques
+ * reach it and of which kind it is. */
+struct modal {
+    int n, m;
+    double D[K * K], B[K * INPUTS];
+    bool reached[K];
+    int kind[K];
+};
+
+static void add_mode(uint64_t *seed, struct modal *p, int kind, bool reached, double rate)
+{
+    const double re = kind <= SWINGING_UP ? rate : kind >= DECAYING ? -rate : 0;
+    const bool swings = kind == SWINGING_UP || kind == SWINGING || kind == SWINGING_DOWN;
+    const double im = swings ? uniform(seed, 0.3, 4) : 0;
+    const int i = p->n, size = swings || kind == DRIFTING ? 2 : 1;
+    for (int k = i; k < i + size; k++) {
+        p->D[k * K + k] = re;
+        p->reached[k] = reached;
+        p->kind[k] = kind;
+        for (int j = 0; j < p->m; j++) /* a sign, so that none is hardly reached */
+            p->B[k * INPUTS + j] =
+                reached ? uniform(seed, 0.3, 1) * (uniform(seed, -1, 1) < 0 ? -1 : 1) : 0;
+    }
+    if (swings)
+        p->D[i * K + i + 1] = -im, p->D[(i + 1) * K + i] = im;
+    if (kind == DRIFTING)
+        p->D[i * K + i + 1] = 1;
+    p->n += size;
+}
+
+/* Some that torques reach, of kinds that are all apart, and some that they do not, now and then
+ * with the same eigenvalue, which then drive the others. */
+static void random_modes(uint64_t *seed, struct modal *p)
+{
+    memset(p, 0, sizeof *p);
+    p->m = 1 + (int)uniform(seed, 0, 2.999);
+    const double rate = uniform(seed, 0.5, 2);
+    add_mode(seed, p, UNSTABLE, true, rate);
+    if (uniform(seed, 0, 1) < 0.5)
+        add_mode(seed, p, (int)uniform(seed, 0, 1.999), true, rate + uniform(seed, 0.5, 2));
+    if (uniform(seed, 0, 1) < 0.5)
+        add_mode(seed, p, (int)uniform(seed, RESTING, DECAYING - 0.001), true, 0);
+    if (uniform(seed, 0, 1) < 0.5)
+        add_mode(seed, p, DECAYING, true, uniform(seed, 0.1, 5));
+    const int reached = p->n;
+    for (int more = 0; more < 3 && p->n + 2 <= K; more++) {
+        const int kind = (int)uniform(seed, 0, KINDS - 0.001);
+        add_mode(seed, p, kind, false, kind == UNSTABLE && uniform(seed, 0, 1) < 0.5 ? rate : 1.3);
+    }
+    for (int i = 0; i < reached; i++)
+        for (int j = reached; j < p->n; j++)
+            if (p->D[i * K + i] == p->D[j * K + j])
+                p->D[i * K + j] = uniform(seed, -1, 1);
+}
+
+/* The set of all of it, in a random basis, against that of the unstable modes that torques reach
+ * alone, wherever what they do not reach and what lasts is 0; and nothing elsewhere. */
+static void unreached_modes(void **state)
+{
+    (void)state;
+    uint64_t seed = 11;
+    int lasting[KINDS] = {0}, decaying = 0;
+    double worst = 0;
+    for (int round = 0; round < 150; round++) {
+        struct modal p;
+        double D[K * K], T[K * K], A[K * K], B[K * INPUTS], low[INPUTS], high[INPUTS];
+        double L[K * K], G[K * INPUTS], re[K], im[K];
+        int unstable[K], k = 0, wanted = 0;
+        random_modes(&seed, &p);
+        const int n = p.n, m = p.m;
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++)
+                D[i * n + j] = p.D[i * K + j];
+            const bool lasts = !p.reached[i] && p.kind[i] < DECAYING;
+            lasting[p.kind[i]] += lasts;
+            decaying += !p.reached[i] && !lasts;
+            wanted += lasts;
+            if (p.reached[i] && p.kind[i] <= SWINGING_UP)
+                unstable[k++] = i;
+        }
+        for (int i = 0; i < k; i++) {
+            for (int j = 0; j < k; j++)
+                L[i * k + j] = p.D[unstable[i] * K + unstable[j]];
+            for (int j = 0; j < m; j++)
+                G[i * m + j] = p.B[unstable[i] * INPUTS + j];
+        }
+        for (int j = 0; j < m; j++)
+            low[j] = -uniform(&seed, 0.2, 2), high[j] = uniform(&seed, 0.2, 2);
+        random_basis(&seed, n, D, T, A);
+        for (int i = 0; i < n; i++)
+            for (int j = 0; j < m; j++) {
+                B[i * m + j] = 0;
+                for (int l = 0; l < n; l++)
+                    B[i * m + j] += T[i * n + l] * p.B[l * INPUTS + j];
+            }
+        stance_null_set *const set = made(n, m, A, B, low, high), *const alone =
+                                                                      made(k, m, L, G, low, high);
+        assert_int_equal(stance_null_set_modes(set, NULL, NULL), k);
+        assert_int_equal(stance_null_set_unreached(set, re, im), wanted);
+        for (int i = 0; i < wanted; i++)
+            assert_true(re[i] >= 0);
+        for (int point = 0; point < 4; point++) {
+            double modal[K], z[K], x[K], off = 0;
+            for (int i = 0; i < n; i++) {
+                const bool lasts = !p.reached[i] && p.kind[i] < DECAYING;
+                modal[i] =
+                    lasts ? point == 3 ? uniform(&seed, -1e-5, 1e-5) : 0 : uniform(&seed, -1, 1);
+                off = fmax(off, lasts ? fabs(modal[i]) : 0);
+            }
+            for (int i = 0; i < k; i++)
+                z[i] = modal[unstable[i]];
+            for (int i = 0; i < n; i++) {
+                x[i] = 0;
+                for (int j = 0; j < n; j++)
+                    x[i] += T[i * n + j] * modal[j];
+            }
+            const double gauge = stance_null_set_gauge(set, x);
+            if (off > 1e-7) {
+                assert_true(isinf(gauge) && !stance_null_set_holds(set, x));
+            } else {
+                const double other = stance_null_set_gauge(alone, z);
+                worst = fmax(worst, fabs(gauge / other - 1));
+                for (int i = 0; i < n; i++)
+                    x[i] /= other * 1.001;
+                assert_true(stance_null_set_holds(set, x));
+            }
+        }
+        stance_null_set_free(alone);
+        stance_null_set_free(set);
+    }
+    print_message("# gauge against the unstable modes alone: off by %.1e\n", worst);
+    for (int kind = 0; kind < DECAYING; kind++)
+        assert_true(lasting[kind] > 15);
+    assert_true(decaying > 15 && worst < 1e-6);
+}
+
+/* How little of a torque counts: far less than what moves a robot, more than rounding. With x2 = 0
+ * the boundary is where exp(-2 T) = 1/2 (two_modes): x1 = b (sqrt(2) - 1). */
+static void hardly_reached(void **state)
+{
+    (void)state;
+    const double A[4] = {1, 0, 0, 2}, low = -1, high = 1, x[2] = {1e-7, 0};
+    for (int i = 0; i < 2; i++) {
+        const double B[2] = {i ? 1e-14 : 1e-7, 1};
+        stance_null_set *const set = made(2, 1, A, B, &low, &high);
+        assert_int_equal(stance_null_set_unreached(set, NULL, NULL), i);
+        if (i)
+            assert_true(isinf(stance_null_set_gauge(set, x)));
+        else
+            assert_near(stance_null_set_gauge(set, x), 1 + sqrt(2), 1e-9, "gauge");
+        stance_null_set_free(set);
+    }
+}
+
+/* Robots with a part that no motor moves, from which of three states they come back: with a pole
+ * off by half of the angle up to which its motor carries it, m g l theta < 5 N m; with the first
+ * body moved as well, a cart so that the centre of mass stays where it was, a wheel so that its own
+ * angle does; and the first with a speed. Without anything else to hold it the cart keeps place and
+ * momentum of the centre of mass, with damping d the momentum + d times its place. */
+static void drifting_robots(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *what, *first, *parent;
+        int poles, unreached;
+        bool back[3];
+        double moved, gauge; /* by which part of the pole's angle; NAN: not half of the way */
+    } robots[] = {
+#define CART "cart: {joint: slide, axis: [1, 0], mass: 1"
+        {"pole, cart", CART, "cart", 1, 2, {false, true, false}, 0.25 / 1.5, 0.5},
+        {"damped", CART ", damping: 1", "cart", 1, 1, {true, false, false}, 0.25 / 1.5, NAN},
+        {"with a spring",
+         CART ", damping: 1, stiffness: 4",
+         "cart",
+         1,
+         0,
+         {true, true, true},
+         0.25 / 1.5,
+         NAN},
+        {"two poles", CART, "cart", 2, 2, {false, true, false}, 0.25 / 2, NAN},
+        {"flywheel",
+         "wheel: {joint: hinge, parent: p0, mass: 1, inertia: 0.1",
+         "",
+         1,
+         2,
+         {false, true, false},
+         -1,
+         0.5},
+#undef CART
+    };
+    for (size_t k = 0; k < sizeof robots / sizeof *robots; k++) {
+        static struct scenario s;
+        static struct design_report r;
+        const int poles = robots[k].poles;
+        const double off = 0.5 * 5 / (0.5 * 9.81 * 0.5);
+        char text[1000];
+        stance_message message = {""};
+        int used =
+            snprintf(text, sizeof text, "stance: 1\nscene: mechanism\nrobot:\n  bodies:\n    %s}\n",
+                     robots[k].first);
+        for (int i = 0; i < poles; i++)
+            used += snprintf(text + used, sizeof text - (size_t)used,
+                             "    p%d: {joint: hinge%s%s, mass: 0.5, inertia: 0.02, "
+                             "centre: [0, 0.5]}\n",
+                             i, robots[k].parent[0] ? ", parent: " : "", robots[k].parent);
+        used += snprintf(text + used, sizeof text - (size_t)used, "  actuators:\n");
+        for (int i = 0; i < poles; i++)
+            used += snprintf(text + used, sizeof text - (size_t)used,
+                             "    m%d: {body: p%d, limit: 5}\n", i, i);
+        snprintf(text + used, sizeof text - (size_t)used,
+                 "initial: {equilibrium: {}}\ncontroller: {kind: none}\nstop: {time: 1}\n");
+        assert_true(scenario_read(&s, "robot.yaml", text, NULL, 0, stderr));
+        if (!design_plant(&r, &s, &message))
+            fail_msg("%s: %s", robots[k].what, message.text);
+        stance_null_set *const set = design_null_set(&r, &message);
+        if (!set)
+            fail_msg("%s: %s", robots[k].what, message.text);
+        assert_int_equal(stance_null_set_unreached(set, NULL, NULL), robots[k].unreached);
+        assert_int_equal(stance_null_set_modes(set, NULL, NULL), poles);
+        for (int at = 0; at < 3; at++) {
+            double x[K] = {at == 1 ? robots[k].moved * off : 0, off};
+            x[r.states / 2] = at == 2 ? 1e-4 : 0;
+            const double gauge = stance_null_set_gauge(set, x);
+            if (isfinite(gauge) != robots[k].back[at])
+                fail_msg("%s, state %d: gauge %g", robots[k].what, at, gauge);
+            if (isfinite(gauge) && !isnan(robots[k].gauge))
+                assert_near(gauge, robots[k].gauge, 1e-12, robots[k].what);
+        }
+        stance_null_set_free(set);
+        scenario_free(&s);
+    }
+}
+
 static void refusals(void **state)
 {
     (void)state;
     const double A[4] = {1, 0, 0, 2}, B[2] = {0, 1}, low = -1, high = 1, none = -INFINITY, up = 0.1;
     stance_null_set *set;
     stance_message message;
-    assert_int_equal(stance_null_set_make(2, 1, A, B, &low, &high, &set, &message),
-                     STANCE_UNCONTROLLABLE);
-    assert_text(message.text, "no torque reaches the unstable mode 1 1/s");
     assert_int_equal(stance_null_set_make(2, 1, A, B, &none, &high, &set, &message),
                      STANCE_BAD_ARGUMENT);
     assert_text(message.text, "a torque has no limit");
@@ -429,6 +670,9 @@ int main(void)
         cmocka_unit_test(two_modes),
         cmocka_unit_test(support_is_the_integral),
         cmocka_unit_test(robots),
+        cmocka_unit_test(unreached_modes),
+        cmocka_unit_test(hardly_reached),
+        cmocka_unit_test(drifting_robots),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

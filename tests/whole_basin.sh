@@ -510,6 +510,48 @@ END
 result $? "... is counted by what it did, with the farthest of each"
 expect "... in words" 0 "$stance" basin outside1.h5 --allowed
 says "... which name it" '^ *slipped  *farthest  *case$'
+# What no torque moves is allowed nowhere but where there is nothing of it: a cart without a motor keeps the momentum,
+# and the place, of its centre of mass. Moved by 1/6 of the pole's angle it has moved that back: m l / (M + m).
+cat >drift.yaml <<'END'
+stance: 1
+scene: mechanism
+robot:
+  bodies:
+    cart: {joint: slide, axis: [1, 0], mass: 1}
+    pole: {joint: hinge, parent: cart, mass: 0.5, inertia: 0.02, centre: [0, 0.5]}
+  actuators: {m: {body: pole, limit: 5}}
+initial: {equilibrium: {}}
+controller: {kind: state-feedback, design: gains, gains: [[0, 20, 0, 3]], sample_time: 0.005}
+stop: {time: 0.05}
+sweep:
+  grid:
+    - {paths: [initial.offset.pole, initial.offset.cart], values: [[0, 0], [0.3, 0.05], [0.3, 0], [3, 0.5]]}
+    - {path: initial.offset.vcart, values: [-0.001, 0, 0.001]}
+END
+expect "a cart that no motor moves" 0 "$stance" run drift.yaml --quiet -o drift.h5
+expect "... has no reach" 0 "$stance" design drift.yaml --json
+"$python" - <<'END'
+import json
+a = json.load(open("log"))["allowed"]
+assert a["unreached_modes"] == [[0, 0], [0, 0]] and not a["glued"] and len(a["unstable_modes"]) == 1, a
+assert set(a["low"].values()) == set(a["high"].values()) == {0} and len(a["low"]) == 4, a
+END
+result $? "... along any state"
+expect "... and is allowed" 0 "$stance" basin drift.h5 --allowed --json
+"$python" -c 'import json; row, = json.load(open("log"))["rows"]; assert row["allowed"] == 2 / 12 and row["unreached"] == 2 and not row["glued"], row'
+result $? "... where it is at rest and in the middle, and the motor is strong enough"
+expect "... in words" 0 "$stance" basin drift.h5 --allowed
+says "... which say it" '^(no torque moves some modes that do not decay: starts with a part in them are not allowed)$'
+# Of several contacts that carry the bound does not know which tips.
+sed -n '/^    # own.yaml/,/^$/s/^    //p' "$tests/../README.md" >own.yaml
+expect "a robot on a sole" 0 "$stance" run own.yaml --quiet -o sole.h5 --set stop.time=0.02 \
+    --set 'sweep.grid=[{path: initial.offset.body, from: -0.3, to: 0.3, count: 5}]'
+expect "... as if glued" 0 "$stance" basin sole.h5 --allowed
+says "... is told as such" '^(contacts as if glued: the bound does not know where their centre of pressure may be)$'
+expect "... to programs" 0 "$stance" basin sole.h5 --allowed --json
+says "... too" '"glued": true'
+expect "... and by design" 0 "$stance" design own.yaml
+says "... beside the reach" '^  (contacts as if glued: the bound does not know where their centre of pressure may be)$'
 
 # What one domain has lost of another: labels side by side.
 for form in --json --csv; do

@@ -145,6 +145,12 @@ sed -n '/^    # own.yaml/,/^$/s/^    //p' "$tests/../README.md" >own.yaml
 expect "the robot of the first hour" 0 "$stance" check own.yaml
 says "... varies what can differ" '^optimise    2 numbers, '
 search "... and a search for its gains" 0 own.yaml -o own.h5 --force
+says "... says what its bound does not know" \
+    'linear theory allows any [0-9.]* % (contacts as if glued: the bound does not know where their centre of pressure may be); '
+expect "... as does its summary" 0 "$stance" summary own.h5
+says "... beside the bound" '^  (contacts as if glued: '
+expect "... to programs" 0 "$stance" summary own.h5 --json
+says "... too" '"linear_limit_glued": true'
 "$python" "$tests/search.py" flat own.h5 >log 2>&1
 result $? "... tries them"
 

@@ -109,6 +109,11 @@ static bool count_rows(const struct basin *b, const struct scenario *s, struct r
     return good;
 }
 
+static bool glued(const struct row *row)
+{
+    return row->of.set && allowed_glued(&row->of.equilibrium);
+}
+
 static void add_row(struct table *t, const struct basin *b, size_t k, const struct row *row)
 {
     const double starts = (double)row->starts, allowed = (double)row->allowed;
@@ -123,12 +128,18 @@ static void add_row(struct table *t, const struct basin *b, size_t k, const stru
         {{"outside", "outside", "%.3f %%", .width = 10, .percent = true},
          as_number(known ? (double)row->outside / starts : NAN)},
         {{"why", "", .width = 2, .left = true, .before = "  "},
-         known ? as_nothing("") : as_text(row->of.why.text)});
+         known ? as_nothing("") : as_text(row->of.why.text)},
+        {{"unreached", .heading = NULL},
+         known ? as_whole((uint64_t)stance_null_set_unreached(row->of.set, NULL, NULL))
+               : as_nothing(NULL)},
+        {{"glued", .hidden = TABLE_NO_CSV}, known ? as_truth(glued(row)) : as_nothing(NULL)});
 #define FACTS(NAME, name, heading)                                                                 \
     {{#name "_starts", heading, .width = 9, .group = #name, .key = "starts"},                      \
      known ? as_whole(row->excuse[NAME].starts) : as_nothing(NULL)},                               \
         {{#name "_farthest", "farthest", "%.4f", .width = 9, .group = #name, .key = "farthest"},   \
-         as_number(row->excuse[NAME].starts ? row->excuse[NAME].gauge : NAN)},                     \
+         as_number(row->excuse[NAME].starts && isfinite(row->excuse[NAME].gauge)                   \
+                       ? row->excuse[NAME].gauge                                                   \
+                       : NAN)},                                                                    \
         {{#name "_case", "case", .width = 9, .group = #name, .key = "case"},                       \
          row->excuse[NAME].starts ? as_whole(row->excuse[NAME].index) : as_nothing(NULL)},
     TABLE_FACTS(t, EXCUSES(FACTS));
@@ -136,7 +147,26 @@ static void add_row(struct table *t, const struct basin *b, size_t k, const stru
     table_end_row(t);
 }
 
-static bool print_text(struct table *t, const struct basin *b, const uint64_t *excuses)
+/* What is to be known of the bound itself, in any row. */
+static void print_remarks(const struct basin *b, const struct row *rows)
+{
+    bool any_glued = false, unreached = false;
+    for (size_t k = 0; k < b->rows; k++) {
+        any_glued = any_glued || glued(&rows[k]);
+        unreached = unreached ||
+                    (rows[k].of.set && stance_null_set_unreached(rows[k].of.set, NULL, NULL) > 0);
+    }
+    if (any_glued)
+        puts("(" ALLOWED_GLUED ")");
+    if (unreached)
+        puts("(no torque moves some modes that do not decay: starts with a part in them are not "
+             "allowed)");
+    if (any_glued || unreached)
+        putchar('\n');
+}
+
+static bool print_text(struct table *t, const struct basin *b, const struct row *rows,
+                       const uint64_t *excuses)
 {
     char view[300];
     size_t used = (size_t)snprintf(view, sizeof view, "at/");
@@ -146,6 +176,7 @@ static bool print_text(struct table *t, const struct basin *b, const uint64_t *e
            "while the\ncontacts stand; of that, what ends as %s; and what does from outside of "
            "it\n\n",
            r->title[0] ? r->title : r->name, r->file, r->cases, basin_asked(b));
+    print_remarks(b, rows);
     if (!table_write_text(t, stdout, "at/ starts allowed used outside why", BASIN_SHOWN))
         return false;
 #define VIEW(NAME, name, heading)                                                                  \
@@ -174,7 +205,7 @@ static bool print_rows(const struct basin *b, const struct row *rows, enum table
     if (form != TABLE_AS_TEXT)
         return basin_table_write(
             &t, form, "", TABLE_OBJECT({"outcome", as_text(results_kind_names[b->choice.of])}));
-    const bool good = print_text(&t, b, excuses);
+    const bool good = print_text(&t, b, rows, excuses);
     table_free(&t);
     return good;
 }

@@ -109,7 +109,7 @@ static void put_lines(struct page *page)
         more[k] = isnan(at[k]) ? NULL : text[k];
         gnuplot_number(&page->g, at[k], "curve_at[%d]", k + 1);
     }
-    search_curves_write(&page->g, more);
+    search_curves_write(&page->g, more, study->glued);
     put_range(page, at[SEARCH_FIRST], at[SEARCH_CHOSEN], at[SEARCH_ALLOWED]);
 }
 

@@ -16,7 +16,7 @@ bool plot_search_front(const struct search_front *front, struct look *look, cons
     struct plot_axis along;
     char text[600];
     double most = 0;
-    bool limited = true;
+    bool limited = true, glued = false;
     const char *const title = front->study[0].f.title;
     snprintf(text, sizeof text,
              "%zu searches, each with its fresh starts; bars: 95 %% intervals%s%s", front->count,
@@ -39,13 +39,14 @@ bool plot_search_front(const struct search_front *front, struct look *look, cons
             row[3 + 3 * c] = 100 * interval.high;
             most = fmax(most, 100 * interval.high);
         }
+        glued = glued || study->glued;
         row[7] = 100 * search_limit(study, k[1], &where);
         limited = limited && isfinite(row[7]);
         most = isfinite(row[7]) ? fmax(most, row[7]) : most;
         gnuplot_row(&g, row, 8);
     }
     gnuplot_end_block(&g);
-    search_curves_write(&g, (const char *const[SEARCH_CURVES]){"", "", limited ? "" : NULL});
+    search_curves_write(&g, (const char *const[SEARCH_CURVES]){"", "", limited ? "" : NULL}, glued);
     gnuplot_set(&g, "limited = %d; most = %#.10g", limited, fmin(104, 1.04 * most + 1));
     snprintf(text, sizeof text, "%.300s-front", front->study[0].name);
     return gnuplot_end(&g, directory, text, message);

@@ -133,8 +133,10 @@ static void put_curves(struct page *page)
     for (int k = 0; k < SEARCH_CURVES; k++)
         snprintf(text[k], sizeof text[k], "%.1f %%", 100 * share[k]);
     search_curves_write(
-        &page->g, (const char *const[SEARCH_CURVES]){text[SEARCH_FIRST], text[SEARCH_CHOSEN],
-                                                     page->allowed ? text[SEARCH_ALLOWED] : NULL});
+        &page->g,
+        (const char *const[SEARCH_CURVES]){text[SEARCH_FIRST], text[SEARCH_CHOSEN],
+                                           page->allowed ? text[SEARCH_ALLOWED] : NULL},
+        page->study->glued);
 }
 
 static bool draw(struct page *page, struct look *look, const char *directory,

@@ -2,7 +2,9 @@
 #include "search_front.h"
 #include "search_pictures.h"
 
-void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES])
+#include "runner/plan/allowed.h"
+
+void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES], bool glued)
 {
     static const struct {
         const char *colour, *name;
@@ -17,6 +19,8 @@ void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES
         gnuplot_set(g, "curve_colour[%d] = %s; curve_dash[%d] = %d", k + 1, curve[k].colour, k + 1,
                     curve[k].dash);
     }
+    if (glued && more[SEARCH_ALLOWED])
+        gnuplot_note(g, "allowed: " ALLOWED_GLUED);
 }
 
 static bool (*const pictures[])(const struct search_study *, struct look *, const char *,

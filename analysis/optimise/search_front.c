@@ -2,6 +2,7 @@
 #include "search_front.h"
 
 #include "runner/base/message.h"
+#include "runner/plan/allowed.h"
 #include "runner/scenario/schema.h"
 #include "runner/scenario/tree.h"
 
@@ -293,6 +294,7 @@ void search_front_table(struct table *t, const struct search_front *front)
             t, {{"allowed", "allowed %", "%.2f", .width = 9, .percent = true}, as_number(allowed)},
             {{"of_allowed", "of that", "%.1f", .width = 7, .percent = true},
              as_number(search_share(study, chosen, SEARCH_OVERALL) / allowed)},
+            {{"glued", .hidden = TABLE_NO_CSV}, as_truth(study->glued)},
             {{"critical_chosen", "T* chosen (s)", "%.4g", .width = 13},
              as_number(f->confirmed_critical[chosen * circumstances])},
             {{"file", "file", .width = 4, .left = true, .before = "  "}, as_text(study->file)});
@@ -330,6 +332,11 @@ bool search_front_print(const struct search_front *front, enum table_form form)
                  axis->name);
         good = table_write_text(&t, stdout, view, 0);
         puts("(of fresh starts, with 95 % intervals; allowed: by linear theory to any controller)");
+        bool glued = false;
+        for (size_t i = 0; i < front->count; i++)
+            glued = glued || front->study[i].glued;
+        if (glued)
+            puts("(" ALLOWED_GLUED ")");
     }
     table_free(&t);
     return good && !ferror(stdout);

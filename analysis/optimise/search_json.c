@@ -110,6 +110,7 @@ bool search_print_json(const struct search_study *study)
         {"fresh_starts", as_whole(f->length[SEARCH_START])},
         {"confirmed", as_tree(table_of(study, search_table_confirmed))},
         {"linear_limit", as_number(limit)}, {"linear_limit_in", as_text(where)},
+        {"linear_limit_glued", as_truth(study->glued)},
         {"circumstances", as_tree(table_of(study, search_table_circumstances))},
         {"elsewhere", as_tree(table_of(study, search_table_elsewhere))},
         {"chosen", as_tree(study->done ? chosen(study) : NULL)});

@@ -28,8 +28,8 @@ SEARCH_PICTURES(SEARCH_PICTURE)
  * style.gp and a type of dashes. */
 enum search_curve { SEARCH_FIRST, SEARCH_CHOSEN, SEARCH_ALLOWED, SEARCH_CURVES };
 /* Tells the script curve_colour[3] and curve_dash[3], and the legend, a text behind each name;
- * NULL: that curve is not drawn. */
-void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES]);
+ * NULL: that curve is not drawn. glued: what is allowed is so for contacts as if glued. */
+void search_curves_write(struct gnuplot *g, const char *const more[SEARCH_CURVES], bool glued);
 
 struct search_front;
 bool plot_search_front(const struct search_front *front, struct look *look, const char *directory,

@@ -6,6 +6,7 @@
 #include "runner/optimise/best.h"
 #include "runner/optimise/linear_limit.h"
 #include "runner/optimise/search.h"
+#include "runner/plan/allowed.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -87,6 +88,7 @@ bool search_study_open(struct search_study *study, const char *file, stance_mess
         study->best = read_scenario(file, text);
         free(text);
     }
+    study->glued = study->first && allowed_glued_in(study->first);
     study->plain =
         !study->first || !study->first->search.given || scenario_search_plain(study->first);
     return true;

@@ -50,7 +50,9 @@ bool search_has_gains(const struct search_study *study);
     "                 worst circumstance or the mean of them, as the search counts; choice: the\n" \
     "                 objective of as many other starts, by which one is chosen\n"                 \
     "    linear_limit share of the fresh starts from which linear theory allows any controller\n"  \
-    "                 to recover, counted like share; linear_limit_in: the circumstance\n"         \
+    "                 to recover, counted like share; linear_limit_in: the circumstance;\n"        \
+    "                 linear_limit_glued: several contacts carry, and the bound does not know\n"   \
+    "                 where their centre of pressure may be\n"                                     \
     "    circumstances  [{circumstance, first, chosen, chosen_low, chosen_high, gain, gain_low,\n" \
     "                 gain_high, won, lost, allowed, of_allowed, critical_first,\n"                \
     "                 critical_chosen}]; gain: chosen - first, start by start, of which so many\n" \
@@ -63,7 +65,7 @@ bool search_has_gains(const struct search_study *study);
     "differs, of several the one with most values (stance plot draws it).\n"                       \
     "  --json   {title, against, unit, also (other paths that differ), searches: [{PATH, first,\n" \
     "           first_low, first_high, chosen, chosen_low, chosen_high, allowed, of_allowed,\n"    \
-    "           critical_chosen, file}]}; --csv the rows\n"
+    "           glued (as linear_limit_glued), critical_chosen, file}]}; --csv the rows\n"
 
 bool search_print_text(const struct search_study *study);
 bool search_print_json(const struct search_study *study);

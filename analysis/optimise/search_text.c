@@ -2,6 +2,7 @@
 #include "search_summary.h"
 
 #include "runner/base/units.h"
+#include "runner/plan/allowed.h"
 #include "runner/scenario/schema.h"
 
 #include <inttypes.h>
@@ -176,6 +177,8 @@ static void print_limit(const struct search_study *study)
         printf(";\n  at the first one's posture it is %.2f %%, of which it has %.1f %%",
                100 * before, 100 * first / before);
     putchar('\n');
+    if (study->glued)
+        puts("  (" ALLOWED_GLUED ")");
 }
 
 static void print_counts(const struct search_study *study)

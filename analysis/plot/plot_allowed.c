@@ -246,14 +246,17 @@ static bool make_panel(struct plot_allowed_panel *panel, struct picture *p, int 
         allowed_make(&s.of, &p->s, plot_layout_index(p->layout, p->r, number, 0, 0), message);
     if (!good)
         return false;
+    const bool unreached = s.of.set && stance_null_set_unreached(s.of.set, NULL, NULL) > 0;
+    panel->glued = s.of.set && allowed_glued(&s.of.equilibrium);
     if (!s.of.set) {
         *why = s.of.why;
-    } else if (stance_null_set_modes(s.of.set, NULL, NULL) == 0) {
+    } else if (stance_null_set_modes(s.of.set, NULL, NULL) == 0 && !unreached) {
         complain(why, "no mode is unstable, so all starts are allowed");
     } else if (make_plane(&s, p, number, why)) {
         panel->share = find_inside(&s, p, o.inside);
         if (panel->share == 0)
-            complain(why, "none of these starts is allowed");
+            complain(why, "none of these starts is allowed%s",
+                     unreached ? ": no torque moves some of each" : "");
         else
             good = trace(&o) || no_memory(message);
         size_t edges = 0;
@@ -369,8 +372,9 @@ void plot_allowed_legend(const struct plot_allowed_panel *panel, int count, int 
                          struct gnuplot *g)
 {
     char share[32] = "";
-    bool same = isfinite(panel[0].share), any = same;
+    bool same = isfinite(panel[0].share), any = same, glued = panel[0].glued;
     for (int k = 1; k < count; k++) {
+        glued = glued || panel[k].glued;
         same = same && panel[k].share == panel[0].share;
         any = any || isfinite(panel[k].share);
     }
@@ -381,4 +385,6 @@ void plot_allowed_legend(const struct plot_allowed_panel *panel, int count, int 
         snprintf(share, sizeof share, "%.1f %%", 100 * panel[0].share);
     gnuplot_legend_mark(g, "colour_allowed", dash, 0, "linear theory allows", share);
     gnuplot_note(g, "linear theory allows: some controller recovers, while the contacts stand");
+    if (glued)
+        gnuplot_note(g, ALLOWED_GLUED);
 }

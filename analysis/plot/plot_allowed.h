@@ -24,6 +24,7 @@ struct plot_allowed_panel {
     struct plot_allowed_point *point;
     size_t points;
     double share; /* of the panel's starts; NAN: not known */
+    bool glued;   /* see allowed.h */
 };
 
 struct plot_allowed {

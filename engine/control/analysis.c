@@ -145,8 +145,7 @@ static bool passes(enum mode_filter filter, double norm, double re, double im)
            (filter == GROWING_MODES ? re >= -slack * norm : hypot(re, im) >= 1 - slack);
 }
 
-/* Orthonormal basis of the range of B in the first *rank columns of U[n][n] (column-major). */
-static stance_error input_range(int n, int m, const double *B, double *U, int *rank)
+stance_error stance_input_range(int n, int m, const double *B, double *U, int *rank)
 {
     const int k = n < m ? n : m;
     double *copy = matrix_room((size_t)n * (size_t)m + 2 * (size_t)k);
@@ -200,7 +199,7 @@ stance_error stance_hautus(int n, int m, const double *A, const double *B, enum 
     double *im = re + n, *sv = im + n, *U = sv + 2 * n;
     stance_error error = stance_eigenvalues(n, A, re, im);
     if (error == STANCE_OK)
-        error = input_range(n, m, B, U, &rank);
+        error = stance_input_range(n, m, B, U, &rank);
     for (int i = 0; error == STANCE_OK && *reached && i < n; i++) {
         if (passes(filter, norm, re[i], im[i])) {
             *mode = CMPLX(re[i], im[i]);

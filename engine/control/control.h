@@ -48,6 +48,9 @@ enum mode_filter { EVERY_MODE, GROWING_MODES, EXPANDING_MODES };
 stance_error stance_hautus(int n, int m, const double *A, const double *B, enum mode_filter filter,
                            double _Complex *mode, bool *reached);
 
+/* Orthonormal basis of the range of B[n][m] in the first *rank columns of U[n][n], by columns. */
+stance_error stance_input_range(int n, int m, const double *B, double *U, int *rank);
+
 /* X of F' X + X F = C, or (discrete) F' X F - X = C; C symmetric, X may be C. */
 stance_error stance_solve_lyapunov(int n, const double *F, bool discrete, const double *C,
                                    double *X);

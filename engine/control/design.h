@@ -169,25 +169,29 @@ double stance_known_basin_share(int64_t batches, int64_t boundary);
 
 /* The states from which some torques within their limits bring a linear robot back, whatever the
  * controller: its null-controllable set (null_controllable.c). Of the states only what they have of
- * the unstable modes counts. */
+ * the unstable modes counts, and of what no torque moves and does not decay: that must be 0. */
 enum { STANCE_NULL_MODES = 8 };
 typedef struct stance_null_set stance_null_set;
 
 /* Of x' = A x + B u, low[m] <= u <= high[m] about the equilibrium's torques, low < 0 < high,
  * finite. *set: to be freed. Errors: BAD_ARGUMENT (a bound, more than STANCE_NULL_MODES unstable
- * modes), UNCONTROLLABLE (an unstable mode that no torque reaches), NUMERICAL, NO_MEMORY. */
+ * modes that torques move), UNCONTROLLABLE (torques that hardly reach one), NUMERICAL, NO_MEMORY.
+ */
 stance_error stance_null_set_make(int n, int m, const double *A, const double *B, const double *low,
                                   const double *high, stance_null_set **set,
                                   stance_message *message);
 void stance_null_set_free(stance_null_set *set);
 
-/* How many real coordinates the unstable modes have, and their eigenvalues re + i im in re and im
- * (NULL: not asked for), each of STANCE_NULL_MODES. With none the set is everything. */
+/* How many real coordinates the unstable modes have that torques move, and their eigenvalues re + i
+ * im in re and im (NULL: not asked for), each of STANCE_NULL_MODES. */
 int stance_null_set_modes(const stance_null_set *set, double *re, double *im);
+/* The same of what no torque moves and does not decay, each of as many as there are states. With
+ * neither the set is everything. */
+int stance_null_set_unreached(const stance_null_set *set, double *re, double *im);
 /* Support function in these coordinates, and the point[modes] that eta[modes] touches. */
 double stance_null_set_support(const stance_null_set *set, const double *eta, double *point);
 /* The factor by which the set must grow to have the state x[n] on its boundary: 1 there, less
- * inside. */
+ * inside; INFINITY where no torque moves some of it. */
 double stance_null_set_gauge(const stance_null_set *set, const double *x);
 /* Is x[n] inside? Much faster. */
 bool stance_null_set_holds(const stance_null_set *set, const double *x);

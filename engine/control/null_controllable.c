@@ -1,11 +1,12 @@
 /* null_controllable.c - from which states bounded torques can bring a linear robot back.
  *
- * x' = A x + B u, low <= u <= high. Modes that decay need no torque, undamped ones no more than is
- * left over, however little; what counts are the unstable ones. With real left eigenvectors W,
- * z = W x moves as z' = L z + G u, L = diag(lambda) or, of a pair a +- ib, the blocks [a -b; b a].
- * z can be brought to 0 when -z is some integral of exp(-L t) G u (Hu and Lin, Control Systems with
- * Actuator Saturation, Birkhaeuser 2001, ch. 2): the closure of these z is a convex set with the
- * support function
+ * x' = A x + B u, low <= u <= high. What no torque moves and does not decay of itself must not be
+ * there (unreached.h): the set is flat, and all that follows is of the states without it. Modes
+ * that decay need no torque, undamped ones no more than is left over, however little; what counts
+ * are the unstable ones. With real left eigenvectors W, z = W x moves as z' = L z + G u, L =
+ * diag(lambda) or, of a pair a +- ib, the blocks [a -b; b a]. z can be brought to 0 when -z is some
+ * integral of exp(-L t) G u (Hu and Lin, Control Systems with Actuator Saturation, Birkhaeuser
+ * 2001, ch. 2): the closure of these z is a convex set with the support function
  *
  *   h(eta) = integral over 0 ... infinity of  sum over j of max(s_j low_j, s_j high_j),
  *   s_j(t) = -eta' exp(-L t) g_j = sum over modes of exp(-a t) (p cos b t + q sin b t),
@@ -23,7 +24,7 @@
  * present prices eta is the one that eta touches. Each step bounds the gauge: eta' z / h(eta)
  * below, the sum of mu above.
  */
-#include "control.h"
+#include "unreached.h"
 
 #include <lapacke.h>
 #include <limits.h>
@@ -43,8 +44,9 @@ enum { MOST = STANCE_NULL_MODES };
 
 struct stance_null_set {
     int n, m, k; /* states, inputs, real coordinates of unstable modes */
-    double *W;   /* [k][n], scaled so that the set touches 1 along each coordinate */
-    double *G;   /* [k][m] */
+    struct unreached unreached;
+    double *W; /* [k][n], scaled so that the set touches 1 along each coordinate */
+    double *G; /* [k][m] */
     double *low, *high;
     double re[MOST], im[MOST]; /* of coordinate i; a pair stands in two places, im > 0 first */
     double size[MOST];         /* of re + i im */
@@ -242,24 +244,28 @@ double stance_null_set_support(const stance_null_set *s, const double *eta, doub
 
 /* ---- the set --------------------------------------------------------------------------------- */
 
-/* Left eigenvectors of the unstable modes, as rows of W. */
-static stance_error find_modes(stance_null_set *s, const double *A, stance_message *message)
+/* Left eigenvectors of A[n][n], of states y = rest x or (NULL) x, as rows of W. */
+static stance_error find_modes(stance_null_set *s, int n, const double *A, const double *rest,
+                               stance_message *message)
 {
-    const int n = s->n;
     const size_t nn = (size_t)n * (size_t)n;
-    double *room = matrix_room(2 * nn + 2 * (size_t)n);
+    double *room = matrix_room(3 * nn + 5 * (size_t)n);
     if (!room)
         return stance_refuse(message, STANCE_NO_MEMORY, "no memory");
-    double *const copy = room, *const V = copy + nn, *const re = V + nn, *const im = re + n;
-    double largest = 0;
+    double *const copy = room, *const V = copy + nn, *const other = V + nn, *const re = other + nn,
+                  *const im = re + n, *const scaling = im + n, *const s_of = scaling + n,
+                  *const ignored = s_of + n;
+    double largest = 0, norm;
+    lapack_int low, high;
     memcpy(copy, A, nn * sizeof *A); /* read by columns: the transpose, whose right ones they are */
-    int info = LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', n, copy, n, re, im, NULL, 1, V, n);
+    int info = LAPACKE_dgeevx(LAPACK_COL_MAJOR, 'B', 'V', 'V', 'E', n, copy, n, re, im, other, n, V,
+                              n, &low, &high, scaling, &norm, s_of, ignored);
     for (int i = 0; i < n; i++)
         largest = fmax(largest, hypot(re[i], im[i]));
     s->slowest = INFINITY;
     stance_error error = info == 0 ? STANCE_OK : STANCE_NUMERICAL;
     for (int i = 0; i < n && error == STANCE_OK; i++) {
-        if (!(re[i] > MODE_GROWS * largest))
+        if (!(re[i] > fmax(MODE_GROWS * largest, rounding_of_eigenvalue(norm, s_of[i]))))
             continue;
         if (s->k == MOST) {
             error =
@@ -270,7 +276,10 @@ static stance_error find_modes(stance_null_set *s, const double *A, stance_messa
             error = stance_refuse(message, STANCE_NUMERICAL,
                                   "an unstable mode swings too often while it grows");
         /* Of a pair the columns are real and imaginary part, im > 0 first. */
-        memcpy(s->W + s->k * n, V + i * n, (size_t)n * sizeof *V);
+        if (rest)
+            matrix_multiply(1, n, s->n, V + i * n, rest, s->W + s->k * s->n);
+        else
+            memcpy(s->W + s->k * n, V + i * n, (size_t)n * sizeof *V);
         s->re[s->k] = re[i];
         s->im[s->k] = im[i];
         s->size[s->k] = hypot(re[i], im[i]);
@@ -389,6 +398,7 @@ void stance_null_set_free(stance_null_set *s)
 {
     if (!s)
         return;
+    stance_unreached_free(&s->unreached);
     free(s->W);
     free(s->eta);
     free(s);
@@ -422,7 +432,14 @@ stance_error stance_null_set_make(int n, int m, const double *A, const double *B
     s->high = s->low + m;
     memcpy(s->low, low, (size_t)m * sizeof *low);
     memcpy(s->high, high, (size_t)m * sizeof *high);
-    stance_error error = find_modes(s, A, message);
+    const struct unreached *const unreached = &s->unreached;
+    stance_error error = stance_unreached_find(n, m, A, B, &s->unreached);
+    if (error != STANCE_OK)
+        stance_refuse(message, error, "what no torque moves: %s", stance_error_text(error));
+    else if (unreached->count > 0)
+        error = find_modes(s, n - unreached->count, unreached->A, unreached->rest, message);
+    else
+        error = find_modes(s, n, A, NULL, message);
     if (error == STANCE_OK && s->k > 0) {
         matrix_multiply(s->k, n, m, s->W, B, s->G);
         error = scale(s, message);
@@ -441,6 +458,14 @@ int stance_null_set_modes(const stance_null_set *s, double *re, double *im)
     for (int i = 0; i < s->k && re; i++)
         re[i] = s->re[i], im[i] = s->im[i];
     return s->k;
+}
+
+int stance_null_set_unreached(const stance_null_set *s, double *re, double *im)
+{
+    const struct unreached *const unreached = &s->unreached;
+    for (int i = 0; i < unreached->count && re; i++)
+        re[i] = unreached->re[i], im[i] = unreached->im[i];
+    return unreached->count;
 }
 
 /* ---- the gauge ------------------------------------------------------------------------------- */
@@ -579,6 +604,8 @@ static void gauge_bounds(const stance_null_set *s, const double *x, bool decide,
 double stance_null_set_gauge(const stance_null_set *s, const double *x)
 {
     double bound[2];
+    if (stance_unreached_has(&s->unreached, x))
+        return INFINITY;
     gauge_bounds(s, x, false, bound);
     return bound[1];
 }
@@ -586,6 +613,8 @@ double stance_null_set_gauge(const stance_null_set *s, const double *x)
 bool stance_null_set_holds(const stance_null_set *s, const double *x)
 {
     double bound[2];
+    if (stance_unreached_has(&s->unreached, x))
+        return false;
     gauge_bounds(s, x, true, bound);
     return bound[1] < 1;
 }

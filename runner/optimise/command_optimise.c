@@ -9,6 +9,7 @@
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/base/units.h"
+#include "runner/plan/allowed.h"
 #include "runner/plan/instruction_set.h"
 #include "runner/plan/search_numbers.h"
 #include "runner/ranks/crash.h"
@@ -512,6 +513,8 @@ static void print_limit(const struct optimise *o)
     printf(", linear theory allows any %.2f %%", 100 * limit);
     if (least < circumstances)
         printf(" in its worst circumstance (%s)", f->circumstance[least]);
+    if (allowed_glued_in(o->first))
+        fputs(" (" ALLOWED_GLUED ")", stdout);
 }
 
 static int conclude(struct optimise *o)

@@ -30,6 +30,15 @@ bool allowed_make(struct allowed *allowed, const struct scenario *s, uint64_t in
     return good || no_memory(message);
 }
 
+bool allowed_glued_in(const struct scenario *s)
+{
+    double model[STANCE_MAX_ROBOT];
+    stance_equilibrium equilibrium;
+    stance_message ignored;
+    return resolve_equilibrium(s->scene, &s->base, model, &equilibrium, &ignored) &&
+           allowed_glued(&equilibrium);
+}
+
 void allowed_free(struct allowed *allowed)
 {
     stance_null_set_free(allowed->set);

@@ -13,6 +13,18 @@ struct allowed {
     struct resolved_design design; /* of its controller, for the starts */
 };
 
+/* What stands beside the numbers of a bound for an equilibrium on several contacts, a sole's two
+ * ends or two feet: they can tip, and a bound for contacts that hold whatever they must does not
+ * see it. */
+#define ALLOWED_GLUED                                                                              \
+    "contacts as if glued: the bound does not know where their centre of pressure may be"
+static inline bool allowed_glued(const stance_equilibrium *equilibrium)
+{
+    return (equilibrium->supports & (equilibrium->supports - 1)) != 0;
+}
+/* The same of a scenario's base values. */
+bool allowed_glued_in(const struct scenario *s);
+
 /* At the parameters of case `index`. False: no memory; nothing is to be freed then. */
 bool allowed_make(struct allowed *allowed, const struct scenario *s, uint64_t index,
                   stance_message *message);

@@ -80,12 +80,16 @@ static void find_allowed(struct design_report *r)
     if (!set)
         return;
     allowed->modes = stance_null_set_modes(set, allowed->re, allowed->im);
+    allowed->unreached =
+        stance_null_set_unreached(set, allowed->unreached_re, allowed->unreached_im);
     for (int i = 0; i < r->states; i++)
         for (int side = 0; side < 2; side++) {
             double x[DESIGN_STATES] = {0};
             x[i] = side ? 1 : -1;
             const double gauge = stance_null_set_gauge(set, x);
-            allowed->reach[side][i] = gauge > 0 ? x[i] / gauge : x[i] * INFINITY;
+            allowed->reach[side][i] = gauge == 0     ? x[i] * INFINITY
+                                      : isinf(gauge) ? 0
+                                                     : x[i] / gauge;
         }
     stance_null_set_free(set);
 }

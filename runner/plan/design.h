@@ -47,6 +47,8 @@ struct design_allowed {
     stance_message absent; /* why not */
     int modes;             /* that are unstable, with their eigenvalues */
     double re[STANCE_NULL_MODES], im[STANCE_NULL_MODES];
+    int unreached; /* that no torque moves and that do not decay */
+    double unreached_re[DESIGN_STATES], unreached_im[DESIGN_STATES];
     double reach[2][DESIGN_STATES]; /* of each state alone, down and up; INFINITY */
 };
 

@@ -1,4 +1,5 @@
 /* design_json.c - the report of `stance design` for programs. */
+#include "allowed.h"
 #include "design.h"
 #include "known_basin.h"
 
@@ -95,8 +96,10 @@ static json_t *json_allowed(const struct design_report *r)
     const struct design_allowed *const allowed = &r->allowed;
     if (!allowed->exists)
         return json_null();
-    return json_pack("{s:o, s:o, s:o}", "unstable_modes",
-                     json_complex(allowed->modes, allowed->re, allowed->im), "low",
+    return json_pack("{s:o, s:o, s:b, s:o, s:o}", "unstable_modes",
+                     json_complex(allowed->modes, allowed->re, allowed->im), "unreached_modes",
+                     json_complex(allowed->unreached, allowed->unreached_re, allowed->unreached_im),
+                     "glued", (int)allowed_glued(&r->equilibrium), "low",
                      json_states(r, allowed->reach[0]), "high", json_states(r, allowed->reach[1]));
 }
 

@@ -1,4 +1,5 @@
 /* design_print.c - the report of `stance design` for people. */
+#include "allowed.h"
 #include "design.h"
 #include "known_basin.h"
 
@@ -165,11 +166,20 @@ static void print_allowed(const struct design_report *r)
         printf("  not known: %s\n", allowed->absent.text);
         return;
     }
-    if (allowed->modes == 0) {
+    if (allowed_glued(&r->equilibrium))
+        puts("  (" ALLOWED_GLUED ")");
+    if (allowed->modes == 0 && allowed->unreached == 0) {
         puts("  everything: no mode is unstable");
         return;
     }
-    print_complex("unstable modes", allowed->modes, allowed->re, allowed->im);
+    if (allowed->modes > 0)
+        print_complex("unstable modes", allowed->modes, allowed->re, allowed->im);
+    if (allowed->unreached > 0) {
+        print_complex("no torque moves", allowed->unreached, allowed->unreached_re,
+                      allowed->unreached_im);
+        puts(
+            "                   these modes do not decay: a state with a part in one has no reach");
+    }
     printf("  %-18s %14s %14s\n", "reach", "down to", "up to");
     for (int i = 0; i < r->states; i++)
         if (isinf(allowed->reach[1][i]))
