@@ -23,6 +23,8 @@ struct system {
     double A[N][N], H[2 * CONTACTS][N], w[N]; /* inertia, directions, velocities before */
     double inverse[N][N];
     double friction, restitution;
+    double elastic[CONTACTS]; /* 1, or 0: of a contact without restitution, as joint stops are */
+    bool mixed;               /* there are such beside others */
 };
 
 /* Inertia of random masses at random places; contacts approach or, one in four, rest, or, `leaves`,
@@ -78,6 +80,11 @@ static void random_system(uint64_t *seed, bool leaves, struct system *s)
             s->w[i] += s->H[2 * c][i] * x[c];
     s->friction = uniform(seed, 0, 1) < 0.1 ? 0 : uniform(seed, 0, 2);
     s->restitution = uniform(seed, 0, 1) < 0.3 ? 1 : uniform(seed, 0, 1);
+    const bool stops = s->contacts > 1 && uniform(seed, 0, 1) < 0.5;
+    for (int c = 0; c < s->contacts; c++) {
+        s->elastic[c] = !stops || c == 0 || uniform(seed, 0, 1) < 0.5;
+        s->mixed |= s->elastic[c] == 0;
+    }
 }
 
 /* Velocities at the contacts of w. */
@@ -101,9 +108,10 @@ static void solve(const struct system *s, stance_impacts law, double share, bool
     double D[CONTACTS][CONTACTS][2][2] = {{{{0}}}}, u[CONTACTS][2] = {{0}}, e[CONTACTS];
     bool part[CONTACTS] = {false};
     struct contact_verdict verdict;
+    struct impact_tried tried;
     memset(a, 0, sizeof *a);
     for (int c = 0; c < CONTACTS; c++)
-        e[c] = share * s->restitution;
+        e[c] = share * s->restitution * s->elastic[c];
     for (int c = 0; c < s->contacts; c++) {
         part[c] = true;
         for (int b = 0; b < 2; b++)
@@ -128,11 +136,11 @@ static void solve(const struct system *s, stance_impacts law, double share, bool
                                   (const double(*)[2])u, part, a->shift, a->r, &verdict);
     else
         a->gains = impact_try(&rule, e, (const double(*)[CONTACTS][2][2])D, (const double(*)[2])u,
-                              part, a->shift, a->r, &verdict);
+                              part, a->shift, a->r, &verdict, &tried);
     a->unsolved = verdict.unsolved;
     a->share = share;
     for (int c = 0; c < s->contacts; c++)
-        if (u[c][0] < -1e-3 && s->restitution > 1e-3)
+        if (u[c][0] < -1e-3 && s->restitution * s->elastic[c] > 1e-3)
             a->share = a->shift[c][0] / (u[c][0] * s->restitution);
 }
 
@@ -169,7 +177,7 @@ static double judge(const struct system *s, bool moreau, const struct answer *a,
         }
     double worst = 0;
     for (int c = 0; c < s->contacts; c++) {
-        const double e = a->share * s->restitution;
+        const double e = a->share * s->restitution * s->elastic[c];
         const double normal = (double)(u[2 * c] + e * fminl(before[2 * c], 0));
         const double slip = (double)(u[2 * c + 1] + (moreau ? e * before[2 * c + 1] : 0));
         const double room = s->friction * a->r[c][0];
@@ -190,7 +198,7 @@ static void impacts(void **state)
     uint64_t seed = asked ? 12345 : 5;
     long newton_gains = 0, gains[2] = {0}, limited[2] = {0}, unsolved = 0, same = 0, loose = 0,
          rough = 0, skipped = 0, lost = 0, hardly = 0;
-    long higher = 0, looked = 0;
+    long higher = 0, looked = 0, beside = 0;
     double worst = 0, most = -1, largest = 0;
     (void)state;
     for (long i = 0; i < n; i++) {
@@ -209,14 +217,16 @@ static void impacts(void **state)
         rough += violation > 1e-8;
         newton_gains += added > 1e-9;
         for (int k = 0; k < 2; k++) {
-            const bool moreau = k == 1;
-            solve(&s, moreau ? STANCE_IMPACTS_MOREAU : STANCE_IMPACTS_LIMITED, 1, true, &some);
+            const bool moreau = k == 1, proved = moreau && !leaves && !s.mixed;
+            const stance_impacts law = moreau ? STANCE_IMPACTS_MOREAU : STANCE_IMPACTS_LIMITED;
+            solve(&s, law, 1, true, &some);
             const double more = judge(&s, moreau, &some, &violation);
             most = fmax(most, more);
             if (!some.unsolved)
                 worst = fmax(worst, violation), rough += violation > 1e-8;
             unsolved += some.unsolved;
-            gains[k] += more > 1e-11, limited[k] += some.limited && !(moreau && leaves);
+            gains[k] += more > 1e-11, limited[k] += some.limited;
+            beside += proved && some.limited;
             lost += !moreau && some.unsolved && !some.limited;
             if (!moreau && !some.limited && !some.unsolved) {
                 /* Where Newton's law gains next to nothing, the coefficient may be less by so
@@ -224,15 +234,14 @@ static void impacts(void **state)
                 const bool equal = memcmp(some.r, newton.r, sizeof some.r) == 0;
                 same += equal, hardly += !equal && added > 1e-9;
             }
-            /* A little more restitution would add energy; so it would, nearly always, all the way
-             * up: see impact.h. */
-            if (!moreau && some.limited && some.share > 1e-6 && looked < 4000) {
+            /* A little more restitution would add energy; so it would all the way up. */
+            if (some.limited && looked < 4000) {
                 bool fits = false;
                 struct answer other;
-                solve(&s, STANCE_IMPACTS_NEWTON, some.share + 1e-5, false, &other);
+                solve(&s, law, some.share + 1e-5, false, &other);
                 loose += !other.gains && !other.unsolved;
                 for (int j = 1; j < 200 && !fits; j++) {
-                    solve(&s, STANCE_IMPACTS_NEWTON, 1 - (1 - some.share) * j / 200, false, &other);
+                    solve(&s, law, 1 - (1 - some.share) * j / 200, false, &other);
                     fits = !other.gains && !other.unsolved;
                 }
                 looked++, higher += fits;
@@ -250,15 +259,80 @@ static void impacts(void **state)
                   looked, loose, higher);
     assert_true(newton_gains > n / 50);
     assert_int_equal(gains[0] + gains[1], 0);
-    assert_int_equal(limited[1], 0);
+    assert_int_equal(beside, 0);
+    assert_true(limited[1] > n / 1000);
     assert_int_equal(same + hardly, n - skipped - lost - limited[0]);
     /* Three in a million have directions so nearly dependent that no velocity is known to 1e-8. */
     assert_true(rough <= (n > 1000000 ? n / 100000 : 0) && unsolved <= n / 1000);
-    assert_true(loose <= looked / 100 && higher <= looked / 100);
+    assert_true(loose <= looked / 500 && higher <= looked / 500);
+}
+
+/* Two of these systems, where less than a sixteenth of the coefficient adds nothing, far above the
+ * share below which none does: any a little above what is taken adds some. */
+static void what_is_narrow_is_found(void **state)
+{
+    static const uint64_t seeds[] = {12555750287834678224u, 10980256084169574173u};
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        uint64_t seed = seeds[k];
+        struct system s;
+        struct answer some, other;
+        random_system(&seed, false, &s);
+        solve(&s, STANCE_IMPACTS_LIMITED, 1, true, &some);
+        assert_true(some.limited && !some.unsolved);
+        for (int j = 1; j < 2000; j++) {
+            solve(&s, STANCE_IMPACTS_NEWTON, 1 - (1 - some.share) * j / 2000, false, &other);
+            assert_true(other.gains);
+        }
+    }
+}
+
+/* The search alone, of gains that are a quadratic with two roots in each of some parts of 0 ... 1,
+ * which are told apart: the largest root is found. */
+static void largest_root(void **state)
+{
+    enum { FUNCTIONS = 20000, PARTS = 4 };
+    uint64_t seed = 77;
+    (void)state;
+    for (int i = 0; i < FUNCTIONS; i++) {
+        double edge[PARTS + 1] = {1}, low[PARTS], high[PARTS], root = 0;
+        for (int k = 0; k < PARTS; k++) {
+            edge[k + 1] = k == PARTS - 1 ? 0 : edge[k] * uniform(&seed, 0.5, 0.9);
+            const double wide = edge[k] - edge[k + 1], middle = uniform(&seed, 0.3, 0.7);
+            const double half = 0.19 * uniform(&seed, 1e-3, 1);
+            const bool dips = uniform(&seed, 0, 1) < 0.3;
+            low[k] = dips ? edge[k + 1] + (middle - half) * wide : -2;
+            high[k] = dips ? edge[k + 1] + (middle + half) * wide : -1;
+            if (k == PARTS - 1) /* without restitution nothing is gained */
+                low[k] = -1, high[k] = dips ? middle * wide : 0;
+            root = high[k] > root ? high[k] : root;
+        }
+        struct impact_share share;
+        double last = 0;
+        int tries = 0;
+        for (double tried = 1;; tried = impact_share_next(&share), tries++) {
+            int k = 0;
+            while (k < PARTS - 1 && tried < edge[k + 1])
+                k++;
+            const struct impact_tried said = {(tried - low[k]) * (tried - high[k]), k};
+            if (tries == 0)
+                share = impact_share_begin(said);
+            else if (impact_share_tell(&share, true, tried > 0 && said.gain > 0, &said))
+                last = tried;
+            if (!impact_share_open(&share, true))
+                break;
+        }
+        assert_true(tries < 400);
+        assert_true(fabs(share.low - root) < 1e-10 && last == share.low);
+    }
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(impacts)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(largest_root),
+        cmocka_unit_test(what_is_narrow_is_found),
+        cmocka_unit_test(impacts),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

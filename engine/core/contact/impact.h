@@ -14,10 +14,15 @@
  *
  * Newton's says nothing of r_T u_T, and with friction dT may be positive (Kane's paradox). At e = 0
  * both are r.u' <= 0 and dT = r.u' - r.D r / 2 <= 0. So there is a largest e' <= e at which nothing
- * is gained, and it is taken: e' is sought from e downwards by IMPACT_SCAN steps, then halved, for
- * as dT(e') is continuous but where the solution jumps, and a quadratic in each contact mode, only
- * two roots within one of those steps could be missed. Moreau's law is limited, too: joint stops
- * have an e of their own, which is 0.
+ * is gained, and it is taken. Moreau's law is limited, too: joint stops have an e of their own,
+ * which is 0.
+ *
+ * e' is sought from e downwards. In one contact mode r and u' are linear in e', so dT(e') is a
+ * quadratic; and what makes the mode a solution are linear inequalities, so that a mode of both
+ * ends of an interval is one between them, too. Parts of 1 / IMPACT_SCAN are halved until both ends
+ * are of one mode, or IMPACT_LEAST is reached; the quadratic through ends and middle then tells
+ * whether dT dips to zero between them. What is found is halved to the root. Only a mode of less
+ * than IMPACT_LEAST of e may be missed.
  */
 #ifndef STANCE_CORE_CONTACT_IMPACT_H
 #define STANCE_CORE_CONTACT_IMPACT_H
@@ -25,27 +30,55 @@
 #include "solve.h"
 
 #define IMPACT_SCAN 16
+#define IMPACT_LEAST 0x1p-10
 #define IMPACT_FINE 0x1p-40
 #define IMPACT_COUNTS 1e-6
 #define IMPACT_ROUNDING 1e-12 /* of the energies that are compared: what is no gain */
+#define IMPACT_DIPS 1e-6      /* of the gains at the ends: a dip this near to none is looked at */
 
-/* The search of each lane: shares of e. Nothing is gained at `low`, where it is `found`. */
+/* What came of a share that was tried: the energy gained, and a number that tells contact modes
+ * apart; consists of lanes. */
+struct impact_tried {
+    lanes gain, mode;
+};
+
+/* What is tried next in a part of the search: its lower end, its middle, its dip. */
+enum { IMPACT_END, IMPACT_MIDDLE, IMPACT_DIP };
+
+/* The search of each lane: shares of e. Nothing is gained at `low`, where it is `found`, some at
+ * `high`. What is looked into is the part below `high`, of that width; `dip` is from its lower end.
+ */
 struct impact_share {
-    lanes low, high;
+    lanes low, high, width, dip, stage;
+    struct impact_tried top, end; /* at `high`, and at the part's lower end */
     mask found;
 };
-static inline struct impact_share impact_share_begin(void)
+static inline struct impact_share impact_share_begin(struct impact_tried first)
 {
-    return (struct impact_share){lanes_of(0), lanes_of(1), MASK_NONE};
+    return (struct impact_share){.low = lanes_of(0),
+                                 .high = lanes_of(1),
+                                 .width = lanes_of(1.0 / IMPACT_SCAN),
+                                 .dip = lanes_of(0),
+                                 .stage = lanes_of(IMPACT_END),
+                                 .top = first,
+                                 .end = first,
+                                 .found = MASK_NONE};
 }
 /* Those of the lanes m that are not at the end of their search. */
 static inline mask impact_share_open(const struct impact_share *s, mask m)
 {
     return m & mask_less(lanes_of(IMPACT_FINE), s->high - s->low) & mask_less(lanes_of(0), s->high);
 }
+static inline mask impact_share_in(const struct impact_share *s, int stage)
+{
+    return mask_less(lanes_of(stage - 0.5), s->stage) & mask_less(s->stage, lanes_of(stage + 0.5));
+}
 static inline lanes impact_share_next(const struct impact_share *s)
 {
-    return choose(s->found, 0.5 * (s->low + s->high), s->high - 1.0 / IMPACT_SCAN);
+    const lanes inside =
+        choose(impact_share_in(s, IMPACT_MIDDLE), 0.5 * s->width, s->width - s->dip);
+    return choose(s->found, 0.5 * (s->low + s->high),
+                  s->high - choose(impact_share_in(s, IMPACT_END), s->width, inside));
 }
 /* Lanes where what is found is less than all by more than the instants at which velocities are
  * compared differ. */
@@ -53,13 +86,65 @@ static inline mask impact_share_counts(const struct impact_share *s)
 {
     return mask_less(s->low, lanes_of(1 - IMPACT_COUNTS));
 }
-/* In the lanes m the share that was next has been tried; `fits`: where nothing was gained. */
-static inline void impact_share_tell(struct impact_share *s, mask m, mask fits)
+/* Lanes of m where the quadratic through the gains at the part's lower end, its middle and its
+ * upper end comes down to nothing between them: at `dip`. */
+static inline mask impact_share_dips(struct impact_share *s, mask m, lanes middle)
 {
-    const lanes tried = impact_share_next(s);
-    s->low = choose(m & fits, tried, s->low);
-    s->high = choose(m & LANES_NOT(fits), tried, s->high);
-    s->found |= m & fits;
+    const lanes low = s->end.gain, high = s->top.gain;
+    const lanes bend = 2 * (low - 2 * middle + high), slope = 4 * middle - 3 * low - high;
+    const lanes at = -slope / (2 * bend);
+    s->dip = choose(m, at * s->width, s->dip);
+    return m & mask_less(lanes_of(0), bend) & mask_less(lanes_of(0), at) &
+           mask_less(at, lanes_of(1)) &
+           mask_less_equal(low - slope * slope / (4 * bend), IMPACT_DIPS * (low + high));
+}
+/* In the lanes m the share that was next has been tried, which gains energy or not. Returns those
+ * where it does not. */
+static inline mask impact_share_tell(struct impact_share *s, mask m, mask gains,
+                                     const struct impact_tried *tried)
+{
+    const lanes share = impact_share_next(s), none = lanes_of(0);
+    const mask fits = m & LANES_NOT(gains);
+    const mask seeks = m & LANES_NOT(s->found), ends = seeks & impact_share_in(s, IMPACT_END);
+    const mask other = mask_less(none, lanes_abs(tried->mode - s->top.mode));
+    const mask halves = ends & other & mask_less(lanes_of(IMPACT_LEAST), s->width);
+    const mask takes = fits & LANES_NOT(halves), on = seeks & LANES_NOT(halves | takes);
+    const mask dips = impact_share_dips(s, on & impact_share_in(s, IMPACT_MIDDLE), tried->gain);
+    const mask over = on & LANES_NOT(ends | dips);
+    s->low = choose(takes, share, s->low);
+    s->high = choose(m & s->found & LANES_NOT(fits), share, s->high);
+    s->found |= takes;
+    s->width = choose(halves, 0.5 * s->width, s->width);
+    choose_all(on & ends, tried, &s->end, sizeof *tried);
+    s->stage = choose(on & ends, lanes_of(IMPACT_MIDDLE), s->stage);
+    s->stage = choose(dips, lanes_of(IMPACT_DIP), s->stage);
+    s->high = choose(over, s->high - s->width, s->high);
+    choose_all(over, &s->end, &s->top, sizeof s->top);
+    s->stage = choose(over, lanes_of(IMPACT_END), s->stage);
+    /* Twice as wide where that ends at a multiple of it: shares stay on the halves' grid. */
+    const lanes wider = 2 * s->width, count = s->high / wider;
+    const mask whole = mask_less_equal(lanes_abs(((count + 0x1p52) - 0x1p52) - count), none);
+    s->width =
+        choose(over & whole & mask_less_equal(wider, lanes_of(1.0 / IMPACT_SCAN)), wider, s->width);
+    return fits;
+}
+
+/* A number that tells the modes of impulses r apart. */
+static inline lanes impact_mode(lanes friction, const lanes (*r)[2])
+{
+    const lanes none = lanes_of(0);
+    lanes mode = none;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        lanes own = choose(mask_less(none, r[c][0]), lanes_of(1), none);
+        if (contact_unknowns(c) == 2) {
+            const lanes side = choose(mask_less(none, r[c][1]), lanes_of(2), lanes_of(4));
+            const mask slips = mask_less(none, contact_load(c, r)) &
+                               LANES_NOT(contact_stands(friction, contact_load(c, r), r[c][1]));
+            own += choose(slips, side, none);
+        }
+        mode = 6 * mode + own;
+    }
+    return mode;
 }
 
 /* What is asked of an impact. */
@@ -70,11 +155,12 @@ struct impact_rule {
 };
 
 /* Impulses r, and the velocities after them, of contacts in `part` that arrive with u, by the
- * restitution e. Returns the lanes where more energy is gained than rounding is. */
+ * restitution e; what came of it. Returns the lanes where more energy is gained than rounding is.
+ */
 static inline mask impact_try(const struct impact_rule *rule, const lanes *e,
                               const lanes (*D)[CONTACTS][2][2], const lanes (*u)[2],
                               const mask *part, lanes (*shift)[2], lanes (*r)[2],
-                              struct contact_verdict *verdict)
+                              struct contact_verdict *verdict, struct impact_tried *tried)
 {
     const lanes none = lanes_of(0);
     lanes uf[CONTACTS][2], after[CONTACTS][2], gain = none, size = none;
@@ -98,6 +184,7 @@ static inline mask impact_try(const struct impact_rule *rule, const lanes *e,
             size +=
                 choose(here, lanes_abs(r[c][a] * u[c][a]) + lanes_abs(r[c][a] * after[c][a]), none);
         }
+    *tried = (struct impact_tried){gain, impact_mode(rule->friction, (const lanes(*)[2])r)};
     return mask_less(IMPACT_ROUNDING * size, gain);
 }
 
@@ -108,24 +195,25 @@ static inline mask impact_solve(const struct impact_rule *rule, mask where,
                                 const mask *part, lanes (*shift)[2], lanes (*r)[2],
                                 struct contact_verdict *verdict)
 {
-    struct impact_share share = impact_share_begin();
-    const mask gains =
-        where & rule->limited & impact_try(rule, rule->restitution, D, u, part, shift, r, verdict);
+    struct impact_tried said;
+    const mask gains = where & rule->limited &
+                       impact_try(rule, rule->restitution, D, u, part, shift, r, verdict, &said);
+    struct impact_share share = impact_share_begin(said);
     for (mask open; mask_any(open = impact_share_open(&share, gains));) {
         const lanes tried = impact_share_next(&share);
         lanes e[CONTACTS], shift1[CONTACTS][2], r1[CONTACTS][2];
-        struct contact_verdict said;
+        struct contact_verdict also;
         for (int c = 0; c < SCENE_CONTACTS; c++)
             e[c] = tried * rule->restitution[c];
-        const mask fits = LANES_NOT(impact_try(rule, e, D, u, part, shift1, r1, &said)) |
-                          mask_less_equal(tried, lanes_of(0));
+        const mask more = impact_try(rule, e, D, u, part, shift1, r1, &also, &said) &
+                          mask_less(lanes_of(0), tried);
+        const mask fits = impact_share_tell(&share, open, more, &said);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++) {
-                shift[c][a] = choose(open & fits, shift1[c][a], shift[c][a]);
-                r[c][a] = choose(open & fits, r1[c][a], r[c][a]);
+                shift[c][a] = choose(fits, shift1[c][a], shift[c][a]);
+                r[c][a] = choose(fits, r1[c][a], r[c][a]);
             }
-        *verdict = contact_verdicts(open & fits, &said, verdict);
-        impact_share_tell(&share, open, fits);
+        *verdict = contact_verdicts(fits, &also, verdict);
     }
     return gains & impact_share_counts(&share);
 }

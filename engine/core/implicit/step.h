@@ -77,6 +77,14 @@ static inline mask step_gains(const struct setting *set, const struct motion *fr
 }
 
 /* Lanes where an iterate with frozen geometry obeys the contact laws. */
+/* What came of a share of the restitution: see impact.h. */
+static inline struct impact_tried step_tried(const struct setting *set,
+                                             const struct step_report *report)
+{
+    return (struct impact_tried){report->impact_energy,
+                                 impact_mode(set->friction, (const lanes(*)[2])report->impulse)};
+}
+
 static inline mask step_obeys(const struct setting *set, const struct motion *from,
                               const struct iterate *it)
 {
@@ -380,7 +388,8 @@ COLD mask step_limit(const int *corner, const struct setting *set, const struct 
                      const lanes *torque, lanes h, mask gains, bool coupled, int freeze_after,
                      struct motion *to, struct step_report *report)
 {
-    struct impact_share share = impact_share_begin();
+    struct impact_tried said = step_tried(set, report);
+    struct impact_share share = impact_share_begin(said);
     struct setting law = *set;
     lanes cost = report->iterations;
     for (mask open; mask_any(open = impact_share_open(&share, gains));) {
@@ -391,12 +400,13 @@ COLD mask step_limit(const int *corner, const struct setting *set, const struct 
             law.restitution[c] = tried * set->restitution[c];
         const mask good =
             step_solve(corner, &law, from, torque, h, open, coupled, freeze_after, &next, &part);
-        const mask fits = good & (LANES_NOT(step_gains(set, from, &next, &part)) |
-                                  mask_less_equal(tried, lanes_of(0)));
+        const mask more =
+            LANES_NOT(good) | (step_gains(set, from, &next, &part) & mask_less(lanes_of(0), tried));
+        said = step_tried(set, &part);
+        const mask fits = impact_share_tell(&share, open, more, &said);
         cost += choose(open, part.iterations, lanes_of(0));
-        choose_all(open & fits, &next, to, sizeof next);
-        choose_all(open & fits, &part, report, sizeof part);
-        impact_share_tell(&share, open, fits);
+        choose_all(fits, &next, to, sizeof next);
+        choose_all(fits, &part, report, sizeof part);
     }
     report->iterations = choose(gains, cost, report->iterations);
     report->evaluations = choose(gains, cost, report->evaluations);
