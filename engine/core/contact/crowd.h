@@ -42,6 +42,30 @@ static void crowd_all(const struct lane_problem *p, struct lane_modes *modes)
     }
 }
 
+/* The mode that impulses r are in. */
+static void crowd_modes_of(const struct lane_problem *p, const double *r, struct lane_modes *modes)
+{
+    crowd_all(p, modes);
+    for (int k = 0; k < p->elements; k++) {
+        const struct lane_element *const e = &p->element[k];
+        for (int i = e->first; i < e->end; i++)
+            modes->closed[i] = p->axis[i] == 0 && r[i] > 0;
+        if (e->grips && e->slide == 0 &&
+            fabs(r[e->first]) >= CONTACT_STICKS * (p->friction * lane_load(e, r)))
+            modes->grip[k] = crowd_slips(r[e->first]);
+    }
+}
+
+/* The impulses of that mode of r; true: they are a solution. */
+static bool crowd_offer_mode(const struct lane_problem *p, const double *r,
+                             struct lane_choice *best)
+{
+    struct lane_modes modes;
+    double exact[LANE_ROWS] = {0};
+    crowd_modes_of(p, r, &modes);
+    return lane_in_modes(p, &modes, exact) && lane_offer(p, exact, best) <= p->tolerance;
+}
+
 /* Newton's iteration on modes; true: it arrived. */
 static bool crowd_newton(const struct lane_problem *p, struct lane_choice *best)
 {
@@ -71,24 +95,6 @@ static bool crowd_newton(const struct lane_problem *p, struct lane_choice *best)
         }
     }
     return false;
-}
-
-/* Of impulses r that were computed with less care: those of their mode. */
-static void crowd_polish(const struct lane_problem *p, const double *r, struct lane_choice *best)
-{
-    struct lane_modes modes;
-    double exact[LANE_ROWS] = {0};
-    crowd_all(p, &modes);
-    for (int k = 0; k < p->elements; k++) {
-        const struct lane_element *const e = &p->element[k];
-        for (int i = e->first; i < e->end; i++)
-            modes.closed[i] = p->axis[i] == 0 && r[i] > 0;
-        if (e->grips && e->slide == 0 &&
-            fabs(r[e->first]) >= CONTACT_STICKS * (p->friction * lane_load(e, r)))
-            modes.grip[k] = crowd_slips(r[e->first]);
-    }
-    if (lane_in_modes(p, &modes, exact))
-        lane_offer(p, exact, best);
 }
 
 /* The problem of Stewart and Trinkle: w = M z + q, of n rows; row[i], sign[i]: what z[i] adds to
@@ -200,14 +206,29 @@ static void crowd_lemke(const struct lane_problem *p, struct lane_choice *best)
         if (p->element[k].slide != 0)
             r[p->element[k].first] =
                 -p->friction * p->element[k].slide * lane_load(&p->element[k], r);
+    double u[LANE_ROWS];
+    lane_velocities(p, r, u);
+    lane_clip(p, u, r);
+    crowd_offer_mode(p, r, best); /* with more care */
     lane_offer(p, r, best);
-    crowd_polish(p, r, best);
 }
 
-/* Some solution, with the violation that is left. */
+/* Did anything carry in the last iterate? */
+static bool crowd_knows(const struct lane_problem *p)
+{
+    bool knows = false;
+    for (int i = 0; i < p->rows; i++)
+        knows |= p->axis[i] == 0 && p->last[i] > 0;
+    return knows;
+}
+
+/* Some solution, with the violation that is left: of several the last iterate's, or the iteration
+ * that asks would go from one to the other without end. */
 static void crowd_solve(const struct lane_problem *p, struct lane_choice *best)
 {
     lane_choose_none(best);
+    if (crowd_knows(p) && crowd_offer_mode(p, p->last, best))
+        return;
     if (!p->indefinite && !crowd_newton(p, best))
         crowd_lemke(p, best);
     if (!(best->violation <= 1e3 * p->tolerance))

@@ -348,8 +348,9 @@ HOT lanes direct_violation(const struct contact_rule *rule, const lanes (*D)[CON
     return worst;
 }
 
-/* A solution in the lanes of m, exactly inside the cones, as lane_clip does it: over a very short
- * time all impulses are as small as the tolerance. */
+/* A solution in the lanes of m, exactly inside the cones, and on their edges where it was before
+ * its normal impulses were clipped, as lane_clip does it: over a very short time all impulses are
+ * as small as the tolerance. */
 static inline void direct_take(lanes friction, contact_set touching, const lanes (*solution)[2],
                                mask m, lanes (*r)[2])
 {
@@ -360,7 +361,13 @@ static inline void direct_take(lanes friction, contact_set touching, const lanes
         if (!(touching >> c & 1) || contact_unknowns(c) == 1)
             continue;
         const lanes bound = friction * contact_load(c, (const lanes(*)[2])r);
-        r[c][1] = choose(m, lanes_max(lanes_min(solution[c][1], bound), -bound), r[c][1]);
+        const lanes asked = solution[c][1], size = lanes_abs(asked);
+        const mask edge =
+            mask_less_equal(CONTACT_STICKS * (friction * contact_load(c, solution)), size) &
+            mask_less(size, CONTACT_STICKS * bound);
+        lanes along = lanes_max(lanes_min(asked, bound), -bound);
+        along = choose(edge, choose(mask_less(asked, lanes_of(0)), -bound, bound), along);
+        r[c][1] = choose(m, along, r[c][1]);
     }
 }
 

@@ -55,6 +55,7 @@ struct lane_problem {
     struct lane_element element[CONTACTS];
     double D[LANE_ROWS][LANE_ROWS], uf[LANE_ROWS];
     double shift[LANE_ROWS];
+    double last[LANE_ROWS]; /* see contact_rule */
     double friction, prefer;
     double tolerance; /* admitted violation, m/s */
     bool indefinite;
@@ -102,6 +103,7 @@ static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTAC
         const int c = p->contact[i], a = p->axis[i];
         p->uf[i] = lane_get(&uf[c][a], lane);
         p->shift[i] = rule->shift ? lane_get(&rule->shift[c][a], lane) : 0;
+        p->last[i] = rule->last ? lane_get(&rule->last[c][a], lane) : 0;
         largest = fmax(fabs(p->uf[i]), largest);
         for (int j = 0; j < p->rows; j++)
             p->D[i][j] = lane_get(&D[c][p->contact[j]][a][p->axis[j]], lane);
@@ -558,8 +560,9 @@ static void lane_visit(const struct lane_problem *p, int k, lane_matrix A, struc
     path->n = before;
 }
 
-/* Puts r exactly inside the cones. */
-static void lane_clip(const struct lane_problem *p, double *r)
+/* Puts r, whose velocities are u, exactly inside the cones, and of what slides onto their edge: the
+ * impulses of a very short step are so small that the tolerance is much of them. */
+static void lane_clip(const struct lane_problem *p, const double *u, double *r)
 {
     for (int i = 0; i < p->rows; i++)
         if (p->axis[i] == 0)
@@ -567,8 +570,14 @@ static void lane_clip(const struct lane_problem *p, double *r)
     for (int k = 0; k < p->elements; k++) {
         const struct lane_element *const e = &p->element[k];
         const double bound = p->friction * lane_load(e, r);
-        if (e->grips)
-            r[e->first] = r[e->first] > bound ? bound : r[e->first] < -bound ? -bound : r[e->first];
+        if (!e->grips)
+            continue;
+        double *const along = &r[e->first];
+        *along = *along > bound ? bound : *along < -bound ? -bound : *along;
+        const double slip = u[e->first], edge = slip < 0 ? bound : -bound;
+        if (e->slide == 0 && fabs(*along) < CONTACT_STICKS * bound && fabs(slip) > p->tolerance &&
+            fabs(edge - *along) * fabs(p->D[e->first][e->first]) <= p->tolerance)
+            *along = edge;
     }
 }
 

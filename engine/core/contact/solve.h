@@ -55,7 +55,7 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
             crowd_solve(&p, &best);
             v->unranked |= mask_of_lane(lane);
         }
-        lane_clip(&p, best.r);
+        lane_clip(&p, best.u, best.r);
         for (int i = 0; i < p.rows; i++)
             lane_set(&r[p.contact[i]][p.axis[i]], lane, best.r[i]);
         if (best.ambiguous)
