@@ -12,12 +12,13 @@ enum step_kind { STEP_ANY, STEP_ORDINARY, STEP_FULL };
 struct iterate {
     lanes w[SCENE_COORDINATES];
     lanes s1[SCENE_COORDINATES];
-    lanes r[CONTACTS][2], u[CONTACTS][2];
+    lanes r[CONTACTS][2], u[CONTACTS][2]; /* u: velocities that the laws are held to */
     lanes gap[CONTACTS];
     lanes response[CONTACTS][2][SCENE_COORDINATES]; /* to a unit impulse at a contact */
     lanes torque[ACTUATORS];
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
     mask active[CONTACTS];
+    mask brought[CONTACTS]; /* not active, but come to the ground with the end's position mended */
     struct contact_verdict verdict;
     lanes size;                                /* of the last correction */
     lanes shift;                               /* how far impulses moved with it, as a velocity */

@@ -434,6 +434,7 @@ static inline mask project_far(const struct setting *set, const struct motion *f
     lanes response[CONTACTS][2][SCENE_COORDINATES], rebound[CONTACTS][2];
     memset(&g, 0, sizeof g);
     for (int c = 0; c < SCENE_CONTACTS; c++) {
+        it->brought[c] = MASK_NONE;
         rebound[c][0] = set->restitution[c] * lanes_min(from->approach[c], lanes_of(0));
         rebound[c][1] = it->along ? it->along[c] : lanes_of(0);
     }
@@ -449,6 +450,7 @@ static inline mask project_far(const struct setting *set, const struct motion *f
                       (const lanes(*)[2][SCENE_COORDINATES])response, it, u, energy);
         for (int c = 0; c < SCENE_CONTACTS; c++) {
             falls[c] = project_falls(set, where, &g, c, it, u[c]);
+            it->brought[c] |= falls[c] & LANES_NOT(it->active[c]);
             turns[c] = MASK_NONE;
             if (contact_unknowns(c) == 2)
                 turns[c] = where & project_turns(&g, c, it, u[c]);

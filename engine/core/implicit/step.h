@@ -26,7 +26,8 @@
  * A^-1 H^T until loaded contacts have the normal velocity that the laws ask for, and those that
  * stick no other, once more exactly. (A is the step's matrix in an ordinary step, where that is
  * little; in a step with an impact it is the inertia at the end, so that no energy comes of it.)
- * The energy that both change is reported, and the residuals are those of the state at the end.
+ * The energy that both change is reported, and the residuals are those of the state at the end; of
+ * a contact that has rebounded, which is off the ground then, those of the impact.
  */
 #ifndef STANCE_CORE_IMPLICIT_STEP_H
 #define STANCE_CORE_IMPLICIT_STEP_H
@@ -76,7 +77,6 @@ static inline mask step_gains(const struct setting *set, const struct motion *fr
            mask_less(IMPACT_ROUNDING * (from->kinetic + to->kinetic), report->impact_energy);
 }
 
-/* Lanes where an iterate with frozen geometry obeys the contact laws. */
 /* What came of a share of the restitution: see impact.h. */
 static inline struct impact_tried step_tried(const struct setting *set,
                                              const struct step_report *report)
@@ -85,6 +85,7 @@ static inline struct impact_tried step_tried(const struct setting *set,
                                  impact_mode(set->friction, (const lanes(*)[2])report->impulse)};
 }
 
+/* Lanes where an iterate with frozen geometry obeys the contact laws. */
 static inline mask step_obeys(const struct setting *set, const struct motion *from,
                               const struct iterate *it)
 {
@@ -128,6 +129,19 @@ HOT mask step_rebounds(const struct setting *set, const struct motion *from,
         it->kinetic, lanes_fma(most, source, lanes_fma(lanes_of(1e-9), rounding, lanes_of(1e-12))));
 }
 
+/* The velocities that the laws are held to, `end` at the end of the step: those of contacts that
+ * have left the ground in a rebound (`left`) are of the impact, before positions were mended. */
+HOT void step_hold(bool left, contact_set touching, const lanes (*end)[2], struct iterate *it)
+{
+    EACH (c, 0, SCENE_CONTACTS) {
+        if (!(touching >> c & 1))
+            continue;
+        const mask off = mask_less(lanes_of(STEP_CLOSED), it->gap[c]);
+        EACH (a, 0, 2)
+            it->u[c][a] = left ? choose(off, it->u[c][a], end[c][a]) : end[c][a];
+    }
+}
+
 /* What one contact says in a step that has arrived: velocity u, impulses r of all, where they are
  * in `part`. What hardly carries has no direction, see CONTACT_TOLERANCE. */
 HOT void report_contact(const struct setting *set, const struct motion *from, lanes h,
@@ -138,8 +152,8 @@ HOT void report_contact(const struct setting *set, const struct motion *from, la
     const lanes none = lanes_of(0);
     const mask loaded = part[c] & mask_less(none, r[c][0]);
     const lanes relative[2] = {
-        lanes_fma(set->restitution[c], lanes_min(from->approach[c], none), u[0]),
-        iterate_slip(it, c, u)};
+        lanes_fma(set->restitution[c], lanes_min(from->approach[c], none), it->u[c][0]),
+        iterate_slip(it, c, it->u[c])};
     lanes carried[CONTACTS][2];
     EACH (k, 0, SCENE_CONTACTS) { /* of its grip */
         carried[k][0] = choose(mask_less(1e-6 * load, r[k][0]), r[k][0], none);
@@ -222,12 +236,16 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     mask part[CONTACTS], lands = MASK_NONE, rebounds = MASK_NONE;
     if (impacts)
         lands = step_lands(from, touching, it);
+    EACH (c, 0, SCENE_CONTACTS)
+        if (impacts && touching >> c & 1)
+            scene_contact_velocity(&set->body, &it->end, c, it->w, it->u[c]);
     if (touching) {
         const mask right = impacts ? project_far(set, from, h, touching, lands, somewhere, it, u,
                                                  &report->projection_energy)
                                    : project_near(set, from, h, touching, kind == STEP_FULL,
                                                   somewhere, it, u, &report->projection_energy);
         converged &= right | LANES_NOT(somewhere);
+        step_hold(impacts, touching, (const lanes(*)[2])u, it);
     }
     EACH (c, 0, SCENE_CONTACTS) {
         /* One that has left the ground may move back towards it. */
@@ -305,10 +323,11 @@ static inline bool step_moreau(const struct setting *set, const struct motion *f
  * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
  * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
  * between two modes for every h. `corner`: as in law_inside; converged is then only what agrees
- * with it. Returns the lanes that converged. */
-COLD mask step_solve(const int *corner, const struct setting *set, const struct motion *from,
-                     const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
-                     struct motion *to, struct step_report *report)
+ * with it. brought: contacts that take part from the first iterate on though they were open; those
+ * that turn out to be such are added. Returns the lanes that converged. */
+COLD mask step_once(const int *corner, const struct setting *set, const struct motion *from,
+                    const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
+                    mask *brought, struct motion *to, struct step_report *report)
 {
     struct iterate it;
     it.corner = corner;
@@ -324,8 +343,10 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
     EACH (c, 0, SCENE_CONTACTS) {
         closed[c] = mask_less(lanes_of(0), set->may_touch[c]) &
                     mask_less_equal(from->gap[c], lanes_of(STEP_CLOSED));
-        it.active[c] = closed[c];
+        it.active[c] = closed[c] | brought[c];
+        it.brought[c] = MASK_NONE;
         impact |= closed[c] & mask_less(from->approach[c], lanes_of(-STEP_APPROACH));
+        impact |= brought[c];
         it.r[c][0] = it.r[c][1] = lanes_of(0);
         EACH (a, 0, 2) {
             before[c][a] = choose(impact, lanes_of(0), from->impulse[c][a]);
@@ -379,7 +400,36 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
                             freeze_after < STEP_MAX_ITERATIONS, &it, report);
     report->iterations = report->evaluations = iterations;
     step_commit(from->t + h, &it, false, converged, mask_less(lanes_of(0), report->landed), to);
+    EACH (c, 0, SCENE_CONTACTS)
+        brought[c] |= converged & it.brought[c];
     return converged;
+}
+
+/* The same. Mending the position may bring contacts to the ground that no iterate saw there, and
+ * to stop them is no mending but an impact: the step is taken once more with them, where there is
+ * one. */
+COLD mask step_solve(const int *corner, const struct setting *set, const struct motion *from,
+                     const lanes *torque, lanes h, mask run, bool coupled, int freeze_after,
+                     struct motion *to, struct step_report *report)
+{
+    mask todo = run, good = MASK_NONE, brought[CONTACTS], known[CONTACTS];
+    lanes cost = lanes_of(0);
+    EACH (c, 0, SCENE_CONTACTS)
+        brought[c] = MASK_NONE;
+    for (int round = 0; round <= SCENE_CONTACTS && mask_any(todo); round++) {
+        struct step_report part;
+        memcpy(known, brought, sizeof known);
+        const mask there = step_once(corner, set, from, torque, h, todo, coupled, freeze_after,
+                                     brought, to, &part);
+        cost += choose(todo, part.iterations, lanes_of(0));
+        choose_all(round == 0 ? LANES_ALL : there, &part, report, sizeof part);
+        good |= there;
+        todo = MASK_NONE;
+        EACH (c, 0, SCENE_CONTACTS)
+            todo |= there & brought[c] & LANES_NOT(known[c]);
+    }
+    report->iterations = report->evaluations = choose(run, cost, report->iterations);
+    return good;
 }
 
 /* The same in the lanes of `gains`, whose impact would add energy, with the largest share of the
