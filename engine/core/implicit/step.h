@@ -159,6 +159,11 @@ HOT void report_contact(const struct setting *set, const struct motion *from, la
         carried[k][0] = choose(mask_less(1e-6 * load, r[k][0]), r[k][0], none);
         carried[k][1] = choose(mask_less(1e-6 * load, contact_load(k, r)), r[k][1], none);
     }
+    if (!contact_is_point(c)) { /* an end of it may be left out, and with it its share */
+        const lanes whole = contact_load(c, r), left = contact_load(c, (const lanes(*)[2])carried);
+        const mask less = mask_less(none, left) & mask_less(left, whole);
+        carried[c][1] = choose(less, carried[c][1] * (left / whole), carried[c][1]);
+    }
     report_residuals(report, c, part, set->friction, (const lanes(*)[2])carried, relative);
     report->impulse[c][0] = choose(loaded, r[c][0], none);
     report->least[c] = choose(loaded, r[c][0] / h, none);
