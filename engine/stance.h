@@ -224,15 +224,25 @@ typedef enum stance_evidence {
 /* Why a case has status FAILED: one table gives the enumeration, the name and the text. */
 #define STANCE_FAILURES(X)                                                                         \
     X(NONE, none, "the case did not fail")                                                         \
-    X(NEWTON, newton, "the implicit step did not converge, nor did any subdivision of it")         \
-    X(NOT_FINITE, not_finite, "the state left the finite numbers")                                 \
+    X(NEWTON, newton,                                                                              \
+      "the implicit step did not converge, nor did any subdivision of it; try method capturing, "  \
+      "or a shorter step")                                                                         \
+    X(NOT_FINITE, not_finite, "the state left the finite numbers; try a shorter step")             \
     X(ANGLE, angle, "an angle left the range in which sine and cosine are defined (1e4 rad)")      \
-    X(CONTACT, contact, "the contact problem of a step has no solution to tolerance")              \
-    X(PAINLEVE, painleve, "no contact force, or several, fit the accelerations (Painleve)")        \
-    X(EVENTS, events, "too many events in one step: they accumulate (Zeno), or chatter")           \
-    X(TOLERANCE, tolerance, "the error estimate stayed above the tolerance at the smallest step")  \
+    X(CONTACT, contact,                                                                            \
+      "the contact problem of a step has no solution to tolerance; joints that are held may jam: " \
+      "try less friction, or another step")                                                        \
+    X(PAINLEVE, painleve,                                                                          \
+      "no contact force, or several, fit the accelerations (Painleve); method capturing goes on")  \
+    X(EVENTS, events,                                                                              \
+      "too many events in one step: they accumulate (Zeno), or chatter; method capturing goes on") \
+    X(TOLERANCE, tolerance,                                                                        \
+      "the error estimate stayed above the tolerance at the smallest step; try another step, "     \
+      "or method midpoint")                                                                        \
     X(INITIAL, initial, "the initial state or the controller does not exist for this case")        \
-    X(WORK, work, "it takes more work than is allowed: too stiff, or events without end")
+    X(WORK, work,                                                                                  \
+      "it takes more work than is allowed: too stiff, or events without end; try a shorter step, " \
+      "or method midpoint")
 
 typedef enum stance_failure {
 #define STANCE_FAILURE_ENUM(NAME, name, text) STANCE_FAILURE_##NAME,

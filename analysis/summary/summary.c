@@ -19,6 +19,8 @@ bool summary_has_outcomes(const struct summary *summary)
     return summary->counts.done == 0 || summary->counts.kind[RESULTS_DONE] < summary->counts.done;
 }
 
+#define SUMMARY_TOUCHES 1e-9 /* m, rad */
+
 const char *summary_failure_name(int failure)
 {
     return failure >= 0 && failure < STANCE_FAILURE_COUNT ? stance_failure_name[failure]
@@ -104,11 +106,35 @@ static bool collect_counts(struct summary *summary, const struct results *r,
 
 static void collect_failures(struct summary *summary, const struct results *r)
 {
+    summary->first_failed = UINT64_MAX;
     for (uint64_t i = 0; i < r->cases; i++) {
         if (r->kind[i] == RESULTS_FAILED) {
             int failure = r->failure ? r->failure[i] : 0;
             summary->failures[failure < SUMMARY_FAILURES ? failure : 0]++;
+            summary->first_failed = i < summary->first_failed ? i : summary->first_failed;
         }
+    }
+}
+
+/* Contacts on the ground, stops reached, where a file's one case failed. */
+static void collect_touching(struct summary *summary, const struct results *r,
+                             const struct scenario *s)
+{
+    const stance_scene *const scene = s->scene;
+    struct scenario_values values = s->base;
+    double state[SCENARIO_MAX_STATES], gap[STANCE_MAX_CONTACTS];
+    if (!r->single || r->kind[0] != RESULTS_FAILED || (s->axes > 0 && r->index >= s->cases) ||
+        results_numbers(r, "final_state", state, SCENARIO_MAX_STATES) !=
+            2 * (size_t)scene->coordinates)
+        return;
+    if (s->axes > 0)
+        scenario_case_values(s, r->index, &values);
+    scene->gaps(scene, values.robot, state, gap);
+    for (int c = 0; c < scene->contacts; c++) {
+        const bool stop = scene->grip && scene->grip[c] < 0;
+        if (gap[c] <= SUMMARY_TOUCHES && (stop || values.contacts >> c & 1))
+            summary->touching |= 1u << c;
+        snprintf(summary->contact[c], STANCE_NAME, "%s", scene->contact_name[c]);
     }
 }
 
@@ -288,8 +314,10 @@ bool summary_make(struct summary *summary, const struct results *r, stance_messa
     if (good) {
         summary->timed = results_timing(r, &summary->longest, &summary->total,
                                         &summary->timed_cases, &summary->ranks);
-        if (readable)
+        if (readable) {
             summary_collect_fields(summary, r, &s);
+            collect_touching(summary, r, &s);
+        }
     } else {
         summary_free(summary);
     }

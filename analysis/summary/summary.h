@@ -104,6 +104,9 @@ struct summary {
     struct faces faces;                  /* of the box of starts */
     face_set cut;                        /* those on which cases of the kind judged by lie */
     uint64_t failures[SUMMARY_FAILURES]; /* by enum stance_failure */
+    uint64_t first_failed;               /* flat index of the first such case */
+    uint32_t touching; /* of a file of one case that failed: contacts closed then, a bit each */
+    char contact[STANCE_MAX_CONTACTS][STANCE_NAME]; /* and their names */
     /* By what cases fell, as the file names it: none of them, then the scene's causes. */
     char cause[STANCE_MAX_WORDS][STANCE_NAME];
     uint64_t fallen_by[STANCE_MAX_WORDS];

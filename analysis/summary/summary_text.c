@@ -171,6 +171,10 @@ static bool print_outcomes(const struct summary *summary, const struct results *
                    summary_failure_name(f), summary_failure_text(f));
         }
     }
+    if (counts->kind[RESULTS_FAILED] > 0 && !r->single)
+        printf("  the first is case %" PRIu64 ": `stance run SCENARIO --only %" PRIu64
+               " --trace`, and `stance summary` of that says\n  when it failed and what touched\n",
+               summary->first_failed, summary->first_failed);
     return good;
 }
 
@@ -413,6 +417,18 @@ static const struct {
     {"end_time", "ended at"}, {"settle_time", "settled at"}, {"fall_time", "fell at"}};
 enum { CASE_TIMES = sizeof case_times / sizeof case_times[0] };
 
+static void print_touching(const struct summary *summary)
+{
+    const char *between = "  touching     ";
+    for (int c = 0; c < STANCE_MAX_CONTACTS; c++)
+        if (summary->touching >> c & 1) {
+            printf("%s%s", between, summary->contact[c]);
+            between = ", ";
+        }
+    if (summary->touching)
+        putchar('\n');
+}
+
 static void print_case(const struct summary *summary, const struct results *r)
 {
     char name[SCENARIO_MAX_STATES][SCENARIO_NAME];
@@ -424,6 +440,9 @@ static void print_case(const struct summary *summary, const struct results *r)
     if (kind == RESULTS_FAILED) {
         int failure = r->failure ? r->failure[0] : 0;
         printf("  %s: %s\n", summary_failure_name(failure), summary_failure_text(failure));
+        if (results_numbers(r, "end_time", &time, 1) == 1 && !isnan(time))
+            printf("  in the step from %.6g s\n", time);
+        print_touching(summary);
     }
     if (kind == RESULTS_PENDING || kind == RESULTS_FAILED)
         return;
