@@ -30,8 +30,9 @@
  *   root attributes: Conventions "CF-1.8", title, format_version (int 1), program_version,
  *     git_revision, compiler (with flags), library_versions, instruction_set (of what computes on
  *     rank 0: several are separated by ", "), ranks, hosts, date, seed, scenario (text), axes
- *     (comma-separated dimension names, in order), scenario_sha256. Of the file of a shard (shard.h) `shard`, "2/8", too: the other shards'
- *     cases stay pending, and no space is taken for them.
+ *     (comma-separated dimension names, in order), scenario_sha256. Of the file of a shard
+ *     (shard.h) `shard`, "2/8", too: the other shards' cases stay pending, and no space is taken
+ *     for them.
  *     Of a merged file also merged_from (a line for each part) and, where it is not what one run
  *     gives, merge_note.
  *   group `history`, in a file that went on with another scenario: the texts of the earlier ones,
