@@ -275,8 +275,8 @@ static inline double peer_case(const struct peer_engine *e, const struct peer_re
             putchar('\n');
         }
         if (r->labels && row > 0 && !outcome)
-            outcome = peer_judge(r, window, r->start + (size_t)PEER_STATE * (size_t)i, state, load,
-                                 end);
+            outcome =
+                peer_judge(r, window, r->start + (size_t)PEER_STATE * (size_t)i, state, load, end);
     }
     if (out)
         printf("case %d %s %.17g\n", i, outcome ? outcome : r->labels ? "undecided" : "done", end);

@@ -7,11 +7,10 @@
  *   with sweep.sample as the last dimension `sample`, with what design its points are of and, where
  *     that has changed since there are files, the `generator` that made them: points of another
  *     generator are never mixed with new ones; "<path>" over it for every path that it varies.
- *   every answer of STANCE_ANSWERS (stance.h) over those dimensions, row-major in their order; where
- *     a case has none `_FillValue`: NAN, of counts STANCE_NO_COUNT (0 in files of earlier versions,
- *     which keep it when they are gone on with, and lack answers that came later); codes have no
- *     such value;
- *     `status` (0 pending, 1 done, 2 failed), written after everything else of a case;
+ *   every answer of STANCE_ANSWERS (stance.h) over those dimensions, row-major in their order;
+ * where a case has none `_FillValue`: NAN, of counts STANCE_NO_COUNT (0 in files of earlier
+ * versions, which keep it when they are gone on with, and lack answers that came later); codes have
+ * no such value; `status` (0 pending, 1 done, 2 failed), written after everything else of a case;
  *     `final_state` has a last dimension `state` (string names x ... vq2);
  *     `checksum`: CRC-32C over the case's stored answers in the order of the table, then
  *     `final_state` (where stored), then `status`, as the little-endian bytes of the file.
