@@ -136,7 +136,7 @@ struct stance_scene {
     int (*figure)(const stance_scene *scene, const double *robot, const double *position,
                   double points[][2]);
     int causes; /* of a fall, by what touches the ground, is too low or has turned too far */
-    const char *const *cause; /* [causes] its names, in the order of the lanes' scene_falls */
+    const char *const *cause; /* [causes] its names, in the order of the lanes' scene_fall_margin */
     /* Has it fallen: the hip is lower than fall_height leg lengths, or the trunk's end touches the
      * ground; a mechanism, by its own points and angles alone. NULL where nothing falls. */
     bool (*fallen)(const stance_scene *scene, const double *robot, const double *position,
@@ -470,8 +470,8 @@ typedef struct stance_case {
       "deepest below the ground that a contact came which the scenario leaves out")                \
     X(slip_distance, double, SUM, own, "m", "distance slipped, summed over contacts")              \
     X(footfalls, int64_t, SUM, own, "1", "landings of another foot than the one that landed last") \
-    X(excursion, double, MAX, own, "rad", "largest angle off its target on the way")               \
-    X(peak_torque, double, MAX, own, "N m", "largest torque applied")                              \
+    X(excursion, double, MAX, each, "rad", "largest angle off its target on the way")              \
+    X(peak_torque, double, MAX, each, "N m", "largest torque applied")                             \
     X(friction_used, double, MAX, touching, "1", "largest ratio |rT|/rN of a contact")             \
     X(least_normal_force, double, MIN, own, "N", "smallest normal force on the support foot")      \
     X(impact_energy, double, MAX, rare, "J",                                                       \

@@ -139,13 +139,29 @@ static void compare_contacts(const struct trial *t)
     }
 }
 
+/* How far from a fall at s + ahead w. */
+static double fall_margin(const struct trial *t, int cause, double ahead, double *rate)
+{
+    double s[SCENE_COORDINATES];
+    scene_trig trig;
+    for (int k = 0; k < SCENE_COORDINATES; k++)
+        s[k] = t->s[k] + ahead * t->w[k];
+    scene_trigonometry(s, &trig);
+    return scene_fall_margin(&t->body, s, &trig, t->w, 0, cause, rate);
+}
 /* What has fallen, and what not, of points that may be anywhere. */
 static int down;
 static void compare_falls(const struct trial *t)
 {
     bool fallen = false;
-    for (int cause = 0; cause < SCENE_CAUSES; cause++)
-        fallen = fallen || mask_any(scene_falls(&t->body, t->s, &t->trig, 0, cause));
+    for (int cause = 0; cause < SCENE_CAUSES; cause++) {
+        const double e = 1e-5;
+        double rate, other;
+        const double margin = fall_margin(t, cause, 0, &rate);
+        fallen = fallen || (SCENE_FALLS_BEYOND(cause) ? margin < 0 : margin <= 0);
+        near((fall_margin(t, cause, e, &other) - fall_margin(t, cause, -e, &other)) / (2 * e), rate,
+             1e-6, "rate of a fall");
+    }
     assert_int_equal(fallen, t->scene->fallen(t->scene, t->robot, t->q, 0));
     down += fallen;
 }

@@ -75,6 +75,7 @@ struct advance {
     lanes hunting;         /* 1: an event is known to lie within `part` ... */
     lanes attempts;        /* in this step */
     lanes stood[CONTACTS]; /* see between_mode */
+    lanes near;            /* 1: a standing step has to be watched, see inside_near */
     lanes ordinary;        /* 1: the last step was a standing one */
     lanes wait;            /* attempts in which none is tried ... */
     lanes turns;           /* ... and such steps since the sines were computed anew */
@@ -88,6 +89,7 @@ static void advance_load(struct advance *a, int lane, const stance_case *c)
     lane_set(&a->part, lane, INFINITY);
     lane_set(&a->hunting, lane, 0);
     lane_set(&a->attempts, lane, 0);
+    lane_set(&a->near, lane, 1);
     lane_set(&a->ordinary, lane, 0);
     lane_set(&a->wait, lane, 0);
     lane_set(&a->turns, lane, 0);
@@ -99,10 +101,25 @@ static void advance_forget(struct advance *a, mask m)
 {
     for (int i = 0; i < SCENE_CONTACTS; i++)
         a->stood[i] = choose(m, lanes_of(0), a->stood[i]);
+    a->near = choose(m, lanes_of(1), a->near);
+}
+#define ADVANCE_WATCHES
+HOT void advance_watch(struct advance *a, mask m, mask near)
+{
+    a->near = choose(m, choose(near, lanes_of(1), lanes_of(0)), a->near);
 }
 static void advance_free(struct advance *a)
 {
     (void)a;
+}
+
+/* What happens from one motion to another, a time h later, between both. */
+COLD void capture_inside(const struct setting *set, const struct motion *from,
+                         const struct motion *to, lanes h, mask where, struct step_report *report)
+{
+    const struct inside_way way = {
+        set, {from->s, to->s}, {from->w, to->w}, {&from->trig, &to->trig}, from->t, h};
+    inside_watch(&way, where, report);
 }
 
 /* Lanes where a contact that may meet the ground within h is fast enough to rebound: faster than
@@ -281,6 +298,15 @@ HOT void capture_stood(struct advance *a, mask m)
     a->ordinary = choose(m, lanes_of(1), a->ordinary);
 }
 
+/* What it did between its ends, where that may count. */
+HOT void capture_watch(const struct advance *a, const struct setting *set, const struct motion *now,
+                       const struct motion *next, lanes h, mask good, struct step_report *report)
+{
+    const mask watched = good & mask_less(lanes_of(0), a->near);
+    if (mask_any(watched))
+        capture_inside(set, now, next, h, watched, report);
+}
+
 /* Compiled for sets of contacts. */
 #define CAPTURE_STAND(name, there, touching)                                                       \
     COLD mask capture_##name(const struct advance *a, const struct setting *set,                   \
@@ -317,6 +343,7 @@ HOT bool advance_ordinary(struct advance *a, const struct setting *set, const la
 #undef TRY
     if (mask_any(live & LANES_NOT(good)))
         return false;
+    capture_watch(a, set, now, &next, h, live, report);
     *now = next;
     capture_stood(a, live);
     return true;
@@ -336,6 +363,7 @@ COLD mask capture_standing(struct advance *a, const struct setting *set, const l
         if (mask_any(fit)) {                                                                       \
             const mask good =                                                                      \
                 capture_##name(a, set, torque, coupled, h, fit, &from, &next, &part);              \
+            capture_watch(a, set, &from, &next, h, good, &part);                                   \
             choose_all(good, &next, now, sizeof next);                                             \
             choose_all(good, &part, report, sizeof part);                                          \
             tried |= fit;                                                                          \
@@ -389,6 +417,7 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
                                    acceleration, instant, &next, &over);
         over.events = choose(crossed, one, none);
         law_integrate(&set->law, crossed, interval, step.integral_rate, next.integral);
+        capture_inside(set, now, &next, interval, crossed, &over);
         choose_all(crossed, &next, now, sizeof next);
         capture_add(a, crossed, cross, &over);
         arrived = crossed & mask_less_equal(left, interval);
@@ -397,6 +426,7 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
     /* What a dip hides in so short a step changes no velocity by more than the tolerance. */
     const mask seen = LANES_NOT(step.dipped) | mask_less_equal(acceleration * length, tolerance);
     const mask good = inside & smooth & seen & mask_less_equal(step.error, tolerance);
+    capture_inside(set, now, &step.end, length, good, &step.report);
     choose_all(good, &step.end, now, sizeof step.end);
     capture_add(a, good, live, &step.report);
     for (int c = 0; c < SCENE_CONTACTS; c++)

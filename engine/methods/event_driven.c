@@ -246,6 +246,49 @@ static enum event_result event_step(struct advance *a, double target, struct eve
 
 /* ---- from event to event ----------------------------------------------------------------------*/
 
+/* Takes forces and torques of *e down. A command may be beyond its limit by EVENT_CLIP until the
+ * mode ends. */
+static void event_tell(struct advance *a, const struct dynamics *e)
+{
+    struct dynamics seen = *e;
+    law_clip(&a->problem.set->law, seen.torque);
+    inside_tell(&a->problem.mode.contact, &seen, true, a->report);
+}
+
+/* Takes down what happens from *p to *to, a state of the same mode, and goes there. */
+static void event_pass(struct advance *a, const struct event_point *to, struct event_point *p)
+{
+    struct event_problem *const problem = &a->problem;
+    const struct contact_state *const m = &problem->mode.contact;
+    const struct inside_way way = {problem->set,
+                                   {p->y, to->y},
+                                   {p->y + SCENE_COORDINATES, to->y + SCENE_COORDINATES},
+                                   {&p->e.trig, &to->e.trig},
+                                   problem->begin + p->tau,
+                                   to->tau - p->tau};
+    struct inside_values values = {.parabola = true};
+    struct inside_peaks peaks;
+    struct dynamics e;
+    double y[EVENT_SIZE] = {0};
+    inside_watch(&way, true, a->report);
+    event_tell(a, &to->e);
+    peaks.count = 0;
+    if (way.h >= EVENT_SHORTEST && (problem->coupled || problem->mode.touches)) {
+        event_inside_step(problem, p, to, 0.5, y, &e);
+        inside_note(&p->e, 0, &values);
+        inside_note(&e, 1, &values);
+        inside_note(&to->e, 2, &values);
+        inside_note(&to->e, 3, &values);
+        inside_find(m, problem->mode.touches, problem->coupled, &values, a->report, &peaks);
+    }
+    for (int k = 0; k < peaks.count; k++)
+        if (peaks.high[k]) {
+            event_inside_step(problem, p, to, peaks.x[k], y, &e);
+            event_tell(a, &e);
+        }
+    *p = *to;
+}
+
 /* Earliest time at which a margin vanishes on a straight line from *low to *high. */
 static double event_secant(const struct event_point *low, const struct event_point *high)
 {
@@ -264,13 +307,10 @@ static enum event_result event_locate(struct advance *a, struct event_point *low
                                       struct event_point *high, double guess)
 {
     for (int round = 1; round < 100; round++) {
-        if (event_inside(&a->problem, high)) {
-            *low = *high;
-            return EVENT_FOUND;
-        }
         const double width = high->tau - low->tau;
-        if (width <= 4 * DBL_EPSILON * high->tau) {
-            *low = *high; /* there is no time between */
+        /* Or there is no time between. */
+        if (event_inside(&a->problem, high) || width <= 4 * DBL_EPSILON * high->tau) {
+            event_pass(a, high, low);
             return EVENT_FOUND;
         }
         if (round > 1 && guess > (1 - EVENT_RESOLUTION) * high->tau)
@@ -289,7 +329,7 @@ static enum event_result event_locate(struct advance *a, struct event_point *low
             if (result == EVENT_FOUND)
                 *high = to;
             else
-                *low = to;
+                event_pass(a, &to, low);
         }
         if (result == EVENT_FAILED)
             return EVENT_FAILED;
@@ -343,8 +383,7 @@ static enum event_result event_march(struct advance *a, struct event_point *here
             target = end;
             continue;
         }
-        *here = to;
-        report_forces(a->report, a->problem.mode.contact.closed, (const double(*)[2])here->e.force);
+        event_pass(a, &to, here);
         a->report->degraded_samples = fmax(here->e.degraded, a->report->degraded_samples);
         a->report->ambiguous_steps = fmax(here->e.several, a->report->ambiguous_steps);
         split &= !event_rise(&a->problem, here);
@@ -419,7 +458,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         event_evaluate(&a->problem, p->tau, p->y, &p->e);
         event_set_depths(&a->problem, p);
         event_margins(&a->problem, p->y, &p->e, p->margin);
-        report_forces(a->report, m->contact.closed, (const double(*)[2])p->e.force);
+        event_tell(a, &p->e);
         if (*impact && event_accumulates(&a->problem, p))
             return STANCE_FAILURE_EVENTS;
         return event_consistent(&a->problem, p) ? STANCE_FAILURE_NONE : STANCE_FAILURE_PAINLEVE;

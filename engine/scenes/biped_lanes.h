@@ -514,14 +514,18 @@ static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const scen
     return lanes_fma(torque[0], d[3] - d[2], torque[1] * (d[4] - d[2]));
 }
 
-/* Down by cause 0, the hip below `fall_height` leg lengths, or 1, the trunk on the ground. */
+/* Down by cause 0, the hip below `fall_height` leg lengths, or 1, the trunk on the ground: how far
+ * it is from that, and how fast that changes. */
 #define SCENE_CAUSES 2
-static inline mask scene_falls(const scene_body *b, const lanes *s, const scene_trig *trig,
-                               lanes fall_height, int cause)
+#define SCENE_FALLS_BEYOND(cause) ((cause) == 0) /* exactly there it has not fallen */
+static inline lanes scene_fall_margin(const scene_body *b, const lanes *s, const scene_trig *trig,
+                                      const lanes *w, lanes fall_height, int cause, lanes *rate)
 {
+    *rate = w[1];
     if (cause == 0)
-        return mask_less(s[1], fall_height * b->leg);
-    return mask_less_equal(lanes_fma(b->trunk, trig->cosine[0], s[1]), lanes_of(0));
+        return s[1] - fall_height * b->leg;
+    *rate = lanes_fnma(b->trunk * w[2], trig->sine[0], w[1]);
+    return lanes_fma(b->trunk, trig->cosine[0], s[1]);
 }
 /* Largest of the rates: the trunk's x and z, its pitch, the joints. */
 static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, const scene_trig *trig)

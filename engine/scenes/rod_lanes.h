@@ -252,11 +252,12 @@ static inline lanes scene_work(const scene_body *b, lanes h, lanes t, const scen
 
 /* A rod has no height that it ought to keep. */
 #define SCENE_CAUSES 0
-static inline mask scene_falls(const scene_body *b, const lanes *s, const scene_trig *trig,
-                               lanes fall_height, int cause)
+#define SCENE_FALLS_BEYOND(cause) false
+static inline lanes scene_fall_margin(const scene_body *b, const lanes *s, const scene_trig *trig,
+                                      const lanes *w, lanes fall_height, int cause, lanes *rate)
 {
-    (void)b, (void)s, (void)trig, (void)fall_height, (void)cause;
-    return MASK_NONE;
+    (void)b, (void)s, (void)trig, (void)w, (void)fall_height, (void)cause, (void)rate;
+    return lanes_of(INFINITY);
 }
 /* Largest of the rates. */
 static inline lanes scene_largest_rate(const scene_body *b, const lanes *w, const scene_trig *trig)

@@ -530,37 +530,44 @@ HOT mask scene_strike(const scene_body *b, const scene_trig *trig, lanes t, lane
     return struck;
 }
 
-/* Down by a cause: a point lower than it may be, or, after the points, a body turned further. */
+/* Down by a cause: a point lower than it may be, or, after the points, a body turned further. How
+ * far it is from that, and how fast that changes. */
 #define SCENE_CAUSES (tree_points + tree_turns)
-HOT mask scene_falls(const scene_body *b, const lanes *s, const scene_trig *trig, lanes fall_height,
-                     int cause)
+#define SCENE_FALLS_BEYOND(cause) ((cause) >= tree_points) /* exactly there it has not fallen */
+HOT lanes scene_fall_margin(const scene_body *b, const lanes *s, const scene_trig *trig,
+                            const lanes *w, lanes fall_height, int cause, lanes *rate)
 {
     (void)fall_height;
     if (cause >= tree_points) {
-        const int k = cause - tree_points;
-        return mask_less(b->turn[k], lanes_abs(s[TREE_BASE + tree_turning[k]] - b->slope[0]));
+        const int k = cause - tree_points, at = TREE_BASE + tree_turning[k];
+        const lanes angle = s[at] - b->slope[0];
+        *rate = choose(mask_less(angle, lanes_of(0)), w[at], -w[at]);
+        return b->turn[k] - lanes_abs(angle);
     }
     lanes height = tree_base(b, s, 1);
+    *rate = tree_base(b, w, 1);
     if (tree_point_top[cause] >= 0)
         height = height + (tree_point_top[cause] == TREE_OWN ? b->point[cause][1]
                                                              : b->joint[tree_point_top[cause]][1]);
     TREE_UNROLL
     for (int j = 0; j < tree_angles; j++) {
         const int through = tree_point_path[cause][j];
+        lanes reach[2];
         if (through < 0)
             continue;
         if (tree_slides(j)) {
             if (tree_above[j] < 0)
                 height = lanes_fma(trig->sine[j], b->joint[j][1], height);
-            continue;
+            tree_slide_arm(b, trig, j, reach);
+        } else {
+            tree_arm(b, trig, through != TREE_OWN && tree_straight_joint[through],
+                     through == TREE_OWN ? b->point[cause] : b->joint[through], j,
+                     tree_point_path[cause], reach);
+            height = height + reach[1];
         }
-        lanes reach[2];
-        tree_arm(b, trig, through != TREE_OWN && tree_straight_joint[through],
-                 through == TREE_OWN ? b->point[cause] : b->joint[through], j,
-                 tree_point_path[cause], reach);
-        height = height + reach[1];
+        *rate = lanes_fma(w[TREE_BASE + j], reach[0], *rate);
     }
-    return mask_less_equal(height, b->lowest[cause]);
+    return height - b->lowest[cause];
 }
 /* Largest of the rates: the reference point's, the root's, the joints'. */
 HOT lanes scene_largest_rate(const scene_body *b, const lanes *w, const scene_trig *trig)

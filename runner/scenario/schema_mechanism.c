@@ -88,7 +88,8 @@ const struct part_key part_keys[] = {
     {PART_BODY, {.path = "turn", BODY(turn), .unit = "rad", RANGE(0, TURN), .low_open = true,
         .fallback = NAN, .fallback_text = "none",
         .text = "angle from upright beyond which the robot has fallen",
-        .more = "Its fall_cause is then the body."},
+        .more = "Its fall_cause is then the body. implicit, midpoint and lagrange look at the ends of "
+                "steps only."},
         .joints = 1 << STANCE_FREE | 1 << STANCE_HINGE},
 
     {PART_CONTACT, {.path = "body", .type = FIELD_WORD, .required = true, WORD_ROW,
@@ -115,7 +116,8 @@ const struct part_key part_keys[] = {
         RANGE(-FAR, FAR), .fallback = NAN, .fallback_text = "none",
         .text = "height above the ground at which the robot has fallen",
         .more = "0: where the point touches the ground. The height is normal to the ground. Its "
-                "fall_cause is then the point."},
+                "fall_cause is then the point. implicit, midpoint and lagrange look at the ends of "
+                "steps only."},
         .pushes = 0},
     {PART_POINT, {.path = "force", TWO, POINT(force), .unit = "N", RANGE(-LARGE, LARGE),
         .text = "force, [0] along the ground, [1] normal",

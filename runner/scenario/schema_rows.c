@@ -328,7 +328,8 @@ const struct row schema_rows[] = {
     {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
          .unit = "1", .fallback = 0.2, RANGE(0, 1),
          .text = "height of the hip, in leg lengths, below which the robot has fallen",
-         .more = "Its fall_cause is then hip, and trunk where the trunk touches the ground."}},
+         .more = "Its fall_cause is then hip, and trunk where the trunk touches the ground. "
+                 "implicit, midpoint and lagrange look at the ends of steps only."}},
 
     {0, {.path = "stop.capture", .type = FIELD_WORD, VALUE(capture), .fallback = 0,
          WORDS(capture_words),

@@ -15,6 +15,7 @@ struct setting {
     lanes moreau, limited;       /* 1 or 0: whose restitution, see impact.h */
     lanes may_touch[CONTACTS];   /* 1 or 0 */
     lanes prefer;                /* of several contact solutions, see contact_rule */
+    lanes fall_height;           /* see stance_scene.fallen */
     struct law law;
 };
 
@@ -43,13 +44,20 @@ static inline contact_set step_touching(const struct setting *set, const lanes *
     return touching;
 }
 
-/* Lanes that have fallen, by whatever cause. */
-HOT mask motion_fallen(const scene_body *body, const lanes *s, const scene_trig *trig,
-                       lanes fall_height)
+/* Lanes that have fallen by a cause, counted from 0. */
+HOT mask motion_falls(const struct setting *set, const lanes *s, const scene_trig *trig, int cause)
+{
+    lanes rate;
+    const lanes margin = scene_fall_margin(&set->body, s, trig, s, set->fall_height, cause, &rate);
+    return SCENE_FALLS_BEYOND(cause) ? mask_less(margin, lanes_of(0))
+                                     : mask_less_equal(margin, lanes_of(0));
+}
+/* ... by whatever cause. */
+HOT mask motion_fallen(const struct setting *set, const lanes *s, const scene_trig *trig)
 {
     mask fallen = MASK_NONE;
     EACH (k, 0, SCENE_CAUSES)
-        fallen |= scene_falls(body, s, trig, fall_height, k);
+        fallen |= motion_falls(set, s, trig, k);
     return fallen;
 }
 

@@ -18,6 +18,7 @@ struct step_report {
     lanes impulse[CONTACTS][2]; /* N s */
     lanes slip[CONTACTS];       /* m, where loaded */
     lanes torque[ACTUATORS];    /* N m, as applied at the end */
+    lanes fell, fell_by;        /* s, when it fell, and by which cause, from 1; 0: it did not */
     lanes work;                 /* J, of actuators and other outer forces */
     lanes least[CONTACTS];      /* smallest normal force, N */
     lanes landed;               /* 1: a contact came to the ground */
@@ -53,6 +54,7 @@ HOT void report_residuals(struct step_report *report, int c, const mask *part, l
 static inline void report_clear_answers(struct step_report *report)
 {
     const lanes none = lanes_of(0);
+    report->fell = report->fell_by = none;
 #define UNTOLD(name, type, how, told, unit, text) WHERE_TOLD_##told(report->name = none;)
     STANCE_ANSWERS(UNTOLD)
 }
@@ -72,6 +74,12 @@ static inline void report_clear_lane(struct step_report *report, int lane)
         lane_set(&all[i], lane, 0);
     EACH (c, 0, SCENE_CONTACTS)
         lane_set(&report->least[c], lane, INFINITY);
+}
+/* Torques that are applied at some instant. */
+HOT void report_torques(struct step_report *report, const lanes *torque)
+{
+    EACH (i, 0, SCENE_ACTUATORS)
+        report->peak_torque = lanes_max(lanes_abs(torque[i]), report->peak_torque);
 }
 /* How much of its friction grip c uses, of forces or impulses. */
 HOT void report_friction(struct step_report *report, int c, const mask *part, const lanes (*r)[2])
@@ -107,6 +115,9 @@ static inline void report_add(struct step_report *sum, const struct step_report 
     }
     EACH (i, 0, SCENE_ACTUATORS)
         sum->torque[i] = part->torque[i];
+    const mask upright = mask_less_equal(sum->fell_by, lanes_of(0));
+    sum->fell = choose(upright, part->fell, sum->fell);
+    sum->fell_by = choose(upright, part->fell_by, sum->fell_by);
     sum->landed = lanes_max(part->landed, sum->landed);
     sum->work += part->work;
     EACH (c, 0, SCENE_CONTACTS)

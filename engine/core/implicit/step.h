@@ -227,6 +227,7 @@ HOT mask step_finish(const struct setting *set, const struct motion *from, lanes
     report->failure = none;
     EACH (i, 0, SCENE_ACTUATORS)
         report->torque[i] = it->torque[i];
+    report_torques(report, it->torque);
     EACH (c, 0, SCENE_CONTACTS)
         if (touching >> c & 1)
             load += lanes_max(it->r[c][0], none);

@@ -1,9 +1,9 @@
 /* lanes.h - a vector of STANCE_LANES doubles, one simulation in each lane, and masks over it.
  *
  * The stepping core is written once against these few operations and compiled for 1, 2, 4 and 8
- * lanes. Everything is plain IEEE arithmetic (+ - * / fma and comparisons), and the compiler
- * contracts nothing: products are fused with sums where the source says so. A lane computes the
- * same bits whatever the width. Control flow is by masks: `choose(m, a, b)`.
+ * lanes. Everything is plain IEEE arithmetic (+ - * / fma, square roots and comparisons), and the
+ * compiler contracts nothing: products are fused with sums where the source says so. A lane
+ * computes the same bits whatever the width. Control flow is by masks: `choose(m, a, b)`.
  *
  * What lanes share a bundle must not change a bit. Lanes know of each other through mask_any alone
  * (and through the counters of struct bundle, see bundle_some): it is a hint that some lane needs
@@ -111,6 +111,10 @@ static inline lanes lanes_abs(lanes a)
 {
     return fabs(a);
 }
+static inline lanes lanes_sqrt(lanes a)
+{
+    return __builtin_sqrt(a);
+}
 static inline lanes lanes_fma(lanes a, lanes b, lanes c)
 {
     return __builtin_fma(a, b, c);
@@ -156,6 +160,10 @@ static inline lanes lanes_abs(lanes a)
 {
     return _mm512_abs_pd(a);
 }
+static inline lanes lanes_sqrt(lanes a)
+{
+    return _mm512_sqrt_pd(a);
+}
 static inline lanes lanes_fma(lanes a, lanes b, lanes c)
 {
     return _mm512_fmadd_pd(a, b, c);
@@ -200,6 +208,10 @@ static inline bool mask_any(mask m)
 static inline lanes lanes_abs(lanes a)
 {
     return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a);
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    return _mm256_sqrt_pd(a);
 }
 static inline lanes lanes_fma(lanes a, lanes b, lanes c)
 {
@@ -251,6 +263,10 @@ static inline lanes lanes_abs(lanes a)
 {
     return _mm_andnot_pd(_mm_set1_pd(-0.0), a);
 }
+static inline lanes lanes_sqrt(lanes a)
+{
+    return _mm_sqrt_pd(a);
+}
 
 #elif STANCE_LANES == 2 && defined(__wasm_simd128__)
 
@@ -288,6 +304,10 @@ static inline lanes lanes_abs(lanes a)
 {
     return (lanes)wasm_f64x2_abs((v128_t)a);
 }
+static inline lanes lanes_sqrt(lanes a)
+{
+    return (lanes)wasm_f64x2_sqrt((v128_t)a);
+}
 
 #elif STANCE_LANES == 2 && defined(__aarch64__)
 
@@ -320,6 +340,10 @@ static inline bool mask_any(mask m)
 static inline lanes lanes_abs(lanes a)
 {
     return vabsq_f64(a);
+}
+static inline lanes lanes_sqrt(lanes a)
+{
+    return vsqrtq_f64(a);
 }
 static inline lanes lanes_fma(lanes a, lanes b, lanes c)
 {

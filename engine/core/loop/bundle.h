@@ -76,7 +76,7 @@ struct bundle {
     lanes began[CONTACTS], place;                   /* m, along the ground: see bundle_in_place */
     lanes left_out[CONTACTS];      /* 1: meets the ground, which the case does not let it touch */
     lanes angle_scale, rate_scale; /* 1 / settle.angle and 1 / settle.rate */
-    lanes settle_steps, fall_height;
+    lanes settle_steps;
     struct window settled, resting;
     struct known_basin capture;
 
@@ -84,9 +84,10 @@ struct bundle {
     lanes foot;            /* that landed last; -1: none has */
 
     struct gathered answer;
-    lanes energy_bound; /* J, initial energy and the work since */
-    lanes excess;       /* J, by which the energy was above it at the end of the last step */
-    lanes drift;        /* J, what that has changed by in steps in which no contact carried */
+    lanes fell, fell_by; /* in the last step, before its end: see struct step_report */
+    lanes energy_bound;  /* J, initial energy and the work since */
+    lanes excess;        /* J, by which the energy was above it at the end of the last step */
+    lanes drift;         /* J, what that has changed by in steps in which no contact carried */
     lanes failure;
     struct advance advance;
     struct actuators actuators;
@@ -182,6 +183,7 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
     lane_set(&set->prefer, lane, c->most_energy ? -1 : 1);
     lane_set(&set->moreau, lane, c->impacts == STANCE_IMPACTS_MOREAU);
     lane_set(&set->limited, lane, c->impacts != STANCE_IMPACTS_NEWTON);
+    lane_set(&set->fall_height, lane, c->fall_height);
     for (int i = 0; i < SCENE_CONTACTS; i++) {
         lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
         lane_set(&set->restitution[i], lane, contact_grip(i) >= 0 ? c->restitution : 0);
@@ -191,8 +193,8 @@ static void bundle_load_setting(struct setting *set, int lane, const stance_case
 
 static void bundle_clear_answers(struct bundle *b, int lane)
 {
-    lanes *const zero[] = {&b->failure, &b->n,      &b->recorded_at, &b->next_sample,
-                           &b->now.t,   &b->excess, &b->drift};
+    lanes *const zero[] = {&b->failure, &b->n,     &b->recorded_at, &b->next_sample, &b->now.t,
+                           &b->excess,  &b->drift, &b->fell,        &b->fell_by};
     for (size_t i = 0; i < sizeof zero / sizeof *zero; i++)
         lane_set(zero[i], lane, 0);
 #define CLEAR(name, type, how, told, unit, text)                                                   \
@@ -281,7 +283,6 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     lane_set(&b->rate_scale, lane, 1 / c->settle_rate);
     lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));
     lane_set(&b->place, lane, c->settle_place > 0 ? c->settle_place : INFINITY);
-    lane_set(&b->fall_height, lane, c->fall_height);
     known_basin_load(&b->capture, lane, c);
 }
 

@@ -83,8 +83,8 @@ HOT void bundle_account(struct bundle *b, bool all, mask ok, bool ordinary, cont
     const lanes excess = energy - b->energy_bound;
     account_largest(all, ok, excess, &b->answer.energy_gain);
     account_drift(b, all, ok, touching, report, excess);
-    EACH (i, 0, SCENE_ACTUATORS)
-        account_largest(all, ok, lanes_abs(report->torque[i]), &b->answer.peak_torque);
+    b->fell = choose_unless(all, ok, report->fell, b->fell);
+    b->fell_by = choose_unless(all, ok, report->fell_by, b->fell_by);
     account_contacts(b, all, ok, touching, report);
     if (ordinary)
         return;
@@ -151,7 +151,13 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
         angle = lanes_max(lanes_abs(posture[i] - b->set.law.near.target[i]), angle);
         speed = lanes_max(lanes_abs(rate[i]), speed);
     }
-    account_largest(false, live & mask_less(none, b->has_target), angle, &b->answer.excursion);
+    const mask aims = live & mask_less(none, b->has_target);
+    account_largest(false, aims, angle, &b->answer.excursion);
+#ifdef ADVANCE_WATCHES
+    const mask near = inside_near(&b->set, b->now.s, b->now.w, &b->now.trig, b->h);
+    const mask far = aims & mask_less(b->answer.excursion, lanes_fma(b->h, speed, angle));
+    advance_watch(&b->advance, live, near | far);
+#endif
     angle = angle * b->angle_scale;
     speed = speed * b->rate_scale;
     mask alone = mask_less(none, b->has_target);
@@ -185,7 +191,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
     struct verdict v;
 #define VERDICT_NONE(NAME, name, number, text) v.name = MASK_NONE;
     STANCE_OUTCOMES(VERDICT_NONE)
-    v.fell = live & motion_fallen(&b->set.body, b->now.s, &b->now.trig, b->fall_height);
+    v.fell = live & (mask_less(none, b->fell_by) | motion_fallen(&b->set, b->now.s, &b->now.trig));
     v.stabilised =
         on_way & window_advance(&b->settled, live, at_target, error, b->n, b->settle_steps);
     v.rested = on_way & window_advance(&b->resting, live, still, all, b->n, b->settle_steps);

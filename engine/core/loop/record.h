@@ -54,13 +54,17 @@ static double record_finite(const lanes *v, int lane)
     return isfinite(x) ? x : NAN;
 }
 
-/* By what a lane has fallen, counted from 1; of several causes the first. 0: by none. */
-static uint8_t bundle_fall_cause(const struct bundle *b, int lane)
+/* When a lane has fallen, and by what, counted from 1; of several causes at once the first. */
+static void bundle_fall(const struct bundle *b, int lane, stance_result *r)
 {
-    for (int k = 0; k < SCENE_CAUSES; k++)
-        if (mask_get(scene_falls(&b->set.body, b->now.s, &b->now.trig, b->fall_height, k), lane))
-            return (uint8_t)(k + 1);
-    return 0;
+    r->fall_time = lane_get(&b->fell, lane);
+    r->fall_cause = (uint8_t)lane_get(&b->fell_by, lane);
+    if (r->fall_cause > 0)
+        return;
+    r->fall_time = r->end_time;
+    for (int k = SCENE_CAUSES; k-- > 0;)
+        if (mask_get(motion_falls(&b->set, b->now.s, &b->now.trig, k), lane))
+            r->fall_cause = (uint8_t)(k + 1);
 }
 
 /* Hands a lane's result in and leaves the lane idle. */
@@ -81,10 +85,11 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
         .failure = failure,
         .end_time = n * h,
         .settle_time = calm && !inferred ? (since >= 0 ? since : n) * h : NAN,
-        .fall_time = outcome == STANCE_FELL ? n * h : NAN,
-        .fall_cause = outcome == STANCE_FELL ? bundle_fall_cause(b, lane) : 0,
+        .fall_time = NAN,
         .steps = (int64_t)n,
     };
+    if (outcome == STANCE_FELL)
+        bundle_fall(b, lane, r);
 #define FINISH(name, type, how, told, unit, text)                                                  \
     WHERE_GATHERED_##how(r->name = (type)record_finite(&b->answer.name, lane);)
     STANCE_ANSWERS(FINISH)

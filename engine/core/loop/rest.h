@@ -220,7 +220,6 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     memset(&r, 0, sizeof r);
     r.angle = 1 / lane_get(&b->angle_scale, lane), r.speed = 1 / lane_get(&b->rate_scale, lane);
     r.T = every > 0 ? every * h : h;
-    r.fall_height = b->fall_height;
     r.hold = fmax(lane_get(&b->settle_steps, lane) * h, r.T);
     scene_push(&wider.body, lanes_of(INFINITY), b->h); /* nothing pushes any more */
     wider.friction = wider.friction * (1 + REST_EDGE);

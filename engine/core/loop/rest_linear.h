@@ -27,7 +27,6 @@ struct rest {
     const struct setting *set;
     int lane;
     double angle, speed, hold, T; /* what settle asks, and the time from sample to sample */
-    lanes fall_height;
     lanes t;
     struct contact_state mode;
     lanes s[SCENE_COORDINATES], integral[ACTUATORS];
@@ -47,7 +46,7 @@ static bool rest_fallen(const struct rest *r, const lanes *s)
 {
     scene_trig trig;
     scene_trigonometry(s, &trig);
-    return mask_get(motion_fallen(&r->set->body, s, &trig, r->fall_height), r->lane);
+    return mask_get(motion_fallen(r->set, s, &trig), r->lane);
 }
 
 /* Torques that the law commands, limited, and the rates of its integrals. */

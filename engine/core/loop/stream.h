@@ -14,7 +14,9 @@
  *   void advance_free(a)                  at the end of all,
  *
  * and may define ADVANCE_ORDINARY (see stream_ordinary) with advance_was_ordinary, ADVANCE_MOVES
- * where struct advance consists of lanes, so that cases may change lanes between steps, and
+ * where struct advance consists of lanes, so that cases may change lanes between steps,
+ * ADVANCE_WATCHES with advance_watch(a, m, near), which is told of the lanes m from which state a
+ * step may come to a fall or a larger answer between its ends, and
  * ADVANCE_PIECES where a step may be of any length: then pushes begin and end, and blows fall, at
  * their instants.
  */
@@ -66,6 +68,8 @@ COLD void bundle_start(struct bundle *b, mask fresh, bool coupled)
                          step_touching(&b->set, b->now.gap, LANES_ALL), &e);
         for (int i = 0; i < SCENE_ACTUATORS; i++)
             b->torque[i] = choose(fresh, e.torque[i], b->torque[i]);
+        for (int i = 0; i < SCENE_ACTUATORS; i++)
+            account_largest(false, fresh, lanes_abs(b->torque[i]), &b->answer.peak_torque);
     }
     bundle_record_due(b, fresh);
     bundle_end(b, fresh, MASK_NONE, &v, mask_less_equal(b->steps, lanes_of(0)));

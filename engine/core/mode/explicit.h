@@ -3,9 +3,11 @@
  * The method's file gives its tableau before it includes this: METHOD_STAGES (the number of
  * stages), tableau_a[][], tableau_b[], tableau_c[] and, with METHOD_EMBEDDED, tableau_e[], the
  * difference between its weights and those of the embedded formula (one entry more: the last is
- * that of the derivative at the end) and tableau_dip[], for each stage which of the forces of
- * missed_events.h it gives, or -1. Every stage solves the contact forces of the mode; at the end
- * the state is put back onto the mode's constraints (between_project).
+ * that of the derivative at the end) and tableau_dip[], for each stage which of the values of
+ * inside.h it gives, or -1. Every stage solves the contact forces of the mode; at the end the state
+ * is put back onto the mode's constraints (between_project). States of stages are off by h^2 and
+ * more: the forces and torques that a step tells are those of its ends and, where it estimates its
+ * error, of the peaks between them (inside.h).
  *
  * Where a torque that acts continuously reaches its limit or leaves it, accelerations have a
  * corner, and where its error is largest (0.022 h^2 times what their rates change by) the embedded
@@ -96,6 +98,34 @@ static inline mask explicit_turned(const struct law *law, const struct explicit_
     return turned;
 }
 
+/* A step seen from inside. */
+struct explicit_way {
+    struct inside_way way;
+    const lanes *a[2];             /* accelerations at either end ... */
+    const lanes *sum[2], *rate[2]; /* ... and what the law sums, how fast */
+    const struct drive *drive;
+    contact_set touches;
+};
+
+/* Solves the equations at the fraction x of a step, in the lanes of `where`. */
+COLD void explicit_look(const struct explicit_way *e, mask where, lanes x,
+                        struct step_report *report)
+{
+    const struct setting *const set = e->way.set;
+    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES], z[ACTUATORS], b[CUBIC];
+    struct dynamics at;
+    inside_place(&e->way, e->a, x, s, w);
+    for (int i = 0; i < SCENE_ACTUATORS; i++) {
+        cubic_hermite(e->sum[0][i], e->rate[0][i], e->sum[1][i], e->rate[1][i], e->way.h, b);
+        z[i] = cubic_at(b, x);
+    }
+    between_evaluate(set, e->way.t + x * e->way.h, s, w, z, e->drive, e->touches, &at);
+    if (e->touches)
+        between_solve(set, e->drive->mode, &at);
+    inside_tell(e->drive->mode, &at, where, report);
+    report->evaluations += choose(where, lanes_of(1), lanes_of(0));
+}
+
 /* What accelerations differ by between the stages and the end. */
 static inline lanes explicit_range(lanes (*kw)[SCENE_COORDINATES], const lanes *end)
 {
@@ -135,7 +165,7 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     out->violated = out->dipped = MASK_NONE;
     out->end = *from;
 #ifdef METHOD_EMBEDDED
-    struct missed_forces forces;
+    struct inside_values values = {.parabola = false};
     struct explicit_limits limits;
     mask turned = MASK_NONE;
     const mask decouples = mask_less(lanes_of(0), set->law.decouples);
@@ -168,11 +198,10 @@ static inline void explicit_take(const struct setting *set, const struct motion 
             kz[k][i] = e.integral_rate[i];
 #ifdef METHOD_EMBEDDED
         if (tableau_dip[k] >= 0)
-            missed_note(&e, tableau_dip[k], &forces);
+            inside_note(&e, tableau_dip[k], &values);
         if (jumps && k > 0)
             turned |= explicit_turned(&set->law, &limits, e.torque);
 #endif
-        report_forces(&out->report, m->closed, (const lanes(*)[2])e.force);
         if (tableau_b[k] != 0) {
             lanes moved[SCENE_COORDINATES];
             const lanes part = h * tableau_b[k];
@@ -224,8 +253,28 @@ static inline void explicit_take(const struct setting *set, const struct motion 
         const lanes most = h * (EXPLICIT_JUMP * explicit_range(kw, e.acceleration));
         out->error = choose(turned, lanes_max(most, out->error), out->error);
     }
-    missed_note(&e, 3, &forces);
-    out->dipped = missed_between(set, m, begin, &e, from->w, end->w, h, &forces);
+    inside_note(&e, CUBIC - 1, &values);
+    out->dipped = missed_between(set, m, begin, &e, from->w, end->w, h, &values);
+#endif
+    report_forces(&out->report, m->closed, (const lanes(*)[2])begin->force);
+    report_forces(&out->report, m->closed, (const lanes(*)[2])e.force);
+    report_torques(&out->report, begin->torque);
+    report_torques(&out->report, e.torque);
+    out->report.evaluations = lanes_of(METHOD_STAGES);
+#ifdef METHOD_EMBEDDED
+    const struct explicit_way way = {
+        {set, {from->s, end->s}, {from->w, end->w}, {&from->trig, &e.trig}, from->t, h},
+        {kw[0], e.acceleration},
+        {from->integral, end->integral},
+        {kz[0], e.integral_rate},
+        &drive,
+        touches};
+    const mask whole = run & LANES_NOT(out->violated | out->bad | out->dipped);
+    struct inside_peaks peaks;
+    inside_find(m, touches, coupled, &values, &out->report, &peaks);
+    for (int k = 0; k < peaks.count; k++)
+        if (mask_any(whole & peaks.high[k]))
+            explicit_look(&way, whole & peaks.high[k], peaks.x[k], &out->report);
 #endif
     if (touches)
         between_project(set, m, run, end->s, end->w, &e);
@@ -241,11 +290,9 @@ static inline void explicit_take(const struct setting *set, const struct motion 
     }
     end->trig = e.trig;
     end->t = from->t + h;
-    report_forces(&out->report, m->closed, (const lanes(*)[2])e.force);
     explicit_report(set, m, &e, &out->report);
     for (int i = 0; i < SCENE_ACTUATORS; i++)
         out->report.torque[i] = e.torque[i];
-    out->report.evaluations = lanes_of(METHOD_STAGES);
 }
 
 #endif

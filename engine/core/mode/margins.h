@@ -11,7 +11,7 @@
 #ifndef STANCE_CORE_MODE_MARGINS_H
 #define STANCE_CORE_MODE_MARGINS_H
 
-#include "between_events.h"
+#include "inside.h"
 
 #include <float.h>
 
@@ -357,27 +357,29 @@ static void event_slopes(const struct event_problem *problem, const double *y,
     }
 }
 
-/* Margins and their rates at the fraction x of the internal step: position through both ends'
- * positions, velocities and accelerations, velocity through both ends' velocities and
- * accelerations. */
+/* The state at the fraction x of the internal step, through both ends' positions, velocities and
+ * accelerations, and what it leads to. */
+static void event_inside_step(struct event_problem *problem, const struct event_point *from,
+                              const struct event_point *to, double x, double *y, struct dynamics *e)
+{
+    const double h = to->tau - from->tau;
+    const struct inside_way way = {.s = {from->y, to->y},
+                                   .w = {from->y + SCENE_COORDINATES, to->y + SCENE_COORDINATES},
+                                   .h = h};
+    inside_place(&way, (const double *const[2]){from->e.acceleration, to->e.acceleration}, x, y,
+                 y + SCENE_COORDINATES);
+    for (int i = EVENT_INTEGRAL; i < EVENT_SIZE; i++)
+        y[i] = from->y[i] + x * (to->y[i] - from->y[i]);
+    event_evaluate(problem, from->tau + x * h, y, e);
+}
+
+/* Margins and their rates there. */
 static void event_between(struct event_problem *problem, const struct event_point *from,
                           const struct event_point *to, double x, double *margin, double *slope)
 {
-    const double h = to->tau - from->tau, x2 = x * x, x3 = x2 * x;
     double y[EVENT_SIZE] = {0};
     struct dynamics e;
-    for (int i = 0; i < SCENE_COORDINATES; i++) {
-        const double v0 = from->y[SCENE_COORDINATES + i], v1 = to->y[SCENE_COORDINATES + i];
-        const double a0 = from->e.acceleration[i], a1 = to->e.acceleration[i];
-        const double d0 = to->y[i] - from->y[i] - h * (v0 + 0.5 * h * a0);
-        const double d1 = h * (v1 - v0 - h * a0), d2 = h * h * (a1 - a0);
-        const double c3 = 10 * d0 - 4 * d1 + 0.5 * d2, c4 = -15 * d0 + 7 * d1 - d2;
-        const double c5 = 6 * d0 - 3 * d1 + 0.5 * d2;
-        y[i] = from->y[i] + h * x * (v0 + 0.5 * h * x * a0) + x3 * (c3 + x * (c4 + x * c5));
-        y[SCENE_COORDINATES + i] =
-            v0 + (v1 - v0) * (3 * x2 - 2 * x3) + h * (a0 * (x - 2 * x2 + x3) + a1 * (x3 - x2));
-    }
-    event_evaluate(problem, from->tau + x * h, y, &e);
+    event_inside_step(problem, from, to, x, y, &e);
     event_margins(problem, y, &e, margin);
     event_slopes(problem, y, &e, slope);
 }

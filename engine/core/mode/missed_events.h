@@ -10,7 +10,8 @@
  *   gap       degree 5 through value, rate and acceleration at both ends,
  *             g0, g0 + h g0'/5, g0 + 2h g0'/5 + h^2 g0''/20 and the same from the other end;
  *   slip      degree 3 through value and rate at both ends, g0, g0 + h g0'/3, ...;
- *   forces    degree 3 through the values at four stages, at the fractions 0, 3/10, 4/5, 1.
+ *   forces    degree 3 through the values at four stages, at the fractions 0, 3/10, 4/5, 1
+ *             (inside.h).
  *
  * The bound errs to the safe side, by about 0.03 h^2 |g''| for a parabola: a quarter of it on half
  * the step. The interpolation itself errs by h^6 g^(6)/46080 for a gap, much less than that as long
@@ -19,24 +20,10 @@
 #ifndef STANCE_CORE_MODE_MISSED_EVENTS_H
 #define STANCE_CORE_MODE_MISSED_EVENTS_H
 
-#include "between_events.h"
+#include "inside.h"
 
 #define DIP_TURN 0.5   /* rad: no step is so long that an angle turns further */
 #define DIP_FORCE 1e-9 /* of the largest force of its kind in the step: what counts as none */
-
-/* Forces of a step at the four fractions where the polynomials go through. */
-struct missed_forces {
-    lanes normal[4][CONTACTS], load[4][CONTACTS], tangential[4][CONTACTS];
-};
-
-static inline void missed_note(const struct dynamics *e, int k, struct missed_forces *forces)
-{
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        forces->normal[k][c] = e->force[c][0];
-        forces->load[k][c] = contact_load(c, (const lanes(*)[2])e->force);
-        forces->tangential[k][c] = e->force[c][1];
-    }
-}
 
 /* The longest step, s, that no margin is lost in: see DIP_TURN and scene_longest_step. */
 static inline lanes missed_longest(const struct setting *set, const lanes *w)
@@ -67,20 +54,18 @@ static inline lanes missed_quintic(lanes g, lanes rate, lanes acceleration, lane
 /* Least Bernstein coefficient of the cubic through f at 0, 0.3, 0.8, 1. */
 static inline lanes missed_cubic(const lanes *f)
 {
-    const lanes r1 = f[1] - 0.343 * f[0] - 0.027 * f[3];
-    const lanes r2 = f[2] - 0.008 * f[0] - 0.512 * f[3];
-    const lanes b1 = (0.384 * r1 - 0.189 * r2) / 0.1512;
-    const lanes b2 = (0.441 * r2 - 0.096 * r1) / 0.1512;
-    return lanes_min(lanes_min(f[0], f[3]), lanes_min(b1, b2));
+    lanes b[CUBIC];
+    cubic_through(f, b);
+    return lanes_min(lanes_min(b[0], b[3]), lanes_min(b[1], b[2]));
 }
 
 /* Lanes where a force of contact c may have pulled where it is closed, or have left the cone where
  * it sticks. */
 static inline mask missed_of_forces(lanes friction, mask closed, mask sticks,
-                                    const struct missed_forces *forces, int c)
+                                    const struct inside_values *forces, int c)
 {
-    lanes normal[4], low[4], high[4], largest = lanes_of(0);
-    for (int k = 0; k < 4; k++) {
+    lanes normal[CUBIC], low[CUBIC], high[CUBIC], largest = lanes_of(0);
+    for (int k = 0; k < CUBIC; k++) {
         normal[k] = forces->normal[k][c];
         low[k] = friction * forces->load[k][c] + forces->tangential[k][c];
         high[k] = friction * forces->load[k][c] - forces->tangential[k][c];
@@ -97,7 +82,7 @@ static inline mask missed_of_forces(lanes friction, mask closed, mask sticks,
 static inline mask missed_between(const struct setting *set, const struct contact_state *m,
                                   const struct dynamics *begin, const struct dynamics *end,
                                   const lanes *w0, const lanes *w1, lanes h,
-                                  const struct missed_forces *forces)
+                                  const struct inside_values *forces)
 {
     const lanes none = lanes_of(0);
     mask dips = MASK_NONE;

@@ -14,6 +14,11 @@
  * nothing has to be evaluated at the end: forces there, and the directions along which position and
  * velocity are put back onto the contacts, are those of the last place.
  *
+ * What forces and torques come to between the ends tell parabolas through those places, at the
+ * second with the mean of both (their velocities are off by h^2 a'/8 to either side). The places of
+ * the last two are off by h^3 a'/48 and h^3 a'/12, little where a force peaks; the next step knows
+ * its beginning exactly, so that only at the very end of a run h^3 counts.
+ *
  * Error. With the second difference d2 = a1 - (a2 + a3) + a4, about h^2 a'' / 4, h d2 / 6 is the
  * error of a formula of order 2. Each order more makes errors smaller by about the ratio q of d2 to
  * the first difference d1 = a4 - a1; q h d2 / 6, that of order 3, is what the step is judged by,
@@ -72,45 +77,101 @@ HOT mask standing_rests(contact_set touching, const lanes (*u)[2])
     return mask_less_equal(fastest, lanes_of(BETWEEN_REST));
 }
 
-/* Least Bernstein coefficient of the parabola through f at 0, 1/2, 1. */
-HOT lanes standing_parabola(const lanes f[STANDING_PLACES])
+/* A quantity over a step, of which the first place tells once, the second twice, the third once:
+ * the parabola through the first, the mean of the second and the last, by Bernstein coefficients.
+ */
+struct standing_course {
+    lanes b[3];
+};
+HOT struct standing_course standing_course(lanes first, lanes twice, lanes last)
 {
-    const lanes ends = f[0] + f[2];
-    return lanes_min(lanes_min(f[0], f[2]), lanes_fms(lanes_of(2), f[1], 0.5 * ends));
+    return (struct standing_course){{first, twice - 0.5 * (first + last), last}};
+}
+/* Its values at 0, 1/2, 1. */
+static inline void standing_values(struct standing_course f, lanes value[STANDING_PLACES])
+{
+    value[0] = f.b[0];
+    value[1] = 0.25 * (f.b[0] + 2 * f.b[1] + f.b[2]);
+    value[2] = f.b[2];
 }
 
-/* Lanes where the forces of the contacts in `touching` at the three places are those of contacts
- * that stand all the time; what they tell of themselves goes into *report. */
+/* Largest |f| of the parabola through f at 0, 1/2, 1, where it is between the ends and above
+ * `most`; else `most`. */
+static inline lanes standing_peak(const lanes f[STANDING_PLACES], lanes most)
+{
+    lanes b[CUBIC], x, peak;
+    cubic_parabola(f, b);
+    for (int sign = 0; sign < 2; sign++) {
+        const mask there = cubic_peak(b, most, &x, &peak);
+        most = choose(there, peak, most);
+        cubic_negate(b);
+    }
+    return most;
+}
+/* The same of f and, where that is less, of the ratio of two. */
+COLD lanes standing_most(struct standing_course f, lanes most)
+{
+    lanes value[STANDING_PLACES];
+    standing_values(f, value);
+    return standing_peak(value, most);
+}
+COLD lanes standing_ratio(struct standing_course f, struct standing_course by, lanes most)
+{
+    lanes value[STANDING_PLACES], under[STANDING_PLACES];
+    standing_values(f, value);
+    standing_values(by, under);
+    for (int k = 0; k < STANDING_PLACES; k++)
+        value[k] = value[k] / under[k];
+    return standing_peak(value, most);
+}
+/* Least of f, where that is between the ends and less than `least`. */
+COLD lanes standing_least(struct standing_course f, lanes least)
+{
+    const struct standing_course down = {{least - f.b[0], least - f.b[1], least - f.b[2]}};
+    const lanes depth = standing_most(down, lanes_of(0));
+    return choose(mask_less(lanes_of(0), depth), least - depth, least);
+}
+
+/* Lanes where the forces of the contacts in `touching` at the places (at the second the sum of two)
+ * are those of contacts that stand all the time; what they tell of themselves goes into *report. */
 HOT mask standing_forces(contact_set touching, const struct setting *set,
                          const lanes (*force)[CONTACTS][2], struct step_report *report)
 {
+    const lanes none = lanes_of(0);
     mask stands = LANES_ALL;
     EACH (c, 0, SCENE_CONTACTS) {
         if (!(touching >> c & 1))
             continue;
-        lanes normal[STANDING_PLACES], low[STANDING_PLACES], high[STANDING_PLACES];
-        EACH (k, 0, STANDING_PLACES)
-            normal[k] = force[k][c][0];
-        const lanes least = lanes_min(lanes_min(normal[0], normal[1]), normal[2]);
-        const lanes most = lanes_max(lanes_max(normal[0], normal[1]), normal[2]);
+        const struct standing_course normal =
+            standing_course(force[0][c][0], force[1][c][0], force[2][c][0]);
+        const lanes least = lanes_min(normal.b[0], normal.b[2]);
+        const mask dips = mask_less(normal.b[1], least);
+        stands &=
+            mask_less(none, least) & mask_less(STANDING_ROOM * lanes_max(normal.b[0], normal.b[2]),
+                                               lanes_min(least, normal.b[1]));
         report->least[c] = least;
-        stands &= mask_less(lanes_of(0), least) &
-                  mask_less(STANDING_ROOM * most, standing_parabola(normal));
+        if (mask_any(dips))
+            report->least[c] = choose(dips, standing_least(normal, least), least);
         if (contact_unknowns(c) == 1)
             continue;
-        lanes largest = lanes_of(0), used = lanes_of(0), under = lanes_of(1);
-        EACH (k, 0, STANDING_PLACES) {
-            const lanes load = contact_load(c, force[k]), along = force[k][c][1];
-            const lanes size = lanes_abs(along);
-            low[k] = lanes_fma(set->friction, load, along);
-            high[k] = lanes_fms(set->friction, load, along);
-            largest = lanes_max(load, largest);
-            const mask more = mask_less(used * load, size * under); /* |rT| / rN of two places */
-            used = choose(more, size, used);
-            under = choose(more, load, under);
+        const struct standing_course along =
+            standing_course(force[0][c][1], force[1][c][1], force[2][c][1]);
+        const struct standing_course load = standing_course(
+            contact_load(c, force[0]), contact_load(c, force[1]), contact_load(c, force[2]));
+        const lanes begin = lanes_abs(along.b[0]), end = lanes_abs(along.b[2]);
+        const lanes bend = lanes_abs(along.b[1]);
+        const mask more = mask_less(begin * load.b[2], end * load.b[0]);
+        const lanes used = choose(more, end, begin) / choose(more, load.b[2], load.b[0]);
+        report->friction_used = lanes_max(used, report->friction_used);
+        const mask turns = mask_less(report->friction_used * load.b[1], bend);
+        if (mask_any(turns)) {
+            const lanes peak = standing_ratio(along, load, report->friction_used);
+            report->friction_used = choose(turns, peak, report->friction_used);
         }
-        report->friction_used = lanes_max(used / under, report->friction_used);
-        const lanes room = lanes_min(standing_parabola(low), standing_parabola(high));
+        const lanes room = lanes_min(lanes_min(lanes_fms(set->friction, load.b[0], begin),
+                                               lanes_fms(set->friction, load.b[2], end)),
+                                     lanes_fms(set->friction, load.b[1], bend));
+        const lanes largest = lanes_max(load.b[0], load.b[2]);
         stands &= mask_less((STANDING_ROOM * set->friction) * largest, room);
     }
     return stands;
@@ -231,7 +292,9 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
                        struct motion *end, struct step_report *report, lanes *error)
 {
     lanes a[STANDING_PLACES][SCENE_COORDINATES]; /* at the second the sum of two */
-    lanes force[STANDING_PLACES][CONTACTS][2], s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    lanes force[STANDING_PLACES][CONTACTS][2];   /* likewise */
+    lanes s[SCENE_COORDINATES], w[SCENE_COORDINATES];
+    lanes driven[STANDING_PLACES][ACTUATORS]; /* as force, where a law acts all the time */
     lanes farthest = lanes_of(0), integral[ACTUATORS];
     const mask decouples = mask_less(lanes_of(0), set->law.decouples);
     const bool servos = SCENE_ACTUATORS > 0 && coupled && mask_any(decouples);
@@ -281,12 +344,17 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
                 end->w[i] = lanes_fma(part, e.acceleration[i], end->w[i]);
             }
             report->work += motion_work(&set->body, part, t, &e.trig, e.torque, w, moved);
+            EACH (i, 0, SCENE_ACTUATORS)
+                if (coupled)
+                    driven[k][i] = again ? (lanes)(driven[k][i] + e.torque[i]) : e.torque[i];
             EACH (c, 0, SCENE_CONTACTS)
                 EACH (b, 0, 2) {
-                    force[k][c][b] = lanes_of(0);
-                    if (!(touching >> c & 1) || b >= contact_unknowns(c))
+                    if (!(touching >> c & 1) || b >= contact_unknowns(c)) {
+                        force[k][c][b] = lanes_of(0);
                         continue;
-                    force[k][c][b] = e.force[c][b];
+                    }
+                    const lanes now = e.force[c][b];
+                    force[k][c][b] = again ? (lanes)(force[k][c][b] + now) : now;
                     report->impulse[c][b] = lanes_fma(part, e.force[c][b], report->impulse[c][b]);
                 }
             EACH (i, 0, SCENE_COORDINATES)
@@ -341,6 +409,16 @@ HOT mask standing_take(contact_set touching, const struct setting *set, const st
     EACH (i, 0, SCENE_ACTUATORS)
         if (servos) /* as forces, of the last place */
             report->torque[i] = choose(decouples, e.torque[i], report->torque[i]);
+    report_torques(report, report->torque);
+    EACH (i, 0, SCENE_ACTUATORS)
+        if (coupled) {
+            const struct standing_course course =
+                standing_course(driven[0][i], driven[1][i], report->torque[i]);
+            lanes most = lanes_max(lanes_abs(driven[0][i]), report->peak_torque);
+            if (mask_any(mask_less(most, lanes_abs(course.b[1]))))
+                most = lanes_max(lanes_min(standing_most(course, most), set->law.limit[i]), most);
+            report->peak_torque = most;
+        }
     end->energy = from->energy, end->kinetic = from->kinetic;
     end->t = from->t + h;
     report->evaluations = lanes_of(STANDING_EVALUATIONS);
