@@ -3,7 +3,7 @@
  */
 #include "best.h"
 #include "linear_limit.h"
-#include "search.h"
+#include "search_plan.h"
 
 #include "runner/base/command.h"
 #include "runner/base/message.h"

@@ -3,6 +3,7 @@
 #include "cma.h"
 #include "elsewhere.h"
 #include "linear_limit.h"
+#include "search_plan.h"
 
 #include "runner/base/message.h"
 #include "runner/base/units.h"
@@ -21,32 +22,6 @@ const char *const search_kinds[TRIAL_LABELS] = {[TRIAL_REFUSED] = "refused",
 #undef NAME_OF
 
 enum { MOST_ALLOWED = 16384 }; /* starts that are held against linear theory */
-
-/* ---- the plan of a search ------------------------------------------------------------------- */
-
-static int lambda_of(const struct search *search, int restart)
-{
-    return cma_default_lambda(search->space.n) << restart;
-}
-
-int search_lambda(const struct search *search)
-{
-    return lambda_of(search, search->scenario->search.restarts);
-}
-
-static size_t stage_generations(const struct search *search, int restart, int stage)
-{
-    const struct scenario *const s = search->scenario;
-    const double all = (double)s->search.candidates / lambda_of(search, restart);
-    const double before = stage > 0 ? round(scenario_search_until(s, stage - 1) * all) : 0;
-    return (size_t)fmax(1, round(scenario_search_until(s, stage) * all) - before);
-}
-
-/* Generations of the last stage without a better candidate after which there is no use in more. */
-static size_t patience(const struct search *search, int restart)
-{
-    return 10 + (size_t)(30 * search->space.n / lambda_of(search, restart));
-}
 
 /* ---- words of the record -------------------------------------------------------------------- */
 
@@ -112,9 +87,9 @@ static bool make_record(struct search *search, const char *text)
     struct tm utc;
     for (int r = 0; r <= s->search.restarts; r++) {
         for (int stage = 0; stage < s->search.stages; stage++) {
-            const size_t generations = stage_generations(search, r, stage);
+            const size_t generations = search_plan_generations(search, r, stage);
             search->generations += generations;
-            search->candidates += generations * (size_t)lambda_of(search, r);
+            search->candidates += generations * (size_t)search_plan_lambda(search, r);
         }
     }
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
@@ -230,44 +205,11 @@ struct order {
     uint64_t starts;
     int which;
 };
-enum { COMPARED = 2 }; /* elsewhere: the first and the chosen one */
 
 static void blank(double *value, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         value[i] = NAN;
-}
-
-/* What will be simulated at most once all generations are through: the best, to choose and to
- * report. */
-static double cases_at_end(const struct search *search)
-{
-    const struct scenario *const s = search->scenario;
-    double elsewhere = 0;
-    for (int e = 0; e < ELSEWHERE_MOST; e++)
-        elsewhere += elsewhere_exists(s, (enum elsewhere)e) ? 1 : 0;
-    const double confirmed = 1 + 2.0 * s->search.stages * (s->search.restarts + 1);
-    const double starts =
-        (double)trials_count(s, TRIALS_CHOICE) + (double)trials_count(s, TRIALS_FRESH);
-    return confirmed * (double)search->trials.circumstances * starts +
-           elsewhere * COMPARED * (double)elsewhere_starts(s);
-}
-
-/* Cases of a stage's generations. */
-static double cases_of_stage(const struct search *search, int restart, int stage)
-{
-    return (double)stage_generations(search, restart, stage) * lambda_of(search, restart) *
-           (double)search->trials.circumstances * (double)search->scenario->search.grow[stage];
-}
-
-/* Cases that are planned from a stage on, that one not counted. */
-static double cases_behind(const struct search *search, int restart, int stage)
-{
-    double cases = cases_at_end(search);
-    for (int r = restart; r <= search->scenario->search.restarts; r++)
-        for (int k = r == restart ? stage + 1 : 0; k < search->scenario->search.stages; k++)
-            cases += cases_of_stage(search, r, k);
-    return cases;
 }
 
 /* Rank 0: tries value[candidates][paths]. */
@@ -294,7 +236,7 @@ static enum trials_end try_all(struct search *search, size_t candidates, const d
 static enum trials_end follow(struct search *search, stance_message *message)
 {
     enum trials_end end = TRIALS_DONE;
-    double ignored[COMPARED];
+    double ignored[SEARCH_COMPARED];
     struct order order;
     for (;;) {
         parallel_broadcast(search->parallel, &order, sizeof order);
@@ -489,7 +431,7 @@ static void note_generation(struct search *search, struct course *at)
 static bool is_over(const struct search *search, const struct course *at, const char **why)
 {
     const bool last = at->stage + 1 == search->scenario->search.stages;
-    const bool stale = last && at->stale >= patience(search, at->restart);
+    const bool stale = last && at->stale >= search_plan_stale(search, at->restart);
     if (cma_stop(at->cma) != CMA_GOES_ON)
         *why = cma_stop_words[cma_stop(at->cma)];
     else if (stale)
@@ -531,13 +473,13 @@ static enum trials_end run_stage(struct search *search, struct course *at, const
 {
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n;
-    const size_t most = stage_generations(search, at->restart, at->stage);
+    const size_t most = search_plan_generations(search, at->restart, at->stage);
     bool over = false;
     at->best = -1;
     at->stale = 0;
     *why = "as many candidates as were asked for";
-    const double of_stage = cases_of_stage(search, at->restart, at->stage),
-                 behind = cases_behind(search, at->restart, at->stage);
+    const double of_stage = search_plan_cases_of_stage(search, at->restart, at->stage),
+                 behind = search_plan_cases_behind(search, at->restart, at->stage);
     for (size_t i = 0; i < most && !over; i++) {
         search->outlook.ahead = behind + of_stage * (double)(most - i) / (double)most;
         if (at->generation >= at->known) {
@@ -571,7 +513,7 @@ static enum trials_end run_beginning(struct search *search, struct course *at, c
         at->best < 0 ? space->first
                      : &search->record.coordinate[(size_t)at->best * (size_t)space->n];
     enum trials_end end = TRIALS_DONE;
-    at->lambda = lambda_of(search, at->restart);
+    at->lambda = search_plan_lambda(search, at->restart);
     at->cma = cma_make(space->n, at->lambda, begin, s->step, space->low, space->high,
                        search->scenario->seed, (uint64_t)at->restart);
     if (!at->cma) {
@@ -634,7 +576,7 @@ static enum trials_end confirm(struct search *search, stance_message *message)
     const size_t size = f->length[SEARCH_CONFIRMED] * (size_t)search->space.n * sizeof(double);
     double *const coordinate = malloc(size);
     search->confirming = true;
-    search->outlook.ahead = cases_at_end(search);
+    search->outlook.ahead = search_plan_cases_at_end(search);
     if (!coordinate) {
         no_memory(message);
         return TRIALS_BROKEN;
@@ -658,8 +600,8 @@ static void find_allowed(struct search *search)
     const uint64_t confirm = search->scenario->search.confirm;
     const uint64_t starts = confirm < MOST_ALLOWED ? confirm : MOST_ALLOWED;
     const size_t n = (size_t)search->space.n, circumstances = search->trials.circumstances;
-    const size_t which[COMPARED] = {0, (size_t)f->chosen};
-    for (int i = 0; i < COMPARED; i++)
+    const size_t which[SEARCH_COMPARED] = {0, (size_t)f->chosen};
+    for (int i = 0; i < SEARCH_COMPARED; i++)
         linear_limit_shares(&search->trials, &f->confirmed_value[which[i] * n], starts,
                             &f->confirmed_allowed[which[i] * circumstances]);
     size_t least;
@@ -672,18 +614,19 @@ static enum trials_end try_elsewhere(struct search *search, stance_message *mess
     struct search_file *const f = &search->record;
     const size_t n = (size_t)search->space.n;
     enum trials_end end = TRIALS_DONE;
-    double value[COMPARED * SCENARIO_MAX_PATHS], share[COMPARED];
+    double value[SEARCH_COMPARED * SCENARIO_MAX_PATHS], share[SEARCH_COMPARED];
     memcpy(value, f->confirmed_value, n * sizeof *value);
     memcpy(value + n, &f->confirmed_value[(size_t)f->chosen * n], n * sizeof *value);
     for (int e = 0; e < ELSEWHERE_MOST && end == TRIALS_DONE; e++) {
-        struct order order = {COMPARED, 0, TRIALS_STARTS + e};
+        struct order order = {SEARCH_COMPARED, 0, TRIALS_STARTS + e};
         if (!elsewhere_exists(search->scenario, (enum elsewhere)e))
             continue;
         parallel_broadcast(search->parallel, &order, sizeof order);
-        parallel_broadcast(search->parallel, value, COMPARED * n * sizeof *value);
-        outlook_begin(&search->outlook, (double)(COMPARED * elsewhere_starts(search->scenario)));
-        end = elsewhere_run(search->scenario, &search->trials, (enum elsewhere)e, COMPARED, value,
-                            share, message);
+        parallel_broadcast(search->parallel, value, SEARCH_COMPARED * n * sizeof *value);
+        outlook_begin(&search->outlook,
+                      (double)(SEARCH_COMPARED * elsewhere_starts(search->scenario)));
+        end = elsewhere_run(search->scenario, &search->trials, (enum elsewhere)e, SEARCH_COMPARED,
+                            value, share, message);
         const size_t k = f->length[SEARCH_ELSEWHERE];
         f->elsewhere[k] = end == TRIALS_DONE ? strdup(elsewhere_name((enum elsewhere)e)) : NULL;
         if (!f->elsewhere[k])

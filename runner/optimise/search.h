@@ -42,9 +42,6 @@ bool search_make(struct search *search, const struct scenario *scenario, const c
                  stance_message *message);
 void search_free(struct search *search);
 
-/* Candidates in a generation, of several beginnings the last. */
-int search_lambda(const struct search *search);
-
 /* Collective, with counters. */
 enum trials_end search_run(struct search *search, stance_message *message);
 
