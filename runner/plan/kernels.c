@@ -174,9 +174,12 @@ static size_t list_checks(const struct plan *plan, stance_case *check, double *s
             check[count].steps = CHECK_STEPS;
         count++;
     }
-    for (size_t own = count; own > 0 && count < CHECKS; count++) {
-        check[count] = check[(count - own) % own];
-        disturb(plan->scenario->scene, count - own, &check[count]);
+    const size_t own = count;
+    if (own == 0)
+        return 0;
+    for (uint64_t k = 0; count < CHECKS; k++, count++) {
+        check[count] = check[k % own];
+        disturb(plan->scenario->scene, k, &check[count]);
     }
     return count;
 }
