@@ -126,7 +126,7 @@ static void pairs_are_exact(void **state)
         lane_gather(&rule, op, free, active[1] ? 3 : 1, 0, &problem);
         lane_choose_none(&best);
         lane_enumerate(&problem, &best);
-        lane_clip(&problem, best.r);
+        lane_clip(&problem, best.u, best.r);
         for (int row = 0; row < problem.rows; row++)
             alone[problem.contact[row]][problem.axis[row]] = best.r[row];
         const bool valid = best.violation <= problem.tolerance;

@@ -270,14 +270,12 @@ static double compiled_share(const char *isa)
 struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *plan)
 {
     const struct parallel alone = parallel_alone();
-    struct kernels_outlook outlook = {0, 1};
+    struct kernels_outlook outlook = {0, 1, true};
     stance_message ignored;
-    bool brief;
     kernels->count = 0;
     if (!plan->scenario->scene->mechanism ||
         take(kernels, plan, NULL, &alone, (struct objects_request){.quiet = true, .looks = true},
-             &brief, &ignored) != EXIT_DONE ||
-        brief)
+             &outlook.brief, &ignored) != EXIT_DONE)
         return outlook;
     for (size_t i = 0; i < kernels->count; i++)
         if (kernels->object[i].origin == OBJECT_MISSING) {

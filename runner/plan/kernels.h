@@ -30,11 +30,12 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
                             const struct kernels_choice *choice, const struct parallel *parallel,
                             bool quiet, stance_message *message);
 /* What `run` would have before it computes: `kernels` are those that there are now, from the cache
- * or built in; nothing is compiled, touched or said. Of those that run would compile first, about
- * how many seconds that takes (0: it compiles none) and what they take of the time of those that
- * compute here. */
+ * or built in; nothing is compiled, touched or said. Of those that are not there but can be
+ * compiled, about how many seconds that takes (0: there are none) and what they take of the time of
+ * those that compute here; brief: so little is to be computed that run compiles none. */
 struct kernels_outlook {
     double compiling, share;
+    bool brief;
 };
 struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *plan);
 /* "avx2", "avx512, scalar": what the plan's methods compute with. */

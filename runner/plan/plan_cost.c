@@ -43,12 +43,13 @@ struct tried {
 
 struct trial {
     struct tried *tried;
-    size_t which[TRIED]; /* in order of running */
-    double per_step;     /* s, of the last round */
-    double until;        /* of clock_seconds() */
+    size_t which[TRIED];   /* those that go on, spread wherever it is cut ... */
+    size_t order[TRIED];   /* ... and in order of running, by method */
+    double seconds, steps; /* of the last round */
+    double until;          /* of clock_seconds() */
 };
 
-/* Cases first ... first + count of which[], and again from the first on until lanes are filled. */
+/* Cases first ... first + count of order[], and again from the first on until lanes are filled. */
 struct lane_feed {
     struct trial *trial;
     size_t first, count, fed, most;
@@ -60,7 +61,7 @@ static bool feed_next(void *context, const stance_case **c, stance_result **resu
     if (feed->fed == feed->most)
         return false;
     struct tried *const t =
-        &feed->trial->tried[feed->trial->which[feed->first + feed->fed % feed->count]];
+        &feed->trial->tried[feed->trial->order[feed->first + feed->fed % feed->count]];
     *c = &t->input;
     *result = feed->fed < feed->count ? &t->result : &t->again;
     feed->fed++;
@@ -78,19 +79,19 @@ static bool feed_leave(void *context)
     return clock_seconds() > feed->trial->until;
 }
 
-/* Cases of one method, which[first ... first + count), up to `cap` steps. Adds to *more what they
+/* Cases of one method, order[first ... first + count), up to `cap` steps. Adds to *more what they
  * took beyond what they did before. false: time was up. */
 static bool run_method(const struct plan *plan, struct trial *trial, size_t first, size_t count,
                        int64_t cap, double *more)
 {
-    const int method = trial->tried[trial->which[first]].method;
+    const int method = trial->tried[trial->order[first]].method;
     const stance_kernel *const kernel =
         instruction_set_kernel(plan->scenario->scene, stance_methods()[method]);
     const size_t lanes = (size_t)(kernel->lanes < WIDEST ? kernel->lanes : WIDEST);
     struct lane_feed feed = {trial, first, count, 0, (count + lanes - 1) / lanes * lanes};
     double steps = 0;
     for (size_t i = first; i < first + count; i++) {
-        struct tried *const t = &trial->tried[trial->which[i]];
+        struct tried *const t = &trial->tried[trial->order[i]];
         t->input.steps = t->asked < cap ? t->asked : cap;
     }
     const double begin = processor_seconds();
@@ -98,10 +99,11 @@ static bool run_method(const struct plan *plan, struct trial *trial, size_t firs
         return false;
     const double seconds = processor_seconds() - begin;
     for (size_t k = 0; k < feed.most; k++)
-        steps += (double)trial->tried[trial->which[first + k % count]].result.steps;
-    trial->per_step = steps > 0 ? seconds / steps : trial->per_step;
+        steps += (double)trial->tried[trial->order[first + k % count]].result.steps;
+    trial->seconds += seconds;
+    trial->steps += steps;
     for (size_t i = first; i < first + count; i++) {
-        struct tried *const t = &trial->tried[trial->which[i]];
+        struct tried *const t = &trial->tried[trial->order[i]];
         /* One that ends where it begins takes no step, but some time all the same. */
         const double took =
             steps > 0 ? seconds * (double)t->result.steps / steps : seconds / (double)feed.most;
@@ -115,24 +117,31 @@ static bool run_method(const struct plan *plan, struct trial *trial, size_t firs
 static bool run_round(const struct plan *plan, struct trial *trial, size_t count, int64_t cap,
                       double *more)
 {
-    *more = 0;
-    for (size_t i = 1; i < count; i++) /* stable: the order stays spread */
-        for (size_t k = i; k > 0 && trial->tried[trial->which[k]].method <
-                                        trial->tried[trial->which[k - 1]].method;
+    *more = trial->seconds = trial->steps = 0;
+    memcpy(trial->order, trial->which, count * sizeof *trial->order);
+    for (size_t i = 1; i < count; i++)
+        for (size_t k = i; k > 0 && trial->tried[trial->order[k]].method <
+                                        trial->tried[trial->order[k - 1]].method;
              k--) {
-            const size_t other = trial->which[k];
-            trial->which[k] = trial->which[k - 1];
-            trial->which[k - 1] = other;
+            const size_t other = trial->order[k];
+            trial->order[k] = trial->order[k - 1];
+            trial->order[k - 1] = other;
         }
     for (size_t first = 0, n; first < count; first += n) {
         n = 1;
-        while (first + n < count && trial->tried[trial->which[first + n]].method ==
-                                        trial->tried[trial->which[first]].method)
+        while (first + n < count && trial->tried[trial->order[first + n]].method ==
+                                        trial->tried[trial->order[first]].method)
             n++;
         if (!run_method(plan, trial, first, n, cap, more))
             return false;
     }
     return true;
+}
+
+/* s, of the last round. */
+static double per_step(const struct trial *trial)
+{
+    return trial->steps > 0 ? trial->seconds / trial->steps : 0;
 }
 
 static bool is_over(const struct tried *t)
@@ -178,7 +187,7 @@ static size_t affordable(const struct trial *trial, size_t left, double seconds,
     double longest = 0;
     for (size_t i = 0; i < left; i++)
         longest = fmax(longest, (double)trial->tried[trial->which[i]].asked);
-    const double all = fmax(2 * longest - (double)cap / 2, (double)cap) * trial->per_step;
+    const double all = fmax(2 * longest - (double)cap / 2, (double)cap) * per_step(trial);
     const double most = all > 0 ? seconds / all : INFINITY;
     return most >= (double)left ? left
            : most < WIDEST      ? (left < WIDEST ? left : WIDEST)
@@ -201,7 +210,7 @@ double plan_cost(const struct plan *plan, double budget, bool *bound)
     for (int64_t cap = SHORTEST; left > 0; cap *= 2) {
         const double remains = budget - (clock_seconds() - start);
         const size_t count = cap == SHORTEST ? left : affordable(&trial, left, remains, cap);
-        const bool fits = cap == SHORTEST || (double)count * (double)cap * trial.per_step <
+        const bool fits = cap == SHORTEST || (double)count * (double)cap * per_step(&trial) <
                                                  trial.until - clock_seconds();
         if (!fits || !run_round(plan, &trial, count, cap, &more)) {
             if (cap == SHORTEST)
@@ -209,7 +218,8 @@ double plan_cost(const struct plan *plan, double budget, bool *bound)
             *bound = true;
             for (size_t i = 0; i < left; i++) {
                 const struct tried *const t = &trial.tried[trial.which[i]];
-                mean += share / (double)left * fmax(0, (double)t->asked * trial.per_step - t->took);
+                mean +=
+                    share / (double)left * fmax(0, (double)t->asked * per_step(&trial) - t->took);
             }
             break;
         }

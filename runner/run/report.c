@@ -19,6 +19,7 @@ struct estimate {
     double seconds; /* on one rank; negative: no case can be tried, NAN: these take too long */
     bool bound;
     double compiling; /* s that run needs first, for kernels that it compiles; 0: it does not */
+    double searching; /* s on one rank that a search takes, as `seconds` */
     double capture;   /* s on one rank for the captured sets; 0: none is asked for, NAN: unknown */
     uint64_t coarse;  /* points of the coarse lattice; 0: the map is not refined */
     double probes;    /* expected number beyond these */
@@ -28,14 +29,19 @@ struct estimate {
 static void measure(const struct plan *plan, struct estimate *e)
 {
     struct kernels *const kernels = calloc(1, sizeof *kernels);
-    struct kernels_outlook outlook = {0, 1};
+    struct kernels_outlook outlook = {0, 1, true};
     if (kernels)
         outlook = kernels_look(kernels, plan);
-    e->seconds = plan_cost(plan, PLAN_PATIENCE_COST, &e->bound);
-    e->seconds *= outlook.share * (double)plan_share(plan).count / (double)plan->rows;
-    e->seconds += e->seconds >= 0 ? plan->design_seconds : 0;
-    e->capture = outlook.share * plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
-    e->compiling = outlook.compiling;
+    const double share = outlook.brief ? 1 : outlook.share;
+    const double all = plan_cost(plan, PLAN_PATIENCE_COST, &e->bound);
+    e->seconds = all * share * (double)plan_share(plan).count / (double)plan->rows;
+    e->seconds += all >= 0 ? plan->design_seconds : 0;
+    e->capture = share * plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
+    e->compiling = outlook.brief ? 0 : outlook.compiling;
+    if (plan->scenario->search.given) /* a search always compiles */
+        e->searching =
+            all * outlook.share * scenario_search_cases(plan->scenario) / (double)plan->rows +
+            outlook.compiling;
     if (kernels)
         kernels_give_back(kernels);
     free(kernels);
@@ -306,9 +312,8 @@ static void report_search(const struct scenario *s, const struct estimate *e, in
     char text[40] = "";
     if (!s->search.given)
         return;
-    const double cases = scenario_search_cases(s);
     if (e->seconds >= 0)
-        text_of_seconds(text, sizeof text, e->seconds * cases / (double)s->cases / ranks);
+        text_of_seconds(text, sizeof text, e->searching / ranks);
     fprintf(out,
             "optimise    %d numbers, %" PRIu64 " candidates from %" PRIu64 " to %" PRIu64
             " starts, %" PRIu64 " fresh ones%s%s: stance optimise %s\n",
