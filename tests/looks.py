@@ -84,7 +84,7 @@ def sizes():
     assert all("Serif" in f for f in text_of("pdffonts", "sized/map-map.pdf").splitlines()[2:])
     is_whole("sized/map-curve.pdf", 120, 90)
     printed, said = call("plot", "map.h5", "--size", "60x40", "--picture", "map", "-o", "small.pdf", code=3)
-    assert not printed and len(said) == 1 and re.match(r"the picture needs \d+ x \d+ mm with text of this size$", said[0]), said
+    assert not printed and len(said) == 1 and re.match(r"the picture needs \d+ x \d+ mm with text of this size: a larger --size, or shorter --labels$", said[0]), said
     width, height = re.findall(r"\d+", said[0])
     call("plot", "map.h5", "--size", f"{width}x{height}", "--picture", "map", "-o", "small.pdf")
     is_whole("small.pdf", float(width), float(height))

@@ -172,8 +172,10 @@ static size_t look(const struct objects_request *request, const struct cache *ca
         struct making *const m = &making[i];
         char name[CACHE_NAME];
         snprintf(name, sizeof name, "%.*s", stem ? (int)m->stem : CACHE_NAME, m->name);
-        if (m->image.bytes || cache_find(cache, name, stem, &m->image))
+        if (m->image.bytes || cache_find(cache, name, stem, &m->image)) {
+            m->origin = OBJECT_KEPT; /* another job may have made it since the last look */
             continue;
+        }
         m->origin =
             !request->again && cache_refused(cache, m->name, why) ? OBJECT_REFUSED : OBJECT_MISSING;
         if (m->origin == OBJECT_MISSING)

@@ -420,6 +420,7 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
 {
     mask todo = run, good = MASK_NONE, brought[CONTACTS], known[CONTACTS];
     lanes cost = lanes_of(0);
+    report_clear(report); /* in lanes that do not run nothing was done */
     EACH (c, 0, SCENE_CONTACTS)
         brought[c] = MASK_NONE;
     for (int round = 0; round <= SCENE_CONTACTS && mask_any(todo); round++) {
@@ -428,7 +429,7 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
         const mask there = step_once(corner, set, from, torque, h, todo, coupled, freeze_after,
                                      brought, to, &part);
         cost += choose(todo, part.iterations, lanes_of(0));
-        choose_all(round == 0 ? LANES_ALL : there, &part, report, sizeof part);
+        choose_all(round == 0 ? todo : there, &part, report, sizeof part);
         good |= there;
         todo = MASK_NONE;
         EACH (c, 0, SCENE_CONTACTS)
