@@ -54,7 +54,8 @@ def main():
     page, *heading = sys.argv[1 + calm:]
     commands = told(page, " ".join(heading))
     for number, (command, lines) in enumerate(commands, 1):
-        done = subprocess.run(["bash", "-c", command], stdin=subprocess.DEVNULL, text=True,
+        script = command + "END\n" if command.startswith("cat >") else command
+        done = subprocess.run(["bash", "-c", script], stdin=subprocess.DEVNULL, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
         missing = holds(lines, done.stdout)
         differs = done.returncode == 1 and " compare " in command
