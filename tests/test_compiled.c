@@ -2,8 +2,8 @@
  * the structure as they go compute: thrown, and let go from rest on each support.
  *
  * test_compiled FIRST COUNT CASES: mechanisms FIRST ... FIRST + COUNT - 1, CASES each; method and
- * instruction set go round, so that each pair has its share. Without arguments a share of that, or
- * with STANCE_TEST_LONG all pairs.
+ * instruction set go round, so that each pair has its share. Without arguments two mechanisms, or
+ * with STANCE_TEST_LONG twenty and all pairs.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -115,7 +115,7 @@ static long compare_mechanism(int tree, const char *method, const char *isa, int
     return differ;
 }
 
-static int first_mechanism = 1, mechanisms = 4, cases_each = 100;
+static int first_mechanism = 1, mechanisms = 2, cases_each = 200;
 
 static void random_mechanisms(void **state)
 {
@@ -141,6 +141,8 @@ static void random_mechanisms(void **state)
 int main(int argc, char **argv)
 {
     char cache[] = "/tmp/stance-test-XXXXXX", command[60];
+    if (getenv("STANCE_TEST_LONG"))
+        mechanisms = 20;
     if (argc > 3) {
         first_mechanism = atoi(argv[1]), mechanisms = atoi(argv[2]), cases_each = atoi(argv[3]);
         if (cases_each > MOST_CASES)

@@ -328,7 +328,7 @@ static enum event_result event_locate(struct advance *a, struct event_point *low
             result = event_step(a, target, &to, &guess);
             if (result == EVENT_FOUND)
                 *high = to;
-            else
+            else if (result == EVENT_ON)
                 event_pass(a, &to, low);
         }
         if (result == EVENT_FAILED)

@@ -80,7 +80,7 @@ bool axis_check_points(struct axis_reader *a)
     const size_t paths = (size_t)axis->paths;
     const double largest = fmax(fabs(axis->from), fabs(axis->to)),
                  step = fabs(axis->to - axis->from) / (double)axis->count;
-    double before[SCENARIO_MAX_PATHS], here[SCENARIO_MAX_PATHS];
+    double before[SCENARIO_MAX_PATHS] = {0}, here[SCENARIO_MAX_PATHS] = {0};
     if (!axis->value && step > 8 * DBL_EPSILON * largest)
         return true;
     for (size_t i = 0; i < axis->count; i++, memcpy(before, here, sizeof here)) {
