@@ -24,7 +24,7 @@
 #include <time.h>
 
 enum { TRIED = PLAN_COST_CASES, WIDEST = 8 };
-#define SHORTEST 128 /* steps of the first round */
+#define SHORTEST 16 /* steps of the first round */
 
 static double processor_seconds(void)
 {
