@@ -1,9 +1,9 @@
 /* test_compiled - kernels compiled for random mechanisms compute, to the bit, what those that read
  * the structure as they go compute: thrown, and let go from rest on each support.
  *
- * test_compiled FIRST COUNT CASES: mechanisms FIRST ... FIRST + COUNT - 1, CASES each; method and
- * instruction set go round, so that each pair has its share. Without arguments two mechanisms, or
- * with STANCE_TEST_LONG twenty and all pairs.
+ * test_compiled FIRST COUNT CASES [METHOD ISA]: mechanisms FIRST ... FIRST + COUNT - 1, CASES each;
+ * method and instruction set go round, so that each pair has its share. Without arguments two
+ * mechanisms, or with STANCE_TEST_LONG twenty and all pairs.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -115,6 +115,7 @@ static long compare_mechanism(int tree, const char *method, const char *isa, int
     return differ;
 }
 
+static const char *only_method, *only_isa; /* NULL: they go round */
 static int first_mechanism = 1, mechanisms = 2, cases_each = 200;
 
 static void random_mechanisms(void **state)
@@ -127,8 +128,9 @@ static void random_mechanisms(void **state)
     const bool all = getenv("STANCE_TEST_LONG") != NULL;
     for (int tree = first_mechanism; tree < first_mechanism + mechanisms; tree++, turn++) {
         if (!all)
-            differ += compare_mechanism(tree, method_name[turn % METHODS],
-                                        stance_isa(turn / METHODS % isas), cases_each);
+            differ += compare_mechanism(
+                tree, only_method ? only_method : method_name[turn % METHODS],
+                only_isa ? only_isa : stance_isa(turn / METHODS % isas), cases_each);
         for (int k = 0; all && k < METHODS * isas; k++)
             differ += compare_mechanism(tree, method_name[k % METHODS], stance_isa(k / METHODS),
                                         cases_each);
@@ -148,6 +150,8 @@ int main(int argc, char **argv)
         if (cases_each > MOST_CASES)
             cases_each = MOST_CASES;
     }
+    if (argc > 5)
+        only_method = argv[4], only_isa = argv[5];
     if (!mkdtemp(cache))
         return EXIT_FAILURE;
     setenv("STANCE_CACHE", cache, 1);

@@ -48,13 +48,13 @@ COLD mask fixed_step(const struct setting *set, const struct motion *from, const
 {
     mask good = take_step(set, from, torque, h, run, coupled, freeze_after, to, report);
     mask limited = MASK_NONE;
-    for (int i = 0; i < SCENE_ACTUATORS; i++)
+    for (int i = 0; i < OWN_ACTUATORS; i++)
         limited |= mask_less(set->law.limit[i], lanes_of(INFINITY));
     mask failed = run & limited & LANES_NOT(good);
-    if (SCENE_ACTUATORS == 0 || !coupled || !mask_any(failed))
+    if (OWN_ACTUATORS == 0 || !coupled || !mask_any(failed))
         return good;
     int ways = 1;
-    EACH (i, 0, SCENE_ACTUATORS)
+    EACH (i, 0, OWN_ACTUATORS)
         ways *= 3;
     for (int way = 0; way < ways && mask_any(failed); way++) {
         static const int ends[3] = {0, 1, -1};

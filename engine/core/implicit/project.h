@@ -443,7 +443,7 @@ static inline mask project_far(const struct setting *set, const struct motion *f
     const mask near = project_position(set, from, h, touching, true, run, it, energy);
     project_inertia(set, impact, it, response);
     mask where = run; /* a lane in which nothing is left to do has done with it */
-    for (int round = 0; round < 2 + SCENE_CONTACTS; round++) {
+    for (int round = 0; round < 2 + OWN_CONTACTS; round++) {
         mask falls[CONTACTS], turns[CONTACTS], any = MASK_NONE;
         grip_factor(set, &it->end, touching, (const lanes(*)[2][SCENE_COORDINATES])response, &g);
         project_along(set, (const lanes(*)[2])rebound, touching, &g,

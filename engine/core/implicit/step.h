@@ -77,12 +77,14 @@ static inline mask step_gains(const struct setting *set, const struct motion *fr
            mask_less(IMPACT_ROUNDING * (from->kinetic + to->kinetic), report->impact_energy);
 }
 
-/* What came of a share of the restitution: see impact.h. */
-static inline struct impact_tried step_tried(const struct setting *set,
+/* What came of a share of the restitution: see impact.h. A step that did not converge (not `good`)
+ * has no mode, and gains without end: what its last iterate was may depend on other lanes. */
+static inline struct impact_tried step_tried(const struct setting *set, mask good,
                                              const struct step_report *report)
 {
-    return (struct impact_tried){report->impact_energy,
-                                 impact_mode(set->friction, (const lanes(*)[2])report->impulse)};
+    const lanes mode = impact_mode(set->friction, (const lanes(*)[2])report->impulse);
+    return (struct impact_tried){choose(good, report->impact_energy, lanes_of(INFINITY)),
+                                 choose(good, mode, lanes_of(-1))};
 }
 
 /* Lanes where an iterate with frozen geometry obeys the contact laws. */
@@ -423,7 +425,7 @@ COLD mask step_solve(const int *corner, const struct setting *set, const struct 
     report_clear(report); /* in lanes that do not run nothing was done */
     EACH (c, 0, SCENE_CONTACTS)
         brought[c] = MASK_NONE;
-    for (int round = 0; round <= SCENE_CONTACTS && mask_any(todo); round++) {
+    for (int round = 0; round <= OWN_CONTACTS && mask_any(todo); round++) {
         struct step_report part;
         memcpy(known, brought, sizeof known);
         const mask there = step_once(corner, set, from, torque, h, todo, coupled, freeze_after,
@@ -445,7 +447,7 @@ COLD mask step_limit(const int *corner, const struct setting *set, const struct 
                      const lanes *torque, lanes h, mask gains, bool coupled, int freeze_after,
                      struct motion *to, struct step_report *report)
 {
-    struct impact_tried said = step_tried(set, report);
+    struct impact_tried said = step_tried(set, gains, report);
     struct impact_share share = impact_share_begin(said);
     struct setting law = *set;
     lanes cost = report->iterations;
@@ -459,7 +461,7 @@ COLD mask step_limit(const int *corner, const struct setting *set, const struct 
             step_solve(corner, &law, from, torque, h, open, coupled, freeze_after, &next, &part);
         const mask more =
             LANES_NOT(good) | (step_gains(set, from, &next, &part) & mask_less(lanes_of(0), tried));
-        said = step_tried(set, &part);
+        said = step_tried(set, good, &part);
         const mask fits = impact_share_tell(&share, open, more, &said);
         cost += choose(open, part.iterations, lanes_of(0));
         choose_all(fits, &next, to, sizeof next);
