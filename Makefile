@@ -53,6 +53,8 @@ endif
 # gcc infers worse how long numbers are in instrumented code.
 ALLFLAGS = -I. $(STRICT) $(WARNINGS) $(SANITIZE) $(if $(SANITIZE),-Wno-format-truncation)
 
+# Of what is not simulated with, programs take the functions that they call.
+SECTIONS = -ffunction-sections -fdata-sections
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
 SCENES  = ball block rod biped
 # Of mechanisms: the structure is read at run time. Others are compiled on demand.
@@ -64,7 +66,12 @@ MACHINE := $(shell uname -m)
 ISAS_x86_64  = sse2 scalar avx2 avx512
 ISAS_aarch64 = scalar neon
 ISAS_wasm32  = wasm128
-ISAS    := $(or $(ISAS_$(MACHINE)),scalar)
+every_isa   := $(or $(ISAS_$(MACHINE)),scalar)
+# Built: one lane, and the most that this processor has. `make ISAS=all` is for other processors, too.
+processor   := $(if $(filter x86_64,$(MACHINE)),$(shell grep -m1 -o 'avx512dq' /proc/cpuinfo || grep -m1 -ow 'avx2' /proc/cpuinfo || echo sse2))
+own_isa     := $(if $(processor),$(processor:avx512dq=avx512),$(lastword $(every_isa)))
+ISAS        ?= scalar $(own_isa)
+override ISAS := $(or $(filter $(ISAS:all=%),$(every_isa)),$(every_isa))
 # Where the structure is read at run time, one lane is nearly as fast as many; not where one lane
 # calls the C library for each multiply-add.
 RUNTIME_ISA = $(or $(filter wasm128,$(ISAS)),scalar)
@@ -94,20 +101,29 @@ kernel_lists = $(isa_list) -DSTANCE_METHOD_LIST='$(foreach m,$(METHODS) $(SCALAR
     -DSTANCE_KERNEL_LIST='$(foreach k,$(kernels),KERNEL($(subst -,$(comma),$(k))))' \
     -DSTANCE_SCALAR_KERNEL_LIST='$(foreach k,$(scalar_kernels),KERNEL($(subst -,$(comma),$(k))))'
 
+# Objects are made anew when the flags change, not with the rest of this file.
+flags := $(CC) $(KERNEL_CFLAGS) $(CFLAGS) $(ALLFLAGS) $(SECTIONS) $(kernel_warnings) $(PROGRAM_CFLAGS) $(foreach i,$(every_isa),$(isa_flags_$i))
+$(BUILD)/flags: FORCE
+	@mkdir -p $(@D); echo '$(flags)' | cmp -s - $@ || echo '$(flags)' > $@
+
 # Where pages are made, see below.
 WEB = build/web
 
 # ---- the program ---------------------------------------------------------------------------------
 program_sources := $(wildcard runner/*.c runner/*/*.c analysis/*/*.c)
 program_objects := $(program_sources:%.c=$(BUILD)/%.o)
-shared_objects   = $(filter-out $(BUILD)/runner/main.o,$(program_objects))
+# What test programs link: what they use of the program, and nothing that changes with the revision, so that
+# they are the same files, and need not run again, as long as nothing that they use has changed.
+product          = $(BUILD)/tests/build_info.o $(BUILD)/libproduct.a $(archives)
+TEST_CFLAGS      = $(if $(SANITIZE),$(CFLAGS),-O1)
+test_ldflags     = -Wl,--gc-sections $(if $(SANITIZE),,-Wl,--strip-debug)
 
 REVISION := $(shell git describe --always --dirty --abbrev=12 2>/dev/null || echo unknown)
 BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon golden-web web web-page test test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
+.PHONY: all help packages demo golden golden-neon golden-web web web-page test check check-programs check-scripts check-long test-scripts test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(archives)
@@ -116,11 +132,12 @@ $(PROGRAM): $(program_objects) $(archives)
 
 $(BUILD)/libstance.a: $(engine_objects)
 $(BUILD)/libstance_control.a: $(control_objects)
+$(BUILD)/libproduct.a: $(filter-out %/main.o %/build_info.o,$(program_objects))
 $(BUILD)/%.a:
 	$(call QUIET,ar,$@)rm -f $@ && $(AR) rcs $@ $^
 
 define kernel_rule
-$(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c Makefile
+$(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c $(BUILD)/flags
 	@mkdir -p $$(@D)
 	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(kernel_warnings) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES)),$(1)),-DSTANCE_DESCRIBE_METHOD) \
 	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
@@ -131,15 +148,15 @@ $(foreach m,$(METHODS),$(eval $(call kernel_rule,$(RUNTIME),$(m),$(RUNTIME_ISA),
 $(foreach s,$(SCENES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),\
 $(eval $(call kernel_rule,$(s),$(m),scalar,$(scalar_method_flags)))))
 
-$(BUILD)/engine/%.o: engine/%.c Makefile
+$(BUILD)/engine/%.o: engine/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(EXTRA) $(LIBRARY_CFLAGS) -MMD -MP -c -o $@ $<
-$(BUILD)/runner/%.o: runner/%.c Makefile
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(SECTIONS) $(ALLFLAGS) $(EXTRA) $(LIBRARY_CFLAGS) -MMD -MP -c -o $@ $<
+$(BUILD)/runner/%.o: runner/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
-$(BUILD)/analysis/%.o: analysis/%.c Makefile
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(SECTIONS) $(ALLFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
+$(BUILD)/analysis/%.o: analysis/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(SECTIONS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
 # Pictures' scripts, embedded in the objects of their names; those that all share in gnuplot.o.
 scripts := $(wildcard analysis/*/plot_*.gp)
 $(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(scripts:%.gp=$(b)/%.o): $(b)/%.o: %.gp) \
@@ -181,21 +198,24 @@ test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 peer_programs = $(BUILD)/tests/peer_self $(if $(MUJOCO),$(BUILD)/tests/peer_mujoco) $(if $(SICONOS),$(BUILD)/tests/peer_siconos)
 
 # What whole-program tests call.
-other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers $(peer_programs)
+other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers
 
-$(BUILD)/tests/%: tests/%.c $(shared_objects) $(archives)
+$(BUILD)/tests/%: tests/%.c $(product)
 	@mkdir -p $(@D)
-	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(kernel_warnings) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
-	    $(shared_objects) $(archives) $(LDFLAGS) $(LIBS) -lcmocka
+	$(call QUIET,cc,$@)$(CC) $(TEST_CFLAGS) $(ALLFLAGS) $(kernel_warnings) $(PROGRAM_CFLAGS) $(isa_list) $(EXTRA) -MMD -MP -MF $@.d -o $@ $< $(test_objects) \
+	    $(product) $(test_ldflags) $(LDFLAGS) $(LIBS) -lcmocka
+$(BUILD)/tests/build_info.o: runner/store/build_info.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
 
 # Each instruction set's fused multiply-adds, for test_fma.
 fused_objects = $(ISAS:%=$(BUILD)/tests/lanes_fma-%.o)
-$(BUILD)/tests/lanes_fma-%.o: tests/lanes_fma.c Makefile
+$(BUILD)/tests/lanes_fma-%.o: tests/lanes_fma.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(isa_list) $(isa_flags_$*) -DSTANCE_ISA=$* -MMD -MP -c -o $@ $<
 $(BUILD)/tests/test_fma: $(fused_objects) $(BUILD)/kernels
 # What fuzzing calls, here with what it found.
-$(BUILD)/tests/fuzz_scenario.o: tests/fuzz_scenario.c Makefile
+$(BUILD)/tests/fuzz_scenario.o: tests/fuzz_scenario.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) $(PROGRAM_CFLAGS) -MMD -MP -c -o $@ $<
 $(BUILD)/tests/test_fuzz: $(BUILD)/tests/fuzz_scenario.o
@@ -206,7 +226,7 @@ $(BUILD)/tests/test_fma: test_objects = $(fused_objects)
 doubting         = $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(s)-$(m)))
 doubting_objects = $(doubting:%=$(BUILD)/tests/doubting-%.o)
 define doubting_rule
-$(BUILD)/tests/doubting-$(1)-$(2).o: engine/methods/$(2).c Makefile
+$(BUILD)/tests/doubting-$(1)-$(2).o: engine/methods/$(2).c $(BUILD)/flags
 	@mkdir -p $$(@D)
 	$$(call QUIET,cc,$$@)$$(CC) -O1 $$(ALLFLAGS) $$(kernel_warnings) $(isa_flags_scalar) -DSTANCE_DOUBT -DSTANCE_SCENE=$(1) -DSTANCE_ISA=doubting \
 	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
@@ -259,7 +279,7 @@ engines = $(patsubst %,$(WEB)/engine-%.z,$(SCENES) $(RUNTIME))
 ifeq ($(BUILD),$(WEB))
 page_objects = $(page_sources:%.c=$(WEB)/%.o)
 define engine_rule
-$(WEB)/kernels-$(1).o: engine/kernels.c Makefile
+$(WEB)/kernels-$(1).o: engine/kernels.c $$(BUILD)/flags
 	$$(call QUIET,cc,$$@)$$(CC) $$(CFLAGS) $$(ALLFLAGS) $$(isa_list) -DSTANCE_METHOD_LIST='$$(foreach m,$$(METHODS) event_driven,METHOD($$(m)))' \
 	    -DSTANCE_KERNEL_LIST='$$(foreach m,$$(METHODS),KERNEL($(1),$$(m),$(2)))' -DSTANCE_SCALAR_KERNEL_LIST= -c -o $$@ $$<
 $(WEB)/engine-$(1).wasm: $(WEB)/kernels-$(1).o $$(page_objects) $(WEB)/libstance.a
@@ -300,7 +320,7 @@ $(BUILD)/simulators: FORCE
 bench_programs = $(BUILD)/tests/bench_scalar $(BUILD)/tests/bench_tables $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit)
 $(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit: LIBS += $(MUJOCO)
 # Of other simulators; they need nothing of ours but headers.
-$(BUILD)/tests/peer_mujoco: tests/peer_mujoco.c Makefile
+$(BUILD)/tests/peer_mujoco: tests/peer_mujoco.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) -MMD -MP -MF $@.d -o $@ $< $(LDFLAGS) $(MUJOCO) -lm
 $(BUILD)/tests/peer_siconos: tests/peer_siconos.cpp tests/peer.h
@@ -309,13 +329,13 @@ $(BUILD)/tests/peer_siconos: tests/peer_siconos.cpp tests/peer.h
 	    -lsiconos_kernel -lsiconos_numerics
 # By hand as fast as the compiler makes it: the instructions of the one-lane kernel, contracted.
 $(BUILD)/tests/bench_scalar: BENCH_FLAGS = $(filter -m%,$(isa_flags_scalar)) -ffp-contract=fast
-$(BUILD)/tests/bench_%: tests/bench_%.c $(shared_objects) $(archives)
+$(BUILD)/tests/bench_%: tests/bench_%.c $(product)
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(BENCH_FLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< \
-	    $(test_objects) $(shared_objects) $(archives) $(LDFLAGS) $(LIBS)
+	    $(test_objects) $(product) $(test_ldflags) $(LDFLAGS) $(LIBS)
 
 # Large jobs on a simulated clock.
-$(BUILD)/tests/simulate.o: tests/simulate.c Makefile
+$(BUILD)/tests/simulate.o: tests/simulate.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call QUIET,cc,$@)$(CC) $(CFLAGS) $(ALLFLAGS) -MMD -MP -c -o $@ $<
 $(BUILD)/tests/bench_schedule $(BUILD)/tests/test_schedule: $(BUILD)/tests/simulate.o
@@ -339,16 +359,18 @@ test-web: packages-pages
 	$(MAKE) golden
 	@$(TEST_ENVIRONMENT) GOLDEN_CASES=$(or $(GOLDEN_CASES),500) bash tests/whole_machines.sh
 
-# Pages are tested where they can be made: not without npm's registry.
+# A share of every test; every script (also those with a line "# long") for every instruction set; everything at
+# length. Pages are tested where they can be made: not without npm's registry.
 test: packages-test
-	+@$(MAKE) packages-pages && $(MAKE) web-page || echo 'test: pages cannot be made here: their tests are skipped' >&2
 	$(MAKE) check
-check: $(PROGRAM) $(test_programs) $(other_programs) fuzz-programs
+check-programs: $(PROGRAM) $(test_programs) $(other_programs)
+check: check-programs
 	@$(TEST_ENVIRONMENT) bash tests/run.sh
-test-long: packages-test packages-pages
-	$(MAKE) web-page
-	$(MAKE) $(PROGRAM) $(test_programs) $(other_programs) fuzz-programs
-	@$(TEST_ENVIRONMENT) STANCE_TEST_LONG=1 bash tests/run.sh
+test-scripts test-long: test-%: packages-test
+	+@$(MAKE) packages-pages && $(MAKE) web-page || echo 'test-$*: pages cannot be made here: their tests are skipped' >&2
+	$(MAKE) ISAS=all check-$*
+check-scripts check-long: check-%: check-programs $(peer_programs) fuzz-programs
+	@$(TEST_ENVIRONMENT) STANCE_TEST_$(if $(filter long,$*),LONG,SCRIPTS)=1 bash tests/run.sh
 
 # Numbers that depend on the neighbours: HUNT_CASES of each kind for every method of the biped, a core
 # each, for an hour or so; a share is in `test`.
@@ -389,7 +411,7 @@ fuzz_library := $(filter /%,$(shell $(FUZZ_CC) -print-file-name=libclang_rt.asan
 fuzz_wrapped  = sandbox sandbox_limit gnuplot_end parallel_start parallel_finish crash_watch
 fuzz_programs = $(if $(fuzz_library),$(FUZZ)/fuzz_scenario $(FUZZ)/fuzz_results)
 
-$(FUZZ)/%.o: %.c Makefile
+$(FUZZ)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call QUIET,fuzz,$@)$(FUZZ_CC) -I. $(STRICT) $(WARNINGS) $(FUZZ_CFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
 $(FUZZ)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
@@ -420,12 +442,9 @@ packages packages-test packages-pages packages-neon packages-web packages-slurm 
 	$$as apt-get update -qq && DEBIAN_FRONTEND=noninteractive $$as apt-get install -y -qq --no-install-recommends $$missing >/dev/null
 
 CORES := $(shell nproc)
-# Kernels for this machine alone first: those for others are three quarters of the compiler's time.
-processor := $(shell grep -m1 -o 'avx512dq' /proc/cpuinfo || grep -m1 -ow 'avx2' /proc/cpuinfo)
-own_isa    = $(or $(filter $(patsubst avx512dq,avx512,$(processor)),$(ISAS)),$(lastword $(filter-out avx2 avx512,$(ISAS))))
 demo: packages
 	+@$(MAKE) packages-web && $(MAKE) -j$(CORES) web-page || echo 'demo: goes on without a page that simulates' >&2
-	$(MAKE) -j$(CORES) ISAS='$(own_isa)' bin/stance
+	$(MAKE) -j$(CORES) bin/stance
 	@mkdir -p results
 	$(MPI_ENVIRONMENT) mpirun -n $(CORES) bin/stance run --force scenarios/basin_one_foot.yaml
 	bin/stance summary results/basin_one_foot.h5
@@ -483,8 +502,9 @@ help:
 	@echo 'make            build bin/stance'
 	@echo 'make demo       install what is missing, build, map a stability domain, draw it'
 	@echo 'make web        the same with pages for the browser: studies to click through, in results/gallery'
-	@echo 'make test       install what is missing, build, run every test'
-	@echo 'make test-long  the same with the long tests'
+	@echo 'make test       install what is missing, build, run a share of every test'
+	@echo 'make test-scripts  ... every script, for every instruction set: pages, fuzzing, other machines, too'
+	@echo 'make test-long  ... and every test at length'
 	@echo 'make hunt       look for numbers that depend on the neighbours (HUNT_CASES= SEED=)'
 	@echo 'make test-kills kill runs at random, damage files at random (KILLS= FLIPS= TRUNCATIONS= SEED=)'
 	@echo 'make test-neon  install a cross compiler and an emulator, run the kernels for ARM, compare'

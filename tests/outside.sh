@@ -5,6 +5,7 @@
 failed=0
 read -r patience _ <"$tests/patience" # s
 
+long_tests() { [ -n "${STANCE_TEST_LONG:-}" ]; } # make test-long: all, not a share
 result() { # status, name
     count=$((count + 1))
     if (($1 == 0)); then

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The rooms of the program: a file may include what stands in its own room and in those that its room may
 # use, and from the top, by "room/file.h". Prints every include that does not; exit code 1 if there is one.
-cd "$(dirname "$0")/.."
+# With rooms as arguments: prints these, what they may use, and so on.
+cd "$(dirname "$0")/.." || exit 1
 runner='engine engine/control runner/base runner/ranks runner/objects runner/scenario runner/plan runner/store runner/run runner/optimise'
 numbers="engine $runner analysis/statistics analysis/table"
 rooms="engine:
@@ -36,6 +37,18 @@ analysis/bench: $numbers analysis/draw analysis/optimise analysis/summary analys
 analysis/view: $numbers analysis/draw analysis/optimise analysis/summary analysis/basin analysis/sensitivity analysis/plot analysis/bench
 analysis/view/wasm: $runner
 runner: $runner"
+if (($# > 0)); then
+    awk -v wanted="$*" '{ name = $1; sub(/:$/, "", name); $1 = ""; may[name] = $0 }
+        function use(name,   part, n, i) {
+            if (name in used) return
+            used[name]
+            print name
+            n = split(may[name], part, " ")
+            for (i = 1; i <= n; i++) use(part[i])
+        }
+        END { n = split(wanted, first, " "); for (i = 1; i <= n; i++) use(first[i]) }' <<<"$rooms"
+    exit
+fi
 git ls-files -co --exclude-standard 'engine/*.[ch]' 'runner/*.[ch]' 'analysis/*.[ch]' |
     xargs -r grep -HE '^[[:space:]]*#[[:space:]]*include' /dev/null |
     awk -v rooms="$rooms" '

@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
 # Runs every test program and whole-program test; each speaks TAP. Ends with "N passed, N failed".
 # Lines of a test that begin with ## are shown.
-# Usage: tests/run.sh [PATTERN]  (only tests whose name contains PATTERN)
+# Usage: tests/run.sh [PATTERN]  (only tests whose name contains PATTERN, these in any case)
+# A test that has passed is not run again before something changes that its outcome may depend on: a program
+# itself; of a script the rooms (rooms.sh) that its line "# about:" names, and what they use, of others
+# every source; and for all of them scenarios and what they share in tests. Scripts with a line "# long" run
+# with STANCE_TEST_SCRIPTS, or STANCE_TEST_LONG, with which every test runs at length.
 set -u
 cd "$(dirname "$0")/.."
-build=${BUILD:-build} pattern=${1:-} passed=0 failed=0
+build=${BUILD:-build} pattern=${1:-} passed=0 failed=0 unchanged=0
 # Not what the user's settings and files make of it: kernels that tests compile are theirs, too.
 unset CDPATH STANCE_ISA STANCE_SCRIPTS "${!SLURM_@}"
 STANCE_CACHE=$(realpath -m "$build")/cache && export STANCE_CACHE
@@ -13,6 +17,26 @@ export CMOCKA_MESSAGE_OUTPUT=TAP PYTHON=${PYTHON:-/usr/bin/python3} BUILD=$build
 export ASAN_OPTIONS=abort_on_error=1 UBSAN_OPTIONS=abort_on_error=1:print_stacktrace=1
 mpi_options=$ASAN_OPTIONS:detect_leaks=0
 scratch=$(mktemp -d) && trap 'rm -rf "$scratch"' EXIT
+
+# What outcomes may depend on: room, file, hash. Rooms of the engine are one; files at the top have that of all (-).
+mkdir -p "$build/passed"
+find engine runner analysis scenarios tests Makefile README.md -name __pycache__ -prune -o -type f -exec sha256sum {} + |
+    awk '{ room = $2; if (!sub(/\/[^\/]*$/, "", room)) room = "-"
+           if (match(room, /^(engine|scenarios|tests|analysis\/view)\//)) room = substr(room, 1, RLENGTH - 1)
+           print room, $2, $1 }' | sort >"$scratch/sums"
+key() { # name: a hash of all that its outcome may depend on
+    local script=tests/$1.sh about=-
+    [ -e "$script" ] && about=$(sed -n 's/^# about: //p' "$script")
+    {
+        echo "${STANCE_TEST_LONG:-} ${STANCE_SLOW:-}"
+        if [ -e "$script" ]; then cat "$build/kernels"; else sha256sum <"$build/tests/$1"; fi
+        # shellcheck disable=SC2086
+        bash tests/rooms.sh ${about:--} |
+            awk -v script="$script" -v about="$about" 'FILENAME == "-" { used[$1]; next }
+                about == "" || $2 == script || $1 == "scenarios" || $1 == "tests" && $2 !~ /\/(test|whole)_/ { print; next }
+                about != "-" && ($1 in used || $1 == "runner")' - "$scratch/sums"
+    } | sha256sum
+}
 
 # name, command ...: leaves what it said, its exit status, its seconds and those of processors in the
 # scratch directory.
@@ -25,6 +49,11 @@ run() {
 
 report() { # name
     local name=$1 log="$scratch/$1" status=1 seconds=0 ok bad
+    if [ -e "$log.before" ]; then
+        read -r _ _ ok <"$log.before"
+        unchanged=$((unchanged + ok)) passed=$((passed + ok))
+        return
+    fi
     [ -e "$log.end" ] && read -r status seconds <"$log.end"
     ok=$(grep -c '^ok' "$log") bad=$(grep -c '^not ok' "$log")
     # A program that dies, or that tests nothing, has failed whatever it printed.
@@ -36,6 +65,7 @@ report() { # name
         tail -n 40 "$log.err"
         echo "($name: exit status $status)"
     fi
+    ((bad > 0)) || echo "$(cat "$log.key") $ok" >"$build/passed/$name"
     passed=$((passed + ok)) failed=$((failed + bad))
 }
 
@@ -44,7 +74,9 @@ names() {
     local file name
     for file in "$@"; do
         name=$(basename "${file%.*}")
-        [[ -e $file && $name == *$pattern* ]] && echo "$name"
+        [[ -e $file && $name == *$pattern* ]] || continue
+        [ -z "$pattern${STANCE_TEST_LONG:-}${STANCE_TEST_SCRIPTS:-}" ] && grep -qx '# long' "$file" && continue
+        echo "$name"
     done
 }
 
@@ -57,6 +89,12 @@ tests=$(
 )
 tests=$(awk '!seen[$1]++' <<<"$tests")
 for name in $tests; do
+    key "$name" >"$scratch/$name.key"
+    if [ -z "$pattern" ] && grep -qsF "$(cat "$scratch/$name.key")" "$build/passed/$name"; then
+        cp "$build/passed/$name" "$scratch/$name.before"
+        continue
+    fi
+    rm -f "$build/passed/$name"
     while (($(jobs -rp | wc -l) > $(nproc))); do wait -n; done
     if [[ $name == whole_* ]]; then
         run "$name" env ASAN_OPTIONS="$mpi_options" bash "tests/$name.sh" &
@@ -67,5 +105,6 @@ done
 wait
 for name in $tests; do report "$name"; done
 echo
+((unchanged == 0)) || echo "($unchanged of them before, of what has not changed since)"
 echo "$passed passed, $failed failed"
 ((failed == 0 && passed > 0))

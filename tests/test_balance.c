@@ -1,6 +1,7 @@
 /* Balance on one foot: both tests of the paper's section 3.2 with noise, what the free foot does,
  * the domain against an independently integrated pinned robot, friction used, and the critical
  * sample time found by simulation. */
+#include "long.h"
 #include "support.h"
 
 static void run(const char *method, const stance_case *cases, stance_result *results, size_t n)
@@ -94,15 +95,16 @@ static int descending(const void *a, const void *b)
 static void friction_used_in_the_domain(void **state)
 {
     (void)state;
-    enum { N = 96 };
-    stance_case *c = calloc(N * N, sizeof *c);
-    stance_result *r = calloc(N * N, sizeof *r);
-    double *used = calloc(N * N, sizeof *used);
+    enum { MOST = 96 };
+    const int N = long_tests() ? MOST : MOST / 2;
+    stance_case *c = calloc((size_t)(N * N), sizeof *c);
+    stance_result *r = calloc((size_t)(N * N), sizeof *r);
+    double *used = calloc((size_t)(N * N), sizeof *used);
     assert_true(c && r && used);
     for (int i = 0; i < N; i++)
         for (int j = 0; j < N; j++)
             c[i * N + j] = balance_case(-0.12 + 0.18 * i / (N - 1), -0.6 + 1.2 * j / (N - 1));
-    run("implicit", c, r, N * N);
+    run("implicit", c, r, (size_t)(N * N));
     size_t n = 0;
     for (int i = 0; i < N * N; i++)
         if (r[i].outcome == STANCE_STABILISED)
@@ -148,7 +150,7 @@ static void domain_against_pinned_robot(void **state)
         }
     }
     static const char *const methods[] = {"implicit", "midpoint"};
-    for (int m = 0; m < 2; m++) {
+    for (int m = 0; m < (long_tests() ? 2 : 1); m++) {
         run(methods[m], c, r, N * N);
         int differ = 0, inside = 0;
         for (int i = 0; i < N; i++)

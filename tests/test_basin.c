@@ -1,4 +1,5 @@
 /* test_basin.c - basins against sets whose volume, entropy and dimension are known. */
+#include "long.h"
 #include "support.h"
 
 #include "analysis/basin/basin_map.h"
@@ -281,7 +282,7 @@ static enum results_kind drawn(const double *at)
  * does not exceed what is certain. */
 static void likely_errors_hold(void **state)
 {
-    const bool patient = getenv("STANCE_TEST_LONG") != NULL;
+    const bool patient = long_tests();
     (void)state;
     for (size_t k = 0; k < sizeof shapes / sizeof shapes[0]; k++) {
         const int tries = (patient ? 2000 : 300) / (shapes[k].axes == 3 ? 3 : 1);

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
+#include "long.h"
 #include "random_mechanism.h"
 
 #include "runner/objects/objects.h"
@@ -125,7 +126,7 @@ static void random_mechanisms(void **state)
     long differ = 0;
     while (stance_isa(isas))
         isas++;
-    const bool all = getenv("STANCE_TEST_LONG") != NULL;
+    const bool all = long_tests();
     for (int tree = first_mechanism; tree < first_mechanism + mechanisms; tree++, turn++) {
         if (!all)
             differ += compare_mechanism(
@@ -143,7 +144,7 @@ static void random_mechanisms(void **state)
 int main(int argc, char **argv)
 {
     char cache[] = "/tmp/stance-test-XXXXXX", command[60];
-    if (getenv("STANCE_TEST_LONG"))
+    if (long_tests())
         mechanisms = 20;
     if (argc > 3) {
         first_mechanism = atoi(argv[1]), mechanisms = atoi(argv[2]), cases_each = atoi(argv[3]);
@@ -154,6 +155,7 @@ int main(int argc, char **argv)
         only_method = argv[4], only_isa = argv[5];
     if (!mkdtemp(cache))
         return EXIT_FAILURE;
+    compile_sooner(cache);
     setenv("STANCE_CACHE", cache, 1);
     const struct CMUnitTest tests[] = {cmocka_unit_test(random_mechanisms)};
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -9,6 +9,7 @@
 #include "engine/methods/implicit.c"
 #define DENSE_ROWS 4
 #include "dense.h"
+#include "long.h"
 #include "support.h"
 
 struct problem {
@@ -221,7 +222,7 @@ static void least_energy(const char *name, bool default_robot, bool rebounds, in
 
 static int problems(void)
 {
-    return getenv("STANCE_TEST_LONG") ? 1000000 : 100000;
+    return long_tests() ? 1000000 : 30000;
 }
 static void problems_of_the_default_robot(void **state)
 {

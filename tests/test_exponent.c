@@ -1,5 +1,6 @@
 /* test_exponent.c - the uncertainty exponent of fractals of known dimension and of smooth
  * boundaries, how often it is within its error, when there is none, and what is called fractal. */
+#include "long.h"
 #include "support.h"
 
 #include "cases.h"
@@ -243,8 +244,8 @@ static void alphas_are_within_their_errors(void **state)
         {"three colours", three, 8, 1},
         {"three colours", three, 40, 1},
     };
-    const bool patient = getenv("STANCE_TEST_LONG") != NULL;
-    const int tries = patient ? 40 : 5;
+    const bool patient = long_tests();
+    const int tries = patient ? 40 : 3;
     int held[2] = {0}, given[2] = {0};
     uint64_t random = 3;
     (void)state;

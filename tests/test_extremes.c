@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "long.h"
 #include "motions.h"
 
 static const double steps[] = {0.02, 0.004, 0.001};
@@ -149,7 +150,7 @@ static void held(void **state)
     struct robot r = robot_of("body wheel hinge - 1 0.4 0 0 0 0\nactuator motor wheel 1000\n", 0);
     uint64_t seed = 11;
     double worst[2] = {0};
-    for (int i = 0; i < 40; i++) {
+    for (int i = 0; i < (long_tests() ? 40 : 10); i++) {
         const double target = 0.3, T = ceil(uniform(&seed, 1, 10)) * 0.1;
         const double x[4] = {uniform(&seed, -1, 1), uniform(&seed, -10, 10), uniform(&seed, 10, 60),
                              uniform(&seed, 0, 3)};

@@ -16,6 +16,7 @@ enum {
 #include "engine/core/contact/impact.h"
 #define DENSE_ROWS N
 #include "dense.h"
+#include "long.h"
 #include "support.h"
 
 struct system {
@@ -194,7 +195,7 @@ static double judge(const struct system *s, bool moreau, const struct answer *a,
 static void impacts(void **state)
 {
     const char *const asked = getenv("STANCE_TEST_IMPACTS");
-    const long n = asked ? atol(asked) : getenv("STANCE_TEST_LONG") ? 200000 : 10000;
+    const long n = asked ? atol(asked) : long_tests() ? 200000 : 3000;
     uint64_t seed = asked ? 12345 : 5;
     long newton_gains = 0, gains[2] = {0}, limited[2] = {0}, unsolved = 0, same = 0, loose = 0,
          rough = 0, skipped = 0, lost = 0, hardly = 0;

@@ -1,4 +1,5 @@
 /* test_intervals.c - how often the intervals of shares over a sample hold the truth. */
+#include "long.h"
 #include "support.h"
 
 #include "cases.h"
@@ -81,11 +82,11 @@ static struct interval measure(enum doe_method method, const struct response *re
  */
 static void intervals_hold_as_often_as_they_say(void **state)
 {
-    const bool patient = getenv("STANCE_TEST_LONG") != NULL;
+    const bool patient = long_tests();
     static const enum doe_method methods[] = {DOE_RANDOM, DOE_LHS, DOE_SOBOL, DOE_SALTELLI};
     (void)state;
     for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
-        const int seeds = patient ? 4000 : methods[m] == DOE_RANDOM ? 1000 : 250;
+        const int seeds = patient ? 4000 : 100;
         const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
         for (size_t k = 0; k < RESPONSES; k++) {
             for (uint64_t count = 32; count <= 128; count *= 4) {
@@ -185,7 +186,8 @@ static void shares_over_a_grid_are_no_coins(void **state)
 
 /* ---- basins over samples ------------------------------------------------------------------- */
 
-enum { SEEDS = 1000, GRID = 41, MOST_POINTS = 32 * (FACTORS + 2) };
+static int seeds = 200; /* of each kind; 1000 when long */
+enum { GRID = 41, MOST_POINTS = 32 * (FACTORS + 2) };
 static uint8_t kind_of[GRID * MOST_POINTS];
 static double grid_place[GRID], point_place[MOST_POINTS];
 
@@ -251,7 +253,7 @@ static void volumes_over_sampled_parameters(void **state)
             const double level = m < 4 ? 0.95 : levels[m - 3];
             const enum doe_method method = m < 4 ? methods[m] : DOE_RANDOM;
             int held = 0;
-            for (int seed = 0; seed < SEEDS; seed++) {
+            for (int seed = 0; seed < seeds; seed++) {
                 struct doe s = {
                     .method = method, .count = 32, .factors = FACTORS, .seed = (uint64_t)seed};
                 assert_true(doe_begin(&s));
@@ -280,8 +282,8 @@ static void volumes_over_sampled_parameters(void **state)
                 held += fabs(row.volume - kinds[k].volume) <= row.reach;
                 doe_end(&s);
             }
-            const double share = (double)held / SEEDS,
-                         slack = 3.5 * sqrt(level * (1 - level) / SEEDS);
+            const double share = (double)held / seeds,
+                         slack = 3.5 * sqrt(level * (1 - level) / seeds);
             print_message("# volumes over 32 blocks of %s, %s: %.1f %% at %.0f %%\n",
                           doe_words[method], kinds[k].name, 100 * share, 100 * level);
             assert_true(share > level - 0.02 - slack);
@@ -302,7 +304,7 @@ static void volumes_over_sampled_starts(void **state)
     for (size_t k = 0; k < 4; k++) {
         for (size_t l = 0; l < 3; l++) {
             int held = 0, either = 0;
-            for (int seed = 0; seed < SEEDS; seed++) {
+            for (int seed = 0; seed < seeds; seed++) {
                 uint64_t random = (uint64_t)seed * 7919 + 1;
                 const double edge = uniform(&random, shares[k][0], shares[k][1]);
                 for (int p = 0; p < POINTS; p++) {
@@ -332,13 +334,13 @@ static void volumes_over_sampled_starts(void **state)
                 held += row.low <= edge && edge <= row.high;
                 either += fabs(row.volume - edge) <= row.reach;
             }
-            const double level = levels[l], slack = 3.5 * sqrt(level * (1 - level) / SEEDS);
+            const double level = levels[l], slack = 3.5 * sqrt(level * (1 - level) / seeds);
             print_message(
                 "# %d sampled starts, %.1f to %.1f %% inside: interval %.1f %%, +- %.1f %% "
                 "at %.0f %%\n",
-                POINTS, 100 * shares[k][0], 100 * shares[k][1], 100.0 * held / SEEDS,
-                100.0 * either / SEEDS, 100 * level);
-            assert_true(fabs((double)held / SEEDS - level) < 0.02 + slack);
+                POINTS, 100 * shares[k][0], 100 * shares[k][1], 100.0 * held / seeds,
+                100.0 * either / seeds, 100 * level);
+            assert_true(fabs((double)held / seeds - level) < 0.02 + slack);
             assert_true(either >= held);
         }
     }
@@ -364,7 +366,7 @@ static void bins_of_a_sample(void **state)
                               .kind = kind};
     double held = 0;
     (void)state;
-    for (int seed = 0; seed < SEEDS; seed++) {
+    for (int seed = 0; seed < seeds; seed++) {
         struct doe_bins bins;
         stance_message message;
         uint64_t random = (uint64_t)seed * 7919 + 1;
@@ -380,8 +382,8 @@ static void bins_of_a_sample(void **state)
             held += found->low <= share && share <= found->high;
         }
     }
-    print_message("# bins of 32 points: %.1f %%\n", 100 * held / SEEDS / BINS);
-    assert_true(held / SEEDS / BINS > 0.93 && held / SEEDS / BINS < 0.97);
+    print_message("# bins of 32 points: %.1f %%\n", 100 * held / seeds / BINS);
+    assert_true(held / seeds / BINS > 0.93 && held / seeds / BINS < 0.97);
 }
 
 /* What the domain of one file has lost in another one: little of much, and of single starts. */
@@ -405,7 +407,7 @@ static void losses_of_a_domain(void **state)
                 .cases = places * POINTS,
                 .kind = kind[f]};
         int held = 0;
-        for (int seed = 0; seed < SEEDS; seed++) {
+        for (int seed = 0; seed < 1000; seed++) {
             struct label_comparison found;
             stance_message message;
             uint64_t random = (uint64_t)seed * 7919 + 1;
@@ -431,6 +433,8 @@ static void losses_of_a_domain(void **state)
 
 int main(void)
 {
+    if (long_tests())
+        seeds = 1000;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(intervals_hold_as_often_as_they_say),
         cmocka_unit_test(shares_of_parts_hold),

@@ -1,5 +1,6 @@
 /* Captured sets: the widest ellipsoid against boxes and by its own conditions, what a confirmed set
  * promises tried anew, when a case may stop in it, and that stopping there changes no label. */
+#include "long.h"
 #include "reading.h"
 
 #include "runner/plan/known_basin.h"
@@ -170,7 +171,7 @@ static void set_holds_what_it_promises(void **state)
                   (long long)set->simulations, on, beyond);
     assert_true(on == 0);
     assert_true(beyond > 0); /* it is the largest, nearly */
-    if (!getenv("STANCE_TEST_LONG"))
+    if (!long_tests())
         return;
     stance_known_basin again;
     struct resolved_design design = plain.design;
@@ -354,7 +355,7 @@ static void labels(const struct world *w, const char *what, const char *method, 
 static void labels_do_not_change(void **state)
 {
     (void)state;
-    labels(&plain, "one foot", "midpoint", getenv("STANCE_TEST_LONG") ? 100000 : 10000, 0.9);
+    labels(&plain, "one foot", "midpoint", long_tests() ? 100000 : 10000, 0.9);
 }
 
 static void labels_elsewhere(void **state)
@@ -382,9 +383,9 @@ static void labels_elsewhere(void **state)
         {"friction 0.3", "midpoint", {"ground.friction=0.3"}, 1, 0.6},
         {"continuous", "implicit", {"controller.sample_time=0", "method.name=implicit"}, 2, 0.7},
     };
-    const int count = getenv("STANCE_TEST_LONG") ? 20000 : 1000;
+    const int count = long_tests() ? 20000 : 1000;
     for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
-        if (i != 0 && i != 3 && !getenv("STANCE_TEST_LONG"))
+        if (i != 0 && i != 3 && !long_tests())
             continue;
         struct world w;
         world_make(&w, variants[i].sets, (size_t)variants[i].count);

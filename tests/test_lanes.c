@@ -11,6 +11,7 @@
  * without arguments: a share of everything; KERNELS: of these names only, as in doubting,avx2
  */
 #include "hunt.h"
+#include "long.h"
 
 #include <stdio.h>
 
@@ -118,11 +119,11 @@ int main(int argc, char **argv)
         return !run(scene, method, strcmp(argv[3], "extreme") == 0, strtod(argv[4], NULL),
                     argc > 5 ? strtoull(argv[5], NULL, 0) : 1);
     }
-    const double count = getenv("STANCE_TEST_LONG") ? 50 * BATCH : SHARE;
     int tests = 0;
     bool all = true;
     for (int k = 0; doubting[k]; k++)
         for (int extreme = 0; extreme < 2; extreme++) {
+            const double count = long_tests() ? 50 * BATCH : extreme ? SHARE / 8 : SHARE;
             const bool good =
                 run(doubting[k]->scene, doubting[k]->method, extreme, count, 7 + (uint64_t)k);
             printf("%sok %d - %s, %s, %s cases\n", good ? "" : "not ", ++tests,

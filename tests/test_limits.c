@@ -1,6 +1,7 @@
 /* Limits: the step at which explicit steps of a stiff servo become unstable, the sample time at
  * which a sampled controller does, and implicit steps under everything that a scenario admits,
  * which must never run away. */
+#include "long.h"
 #include "support.h"
 
 #include <complex.h>
@@ -475,7 +476,7 @@ static void implicit_steps(void **state)
 {
     (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
-    const int batches = getenv("STANCE_TEST_LONG") ? 1000 : 20;
+    const int batches = long_tests() ? 1000 : 5;
     for (int m = 0; m < 2; m++) {
         struct tally tally[GROUPS];
         run_wild(methods[m], batches, tally);
@@ -533,12 +534,12 @@ static void little_is_left_after_landings(void **state)
 {
     (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
-    enum { CASES = 100000 };
+    const int count = long_tests() ? 100000 : 20000;
     for (int m = 0; m < 2; m++) {
         uint64_t seed = 21;
         int above = 0;
         double largest = 0;
-        for (int i = 0; i < CASES; i++) {
+        for (int i = 0; i < count; i++) {
             stance_case c;
             stance_result r;
             random_case(&seed, i, 1e-2, &c);
@@ -550,8 +551,8 @@ static void little_is_left_after_landings(void **state)
             }
         }
         print_message("## %s, 10 ms: above 1 mm/s in %d of %d, at most %.2g m/s\n", methods[m],
-                      above, CASES, largest);
-        assert_true(above < CASES / 1000);
+                      above, count, largest);
+        assert_true(above < count / 1000);
     }
 }
 

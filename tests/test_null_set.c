@@ -1,6 +1,7 @@
 /* The null-controllable set: its support function against quadrature, its gauge against closed
  * forms, against all directions, and against torques that steer a point just inside home. */
 #include "linear.h"
+#include "long.h"
 
 #include "runner/plan/design.h"
 
@@ -277,7 +278,8 @@ static void support_is_the_integral(void **state)
     (void)state;
     uint64_t seed = 3;
     struct errors e = {0};
-    for (int round = 0; round < 10; round++) {
+    const int rounds = long_tests() ? 10 : 3;
+    for (int round = 0; round < rounds; round++) {
         struct plant p = {.n = 1 + round % 5, .m = 1 + round % 3};
         double re[K] = {0}, im[K] = {0}, slowest = INFINITY;
         for (int i = 0; i < p.n; i++) {
@@ -301,7 +303,7 @@ static void support_is_the_integral(void **state)
     }
     print_message("# %d points: gauge by quadrature off by %.1e; another direction above by %.1e\n",
                   e.points, e.worst, e.above);
-    assert_true(e.points > 35 && e.worst < 1e-6 && e.above < 1e-6);
+    assert_true(e.points > 3 * rounds && e.worst < 1e-6 && e.above < 1e-6);
 }
 
 /* The projector on eigenvalues beyond `shift`: (1 + sign(A - shift)) / 2, the sign by Newton's
@@ -475,7 +477,8 @@ static void unreached_modes(void **state)
     uint64_t seed = 11;
     int lasting[KINDS] = {0}, decaying = 0;
     double worst = 0;
-    for (int round = 0; round < 150; round++) {
+    const int rounds = long_tests() ? 150 : 30;
+    for (int round = 0; round < rounds; round++) {
         struct modal p;
         double D[K * K], T[K * K], A[K * K], B[K * INPUTS], low[INPUTS], high[INPUTS];
         double L[K * K], G[K * INPUTS], re[K], im[K];
@@ -544,8 +547,8 @@ static void unreached_modes(void **state)
     }
     print_message("# gauge against the unstable modes alone: off by %.1e\n", worst);
     for (int kind = 0; kind < DECAYING; kind++)
-        assert_true(lasting[kind] > 15);
-    assert_true(decaying > 15 && worst < 1e-6);
+        assert_true(lasting[kind] > rounds / 10);
+    assert_true(decaying > rounds / 10 && worst < 1e-6);
 }
 
 /* How little of a torque counts: far less than what moves a robot, more than rounding. With x2 = 0

@@ -5,6 +5,7 @@
  * where they come from; tests/whole_objects.sh runs such jobs under all circumstances. `alone`:
  * there are no built-in ones to compare with or to fall back on, as for what is really new.
  */
+#include "long.h"
 #include "support.h"
 
 #include "runner/base/units.h"
@@ -98,6 +99,7 @@ static void one_after_the_other(void **state)
     struct object object[SCENES], again;
     assert_non_null(mkdtemp(cache));
     setenv("STANCE_CACHE", cache, 1);
+    compile_sooner(cache);
     for (int turn = 0; turn < 2; turn++) { /* compiled, kept */
         for (int k = 0; k < SCENES; k++) {
             struct asked asked;

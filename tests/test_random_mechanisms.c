@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "long.h"
 #include "random_mechanism.h"
 
 enum { CASES = 100 };
@@ -61,7 +62,7 @@ static void tell(const char *method, int tree, int k, const stance_case *c, cons
 
 static int trees_of(void)
 {
-    return getenv("STANCE_TEST_LONG") ? 200 : 40;
+    return long_tests() ? 200 : 15;
 }
 
 /* Trees of hinges alone, then those that slide. */

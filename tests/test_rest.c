@@ -1,5 +1,6 @@
 /* test_rest - `rested` and `stabilised` are said where an equilibrium holds, and nowhere else: what
  * they say is held to the same case simulated on without settling, for ten times as long. */
+#include "long.h"
 #include "support.h"
 
 enum { SIDE = 48 };
@@ -302,7 +303,7 @@ static void soft_legs_rest_where_they_stay(void **state)
 {
     (void)state;
     static const char *const methods[] = {"implicit", "midpoint"};
-    const int count = getenv("STANCE_TEST_LONG") ? 20000 : 1000;
+    const int count = long_tests() ? 20000 : 500;
     stance_case *const c = calloc((size_t)count, sizeof *c);
     assert_non_null(c);
     for (int m = 0; m < 2; m++) {
@@ -324,7 +325,7 @@ static void odd_laws_rest_where_they_stay(void **state)
 {
     (void)state;
     static const char *const names[] = {"two laws", "ramps", "limits", "underground"};
-    const int count = getenv("STANCE_TEST_LONG") ? 10000 : 400;
+    const int count = long_tests() ? 10000 : 200;
     stance_case *const c = calloc((size_t)count, sizeof *c);
     assert_non_null(c);
     for (int kind = 0; kind < KINDS; kind++) {

@@ -2,6 +2,7 @@
  *
  * Every file of tests/bad begins with "# LINE:COLUMN: MESSAGE", the one line that it must lead to.
  */
+#include "long.h"
 #include "reading.h"
 
 #include "runner/scenario/schema.h"
@@ -748,7 +749,7 @@ static void damaged_text_is_survived(void **state)
 {
     static const char *const sets[] = {"sweep.grid[0].count=2", "controller.poles[2]=-3+1.5i",
                                        "ground={friction: 0.5, contacts: [foot1]}", "seed=1"};
-    const long rounds = getenv("STANCE_TEST_LONG") ? 200000 : 20000;
+    const long rounds = long_tests() ? 200000 : 20000;
     uint64_t random = 7;
     char text[4096], set[256];
     (void)state;

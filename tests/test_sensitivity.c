@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "long.h"
+
 #include "analysis/sensitivity/sensitivity.h"
 #include "runner/scenario/doe.h"
 
@@ -292,11 +294,11 @@ static struct tally cover(enum doe_method method, const struct function *f, uint
  * by index, whatever the response is; indices of factors that do nothing are exact. */
 static void test_coverage(void **state)
 {
-    const bool patient = getenv("STANCE_TEST_LONG") != NULL;
+    const bool patient = long_tests();
     const int seeds = patient ? 2000 : 1000;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     (void)state;
-    for (size_t f = 0; f < FUNCTIONS; f++) {
+    for (size_t f = 0; f < (patient ? FUNCTIONS : 1); f++) {
         const struct function *own = &functions[f];
         for (int independent = 0; independent < 2; independent++) {
             const struct tally t = cover(DOE_SALTELLI, own, 256, seeds, independent);
@@ -329,7 +331,7 @@ static void test_coverage_of_sums_and_pairs(void **state)
     enum { SEEDS = 1000, BLOCKS = 256 };
     const double slack = 3.5 * sqrt(0.95 * 0.05 / SEEDS);
     (void)state;
-    for (size_t f = 0; f < FUNCTIONS; f++) {
+    for (size_t f = 0; f < (long_tests() ? FUNCTIONS : 1); f++) {
         const struct function *own = &functions[f];
         const size_t k = own->factors;
         double first[MOST], total[MOST], sum = 0, held = 0, pairs[MOST * MOST] = {0}, least = 1;
@@ -360,11 +362,11 @@ static void test_coverage_of_sums_and_pairs(void **state)
  * a Sobol' sequence are conservative. */
 static void test_coverage_of_bins(void **state)
 {
-    const bool patient = getenv("STANCE_TEST_LONG") != NULL;
+    const bool patient = long_tests();
     const int seeds = patient ? 1000 : 200;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     (void)state;
-    for (size_t f = 0; f < FUNCTIONS; f++) {
+    for (size_t f = 0; f < (patient ? FUNCTIONS : 1); f++) {
         for (int m = 0; m < 3; m++) {
             const enum doe_method method = (enum doe_method)m; /* random, lhs, sobol */
             const struct tally t = cover(method, &functions[f], 512, seeds, false);
@@ -380,14 +382,14 @@ static void test_coverage_of_bins(void **state)
 static void test_coverage_of_effects(void **state)
 {
     enum { TRUTHS = 20000 };
-    const int seeds = getenv("STANCE_TEST_LONG") ? 4000 : 1000;
+    const int seeds = long_tests() ? 4000 : 200;
     const double slack = 3.5 * sqrt(0.95 * 0.05 / seeds);
     const struct function *own = &functions[0];
     struct sensitivity truth;
     (void)state;
     struct data all = make(DOE_MORRIS, own, TRUTHS, 99, false, false);
     analyse(&truth, &all, &usual);
-    for (uint64_t n = 10; n <= 40; n *= 2) {
+    for (uint64_t n = 10; n <= (long_tests() ? 40 : 10); n *= 2) {
         double held[3] = {0};
         for (int seed = 0; seed < seeds; seed++) {
             struct sensitivity s;

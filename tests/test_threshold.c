@@ -1,6 +1,7 @@
 /* test_threshold.c - where a basin crosses a share of its first volume: how often the interval
  * holds the truth, over 1,000 samples of each kind, and what is said where nothing is crossed; the
  * first start that is lost. */
+#include "long.h"
 #include "support.h"
 
 #include "cases.h"
@@ -100,7 +101,7 @@ static void sampled_starts(void **state)
 static void sampled_parameters(void **state)
 {
     struct results r = make_results(true, true);
-    const int seeds = getenv("STANCE_TEST_LONG") ? SEEDS : SEEDS / 5;
+    const int seeds = long_tests() ? SEEDS : SEEDS / 5;
     int held = 0;
     (void)state;
     for (int seed = 0; seed < seeds; seed++) {

@@ -2,6 +2,7 @@
 # What adding a law, an outcome, an answer, a method and a picture takes: done in a copy of the tree, as the pages
 # of the rooms say, it touches three files at most each, builds, and works.
 # Speaks TAP.
+# long
 set -u
 source=$(cd "$(dirname "$0")/.." && pwd)
 # shellcheck source=tests/scratch.sh

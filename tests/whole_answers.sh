@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What answers mean outside: missing ones and true zeros in other readers and in files of earlier
 # versions, recoveries that are none, energy that drifts, axes whose points are one. Speaks TAP.
+# about: runner/run analysis/basin analysis/compare analysis/summary
 set -u
 # shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"

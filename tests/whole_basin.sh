@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What is made of campaigns, from outside: basins, files of an array merged into one, comparison with
 # a tolerance, tables for other programs. Speaks TAP.
+# about: runner/store analysis/basin analysis/compare analysis/plot
 set -u
 . "$(dirname "$0")/scratch.sh"
 

@@ -2,6 +2,7 @@
 # Samples from outside: the points that other programs read, the same file whatever the ranks, kills
 # and resumes, larger designs from smaller ones, and what the other commands make of them.
 # Speaks TAP.
+# about: runner/run analysis/compare analysis/sensitivity
 set -u
 . "$(dirname "$0")/scratch.sh"
 points=150

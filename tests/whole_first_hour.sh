@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A newcomer's first hour, as the README tells it: every command there works, and what each leaves is what a
 # newcomer needs next. Speaks TAP.
+# long
 # shellcheck disable=SC2154
 set -u
 # shellcheck source=tests/scratch.sh

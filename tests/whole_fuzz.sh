@@ -3,6 +3,7 @@
 # a process of its own, for FUZZ_SECONDS or FUZZ_RUNS; the damage begins at number FUZZ_FROM. What is
 # found stays in $BUILD/fuzz/found.
 # Speaks TAP; lines that begin with ## tell how much was tried.
+# long
 set -u
 cd "$(dirname "$0")/.."
 root=$PWD stance=${STANCE:-$PWD/bin/stance} programs=$(realpath "${BUILD:-build}")/fuzz

@@ -3,6 +3,7 @@
 # and the impact has many answers. The default method gets over it, and what it tells of the contact
 # laws is true of the state. The kernels that are built in compute.
 # Speaks TAP.
+# about: runner/objects runner/run analysis/summary
 set -u
 . "$(dirname "$0")/scratch.sh"
 export STANCE_CACHE=$scratch/cache CC=false

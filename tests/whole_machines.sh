@@ -3,6 +3,7 @@
 # AVX and fused multiply-adds (emulated), a 64-bit ARM (`make test-neon`: cross-compiled and
 # emulated), and WebAssembly under node and in a browser (`make test-web`). What cannot be had is skipped with a
 # notice. GOLDEN_CASES of each scene and method; 500 are 24,000 in all.
+# long
 set -u
 cd "$(dirname "$0")/.."
 build=${BUILD:-build} neon=build/neon${NEON_CFLAGS:=-O1} cases=${GOLDEN_CASES:-10} count=0

@@ -2,6 +2,7 @@
 # `stance plot --model` draws the robot of every scene: each angle from where it is 0 to its link, with its
 # sign, each coordinate, actuator and contact by name.
 # Speaks TAP.
+# about: analysis/plot
 set -u
 . "$(dirname "$0")/scratch.sh"
 mkdir scripts

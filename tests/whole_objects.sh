@@ -3,6 +3,7 @@
 # may have: whatever is wrong is safe and said. The lanes of the ball and of the rod stand for those of
 # a mechanism; what is compiled must give the bits of the kernel that is built in (test_objects).
 # Speaks TAP.
+# about: runner/objects runner/run analysis/table
 # shellcheck disable=SC2016,SC2034
 set -u
 build=$(cd "$(dirname "$0")/../${BUILD:-build}" && pwd)

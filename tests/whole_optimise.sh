@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # stance optimise: a search is a function of its scenario, whatever the ranks, stops and kills; what
 # its file tells follows from what it holds, and from simulations by stance run. Speaks TAP.
+# about: runner/optimise analysis/summary
 set -u
 . "$(dirname "$0")/scratch.sh"
-kills=3
-[ -n "${STANCE_TEST_LONG:-}" ] && kills=30
+kills=1 candidates=6
+long_tests && kills=30 candidates=18
 
 sampled() { # starts' method, further lines of sweep
     cat <<END
@@ -140,7 +141,7 @@ sed -n '/^    # own.yaml/,/^$/s/^    //p' "$tests/../README.md" >own.yaml
 {
     sampled sobol '' | grep -v '^stop\|vary:\|initial'
     echo '    vary: [{path: initial.offset.body, from: -0.2, to: 0.2}, {path: initial.offset.vbody, from: -0.5, to: 0.5}]'
-    echo 'optimise: {vary: gains, candidates: 18, grow: [32], confirm: 64}'
+    echo "optimise: {vary: gains, candidates: $candidates, grow: [32], confirm: 64}"
 } >>own.yaml
 expect "the robot of the first hour" 0 "$stance" check own.yaml
 says "... varies what can differ" '^optimise    2 numbers, '

@@ -2,6 +2,8 @@
 # The engine of pages has the program's bits: all scenes, described ones too, by all methods with lanes, with noise,
 # samples, logarithmic axes, other laws. PAGE_CASES (24) of each page, of maps of PAGE_SIDE (7) places a side: see
 # page_cases.mjs. Speaks TAP.
+# about: analysis/view
+# long
 set -u
 . "$(dirname "$0")/scratch.sh"
 node=$(command -v node) && "$stance" view -h >/dev/null && "$stance" view "$shipped/topple.yaml" 2>&1 | grep -qv 'built without' ||

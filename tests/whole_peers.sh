@@ -2,6 +2,7 @@
 # Other simulators on the charts of `stance bench accuracy`: our own engine in a peer's place gets the
 # errors that it has without; what a peer may do wrong is said in one line; MuJoCo in short, where it is
 # installed. Speaks TAP.
+# long
 set -u
 . "$(dirname "$0")/scratch.sh"
 programs=$(cd "$tests/.." && cd "${BUILD:-build}/tests" && pwd)

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Pictures of every kind show what the results files hold: see pictures.py. Speaks TAP.
+# about: analysis/plot
 set -u
 . "$(dirname "$0")/scratch.sh"
 "$python" "$tests/pictures.py" "$stance" "$shipped"

@@ -2,6 +2,7 @@
 # Refined maps from outside: the labels of the full map at a part of its cost, the same file whatever
 # the ranks, the lanes, kills and resumes; what the other commands make of it.
 # Speaks TAP.
+# about: runner/run analysis/compare analysis/summary
 set -u
 . "$(dirname "$0")/scratch.sh"
 points=150

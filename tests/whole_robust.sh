@@ -3,6 +3,7 @@
 # answers that rot, scenarios that change on the way. Each ends with one clear line, the right exit
 # code, and every finished case in the file.
 # Speaks TAP.
+# about: runner/run analysis/summary
 set -u
 . "$(dirname "$0")/scratch.sh"
 chmod 755 "$scratch"
@@ -11,7 +12,7 @@ export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}handle_segv=0:handle_abort=0:
 # Which of many alike are tried; STANCE_TEST_LONG: all.
 crashes=(SEGV:139:3 ABRT:134:0) signals=(TERM) attempts=4 fills=(2)
 losses=("0 rm folder/gone.h5" "2 mv folder moved")
-if [ -n "${STANCE_TEST_LONG:-}" ]; then
+if long_tests; then
     crashes+=(FPE:136:2 BUS:135:0) signals+=(INT USR1) attempts=20 fills+=(0)
     losses+=("0 mv folder moved" "0 mv folder/gone.h5 folder/moved.h5" "0 rm -r folder"
         "2 rm folder/gone.h5" "2 mv folder/gone.h5 folder/moved.h5" "2 rm -r folder")
@@ -406,7 +407,7 @@ share() { # name, program, arguments
     result $? "$name"
     grep '^ok\|^not ok' log | sed 's/^\(not \)\?ok/#/'
 }
-if [ -n "${STANCE_TEST_LONG:-}" ]; then
+if long_tests; then
     share "200 kills" "$tests/campaign_kills.py" --kills 200
     share "50 truncations, 200 turned bits" "$tests/campaign_damage.py" --truncations 50 --flips 200
 else

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
 # `stance run`, `status` and `check` from outside: ranks, kills, resumes, full disks, other readers.
 # Speaks TAP.
+# about: runner/objects runner/run analysis/compare
 set -u
 . "$(dirname "$0")/scratch.sh"
-span=5 # seconds that the cases of a long job last
+span=2 # seconds that the cases of a long job last
+long_tests && span=5
 [ -n "${STANCE_SLOW:-}" ] && span=0.5
 looks() { # name, kind ...
     local name=$1

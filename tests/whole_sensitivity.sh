@@ -2,6 +2,7 @@
 # `stance sensitivity` from outside: `stance run` makes the files of sampled studies, an answer of
 # which then becomes a function with known indices; what failed and pending cases do; bad use.
 # Speaks TAP.
+# about: runner/run analysis/sensitivity
 set -u
 . "$(dirname "$0")/scratch.sh"
 blocks=512

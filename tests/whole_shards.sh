@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Shards from outside: tasks that know nothing of each other, each on its share of one scenario,
 # killed, repeated and added, and one file made of theirs. Speaks TAP.
+# about: runner/run analysis/compare analysis/summary
 set -u
 . "$(dirname "$0")/scratch.sh"
 points=60 # of the sample

@@ -2,6 +2,7 @@
 # What `stance design` says of described robots: forces on a slope, the set within the friction cone
 # there, units of what slides.
 # Speaks TAP.
+# about: runner/plan
 set -u
 . "$(dirname "$0")/scratch.sh"
 export STANCE_CACHE=$scratch/cache

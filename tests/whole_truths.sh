@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What is known from outside (scenarios/truth): the list against independent programs, every method against
 # the list (truths.py); that a wrong number shows; what is said of a list that is wrong. Speaks TAP.
+# about: analysis/bench
 set -u
 . "$(dirname "$0")/scratch.sh"
 export STANCE_CACHE=$scratch/cache

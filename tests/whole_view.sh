@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
 # Pages of files of many kinds, in a headless Chromium: see view.mjs. Speaks TAP.
+# about: analysis/view
+# long
 set -u
 . "$(dirname "$0")/scratch.sh"
 node=$(command -v node) && [ -x "$(command -v chromium || command -v google-chrome)" ] || { skip "pages in a browser" "no node, or no chromium"; echo "1..1"; exit 0; }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Where pages go, and from what they are made: nothing else is written over. Speaks TAP.
+# about: analysis/view
 set -u
 . "$(dirname "$0")/scratch.sh"
 "$stance" run "$shipped/basin_one_foot.yaml" --set 'sweep.grid[0].count=3' --set 'sweep.grid[1].count=3' -o map.h5 >/dev/null 2>&1

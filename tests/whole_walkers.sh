@@ -2,6 +2,7 @@
 # Feet that land ahead: walkers on their limit cycles against an independent program, the same bits on
 # every instruction set, what is refused, what is counted; and by what robots fall.
 # Speaks TAP.
+# about: runner/run analysis/compare analysis/summary
 set -u
 . "$(dirname "$0")/scratch.sh"
 export STANCE_CACHE=$scratch/cache

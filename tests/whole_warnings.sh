@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Designs that cannot work are said before a run is wasted on them, and only those; and the time at
 # which a case has settled is continuous in its start. Speaks TAP.
+# about: runner/run analysis/summary
 # shellcheck disable=SC2016,SC2034
 set -u
 # shellcheck source=tests/scratch.sh
