@@ -445,6 +445,25 @@ static void stop_is_hit(void **state)
     arrives("a stop is hit", &r, 0.004, 1.6, x, 20);
     stance_scene_free(r.scene);
 }
+/* An arm that falls onto its stop lies there, and has not fallen where the stop is as far as it may
+ * turn. */
+static void stop_holds(void **state)
+{
+    (void)state;
+    struct robot r = robot_of("body arm hinge - 1 0.03 0 0.3 0 0 turn 1 limits -1 1\n", 0);
+    r.c.settle = true;
+    for (const stance_method *const *m = stance_methods(); *m; m++)
+        for (double h = 0.01; h > 4e-4; h /= 2)
+            for (int k = -9; k < 10; k += 2) {
+                r.c.position[0] = 0.1 * k;
+                const stance_result end = run(&r, *m, h, 2.56);
+                near((*m)->name, "angle", fabs(end.position[0]), 1, 1e-9);
+                near((*m)->name, "rate", end.velocity[0], 0, 1e-9);
+                assert_int_not_equal(end.outcome, STANCE_FELL);
+            }
+    stance_scene_free(r.scene);
+}
+
 /* Whatever the interval before it is, an impact is the contact law's and not the projection's; nor
  * does that stop what slides. */
 static void impacts_are_not_projected(void **state)
@@ -755,6 +774,7 @@ int main(void)
         cmocka_unit_test(sole_slides),
         cmocka_unit_test(sole_tips),
         cmocka_unit_test(stop_is_hit),
+        cmocka_unit_test(stop_holds),
         cmocka_unit_test(impacts_are_not_projected),
         cmocka_unit_test(stop_in_flight),
         cmocka_unit_test(rail_ends),

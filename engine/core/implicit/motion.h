@@ -5,7 +5,8 @@
 #include "engine/core/contact/impact.h"
 #include "engine/core/law/law.h"
 
-#define STEP_CLOSED 1e-12 /* m: a contact this close counts as closed */
+#define STEP_CLOSED 1e-12     /* m: a contact this close counts as closed */
+#define MOTION_ROUNDING 1e-12 /* m or rad, of what positions are mended to */
 
 /* What does not change during a case. */
 struct setting {
@@ -44,13 +45,20 @@ static inline contact_set step_touching(const struct setting *set, const lanes *
     return touching;
 }
 
+/* What a margin to a fall says. Beyond by rounding alone, as where a stop ends the same angle, is
+ * not beyond. */
+HOT mask motion_beyond(int cause, lanes margin)
+{
+    (void)cause;
+    return SCENE_FALLS_BEYOND(cause) ? mask_less(margin, lanes_of(-MOTION_ROUNDING))
+                                     : mask_less_equal(margin, lanes_of(0));
+}
 /* Lanes that have fallen by a cause, counted from 0. */
 HOT mask motion_falls(const struct setting *set, const lanes *s, const scene_trig *trig, int cause)
 {
     lanes rate;
     const lanes margin = scene_fall_margin(&set->body, s, trig, s, set->fall_height, cause, &rate);
-    return SCENE_FALLS_BEYOND(cause) ? mask_less(margin, lanes_of(0))
-                                     : mask_less_equal(margin, lanes_of(0));
+    return motion_beyond(cause, margin);
 }
 /* ... by whatever cause. */
 HOT mask motion_fallen(const struct setting *set, const lanes *s, const scene_trig *trig)

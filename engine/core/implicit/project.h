@@ -209,9 +209,11 @@ HOT mask project_position(const struct setting *set, const struct motion *from, 
                 choose(todo, it->gap[c] + scene_gap_change(&set->body, &it->end, c, d), it->gap[c]);
             far = lanes_max(scene_gap_change_error(&set->body, &it->end, c, d), far);
         }
-        trig_turn(&it->end, todo, d);
-        const mask moved = todo & mask_less(lanes_of(0.1 * STEP_PROJECTION), far);
-        if (mask_any(moved)) { /* too far for the expansion: the gaps anew */
+        /* To rounding: the energy hangs on it, and stops, whose gaps are linear, mend millirads. */
+        trig_turned(&it->end, d + FIRST_ANGLE, &it->end);
+        const mask moved = todo & (mask_less(lanes_of(0.1 * STEP_PROJECTION), far) |
+                                   mask_less(lanes_of(TRIG_TURNED), turned));
+        if (mask_any(moved)) { /* too far for the expansions: anew */
             scene_trig trig = it->end;
             scene_trigonometry(it->s1, &trig);
             EACH (c, 0, SCENE_CONTACTS)

@@ -119,16 +119,16 @@ COLD void inside_fell(const struct inside_way *way, mask low, const lanes *b, in
     memcpy(depth, b, sizeof depth);
     cubic_negate(depth);
     const mask dips = low & cubic_peak(depth, lanes_of(-INFINITY), &after, &least);
-    const mask deep = dips & mask_less_equal(inside_margin(way, cause, after), none);
-    const mask falls = deep | (low & mask_less_equal(b[CUBIC - 1], none));
+    const mask deep = dips & motion_beyond(cause, inside_margin(way, cause, after));
+    const mask falls = deep | (low & motion_beyond(cause, b[CUBIC - 1]));
     if (!mask_any(falls))
         return;
     after = choose(deep, after, lanes_of(1));
     for (int k = 0; k < INSIDE_HALVINGS; k++) {
         const lanes middle = 0.5 * (before + after);
-        const mask up = mask_less(none, inside_margin(way, cause, middle));
-        before = choose(up, middle, before);
-        after = choose(up, after, middle);
+        const mask down = motion_beyond(cause, inside_margin(way, cause, middle));
+        before = choose(down, before, middle);
+        after = choose(down, middle, after);
     }
     const lanes when = lanes_fma(after, way->h, way->t);
     const mask earlier = mask_less_equal(report->fell_by, none) | mask_less(when, report->fell);
