@@ -7,11 +7,12 @@
  * interval is halved, the half without the event is a smooth step again, and once what is left is
  * so short that the accelerations change no velocity by more than the tolerance in it, the implicit
  * law (core/implicit/step.h, theta = 1/2) crosses it, whatever the event is: landing, lift-off,
- * begin, end or turn of a slip, an impact of both feet. An accumulation of bounces ends when they
- * are too small to count. Where there is no smooth motion to begin with - a closed contact
- * approaches, several sets of forces fit the laws or none (Painleve), both feet stand redundantly
- * on the edge of their cones - the implicit law takes the interval as long as it can, but not so
- * long that a contact that approaches has left again without having been struck.
+ * begin, end or turn of a slip, an impact of both feet. An accumulation of bounces, or of impacts
+ * that throw up each other's contacts, ends when they are too small to count. Where there is no
+ * smooth motion to begin with - a closed contact approaches or hops, several sets of forces fit the
+ * laws or none (Painleve), both feet stand redundantly on the edge of their cones - the implicit
+ * law takes the interval as long as it can, but not so long that a contact that approaches has left
+ * again without having been struck.
  *
  * Error of a smooth step: the embedded estimate, per coordinate and rate. Error of a crossing: one
  * step and two half ones must agree to the tolerance. That alone would not do: with the event in
@@ -61,11 +62,10 @@ static const int tableau_dip[METHOD_STAGES] = {0, -1, 1, 2, -1, -1};
 // clang-format on
 
 #define CAPTURE_SMALLEST 0x1p-40 /* of a step: shorter intervals are not tried */
-#define CAPTURE_LOWEST 1e-11    /* m: an impact after a fall from less than this does not rebound */
-#define CAPTURE_ATTEMPTS 20000  /* in one step, then the case fails */
-#define CAPTURE_INSTANT 0x1p-10 /* of the tolerance: what moves less does not move */
-#define CAPTURE_GROWTH 64       /* an error this much smaller than the tolerance: twice as long */
-#define CAPTURE_WAIT 16         /* attempts until a standing step is tried a third time */
+#define CAPTURE_ATTEMPTS 20000   /* in one step, then the case fails */
+#define CAPTURE_INSTANT 0x1p-10  /* of the tolerance: what moves less does not move */
+#define CAPTURE_GROWTH 64        /* an error this much smaller than the tolerance: twice as long */
+#define CAPTURE_WAIT 16          /* attempts until a standing step is tried a third time */
 
 /* Where each lane is inside its step. */
 struct advance {
@@ -123,11 +123,11 @@ COLD void capture_inside(const struct setting *set, const struct motion *from,
 }
 
 /* Lanes where a contact that may meet the ground within h is fast enough to rebound: faster than
- * after a fall from CAPTURE_LOWEST. Gaps are known to BETWEEN_GAP only, which is less. */
+ * after a fall from BETWEEN_LOWEST. */
 static inline mask capture_rebounds(const struct setting *set, const struct motion *now, lanes h,
                                     lanes acceleration)
 {
-    const lanes slow = 2 * lanes_max(acceleration, lanes_of(STANCE_GRAVITY)) * CAPTURE_LOWEST;
+    const lanes slow = 2 * lanes_max(acceleration, lanes_of(STANCE_GRAVITY)) * BETWEEN_LOWEST;
     mask fast = MASK_NONE;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const mask near =
@@ -245,8 +245,9 @@ static inline mask capture_smooth(const struct setting *set, const struct motion
     step->report.ambiguous_steps =
         choose(trouble.chosen, lanes_of(1), step->report.ambiguous_steps);
     step->report.unranked_steps = choose(trouble.unranked, lanes_of(1), lanes_of(0));
-    *stuck = try & (trouble.impact | trouble.none | trouble.several |
-                    between_violated(set, &mode, &begin));
+    *stuck =
+        try & (trouble.impact | trouble.none | trouble.several |
+               between_violated(set, &mode, &begin) | between_hops(set, &mode, &begin, now->w));
     return try & LANES_NOT(*stuck | step->violated | step->bad);
 }
 

@@ -459,7 +459,7 @@ static stance_failure event_begin(struct advance *a, struct event_point *p, stru
         event_set_depths(&a->problem, p);
         event_margins(&a->problem, p->y, &p->e, p->margin);
         event_tell(a, &p->e);
-        if (*impact && event_accumulates(&a->problem, p))
+        if (*impact && between_hops(a->problem.set, &m->contact, &p->e, p->y + SCENE_COORDINATES))
             return STANCE_FAILURE_EVENTS;
         return event_consistent(&a->problem, p) ? STANCE_FAILURE_NONE : STANCE_FAILURE_PAINLEVE;
     }

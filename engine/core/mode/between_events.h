@@ -24,6 +24,13 @@
  *
  * A mode ends (between_violated) when an open contact's gap, a normal force, the room inside the
  * friction cone or a slip changes its sign.
+ *
+ * None begins where a contact hops (between_hops): it leaves the ground at a speed u, accelerated
+ * towards it by a, and rises by u^2 / 2a < BETWEEN_LOWEST only. Gaps are known to BETWEEN_GAP: what
+ * falls back is found when it is that much too low, at a speed of sqrt(2 a BETWEEN_GAP), however
+ * little it rose. An impact, without restitution too, may throw off the ground what stood there,
+ * the foot beside it or the stop of a joint; that falls back, strikes and throws up the first,
+ * which would end, being less each time, but for that speed. The implicit law takes both at once.
  */
 #ifndef STANCE_CORE_MODE_BETWEEN_EVENTS_H
 #define STANCE_CORE_MODE_BETWEEN_EVENTS_H
@@ -35,6 +42,7 @@
     1e-12                 /* of the accelerations: a slip that accelerates by less does not begin */
 #define BETWEEN_GAP 1e-12 /* m: penetration that does not count */
 #define BETWEEN_TURN 1e-4 /* rad: sines are turned by less, by series */
+#define BETWEEN_LOWEST 1e-11 /* m: what falls from less does not rebound, nor is it followed */
 
 /* What drives the robot in a step: torques that are held or, `coupled`, a law that acts all the
  * time, and in which mode; NULL: as it follows from the state. */
@@ -119,6 +127,35 @@ struct between_trouble {
     mask chosen;   /* more than one does, none slides: which is said in lane.h */
     mask unranked; /* too many contacts to tell */
 };
+
+/* Acceleration of a contact in a state that was evaluated and solved. */
+static inline void between_acceleration(const struct setting *set, const struct dynamics *e,
+                                        const lanes *w, int c, lanes *a)
+{
+    lanes curvature[2];
+    scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
+    scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, a);
+    a[0] += curvature[0], a[1] += curvature[1];
+}
+
+/* Lanes where a contact leaves the ground to fall back from less than BETWEEN_LOWEST, in a state
+ * with the velocity w that was evaluated and solved in the mode m. */
+static inline mask between_hops(const struct setting *set, const struct contact_state *m,
+                                const struct dynamics *e, const lanes *w)
+{
+    mask hops = MASK_NONE;
+    for (int c = 0; c < SCENE_CONTACTS; c++) {
+        const lanes u = e->u[c][0], room = BETWEEN_LOWEST - e->gap[c];
+        const mask leaves = LANES_NOT(m->closed[c]) & mask_less(lanes_of(0), set->may_touch[c]) &
+                            mask_less(lanes_of(0), room) & mask_less(lanes_of(BETWEEN_REST), u);
+        if (!mask_any(leaves))
+            continue;
+        lanes a[2];
+        between_acceleration(set, e, w, c, a);
+        hops |= leaves & mask_less(u * u, -2 * a[0] * room);
+    }
+    return hops;
+}
 
 /* Contacts that stand, as between_mode wants to know of the step before: 1 or 0. */
 static inline void between_stands(const struct contact_state *m, lanes *stands)

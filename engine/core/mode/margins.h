@@ -20,7 +20,6 @@
 #define EVENT_CLIP 1e-10    /* of the torque limit: a command beyond it by this is clipped */
 #define EVENT_SLIP 1e-12    /* m/s: a slip this small has ended */
 #define EVENT_JAM 1e-6      /* determinant of the forces at which a slide ends */
-#define EVENT_LOWEST 1e-11  /* m: rebounds lower than this accumulate */
 
 /* The state that ARKODE integrates: s, w, then what is summed over the step. */
 enum {
@@ -310,23 +309,6 @@ static bool event_rise(struct event_problem *problem, struct event_point *p)
     return risen;
 }
 
-/* A contact that leaves the ground and falls back from less than EVENT_LOWEST. */
-static bool event_accumulates(const struct event_problem *problem, const struct event_point *p)
-{
-    for (int c = 0; c < SCENE_CONTACTS; c++) {
-        double fall[2], curvature[2];
-        if (problem->set->may_touch[c] <= 0 || problem->mode.contact.closed[c] ||
-            p->e.gap[c] > STEP_CLOSED || p->e.u[c][0] <= BETWEEN_REST)
-            continue;
-        scene_contact_velocity(&problem->set->body, &p->e.trig, c, p->e.acceleration, fall);
-        scene_contact_curvature(&problem->set->body, &p->e.trig, c, p->y + SCENE_COORDINATES,
-                                curvature);
-        if (p->e.u[c][0] * p->e.u[c][0] < -2 * EVENT_LOWEST * (fall[0] + curvature[0]))
-            return true;
-    }
-    return false;
-}
-
 /* Was it a contact, not a torque limit, that ended the mode at *p? */
 static bool event_of_contact(const struct event_problem *problem, const struct event_point *p)
 {
@@ -346,14 +328,13 @@ static void event_slopes(const struct event_problem *problem, const double *y,
     for (int k = 0; k < EVENT_MARGINS; k++)
         slope[k] = NAN;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
-        double forced[2], curvature[2];
+        double a[2];
         if (!m->closed[c])
             slope[3 * c] = problem->set->may_touch[c] > 0 ? e->u[c][0] : 0;
         if (!event_grips(m, c) || m->slide[c] == 0 || problem->set->friction <= 0)
             continue;
-        scene_contact_velocity(&problem->set->body, &e->trig, c, e->acceleration, forced);
-        scene_contact_curvature(&problem->set->body, &e->trig, c, y + SCENE_COORDINATES, curvature);
-        slope[3 * c + 1] = m->slide[c] * (forced[1] + curvature[1]);
+        between_acceleration(problem->set, e, y + SCENE_COORDINATES, c, a);
+        slope[3 * c + 1] = m->slide[c] * a[1];
     }
 }
 

@@ -34,16 +34,6 @@ static inline lanes missed_longest(const struct setting *set, const lanes *w)
     return longest;
 }
 
-/* Acceleration of a contact in a state that was evaluated and solved. */
-static inline void missed_acceleration(const struct setting *set, const struct dynamics *e,
-                                       const lanes *w, int c, lanes *a)
-{
-    lanes curvature[2];
-    scene_contact_curvature(&set->body, &e->trig, c, w, curvature);
-    scene_contact_velocity(&set->body, &e->trig, c, e->acceleration, a);
-    a[0] += curvature[0], a[1] += curvature[1];
-}
-
 /* Least of what follows from value, rate and acceleration at one end of a quintic. */
 static inline lanes missed_quintic(lanes g, lanes rate, lanes acceleration, lanes h)
 {
@@ -101,8 +91,8 @@ static inline mask missed_between(const struct setting *set, const struct contac
         if (!mask_any(near | slides))
             continue;
         lanes a0[2], a1[2];
-        missed_acceleration(set, begin, w0, c, a0);
-        missed_acceleration(set, end, w1, c, a1);
+        between_acceleration(set, begin, w0, c, a0);
+        between_acceleration(set, end, w1, c, a1);
         const lanes gap = lanes_min(missed_quintic(begin->gap[c], begin->u[c][0], a0[0], h),
                                     missed_quintic(end->gap[c], -end->u[c][0], a1[0], h));
         const lanes slip = lanes_min(m->slide[c] * (begin->u[c][1] + h * (a0[1] / 3)),
