@@ -162,6 +162,8 @@ worst = h5py.File('bounces.h5')['dissipation_residual'][...].max()
 assert worst <= 2e-5, worst" >log 2>&1
 result $? "slips against their friction are what a foot turns by in the step"
 
+expect "legs side by side, of which either may take the blow" 0 "$stance" run walker.yaml --set method.name=midpoint --set ground.restitution=0.6 -o mirror.h5
+
 # ---- a case that fails says when, where, and what to try -------------------------------------------
 expect "a tolerance that cannot be had" 1 "$stance" run walker.yaml --set method.tolerance=1e-17 --only 12 -o fails.h5
 expect "summary of what fails" 0 "$stance" summary fails.h5

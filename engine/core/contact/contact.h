@@ -360,6 +360,7 @@ struct contact_rule {
     /* Impulses in the step before, zero where not known: what stood goes on standing; NULL: nothing
      * is known. And impulses of which the mode may be the solution's, NULL: none. */
     const lanes (*before)[2], (*last)[2];
+    mask keeps; /* where that mode is a solution's it is taken, preferred or not */
 };
 
 /* What is said of a solution, in lanes. */

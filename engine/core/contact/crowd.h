@@ -222,6 +222,17 @@ static bool crowd_knows(const struct lane_problem *p)
     return knows;
 }
 
+/* Takes the last iterate's solution where that is one; best: the one that is preferred. */
+static void crowd_keep(const struct lane_problem *p, struct lane_choice *best)
+{
+    struct lane_choice own;
+    lane_choose_none(&own);
+    if (!crowd_knows(p) || !crowd_offer_mode(p, p->last, &own))
+        return;
+    own.ambiguous = best->ambiguous;
+    *best = own;
+}
+
 /* Some solution, with the violation that is left: of several the last iterate's, or the iteration
  * that asks would go from one to the other without end. */
 static void crowd_solve(const struct lane_problem *p, struct lane_choice *best)

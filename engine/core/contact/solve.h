@@ -34,8 +34,8 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
             done |= direct_modes(rule, D, uf, touching, active, tolerance, todo, r);
     }
     mask left = unsure & LANES_NOT(done);
-    left &= LANES_NOT(pair_every(rule, D, uf, touching, active, tolerance, left & LANES_NOT(stood),
-                                 r, &v->ambiguous));
+    left &= LANES_NOT(pair_every(rule, D, uf, touching, active, tolerance,
+                                 left & LANES_NOT(stood | rule->keeps), r, &v->ambiguous));
     for (int lane = 0; lane < LANES && mask_any(left); lane++) {
         if (!mask_get(left, lane))
             continue;
@@ -51,6 +51,8 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
             best.violation = 0;
         } else if (p.elements <= SOLVE_ENUMERATED) {
             lane_enumerate(&p, &best);
+            if (mask_get(rule->keeps, lane))
+                crowd_keep(&p, &best);
         } else {
             crowd_solve(&p, &best);
             v->unranked |= mask_of_lane(lane);

@@ -19,6 +19,7 @@ struct iterate {
     scene_trig middle, end; /* trigonometry at u and at s1; one and the same for theta = 1 */
     mask active[CONTACTS];
     mask brought[CONTACTS]; /* not active, but come to the ground with the end's position mended */
+    mask keeps;             /* see contact_rule */
     struct contact_verdict verdict;
     lanes size;                                /* of the last correction */
     lanes shift;                               /* how far impulses moved with it, as a velocity */
@@ -120,7 +121,8 @@ HOT void iterate_contacts(const struct setting *set, const struct motion *from, 
                                       .prefer = set->prefer,
                                       .shift = (const lanes(*)[2])rebound,
                                       .before = it->before,
-                                      .last = (const lanes(*)[2])it->r};
+                                      .last = (const lanes(*)[2])it->r,
+                                      .keeps = it->keeps};
     solve_contacts(&rule, (const lanes(*)[CONTACTS][2][2])D, (const lanes(*)[2])uf, touching,
                    running, it->active, r, &now);
     it->verdict = all ? now : contact_verdicts(running, &now, &it->verdict);

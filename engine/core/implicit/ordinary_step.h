@@ -232,6 +232,7 @@ HOT mask ordinary_reach(const struct ordinary *q, const struct setting *set,
     it->along = NULL;
     it->verdict = (struct contact_verdict){MASK_NONE, MASK_NONE, MASK_NONE};
     it->before = from->impulse;
+    it->keeps = MASK_NONE;
     EACH (i, 0, SCENE_ACTUATORS)
         it->torque[i] = torque[i];
     EACH (c, 0, SCENE_CONTACTS) {

@@ -37,6 +37,8 @@
 #define STEP_MAX_ITERATIONS 25
 #define STEP_TOLERANCE                                                                             \
     1e-7 /* last Newton correction, m/s and rad/s; the error left is its square */
+#define STEP_KEEPS_AFTER                                                                           \
+    8 /* iterations: of several solutions it is the last iterate's from then on */
 #define STEP_FROZEN_RESIDUAL                                                                       \
     1e-6 /* m/s: a step with frozen geometry that is further off is refused */
 #define STEP_MOST_GAIN                                                                             \
@@ -330,7 +332,10 @@ static inline bool step_moreau(const struct setting *set, const struct motion *f
  * only where it converged. `torque` is held over the step unless `coupled`: then the law acts
  * inside it. From iteration `freeze_after` on inertia and directions stay those of that iterate:
  * with parallel legs the contact solution can jump with the geometry, and Newton then cycles
- * between two modes for every h. `corner`: as in law_inside; converged is then only what agrees
+ * between two modes for every h. From iteration STEP_KEEPS_AFTER on it is the last iterate's of
+ * several contact solutions: two may be each other's mirror image - legs side by side, of which one
+ * takes the blow and the other gives way -, and each is a little the worse at the iterate that it
+ * leads to itself. `corner`: as in law_inside; converged is then only what agrees
  * with it. brought: contacts that take part from the first iterate on though they were open; those
  * that turn out to be such are added. Returns the lanes that converged. */
 COLD mask step_once(const int *corner, const struct setting *set, const struct motion *from,
@@ -367,6 +372,7 @@ COLD mask step_once(const int *corner, const struct setting *set, const struct m
     iterate_place(set, from, h, false, &it);
     lanes iterations = lanes_of(0);
     for (int k = 0; k < STEP_MAX_ITERATIONS && mask_any(running); k++) {
+        it.keeps = k < STEP_KEEPS_AFTER ? MASK_NONE : running;
         /* All or none: position errors may have to be removed at a contact that is not active. */
         mask somewhere = MASK_NONE;
         EACH (c, 0, SCENE_CONTACTS)
