@@ -208,7 +208,7 @@ typedef enum stance_outcome {
 #define STANCE_OUTCOME_ONE(NAME, name, number, text) +1
 enum { STANCE_OUTCOME_COUNT = 1 STANCE_OUTCOMES(STANCE_OUTCOME_ONE) };
 
-/* What an outcome rests on: simulated to its end, or inferred from where the state had come. */
+/* What an outcome rests on: simulated, or inferred from what others came to. */
 #define STANCE_EVIDENCES(X)                                                                        \
     X(EVIDENCE_NONE, none)                                                                         \
     X(SIMULATED, simulated)                                                                        \
@@ -421,17 +421,6 @@ typedef struct stance_case {
     double settle_place; /* m along the ground that a support may be from where it began, with what
                           * counts as stabilised; 0: anywhere */
     double fall_height;  /* see stance_scene.fallen */
-
-    /* `basin_known`: a case ends as `stabilised`, evidence `inferred`, at the first step (sampling
-     * instant, where the law samples) at whose end the support foot alone carries and stands and
-     * x = (posture - near.target, rates) has x' known_basin x <= 1, unless less than
-     * known_basin_time is left. Has no effect unless `settle` and has_target hold, nor on laws that
-     * decouple, switch or act late, whose next torques do not follow from x. When such a case would
-     * have settled is not known: settle_time is NAN, and what is counted or summed ends with the
-     * simulation. */
-    bool basin_known;
-    double known_basin[2 * STANCE_MAX_POSTURE][2 * STANCE_MAX_POSTURE]; /* symmetric; units 1/x^2 */
-    double known_basin_time;                                            /* s, >= 0 */
 
     uint64_t seed, grid_index, sample_index; /* key of the random numbers */
     stance_trajectory *trajectory;           /* NULL: not recorded */

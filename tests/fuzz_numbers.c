@@ -103,12 +103,9 @@ const char *fuzz_difference(const struct fuzz_numbers *a, const struct fuzz_numb
 bool fuzz_hash_file(const char *file, struct fuzz_numbers *numbers, stance_message *message)
 {
     enum { MOST_NUMBERS = 1 << 16 };
-    static const char *const designs[] = {"design/gain",
-                                          "design/equilibrium_position",
-                                          "design/equilibrium_torque",
-                                          "design/start_position",
-                                          "design/status",
-                                          "design/captured"};
+    static const char *const designs[] = {"design/gain", "design/equilibrium_position",
+                                          "design/equilibrium_torque", "design/start_position",
+                                          "design/status"};
     struct results r;
     *numbers = (struct fuzz_numbers){0};
     if (!results_open(&r, file, message))

@@ -522,7 +522,7 @@ static void bad_sets_are_refused(void **state)
         {"stop.time=x", "stop.time: expected a number, found 'x'"},
         {"stop.time=", "stop.time: expected a number, found nothing"},
         {"stop.tim=1", "stop: unknown key 'tim'; did you mean 'time'? (known: time, settle, "
-                       "fall_height, capture)"},
+                       "fall_height)"},
         {"stop.time", "a value must follow; write stop.time=VALUE"},
         {"=1", "'' is not a path such as sweep.grid[0].count"},
         {"a[=1", "'a[' is not a path such as sweep.grid[0].count"},

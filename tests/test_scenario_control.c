@@ -46,57 +46,6 @@ static void sample_time_may_be_design(void **state)
     scenario_free(&s);
 }
 
-/* A captured set depends on all but the initial state, and is one of states that settle. */
-static void captured_sets_are_designs(void **state)
-{
-    static const char axes[] = "sweep.grid=[{path: initial.offset.theta, values: [0, 0.1]}, "
-                               "{path: ground.friction, values: [0.5, 0.6]}, "
-                               "{path: controller.torque_limit, values: [10, 20]}, "
-                               "{path: stop.time, values: [1, 2]}]";
-    static const char *const refused[][2] = {
-        {"stop.settle=off", "stop.capture estimated has no meaning with stop.settle off: runs last "
-                            "their whole time"},
-        {"controller={kind: hold, kp: 1, kd: 1}",
-         "stop.capture estimated needs controller.kind state-feedback (here: hold)"},
-        {"controller.far=hold",
-         "stop.capture estimated has no meaning with controller.far: another "
-         "law acts outside"},
-        {"controller.delay=1", "controller.delay has no meaning with stop.capture estimated: the "
-                               "torques under way belong to the state"},
-        {"sweep.grid=[{path: controller.delay, values: [0, 1]}]",
-         "controller.delay has no meaning with stop.capture estimated: the torques under way "
-         "belong to the state"},
-        {"stop.capture=proven", "stop.capture: unknown word 'proven' (known: off, estimated)"},
-    };
-    const char *const keys = "design: lqr, sample_time: 0.002, near: {angle: 1, rate: 1}, kp: 1, "
-                             "kd: 1";
-    struct scenario s;
-    (void)state;
-    read_good(&s, designed("design: lqr, sample_time: 0.002"),
-              (const char *[]){axes, "stop.capture=estimated"}, 2);
-    assert_true(s.base.capture == 1 && !s.axis[0].design);
-    assert_true(s.axis[1].design && s.axis[2].design && s.axis[3].design);
-    scenario_free(&s);
-    read_good(&s, designed("design: lqr, sample_time: 0.002"), (const char *[]){axes}, 1);
-    assert_false(s.base.capture || s.axis[1].design || s.axis[2].design || s.axis[3].design);
-    scenario_free(&s);
-    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
-        const bool far = strncmp(refused[i][0], "controller.far", 14) == 0;
-        assert_false(read_as(&s, "bad.yaml",
-                             designed(far ? keys : "design: lqr, sample_time: 0.002"),
-                             (const char *[]){"stop.capture=estimated", refused[i][0]}, 2));
-        if (!strstr(errors, refused[i][1]))
-            fail_msg("%s: %s", refused[i][0], errors);
-    }
-    /* The place in the file is told. */
-    assert_false(read_as(&s, "bad.yaml",
-                         "stance: 1\nscene: biped\ninitial: {equilibrium: {theta: -0.41, q2: "
-                         "0.82}}\nstop: {time: 1, capture: estimated}\n",
-                         NULL, 0));
-    assert_string_equal(errors, "bad.yaml:4:26: stop.capture estimated needs controller.kind "
-                                "state-feedback (here: none)\n");
-}
-
 /* ---- gains ----------------------------------------------------------------------------------- */
 
 enum { N = 6, M = 2 };
@@ -349,7 +298,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sample_time_may_be_design),
-        cmocka_unit_test(captured_sets_are_designs),
         cmocka_unit_test(every_design_reaches_the_case),
         cmocka_unit_test(impossible_designs),
         cmocka_unit_test(sets_keep_within_bounds),

@@ -59,8 +59,6 @@ make_file trajectories --set "sweep.grid=[$theta]" --set 'record={every: 0.1, ca
 make_file single-case --set "sweep.grid=[$theta]" --only 0 --trace
 make_file refined --set "sweep.grid=[{path: initial.offset.theta, from: -0.1, to: 0.05, count: 9},
     {path: initial.offset.vtheta, from: -0.5, to: 0.5, count: 9}]" --set 'sweep.refine={start: 3, margin: 1}'
-make_file captured --set stop.capture=estimated --set 'sweep.grid=[{path: initial.offset.theta,
-    from: -0.02, to: 0.02, count: 3}]'
 make_file sampled --set 'sweep.sample={method: sobol, count: 4, vary: [
     {path: ground.friction, from: 0.3, to: 1}, {path: controller.delay, values: [0, 1]}]}'
 make_file designs --set "sweep.grid=[$theta]" --set 'sweep.sample={method: morris, count: 2, levels: 4, vary: [

@@ -162,7 +162,7 @@ method: {name: capturing, step: 0.001, tolerance: 1e-4}
 stop: {time: 1, settle: off, fall_height: 0}
 END
 accepted "a step without end is checked in no time" "$stance" check "$endless"
-# Designs of a minute and of hours, a captured set of half a minute: what there was no time for is said.
+# Designs of a minute and of hours: what there was no time for is said.
 cat >designs.yaml <<'END'
 stance: 1
 scene: biped
@@ -195,13 +195,6 @@ accepted "... as JSON" "$stance" check --json designs.yaml
 says '"designs_computed": [1-9][0-9]\{0,5\},'
 accepted "... planned" "$stance" run --dry-run designs.yaml
 says "$some"
-accepted "captured sets of exact simulations are checked in no time" "$stance" check designs.yaml \
-    --set stop.capture=estimated --set 'sweep.grid[0].count=2' --set 'sweep.grid[1].count=2'
-says 'designs     4 distinct$'
-says 'capture     \(about\|unknown\)'
-accepted "many designs without a captured set are checked in no time" "$stance" check designs.yaml \
-    --set stop.capture=estimated --set controller.torque_limit=1
-says 'capture     unknown'
 refused "more cases than fit a number" 2 'make more than 2^53 cases' "$stance" check "$good" --set "$huge, {path: ground.friction, from: 0, to: 1, count: 2}]"
 refused "more instants than fit a file" 2 'record.every: .* instants' "$stance" check "$good" --set 'record={every: 1e-300, cases: all}'
 refused "a file that no disk holds" 3 'results/ball_bounce.h5' "$stance" run "$good" --set "$huge]"

@@ -125,16 +125,15 @@ sed 's/count: 60/count: 2000/; s/initial.offset.theta, from: -0.12, to: 0.06/rob
 expect "a time limit while designs are computed" 4 mpirun -n 2 "$stance" run designs.yaml \
     -o designs.h5 --time-limit 0.05s
 says "... says how to go on" 'nothing is stored; go on with: mpirun -n 2 .*designs.yaml .*--resume$'
-sed 's/^stop: .*/stop: {time: 4, capture: estimated}/; s/0\.01/0.001/g; s/, noise: 0.1//' \
-    short.yaml >captured.yaml
-mpirun -n 3 "$stance" run captured.yaml -o captured.h5 --quiet >out 2>log </dev/null &
+sed 's/count: 2000/count: 2000000/' designs.yaml >many.yaml
+mpirun -n 3 "$stance" run many.yaml -o many.h5 --quiet >out 2>log </dev/null &
 job=$!
-estimating() { "$stance" status captured.h5 2>&1 | grep -q 'not there yet: a run is estimating captured sets'; }
-await "$job" estimating
+designing() { "$stance" status many.h5 2>&1 | grep -q 'not there yet: a run is computing designs'; }
+await "$job" designing
 kill -USR1 "$(pgrep -P $job -x "$(basename "$stance")" | tail -n 1)"
-ends "a signal to one rank while captured sets are estimated" 4
-says "... says how to go on" 'nothing is stored; go on with: mpirun -n 3 .*captured.yaml .*--resume$'
-[ -z "$(ls captured.h5* designs.h5* 2>/dev/null)" ]
+ends "a signal to one rank while designs are computed" 4
+says "... says how to go on" 'nothing is stored; go on with: mpirun -n 3 .*many.yaml .*--resume$'
+[ -z "$(ls designs.h5* many.h5* 2>/dev/null)" ]
 result $? "... and leaves no file"
 
 # ---- seen from outside -------------------------------------------------------------------------

@@ -91,42 +91,21 @@ assert {k for k in f if k not in ("initial.offset.theta", "design", "timing")} =
 result $? "a file of few answers holds those and no others"
 tool "checksums of few answers" whole results/few.h5 9
 
-# ---- captured sets ---------------------------------------------------------------------------
-captured() { # capture
-    scenario "sweep:
-  grid:
-    - {path: controller.torque_limit, values: [5, 10, 12]}
-    - {path: initial.offset.theta, from: -0.12, to: 0.06, count: 31}
-stop: {time: 4, capture: $1}" | sed 's/0\.001/0.01/g'
-}
-captured off >off.yaml
-captured estimated >captured.yaml
-expect "a sweep without captured sets" 0 "$stance" run off.yaml -o off.h5
-expect "captured sets, one rank" 0 "$stance" run captured.yaml -o captured1.h5
-expect "captured sets, two ranks" 0 mpirun -n 2 "$stance" run captured.yaml -o captured2.h5
-tool "they give the same bits" same captured1.h5 captured2.h5
-expect "the last case alone finds its set anew" 0 "$stance" run captured.yaml -o one.h5 --only 80
-"$python" - >log 2>&1 <<'END'
-import h5py, numpy
-off, on, one = (h5py.File(name) for name in ("off.h5", "captured1.h5", "one.h5"))
-assert (off["outcome"][...] == on["outcome"][...]).all()
-inferred = on["evidence"][...] == 2
-assert inferred.sum() > 10 and (on["outcome"][...][inferred] == 1).all()
-assert numpy.isnan(on["settle_time"][...][inferred]).all()
-assert (on["end_time"][...] <= off["end_time"][...]).all()
-design = on["design"]
-time = design["capture_time"][...]
-assert time.shape == (3,) and numpy.isnan(time[0]) and (0.5 < time[1:]).all() and (time[1:] < 2.51).all()
-M = design["captured"][1]
-assert (M == M.T).all() and (numpy.linalg.eigvalsh(M) > 0).all()
-assert (design["capture_boundary"][1:] == 10000).all() and (design["capture_share"][1:] < 1e-3).all()
-assert not any(name.startswith("capture") for name in off["design"])
-assert one["checksum"][0] == on["checksum"][2, 18]
-END
-result $? "no label changes; the sets are in the file, none where the torques do not hold the robot"
-expect "a stop while sets are estimated" 4 "$stance" run captured.yaml -o never.h5 --time-limit 0.01s
-[ ! -e never.h5 ]
-result $? "... leaves no file"
+# ---- a file of a former version, whose scenario has a key that is no longer there ---------------
+cp ranks0.h5 former.h5
+"$python" -c 'import h5py, hashlib
+with h5py.File("former.h5", "r+") as f:
+    text = f.attrs["scenario"]
+    text = (text if isinstance(text, str) else text.decode()).replace("\n  time: 1", "\n  time: 1\n  capture: estimated")
+    assert text.count("capture") == 1, text
+    f.attrs["scenario"], f.attrs["scenario_sha256"] = text, hashlib.sha256(text.encode()).hexdigest()' >log 2>&1
+result $? "a file of a former version"
+expect "... has a summary" 0 "$stance" summary former.h5
+says "... of its outcomes" '^  stabilised  *[0-9]'
+expect "... and a picture" 0 "$stance" plot former.h5 -o former.svg
+expect "... and compares" 0 "$stance" compare --labels ranks0.h5 former.h5
+expect "... but does not go on with another scenario" 2 "$stance" run ranks.yaml -o former.h5 --resume --force-scenario
+says "... it says why" 'a scenario that this version cannot read'
 
 # ---- killed, stopped, damaged, and gone on with ------------------------------------------------
 scenario "$(grid 200 200)

@@ -140,13 +140,7 @@ expect "both" 0 "$stance" merge long.h5 results/long.shard-?-of-2.h5
 expect "one run of all" 0 "$stance" run long.yaml -o long_one.h5 --quiet
 expect "... is the same" 0 "$stance" compare long_one.h5 long.h5
 
-# ---- sets that capture; space for a share --------------------------------------------------------
-capture=(run long.yaml --quiet --set 'stop={time: 2, capture: estimated}')
-expect "a shard of captured cases" 0 "$stance" "${capture[@]}" --shard 1/2 -o capture1.h5
-expect "... the other" 0 "$stance" "${capture[@]}" --shard 2/2 -o capture2.h5
-expect "... both" 0 "$stance" merge capture.h5 capture1.h5 capture2.h5
-expect "... one run" 0 "$stance" "${capture[@]}" -o capture_one.h5
-expect "... is the same" 0 "$stance" compare capture_one.h5 capture.h5
+# ---- space for a share ---------------------------------------------------------------------------
 cat >ball.yaml <<END
 stance: 1
 scene: ball

@@ -47,7 +47,5 @@ expect "a cart" 0 "$stance" design "$shipped/mechanisms/cart_pole.yaml"
 says "... is held by a force" "push .* N    force that holds it"
 says "... in the units of its states" "(rad, m and their rates), u that of the forces (N)"
 says "... an axis has none" "axis\[0\]  *1$"
-expect "captured sets are of what stands" 0 "$stance" design "$shipped/mechanisms/cart_pole.yaml" --set stop.capture=estimated
-says "... it says so" "no captured set: only for a robot that stands on a contact"
 echo "1..$count"
 exit $((failed > 0))

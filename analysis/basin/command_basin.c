@@ -322,7 +322,7 @@ const struct command command_basin = {
     "other axis is a parameter. For each point of the parameters: how many of the starts end in\n"
     "the outcome, and what share of the box of starts that is. Rows are averages over a sample of\n"
     "parameters (stance sensitivity tells what it says of each), and with --by over all other\n"
-    "parameters. Cases inferred by sweep.refine or stop.capture count as simulated ones do.\n"
+    "parameters. Cases inferred by sweep.refine count as simulated ones do.\n"
     "\n"
     "  volume    the box reaches from the first to the last place of each axis; cases on its edge\n"
     "            count by the part of their cell that lies in it (so the share is not quite that\n"

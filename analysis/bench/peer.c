@@ -62,7 +62,7 @@ static bool acceleration(const struct peer_task *task, int k, double *result)
         stance_result end;
         c.step = ldexp(4e-3, -l);
         c.steps = 1;
-        c.settle = c.basin_known = false;
+        c.settle = false;
         kernel->run(&c, &end, 1);
         if (end.status != STANCE_DONE)
             return false;

@@ -216,31 +216,28 @@ static bool is_refined(const struct results *r)
     return refined;
 }
 
-/* With stop.capture a simulated case may be inferred, too; it has an end. */
 bool statistics_inferred(const struct results *r, uint64_t *count, bool **which,
                          stance_message *message)
 {
-    double *evidence = NULL, *end = NULL;
+    double *evidence = NULL;
     bool *flag = NULL;
     *count = 0;
     if (which)
         *which = NULL;
     if (!is_refined(r))
         return true;
-    bool good = results_answer(r, "evidence", &evidence, message) &&
-                results_answer(r, "end_time", &end, message);
+    bool good = results_answer(r, "evidence", &evidence, message);
     if (good && which && !(flag = calloc(r->cases, sizeof *flag))) {
         statistics_no_memory(r, message);
         good = false;
     }
     for (uint64_t i = 0; good && evidence && i < r->cases; i++) {
-        bool inferred = evidence[i] == STANCE_INFERRED && !(end && isfinite(end[i]));
+        bool inferred = evidence[i] == STANCE_INFERRED;
         *count += inferred;
         if (flag)
             flag[i] = inferred;
     }
     free(evidence);
-    free(end);
     if (which)
         *which = flag;
     return good;

@@ -59,8 +59,7 @@ struct summary_numbers {
     X(degraded_samples, "degraded_cases",                                                          \
       "samples at which decoupling could not do what it promises")                                 \
     X(subdivided_steps, "subdivided_cases", "steps that had to be subdivided")                     \
-    X(ambiguous_steps, "ambiguous_cases", "steps with several contact solutions")                  \
-    X(evidence, NULL, NULL) /* 1 simulated, 2 inferred */
+    X(ambiguous_steps, "ambiguous_cases", "steps with several contact solutions")
 
 enum {
 #define SUMMARY_COUNT(name, cases, text) SUMMARY_##name,

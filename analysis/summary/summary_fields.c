@@ -243,8 +243,6 @@ static void add_fields(struct collection *c, const struct scenario_values *v)
     }
     add_number(c, "stop.fall_height", scene->fallen && !scene->mechanism ? v->fall_height : NAN,
                "");
-    if (v->capture)
-        add_text(c, "stop.capture", "estimated");
 }
 
 void summary_collect_fields(struct summary *summary, const struct results *r,

@@ -207,7 +207,7 @@ static json_t *cost(const struct summary *summary)
     const struct summary_count *steps = &summary->count[SUMMARY_steps],
                                *iterations = &summary->count[SUMMARY_iterations];
     json_t *object = json_object();
-    for (int k = 0; k < SUMMARY_evidence; k++) {
+    for (int k = 0; k < SUMMARY_COUNT_COUNT; k++) {
         const struct summary_count *count = &summary->count[k];
         if (count->stored)
             json_object_set_new(object, count->name, json_integer((json_int_t)count->sum));

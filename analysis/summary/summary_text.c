@@ -378,7 +378,7 @@ static void print_residuals(const struct summary *summary)
 
 static void print_cost(const struct summary *summary)
 {
-    const struct summary_count *count = summary->count, *evidence = &count[SUMMARY_evidence];
+    const struct summary_count *count = summary->count;
     const double steps = count[SUMMARY_steps].sum, iterations = count[SUMMARY_iterations].sum,
                  evaluations = count[SUMMARY_evaluations].sum;
     puts("\nCost");
@@ -397,9 +397,6 @@ static void print_cost(const struct summary *summary)
                    count[k].cases);
         }
     }
-    const double captured = evidence->sum - (double)evidence->cases - (double)summary->inferred;
-    if (captured > 0)
-        printf("  ended early in the captured set (evidence: inferred): %.6g cases\n", captured);
     if (summary->timed) {
         printf("  %.4g s of computing on %zu rank%s (%.4g s together): %.4g cases/s\n",
                summary->longest, summary->ranks, summary->ranks == 1 ? "" : "s", summary->total,

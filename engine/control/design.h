@@ -1,5 +1,5 @@
-/* design.h - control design: gains from a linearised scene, loops that sample, sets from which a
- * loop is known to hold. The public header of an archive of its own, libstance_control.a.
+/* design.h - control design: gains from a linearised scene, loops that sample, sets in which a
+ * linear loop holds. The public header of an archive of its own, libstance_control.a.
  *
  * Conventions as in engine/stance.h.
  */
@@ -110,62 +110,6 @@ stance_error stance_lyapunov(int n, const double *loop, bool sampled, const doub
  * extent[n]: when all else is free. P symmetric, positive definite. */
 stance_error stance_sublevel(int n, const double *P, int count, const double *a, const double *d,
                              double *level, int *binding, double *alone, double *extent);
-
-/* The widest ellipsoid x' P x <= 1 that the loop x' = F x (sampled: x+ = F x), once inside, never
- * leaves and that lies within |a_k' x| <= d_k, a[count][n], 1 to 16 bounds, d > 0, INFINITY where a
- * bound is none: the Lyapunov function is chosen for the volume. n <= 6. BAD_ARGUMENT when the loop
- * is not stable or a bound leaves nothing. */
-stance_error stance_invariant_ellipsoid(int n, const double *loop, bool sampled, int count,
-                                        const double *a, const double *d, double *P,
-                                        stance_message *message);
-
-enum { STANCE_MAX_SHAPES = 16 };
-
-/* What stance_known_basin_estimate looks for. */
-typedef struct stance_known_basin_search {
-    const stance_scene *scene;
-    const stance_kernel *kernel;
-    /* Robot, ground, law, noise, step, rules and length of the simulations, seed. */
-    stance_case base;
-    int shapes; /* candidates for P, 1 ... STANCE_MAX_SHAPES; symmetric, positive definite */
-    double P[STANCE_MAX_SHAPES][4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
-    int64_t boundary, interior; /* simulations that confirm; interior may be 0 */
-    /* NULL, or asked about every millisecond: true, the search is given up (STOPPED). */
-    bool (*leave)(void *context);
-    void *context;
-} stance_known_basin_search;
-
-/* The set x' form x <= 1 from whose boundary every simulation ended `stabilised`. */
-typedef struct stance_known_basin {
-    bool exists;
-    double form[4 * STANCE_MAX_POSTURE * STANCE_MAX_POSTURE];
-    int shape;           /* which P */
-    double level;        /* form = P / level */
-    double time;         /* s: the longest that a simulation took to end */
-    int64_t boundary;    /* simulations that began on the boundary, all good ... */
-    int64_t interior;    /* ... and inside */
-    int64_t batches;     /* sets that were tried with so many; the last one was good */
-    double share;        /* of the boundary: less than this fails, with 95 % confidence */
-    int64_t simulations; /* in all, those of the search included */
-    double volume[STANCE_MAX_SHAPES]; /* logarithm of the volume that each P reached in the search,
-                                       * up to a constant; NAN where none */
-} stance_known_basin;
-
-/* Largest level c of x' P x, x = (posture - target, rates), for which simulations that begin on its
- * boundary, evenly in the metric of P, with the support foot standing at rest and no contact inside
- * the ground, all end as `stabilised`, in full. The shape with the largest volume is taken. 0
- * failures of n say that less than stance_known_basin_share of the boundary fails, with 95 %
- * confidence. *set with `exists` false: no set was found. BAD_ARGUMENT: base does not settle at a
- * target on a foot, or its law is not the state's alone. STOPPED: given up; `simulations` counts
- * those that had ended. */
-stance_error stance_known_basin_estimate(const stance_known_basin_search *search,
-                                         stance_known_basin *set);
-
-/* What no failure in `boundary` simulations of the last of `batches` sets, tried one after the
- * other until one passed, says with 95 % confidence: less than this share of its boundary fails. 1
- * - alpha^(1 / boundary), alpha = 0.05 * 6 / (pi batches)^2: summed over all sets that might be
- * tried 0.05, so that it holds whenever the search ends. */
-double stance_known_basin_share(int64_t batches, int64_t boundary);
 
 /* The states from which some torques within their limits bring a linear robot back, whatever the
  * controller: its null-controllable set (null_controllable.c). Of the states only what they have of

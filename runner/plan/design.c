@@ -3,7 +3,6 @@
  * meets no bound.
  */
 #include "design.h"
-#include "known_basin.h"
 
 #include "runner/base/message.h"
 
@@ -281,6 +280,44 @@ static const char *why_no_set(const struct design_report *r)
     return r->stable ? NULL : "the loop is not stable";
 }
 
+/* Half spaces a X <= d in which the linear picture meets no bound, X the departure from the
+ * equilibrium, in the order of design_bound_name: all but the plane. */
+static stance_error linear_bounds(const struct design_report *r, double *a, double *d)
+{
+    const int n = r->states, m = r->inputs;
+    const struct scenario_values *const values = &r->scenario->base;
+    double force[2], by_state[2 * DESIGN_STATES], by_torque[2 * DESIGN_INPUTS],
+        limit[STANCE_MAX_ACTUATORS];
+    const stance_error error = r->scenario->scene->contact_force(
+        r->scenario->scene, r->model, &r->equilibrium, force, by_state, by_torque);
+
+    for (int j = 0; error == STANCE_OK && j < n; j++) {
+        double loop[2];
+        for (int c = 0; c < 2; c++) {
+            loop[c] = by_state[c * n + j];
+            for (int i = 0; i < m; i++)
+                loop[c] -= by_torque[c * m + i] * r->K[i * n + j];
+        }
+        for (int i = 0; i < m; i++) {
+            a[2 * i * n + j] = -r->K[i * n + j];
+            a[(2 * i + 1) * n + j] = r->K[i * n + j];
+        }
+        a[2 * m * n + j] = loop[1] - values->friction * loop[0];
+        a[(2 * m + 1) * n + j] = -loop[1] - values->friction * loop[0];
+        a[(2 * m + 2) * n + j] = -loop[0];
+    }
+    stance_torque_limits(r->scenario->scene, values->robot, values->torque_limit,
+                         values->torque_limits, limit);
+    for (int i = 0; i < m; i++) {
+        d[2 * i] = limit[i] - r->equilibrium.torque[i];
+        d[2 * i + 1] = limit[i] + r->equilibrium.torque[i];
+    }
+    d[2 * m] = values->friction * force[0] - force[1];
+    d[2 * m + 1] = values->friction * force[0] + force[1];
+    d[2 * m + 2] = force[0];
+    return error;
+}
+
 static bool sublevel(struct design_report *r, stance_message *message)
 {
     const int n = r->states, m = r->inputs;
@@ -305,10 +342,8 @@ static bool sublevel(struct design_report *r, stance_message *message)
         set->absent = "the loop is on the border of stability";
         return true;
     }
-    if (error == STANCE_OK) {
-        error =
-            known_basin_bounds(r->scenario->scene, values, r->model, &r->equilibrium, r->K, a, d);
-    }
+    if (error == STANCE_OK)
+        error = linear_bounds(r, a, d);
     if (error == STANCE_OK) {
         memcpy(&a[(2 * m + 3) * n], r->plane, (size_t)n * sizeof *a);
         d[2 * m + 3] = 1;
@@ -316,34 +351,6 @@ static bool sublevel(struct design_report *r, stance_message *message)
                                 set->alone, set->extent);
     }
     return error == STANCE_OK || refuse(message, "Lyapunov function", error);
-}
-
-static bool confirmed(struct design_report *r, stance_message *message)
-{
-    const struct scenario *s = r->scenario;
-    struct design_capture *capture = &r->capture;
-    struct resolved_design design;
-
-    capture->asked = s->base.capture != 0;
-    if (!capture->asked)
-        return true;
-    if (!resolve_design(s->scene, &s->base, &design, message) ||
-        !known_basin_estimate(s->scene, &s->base, &design, s->seed, NULL, NULL, &capture->set,
-                              &capture->absent))
-        return false;
-    for (int i = 0; capture->set.exists && i < r->states; i++) {
-        double axis[DESIGN_STATES] = {0}, level = 0, one = 1, ignored[2][DESIGN_STATES];
-        int binding = -1;
-        axis[i] = 1;
-        /* x_i <= 1 holds up to 1 / extent^2. */
-        const stance_error error = stance_sublevel(r->states, capture->set.form, 1, axis, &one,
-                                                   &level, &binding, ignored[0], ignored[1]);
-        if (error != STANCE_OK)
-            return refuse(message, "captured set", error);
-        capture->alone[i] = 1 / sqrt(capture->set.form[i * r->states + i]);
-        capture->extent[i] = 1 / sqrt(level);
-    }
-    return true;
 }
 
 /* Gains, eigenvalues, and whether it is stable as the controller acts. */
@@ -382,7 +389,7 @@ static bool bounds(struct design_report *r, stance_message *message)
     const stance_error error = margins(r);
     if (error != STANCE_OK)
         return refuse(message, "closed loop", error);
-    return sublevel(r, message) && confirmed(r, message);
+    return sublevel(r, message);
 }
 
 bool design_plant(struct design_report *r, const struct scenario *s, stance_message *message)

@@ -32,14 +32,6 @@ struct design_set {
     double alone[DESIGN_STATES], extent[DESIGN_STATES];
 };
 
-/* The set that simulation confirms, where stop.capture asks for it. */
-struct design_capture {
-    bool asked;
-    stance_known_basin set;
-    stance_message absent; /* why there is none */
-    double alone[DESIGN_STATES], extent[DESIGN_STATES];
-};
-
 /* The states from which linear theory allows any controller to recover, while the contacts stand:
  * null_controllable.c. */
 struct design_allowed {
@@ -93,7 +85,6 @@ struct design_report {
     bool noisy;
     double wander[DESIGN_STATES], command_noise[DESIGN_INPUTS];
     struct design_set set;
-    struct design_capture capture;
 };
 
 /* What is known of the selections of coordinates that a decoupling law may control, in
@@ -114,7 +105,7 @@ void design_selections_print(const struct design_selections *d);
 json_t *design_selections_json(const struct design_selections *d);
 
 /* false: `message` says what does not exist. design_plant: up to `rank`, whatever the law;
- * design_loop: without `allowed`, `critical`, `set` and `capture`, which take longer, and with the
+ * design_loop: without `allowed`, `critical` and `set`, which take longer, and with the
  * gains of a design that is known (NULL: none is), which took long perhaps. */
 bool design_plant(struct design_report *r, const struct scenario *s, stance_message *message);
 bool design_loop(struct design_report *r, const struct scenario *s,

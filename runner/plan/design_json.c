@@ -1,7 +1,6 @@
 /* design_json.c - the report of `stance design` for programs. */
 #include "allowed.h"
 #include "design.h"
-#include "known_basin.h"
 
 #include <math.h>
 
@@ -75,22 +74,6 @@ static json_t *json_set(const struct design_report *r)
                      json_states(r, set->alone), "extent", json_states(r, set->extent));
 }
 
-static json_t *json_capture(const struct design_report *r)
-{
-    const stance_known_basin *set = &r->capture.set;
-    char shape[96];
-    if (!set->exists)
-        return json_null();
-    return json_pack("{s:o, s:s, s:f, s:I, s:I, s:I, s:f, s:f, s:f, s:o, s:o}", "M",
-                     json_matrix(r->states, r->states, set->form), "shape",
-                     known_basin_shape_text(set->shape, shape), "level", set->level,
-                     "boundary_simulations", (json_int_t)set->boundary, "interior_simulations",
-                     (json_int_t)set->interior, "batches", (json_int_t)set->batches,
-                     "failing_share_below", set->share, "slowest", set->time, "captured_level",
-                     KNOWN_BASIN_SAFETY, "alone", json_states(r, r->capture.alone), "extent",
-                     json_states(r, r->capture.extent));
-}
-
 static json_t *json_allowed(const struct design_report *r)
 {
     const struct design_allowed *const allowed = &r->allowed;
@@ -158,8 +141,6 @@ static void put_design(const struct design_report *r, json_t *controller)
                       json_complex(r->states, r->beyond_re, r->beyond_im)));
     }
     json_object_set_new(controller, "lyapunov", json_set(r));
-    if (r->capture.asked)
-        json_object_set_new(controller, "captured", json_capture(r));
 }
 
 static json_t *json_controller(const struct design_report *r)

@@ -1,7 +1,6 @@
 /* design_print.c - the report of `stance design` for people. */
 #include "allowed.h"
 #include "design.h"
-#include "known_basin.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -280,34 +279,6 @@ static void print_set(const struct design_report *r)
     }
 }
 
-static void print_capture(const struct design_report *r)
-{
-    const stance_known_basin *set = &r->capture.set;
-    char shape[96], state[SCENARIO_NAME];
-
-    puts("\nLargest set X' M X <= 1 from whose boundary simulations recover (stop.capture)");
-    if (!set->exists) {
-        printf("  none: %s\n", r->capture.absent.text);
-        return;
-    }
-    print_matrix(r, "M", r->states, r->states, set->form, false, false);
-    printf("\n  %-18s %s,\n  %-18s at %.6g of its level\n", "shape",
-           known_basin_shape_text(set->shape, shape), "", set->level);
-    printf("  %-18s %lld from the boundary and %lld from inside, all stabilised\n", "confirmed by",
-           (long long)set->boundary, (long long)set->interior);
-    printf("  %-18s less than %.3g of the boundary fails, with 95 %% confidence\n", "that says",
-           set->share);
-    printf("  %-18s %lld; simulations in all: %lld\n", "sets tried in full",
-           (long long)set->batches, (long long)set->simulations);
-    printf("  %-18s %.4g s; cases are captured in %g of the level\n", "slowest", set->time,
-           KNOWN_BASIN_SAFETY);
-    printf("  %-18s %14s %14s\n", "reach", "others 0", "others free");
-    for (int i = 0; i < r->states; i++) {
-        printf("  %-18s %14.6g %14.6g %s\n", design_state_name(r, i, state), r->capture.alone[i],
-               r->capture.extent[i], state_unit(r, i));
-    }
-}
-
 static const char *design_text(const struct scenario_values *values)
 {
     static const char *const text[] = {
@@ -384,8 +355,6 @@ static void print_closed_loop(const struct design_report *r)
     print_sampled(r);
     if (law->designed)
         print_set(r);
-    if (r->capture.asked)
-        print_capture(r);
 }
 
 void design_print(const struct design_report *r)

@@ -72,10 +72,9 @@ uint64_t plan_design_case(const struct plan *plan, size_t design);
 bool plan_recorded(const struct plan *plan, uint64_t row, uint64_t *place);
 uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
 
-/* `check` and `run --dry-run` return within seconds: what they give to designs, to captured sets
- * and to the cost, of which plan_cost may take five times as much. */
+/* `check` and `run --dry-run` return within seconds: what they give to designs and
+ * to the cost, of which plan_cost may take five times as much. */
 #define PLAN_PATIENCE_DESIGNS 1.5
-#define PLAN_PATIENCE_CAPTURE 1.0
 #define PLAN_PATIENCE_COST 0.6
 
 /* Collective: computes every design whose status is pending, each rank a block, and gathers them on
@@ -84,15 +83,6 @@ uint64_t plan_recorded_case(const struct plan *plan, uint64_t place);
  * true somewhere; the message is empty then. */
 bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error);
-
-/* Collective, after plan_compute_designs: with stop.capture estimated, the captured set of every
- * design, each rank a block, gathered on rank 0. false on every rank: no memory, or `stop`, asked
- * about every millisecond, said true somewhere; *message is empty then. */
-bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
-                            bool (*stop)(void *context), void *context, stance_message *message);
-/* Seconds that this will take on one rank, from a try at one design for at most `budget` seconds; 0
- * where there is nothing to estimate, NAN where that was too short to tell. Needs the designs. */
-double plan_capture_cost(const struct plan *plan, double budget);
 
 /* Tries the initial states of the first, the last, the corners and up to 4096 other cases spread
  * evenly; where designs are pending, the first case of each that is not, too. Cases whose design

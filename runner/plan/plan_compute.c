@@ -1,6 +1,4 @@
 /* plan_compute.c - designs, checks and estimates. */
-#include "instruction_set.h"
-#include "known_basin.h"
 #include "plan.h"
 #include "standing.h"
 
@@ -9,7 +7,6 @@
 #include "runner/base/numbers.h"
 #include "runner/base/units.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -60,15 +57,6 @@ static void blame_design(const struct plan *plan, size_t design, struct plan_err
     place_error(s, law ? "controller:" : "initial:", error->message.text, error);
     values.law = s->base.law;
     standing_ranges(s, &values, &error->message);
-}
-
-/* This rank's block of the designs. */
-static size_t designs_here(const struct plan *plan, const struct parallel *parallel, size_t *first)
-{
-    const size_t ranks = (size_t)parallel->size, rank = (size_t)parallel->rank;
-    const size_t share = plan->designs / ranks, extra = plan->designs % ranks;
-    *first = rank * share + smaller(rank, extra);
-    return share + (rank < extra);
 }
 
 /* Corner c of the grid: bit a says which end of axis a. */
@@ -132,8 +120,9 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
                           struct plan_error *error)
 {
     const struct scenario *s = plan->scenario;
-    size_t first;
-    const size_t count = designs_here(plan, parallel, &first);
+    const size_t ranks = (size_t)parallel->size, rank = (size_t)parallel->rank;
+    const size_t share = plan->designs / ranks, extra = plan->designs % ranks;
+    const size_t first = rank * share + smaller(rank, extra), count = share + (rank < extra);
     const size_t stride = even_stride(count);
     const uint64_t ends = corners(s);
     uint64_t found[3] = {0}; /* designs that exist; that are pending; ranks that were stopped */
@@ -181,34 +170,6 @@ bool plan_compute_designs(struct plan *plan, const struct parallel *parallel,
     return good && found[2] == 0;
 }
 
-bool plan_estimate_captures(struct plan *plan, const struct parallel *parallel,
-                            bool (*stop)(void *context), void *context, stance_message *message)
-{
-    const struct scenario *s = plan->scenario;
-    size_t first;
-    const size_t count = designs_here(plan, parallel, &first);
-    bool good = true;
-
-    if (!s->base.capture)
-        return true;
-    for (size_t d = first; good && d < first + count; d++) {
-        struct scenario_values values;
-        stance_message why = {""}; /* there need not be a set */
-        struct resolved_design design = plan_design_at(plan, d);
-        if (plan->design_status[d] != STANCE_DONE || design.capture_time != 0)
-            continue; /* none, or known from another file */
-        scenario_case_values(s, plan_design_case(plan, d), &values);
-        good = known_basin_estimate(s->scene, &values, &design, s->seed, stop, context, NULL, &why);
-        plan_design_put(plan, d, &design);
-        if (!good)
-            *message = why;
-    }
-    meet(plan, parallel);
-    parallel_gather_block(parallel, plan->design, plan->design_size * sizeof *plan->design, first,
-                          count);
-    return parallel_agree(parallel, good, message->text, sizeof message->text);
-}
-
 /* ---- checking ----------------------------------------------------------------------------- */
 
 static bool check_case(const struct plan *plan, uint64_t index, struct plan_error *error)
@@ -252,49 +213,4 @@ bool plan_check_cases(const struct plan *plan, struct plan_error *error)
             !check_case(plan, plan_design_case(plan, d), error))
             return false;
     return true;
-}
-
-/* ---- captured sets ------------------------------------------------------------------------- */
-
-static bool is_late(void *context)
-{
-    const double *until = context;
-    return clock_seconds() > *until;
-}
-
-/* A search with few simulations tells what one takes on the way to a set. */
-double plan_capture_cost(const struct plan *plan, double budget)
-{
-    enum { TRIED = 256 };
-    const struct scenario *s = plan->scenario;
-    const double start = clock_seconds();
-    double until = start + budget;
-
-    for (size_t d = 0; s->base.capture && d < plan->designs; d++) {
-        struct scenario_values values;
-        stance_known_basin_search search;
-        stance_known_basin set = {.simulations = 0};
-        stance_message ignored;
-        if (plan->design_status[d] != STANCE_DONE)
-            continue;
-        if (is_late(&until))
-            return NAN;
-        scenario_case_values(s, plan_design_case(plan, d), &values);
-        const struct resolved_design design = plan_design_at(plan, d);
-        if (!known_basin_prepare(s->scene, &values, &design, s->seed, &search, &ignored))
-            continue;
-        memcpy(search.P[0], search.P[search.shapes / 2], sizeof search.P[0]);
-        search.shapes = 1;
-        search.boundary = TRIED;
-        search.interior = 0;
-        search.leave = is_late;
-        search.context = &until;
-        const double begin = clock_seconds();
-        const stance_error error = stance_known_basin_estimate(&search, &set);
-        if ((error == STANCE_OK || error == STANCE_STOPPED) && set.simulations > 0) {
-            return (clock_seconds() - begin) / (double)set.simulations * KNOWN_BASIN_USUAL *
-                   (double)plan->designs;
-        }
-    }
-    return s->base.capture && plan->pending > 0 ? NAN : 0;
 }

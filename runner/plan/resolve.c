@@ -11,8 +11,8 @@
  * the run starts from, offsets included.
  */
 #include "resolve.h"
-#include "known_basin.h"
 
+#include "engine/control/design.h"
 #include "engine/tree.h"
 
 #include "runner/base/message.h"
@@ -29,12 +29,11 @@
 
 /* ---- design ---------------------------------------------------------------------------------- */
 
-/* The first contact that the robot stands on, or -1. */
 /* The parts of a design that a scene uses: rows of so many numbers, a row every so many. */
 struct part {
     size_t offset, rows, length, stride;
 };
-enum { DESIGN_PARTS = 6 };
+enum { DESIGN_PARTS = 4 };
 
 static void design_parts(const stance_scene *scene, struct part part[DESIGN_PARTS])
 {
@@ -46,9 +45,6 @@ static void design_parts(const stance_scene *scene, struct part part[DESIGN_PART
         {AT(equilibrium), 1, n, 0},
         {AT(torque), 1, m, 0},
         {AT(gain), m, states, room},
-        {AT(captured), states, states, room},
-        {AT(capture_time), 1, sizeof(struct resolved_design) / sizeof(double) - AT(capture_time),
-         0},
     };
 #undef AT
     memcpy(part, all, sizeof all);
@@ -447,17 +443,6 @@ static void feed_back(const stance_scene *scene, const struct scenario_values *v
     out->supports = scenario_supports(scene, values);
 }
 
-/* A set somewhat smaller than the confirmed one. */
-static void capture(const stance_scene *scene, const struct resolved_design *design,
-                    stance_case *out)
-{
-    out->basin_known = true;
-    out->known_basin_time = design->capture_time;
-    for (int i = 0; i < 2 * scene->postures; i++)
-        for (int j = 0; j < 2 * scene->postures; j++)
-            out->known_basin[i][j] = design->captured[i][j] / KNOWN_BASIN_SAFETY;
-}
-
 bool resolve_law(const stance_scene *scene, const struct scenario_values *values,
                  const stance_law *law, const double *begin, stance_linear_law *linear,
                  stance_case *out, stance_message *message)
@@ -481,8 +466,6 @@ static bool set_laws(const stance_scene *scene, const struct scenario_values *va
     feed_back(scene, values, design, out);
     if (!resolve_law(scene, values, law, design->equilibrium, &out->near, out, message))
         return false;
-    if (values->capture && design->capture_time > 0)
-        capture(scene, design, out);
     if (!far->set)
         return true;
     out->switches = true;

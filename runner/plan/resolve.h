@@ -12,20 +12,12 @@
 
 /* What depends on fields marked `design` in the schema only (robot.*, initial.equilibrium.*,
  * initial.support_foot, controller.kind, .design, .design_time, .model.*, .equilibrium.*, .poles,
- * .weights, .gains), and on controller.sample_time where the design is for the sampled model. The
- * captured set (stop.capture estimated, see known_basin.h) depends on everything but the initial
- * state: then each point of any other axis is a design of its own. */
+ * .weights, .gains), and on controller.sample_time where the design is for the sampled model. */
 struct resolved_design {
     double start[STANCE_MAX_COORDINATES]; /* initial equilibrium, foot at the origin; NAN if none */
     double equilibrium[STANCE_MAX_COORDINATES]; /* controller's equilibrium; NAN if none */
     double torque[STANCE_MAX_ACTUATORS];        /* feedforward, N m */
     double gain[STANCE_MAX_ACTUATORS][2 * STANCE_MAX_POSTURE];
-    /* The confirmed set x' captured x <= 1, x = (posture - target, rates), and what it rests on;
-     * NAN where none was found, 0 where none was sought. */
-    double captured[2 * STANCE_MAX_POSTURE][2 * STANCE_MAX_POSTURE];
-    double capture_time;                      /* s that a case must have left to be captured */
-    double capture_boundary, capture_batches; /* simulations per batch; batches */
-    double capture_share; /* of the boundary: less than this fails, with 95 % confidence */
 };
 
 /* A design without the room that its scene has no use for: how many numbers it is, and to and from
@@ -35,7 +27,7 @@ void resolve_pack(const stance_scene *scene, const struct resolved_design *desig
 void resolve_unpack(const stance_scene *scene, const double *number,
                     struct resolved_design *design);
 
-/* Without a captured set. false: `message` says what is impossible (no such equilibrium, poles not
+/* false: `message` says what is impossible (no such equilibrium, poles not
  * placeable, ...). */
 bool resolve_design(const stance_scene *scene, const struct scenario_values *values,
                     struct resolved_design *design, stance_message *message);

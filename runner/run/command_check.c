@@ -97,16 +97,14 @@ const struct command command_check = {
     "    ranks                     1\n"
     "    seconds_on_one_rank       estimate; null when no case could be tried, or for too\n"
     "                              short a time to tell\n"
-    "    seconds_is_upper_bound    some cases took too long to try to their ends, or may be\n"
-    "                              captured: it is a bound\n"
+    "    seconds_is_upper_bound    some cases took too long to try to their ends: it is a\n"
+    "                              bound\n"
     "    compile_seconds           that run needs first, roughly, for kernels that it compiles; "
     "0:\n"
     "                              none, or they are in the cache, where nothing is touched. "
     "Without\n"
     "                              them seconds_on_one_rank is reckoned from those that are built "
     "in\n"
-    "    capture_seconds_on_one_rank   estimate for the captured sets of stop.capture; 0: none,\n"
-    "                              null: too slow to tell\n"
     "    refine                    null, or with sweep.refine {coarse_cases, probes (expected),\n"
     "                              most_cases}: seconds_on_one_rank is then for all of them\n",
 };

@@ -20,7 +20,6 @@ struct estimate {
     bool bound;
     double compiling; /* s that run needs first, for kernels that it compiles; 0: it does not */
     double searching; /* s on one rank that a search takes, as `seconds` */
-    double capture;   /* s on one rank for the captured sets; 0: none is asked for, NAN: unknown */
     uint64_t coarse;  /* points of the coarse lattice; 0: the map is not refined */
     double probes;    /* expected number beyond these */
 };
@@ -36,7 +35,6 @@ static void measure(const struct plan *plan, struct estimate *e)
     const double all = plan_cost(plan, PLAN_PATIENCE_COST, &e->bound);
     e->seconds = all * share * (double)plan_share(plan).count / (double)plan->rows;
     e->seconds += all >= 0 ? plan->design_seconds : 0;
-    e->capture = share * plan_capture_cost(plan, PLAN_PATIENCE_CAPTURE);
     e->compiling = outlook.brief ? 0 : outlook.compiling;
     if (plan->scenario->search.given) /* a search always compiles */
         e->searching =
@@ -53,7 +51,6 @@ static struct estimate estimate(const struct plan *plan, int ranks)
     for (size_t d = 0; d < plan->designs; d++)
         e.designs_failed += plan->design_status[d] == STANCE_FAILED;
     measure(plan, &e);
-    e.bound = e.bound || e.capture != 0; /* captured cases cost less */
     if (plan->scenario->refine.given && !plan->single) {
         const struct refine_map map = refine_map_of(plan->scenario);
         e.coarse = refine_coarse(&map);
@@ -160,7 +157,7 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
     if (plan->single || s->axes == 0)
         json_array_append_new(dimensions, json_pack("{s:s, s:i}", "name", "case", "count", 1));
     json_t *root = json_pack(
-        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o, s:o, "
+        "{s:s, s:s, s:s, s:I, s:o, s:I, s:I, s:I, s:I, s:s, s:I, s:i, s:o, s:b, s:f, s:o, "
         "s:o}",
         "scenario", s->file, "title", s->title, "scene", s->scene->name, "cases",
         (json_int_t)plan->rows, "dimensions", dimensions, "designs", (json_int_t)plan->designs,
@@ -168,8 +165,7 @@ static void report_json(const struct plan *plan, const struct estimate *e, int r
         (json_int_t)e->designs_failed, "recorded_cases", (json_int_t)plan->record_cases, "file",
         file, "file_bytes", (json_int_t)e->size, "ranks", ranks, "seconds_on_one_rank",
         e->seconds >= 0 ? json_real(e->seconds) : json_null(), "seconds_is_upper_bound", e->bound,
-        "compile_seconds", e->compiling, "capture_seconds_on_one_rank",
-        isnan(e->capture) ? json_null() : json_real(e->capture), "refine",
+        "compile_seconds", e->compiling, "refine",
         e->coarse ? json_pack("{s:I, s:I, s:I}", "coarse_cases", (json_int_t)e->coarse, "probes",
                               (json_int_t)llround(e->probes), "most_cases", (json_int_t)plan->rows)
                   : json_null(),
@@ -276,14 +272,6 @@ static void report_text(const struct plan *plan, const struct estimate *e, int r
     if (e->compiling > 0) {
         text_of_seconds(text, sizeof text, round_roughly(e->compiling));
         fprintf(out, "compiling   about %s first, once for robots of this structure\n", text);
-    }
-    if (isnan(e->capture)) {
-        fprintf(out, "capture     unknown: nothing was learned of its sets in the time that this "
-                     "command takes\n");
-    } else if (e->capture > 0) {
-        text_of_seconds(text, sizeof text, e->capture / fmin(ranks, (double)plan->designs));
-        fprintf(out, "capture     about %s first, for %zu set%s of states that recover\n", text,
-                plan->designs, plan->designs == 1 ? "" : "s");
     }
     if (!(e->seconds >= 0)) {
         fprintf(out, "cost        unknown: %s\n",

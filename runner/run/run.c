@@ -290,7 +290,7 @@ static void share_axes(struct run *run)
     }
 }
 
-/* While designs and captured sets are computed: whether any rank is to stop. */
+/* While designs are computed: whether any rank is to stop. */
 static bool out_of_time(void *context)
 {
     struct run *run = context;
@@ -397,18 +397,6 @@ static void stage_kernels(struct run *run)
                                     : "stopped while kernels were compiled: nothing is stored");
     else if (code != EXIT_DONE)
         run_fail(run, code, "stance run: %s", message.text);
-}
-
-/* Sets in which cases are captured, where the scenario asks for them. */
-static void stage_captures(struct run *run)
-{
-    if (run->resume ||
-        plan_estimate_captures(&run->plan, &run->parallel, out_of_time, run, &run->message))
-        return;
-    if (run->message.text[0])
-        run_fail_io(run);
-    else
-        stop_early(run, "stopped while captured sets were estimated: nothing is stored");
 }
 
 /* ---- computing ---------------------------------------------------------------------------- */
@@ -566,7 +554,6 @@ static int go_through(struct run *run)
         {stage_plan, "making the plan"},
         {stage_designs, "computing designs"},
         {stage_kernels, "compiling kernels"},
-        {stage_captures, "estimating captured sets"},
         {stage_create, "creating the results file"},
         {stage_open, "opening the results file"},
         {stage_kernels, "compiling kernels"}, /* where they were to wait for the designs */

@@ -108,6 +108,11 @@ static const struct scenario_field *elsewhere(const struct reader *r, const char
     return NULL;
 }
 
+/* Keys of former versions, and what to write instead. */
+static const char *const removed_keys[][2] = {
+    {"stop.capture", "leave it out; where a map takes long sweep.refine simulates fewer cases"},
+};
+
 static void unknown_key(struct reader *r, const struct tree_key *key, const char *path,
                         const char *name, const char *const *known, size_t count)
 {
@@ -119,16 +124,21 @@ static void unknown_key(struct reader *r, const struct tree_key *key, const char
     const char *near = mend_word(key->name, known, count);
     const struct scenario_field *other = elsewhere(r, key->name);
 
-    if (!near && r->s->scene) {
-        snprintf(near_path, sizeof near_path, "%s%s%.64s", path, path[0] ? "." : "", key->name);
-        if (schema_scene_with(near_path)) {
-            problem_add(&r->problems, key->mark, "%s%sthe scene %s has no key '%s' (known: %s)",
-                        name, name[0] ? ": " : "", r->s->scene->name, shown(word, key->name),
-                        word_list(list, sizeof list, known, count));
-            if (strcmp(path, "initial") == 0)
-                reader_seen(r, path)->excused = true; /* that there is no start is said already */
+    snprintf(near_path, sizeof near_path, "%s%s%.64s", path, path[0] ? "." : "", key->name);
+    for (size_t k = 0; k < sizeof removed_keys / sizeof *removed_keys; k++) {
+        if (strcmp(near_path, removed_keys[k][0]) == 0) {
+            problem_add(&r->problems, key->mark, "%s is no longer there: %s", near_path,
+                        removed_keys[k][1]);
             return;
         }
+    }
+    if (!near && r->s->scene && schema_scene_with(near_path)) {
+        problem_add(&r->problems, key->mark, "%s%sthe scene %s has no key '%s' (known: %s)", name,
+                    name[0] ? ": " : "", r->s->scene->name, shown(word, key->name),
+                    word_list(list, sizeof list, known, count));
+        if (strcmp(path, "initial") == 0)
+            reader_seen(r, path)->excused = true; /* that there is no start is said already */
+        return;
     }
     if (!near && other) {
         problem_add(&r->problems, key->mark, "%s%sunknown key '%s'; did you mean '%s'?", name,

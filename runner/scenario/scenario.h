@@ -86,7 +86,6 @@ struct scenario_values {
     double stop_time;
     int settle; /* 1: judge on the way (default), 0: `off` */
     double settle_angle, settle_rate, settle_hold, settle_place, fall_height;
-    int capture; /* 1: stop.capture estimated */
 };
 
 struct scenario_field; /* a row of the schema, see schema.h */

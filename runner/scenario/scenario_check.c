@@ -86,11 +86,6 @@ static struct situation find_situation(struct reader *r)
     return is;
 }
 
-static const char *law_word(const struct reader *r)
-{
-    return schema_find(r->schema, "controller.kind")->words[r->s->base.law];
-}
-
 /* Whether no controller.design is of the use; then *instead is one that there is. */
 static bool design_misfits(const struct reader *r, const struct situation *is, enum field_use use,
                            const char **instead)
@@ -117,7 +112,7 @@ static const char *obstacle(const struct reader *r, const struct situation *is,
     const stance_law *const none = stance_laws()[0], *const own = stance_laws()[field->law];
     const bool other = is->law_known && !is->law->designed;
     bool misfits = false;
-    *instead = law_word(r);
+    *instead = schema_find(r->schema, "controller.kind")->words[r->s->base.law];
     switch (field->use) {
     case USE_CONTROL:
         misfits = is->law_known && is->law == none;
@@ -504,50 +499,6 @@ static void check_far(struct reader *r, const struct situation *is)
     }
 }
 
-/* Whether the set of states that recover differs along a path. */
-static bool shapes_capture(const char *path)
-{
-    return strncmp(path, "initial.offset.", 15) != 0 && strncmp(path, "initial.state.", 14) != 0;
-}
-
-/* A captured set is one of states: of a law that knows nothing else, and of whole runs that settle.
- * It depends on all of the case but its initial state. */
-static void check_capture(struct reader *r, const struct situation *is)
-{
-    const struct seen *seen = reader_seen(r, "stop.capture");
-
-    if (!r->s->base.capture || !seen->node || seen->bad || !is->law_known)
-        return;
-    const struct mark mark = seen->node->mark;
-    if (!is->law->designed) {
-        problem_add(&r->problems, mark,
-                    "stop.capture estimated needs controller.kind state-feedback (here: %s)",
-                    law_word(r));
-    } else if (is->far != stance_laws()[0]) {
-        problem_add(&r->problems, mark,
-                    "stop.capture estimated has no meaning with controller.far: another law acts "
-                    "outside");
-    }
-    if (!is->settles) {
-        problem_add(&r->problems, mark,
-                    "stop.capture estimated has no meaning with stop.settle off: runs last their "
-                    "whole time");
-    }
-    static const char *const late[] = {"controller.delay", "controller.lag",
-                                       "controller.torque_rate"};
-    for (size_t k = 0; k < sizeof late / sizeof *late && !r->axes_bad; k++)
-        if (!reader_seen(r, late[k])->bad && is_on(r, late[k]))
-            problem_add(&r->problems, where(r, late[k]),
-                        "%s has no meaning with stop.capture estimated: the torques under way "
-                        "belong to the state",
-                        late[k]);
-    for (int a = 0; a < r->s->axes; a++) {
-        struct scenario_axis *axis = &r->s->axis[a];
-        for (int k = 0; k < axis->paths; k++)
-            axis->design = axis->design || shapes_capture(axis->path[k]);
-    }
-}
-
 static void check_steps(struct reader *r)
 {
     double least_time, time, step, largest_step;
@@ -656,7 +607,6 @@ void scenario_cross_check(struct reader *r)
     check_sampling(r, &is);
     mark_sampled_designs(r, &is);
     check_far(r, &is);
-    check_capture(r, &is);
     check_support(r, &is);
     if (r->s->own_scene) {
         check_contacts(r);

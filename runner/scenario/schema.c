@@ -279,7 +279,6 @@ static bool scene_has(const stance_scene *scene, const char *path)
         {"controller.kind", true},
         {"controller.", acts},
         {"optimise", acts},
-        {"stop.capture", acts},
         {"ground.contacts", touches},
         {"initial.equilibrium", stands},
         {"initial.support_foot", stands && !described},

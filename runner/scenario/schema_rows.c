@@ -19,7 +19,6 @@ static const char *const settle_words[] = {"off"};
 static const char *const vary_words[] = {"gains", "poles", "weights", "law"};
 static const char *const weight_words[] = {"even", "normal"};
 static const char *const over_words[] = {"worst", "mean"};
-static const char *const capture_words[] = {"off", "estimated"};
 const char *const schema_none[1] = {"none"};
 
 static const char *const answer_words[] = {
@@ -330,17 +329,6 @@ const struct row schema_rows[] = {
          .text = "height of the hip, in leg lengths, below which the robot has fallen",
          .more = "Its fall_cause is then hip, and trunk where the trunk touches the ground. "
                  "implicit, midpoint and lagrange look at the ends of steps only."}},
-
-    {0, {.path = "stop.capture", .type = FIELD_WORD, VALUE(capture), .fallback = 0,
-         WORDS(capture_words),
-         .text = "whether a run may end where state-feedback is known to recover",
-         .more = "estimated: for each design the largest ellipsoid about the target is sought from "
-                 "whose boundary 10000 simulations all end as stabilised, with the noise, limits, "
-                 "method and rules of the case; a run that comes into it (0.8 of its level) on the "
-                 "support foot alone, at rest, ends as stabilised with evidence inferred. Its "
-                 "settle_time is then missing, and largest values and sums end where the run does. "
-                 "Only for state-feedback without far or delay, with stop.settle; each point of an "
-                 "axis other than initial.offset and initial.state is then a design of its own."}},
 
     {0, {.path = "sweep", .type = FIELD_MAP, BY_HAND, .text = "what varies between cases"}},
     {0, {.path = "sweep.grid", .type = FIELD_AXES, BY_HAND,

@@ -485,10 +485,6 @@ void search_check(struct reader *r)
         if (reader_seen(r, alone[k])->node)
             problem_add(&r->problems, reader_seen(r, alone[k])->key,
                         "%s has no meaning with optimise", alone[k]);
-    if (s->base.capture)
-        problem_add(&r->problems, key_or(r, "stop.capture"),
-                    "stop.capture has no meaning with optimise: it would take longer than the "
-                    "candidates");
     if (!s->base.settle)
         problem_add(&r->problems, key_or(r, "stop.settle"),
                     "stop.settle off has no meaning with optimise: stabilised starts are to end");

@@ -186,8 +186,6 @@ static bool may_follow(const char *file, const struct plan *before, const struct
             refuse(message, file, "which trajectories are recorded, and when")) &&
            (equal || !(a->refine.given || b->refine.given) ||
             refuse(message, file, "the cases of a refined map, which follow from each other")) &&
-           (equal || !(a->base.capture || b->base.capture) ||
-            refuse(message, file, "cases that rest on captured sets")) &&
            (equal || same_designs(a, b) ||
             refuse(message, file, "what its controller designs depend on"));
 }

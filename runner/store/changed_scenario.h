@@ -5,8 +5,8 @@
  * axes, designs and answers, the old scenarios in group `history` and one more variable over the
  * cases, `scenario_number`; the rows that verify are copied; then it takes the old one's name. A
  * kill at any moment leaves one or the other. What would not fit together is refused: other axes,
- * answers, records or designs, and any other case of a map that is refined or has captured sets,
- * for these infer cases from each other.
+ * answers, records or designs, and any other case of a map that is refined,
+ * which infers cases from each other.
  */
 #ifndef STANCE_STORE_CHANGED_SCENARIO_H
 #define STANCE_STORE_CHANGED_SCENARIO_H

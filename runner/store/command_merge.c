@@ -232,11 +232,10 @@ const struct command command_merge = {
     "--resume` computes what is pending; its attribute `merged_from` names the files and how many\n"
     "cases came from each.\n"
     "\n"
-    "Random numbers are keyed by a case's index in its own file: with torque noise, "
-    "stop.capture\n"
-    "or sweep.refine.probes the merged file is not what one run of the whole gives. Nor is it\n"
-    "along an axis that sweep.refine refines: each part was refined for itself. This is said,\n"
-    "also in the attribute `merge_note`.\n"
+    "Random numbers are keyed by a case's index in its own file: with torque noise or\n"
+    "sweep.refine.probes the merged file is not what one run of the whole gives. Nor is it along\n"
+    "an axis that sweep.refine refines: each part was refined for itself. This is said, also in\n"
+    "the attribute `merge_note`.\n"
     "\n"
     "  --force   replace OUT\n",
 };

@@ -106,13 +106,13 @@ static bool check_axes(struct merge *m, const struct merge_part *part,
 
 /* ---- designs ------------------------------------------------------------------------------ */
 
-/* How far two designs are apart, relative to their largest number; captured sets, which are
- * estimates, left out. Designs made on different processors differ in last bits. */
+/* How far two designs are apart, relative to their largest number. Designs made on different
+ * processors differ in last bits. */
 static double distance_between(const struct resolved_design *a, const struct resolved_design *b)
 {
     const double *x = (const double *)(const void *)a, *y = (const double *)(const void *)b;
     double scale = 0, distance = 0;
-    for (size_t i = 0; i < offsetof(struct resolved_design, captured) / sizeof *x; i++) {
+    for (size_t i = 0; i < sizeof *a / sizeof *x; i++) {
         if (isfinite(x[i]) && isfinite(y[i])) {
             scale = fmax(scale, fabs(x[i]));
             distance = fmax(distance, fabs(x[i] - y[i]));
@@ -261,7 +261,7 @@ static bool copy_parts(struct merge *m, struct store *store, bool *usage, stance
 /* ---- where it comes from ------------------------------------------------------------------ */
 
 static const char keys_note[] =
-    "Random numbers (torque noise, captured sets, probes) are keyed by the indices that cases had "
+    "Random numbers (torque noise, probes) are keyed by the indices that cases had "
     "in their parts: one run of this scenario has other ones.";
 static const char refined_note[] =
     "The parts were refined each for itself: one run of this scenario simulates other cases.";

@@ -6,7 +6,7 @@
  * verified by their checksums and copied as they are.
  *
  * Random numbers are keyed by the indices that cases had in their own file: where a study has
- * torque noise, captured sets or probes, one run of the merged scenario would have other ones.
+ * torque noise or probes, one run of the merged scenario would have other ones.
  */
 #ifndef STANCE_STORE_MERGE_H
 #define STANCE_STORE_MERGE_H

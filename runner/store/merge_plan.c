@@ -574,12 +574,11 @@ static bool open_parts(struct merge *m, const char *const *files, size_t count,
     return true;
 }
 
-/* Where random numbers come in, other than by an axis: half-width of the noise, captured sets,
- * probes. */
+/* Where random numbers come in, other than by an axis: half-width of the noise, probes. */
 static bool has_random_numbers(const struct scenario *s)
 {
     bool noise = s->base.noise > 0 || s->base.angle_noise > 0 || s->base.rate_noise > 0 ||
-                 s->base.capture || (s->refine.given && s->refine.probes > 0);
+                 (s->refine.given && s->refine.probes > 0);
     for (int a = 0; a < s->axes; a++)
         for (int k = 0; k < s->axis[a].paths; k++)
             noise = noise || strcmp(s->axis[a].path[k], "controller.noise") == 0 ||

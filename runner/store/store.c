@@ -100,43 +100,31 @@ int store_dimensions(const struct plan *plan, hsize_t lengths[SCENARIO_MAX_AXES]
     return s->axes;
 }
 
-void store_design_columns(const struct scenario *scenario,
+void store_design_columns(const stance_scene *scene,
                           struct store_design_column columns[DESIGN_COLUMNS])
 {
-    enum { POSTURES = 2 * STANCE_MAX_POSTURE };
-    const stance_scene *scene = scenario->scene;
     const int n = scene->coordinates, m = scene->actuators, p = 2 * scene->postures;
-    const int set = scenario->base.capture ? p : 0, number = set > 0;
     /* name, in struct resolved_design, unit, rows x columns, row length there, dimensions */
-#define IN(member) #member, offsetof(struct resolved_design, member)
-#define NUMBER(member, unit, text)                                                                 \
-    {                                                                                              \
-        IN(member), unit, number, 1, 1, 0, {0}, text                                               \
-    }
 #define VECTOR(name, member, unit, n, over, text)                                                  \
     {                                                                                              \
         name, offsetof(struct resolved_design, member), unit, 1, n, n, 1, {over}, text             \
     }
-#define MATRIX(member, rows, first, second, text)                                                  \
-    {                                                                                              \
-        IN(member), NULL, rows, p, POSTURES, 2, {first, second}, text                              \
-    }
     const struct store_design_column all[DESIGN_COLUMNS] = {
-        MATRIX(gain, m, DESIGN_ACTUATOR, DESIGN_POSTURE,
-               "gains of the linear law: torque = feedforward - gain * error"),
+        {"gain",
+         offsetof(struct resolved_design, gain),
+         NULL,
+         m,
+         p,
+         2 * STANCE_MAX_POSTURE,
+         2,
+         {DESIGN_ACTUATOR, DESIGN_POSTURE},
+         "gains of the linear law: torque = feedforward - gain * error"},
         VECTOR("equilibrium_position", equilibrium, NULL, n, DESIGN_COORDINATE,
                "coordinates of the controller's equilibrium"),
         VECTOR("equilibrium_torque", torque, "N m", m, DESIGN_ACTUATOR,
                "torques that hold the controller's equilibrium"),
         VECTOR("start_position", start, NULL, n, DESIGN_COORDINATE,
                "coordinates of the initial equilibrium, foot at the origin"),
-        MATRIX(captured, set, DESIGN_POSTURE, DESIGN_POSTURE_OTHER,
-               "confirmed set x' M x <= 1 of deviations from the target; cases stop in 0.8 of it"),
-        NUMBER(capture_time, "s", "time that a case must have left to be captured"),
-        NUMBER(capture_boundary, "1", "simulations from the set's boundary, all stabilised"),
-        NUMBER(capture_batches, "1", "sets that were tried so, the last with success"),
-        NUMBER(capture_share, "1",
-               "less than this share of the boundary fails to stabilise, with 95 % confidence"),
     };
     memcpy(columns, all, sizeof all);
 }
@@ -633,7 +621,7 @@ bool store_read_designs(struct store *store, struct plan *plan, stance_message *
 {
     struct store_design_column columns[DESIGN_COLUMNS];
     bool good = true;
-    store_design_columns(plan->scenario, columns);
+    store_design_columns(plan->scenario->scene, columns);
     for (int k = 0; k < DESIGN_COLUMNS; k++) { /* all of them, even when this rank has failed */
         if (columns[k].rows * columns[k].columns == 0)
             continue;

@@ -17,10 +17,7 @@
  *   group `design`: over those grid axes that the design depends on (scalar when none does):
  *     `gain` (..., actuator, posture_state), `equilibrium_position` (..., coordinate),
  *     `equilibrium_torque` (..., actuator), `start_position` (..., coordinate), all NAN where there
- *     is none, and `status`: done, or failed where the design does not exist. With stop.capture
- *     estimated also the set in which cases are captured, `captured` (..., posture_state,
- *     posture_state_other), and what it rests on: `capture_time`, `capture_boundary`,
- *     `capture_batches`, `capture_share`; NAN where there is none.
+ *     is none, and `status`: done, or failed where the design does not exist.
  *   group `trajectory`, when recorded: dimensions case (value: flat index), time, coordinate,
  *     actuator, contact, component; `position`, `velocity`, `torque`, `force`, `gap`; NAN after
  *     the end of a case; `checksum` (case): CRC-32C over these five in this order.

@@ -320,7 +320,7 @@ static bool put_design_columns(struct layout *layout, hid_t group, const struct 
                                int rank, const struct dimension inner[DESIGN_DIMENSIONS])
 {
     struct store_design_column columns[DESIGN_COLUMNS];
-    store_design_columns(layout->plan->scenario, columns);
+    store_design_columns(layout->plan->scenario->scene, columns);
     for (int k = 0; k < DESIGN_COLUMNS; k++) {
         if (columns[k].rows * columns[k].columns == 0)
             continue;
@@ -341,7 +341,7 @@ static bool put_designs(struct layout *layout)
 {
     const struct plan *plan = layout->plan;
     const struct scenario *s = plan->scenario;
-    struct dimension inner[DESIGN_DIMENSIONS] = {{-1, 0}, {-1, 0}, {-1, 0}, {-1, 0}};
+    struct dimension inner[DESIGN_DIMENSIONS] = {{-1, 0}, {-1, 0}, {-1, 0}};
     const struct dimension *over[SCENARIO_MAX_AXES + 2] = {NULL};
     const bool postures = s->scene->actuators > 0 && s->scene->postures > 0;
     int rank = 0;
@@ -354,8 +354,6 @@ static bool put_designs(struct layout *layout)
                 make_actuators(layout, group, &inner[DESIGN_ACTUATOR]) &&
                 (!postures ||
                  make_state_names(layout, group, "posture_state", true, &inner[DESIGN_POSTURE])) &&
-                (!s->base.capture || make_state_names(layout, group, "posture_state_other", true,
-                                                      &inner[DESIGN_POSTURE_OTHER])) &&
                 put_design_columns(layout, group, over, rank, inner);
     if (good) {
         char flags[FLAGS];

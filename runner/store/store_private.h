@@ -72,8 +72,7 @@ bool store_reserve(const char *file, stance_message *message);
 enum design_dimension {
     DESIGN_COORDINATE,
     DESIGN_ACTUATOR,
-    DESIGN_POSTURE,       /* posture_state */
-    DESIGN_POSTURE_OTHER, /* the same names again: no variable has a dimension twice */
+    DESIGN_POSTURE, /* posture_state */
     DESIGN_DIMENSIONS,
 };
 
@@ -83,12 +82,12 @@ struct store_design_column {
     size_t offset; /* in struct resolved_design */
     const char *unit;
     int rows, columns, stride; /* of the matrix; its row length in memory; rows 0: left out */
-    int dimensions;            /* 0: a number */
+    int dimensions;
     enum design_dimension over[2];
     const char *text;
 };
-enum { DESIGN_COLUMNS = 9 };
-void store_design_columns(const struct scenario *scenario,
+enum { DESIGN_COLUMNS = 4 };
+void store_design_columns(const stance_scene *scene,
                           struct store_design_column columns[DESIGN_COLUMNS]);
 /* Moves a column of all designs between the plan and its variable; NAN where there is none. */
 bool store_move_design(const struct plan *plan, struct plan *into,

@@ -123,7 +123,6 @@ export interface ViewText {
   stop_time: number;
   law: string;
   designed: boolean;
-  capture: boolean; // cases may stop early in what was captured: only in the file's own scenario
   coordinates: Named[];
   actuators: Named[];
   contacts: string[]; // with the ground

@@ -4,7 +4,7 @@ import { el } from './dom';
 import type { Field, ViewText } from './format';
 import { numberText } from './numbers';
 import type { Progress } from './compute';
-import { capture_off, pathOf, textOf, type Store, type View } from './state';
+import { pathOf, textOf, type Store, type View } from './state';
 
 // The usual ones come first, in this order.
 const usual = [
@@ -27,7 +27,6 @@ export interface LiveEvents {
 
 export class Live {
   private base = new Map<string, Field>(); // of the file itself
-  private captures = false;
   private text: ViewText | null = null;
   private rows = new Map<string, { row: HTMLElement; set: (value: string) => void; error: HTMLElement }>();
   private last = ''; // path that was changed last
@@ -64,7 +63,6 @@ export class Live {
       return;
     }
     this.base = new Map(text.fields.map((f) => [f.path, f]));
-    this.captures = text.capture;
     const controls = el('div', { class: 'row' }, el('label', {}, 'Map ', this.cells), el('label', {}, this.all, ' every case'), this.compute, this.stop);
     this.part.replaceChildren(el('h2', {}, 'Change something'), this.list, this.problem, ...(this.map ? [controls, this.bar, this.told, this.reproduce] : []), this.search, this.fields);
     this.show(text);
@@ -81,7 +79,7 @@ export class Live {
     this.list.replaceChildren(
       ...changes.map((c) => {
         const model = this.modelOf(c, changes);
-        const told = model ? ` \u2014 the controller stays the one designed for ${model} = ${textOf(c)}` : c === capture_off ? ' \u2014 cases run to their end: what the file captured is not of this robot' : '';
+        const told = model ? ` \u2014 the controller stays the one designed for ${model} = ${textOf(c)}` : '';
         return el('div', { class: 'change' }, el('span', {}, el('code', {}, c), told),
           el('button', { type: 'button', class: 'small', 'aria-label': `Take back ${pathOf(c)}`, onclick: () => this.set(changes.filter((x) => x !== c)) }, '\u00d7'));
       }),
@@ -156,8 +154,7 @@ export class Live {
       if (!back) {
         if (model && !changes.some((c) => pathOf(c) === model)) changes.push(`${model}=${this.fileText(field.path)}`);
         changes.push(`${field.path}=${value}`);
-        if (this.captures && !changes.some((c) => pathOf(c) === 'stop.capture')) changes.push(capture_off);
-      } else if (changes.length === 1 && changes[0] === capture_off) changes = [];
+      }
       this.next = changes;
     });
     this.timer = window.setTimeout(() => {

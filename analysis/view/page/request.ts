@@ -4,7 +4,7 @@ import type { Answer, ViewText } from './format';
 import { Computed, gridPlaces, type Get, type Layer } from './layers';
 import { spacing, valueAt } from './numbers';
 import type { Scale } from './scales';
-import { capture_off, type MapRequest, type View } from './state';
+import type { MapRequest, View } from './state';
 
 // A word in a list or mapping on one line; brackets, commas and the like stand in quotes.
 const yamlWord = (word: string): string => (/^[\w.+-]+$/.test(word) ? word : `'${word.replace(/'/g, "''")}'`);
@@ -80,7 +80,6 @@ export async function requestLayer(
   const grid = { nx, ny, x0: across.from, x1: across.to, y0: up?.from ?? 0, y1: up?.to ?? 0 };
   const index: Get = (n) => (n % nx) * ny + Math.floor(n / nx);
   const of: Get = (i) => (i < nx * ny ? (i % ny) * nx + Math.floor(i / ny) : -1);
-  const capture = base.capture && !changes.includes(capture_off) ? [capture_off] : [];
   const record = data.head.wire!.includes('5:cases') ? ['record.cases=none'] : []; // numbers of cases of the file
-  return new Computed([...changes, ...capture, ...others, ...record, sweep], nx * ny, columns, grid, index, of, gridPlaces(grid));
+  return new Computed([...changes, ...others, ...record, sweep], nx * ny, columns, grid, index, of, gridPlaces(grid));
 }

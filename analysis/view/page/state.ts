@@ -30,7 +30,6 @@ export interface State {
   tab: string;
 }
 
-export const capture_off = 'stop.capture=off'; // what a scenario that captures needs before anything is changed
 export const sameView = (a: View, b: View): boolean => a.length === b.length && a.every((s, k) => s === b[k]);
 export const sameCase = (a: CaseRef, b: CaseRef): boolean => a.index === b.index && sameView(a.view, b.view);
 export const pathOf = (set: string): string => set.slice(0, set.indexOf('='));

@@ -152,14 +152,6 @@ void file_stored(double answers, int number)
     page.number = number;
 }
 
-/* With the captured sets of the file's designs only the file's own cases can be told. */
-static bool check_capture(void)
-{
-    return !page.changed || !page.view.base.capture ||
-           complain(&page.message, "stop.capture: what is captured is found by some 30,000 "
-                                   "simulations for each change: set it to off here");
-}
-
 int view_open(const char *sets)
 {
     const char *set[MOST_SETS];
@@ -183,8 +175,7 @@ int view_open(const char *sets)
             return 0;
     return open_plan(&page.view_plan, &page.view, page.file_plan.single && !page.resweeps,
                      page.file_plan.single_case) &&
-           schema_build(&page.schema, page.view.scene) && check_capture() &&
-           (page_design(0) || !page.message.text[0]);
+           schema_build(&page.schema, page.view.scene) && (page_design(0) || !page.message.text[0]);
 }
 
 double view_cases(void)
@@ -218,7 +209,7 @@ void page_fail(stance_result *result)
 
 void page_simulated(stance_result *result)
 {
-    if (result->status == STANCE_DONE && result->evidence == STANCE_EVIDENCE_NONE)
+    if (result->status == STANCE_DONE)
         result->evidence = STANCE_SIMULATED;
 }
 

@@ -43,7 +43,6 @@ static bool inputs_of(const struct scenario *s, const struct plan *plan, size_t 
     scenario_case_values(s, plan_design_case(plan, d), &values);
     if (!resolve_keep_design_inputs(s->scene, &values, values.design_time == DESIGN_SAMPLED))
         return no_memory(&page.message);
-    values.capture = 0;
     inputs->all = hash_of(&values);
     for (int i = 0; i < STANCE_MAX_ROBOT; i++) {
         values.model[i] = isnan(values.model[i]) ? values.robot[i] : values.model[i];

@@ -286,9 +286,9 @@ const char *view_text(void)
     text_string(&text, stance_methods()[s->base.method]->name);
     text_add(&text, ",\"law\":");
     text_string(&text, scenario_law(&s->base)->name);
-    text_add(&text, ",\"designed\":%s,\"capture\":%s,\"seed\":%llu,\"step\":",
+    text_add(&text, ",\"designed\":%s,\"seed\":%llu,\"step\":",
              scenario_law(&s->base)->designed && s->base.design != DESIGN_GAINS ? "true" : "false",
-             s->base.capture ? "true" : "false", (unsigned long long)s->seed);
+             (unsigned long long)s->seed);
     text_number(&text, s->base.step);
     text_add(&text, ",\"stop_time\":");
     text_number(&text, s->base.stop_time);

@@ -5,7 +5,6 @@
 #define STANCE_CORE_LOOP_BUNDLE_H
 
 #include "actuator.h"
-#include "engine/core/law/known_basin.h"
 #include "engine/core/mode/between_events.h"
 
 /* A case that takes more evaluations than this is given up: so many at once, so many a step. */
@@ -45,9 +44,9 @@ struct gathered {
 
 struct bundle {
     const stance_feed *feed;
-    mask live;                                         /* lanes that are not idle */
-    int filled;                                        /* how many */
-    int recorded, capturing, unusual, bending, choosy; /* of these: see bundle_count */
+    mask live;                              /* lanes that are not idle */
+    int filled;                             /* how many */
+    int recorded, unusual, bending, choosy; /* of these: see bundle_count */
     double target_key[sizeof(struct setting) / sizeof(lanes) + 8 + CONTACTS]; /* see rest_target */
     bool target_known, target_holds;
     const stance_case *which[LANES]; /* NULL: idle */
@@ -78,7 +77,6 @@ struct bundle {
     lanes angle_scale, rate_scale; /* 1 / settle.angle and 1 / settle.rate */
     lanes settle_steps;
     struct window settled, resting;
-    struct known_basin capture;
 
     lanes ahead[CONTACTS]; /* 1: lands only there, see feet.h */
     lanes foot;            /* that landed last; -1: none has */
@@ -221,7 +219,6 @@ static bool case_is_unusual(const stance_case *c)
 static void bundle_count(struct bundle *b, const stance_case *c, int by)
 {
     b->recorded += c->trajectory && c->trajectory->rows > 0 ? by : 0;
-    b->capturing += known_basin_applies(c) ? by : 0;
     b->unusual += case_is_unusual(c) ? by : 0;
     b->bending += c->bends ? by : 0;
     b->choosy += c->lands_ahead ? by : 0;
@@ -283,7 +280,6 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     lane_set(&b->rate_scale, lane, 1 / c->settle_rate);
     lane_set(&b->settle_steps, lane, nearbyint(c->settle_hold / c->step));
     lane_set(&b->place, lane, c->settle_place > 0 ? c->settle_place : INFINITY);
-    known_basin_load(&b->capture, lane, c);
 }
 
 /* Gaps, approach and trigonometry of freshly loaded lanes. A standing foot is exactly closed. */

@@ -113,13 +113,7 @@ HOT mask window_advance(struct window *w, mask live, mask holds, lanes measure, 
 struct verdict {
 #define VERDICT(NAME, name, number, text) mask name;
     STANCE_OUTCOMES(VERDICT)
-    mask captured; /* will be stabilised */
 };
-static inline mask verdict_any(const struct verdict *v)
-{
-#define VERDICT_OR(NAME, name, number, text) | v->name
-    return MASK_NONE STANCE_OUTCOMES(VERDICT_OR);
-}
 
 /* Lanes whose supports are no further along the ground from where they began than `place`. */
 HOT mask bundle_in_place(const struct bundle *b)
@@ -204,41 +198,7 @@ HOT struct verdict bundle_judge(struct bundle *b, mask live, contact_set touchin
         rest_confirm(b, &rested, &stabilised);
         v.rested = rested, v.stabilised = stabilised;
     }
-    v.captured = MASK_NONE;
     return v;
-}
-
-/* Lanes whose state has come into the captured set: see known_basin.h. */
-static mask bundle_captured(const struct bundle *b, mask live, const mask *loaded)
-{
-    if (!bundle_some(b->capturing))
-        return MASK_NONE;
-    const mask instant =
-        mask_less_equal(b->sample_every, lanes_of(0)) | mask_less_equal(b->next_sample, b->n);
-    mask in = live & mask_less(lanes_of(0), b->capture.on) & instant &
-              mask_less_equal(b->n, b->capture.last) &
-              mask_less_equal(b->pushed_until, b->n * b->h);
-    if (!mask_any(in))
-        return in;
-    const lanes rest = lanes_of(KNOWN_BASIN_REST);
-    lanes posture[POSTURES], rate[POSTURES];
-    scene_posture(b->now.s, posture);
-    scene_posture(b->now.w, rate);
-    EACH (i, 0, SCENE_POSTURE)
-        posture[i] = posture[i] - b->set.law.near.target[i];
-    in &= known_basin_contains(&b->capture, posture, rate);
-    if (!mask_any(in))
-        return in;
-    EACH (c, 0, SCENE_CONTACTS) {
-        const mask mine = mask_less(lanes_of(0), b->mine[c]);
-        lanes u[2];
-        scene_contact_velocity(&b->set.body, &b->now.trig, c, b->now.w, u);
-        const mask stands = loaded[c] & mask_less_equal(lanes_abs(b->now.gap[c]), rest) &
-                            mask_less_equal(lanes_abs(u[0]), rest) &
-                            mask_less_equal(lanes_abs(u[1]), rest);
-        in &= (mine & stands) | (LANES_NOT(mine) & LANES_NOT(loaded[c]));
-    }
-    return mask_any(in) ? in & bundle_in_place(b) : in;
 }
 
 #endif

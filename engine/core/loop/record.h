@@ -69,7 +69,7 @@ static void bundle_fall(const struct bundle *b, int lane, stance_result *r)
 
 /* Hands a lane's result in and leaves the lane idle. */
 COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance_outcome outcome,
-                        stance_failure failure, bool inferred)
+                        stance_failure failure)
 {
     stance_result *const r = b->result[lane];
     const stance_case *const c = b->which[lane];
@@ -81,10 +81,9 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
     *r = (stance_result){
         .status = status,
         .outcome = outcome,
-        .evidence = inferred ? STANCE_INFERRED : STANCE_EVIDENCE_NONE,
         .failure = failure,
         .end_time = n * h,
-        .settle_time = calm && !inferred ? (since >= 0 ? since : n) * h : NAN,
+        .settle_time = calm ? (since >= 0 ? since : n) * h : NAN,
         .fall_time = NAN,
         .steps = (int64_t)n,
     };
@@ -133,23 +132,23 @@ COLD void bundle_end_lanes(struct bundle *b, mask over, mask failed, const struc
         if (!b->which[lane] || !mask_get(over, lane))
             continue;
         if (mask_get(failed, lane)) {
-            bundle_finish(b, lane, STANCE_FAILED, STANCE_NONE, bundle_failure(b, lane), false);
+            bundle_finish(b, lane, STANCE_FAILED, STANCE_NONE, bundle_failure(b, lane));
             continue;
         }
-        const bool inferred = !mask_get(verdict_any(v), lane) && mask_get(v->captured, lane);
-        stance_outcome outcome = inferred ? STANCE_STABILISED : STANCE_UNDECIDED;
+        stance_outcome outcome = STANCE_UNDECIDED;
         /* Of several that are true the last one of the table holds. */
 #define OUTCOME_HOLDS(NAME, name, number, text)                                                    \
     outcome = mask_get(v->name, lane) ? STANCE_##NAME : outcome;
         STANCE_OUTCOMES(OUTCOME_HOLDS)
-        bundle_finish(b, lane, STANCE_DONE, outcome, STANCE_FAILURE_NONE, inferred);
+        bundle_finish(b, lane, STANCE_DONE, outcome, STANCE_FAILURE_NONE);
     }
 }
 
 /* Ends the lanes that a verdict or the clock ends. */
 HOT void bundle_end(struct bundle *b, mask live, mask failed, const struct verdict *v, mask last)
 {
-    const mask over = failed | verdict_any(v) | v->captured | last;
+#define OUTCOME_ENDS(NAME, name, number, text) | v->name
+    const mask over = failed | last STANCE_OUTCOMES(OUTCOME_ENDS);
     if (mask_any(live & over)) { /* a copy, as in bundle_judge */
         const struct verdict copy = *v;
         bundle_end_lanes(b, live & over, failed, &copy);

@@ -88,8 +88,7 @@ HOT void stream_follow(struct bundle *b, bool all, mask ok, mask failed, bool or
             loaded[c] = mask_less(lanes_of(0), report->impulse[c][0]);
     }
     const mask last = ok & mask_less_equal(b->steps, b->n);
-    struct verdict v = bundle_judge(b, ok, touching, loaded, last);
-    v.captured = bundle_captured(b, ok, loaded);
+    const struct verdict v = bundle_judge(b, ok, touching, loaded, last);
     bundle_record_due(b, ok);
     bundle_end(b, b->live, failed, &v, last);
 }
