@@ -5,7 +5,7 @@
  */
 #include "reading.h"
 
-enum { TEXT = 4096, MISTAKES = 180 };
+enum { TEXT = 4096, MISTAKES = 150 };
 
 /* Whether `line` begins a new part of a scenario, and with the key of `part`. */
 static bool begins_part(const char *line)

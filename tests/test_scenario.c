@@ -533,7 +533,8 @@ static void bad_sets_are_refused(void **state)
         {"controller.poles[7]=1", "controller.poles has 6 items, so [7] is beyond its end"},
         {"controller.poles[6]=-1", "controller.poles: expected 6 poles, found 7"},
         {"ground={friction: 0.1, friction: 0.2}", "duplicate key 'friction' (first in line 1)"},
-        {"ground=[1", "not YAML: what is opened here is not closed; write [1]"},
+        {"ground=[1", "not YAML: did not find expected ',' or ']', while parsing a flow sequence "
+                      "(line 1)"},
         {"title=\xff", "not UTF-8 text (byte 0xff)"},
         {"sweep.grid=[{path: stop.time, from: 0, to: 1, count: 2}]",
          "stop.time: 0 is out of range (more than 0, at most 1e+09 s)"},

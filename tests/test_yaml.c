@@ -62,7 +62,9 @@ static void colons_before_brackets_end_keys(void **state)
     for (int i = 0; i < 65; i++) /* more than are mended */
         strcat(text, "{a:}, ");
     strcat(text, "]\n");
-    refused(text, NULL, "bad.yaml:5:396: not YAML: found unexpected ':'\n");
+    refused(text, NULL,
+            "bad.yaml:5:396: not YAML: found unexpected ':', while scanning a plain scalar (line "
+            "5)\n");
 }
 
 /* Every letter that cannot be seen is named where it does harm, and nowhere else. */

@@ -7,16 +7,6 @@
 
 enum { MEND_SIZE = 240 };
 
-/* Where libyaml gave up on `text`, and why: lines and columns from 0. */
-struct misread {
-    const char *text, *problem;
-    size_t length, line, column;         /* what did not fit */
-    size_t context_line, context_column; /* where what is being read began */
-};
-
-/* Says what to write instead, and moves line and column there. False: nothing is known. */
-bool mend_yaml(struct misread *at, char out[MEND_SIZE]);
-
 /* The known word that was meant: the nearest, or what other programs call it ("dt", "mu"), or its
  * parts in another order. NULL: none. */
 const char *mend_word(const char *word, const char *const *known, size_t count);

@@ -1,5 +1,4 @@
 /* tree_yaml.c - YAML text as nodes with line and column, from the events that libyaml delivers. */
-#include "mend.h"
 #include "tree_nodes.h"
 
 #include "runner/base/words.h"
@@ -56,7 +55,7 @@ static bool mend_bare(struct parse *parse)
     struct bare *const bare = parse->bare;
     size_t place = 0, n = 1;
     uint32_t c = 0;
-    if (strcmp(parse->parser.problem, "found unexpected ':'") != 0 || bare->count == MOST_BARE)
+    if (bare->count == MOST_BARE)
         return false;
     for (size_t i = 0; i <= at.index && place < parse->length && n > 0; i++)
         place += n = utf8_letter(parse->text + place, parse->length - place, &c);
@@ -76,6 +75,16 @@ static bool mend_bare(struct parse *parse)
     return true;
 }
 
+static bool tab_indents(const struct parse *parse, size_t line)
+{
+    const char *at = parse->text, *const end = parse->text + parse->length;
+    for (; line > 0 && (at = memchr(at, '\n', (size_t)(end - at))); line--)
+        at++;
+    while (at && at < end && *at == ' ')
+        at++;
+    return at && at < end && *at == '\t';
+}
+
 static bool next(struct parse *parse)
 {
     yaml_event_delete(&parse->event);
@@ -89,19 +98,15 @@ static bool next(struct parse *parse)
         return false;
     const bool has_mark = parser->problem_mark.index || parser->problem_mark.line;
     const yaml_mark_t at = has_mark ? parser->problem_mark : parser->context_mark;
-    struct misread misread = {
-        .text = parse->text,
-        .length = parse->length,
-        .problem = parser->problem ? parser->problem : "malformed",
-        .line = at.line,
-        .column = at.column,
-        .context_line = parser->context_mark.line,
-        .context_column = parser->context_mark.column,
-    };
-    char mend[MEND_SIZE];
-    const bool mended = mend_yaml(&misread, mend);
-    return problem_add(parse->problems, mark_at(parse, misread.line, misread.column),
-                       "not YAML: %s", mended ? mend : misread.problem);
+    if (tab_indents(parse, at.line))
+        return problem_add(parse->problems, mark_at(parse, at.line, 0),
+                           "not YAML: a tab indents this line; write blanks instead");
+    char context[128] = "";
+    if (parser->context)
+        snprintf(context, sizeof context, ", %s (line %zu)", parser->context,
+                 parser->context_mark.line + 1);
+    return problem_add(parse->problems, mark_at(parse, at.line, at.column), "not YAML: %s%s",
+                       parser->problem ? parser->problem : "malformed", context);
 }
 
 static bool too_deep(struct problems *problems, struct mark mark)
