@@ -10,12 +10,12 @@ build=$(cd "$(dirname "$0")/../${BUILD:-build}" && pwd)
 # shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 job=$build/tests/test_objects isa=scalar
-export STANCE_CACHE=$scratch/cache
+export STANCE_CACHE=$scratch/cache TMPDIR=$scratch/tmp && mkdir tmp
 unset CC XDG_CACHE_HOME
 umask 022
 
-others() { # what there is in a cache beside the lock
-    find "$1" -mindepth 1 ! -name lock
+others() { # what there is in a directory
+    find "$1" -mindepth 1
 }
 object() { # a file of the cache, by what its name begins with
     ls -d "$STANCE_CACHE/$1"-*.so
@@ -70,7 +70,7 @@ expect "event-driven is always the one that is built in" 0 "$job" rod event-driv
 says "... which computes" 'event-driven scalar: built in, the same bits'
 expect "... or none" 2 "$job" rod event-driven scalar alone
 says "... which is said" 'event-driven is not compiled on demand, and none of this size is built in'
-is "the cache has eight objects, a lock and nothing else" test "$(others "$STANCE_CACHE" | grep -c '\.so$')/$(others "$STANCE_CACHE" | wc -l)" = 8/8
+is "the cache has eight objects and nothing else" test "$(others "$STANCE_CACHE" | grep -c '\.so$')/$(others "$STANCE_CACHE" | wc -l)" = 8/8
 is "... and is the user's alone" test "$(stat -c %a "$STANCE_CACHE" "$STANCE_CACHE"/*.so | sort -u | tr '\n' ' ')" = "600 700 "
 fastest=$(timeout "$patience" "$stance" --version | sed -n 's/.*in use: //p')
 for isa in $(timeout "$patience" "$stance" --version | sed -n 's/instruction sets \(.*\); in use.*/\1/p' | tr -d ,); do
@@ -80,16 +80,19 @@ done
 isa=scalar
 HOME=$scratch/home && mkdir home && export HOME
 env -u STANCE_CACHE "$job" ball lagrange scalar >log 2>&1
-is "without STANCE_CACHE it is ~/.cache/stance" test -e home/.cache/stance/lock
+is "without STANCE_CACHE it is ~/.cache/stance" test -n "$(ls home/.cache/stance/lagrange-*)"
 env -u STANCE_CACHE XDG_CACHE_HOME="$scratch/xdg" "$job" ball lagrange scalar >log 2>&1
-is "... or XDG_CACHE_HOME's" test -e xdg/stance/lock
+is "... or XDG_CACHE_HOME's" test -n "$(ls xdg/stance/lagrange-*)"
 
 # ---- several at once ------------------------------------------------------------------------------
 rm -rf "$STANCE_CACHE"
 for k in 1 2 3; do timeout "$patience" "$job" ball lagrange $isa >"log$k" 2>&1 & done
 wait
 cat log[123] >log
-is "of three jobs at once one compiles" test "$(grep -c 'compiled, the same bits' log)$(grep -c 'kept, the same bits' log)" = 12
+is "three jobs at once have the right bits" test "$(grep -Ec '(compiled|kept), the same bits' log)" = 3
+is "... and leave one object" test "$(others "$STANCE_CACHE")" = "$(object lagrange-$isa)"
+expect "... which is whole" 0 "$job" ball lagrange $isa
+says "... to the next one" 'kept, the same bits'
 rm -rf "$STANCE_CACHE"
 expect "two ranks" 0 mpirun -n 2 "$job" ball lagrange,capturing $isa
 is "... compile once" test "$(grep -c '^stance: compiling' log)" = 1
@@ -148,31 +151,32 @@ else
 fi
 
 # ---- no room --------------------------------------------------------------------------------------
-export TMPDIR=$scratch/tmp && mkdir tmp
 STANCE_CACHE=/sys/stance compiles "a home that nothing can be written to" 1 ball lagrange $isa
-says "... and said" "compiled in $TMPDIR, for this run alone"
+says "... and said" "compiled for this run alone"
 env -u STANCE_CACHE -u HOME "$job" ball lagrange $isa >log 2>&1
-says "no home" "neither STANCE_CACHE nor HOME names a directory; compiled in $TMPDIR, for this run alone"
-if ((UID == 0)) && mount -t tmpfs -o size=1m none "$disk" 2>/dev/null; then
+says "no home" "neither STANCE_CACHE nor HOME names a directory; compiled for this run alone"
+if ((UID == 0)) && mount -t tmpfs -o size=64k none "$disk" 2>/dev/null; then
     mkdir -m 700 "$disk/cache"
     STANCE_CACHE=$disk/cache compiles "a full disk" 1 ball lagrange $isa
-    says "... is said" 'No space left on device; compiled in'
+    says "... is said" 'No space left on device; compiled for this run alone'
     is "... and left as it was" test -z "$(others "$disk/cache")"
+    mount -o remount,size=1m "$disk"
     cp "$(object lagrange-$isa)" "$disk/cache"
     mount -o remount,ro "$disk"
     STANCE_CACHE=$disk/cache expect "an object on a disk that can only be read" 0 "$job" ball lagrange $isa
     says "... is taken" 'kept, the same bits'
     STANCE_CACHE=$disk/cache compiles "another one" 1 rod capturing $isa
-    says "... is not kept" 'Read-only file system; compiled in'
+    says "... is not kept" 'Read-only file system; compiled for this run alone'
     umount "$disk"
 else
     skip "a full disk" "no tmpfs can be mounted"
 fi
 rm -rf "$STANCE_CACHE"
-expect "files that may not be larger than 200 kB" 0 bash -c "trap '' XFSZ; ulimit -f 200; '$job' ball lagrange $isa | cat"
-says "... is said" 'File too large; kernels that are built in compute instead'
-is "nothing is left in the directory for temporary files" test -z "$(ls tmp)"
-unset TMPDIR
+expect "files that may not be larger than 8 kB" 0 bash -c "trap '' XFSZ; ulimit -f 8; '$job' ball lagrange $isa | cat"
+says "... is said" "nothing can be compiled in $TMPDIR (TMPDIR): File too large; kernels that are built in compute instead"
+is "... and nothing kept" test -z "$(others "$STANCE_CACHE")"
+TMPDIR=/nowhere expect "a directory for temporary files that is not there" 0 "$job" ball lagrange $isa
+says "... is said" 'nothing can be compiled in /nowhere (TMPDIR): No such file or directory; kernels that are built in compute instead'
 
 # ---- compilers ------------------------------------------------------------------------------------
 refused() { # name, what is said, what the job is started with
@@ -249,13 +253,13 @@ stopped() { # name, exit code, whom to tell, command ...
     local group own
     CC=$scratch/slow timeout "$patience" "${@:4}" >log 2>&1 &
     own=$!
-    until [ -s "$(echo "$STANCE_CACHE"/compile-*/compiling)" ]; do sleep 0.1; done
-    group=$(cat "$STANCE_CACHE"/compile-*/compiling)
+    until [ -s "$(echo "$TMPDIR"/stance-*/compiling)" ]; do sleep 0.1; done
+    group=$(cat "$TMPDIR"/stance-*/compiling)
     eval "kill -TERM $3"
     wait $own
     result $(($? != $2)) "$1: exit code $2"
     is "... the compiler is gone, and what it started" test -z "$(ps -o pid= -g "$group")"
-    is "... and its directory" test -z "$(others "$STANCE_CACHE")"
+    is "... and its directory" test -z "$(ls -d "$TMPDIR"/stance-* "$STANCE_CACHE"/* 2>/dev/null)"
 }
 rm -rf "$STANCE_CACHE"
 many=(--set 'sweep.grid[0].count=401' --set 'sweep.grid[1].count=401')
@@ -267,24 +271,20 @@ for rank in 1 2; do
         mpirun -n 2 "$stance" run --quiet -o stopped.h5 "$pole" "${many[@]}"
 done
 
-compiler slow 'echo $$ >compiling; exec sleep 60'
+# ---- the largest size -----------------------------------------------------------------------------
 rm -rf "$STANCE_CACHE"
-CC=./slow "$job" ball lagrange $isa >/dev/null 2>&1 &
-victim=$!
-until [ -s "$(echo "$STANCE_CACHE"/compile-*/compiling)" ]; do sleep 0.1; done
-kill -9 $victim "$(cat "$STANCE_CACHE"/compile-*/compiling)"
-wait $victim 2>/dev/null
-is "a job that is killed leaves a directory" test -n "$(ls -d "$STANCE_CACHE"/compile-*)"
-touch -d '100 days ago' "$STANCE_CACHE/forgotten-scalar-0.so"
-touch -d '80 days ago' "$STANCE_CACHE/remembered-scalar-0.so"
-compiles "the next one compiles" 0 ball lagrange $isa
-is "... and removes it, and what nobody used for 90 days" \
-    test "$(cd "$STANCE_CACHE" && echo *)" = "$(basename "$(object lagrange)") lock remembered-scalar-0.so"
+compiles "a cache of one object" 0 ball lagrange $isa
+touch -d '100 days ago' "$(object lagrange)"
 truncate -s 200M "$STANCE_CACHE/large-scalar-0.so" "$STANCE_CACHE/larger-scalar-0.so"
+truncate -s 1M "$STANCE_CACHE/0.part" "$STANCE_CACHE/notes.txt"
+touch -d '20 days ago' "$STANCE_CACHE/larger-scalar-0.so"
 touch -d '30 days ago' "$STANCE_CACHE/large-scalar-0.so"
-rm "$(object lagrange)"
-compiles "another one" 0 ball lagrange $isa
-is "... removes, beyond 256 MiB, what nobody used for longest" \
-    test "$(cd "$STANCE_CACHE" && echo *)" = "$(basename "$(object lagrange)") larger-scalar-0.so lock"
+touch -d '40 days ago' "$STANCE_CACHE/0.part"
+touch -d '50 days ago' "$STANCE_CACHE/notes.txt"
+expect "an old one" 0 "$job" ball lagrange $isa
+says "... is taken" 'kept, the same bits'
+compiles "another one" 0 ball capturing $isa
+is "... removes, beyond 256 MiB, what nobody used for longest, of its own" \
+    test "$(cd "$STANCE_CACHE" && echo *)" = "$(cd "$STANCE_CACHE" && echo capturing-* lagrange-* larger-scalar-0.so notes.txt)"
 
 echo "1..$count"

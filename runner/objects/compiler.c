@@ -1,11 +1,13 @@
 /* compiler.c - see compiler.h. */
 #include "compiler.h"
+#include "sources.h"
 
 #include "runner/base/checksum.h"
 #include "runner/base/message.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <limits.h>
 #include <sched.h>
 #include <signal.h>
@@ -13,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -219,7 +222,7 @@ static void complain_of(struct compilation *c, const struct compiler *compiler, 
         if ((unsigned char)*s < ' ')
             *s = s[1] && *s == '\n' ? '|' : ' ';
     const bool killed = status != -1 && WIFSIGNALED(status);
-    complain(&c->message, "%.30s does not compile %s for %s (%s %d): %.130s", compiler->word[0],
+    complain(&c->message, "%.30s does not compile %s for %s (%s %d): %.130s", compiler->text,
              c->method, c->isa, killed ? "signal" : "exit code",
              status == -1 ? 127
              : killed     ? WTERMSIG(status)
@@ -283,8 +286,8 @@ static size_t cores(void)
     return sched_getaffinity(0, sizeof set, &set) == 0 ? (size_t)CPU_COUNT(&set) : 1;
 }
 
-void compiler_run(const struct compiler *compiler, int directory, struct compilation *wanted,
-                  size_t count, struct watch *watch)
+static void run_all(const struct compiler *compiler, int directory, struct compilation *wanted,
+                    size_t count, struct watch *watch)
 {
     enum { MANY = 64 };
     struct running running[MANY] = {{.child = -1}};
@@ -297,5 +300,32 @@ void compiler_run(const struct compiler *compiler, int directory, struct compila
             end(compiler, directory, running[ended % MANY], &wanted[ended], watch);
             ended++;
         }
+    }
+}
+
+static int remove_one(const char *path, const struct stat *information, int kind, struct FTW *at)
+{
+    (void)information, (void)kind, (void)at;
+    return remove(path);
+}
+
+void compiler_run(const struct compiler *compiler, const char *tables, struct compilation *wanted,
+                  size_t count, struct watch *watch)
+{
+    const char *const named = getenv("TMPDIR"), *const base = named && named[0] ? named : "/tmp";
+    char place[PATH_MAX];
+    snprintf(place, sizeof place, "%s/stance-XXXXXX", base);
+    const int directory =
+        mkdtemp(place) ? open(place, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC) : -1;
+    if (directory >= 0 && sources_write(directory) &&
+        sources_write_file(directory, COMPILER_TABLES, tables, strlen(tables)))
+        run_all(compiler, directory, wanted, count, watch);
+    else
+        for (size_t i = 0; i < count; i++)
+            complain(&wanted[i].message, "nothing can be compiled in %.100s (TMPDIR): %s", base,
+                     strerror(errno));
+    if (directory >= 0) {
+        close(directory);
+        nftw(place, remove_one, 8, FTW_DEPTH | FTW_PHYS);
     }
 }

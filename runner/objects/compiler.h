@@ -37,13 +37,13 @@ struct compilation {
     stance_message message; /* ... and why */
 };
 
-/* The header that each of them is compiled with, see objects.h; in `directory`. */
+/* The header of tables that each of them is compiled with, see objects.h. */
 #define COMPILER_TABLES "tables.h"
 
-/* Compiles in `directory`, which holds the sources and COMPILER_TABLES; as many at a time as this
- * process has cores. Where it is to stop, all that were started are ended, with what they have
- * started themselves. */
-void compiler_run(const struct compiler *compiler, int directory, struct compilation *wanted,
+/* Compiles in a directory of its own, below $TMPDIR or /tmp; as many at a time as this process has
+ * cores. Where it is to stop, all that were started are ended, with what they have started
+ * themselves. */
+void compiler_run(const struct compiler *compiler, const char *tables, struct compilation *wanted,
                   size_t count, struct watch *watch);
 
 #endif

@@ -14,7 +14,6 @@
 #include <unistd.h>
 
 enum { METHODS = 8, ISAS = OBJECTS_MOST / METHODS };
-enum { ROOM = 2 << 20 }; /* bytes on the disk that compiling a kernel takes at most */
 
 /* An object that some rank wants. */
 struct making {
@@ -48,15 +47,16 @@ static bool on_demand(const stance_method *method)
 
 /* ---- keys ---------------------------------------------------------------------------------- */
 
-/* Hash of texts, each with its end. false: no memory. */
-static bool hash_texts(const char *const *text, size_t count, char half[IMAGE_HALF])
+/* The name of its file: by a hash of all that it is made of, and the compiler's. */
+static bool name_object(struct making *m, const char *tables, const struct compiler *compiler)
 {
+    const char *const text[] = {tables, m->method->name, m->isa, compiler_flags(m->isa)};
     size_t size, embedded;
     char *all = NULL, hash[CHECKSUM_SHA256_TEXT];
     const char *const engine = sources(&embedded);
     FILE *const stream = open_memstream(&all, &size);
-    for (size_t i = 0; stream && i < count; i++)
-        fwrite(text[i], 1, strlen(text[i]) + 1, stream);
+    for (size_t i = 0; stream && i < sizeof text / sizeof *text; i++)
+        fwrite(text[i], 1, strlen(text[i]) + 1, stream); /* each with its end */
     if (stream)
         fwrite(engine, 1, embedded, stream);
     const bool good = stream && !ferror(stream);
@@ -65,29 +65,13 @@ static bool hash_texts(const char *const *text, size_t count, char half[IMAGE_HA
         return false;
     }
     checksum_sha256(all, size, hash);
-    snprintf(half, IMAGE_HALF, "%.32s", hash);
     free(all);
-    return true;
-}
-
-static bool name_object(struct making *m, const char *tables, const struct compiler *compiler)
-{
-    const char *const text[] = {tables, m->method->name, m->isa, compiler_flags(m->isa)};
-    char what[IMAGE_HALF];
-    if (!hash_texts(text, 4, what))
-        return false;
-    snprintf(m->label.key, sizeof m->label.key, "%s-%s", what, compiler->identity);
+    snprintf(m->label.key, sizeof m->label.key, "%.32s-%s", hash, compiler->identity);
     snprintf(m->label.compiler, sizeof m->label.compiler, "%s", compiler->version);
-    m->stem = (size_t)snprintf(m->name, sizeof m->name, "%s-%s-%s", m->method->name, m->isa, what);
+    m->stem =
+        (size_t)snprintf(m->name, sizeof m->name, "%s-%s-%.32s", m->method->name, m->isa, hash);
     snprintf(m->name + m->stem, sizeof m->name - m->stem, "-%s.so", compiler->identity);
     return true;
-}
-
-/* A number for what is simulated, whatever the method. */
-static uint64_t number_of(const char *tables)
-{
-    char half[IMAGE_HALF];
-    return hash_texts(&tables, 1, half) ? strtoull(half + 16, NULL, 16) : 0;
 }
 
 /* ---- rank 0 -------------------------------------------------------------------------------- */
@@ -110,55 +94,46 @@ static bool check(const struct objects_request *request, const struct cache *cac
     return good && (image_seal(&m->image, &m->label) || no_memory(message));
 }
 
-/* "implicit (avx2), midpoint (avx2)" */
-static void list_missing(struct making *const *missing, size_t count, char list[300])
-{
-    size_t used = 0;
-    list[0] = '\0';
-    for (size_t i = 0; i < count && used < 300; i++)
-        used += (size_t)snprintf(list + used, 300 - used, "%s%s (%s)", i ? ", " : "",
-                                 missing[i]->method->name, missing[i]->isa);
-}
-
 /* Compiles those. What cannot be had stays without an image. */
-static void compile(const struct objects_request *request, const struct cache *cache,
-                    const struct compiler *compiler, struct making *const *missing, size_t count,
-                    struct watch *watch, stance_message *why)
+static enum exit_code compile(const struct objects_request *request, struct cache *cache,
+                              const struct compiler *compiler, struct making *const *missing,
+                              size_t count, stance_message *why)
 {
     struct compilation wanted[OBJECTS_MOST];
-    struct place place;
-    char list[300], doing[340];
-    if (!cache_place(cache, number_of(request->tables), ROOM * count, &place, why))
-        return;
-    if (!sources_write_file(place.directory, COMPILER_TABLES, request->tables,
-                            strlen(request->tables))) {
-        complain(why, "there is no room to compile in");
-        cache_leave(&place);
-        return;
+    char doing[340] = "compiling";
+    stance_message unkept = {""};
+    struct watch watch = {.stop = request->stop,
+                          .context = request->context,
+                          .doing = doing,
+                          .progress = progress_begin(request->quiet)};
+    for (size_t i = 0; i < count; i++) {
+        const char *const method = missing[i]->method->name, *const isa = missing[i]->isa;
+        const size_t used = strlen(doing);
+        wanted[i] = (struct compilation){.method = method, .isa = isa};
+        snprintf(doing + used, sizeof doing - used, "%s %s (%s)", i ? "," : "", method, isa);
     }
-    list_missing(missing, count, list);
-    snprintf(doing, sizeof doing, "compiling %s", list);
     if (!request->quiet)
         cache_say("%s with %s", doing, compiler->version);
-    watch->doing = doing;
-    for (size_t i = 0; i < count; i++)
-        wanted[i] =
-            (struct compilation){.method = missing[i]->method->name, .isa = missing[i]->isa};
-    compiler_run(compiler, place.directory, wanted, count, watch);
+    watch_begin(&watch);
+    compiler_run(compiler, request->tables, wanted, count, &watch);
     for (size_t i = 0; i < count; i++) {
         struct making *const m = missing[i];
         m->image = wanted[i].image;
-        m->origin = OBJECT_UNKEPT;
         if (!m->image.bytes)
             *why = wanted[i].message;
-        else if (!watch->stopped && check(request, cache, m, why))
-            m->origin =
-                cache_keep(cache, &place, m->name, &m->image) ? OBJECT_COMPILED : OBJECT_UNKEPT;
-        else
+        else if (watch.stopped || !check(request, cache, m, why))
             image_free(&m->image);
-        m->origin = m->image.bytes ? m->origin : OBJECT_MISSING;
+        else
+            m->origin =
+                cache_keep(cache, m->name, &m->image, &unkept) ? OBJECT_COMPILED : OBJECT_UNKEPT;
     }
-    cache_leave(&place);
+    cache_close(cache);
+    watch_end(&watch);
+    if (unkept.text[0])
+        cache_say("%s; compiled for this run alone", unkept.text);
+    if (watch.stopped)
+        complain(why, "stopped while kernels were compiled");
+    return watch.stopped ? EXIT_INTERRUPTED : EXIT_DONE;
 }
 
 /* Which of them have no image and may get one, after a look into the cache. `why`: one is refused,
@@ -172,8 +147,8 @@ static size_t look(const struct objects_request *request, const struct cache *ca
         struct making *const m = &making[i];
         char name[CACHE_NAME];
         snprintf(name, sizeof name, "%.*s", stem ? (int)m->stem : CACHE_NAME, m->name);
-        if (m->image.bytes || cache_find(cache, name, stem, &m->image)) {
-            m->origin = OBJECT_KEPT; /* another job may have made it since the last look */
+        if (cache_find(cache, name, stem, &m->image)) {
+            m->origin = OBJECT_KEPT;
             continue;
         }
         m->origin =
@@ -182,30 +157,6 @@ static size_t look(const struct objects_request *request, const struct cache *ca
             missing[n++] = m;
     }
     return n;
-}
-
-/* Compiles what another job has not made meanwhile. */
-static enum exit_code compile_missing(const struct objects_request *request, struct cache *cache,
-                                      const struct compiler *compiler, struct making *making,
-                                      size_t count, stance_message *why)
-{
-    struct making *missing[OBJECTS_MOST];
-    const uint64_t mechanism = number_of(request->tables);
-    struct watch watch = {.stop = request->stop,
-                          .context = request->context,
-                          .doing = "waiting for another job that compiles the same",
-                          .progress = progress_begin(request->quiet)};
-    watch_begin(&watch);
-    if (cache_lock(cache, mechanism, &watch)) {
-        const size_t n = look(request, cache, false, making, count, missing, why);
-        if (n > 0)
-            compile(request, cache, compiler, missing, n, &watch, why);
-    }
-    cache_close(cache);
-    watch_end(&watch);
-    if (watch.stopped)
-        complain(why, "stopped while kernels were compiled");
-    return watch.stopped ? EXIT_INTERRUPTED : EXIT_DONE;
 }
 
 /* Finds or makes the objects. Not EXIT_DONE: the job has to end; `why` says why, or why some are
@@ -228,7 +179,7 @@ static enum exit_code make(const struct objects_request *request, struct making 
     if (request->brief || request->looks) {
         why->text[0] = '\0'; /* nothing is missed */
     } else if (n > 0 && compiles) {
-        return compile_missing(request, &cache, &compiler, making, count, why);
+        return compile(request, &cache, &compiler, missing, n, why);
     } else if (n > 0) {
         const size_t used = strlen(why->text);
         snprintf(why->text + used, sizeof why->text - used,
