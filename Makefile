@@ -123,7 +123,7 @@ BUILD_INFO = -DSTANCE_REVISION='"$(REVISION)"' \
              -DSTANCE_COMPILER='"$(shell $(CC) --version | head -n 1)"' \
              -DSTANCE_CFLAGS='"$(KERNEL_CFLAGS) $(STRICT)"'
 
-.PHONY: all help packages demo golden golden-neon golden-web web web-page test check check-programs check-scripts check-long test-scripts test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
+.PHONY: all help packages demo golden golden-neon golden-web web web-page test check check-programs check-scripts check-long test-scripts test-neon test-web test-long test-kills hunt test-slurm test-hosts fuzz fuzz-programs bench bench-run truths bench-peers bench-peers-run bench-web bench-schedule profile lint sanitize install uninstall clean FORCE
 all: $(PROGRAM)
 
 $(PROGRAM): $(program_objects) $(archives)
@@ -194,11 +194,11 @@ SICONOS := $(patsubst %/SiconosConfig.h,%,$(wildcard /usr/include/siconos/Sicono
 test_sources  := $(wildcard tests/test_*.c)
 test_programs := $(test_sources:tests/%.c=$(BUILD)/tests/%)
 
-# Other simulators on the charts of `stance bench accuracy`.
+# Other simulators on the charts of error against cost, for bench_peers.
 peer_programs = $(BUILD)/tests/peer_self $(if $(MUJOCO),$(BUILD)/tests/peer_mujoco) $(if $(SICONOS),$(BUILD)/tests/peer_siconos)
 
 # What whole-program tests call.
-other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers
+other_programs = $(BUILD)/tests/bench_schedule $(BUILD)/tests/bench_truths $(BUILD)/tests/golden $(BUILD)/tests/mechanism_numbers
 
 $(BUILD)/tests/%: tests/%.c $(product)
 	@mkdir -p $(@D)
@@ -334,6 +334,10 @@ $(BUILD)/tests/bench_%: tests/bench_%.c $(product)
 	$(call QUIET,cc,$@)$(CC) $(KERNEL_CFLAGS) $(ALLFLAGS) $(BENCH_FLAGS) $(PROGRAM_CFLAGS) -MMD -MP -MF $@.d -o $@ $< \
 	    $(test_objects) $(product) $(test_ldflags) $(LDFLAGS) $(LIBS)
 
+# Their pictures' scripts are embedded.
+$(BUILD)/tests/bench_truths: tests/plot_truths.gp
+$(BUILD)/tests/bench_peers: tests/plot_peers.gp
+
 # Large jobs on a simulated clock.
 $(BUILD)/tests/simulate.o: tests/simulate.c $(BUILD)/flags
 	@mkdir -p $(@D)
@@ -369,7 +373,7 @@ check: check-programs
 test-scripts test-long: test-%: packages-test
 	+@$(MAKE) packages-pages && $(MAKE) web-page || echo 'test-$*: pages cannot be made here: their tests are skipped' >&2
 	$(MAKE) ISAS=all check-$*
-check-scripts check-long: check-%: check-programs $(peer_programs) fuzz-programs
+check-scripts check-long: check-%: check-programs $(BUILD)/tests/bench_peers $(peer_programs) fuzz-programs
 	@$(TEST_ENVIRONMENT) STANCE_TEST_$(if $(filter long,$*),LONG,SCRIPTS)=1 bash tests/run.sh
 
 # Numbers that depend on the neighbours: HUNT_CASES of each kind for every method of the biped, a core
@@ -458,12 +462,17 @@ bench: packages
 	@$(MAKE) bench-run
 bench-run: $(PROGRAM) $(bench_programs)
 	@$(TEST_ENVIRONMENT) bash tests/bench.sh
+# Published numbers and closed forms, and what every method makes of them: table and picture.
+truths: packages
+	@$(MAKE) $(BUILD)/tests/bench_truths
+	@mkdir -p results
+	$(BUILD)/tests/bench_truths -o results/truth
 # Error against cost beside other simulators, those that are installed or can be: about twenty minutes.
 bench-peers: packages
 	@$(MAKE) packages-bench || echo 'bench-peers: what needs $(PACKAGES_BENCH) and is missing is left out' >&2
 	@$(MAKE) bench-peers-run
-bench-peers-run: $(PROGRAM) $(peer_programs)
-	$(PROGRAM) bench accuracy $(addprefix scenarios/accuracy/,drop.yaml basin_one_foot.yaml basin_both_feet.yaml) \
+bench-peers-run: $(BUILD)/tests/bench_peers $(peer_programs)
+	$(BUILD)/tests/bench_peers -o results/peers $(addprefix scenarios/accuracy/,drop.yaml basin_one_foot.yaml basin_both_feet.yaml) \
 	    $(addprefix --peer ,$(filter-out %/peer_self,$(peer_programs))) --peer-starts 300 --peer-effort 6
 # WebAssembly under node beside this machine's kernels and MuJoCo's own WebAssembly, if npm gives it.
 MUJOCO_WEB = @mujoco/mujoco@3.14.0
@@ -512,7 +521,8 @@ help:
 	@echo 'make test-slurm install Slurm, run the batch scripts of scenarios/cluster under one of its own'
 	@echo 'make test-hosts run on three hosts (network namespaces), one of them cut off in mid-run'
 	@echo 'make bench      speed of kernels and program beside MuJoCo: results/bench.csv and .png'
-	@echo 'make bench-peers  error against cost beside other simulators that are installed: results/accuracy'
+	@echo 'make truths     every method held to published numbers and closed forms: table, results/truth'
+	@echo 'make bench-peers  error against cost beside other simulators that are installed: results/peers'
 	@echo 'make bench-web  speed of the kernels as WebAssembly beside native ones and MuJoCo as WebAssembly'
 	@echo 'make bench-schedule  how a large job would go on thousands of ranks, simulated'
 	@echo 'make profile    what the kernels execute per step: instructions, spills, arithmetic'

@@ -1,7 +1,7 @@
-/* peer.h - what programs share that let another simulator take part in `stance bench accuracy`.
+/* peer.h - what programs share that let another simulator take part in `make bench-peers`.
  *
  * An adapter (peer_NAME.c or .cpp) makes the robot in its simulator and gives the functions of
- * struct peer_engine; peer_main does the talking, in the words of analysis/bench/peer.h, holds the
+ * struct peer_engine; peer_main does the talking, in the words of tests/peer_talk.h, holds the
  * law's torques between samples, applies the outcome rule and takes the time. C and C++.
  */
 #ifndef STANCE_TESTS_PEER_H

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""What is known from outside, by independent programs, and what `stance bench truth` makes of it.
+"""What is known from outside, by independent programs, and what every method makes of it (bench_truths).
 
 TRUTHS has, for each row of scenarios/truth/truths.yaml, the number from its closed form, from quadrature or
 from an integration of equations written down here once more; where the truth itself is uncertain its
 error bar. Nothing of it is the engine's.
 
     truths.py         prints them: what a new row's value is to be
-    truths.py STANCE  compares with the list, and holds the methods to it; speaks TAP, without numbers
+    truths.py BENCH   (bench_truths) compares with the list, and holds the methods to it; speaks TAP, without numbers
 """
 import json
 import os
@@ -329,7 +329,7 @@ class Tap:
 class Bench:
     """Runs beside what else there is to do."""
     def __init__(self, *command):
-        self.process = subprocess.Popen([command[0], "bench", "truth", "--json", *command[1:]], stdout=subprocess.PIPE)
+        self.process = subprocess.Popen([command[0], "--json", *command[1:]], stdout=subprocess.PIPE)
 
     def rows(self):
         out, _ = self.process.communicate()
@@ -381,9 +381,9 @@ def main():
         for name, truth in TRUTHS.items():
             print(name, truth)
         return 0
-    tap, stance = Tap(), sys.argv[1]
+    tap, bench = Tap(), sys.argv[1]
     fixed = "--method", "implicit", "--method", "midpoint"
-    everything, coarse, fine = Bench(stance, "--finer", "0.25"), Bench(stance, *fixed), Bench(stance, *fixed, "--finer", "4")
+    everything, coarse, fine = Bench(bench, "--finer", "0.25"), Bench(bench, *fixed), Bench(bench, *fixed, "--finer", "4")
     first_order(tap, coarse.rows(), fine.rows(), 4)
     rows = everything.rows()
     known(tap, rows)

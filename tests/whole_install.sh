@@ -98,7 +98,7 @@ for file in files:
     with open(file) as text:
         read = yaml.safe_load(text)
     if "truths" in read:
-        continue # of `stance bench truth`: a list, no scenario
+        continue # of `make truths`: a list, no scenario
     scenario = read
     for error in validator[scenario["scene"]].iter_errors(scenario):
         sys.exit(f"{file}: {list(error.path)}: {error.message}")

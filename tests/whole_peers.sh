@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Other simulators on the charts of `stance bench accuracy`: our own engine in a peer's place gets the
+# Other simulators on the charts of error against cost (bench_peers): our own engine in a peer's place gets the
 # errors that it has without; what a peer may do wrong is said in one line; MuJoCo in short, where it is
 # installed. Speaks TAP.
 # long
@@ -16,7 +16,7 @@ study() { # NAME COUNT PATTERN...
 }
 study drop 2 'event-driven, 0.01, 1.0e-12' 'midpoint, 0.01, 1' 'capturing, 0.01, 1.0e-6'
 study basin_one_foot 13 'event-driven, 0.02, 1.0e-10' 'midpoint, 0.01, 1'
-ask=("$stance" bench accuracy)
+ask=("$programs/bench_peers")
 
 # ---- our own engine as a peer ----------------------------------------------------------------------
 expect "a peer that is our own engine" 0 "${ask[@]}" drop.yaml basin_one_foot.yaml --peer "$programs/peer_self" -o self --json
@@ -51,7 +51,7 @@ wrong() { # WHAT EXPECTED COMMANDS OPTIONS ...: it has ten minutes to say it, un
     fake peer "$3"
     expect "$1" 3 "${ask[@]}" drop.yaml --reuse --peer ./peer "${@:4}" -o self
     says "... says so" "$2"
-    lines=$(grep -c 'stance bench accuracy: drop.yaml: ' log)
+    lines=$(grep -c 'bench_peers: drop: ' log)
     [ "$lines" = 1 ] && [ "$(wc -l <log)" = 1 ]
     result $? "... in one line"
 }
@@ -89,5 +89,7 @@ END
         skip "$peer computes the drop" "it is not installed"
     fi
 done
+expect "what the product had" 2 "$stance" bench accuracy drop.yaml --peer ./peer
+says "... is told where it is" 'other simulators are asked by `make bench-peers` in the source tree'
 echo "1..$count"
 exit $((failed > 0))

@@ -3,11 +3,13 @@
 # the list (truths.py); that a wrong number shows; what is said of a list that is wrong. Speaks TAP.
 # about: analysis/bench
 set -u
+bench=$(cd "$(dirname "$0")/../${BUILD:-build}/tests" && pwd)/bench_truths
+# shellcheck source=tests/scratch.sh
 . "$(dirname "$0")/scratch.sh"
 export STANCE_CACHE=$scratch/cache
 ln -s "$shipped" scenarios
 
-"$python" "$tests/truths.py" "$stance"
+"$python" "$tests/truths.py" "$bench"
 truths=$?
 ((truths <= 1)) || result 1 "truths.py ends"
 
@@ -25,7 +27,7 @@ END
     [ $# = 0 ] || sed -i "$@" list.yaml
 }
 row 's/0.2608/0.2618/'
-expect "a number that is wrong" 0 "$stance" bench truth list.yaml --json --csv list.csv --method capturing --method midpoint
+expect "a number that is wrong" 0 "$bench" list.yaml --json --csv list.csv --method capturing --method midpoint
 mv log one.json
 "$python" -c "
 import csv, json, sys
@@ -36,28 +38,28 @@ assert [float(r['error']) for r in csv.DictReader(open('list.csv'))] == [r['erro
 result $? "... shows, in JSON and CSV"
 row
 mkdir folder && sed 's|scenarios/truth/||' list.yaml >folder/truths.yaml && cp scenarios/truth/projectile.yaml folder
-expect "its table and its picture, of a folder" 0 "$stance" bench truth folder -o pictures --format png
+expect "its table and its picture, of a folder" 0 "$bench" folder -o pictures --format png
 says "... the table" "^ball thrown .* Galilei$"
 [ -s pictures/truth.png ]
 result $? "... the picture"
 row 's/read: z/trace: [x, z]/; s/0.2608/2/'
-expect "a derivative" 0 "$stance" bench truth list.yaml --json --method midpoint
+expect "a derivative" 0 "$bench" list.yaml --json --method midpoint
 mv log one.json
 "$python" -c "
 import json, sys
 assert json.load(open(sys.argv[1]))[0]['error'] < 1e-9" one.json >log 2>&1
 result $? "... of a flight: 1 for each coordinate"
 row 's/read: z/read: max_penetration\n    border: stop.time\n    between: [0.5, 1]/'
-expect "a border that is not there" 0 "$stance" bench truth list.yaml
+expect "a border that is not there" 0 "$bench" list.yaml
 says "... says so" "ball thrown .* none"
 
 # ---- lists that are wrong ----------------------------------------------------------------------------
 wrong() { # name, what is said, sed
     row "$3"
-    expect "$1" 2 "$stance" bench truth list.yaml
+    expect "$1" 2 "$bench" list.yaml
     says "... says so" "$2"
 }
-wrong "an unknown key" "^list.yaml:4:5: unknown key 'reads'; there are truth" 's/read:/reads:/'
+wrong "an unknown key" "^list.yaml:4:5: unknown key 'reads'" 's/read:/reads:/'
 wrong "no number" "^list.yaml:5:12: a number is needed" 's/0.2608/high/'
 wrong "no source" "^list.yaml:2:.*truth, scenario, value, bar and source are needed" '/source/d'
 wrong "nothing to read" "^list.yaml:2:.*either read or trace is needed" '/read/d'
@@ -68,11 +70,13 @@ wrong "a bar below 0" "^list.yaml:2:.*bar is 0 (exact) or more" 's/bar: .*/bar: 
 { cat scenarios/truth/projectile.yaml && echo 'sweep: {grid: [{path: initial.state.z, values: [1, 2]}]}'; } >sweep.yaml
 wrong "a sweep" "sweep.yaml has a sweep" 's|scenarios/truth/projectile|sweep|'
 echo 'truths: []' >list.yaml
-expect "an empty list" 2 "$stance" bench truth list.yaml
+expect "an empty list" 2 "$bench" list.yaml
 says "... says so" "no truth is in the list"
-expect "no list" 3 "$stance" bench truth nowhere.yaml
-expect "a method that does not exist" 2 "$stance" bench truth --method euler
+expect "no list" 3 "$bench" nowhere.yaml
+expect "a method that does not exist" 2 "$bench" --method euler
 says "... says so" "unknown method 'euler'"
-expect "no number of times" 2 "$stance" bench truth --finer 0.001
+expect "no number of times" 2 "$bench" --finer 0.001
+expect "what the product had" 2 "$stance" bench truth
+says "... is told where it is" 'truths are computed by `make truths` in the source tree'
 echo "1..$count"
 exit $((failed > 0 || truths > 0))

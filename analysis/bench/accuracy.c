@@ -44,7 +44,7 @@ static bool make_rows(struct accuracy *a, const struct scenario *s, const struct
     if (!accuracy_fits(s, message))
         return false;
     a->rows = s->axis[0].count;
-    a->truth = a->all = a->rows;
+    a->truth = a->rows;
     a->row = calloc(a->rows, sizeof *a->row);
     if (!a->row)
         return no_memory(message);

@@ -4,14 +4,11 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
+#include <string.h>
 
 extern const struct command command_accuracy; /* below */
 
 static const double measuring_budget = 0.3; /* s per method and step */
-
-/* What peers are asked, as the options say. */
-static struct accuracy_asking asking;
 
 /* ---- text and JSON ------------------------------------------------------------------------ */
 
@@ -37,22 +34,14 @@ static void add_errors(struct table *t, const struct accuracy *a, size_t k)
          cells ? as_whole(row->inside) : as_nothing(NULL)});
 }
 
-static const char *maker(const struct accuracy *a, const struct accuracy_row *row)
-{
-    return row->method ? row->method->name : a->peer[row->peer].name;
-}
-
 static void add_row(struct table *t, const struct accuracy *a, size_t k)
 {
     const struct accuracy_row *row = &a->row[k];
     char remark[96];
-    snprintf(remark, sizeof remark, "gave up %" PRIu64 " of %" PRIu64 "%s%s", row->failed,
-             row->cases, row->method ? ": " : "",
-             row->method ? stance_failure_name[row->failure] : "");
+    snprintf(remark, sizeof remark, "gave up %" PRIu64 " of %" PRIu64 ": %s", row->failed,
+             row->cases, stance_failure_name[row->failure]);
     TABLE_FACTS(
-        t, {{"method", "method", .width = 13, .left = true}, as_text(maker(a, row))},
-        {{"setting", "setting", .width = 20, .left = true, .empty = ""},
-         as_text(row->method ? NULL : row->setting)},
+        t, {{"method", "method", .width = 13, .left = true}, as_text(row->method->name)},
         {{"step", "step/s", "%.1e", .width = 8}, as_number(row->step)},
         {{"tolerance", "toler.", "%.0e", .width = 6}, as_number(row->tolerance)},
         {{.name = "reference"}, as_truth(k == a->truth)}, {{.name = "cases"}, as_whole(row->cases)},
@@ -73,79 +62,16 @@ static void add_row(struct table *t, const struct accuracy *a, size_t k)
     table_end_row(t);
 }
 
-/* ---- peers in a sentence ------------------------------------------------------------------- */
-
-/* How one row of a peer stands beside every method. */
-static void print_against(const struct accuracy *a, const struct accuracy_row *best,
-                          const char *which)
-{
-    const char *const unit = a->labels ? " of the cells" : " m or rad";
-    printf("  %s, %s (%s, %g s): ", maker(a, best), which, best->setting, best->step);
-    if (a->labels && best->differ == 0) /* no number tells how much fewer than one */
-        printf("none of %" PRIu64 " cells unlike, taken as one,", best->compared);
-    else if (a->labels)
-        printf("%" PRIu64 " of %" PRIu64 " cells unlike", best->differ, best->compared);
-    else
-        printf("error %.2g%s", accuracy_error(a, best), unit);
-    printf(" at %.3g us per s.\n    As exact:", best->cost.median);
-    const char *comma = "";
-    for (size_t m = 0; stance_methods()[m]; m++) {
-        const struct accuracy_against x = accuracy_compare(a, best, stance_methods()[m]);
-        if (!isnan(x.cheaper)) {
-            const bool dearer = x.cheaper < 1;
-            printf("%s %s is %s%.3g times %s", comma, stance_methods()[m]->name,
-                   x.at_least ? dearer ? "at most " : "at least " : "",
-                   dearer ? 1 / x.cheaper : x.cheaper, dearer ? "dearer" : "cheaper");
-            comma = ",";
-        }
-    }
-    printf("%s.\n    At that cost:", *comma ? "" : " none");
-    comma = "";
-    for (size_t m = 0; stance_methods()[m]; m++) {
-        const struct accuracy_against x = accuracy_compare(a, best, stance_methods()[m]);
-        if (!isnan(x.error)) {
-            printf("%s %s has %s%.2g%s", comma, stance_methods()[m]->name,
-                   x.at_most ? "at most " : "", x.error, *comma ? "" : unit);
-            comma = ",";
-        }
-    }
-    puts(*comma ? "." : " none.");
-}
-
-static void print_peer(const struct accuracy *a, size_t p)
-{
-    const struct accuracy_peer *const peer = &a->peer[p];
-    if (peer->cannot[0] != '\0') {
-        printf("  %s cannot: %s\n", peer->name, peer->cannot);
-        return;
-    }
-    printf("  %s: %zu settings, of which those nothing else of it beats and its defaults are "
-           "listed; accelerations within %.0e of ours\n",
-           peer->name, peer->settings, peer->off);
-    const struct accuracy_row *const best = accuracy_best(a, p, false), *const usual =
-                                                                            accuracy_best(a, p,
-                                                                                          true);
-    if (best)
-        print_against(a, best, "at its best");
-    if (usual && usual != best)
-        print_against(a, usual, "by default");
-}
-
 static bool print_text(const struct accuracy *a, const struct results *r, const struct table *t)
 {
     printf("\n%s\n", r->title);
     const bool good = table_write_text(
         t, stdout,
-        a->labels      ? a->peers > 0 ? "method setting step tolerance microseconds_per_second "
-                                        "cells_unlike of share cells_unlike_inside remark"
-                                      : "method step tolerance microseconds_per_second "
-                                        "evaluations_per_second cells_unlike of share "
-                                        "cells_unlike_inside remark"
-        : a->peers > 0 ? "method setting step tolerance microseconds_per_second position_error "
-                         "velocity_error remark"
-                       : "method step tolerance microseconds_per_second evaluations_per_second "
-                         "position_error velocity_error signorini_residual coulomb_residual "
-                         "dissipation_residual energy_gain remark",
+        a->labels ? "method step tolerance microseconds_per_second evaluations_per_second "
+                    "cells_unlike of share cells_unlike_inside remark"
+                  : "method step tolerance microseconds_per_second evaluations_per_second "
+                    "position_error velocity_error signorini_residual coulomb_residual "
+                    "dissipation_residual energy_gain remark",
         0);
     if (a->labels)
         puts("  (cells unlike the reference, share of the grid; inside: of its domains)");
@@ -158,51 +84,7 @@ static bool print_text(const struct accuracy *a, const struct results *r, const 
                 order->by_tolerance ? "tolerance" : "step", order->from, order->to, order->rows);
         }
     }
-    for (size_t p = 0; p < a->peers; p++)
-        print_peer(a, p);
     return good;
-}
-
-static json_t *against_json(const struct accuracy *a, const struct accuracy_row *best)
-{
-    json_t *list = json_array();
-    for (size_t m = 0; best && stance_methods()[m]; m++) {
-        const struct accuracy_against x = accuracy_compare(a, best, stance_methods()[m]);
-        if (!isnan(x.cheaper) || !isnan(x.error))
-            json_array_append_new(list, TABLE_OBJECT({"method", as_text(stance_methods()[m]->name)},
-                                                     {"times_cheaper", as_number(x.cheaper)},
-                                                     {"at_least", as_truth(x.at_least)},
-                                                     {"error", as_number(x.error)},
-                                                     {"at_most", as_truth(x.at_most)}));
-    }
-    return list;
-}
-
-static json_t *peers_json(const struct accuracy *a)
-{
-    json_t *list = json_array();
-    for (size_t p = 0; p < a->peers; p++) {
-        const struct accuracy_peer *const peer = &a->peer[p];
-        const bool can = peer->cannot[0] == '\0';
-        json_t *against[2];
-        for (int usual = 0; usual < 2; usual++) {
-            const struct accuracy_row *const best = accuracy_best(a, p, usual);
-            against[usual] =
-                best ? TABLE_OBJECT({"setting", as_text(best->setting)},
-                                    {"step", as_number(best->step)},
-                                    {"microseconds_per_second", as_number(best->cost.median)},
-                                    {"error", as_number(accuracy_error(a, best))},
-                                    {"methods", as_tree(against_json(a, best))})
-                     : NULL;
-        }
-        json_array_append_new(
-            list, TABLE_OBJECT({"name", as_text(peer->name)},
-                               {"cannot", as_text(can ? NULL : peer->cannot)},
-                               {"settings", as_whole(peer->settings)},
-                               {"acceleration_difference", as_number(can ? peer->off : NAN)},
-                               {"best", as_tree(against[0])}, {"defaults", as_tree(against[1])}));
-    }
-    return list;
 }
 
 static json_t *study_json(const struct accuracy *a, const struct results *r, const struct table *t)
@@ -220,7 +102,7 @@ static json_t *study_json(const struct accuracy *a, const struct results *r, con
     }
     return TABLE_OBJECT({"name", as_text(r->name)}, {"title", as_text(r->title)},
                         {"file", as_text(r->file)}, {"rows", as_tree(table_json(t, false))},
-                        {"orders", as_tree(orders)}, {"peers", as_tree(peers_json(a))});
+                        {"orders", as_tree(orders)});
 }
 
 /* ---- the command --------------------------------------------------------------------------- */
@@ -231,15 +113,10 @@ static bool study(const struct results *r, struct look *look, const char *direct
     struct accuracy a;
     if (!accuracy_make(&a, r, measuring_budget, message))
         return false;
-    if (asking.programs > 0 && !accuracy_ask(&a, r, &asking, message)) {
-        accuracy_free(&a);
-        return false;
-    }
     struct table t = {0};
     bool good = true;
-    for (size_t k = 0; k < a.all; k++)
-        if (object || a.row[k].method || a.row[k].front || a.row[k].usual)
-            add_row(&t, &a, k);
+    for (size_t k = 0; k < a.rows; k++)
+        add_row(&t, &a, k);
     if (object)
         *object = study_json(&a, r, &t);
     else
@@ -250,45 +127,19 @@ static bool study(const struct results *r, struct look *look, const char *direct
     return good;
 }
 
-static const char *starts_text, *effort_text;
-static size_t starts_given, effort_given;
-
-/* A number above 0 of an option; without it the fallback. NAN: it is none. */
-static double option_number(const char *text, size_t given, double fallback)
-{
-    char *end = "";
-    const double x = given > 0 ? strtod(text, &end) : fallback;
-    return (given == 0 || end != text) && *end == '\0' && x > 0 && x < 1e9 ? x : NAN;
-}
-
-static const char *wrong_options(void)
-{
-    const double starts = option_number(starts_text, starts_given, 1024);
-    asking.effort = option_number(effort_text, effort_given, 60);
-    if (!(starts >= 1) || isnan(asking.effort))
-        return "--peer-starts and --peer-effort take a number above 0";
-    asking.starts = (size_t)starts;
-    asking.budget = measuring_budget;
-    asking.patience = 10 * asking.effort;
-    return NULL;
-}
-
 static int run(int argc, char **argv)
 {
     static const struct study_kind kind = {"accuracy", accuracy_fits, study};
-    const struct option_spec spec[] = {
-        {"--peer", true, asking.program, ACCURACY_PEERS, &asking.programs},
-        {"--peer-starts", true, &starts_text, 1, &starts_given},
-        {"--peer-effort", true, &effort_text, 1, &effort_given},
-    };
-    const struct studies_options own = {spec, sizeof spec / sizeof *spec, wrong_options};
-    return studies_run(&command_accuracy, &kind, &own, argc, argv);
+    for (int i = 1; i < argc; i++)
+        if (strncmp(argv[i], "--peer", 6) == 0)
+            return command_usage(&command_accuracy, "other simulators are asked by `make "
+                                                    "bench-peers` in the source tree, not here");
+    return studies_run(&command_accuracy, &kind, argc, argv);
 }
 
 const struct command command_accuracy = {
     "bench accuracy",
-    "bench accuracy [SCENARIO]... [-o DIR] [--reuse] [--json]\n"
-    "           [--peer PROGRAM]... [--peer-starts N] [--peer-effort S] [--format F,...]\n"
+    "bench accuracy [SCENARIO]... [-o DIR] [--reuse] [--json] [--format F,...]\n"
     "           [--for column|page] ...",
     "error against cost of every method, on scenes with known answers",
     run,
@@ -301,35 +152,16 @@ const struct command command_accuracy = {
     "grid are counted, which are no draws and have no interval. The cost is measured on one core,\n"
     "in processor time, the median of at least three repetitions.\n"
     "\n"
-    "With --peer another simulator computes the same cases and takes part in tables and charts: "
-    "its\n"
-    "accelerations must be ours, its errors are found by the same code, and a sentence says what "
-    "each\n"
-    "method costs for the same error and what error it has for the same cost. `make bench-peers`\n"
-    "builds and asks those that are installed; analysis/bench/peer.h has the words.\n"
-    "\n"
     "  -o DIR     where the results files and pictures go, default results/accuracy\n"
-    "  --reuse    take results files of the same scenario that are there\n"
-    "  --peer P   a program that drives another simulator (build/tests/peer_mujoco); repeatable\n"
-    "  --peer-starts N   of a map peers compute no more cells than these, evenly spread; default "
-    "1024\n"
-    "  --peer-effort S   settings of peers that would take longer are left out, and a peer that "
-    "says\n"
-    "             nothing for ten times as long is given up; default 60 s\n" LOOK_HELP_DRAWN
+    "  --reuse    take results files of the same scenario that are there\n" LOOK_HELP_DRAWN
     "  --json     the same as JSON, without pictures: a list `studies` of\n"
     "    name, title, file         strings\n"
-    "    rows                      method, setting (of a peer), step, tolerance, reference, "
-    "cases, failed,\n"
+    "    rows                      method, step, tolerance, reference, cases, failed,\n"
     "                              microseconds_per_second (_low, _high), evaluations_per_second,\n"
     "                              events_per_second, position_error, velocity_error, "
     "cells_unlike,\n"
     "                              cells_unlike_inside, the residuals of the contact laws, "
     "energy_gain\n"
     "    orders                    method, of (step or tolerance), position, velocity, from, to, "
-    "rows\n"
-    "    peers                     name, cannot (why), settings, acceleration_difference, best "
-    "and\n"
-    "                              defaults: setting, step, microseconds_per_second, error, "
-    "methods:\n"
-    "                              method, times_cheaper (at_least), error (at_most)\n",
+    "rows\n",
 };

@@ -14,9 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* `stance bench`, below, and `stance bench accuracy`, `failure`, `truth` and `plot`. */
-extern const struct command command_bench, command_accuracy, command_failure, command_truth,
-    command_speed;
+/* `stance bench`, below, and `stance bench accuracy`, `failure` and `plot`. */
+extern const struct command command_bench, command_accuracy, command_failure, command_speed;
 
 enum { MOST_CASES = 512, FEWEST_CASES = 16, MOST_REPEATS = 99, MOST_KERNELS = 64 };
 static const double wanted_time = 0.02; /* s, of one measurement */
@@ -248,7 +247,8 @@ static int run(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "failure") == 0)
         return command_failure.run(argc - 1, argv + 1);
     if (argc > 1 && strcmp(argv[1], "truth") == 0)
-        return command_truth.run(argc - 1, argv + 1);
+        return command_usage(&command_bench, "truths are computed by `make truths` in the source "
+                                             "tree, not here");
     if (argc > 1 && strcmp(argv[1], "plot") == 0)
         return command_speed.run(argc - 1, argv + 1);
     struct selection what = {.repeats = 5};
@@ -307,8 +307,7 @@ const struct command command_bench = {
     "\n"
     "`make bench` measures all of this, the whole program and other engines, and draws it with\n"
     "`stance bench plot`. More: `stance bench accuracy -h`, error against cost;\n"
-    "`stance bench failure -h`, where methods fail; `stance bench truth -h`, methods held to\n"
-    "published numbers; `stance bench plot -h`, the picture.\n\n"
+    "`stance bench failure -h`, where methods fail; `stance bench plot -h`, the picture.\n\n"
     "--csv: columns as in results/bench.csv.\n"
     "--json: a list of objects with keys scene, regime, method, isa, lanes, ns_per_step, ns_min,\n"
     "ns_max, ns_per_second, iterations_per_step, speedup_over_scalar (null without a scalar\n"

@@ -164,7 +164,7 @@ static bool study(const struct results *r, struct look *look, const char *direct
 static int run(int argc, char **argv)
 {
     static const struct study_kind kind = {"failure", failure_fits, study};
-    return studies_run(&command_failure, &kind, NULL, argc, argv);
+    return studies_run(&command_failure, &kind, argc, argv);
 }
 
 const struct command command_failure = {

@@ -1,13 +1,12 @@
-# plot_accuracy.gp - error against cost, for each method, and each peer (peer[m]: 1 all its settings, 2 its
-# defaults), $errors<method>_<panel>: cost, error, whether it is more than none, cases given up; and what a line
-# joins, $line<method>_<panel>.
+# plot_accuracy.gp - error against cost, for each method $errors<method>_<panel>: cost, error, whether it is more
+# than none, cases given up.
 left = 108
 gap = 108
 legend = 300
 width = wide(400, panels, left + (panels - 1)*gap + legend)
 panel_left(p) = left + (p - 1)*(width + gap)
 array what[2] = ['largest error of a coordinate (m, rad)', 'mean over time of the velocity error (m/s, rad/s)']
-array marker[7] = [7, 5, 9, 11, 13, 15, 2] # filled; one less is the open one
+array marker[5] = [7, 5, 9, 11, 13] # filled; one less is the open one
 
 page_width = panel_left(panels) + width + legend
 top = title_height(0)
@@ -40,14 +39,11 @@ do for [p=1:panels] {
     eval log_tics('x', log10(0.6*cost_low[1]), log10(1.7*cost_high[1]), 6, 1, 1)
     eval log_tics('y', log10(0.6*error_low[p]), log10(1.7*error_high[p]), 10, 1, 1)
     errors(m) = sprintf('$errors%d_%d', m, p)
-    joined(m) = sprintf('$line%d_%d', m, p)
-    dash(m) = peer[m] == 2 ? 3 : 1
-    plot NaN notitle, for [m=1:methods] joined(m) using 1:2 with lines lc rgb hue[method_style[m]] lw (peer[m] ? 2.2 : 1.6) \
-            dt dash(m) notitle, \
+    plot NaN notitle, for [m=1:methods] errors(m) using 1:2 with lines lc rgb hue[method_style[m]] lw 1.6 notitle, \
         for [m=1:methods] errors(m) using 1:($3 > 0 ? NaN : $2) with points lc rgb hue[method_style[m]] \
-            pt marker[method_style[m]]-1 ps (peer[m] == 1 ? 0.7 : 1) notitle, \
+            pt marker[method_style[m]]-1 ps 1 notitle, \
         for [m=1:methods] errors(m) using 1:($3 > 0 ? $2 : NaN) with points lc rgb hue[method_style[m]] \
-            pt marker[method_style[m]] ps (peer[m] == 1 ? 0.5 : 0.9) notitle, \
+            pt marker[method_style[m]] ps 0.9 notitle, \
         for [m=1:methods] errors(m) using 1:($4 > 0 ? $2 : NaN) with points lc rgb '#b00000' pt 2 ps 1.6 lw 1.6 notitle
     unset logscale
 }

@@ -48,26 +48,21 @@ static size_t list_studies(const char *directory, char *path[MAX_STUDIES])
     return count;
 }
 
-bool studies_place(size_t k, const char *name, char *path, size_t size)
-{
-    static const char *const bases[] = {"", "../", "../share/stance/"};
-    char program[900] = "";
-    const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
-    char *slash = n > 0 ? strrchr(program, '/') : NULL;
-    if (k >= sizeof bases / sizeof *bases)
-        return false;
-    if (slash)
-        slash[1] = '\0';
-    snprintf(path, size, "%s%sscenarios/%s", k > 0 && slash ? program : "", bases[k], name);
-    return true;
-}
-
+/* Those below the working directory, or beside the program. */
 static size_t find_studies(const char *kind, char *path[MAX_STUDIES])
 {
-    char directory[1024];
+    static const char *const bases[] = {"", "../", "../share/stance/"};
+    char program[900] = "", directory[1024];
+    const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
+    char *slash = n > 0 ? strrchr(program, '/') : NULL;
     size_t count = 0;
-    for (size_t k = 0; count == 0 && studies_place(k, kind, directory, sizeof directory); k++)
+    if (slash)
+        slash[1] = '\0';
+    for (size_t k = 0; count == 0 && k < sizeof bases / sizeof *bases; k++) {
+        snprintf(directory, sizeof directory, "%s%sscenarios/%s", k > 0 && slash ? program : "",
+                 bases[k], kind);
         count = list_studies(directory, path);
+    }
     return count;
 }
 
@@ -221,8 +216,7 @@ static int end(const struct request *request, int code)
                : code;
 }
 
-int studies_run(const struct command *command, const struct study_kind *kind,
-                const struct studies_options *own, int argc, char **argv)
+int studies_run(const struct command *command, const struct study_kind *kind, int argc, char **argv)
 {
     const char *given[MAX_STUDIES];
     struct look_options options = {0};
@@ -230,23 +224,14 @@ int studies_run(const struct command *command, const struct study_kind *kind,
     char *found[MAX_STUDIES], fallback[64];
     size_t json = 0, reuse = 0, operands;
     bool help;
-    const struct option_spec common[] = {{"--json", false, NULL, 0, &json},
-                                         {"--reuse", false, NULL, 0, &reuse},
-                                         LOOK_SPECS(options)};
-    enum { COMMON = sizeof common / sizeof common[0], MOST_OWN = 8 };
-    struct option_spec specs[COMMON + MOST_OWN];
-    memcpy(specs, common, sizeof common);
-    const size_t owns = own ? own->count : 0;
-    for (size_t i = 0; i < owns && i < MOST_OWN; i++)
-        specs[COMMON + i] = own->spec[i];
-    if (!command_options(command, argc, argv, specs, COMMON + owns, given, MAX_STUDIES, &operands,
-                         &help))
+    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
+                                        {"--reuse", false, NULL, 0, &reuse},
+                                        LOOK_SPECS(options)};
+    if (!command_options(command, argc, argv, specs, sizeof specs / sizeof specs[0], given,
+                         MAX_STUDIES, &operands, &help))
         return EXIT_USAGE;
     if (help)
         return EXIT_DONE;
-    const char *const wrong = own ? own->wrong() : NULL;
-    if (wrong)
-        return command_usage(command, wrong);
     if (!instruction_set_usable(command->name))
         return EXIT_USAGE;
     if (!look_read(command, &options, &look))

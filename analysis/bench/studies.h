@@ -23,22 +23,11 @@ struct study_kind {
     study_function evaluate;
 };
 
-/* Options of one kind of studies; `wrong`, after they were read: why they cannot be, or NULL. */
-struct studies_options {
-    const struct option_spec *spec; /* [count], no more than eight */
-    size_t count;
-    const char *(*wrong)(void);
-};
-
 /* The whole of `stance bench KIND [SCENARIO]... [-o DIR] [--reuse] [--json]`, with the
- * options of pictures but for --picture and with `own`, which may be NULL: runs the scenarios
- * given, by default all of scenarios/KIND, into DIR (default results/KIND) and evaluates each.
+ * options of pictures but for --picture: runs the scenarios given, by default all of
+ * scenarios/KIND, into DIR (default results/KIND) and evaluates each.
  * Returns an exit code; numerical failures of cases are what such studies are about, no error. */
-int studies_run(const struct command *command, const struct study_kind *kind,
-                const struct studies_options *own, int argc, char **argv);
-
-/* Where scenarios/NAME may be, in the order in which it is looked for: k = 0, 1 ...: below the
- * working directory or beside the program. False: nowhere else. */
-bool studies_place(size_t k, const char *name, char *path, size_t size);
+int studies_run(const struct command *command, const struct study_kind *kind, int argc,
+                char **argv);
 
 #endif

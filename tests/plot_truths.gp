@@ -1,4 +1,4 @@
-# plot_truth.gp - a line of the picture for each of rows: its name, its error bar ($bars: bar, row) in grey, and the
+# plot_truths.gp - a line of the picture for each of rows: its name, its error bar ($bars: bar, row) in grey, and the
 # error of each of methods ($errors<method>: error, row, whether there is none).
 left = 290
 line_height = 17
