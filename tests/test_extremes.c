@@ -223,13 +223,29 @@ static void sprung(void **state)
     assert_true(worst[0] < 5e-6 && worst[2] < 1e-5 && worst[1] < 5e-3);
 }
 
+/* An arm that hangs is thrown at a stop, and falls back: the furthest place is that of the impact,
+ * inside a step. */
+static void struck(void **state)
+{
+    (void)state;
+    struct robot r = robot_of("body arm hinge - 1 0.1 0 -0.5 0 0 limits -inf 0.3\n", 0);
+    r.c.has_target = true;
+    for (int i = 0; i < 10; i++) {
+        r.c.velocity[0] = 2 + 0.2 * i;
+        EACH_LOOK(m, k)
+        {
+            const stance_result end = run(&r, *m, steps[k], 0.4);
+            assert_true(end.position[0] < 0.299 && fabs(end.excursion - 0.3) < 1e-7);
+        }
+    }
+    stance_scene_free(r.scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(thrown),
-        cmocka_unit_test(turned),
-        cmocka_unit_test(held),
-        cmocka_unit_test(sprung),
+        cmocka_unit_test(thrown), cmocka_unit_test(turned), cmocka_unit_test(held),
+        cmocka_unit_test(sprung), cmocka_unit_test(struck),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

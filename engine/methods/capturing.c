@@ -418,7 +418,6 @@ static inline mask capture_attempt(struct advance *a, const struct setting *set,
                                    acceleration, instant, &next, &over);
         over.events = choose(crossed, one, none);
         law_integrate(&set->law, crossed, interval, step.integral_rate, next.integral);
-        capture_inside(set, now, &next, interval, crossed, &over);
         choose_all(crossed, &next, now, sizeof next);
         capture_add(a, crossed, cross, &over);
         arrived = crossed & mask_less_equal(left, interval);

@@ -12,7 +12,8 @@
  *             acceleration at both ends: off by h^6 s^(6)/46080, its rate by h^5 s^(6)/13400.
  *
  * Where one looks is off by the order h, of the step, so that a peak, told as the value there, is
- * off by h^4. Across an event (core/implicit/step.h) forces are those of its parts.
+ * off by h^4. Across an event (core/implicit/step.h), where velocities jump, forces are those of
+ * its parts, and angles and falls those of its end, with which what follows begins.
  */
 #ifndef STANCE_CORE_MODE_INSIDE_H
 #define STANCE_CORE_MODE_INSIDE_H
@@ -120,10 +121,11 @@ COLD void inside_fell(const struct inside_way *way, mask low, const lanes *b, in
     cubic_negate(depth);
     const mask dips = low & cubic_peak(depth, lanes_of(-INFINITY), &after, &least);
     const mask deep = dips & motion_beyond(cause, inside_margin(way, cause, after));
-    const mask falls = deep | (low & motion_beyond(cause, b[CUBIC - 1]));
+    const mask begins = low & motion_beyond(cause, b[0]); /* an event ended there */
+    const mask falls = begins | deep | (low & motion_beyond(cause, b[CUBIC - 1]));
     if (!mask_any(falls))
         return;
-    after = choose(deep, after, lanes_of(1));
+    after = choose(begins, none, choose(deep, after, lanes_of(1)));
     for (int k = 0; k < INSIDE_HALVINGS; k++) {
         const lanes middle = 0.5 * (before + after);
         const mask down = motion_beyond(cause, inside_margin(way, cause, middle));
@@ -145,7 +147,8 @@ HOT void inside_falls(const struct inside_way *way, mask where, struct step_repo
                                             way->w[end], way->set->fall_height, k, &rate[end]);
         cubic_hermite(margin[0], rate[0], margin[1], rate[1], way->h, b);
         const mask low =
-            where & mask_less_equal(lanes_min(lanes_min(b[1], b[2]), b[3]), lanes_of(0));
+            where &
+            mask_less_equal(lanes_min(lanes_min(b[0], b[1]), lanes_min(b[2], b[3])), lanes_of(0));
         if (mask_any(low))
             inside_fell(way, low, b, k, report);
     }
@@ -175,7 +178,7 @@ COLD void inside_swing(const struct inside_way *way, mask where, lanes most,
 
 HOT void inside_angles(const struct inside_way *way, mask where, struct step_report *report)
 {
-    lanes ends = lanes_of(0), between = lanes_of(0);
+    lanes ends = lanes_of(0), last = lanes_of(0), between = lanes_of(0);
     for (int end = 0; end < 2; end++) {
         const lanes ahead = way->h * (end ? -1.0 / 3 : 1.0 / 3);
         lanes posture[POSTURES], rate[POSTURES];
@@ -184,9 +187,12 @@ HOT void inside_angles(const struct inside_way *way, mask where, struct step_rep
         EACH (i, 0, SCENE_POSTURE) {
             const lanes off = posture[i] - way->set->law.near.target[i];
             ends = lanes_max(lanes_abs(off), ends);
+            last = end ? lanes_max(lanes_abs(off), last) : last;
             between = lanes_max(lanes_abs(lanes_fma(ahead, rate[i], off)), between);
         }
     }
+    /* An event inside the step may be the furthest place. */
+    report->excursion = choose(where, lanes_max(last, report->excursion), report->excursion);
     const mask far = where & mask_less(ends, between);
     if (mask_any(far))
         inside_swing(way, far, ends, report);
