@@ -10,11 +10,13 @@ error bar. Nothing of it is the engine's.
 """
 import json
 import os
+import pathlib
 import subprocess
 import sys
 from math import acosh, asin, atan, cos, cosh, exp, pi, sin, sqrt, tan
 
 import numpy as np
+import yaml
 from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipk
 
@@ -316,6 +318,9 @@ BOUND = {"capturing": 1e-6, "event-driven": 1e-6, "lagrange": 2e-3}
 ROUNDING = 1e-9
 # settle_time counts steps, bounces end at those shorter than one, and jams are where forces have no bound.
 ROUGH = {"bouncing ball, Zeno time": 0.01, "bouncing ball, Zeno time, e 0.8": 0.03, "Painlevé's rod, critical friction": 1e-5}
+# Feet of no mass: among steps longer than a thousandth of a second implicit ones stumble here and there, more or
+# less by chance. Held to steps so many times as short as the scenario's.
+ERRATIC, ERRATIC_TIMES = "simplest walker, angle after 2.5 steps", 16
 
 
 class Tap:
@@ -368,7 +373,7 @@ def controlled(tap, rows):
 def first_order(tap, coarse, fine, times):
     """Fixed steps: not far off, nearer with shorter ones; derivatives by differences have none."""
     for (name, method), row in fine.items():
-        if "eigenvalue" in name or name in ROUGH:
+        if "eigenvalue" in name or name in ROUGH or (name == ERRATIC and times != ERRATIC_TIMES):
             continue
         off = coarse[name, method]["error"], row["error"]
         good = None not in off and off[0] <= 200 * coarse[name, method]["step"] * max(1, abs(row["value"])) + row["bar"] and \
@@ -384,7 +389,13 @@ def main():
     tap, bench = Tap(), sys.argv[1]
     fixed = "--method", "implicit", "--method", "midpoint"
     everything, coarse, fine = Bench(bench, "--finer", "0.25"), Bench(bench, *fixed), Bench(bench, *fixed, "--finer", "4")
-    first_order(tap, coarse.rows(), fine.rows(), 4)
+    with open("erratic.yaml", "w", encoding="utf-8") as out:
+        listed = yaml.safe_load(pathlib.Path("scenarios/truth/truths.yaml").read_text(encoding="utf-8"))["truths"]
+        yaml.safe_dump({"truths": [dict(row, scenario="scenarios/truth/" + row["scenario"]) for row in listed if row["truth"] == ERRATIC]}, out)
+    finest = Bench(bench, "erratic.yaml", *fixed, "--finer", str(ERRATIC_TIMES))
+    coarse = coarse.rows()
+    first_order(tap, coarse, fine.rows(), 4)
+    first_order(tap, coarse, finest.rows(), ERRATIC_TIMES)
     rows = everything.rows()
     known(tap, rows)
     controlled(tap, rows)
