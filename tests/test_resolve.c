@@ -277,11 +277,14 @@ static void refusals(void **state)
     v = balance_values();
     v.sample_time = 0;
     v.noise = 0.1;
-    assert_refused(&v, "controller.noise needs a controller.sample_time above 0");
+    assert_refused(&v,
+                   "controller.noise needs controller.sample_time > 0: it is new at each sample");
     v.noise = 0, v.lag = 0.1;
-    assert_refused(&v, "controller.lag needs a controller.sample_time above 0");
+    assert_refused(&v,
+                   "controller.lag needs controller.sample_time > 0: it acts on what is sampled");
     v.lag = 0, v.torque_rate = 10;
-    assert_refused(&v, "controller.torque_rate needs a controller.sample_time above 0");
+    assert_refused(&v, "controller.torque_rate needs controller.sample_time > 0: it acts on what "
+                       "is sampled");
     v.torque_rate = INFINITY, v.sample_time = 0.001, v.delay = STANCE_MAX_DELAY + 1;
     assert_refused(&v, "controller.delay must be 0 to 16 samples, controller.lag not negative, "
                        "controller.torque_rate positive");

@@ -16,7 +16,7 @@
 #include "engine/tree.h"
 
 #include "runner/base/message.h"
-#include "runner/scenario/schema.h"
+#include "runner/scenario/schema_rows.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -270,11 +270,10 @@ bool resolve_keep_design_inputs(const stance_scene *scene, struct scenario_value
     const double sample_time = values->sample_time;
     for (size_t k = 0; schema && k < schema->count; k++) {
         const struct scenario_field *field = &schema->field[k];
-        const size_t items =
-            (field->items ? field->items : 1) * (field->columns ? field->columns : 1);
         if (field->offset != NO_OFFSET && !field->design)
             memset((char *)values + field->offset, 0,
-                   items * (field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int)));
+                   schema_items(field) *
+                       (field->type == FIELD_NUMBER ? sizeof(double) : sizeof(int)));
     }
     free(own);
     values->settle = 0;
@@ -476,7 +475,8 @@ static bool set_laws(const stance_scene *scene, const struct scenario_values *va
     return resolve_law(scene, values, far, design->equilibrium, &out->far, out, message);
 }
 
-static bool check_law(const stance_scene *scene, const stance_case *out, stance_message *message)
+static bool check_law(const stance_scene *scene, const struct scenario_values *values,
+                      const stance_case *out, stance_message *message)
 {
     bool finite = isfinite(out->noise) && isfinite(out->angle_noise) && isfinite(out->rate_noise) &&
                   isfinite(out->lag) && isfinite(out->torque_rate);
@@ -492,22 +492,12 @@ static bool check_law(const stance_scene *scene, const stance_case *out, stance_
                         "a gain, a target, the noise or a lag of the controller is not finite");
     if (!(out->torque_limit > 0))
         return complain(message, "controller.torque_limit must be positive");
-    const struct {
-        const char *path;
-        bool on;
-    } sampled[] = {
-        {"controller.noise", out->noise != 0},
-        {"controller.angle_noise", out->angle_noise != 0},
-        {"controller.rate_noise", out->rate_noise != 0},
-        {"controller.far", out->switches},
-        {"controller.kind bimodal-feedback", out->bends},
-        {"controller.delay", out->delay != 0},
-        {"controller.lag", out->lag != 0},
-        {"controller.torque_rate", out->torque_rate != 0},
-    };
-    for (size_t k = 0; k < sizeof sampled / sizeof *sampled; k++)
-        if (sampled[k].on && out->sample_every == 0)
-            return complain(message, "%s needs a controller.sample_time above 0", sampled[k].path);
+    for (size_t i = 0; i < schema_row_count && out->sample_every == 0; i++) {
+        const struct scenario_field *const field = &schema_rows[i].field;
+        if (schema_samples(field, values) && schema_allows(field->use, field->law, values))
+            return complain(message, "%s needs controller.sample_time > 0: %s", field->path,
+                            field->samples);
+    }
     if (!(out->delay >= 0 && out->delay <= STANCE_MAX_DELAY && out->lag >= 0 &&
           out->torque_rate >= 0))
         return complain(message,
@@ -620,5 +610,5 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
     resolve_start(scene, values, design, out->position, out->velocity);
     if (!check_start(scene, values, out, message) || !set_laws(scene, values, design, out, message))
         return false;
-    return resolve_time(values, out, message) && check_law(scene, out, message);
+    return resolve_time(values, out, message) && check_law(scene, values, out, message);
 }

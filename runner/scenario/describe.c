@@ -106,15 +106,21 @@ static const char *kind_text(const struct scenario_field *field, char *buffer, s
     return buffer;
 }
 
+/* What it is used with, and what it needs; "": nothing. */
 static const char *use_text(const struct scenario_field *field, char *buffer, size_t size)
 {
-    if (field->use != USE_LAW) {
-        snprintf(buffer, size, "Only with %s.", schema_use_text[field->use]);
-        return buffer;
-    }
     const stance_law *const law = stance_laws()[field->law];
-    snprintf(buffer, size, "Only with controller.kind %s%s%s.", law->name,
-             law->acts_far ? ", or controller.far " : "", law->acts_far ? law->name : "");
+    int used = 0;
+    buffer[0] = '\0';
+    if (field->use == USE_LAW)
+        used =
+            snprintf(buffer, size, "Only with controller.kind %s%s%s.", law->name,
+                     law->acts_far ? ", or controller.far " : "", law->acts_far ? law->name : "");
+    else if (field->use != USE_ALWAYS)
+        used = snprintf(buffer, size, "Only %s.", schema_uses[field->use].needs);
+    if (field->samples && field->offset != offsetof(struct scenario_values, law))
+        snprintf(buffer + used, size - (size_t)used, "%sNeeds controller.sample_time > 0: %s.",
+                 used ? " " : "", field->samples);
     return buffer;
 }
 
@@ -132,13 +138,13 @@ static void print_row(FILE *out, const struct scenario_field *field)
 static void print_field(FILE *out, const struct schema *schema, const struct scenario_field *field)
 {
     const char *names[SCHEMA_MAX_FIELDS];
-    char use[96], list[700], line[720], path[sizeof field->path + 2];
+    char use[192], list[700], line[720], path[sizeof field->path + 2];
 
     print_row(out, field);
     if (field->more)
         print_wrapped(out, field->more, TEXT_INDENT);
-    if (field->use != USE_ALWAYS)
-        print_wrapped(out, use_text(field, use, sizeof use), TEXT_INDENT);
+    if (use_text(field, use, sizeof use)[0])
+        print_wrapped(out, use, TEXT_INDENT);
     if (field->sweep) {
         print_wrapped(out,
                       field->design ? "May be swept; each value is a controller design of its own."
@@ -363,16 +369,14 @@ static json_t *default_value(const struct scenario_field *field)
 
 static json_t *field_schema(const struct schema *schema, const struct scenario_field *field)
 {
-    char text[900], use[96];
+    char text[900], use[192];
     bool unit = field->unit[0] && strcmp(field->unit, "1") != 0;
     json_t *object = type_schema(schema, field), *fallback = default_value(field);
 
-    snprintf(text, sizeof text, "%s%s%s%s%s%s", field->text, unit ? ", in " : "",
+    use_text(field, use, sizeof use);
+    snprintf(text, sizeof text, "%s%s%s%s%s%s%s%s", field->text, unit ? ", in " : "",
              unit ? field->unit : "", field->more ? ". " : "", field->more ? field->more : "",
-             field->use != USE_ALWAYS && !field->more ? "." : "");
-    size_t length = strlen(text);
-    if (field->use != USE_ALWAYS)
-        snprintf(text + length, sizeof text - length, " %s", use_text(field, use, sizeof use));
+             use[0] && !field->more ? "." : "", use[0] ? " " : "", use);
     json_object_set_new(object, "description", json_string(text));
     if (fallback)
         json_object_set_new(object, "default", fallback);

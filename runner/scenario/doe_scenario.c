@@ -157,50 +157,32 @@ static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
 
 /* ---- the design ------------------------------------------------------------------------------ */
 
-static bool read_needed(struct reader *r, const char *path, double *value)
+static double read_needed(struct reader *r, const char *path, bool *good)
 {
-    return (reader_seen(r, path)->node ||
-            problem_add(&r->problems, reader_seen(r, "sweep.sample")->key, "%s is missing",
-                        path)) &&
-           reader_value(r, path, value);
-}
-
-/* A key that one method alone has. */
-static bool check_only(struct reader *r, const char *path, enum doe_method method)
-{
-    const struct seen *seen = reader_seen(r, path);
-    const enum doe_method here = r->s->sample.design.method;
-    if (!seen->node || here == method)
-        return true;
-    return problem_add(&r->problems, seen->key, "%s is used only with method %s (here: %s)", path,
-                       doe_words[method], doe_words[here]);
+    if (!reader_seen(r, path)->node)
+        *good = reader_refuse(r, path, " is missing");
+    return reader_number(r, path, good);
 }
 
 static bool read_design(struct reader *r)
 {
     struct doe *design = &r->s->sample.design;
-    double method, count, second, levels;
+    bool known = true, good = true;
+    const double method = read_needed(r, "sweep.sample.method", &known),
+                 count = read_needed(r, "sweep.sample.count", &good),
+                 second = reader_number(r, "sweep.sample.second_order", &good),
+                 levels = reader_number(r, "sweep.sample.levels", &good);
 
-    bool good = read_needed(r, "sweep.sample.method", &method);
-    bool rest = read_needed(r, "sweep.sample.count", &count);
-    rest = reader_value(r, "sweep.sample.second_order", &second) && rest;
-    rest = reader_value(r, "sweep.sample.levels", &levels) && rest;
-    if (!good)
-        return false;
-    design->method = (enum doe_method)method;
-    good = check_only(r, "sweep.sample.second_order", DOE_SALTELLI);
-    good = check_only(r, "sweep.sample.levels", DOE_MORRIS) && good && rest;
-    if (!good)
+    design->method = known ? (enum doe_method)method : DOE_METHODS;
+    if (!known || !good)
         return false;
     design->count = (uint64_t)count;
     design->second_order = second != 0;
     design->levels = design->method == DOE_MORRIS ? (int)levels : 0;
     design->seed = r->s->seed;
-    if (design->levels % 2 != 0) {
-        return problem_add(&r->problems, reader_seen(r, "sweep.sample.levels")->node->mark,
-                           "sweep.sample.levels: %d is not even", design->levels);
-    }
-    return true;
+    return design->levels % 2 == 0 ||
+           problem_add(&r->problems, reader_seen(r, "sweep.sample.levels")->node->mark,
+                       "sweep.sample.levels: %d is not even", design->levels);
 }
 
 /* Directions are those of a space of numbers. */
@@ -222,10 +204,8 @@ static bool read_factors(struct reader *r, struct scenario_axis *axis)
     const struct tree_node *vary = reader_seen(r, "sweep.sample.vary")->node;
     bool good = true;
 
-    if (!vary) {
-        return problem_add(&r->problems, reader_seen(r, "sweep.sample")->key,
-                           "sweep.sample.vary is missing");
-    }
+    if (!vary)
+        return reader_refuse(r, "sweep.sample.vary", " is missing");
     if (!field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary))
         return false;
     if (vary->count > DOE_MAX_FACTORS) {
@@ -259,23 +239,20 @@ static bool check_size(struct reader *r, const struct scenario_axis *axis)
     const double points = (double)design->count * (double)doe_block(design);
 
     if (design->factors > most) {
-        return problem_add(&r->problems, reader_seen(r, "sweep.sample.vary")->key,
-                           "sweep.sample.vary: method %s has at most %zu factors, here are %zu",
-                           doe_words[design->method], most, design->factors);
+        return reader_refuse(r, "sweep.sample.vary",
+                             ": method %s has at most %zu factors, here are %zu",
+                             doe_words[design->method], most, design->factors);
     }
-    if (points * axis->paths > MOST_NUMBERS) {
-        return problem_add(
-            &r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
-            "sweep.sample.count: %.0f points of %d value%s each are more than the 2^25 "
-            "numbers that can be kept in memory",
-            points, axis->paths, axis->paths == 1 ? "" : "s");
-    }
-    if (points > MOST_CASES / (double)r->s->cases) {
-        return problem_add(&r->problems, reader_seen(r, "sweep.sample.count")->node->mark,
-                           "sweep.sample: its %.0f points make more than 2^53 cases with the grid",
-                           points);
-    }
-    return true;
+    const struct mark mark = reader_seen(r, "sweep.sample.count")->node->mark;
+    if (points * axis->paths > MOST_NUMBERS)
+        return problem_add(&r->problems, mark,
+                           "sweep.sample.count: %.0f points of %d value%s each are more than the "
+                           "2^25 numbers that can be kept in memory",
+                           points, axis->paths, axis->paths == 1 ? "" : "s");
+    return !(points > MOST_CASES / (double)r->s->cases) ||
+           problem_add(&r->problems, mark,
+                       "sweep.sample: its %.0f points make more than 2^53 cases with the grid",
+                       points);
 }
 
 void doe_read(struct reader *r)
@@ -286,8 +263,7 @@ void doe_read(struct reader *r)
     if (!seen->node || seen->bad || !s->scene)
         return;
     if (s->axes == SCENARIO_MAX_AXES) {
-        problem_add(&r->problems, seen->key, "sweep.sample: more than %d axes with the grid",
-                    SCENARIO_MAX_AXES);
+        reader_refuse(r, "sweep.sample", ": more than %d axes with the grid", SCENARIO_MAX_AXES);
         r->axes_bad = true;
         return;
     }

@@ -156,20 +156,6 @@ static bool find_fault(const stance_scene *scene, const double *robot, struct fa
 
 /* ---- as they stand, and along axes ----------------------------------------------------------- */
 
-/* Of the key, or of what it stands in. */
-static struct mark mark_of(struct reader *r, const char *path)
-{
-    char around[112];
-    snprintf(around, sizeof around, "%s", path);
-    for (char *dot = around; dot; dot = strrchr(around, '.')) {
-        if (dot != around)
-            *dot = '\0';
-        if (reader_seen(r, around)->node)
-            return reader_seen(r, around)->key;
-    }
-    return r->tree.root->mark;
-}
-
 static bool is_robot(size_t offset)
 {
     return offset < sizeof(double[STANCE_ROBOT_GRAVITY]);
@@ -240,7 +226,7 @@ static void check_model(struct reader *r, const struct scenario_values *values)
         return;
     char path[sizeof fault.path + 16];
     snprintf(path, sizeof path, "controller.model%.90s", fault.path + strlen("robot"));
-    problem_add(&r->problems, mark_of(r, path), "%s: %s", path, fault.text);
+    reader_refuse(r, path, ": %s", fault.text);
 }
 
 void mechanism_check(struct reader *r)
@@ -256,7 +242,7 @@ void mechanism_check(struct reader *r)
         scenario_case_values(r->s, 0, values);
     if ((r->axes_bad || !check_axes(r, values->robot)) &&
         find_fault(r->s->scene, values->robot, &fault))
-        problem_add(&r->problems, mark_of(r, fault.path), "%s: %s", fault.path, fault.text);
+        reader_refuse(r, fault.path, ": %s", fault.text);
     else
         check_model(r, values);
     free(values);

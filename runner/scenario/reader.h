@@ -51,8 +51,15 @@ struct reader {
  * that the scene lacks something that is not given. */
 struct seen *reader_seen(struct reader *r, const char *path);
 
-/* The number or word of a field, its default where it is not given. False: a problem. */
-bool reader_value(struct reader *r, const char *path, double *value);
+/* The number or word of a field; its default where it is not given, or (*good false) a problem. */
+double reader_number(struct reader *r, const char *path, bool *good);
+
+/* Where a key stands, in the sweep first, or else the nearest mapping around it. */
+struct mark reader_mark(struct reader *r, const char *path);
+/* Reports a problem there: the key and what is wrong with it. */
+#define reader_refuse(...) (reader_report(__VA_ARGS__), as_false())
+void reader_report(struct reader *r, const char *path, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 static inline bool reader_given(const struct seen *seen)
 {

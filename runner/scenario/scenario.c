@@ -15,6 +15,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -47,13 +48,39 @@ struct seen *reader_seen(struct reader *r, const char *path)
     return field ? &r->seen[field - r->schema->field] : &r->nothing;
 }
 
-bool reader_value(struct reader *r, const char *path, double *value)
+double reader_number(struct reader *r, const char *path, bool *good)
 {
     const struct scenario_field *field = schema_find(r->schema, path);
     const struct tree_node *node = reader_seen(r, path)->node;
+    double value = field->fallback;
 
-    *value = field->fallback;
-    return !node || field_value(&r->problems, field, path, node, value);
+    if (!node || field_value(&r->problems, field, path, node, &value))
+        return value;
+    *good = false;
+    return field->fallback;
+}
+
+void reader_report(struct reader *r, const char *path, const char *format, ...)
+{
+    char text[PROBLEM_TEXT];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    problem_record(&r->problems, reader_mark(r, path), "%s%s", path, text);
+}
+
+struct mark reader_mark(struct reader *r, const char *path)
+{
+    char around[112];
+    snprintf(around, sizeof around, "%s", path);
+    for (char *dot = around; dot; dot = strrchr(around, '.')) {
+        *dot = dot == around ? *dot : '\0';
+        const struct seen *const seen = reader_seen(r, around);
+        if (reader_given(seen))
+            return seen->swept ? seen->sweep : seen->key;
+    }
+    return r->tree.root->mark;
 }
 
 /* ---- values by themselves -------------------------------------------------------------------- */
@@ -247,9 +274,8 @@ static void set_defaults(struct reader *r)
             continue;
         char *place = (char *)base + field->offset;
         if (field->type == FIELD_NUMBER) {
-            const size_t items =
-                (field->items ? field->items : 1) * (field->columns ? field->columns : 1);
-            for (size_t k = 0; k < items && !(strchr(field->path, '[') && isnan(field->fallback));
+            for (size_t k = 0;
+                 k < schema_items(field) && !(strchr(field->path, '[') && isnan(field->fallback));
                  k++)
                 memcpy(place + k * sizeof field->fallback, &field->fallback,
                        sizeof field->fallback);

@@ -11,36 +11,40 @@
 
 /* ---- what the scenario is -------------------------------------------------------------------- */
 
+enum { USE_TEXT = 200 };
+
 struct situation {
-    bool law_known, design_known;
+    bool law_known, start_known;
     const stance_law *law, *far;
-    bool places, regulates, gives_gains; /* controller.design, base or swept */
-    bool places_robustly, models;
+    unsigned designs;                  /* that controller.design takes, base or swept, a bit each */
     bool from_equilibrium, from_state; /* at most one, or the start is in doubt */
-    bool start_known;
-    bool settles;
 };
 
-static bool any_below(struct reader *r, const char *prefix, bool (*test)(const struct seen *))
+/* Whether a path or one below it is swept; or perhaps misspelt. */
+static bool any_below(struct reader *r, const char *prefix, bool misspelt)
 {
     size_t length = strlen(prefix);
+    bool any = false;
     for (size_t i = 0; i < r->schema->count; i++) {
         const char *path = r->schema->field[i].path;
-        if (strncmp(path, prefix, length) == 0 && (path[length] == '.' || !path[length]) &&
-            test(&r->seen[i]))
-            return true;
+        if (strncmp(path, prefix, length) == 0 && (path[length] == '.' || !path[length]))
+            any |= misspelt ? r->seen[i].excused : r->seen[i].swept;
     }
-    return false;
+    return any;
 }
 
-static bool is_swept(const struct seen *seen)
+/* Whether neither a key nor a mapping around it is bad, or perhaps misspelt. */
+static bool is_sound(struct reader *r, const char *key)
 {
-    return seen->swept;
-}
-
-static bool is_excused(const struct seen *seen)
-{
-    return seen->excused;
+    char path[96];
+    snprintf(path, sizeof path, "%s", key);
+    for (char *end = path; end; end = strrchr(path, '.')) {
+        *end = end == path ? *end : '\0';
+        const struct seen *const seen = reader_seen(r, path);
+        if (seen->bad || seen->excused || (seen->swept && r->axes_bad))
+            return false;
+    }
+    return true;
 }
 
 static bool takes_word(const struct reader *r, size_t offset, int word)
@@ -58,99 +62,78 @@ static bool takes_word(const struct reader *r, size_t offset, int word)
 
 static struct situation find_situation(struct reader *r)
 {
-    const size_t design = offsetof(struct scenario_values, design);
-    const struct seen *controller = reader_seen(r, "controller"),
-                      *initial = reader_seen(r, "initial");
-    struct situation is = {.law = scenario_law(&r->s->base), .far = scenario_far(&r->s->base)};
+    struct scenario_values *const base = &r->s->base;
+    struct situation is = {.law = scenario_law(base), .far = scenario_far(base)};
 
-    is.law_known = !controller->bad && !controller->excused &&
-                   !reader_seen(r, "controller.kind")->bad &&
-                   !reader_seen(r, "controller.kind")->excused;
-    is.design_known = !reader_seen(r, "controller.design")->bad &&
-                      !reader_seen(r, "controller.design")->excused &&
-                      !(reader_seen(r, "controller.design")->swept && r->axes_bad);
-    is.places_robustly = takes_word(r, design, DESIGN_PLACE);
-    is.places = is.places_robustly || takes_word(r, design, DESIGN_PLACE_SCHUR);
-    is.regulates = takes_word(r, design, DESIGN_LQR);
-    is.models = is.places || is.regulates;
-    is.gives_gains = takes_word(r, design, DESIGN_GAINS);
+    is.law_known = is_sound(r, "controller.kind");
+    for (int d = 0; d <= DESIGN_GAINS; d++)
+        is.designs |= takes_word(r, offsetof(struct scenario_values, design), d) ? 1u << d : 0;
     is.from_equilibrium = reader_seen(r, "initial.equilibrium")->node != NULL;
     is.from_state = reader_seen(r, "initial.state")->node != NULL;
     if (!is.from_equilibrium && !is.from_state) {
-        is.from_equilibrium = any_below(r, "initial.equilibrium", is_swept);
-        is.from_state = !is.from_equilibrium && any_below(r, "initial.state", is_swept);
+        is.from_equilibrium = any_below(r, "initial.equilibrium", false);
+        is.from_state = !is.from_equilibrium && any_below(r, "initial.state", false);
     }
-    is.start_known = !initial->bad && !initial->excused && !any_below(r, "initial", is_excused) &&
+    is.start_known = is_sound(r, "initial") && !any_below(r, "initial", true) &&
                      is.from_equilibrium != is.from_state;
-    is.settles = r->s->base.settle != 0;
+    base->state_given = is.from_state;
+    base->equilibrium.given = is.from_equilibrium;
     return is;
 }
 
-/* Whether no controller.design is of the use; then *instead is one that there is. */
-static bool design_misfits(const struct reader *r, const struct situation *is, enum field_use use,
-                           const char **instead)
+/* ---- what keys are used with ----------------------------------------------------------------- */
+
+/* Whether what decides about a use is known. */
+static bool is_known(struct reader *r, const struct situation *is, enum field_use use)
 {
-    const struct scenario_field *design = schema_find(r->schema, "controller.design");
-    const bool fits = use == USE_PLACE   ? is->places
-                      : use == USE_LQR   ? is->regulates
-                      : use == USE_MODEL ? is->models
-                                         : is->gives_gains;
-    if (!is->design_known || fits)
+    const bool start = use == USE_EQUILIBRIUM || use == USE_STATE;
+    return use == USE_ALWAYS || ((start ? is->start_known : is_sound(r, schema_uses[use].key)) &&
+                                 (use != USE_LAW || is_sound(r, "controller.far")) &&
+                                 is_known(r, is, schema_uses[use].within));
+}
+
+/* Whether some case allows a use. */
+static bool is_allowed(struct reader *r, const struct situation *is, enum field_use use, int law)
+{
+    const enum doe_method method = r->s->sample.design.method;
+    int *const design = &r->s->base.design, kept = *design;
+    bool allowed = false;
+    if (use == USE_SALTELLI || use == USE_MORRIS)
+        return !r->s->sample.given || method == DOE_METHODS ||
+               method == (use == USE_MORRIS ? DOE_MORRIS : DOE_SALTELLI);
+    if (use == USE_SHARES || use == USE_UNSOUGHT)
+        return use == USE_SHARES ? r->s->search.aim != AIM_NEAREST : !r->s->search.given;
+    for (*design = 0; *design <= DESIGN_GAINS; ++*design)
+        allowed |= (is->designs >> *design & 1) && schema_allows(use, law, &r->s->base);
+    *design = kept;
+    return allowed;
+}
+
+/* What the key that decides about a use is here. */
+static const char *word_here(struct reader *r, const char *key)
+{
+    const struct scenario_field *const field = schema_find(r->schema, key);
+    const struct tree_node *const node = reader_seen(r, key)->node;
+    for (int i = 0; field && field->offset != NO_OFFSET && i < (int)field->word_count; i++)
+        if (takes_word(r, field->offset, i))
+            return field->words[i];
+    return node && node->kind == TREE_SCALAR ? node->text : key;
+}
+
+/* Whether a use is not allowed; then `text` says so. */
+static bool is_misused(struct reader *r, const struct situation *is, enum field_use use, int law,
+                       char text[USE_TEXT])
+{
+    const struct schema_use *const u = &schema_uses[use];
+    if (u->within && is_misused(r, is, u->within, law, text))
+        return true;
+    if (!is_known(r, is, use) || is_allowed(r, is, use, law))
         return false;
-    *instead = "others";
-    for (size_t i = design ? design->word_count : 0; i-- > 0;)
-        if (takes_word(r, offsetof(struct scenario_values, design), (int)i))
-            *instead = design->words[i];
+    snprintf(text, USE_TEXT, "is used only %s%s (here: %.96s)",
+             u->needs ? u->needs : "with controller.kind ",
+             u->needs ? "" : stance_laws()[law]->name, word_here(r, u->key));
     return true;
 }
-
-/* Why a field must not be given or swept, as what would be needed and what there is instead; NULL:
- * it may be. */
-static const char *obstacle(const struct reader *r, const struct situation *is,
-                            const struct scenario_field *field, const char **instead)
-{
-    const stance_law *const none = stance_laws()[0], *const own = stance_laws()[field->law];
-    const bool other = is->law_known && !is->law->designed;
-    bool misfits = false;
-    *instead = schema_find(r->schema, "controller.kind")->words[r->s->base.law];
-    switch (field->use) {
-    case USE_CONTROL:
-        misfits = is->law_known && is->law == none;
-        break;
-    case USE_LAW:
-        return is->law_known && is->law != own && is->far != own ? r->schema->kind_of[field->law]
-                                                                 : NULL;
-    case USE_FAR:
-        misfits = is->law_known && is->far == none;
-        break;
-    case USE_FEEDBACK:
-        misfits = other;
-        break;
-    case USE_PLACE:
-    case USE_LQR:
-    case USE_MODEL:
-    case USE_GAINS:
-        if (other)
-            return schema_use_text[USE_FEEDBACK];
-        misfits = design_misfits(r, is, field->use, instead);
-        break;
-    case USE_EQUILIBRIUM:
-    case USE_STATE:
-        *instead = schema_use_text[field->use == USE_STATE ? USE_EQUILIBRIUM : USE_STATE];
-        misfits =
-            is->start_known && !(field->use == USE_STATE ? is->from_state : is->from_equilibrium);
-        break;
-    case USE_SETTLE:
-        *instead = "off";
-        misfits = !is->settles;
-        break;
-    default:
-        break;
-    }
-    return misfits ? schema_use_text[field->use] : NULL;
-}
-
-/* ---- keys that have no meaning here ---------------------------------------------------------- */
 
 /* Whether the mapping that a field stands in is subject to the same condition. */
 static bool parent_has_use(const struct reader *r, const struct scenario_field *field)
@@ -167,79 +150,42 @@ static bool parent_has_use(const struct reader *r, const struct scenario_field *
 
 static void check_uses(struct reader *r, const struct situation *is)
 {
-    const char *needed, *instead;
+    char text[USE_TEXT], name[AXIS_NAME];
     for (size_t i = 0; i < r->schema->count; i++) {
         const struct scenario_field *field = &r->schema->field[i];
-        if (!r->seen[i].node || parent_has_use(r, field))
-            continue;
-        needed = obstacle(r, is, field, &instead);
-        if (needed) {
-            problem_add(&r->problems, r->seen[i].key, "%s is used only with %s (here: %s)",
-                        field->path, needed, instead);
-        }
+        if (r->seen[i].node && !parent_has_use(r, field) &&
+            is_misused(r, is, field->use, field->law, text))
+            problem_add(&r->problems, r->seen[i].key, "%s %s", field->path, text);
     }
     for (int a = 0; a <= r->s->axes; a++) {
         const bool sought = a == r->s->axes;
         const struct scenario_axis *const axis = sought ? &r->s->search.axis : &r->s->axis[a];
         for (int k = 0; k < axis->paths; k++) {
             const struct swept_field *swept = sought ? &r->sought[k] : &r->swept[a][k];
-            needed = obstacle(r, is, swept->field, &instead);
-            if (needed) {
-                char name[AXIS_NAME];
-                problem_add(&r->problems, swept->mark, "%s: %s is used only with %s (here: %s)",
+            if (is_misused(r, is, swept->field->use, swept->field->law, text))
+                problem_add(&r->problems, swept->mark, "%s: %s %s",
                             sought ? "optimise.vary" : axis_key(r->s, a, name), axis->path[k],
-                            needed, instead);
-            }
+                            text);
         }
     }
 }
 
 /* ---- keys that are missing ------------------------------------------------------------------- */
 
-/* Where to report that a field is missing: the nearest mapping around it. False: that one is bad,
- * so that nothing is known of the field. */
-static bool surrounding(struct reader *r, const struct scenario_field *field, struct mark *mark)
-{
-    char path[sizeof field->path];
-    snprintf(path, sizeof path, "%s", field->path);
-    for (char *dot; (dot = strrchr(path, '.')) != NULL;) {
-        *dot = '\0';
-        const struct seen *seen = reader_seen(r, path);
-        if (seen->bad || seen->excused)
-            return false;
-        if (seen->node) {
-            *mark = seen->key;
-            return true;
-        }
-    }
-    *mark = r->tree.root->mark;
-    return true;
-}
-
 static void check_required(struct reader *r, const struct situation *is)
 {
-    static const char *const reason[] = {
-        [USE_ALWAYS] = "",
-        [USE_FAR] = " (controller.far needs it)",
-        [USE_PLACE] = " (controller.design place and place-schur need it)",
-        [USE_GAINS] = " (controller.design gains needs it)",
-    };
     for (size_t i = 0; i < r->schema->count; i++) {
         const struct scenario_field *field = &r->schema->field[i];
-        const char *instead;
-        struct mark mark;
-        bool known = field->use == USE_ALWAYS || is->law_known;
-        if (field->use == USE_PLACE || field->use == USE_GAINS)
-            known = known && is->design_known;
-        if (!field->required || field->type == FIELD_MAP || !known || r->seen[i].excused ||
-            r->seen[i].node || r->seen[i].swept || obstacle(r, is, field, &instead) ||
-            !surrounding(r, field, &mark))
+        char text[USE_TEXT];
+        if (!field->required || field->type == FIELD_MAP || !is_known(r, is, field->use) ||
+            reader_given(&r->seen[i]) || is_misused(r, is, field->use, field->law, text) ||
+            !is_sound(r, field->path))
             continue;
-        if (field->use == USE_LAW)
-            problem_add(&r->problems, mark, "%s is missing (%s needs it)", field->path,
-                        stance_laws()[field->law]->name);
-        else
-            problem_add(&r->problems, mark, "%s is missing%s", field->path, reason[field->use]);
+        const char *const needs = field->use == USE_LAW ? stance_laws()[field->law]->name
+                                  : field->use ? schema_uses[field->use].needs + strlen("with ")
+                                               : "";
+        reader_refuse(r, field->path, needs[0] ? " is missing (%s needs it)" : " is missing",
+                      needs);
     }
 }
 
@@ -289,28 +235,22 @@ static void check_standing(struct reader *r, const struct situation *is)
         return;
     r->s->base.support_foot = 0;
     if (support->node && scene->mechanism->body[0].joint != STANCE_FREE) {
-        problem_add(&r->problems, support->key,
-                    "initial.support: the root %s is not free: nothing has to carry it",
-                    scene->mechanism->body[0].name);
+        reader_refuse(r, "initial.support", ": the root %s is not free: nothing has to carry it",
+                      scene->mechanism->body[0].name);
     } else if (!support->node && is->from_equilibrium && scene->mechanism->elements > 0 &&
                scene->mechanism->body[0].joint == STANCE_FREE) {
         r->s->base.support = (int)mechanism_contacts(scene, 1);
     }
-    for (int i = 0; support->node && is->from_state && i < 4; i++) {
-        const struct seen *const given = reader_seen(r, translation[i]);
-        if (reader_given(given))
-            problem_add(&r->problems, given->node ? given->key : given->sweep,
-                        "%s: with initial.support it follows from what the robot stands on",
-                        translation[i]);
-    }
+    for (int i = 0; support->node && is->from_state && i < 4; i++)
+        if (reader_given(reader_seen(r, translation[i])))
+            reader_refuse(r, translation[i],
+                          ": with initial.support it follows from what the robot stands on");
 }
 
 static void check_start(struct reader *r, const struct situation *is)
 {
     const struct seen *state = reader_seen(r, "initial.state"),
-                      *equilibrium = reader_seen(r, "initial.equilibrium"),
-                      *initial = reader_seen(r, "initial");
-    struct scenario_values *base = &r->s->base;
+                      *equilibrium = reader_seen(r, "initial.equilibrium");
 
     if (state->node && equilibrium->node) {
         bool later = state->key.set > equilibrium->key.set ||
@@ -322,21 +262,19 @@ static void check_start(struct reader *r, const struct situation *is)
                     "initial.state and initial.equilibrium exclude each other");
         return;
     }
-    if (initial->bad || initial->excused || any_below(r, "initial", is_excused))
+    if (!is_sound(r, "initial") || any_below(r, "initial", true))
         return;
     if (!is->from_state && !is->from_equilibrium) {
-        problem_add(&r->problems, initial->node ? initial->key : r->tree.root->mark,
-                    schema_find(r->schema, "initial.equilibrium")
-                        ? "initial: give an equilibrium or a state"
-                        : "initial: give a state");
+        reader_refuse(r, "initial",
+                      schema_find(r->schema, "initial.equilibrium")
+                          ? ": give an equilibrium or a state"
+                          : ": give a state");
         return;
     }
-    base->state_given = is->from_state;
-    base->equilibrium.given = is->from_equilibrium;
     if (is->from_equilibrium) {
         check_equilibrium(r, "initial.equilibrium");
         if (!reader_seen(r, "initial.support_foot")->node)
-            base->support_foot = 1;
+            r->s->base.support_foot = 1;
     }
     check_standing(r, is);
 }
@@ -344,23 +282,18 @@ static void check_start(struct reader *r, const struct situation *is)
 static void check_controller(struct reader *r, const struct situation *is)
 {
     struct scenario_values *base = &r->s->base;
-    const struct seen *kind = reader_seen(r, "controller.kind");
 
     if (!is->law_known)
         return;
-    if (is->law != stance_laws()[0] && r->s->scene->actuators == 0) {
-        problem_add(&r->problems, kind->node->mark,
-                    "controller.kind: the scene %s has no actuators", r->s->scene->name);
-    }
+    if (is->law != stance_laws()[0] && r->s->scene->actuators == 0)
+        reader_refuse(r, "controller.kind", ": the scene %s has no actuators", r->s->scene->name);
     if (!is->law->designed)
         return;
     base->design_point.given = check_equilibrium(r, "controller.equilibrium");
     if (!base->design_point.given && is->start_known && !is->from_equilibrium) {
-        problem_add(
-            &r->problems, reader_seen(r, "controller")->key,
-            "controller.equilibrium is missing: %s needs one where the run does not begin at "
-            "one",
-            is->law->name);
+        reader_refuse(r, "controller.equilibrium",
+                      " is missing: %s needs one where the run does not begin at one",
+                      is->law->name);
     }
     for (int a = 0; a < r->s->axes; a++) {
         for (int k = 0; k < r->s->axis[a].paths; k++) {
@@ -380,75 +313,39 @@ static void check_controller(struct reader *r, const struct situation *is)
 
 /* ---- numbers that must fit each other -------------------------------------------------------- */
 
-static bool samples_in_design(const struct reader *r, const struct situation *is)
+/* Whether some case asks for a sample time by a field. */
+static bool asks_samples(const struct reader *r, const struct scenario_field *field)
 {
-    return is->law_known && is->law->designed && is->models &&
-           takes_word(r, offsetof(struct scenario_values, design_time), DESIGN_SAMPLED);
-}
-
-static struct mark where(struct reader *r, const char *path)
-{
-    const struct seen *seen = reader_seen(r, path);
-    return seen->swept ? seen->sweep : seen->node ? seen->key : r->tree.root->mark;
-}
-
-/* Is a number of the controller other than without an effect (zero, or no limit) in some case? */
-static bool is_on(struct reader *r, const char *path)
-{
-    const struct scenario_field *const field = schema_find(r->schema, path);
     double least, largest;
-    int whole, k;
-    if (!field) /* a scene without actuators */
-        return false;
+    int k;
+    if (!scenario_axis_of(r->s, field->offset, &k))
+        return schema_samples(field, &r->s->base);
     scenario_extent(r->s, field->offset, &least, &largest);
-    if (field->type == FIELD_INTEGER && !scenario_axis_of(r->s, field->offset, &k)) {
-        memcpy(&whole, (const char *)&r->s->base + field->offset, sizeof whole);
-        least = largest = whole;
-    }
-    return isfinite(field->fallback) ? largest > field->fallback : least < field->fallback;
+    return least != field->fallback || largest != field->fallback;
 }
 
-/* What has a meaning only where the controller samples. */
+/* What has a meaning only where the controller samples. Gains designed for the sampled model
+ * differ with the sample time. */
 static void check_sampling(struct reader *r, const struct situation *is)
 {
+    const size_t time = offsetof(struct scenario_values, sample_time);
     double shortest, longest;
-    const struct seen *time = reader_seen(r, "controller.sample_time");
-    static const char every[] = "it is new at each sample", acts[] = "it acts on what is sampled";
-    static const struct {
-        const char *path, *because;
-    } sampled[] = {
-        {"controller.noise", every},      {"controller.angle_noise", every},
-        {"controller.rate_noise", every}, {"controller.delay", "it counts samples"},
-        {"controller.lag", acts},         {"controller.torque_rate", acts},
-    };
+    char text[USE_TEXT];
+    int k;
 
-    if (!is->law_known || is->law == stance_laws()[0] || r->axes_bad || time->bad || time->excused)
+    if (!is->law_known || r->axes_bad || !is_sound(r, "controller.sample_time"))
         return;
-    scenario_extent(r->s, offsetof(struct scenario_values, sample_time), &shortest, &longest);
-    if (shortest > 0)
-        return;
-    if (is->law->samples)
-        problem_add(&r->problems, reader_seen(r, "controller.kind")->node->mark,
-                    "controller.kind %s needs controller.sample_time > 0: %s", is->law->name, acts);
-    for (size_t k = 0; k < sizeof sampled / sizeof *sampled; k++)
-        if (is_on(r, sampled[k].path) && !reader_seen(r, sampled[k].path)->bad)
-            problem_add(&r->problems, where(r, sampled[k].path),
-                        "%s needs controller.sample_time > 0: %s", sampled[k].path,
-                        sampled[k].because);
-    if (samples_in_design(r, is) && !reader_seen(r, "controller.design_time")->bad) {
-        problem_add(&r->problems, where(r, "controller.design_time"),
-                    "controller.design_time sampled needs controller.sample_time > 0");
-    }
-}
-
-/* Gains designed for the sampled model differ with the sample time. */
-static void mark_sampled_designs(struct reader *r, const struct situation *is)
-{
-    for (int a = 0; a < r->s->axes; a++) {
-        struct scenario_axis *axis = &r->s->axis[a];
-        for (int k = 0; k < axis->paths; k++)
-            if (axis->offset[k] == offsetof(struct scenario_values, sample_time))
-                axis->design = axis->design || samples_in_design(r, is);
+    scenario_extent(r->s, time, &shortest, &longest);
+    const struct scenario_axis *const axis = scenario_axis_of(r->s, time, &k);
+    for (size_t i = 0; i < r->schema->count; i++) {
+        const struct scenario_field *const field = &r->schema->field[i];
+        if (!field->samples || r->seen[i].bad || !asks_samples(r, field) ||
+            is_misused(r, is, field->use, field->law, text))
+            continue;
+        if (axis && field->offset == offsetof(struct scenario_values, design_time))
+            r->s->axis[axis - r->s->axis].design = true;
+        if (shortest <= 0)
+            reader_refuse(r, field->path, " needs controller.sample_time > 0: %s", field->samples);
     }
 }
 
@@ -460,8 +357,8 @@ static void check_multiplicity(struct reader *r, const struct situation *is)
     const struct scenario_values *base = &r->s->base;
     const size_t most = (size_t)r->s->scene->actuators;
 
-    if (!is->law->designed || !is->design_known || !is->places_robustly || !poles->node ||
-        poles->bad)
+    if (!is->law->designed || !is_sound(r, "controller.design") ||
+        !(is->designs >> DESIGN_PLACE & 1) || !poles->node || poles->bad)
         return;
     for (size_t n = 0; n < poles->node->count; n++) {
         char path[96], before[96];
@@ -482,23 +379,6 @@ static void check_multiplicity(struct reader *r, const struct situation *is)
     }
 }
 
-/* What acts far from the target is decided at samples. */
-static void check_far(struct reader *r, const struct situation *is)
-{
-    double shortest, longest;
-
-    if (!is->law_known || is->far == stance_laws()[0] || r->axes_bad ||
-        reader_seen(r, "controller.far")->bad || reader_seen(r, "controller.sample_time")->bad ||
-        reader_seen(r, "controller.sample_time")->excused)
-        return;
-    scenario_extent(r->s, offsetof(struct scenario_values, sample_time), &shortest, &longest);
-    if (shortest <= 0) {
-        problem_add(&r->problems, where(r, "controller.far"),
-                    "controller.far needs controller.sample_time > 0: which law acts is decided at "
-                    "each sample");
-    }
-}
-
 static void check_steps(struct reader *r)
 {
     double least_time, time, step, largest_step;
@@ -508,10 +388,8 @@ static void check_steps(struct reader *r)
         return;
     scenario_extent(r->s, offsetof(struct scenario_values, stop_time), &least_time, &time);
     scenario_extent(r->s, offsetof(struct scenario_values, step), &step, &largest_step);
-    if (time / step > MOST_STEPS) {
-        problem_add(&r->problems, where(r, "stop.time"),
-                    "stop.time: more than %.0e steps of method.step", MOST_STEPS);
-    }
+    if (time / step > MOST_STEPS)
+        reader_refuse(r, "stop.time", ": more than %.0e steps of method.step", MOST_STEPS);
 }
 
 /* The foot that the robot starts on must be able to carry it. */
@@ -524,9 +402,8 @@ static void check_support(struct reader *r, const struct situation *is)
     for (int foot = 1; foot <= s->scene->contacts; foot++) {
         if (!(s->base.contacts >> (foot - 1) & 1) &&
             takes_word(r, offsetof(struct scenario_values, support_foot), foot)) {
-            problem_add(&r->problems, where(r, "ground.contacts"),
-                        "ground.contacts: %s, the support foot, is not among them",
-                        s->scene->contact_name[foot - 1]);
+            reader_refuse(r, "ground.contacts", ": %s, the support foot, is not among them",
+                          s->scene->contact_name[foot - 1]);
         }
     }
 }
@@ -541,9 +418,9 @@ static void check_contacts(struct reader *r)
     for (int e = 0; e < m->elements && !reader_seen(r, "ground.contacts")->bad; e++) {
         const int contacts = (int)mechanism_contacts(scene, UINT32_C(1) << e);
         if ((base->support & contacts) && !(base->contacts & contacts))
-            problem_add(&r->problems, where(r, "ground.contacts"),
-                        "ground.contacts: %s, which is to carry the robot, is not among them",
-                        m->element[e].name);
+            reader_refuse(r, "ground.contacts",
+                          ": %s, which is to carry the robot, is not among them",
+                          m->element[e].name);
     }
     base->contacts |= ((1 << scene->contacts) - 1) & ~(int)mechanism_contacts(scene, UINT32_MAX);
 }
@@ -559,36 +436,29 @@ static void check_lands(struct reader *r)
     for (int c = 0; c < scene->contacts; c++)
         feet += (!scene->grip || scene->grip[c] == c) && (r->s->base.contacts >> c & 1);
     if (feet < 2)
-        problem_add(&r->problems, where(r, "ground.lands"),
-                    "ground.lands: ahead needs two contacts that may touch the ground, there %s %d",
-                    feet == 1 ? "is" : "are", feet);
+        reader_refuse(r, "ground.lands",
+                      ": ahead needs two contacts that may touch the ground, there %s %d",
+                      feet == 1 ? "is" : "are", feet);
 }
 
 /* Scenes that are not described have the world that their equations were written for. */
 static void check_world(struct reader *r)
 {
-    static const struct {
-        const char *path, *wanted;
-    } fixed[] = {
-        {"ground.slope", "level ground, 0"},
-        {"ground.gravity", "9.81"},
-        {"controller.model.slope", "level ground, 0"},
-        {"controller.model.gravity", "9.81"},
-    };
-    for (size_t i = 0; i < sizeof fixed / sizeof fixed[0]; i++) {
-        const struct scenario_field *const field = schema_find(r->schema, fixed[i].path);
-        const double usual = i % 2 ? STANCE_GRAVITY : 0;
+    for (size_t i = 0; i < r->schema->count && !r->axes_bad; i++) {
+        const struct scenario_field *const field = &r->schema->field[i];
+        const bool slope = strcmp(field->unit, "rad") == 0;
+        const double usual = slope ? 0 : STANCE_GRAVITY;
         double least, largest;
-        if (!field || !reader_given(reader_seen(r, fixed[i].path)) || r->axes_bad ||
-            reader_seen(r, fixed[i].path)->bad)
+        if (!reader_given(&r->seen[i]) || r->seen[i].bad ||
+            !schema_allows(field->use, field->law, &r->s->base) ||
+            schema_applies(r->schema, field, &r->s->base))
             continue;
         scenario_extent(r->s, field->offset, &least, &largest);
         if (least != usual || largest != usual)
-            problem_add(
-                &r->problems, where(r, fixed[i].path),
-                "%s: the scene %s knows %s alone; a mechanism has any (scene: mechanism, see "
-                "scenarios/mechanisms)",
-                fixed[i].path, r->s->scene->name, fixed[i].wanted);
+            reader_refuse(r, field->path,
+                          ": the scene %s knows %s alone; a mechanism has any (scene: mechanism, "
+                          "see scenarios/mechanisms)",
+                          r->s->scene->name, slope ? "level ground, 0" : "9.81");
     }
 }
 
@@ -605,15 +475,12 @@ void scenario_cross_check(struct reader *r)
     check_controller(r, &is);
     check_multiplicity(r, &is);
     check_sampling(r, &is);
-    mark_sampled_designs(r, &is);
-    check_far(r, &is);
     check_support(r, &is);
     if (r->s->own_scene) {
         check_contacts(r);
         mechanism_check(r);
-    } else {
-        check_world(r);
     }
+    check_world(r);
     check_lands(r);
     for (size_t i = 0; i < r->misfits; i++)
         named_misfit(r, &r->misfit[i]);

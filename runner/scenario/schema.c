@@ -332,8 +332,6 @@ bool schema_build(struct schema *schema, const stance_scene *scene)
     for (size_t i = 0; i < SCHEMA_MAX_WORDS && stance_methods()[i]; i++)
         schema->methods[schema->method_count++] = stance_methods()[i]->name;
     for (const stance_law *const *law = stance_laws(); *law; law++) {
-        snprintf(schema->kind_of[schema->law_count], sizeof *schema->kind_of, "controller.kind %s",
-                 (*law)->name);
         schema->laws[schema->law_count++] = (*law)->name;
         if ((*law)->acts_far)
             schema->far_laws[schema->far_law_count++] = (*law)->name;

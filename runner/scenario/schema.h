@@ -47,10 +47,19 @@ enum field_use {
     USE_EQUILIBRIUM, /* the scenario starts from initial.equilibrium */
     USE_STATE,       /* ... from initial.state */
     USE_SETTLE,      /* stop.settle is not off */
+    USE_SALTELLI,    /* by sweep.sample.method ... */
+    USE_MORRIS,
+    USE_SHARES,   /* optimise.maximise is not nearest */
+    USE_UNSOUGHT, /* there is no optimise */
 };
 
-/* What a use asks for: "controller.design lqr". NULL: nothing, or (USE_LAW) a law. */
-extern const char *const schema_use_text[];
+/* What a use asks for: "with controller.design lqr", NULL: nothing, or (USE_LAW) a law; the key
+ * that decides it; a use that this one is part of. */
+struct schema_use {
+    const char *needs, *key;
+    enum field_use within;
+};
+extern const struct schema_use schema_uses[];
 
 /* One row, written out for a scene. */
 struct scenario_field {
@@ -61,6 +70,8 @@ struct scenario_field {
     bool required;             /* must stand in the file where `use` allows it, unless swept */
     bool design;               /* what the design depends on, see resolve.h */
     bool sweep;                /* may vary along an axis */
+    bool quiet;                /* a summary tells it only where it is not as it is by default */
+    const char *samples;       /* why it needs controller.sample_time > 0, other than by default */
     bool by_scene;             /* cannot be checked without a known scene */
     size_t offset;             /* in struct scenario_values; NO_OFFSET: bound by hand */
     char unit[24];             /* "1": without unit; "": not a quantity */
@@ -88,8 +99,7 @@ struct schema {
     const char *scenes[SCHEMA_MAX_WORDS], *methods[SCHEMA_MAX_WORDS];
     const char *laws[STANCE_MAX_LAWS], *far_laws[STANCE_MAX_LAWS];
     size_t scene_count, method_count, law_count, far_law_count;
-    char kind_of[STANCE_MAX_LAWS][48]; /* "controller.kind NAME" */
-    char kinds[600];                   /* what there is to know of controller.kind */
+    char kinds[600]; /* what there is to know of controller.kind */
     char selection[STANCE_MAX_SELECTIONS][SCENARIO_NAME]; /* "x-theta" */
     const char *selections[STANCE_MAX_SELECTIONS];
     const char *bodies[STANCE_MAX_BODIES], *elements[STANCE_MAX_ELEMENTS]; /* of a mechanism */
@@ -117,6 +127,21 @@ const struct scenario_field *schema_find_concrete(const struct schema *schema, c
 
 /* A scene whose format has a path (general, or with indices); NULL: none has. */
 const stance_scene *schema_scene_with(const char *path);
+
+/* Whether values, of the scenario or of a case, allow a use; those behind USE_SETTLE all do. */
+bool schema_allows(enum field_use use, int law, const struct scenario_values *values);
+/* Whether a field that may be swept means something with these values, in the schema's scene. */
+bool schema_applies(const struct schema *schema, const struct scenario_field *field,
+                    const struct scenario_values *values);
+/* Whether its number, or word, asks for a controller.sample_time > 0. */
+bool schema_samples(const struct scenario_field *field, const struct scenario_values *values);
+
+/* How many numbers a field with an offset is; one of them, words by their place. Its path, with
+ * indices for "[]". */
+size_t schema_items(const struct scenario_field *field);
+double schema_number(const struct scenario_field *field, const struct scenario_values *values,
+                     size_t item);
+const char *schema_item_path(const struct scenario_field *field, size_t item, char path[128]);
 
 /* Last names of the paths right below `path` ("" is the top); returns how many, at most `room`. */
 size_t schema_children(const struct schema *schema, const char *path, const char **names,

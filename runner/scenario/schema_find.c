@@ -7,18 +7,97 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const schema_use_text[] = {
-    [USE_CONTROL] = "a controller.kind other than none",
-    [USE_FEEDBACK] = "controller.kind state-feedback",
-    [USE_FAR] = "a controller.far other than none",
-    [USE_PLACE] = "controller.design place or place-schur",
-    [USE_LQR] = "controller.design lqr",
-    [USE_MODEL] = "a controller.design other than gains",
-    [USE_GAINS] = "controller.design gains",
-    [USE_EQUILIBRIUM] = "initial.equilibrium",
-    [USE_STATE] = "initial.state",
-    [USE_SETTLE] = "a stop.settle other than off",
+const struct schema_use schema_uses[] = {
+    [USE_CONTROL] = {"with a controller.kind other than none", "controller.kind", USE_ALWAYS},
+    [USE_LAW] = {NULL, "controller.kind", USE_ALWAYS},
+    [USE_FEEDBACK] = {"with controller.kind state-feedback", "controller.kind", USE_ALWAYS},
+    [USE_FAR] = {"with a controller.far other than none", "controller.far", USE_FEEDBACK},
+    [USE_PLACE] = {"with controller.design place or place-schur", "controller.design",
+                   USE_FEEDBACK},
+    [USE_LQR] = {"with controller.design lqr", "controller.design", USE_FEEDBACK},
+    [USE_MODEL] = {"with a controller.design other than gains", "controller.design", USE_FEEDBACK},
+    [USE_GAINS] = {"with controller.design gains", "controller.design", USE_FEEDBACK},
+    [USE_EQUILIBRIUM] = {"with initial.equilibrium", "initial.state", USE_ALWAYS},
+    [USE_STATE] = {"with initial.state", "initial.equilibrium", USE_ALWAYS},
+    [USE_SETTLE] = {"with a stop.settle other than off", "stop.settle", USE_ALWAYS},
+    [USE_SALTELLI] = {"with method saltelli", "sweep.sample.method", USE_ALWAYS},
+    [USE_MORRIS] = {"with method morris", "sweep.sample.method", USE_ALWAYS},
+    [USE_SHARES] = {"with an optimise.maximise other than nearest", "optimise.maximise",
+                    USE_ALWAYS},
+    [USE_UNSOUGHT] = {"without optimise", "optimise", USE_ALWAYS},
 };
+
+bool schema_allows(enum field_use use, int law, const struct scenario_values *v)
+{
+    const stance_law *const own = stance_laws()[law], *const is = scenario_law(v);
+    const bool allows[] = {
+        [USE_ALWAYS] = true,
+        [USE_CONTROL] = v->law != 0,
+        [USE_LAW] = is == own || scenario_far(v) == own,
+        [USE_FEEDBACK] = is->designed,
+        [USE_FAR] = scenario_far(v)->set != NULL,
+        [USE_PLACE] = v->design == DESIGN_PLACE || v->design == DESIGN_PLACE_SCHUR,
+        [USE_LQR] = v->design == DESIGN_LQR,
+        [USE_MODEL] = v->design != DESIGN_GAINS,
+        [USE_GAINS] = v->design == DESIGN_GAINS,
+        [USE_EQUILIBRIUM] = !v->state_given,
+        [USE_STATE] = v->state_given,
+        [USE_SETTLE] = v->settle,
+    };
+    const enum field_use within = schema_uses[use].within;
+    return use > USE_SETTLE || (allows[use] && (!within || schema_allows(within, law, v)));
+}
+
+bool schema_applies(const struct schema *schema, const struct scenario_field *field,
+                    const struct scenario_values *values)
+{
+    /* Slope and gravity are others for described robots alone. */
+    const size_t world = offsetof(struct scenario_values, robot[STANCE_ROBOT_GRAVITY]),
+                 model = offsetof(struct scenario_values, model[STANCE_ROBOT_GRAVITY]),
+                 both = 2 * sizeof(double);
+    return schema_allows(field->use, field->law, values) &&
+           (schema->scene->mechanism ||
+            (field->offset - world >= both && field->offset - model >= both));
+}
+
+size_t schema_items(const struct scenario_field *field)
+{
+    return (field->items ? field->items : 1) * (field->columns ? field->columns : 1);
+}
+
+double schema_number(const struct scenario_field *field, const struct scenario_values *values,
+                     size_t item)
+{
+    const char *const place = (const char *)values + field->offset;
+    double number;
+    int whole;
+    if (field->type == FIELD_NUMBER) {
+        memcpy(&number, place + item * sizeof number, sizeof number);
+        return number;
+    }
+    memcpy(&whole, place, sizeof whole);
+    return whole;
+}
+
+const char *schema_item_path(const struct scenario_field *field, size_t item, char path[128])
+{
+    const int length = (int)strcspn(field->path, "[");
+    const size_t columns = field->columns;
+    if (!field->path[length])
+        snprintf(path, 128, "%s", field->path);
+    else if (columns)
+        snprintf(path, 128, "%.*s[%zu][%zu]", length, field->path, item / columns, item % columns);
+    else
+        snprintf(path, 128, "%.*s[%zu]%s", length, field->path, item, field->path + length + 2);
+    return path;
+}
+
+bool schema_samples(const struct scenario_field *field, const struct scenario_values *values)
+{
+    if (field->offset == offsetof(struct scenario_values, law))
+        return scenario_law(values)->samples;
+    return field->samples && !(schema_number(field, values, 0) == field->fallback);
+}
 
 const struct scenario_field *schema_find(const struct schema *schema, const char *path)
 {

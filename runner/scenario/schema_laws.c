@@ -61,6 +61,7 @@ static bool add_number(struct schema *schema, const struct scenario_field *row, 
     field->fallback = p->of.fallback;
     field->fallback_text = p->unlimited ? "none" : p->fallback_text;
     field->more = p->more;
+    field->quiet = !p->told;
     if (p->unlimited) {
         field->words = schema_none;
         field->word_count = 1;

@@ -41,6 +41,8 @@ static const char *const aim_words[] = {"share", "nearest",
 #define BY_HAND .offset = NO_OFFSET
 #define RANGE(least, largest) .low = (least), .high = (largest)
 #define ABOVE(bound, largest) RANGE(bound, largest), .low_open = true
+#define NEW "it is new at each sample"
+#define ACTS "it acts on what is sampled"
 
 /* Loose bounds that keep nonsense out where physics gives none. */
 #define LARGE 1e9
@@ -75,19 +77,21 @@ const struct row schema_rows[] = {
          VALUE(robot[STANCE_ROBOT_GRAVITY]), .unit = "m/s^2", .fallback = STANCE_GRAVITY,
          RANGE(0, 1e4), .text = "acceleration of gravity", .more = "Only of a mechanism."}},
     {0, {.path = "ground.law", .type = FIELD_WORD, .sweep = true, VALUE(impacts), .fallback = 0,
-         WORDS(impacts_words), .text = "what restitution asks for",
+         .quiet = true, WORDS(impacts_words), .text = "what restitution asks for",
          .more = "newton: normal velocities, -e times those before, whatever energy friction then "
                  "adds. limited: the same with the largest e that adds none, where e would "
                  "(limited_impacts counts them). moreau: of tangential velocities the same as of "
                  "normal ones, by which nothing is added."}},
     {0, {.path = "ground.lands", .type = FIELD_WORD, .sweep = true, VALUE(lands), .fallback = 0,
-         WORDS(lands_words), .text = "where a foot in the air may come to the ground",
+         WORDS(lands_words), .quiet = true,
+         .text = "where a foot in the air may come to the ground",
          .more = "ahead: only where it is further along the ground than all other feet on it, as "
                  "walkers without knees need, whose swinging foot would scuff; elsewhere it goes "
                  "through the ground. Decided at the end of each step. Both ends of a sole are one "
                  "foot."}},
     {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(prefer), .fallback = 0,
-         WORDS(prefer_words), .text = "which motion, where several obey the contact laws",
+         WORDS(prefer_words), .quiet = true,
+         .text = "which motion, where several obey the contact laws",
          .more = "The one that leaves the least kinetic energy, or the most; contacts that stand "
                  "go on standing while they can. Such steps are counted as ambiguous_steps. Swept "
                  "over both, each case is followed down both branches."}},
@@ -106,10 +110,10 @@ const struct row schema_rows[] = {
          .fallback_text = "follows from the others", .text = "equilibrium: %s"}},
     {FAMILY_BRANCH, {.path = "initial.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
          .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.branch),
-         .fallback = 0, WORDS(branch_words),
+         .fallback = 0, .quiet = true, WORDS(branch_words),
          .text = "which of the two solutions: hip above or below the foot"}},
     {FAMILY_FOOT, {.path = "initial.support_foot", .type = FIELD_INTEGER, .by_scene = true,
-         .design = true, .sweep = true, VALUE(support_foot), .unit = "1",
+         .design = true, .sweep = true, VALUE(support_foot), .unit = "1", .quiet = true,
          .fallback_text = "1 with an equilibrium, else none",
          .text = "number of the foot that the robot stands on",
          .more = "With an equilibrium this foot stands at rest at the origin: offsets of angles "
@@ -124,20 +128,21 @@ const struct row schema_rows[] = {
     {0, {.path = "initial.offset", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
          BY_HAND, .text = "how far from the equilibrium the run begins"}},
     {FAMILY_OFFSET, {.path = "initial.offset.*", .type = FIELD_NUMBER, .by_scene = true,
-         .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset), .text = "initial offset: %s"}},
+         .use = USE_EQUILIBRIUM, .sweep = true, .quiet = true, VALUE(offset),
+         .text = "initial offset: %s"}},
     {0, {.path = "initial.offset.scale", .type = FIELD_NUMBER, .by_scene = true,
          .use = USE_EQUILIBRIUM, .sweep = true, VALUE(offset_scale), .unit = "1", .fallback = 1,
-         RANGE(-1e6, 1e6), .text = "factor of all other offsets",
+         .quiet = true, RANGE(-1e6, 1e6), .text = "factor of all other offsets",
          .more = "Swept beside directions (sweep.sample.method sphere) it goes along rays from the "
                  "equilibrium."}},
     {0, {.path = "initial.state", .type = FIELD_MAP, .by_scene = true, .use = USE_STATE, BY_HAND,
          .text = "the whole initial state by hand", .more = "Excludes initial.equilibrium."}},
     {FAMILY_STATE, {.path = "initial.state.*", .type = FIELD_NUMBER, .by_scene = true,
-         .use = USE_STATE, .sweep = true, VALUE(state), .text = "initial %s"}},
+         .use = USE_STATE, .sweep = true, .quiet = true, VALUE(state), .text = "initial %s"}},
 
     {0, {.path = "controller", .type = FIELD_MAP, BY_HAND, .text = "what drives the actuators"}},
     {FAMILY_KINDS, {.path = "controller.kind", .type = FIELD_WORD, .design = true, VALUE(law),
-         .fallback = 0, .text = "control law"}},
+         .fallback = 0, .samples = "this law acts on what is sampled", .text = "control law"}},
     {0, {.path = "controller.design", .type = FIELD_WORD, .use = USE_FEEDBACK, .design = true,
          .sweep = true, VALUE(design), .fallback = 0, WORDS(design_words),
          .text = "where the gains come from",
@@ -145,7 +150,7 @@ const struct row schema_rows[] = {
                  "method. lqr: linear quadratic regulator. gains: they are given."}},
     {0, {.path = "controller.design_time", .type = FIELD_WORD, .use = USE_MODEL, .design = true,
          .sweep = true, VALUE(design_time), .fallback = 0, WORDS(design_time_words),
-         .text = "model that the gains are designed for",
+         .samples = "it makes the sampled model", .text = "model that the gains are designed for",
          .more = "sampled: the robot sampled every controller.sample_time with torques held in "
                  "between; a pole s becomes exp(s T), the cost of lqr stays the integral over all "
                  "time. Each sample time of a sweep is then a design of its own."}},
@@ -220,13 +225,13 @@ const struct row schema_rows[] = {
          .fallback_text = "follows from the others", .text = "equilibrium of the controller: %s"}},
     {FAMILY_BRANCH, {.path = "controller.equilibrium.branch", .type = FIELD_WORD, .by_scene = true,
          .use = USE_FEEDBACK, .design = true, .sweep = true, VALUE(design_point.branch),
-         .fallback = 0, WORDS(branch_words),
+         .fallback = 0, .quiet = true, WORDS(branch_words),
          .text = "which of the two solutions: hip above or below the foot"}},
     {FAMILY_FAR, {.path = "controller.far", .type = FIELD_WORD, .use = USE_FEEDBACK, VALUE(far),
-         .fallback = 0, .text = "law that acts outside an ellipsoid about the target",
+         .fallback = 0, .quiet = true, .samples = "which law acts is decided at each sample",
+         .text = "law that acts outside an ellipsoid about the target",
          .more = "state-feedback acts inside it, where sum((angle/near.angle)^2) + "
-                 "sum((rate/near.rate)^2) <= 1 for the deviations from the target. Decided at each "
-                 "sample: needs sample_time > 0."}},
+                 "sum((rate/near.rate)^2) <= 1 for the deviations from the target."}},
     {0, {.path = "controller.near", .type = FIELD_MAP, .use = USE_FAR, BY_HAND,
          .text = "the ellipsoid inside which state-feedback acts"}},
     {0, {.path = "controller.near.angle", .type = FIELD_NUMBER, .use = USE_FAR, .required = true,
@@ -243,16 +248,17 @@ const struct row schema_rows[] = {
          .more = "Torques are held in between; 0: it acts continuously, inside the step "
                  "(decoupling with implicit and midpoint: once a step)."}},
     {0, {.path = "controller.delay", .type = FIELD_INTEGER, .use = USE_CONTROL, .sweep = true,
-         VALUE(delay), .unit = "1", .fallback = 0, RANGE(0, STANCE_MAX_DELAY),
+         VALUE(delay), .unit = "1", .fallback = 0, RANGE(0, STANCE_MAX_DELAY), .quiet = true,
+         .samples = "it counts samples",
          .text = "whole samples between measuring and acting",
          .more = "1: the torques of a sample act from the next one on, until then those that "
                  "state-feedback has at its target (none with hold and decoupling). Gains do not "
-                 "take it into account. Needs sample_time > 0."}},
+                 "take it into account."}},
     {0, {.path = "controller.lag", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
-         VALUE(lag), .unit = "s", .fallback = 0, RANGE(0, LARGE),
+         VALUE(lag), .unit = "s", .fallback = 0, RANGE(0, LARGE), .quiet = true, .samples = ACTS,
          .text = "time constant of the actuators",
          .more = "A torque approaches what is commanded as exp(-t/lag), from what state-feedback "
-                 "has at its target. Gains do not take it into account. Needs sample_time > 0."}},
+                 "has at its target. Gains do not take it into account."}},
     {0, {.path = "controller.torque_limit", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(torque_limit), .unit = "N m", .fallback = INFINITY, .fallback_text = "none",
          ABOVE(0, LARGE), WORDS(schema_none), .text = "largest torque of each actuator",
@@ -267,25 +273,25 @@ const struct row schema_rows[] = {
     {FAMILY_ACTUATORS, {.path = "controller.torque_limits[]", .type = FIELD_NUMBER,
          .by_scene = true, .use = USE_CONTROL, .sweep = true, VALUE(torque_limits),
          .unit = "N m", .fallback = INFINITY, .fallback_text = "none", ABOVE(0, LARGE),
-         WORDS(schema_none), .text = "largest torque of an actuator"}},
+         .quiet = true, WORDS(schema_none), .text = "largest torque of an actuator"}},
     {0, {.path = "controller.torque_rate", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
          VALUE(torque_rate), .unit = "N m/s", .fallback = INFINITY, .fallback_text = "none",
-         ABOVE(0, LARGE), WORDS(schema_none), .text = "how fast a torque changes at most",
-         .more = "Of a slide N/s. With a lag, too, torques come up no faster than this. Needs "
-                 "sample_time > 0."}},
+         ABOVE(0, LARGE), WORDS(schema_none), .quiet = true, .samples = ACTS,
+         .text = "how fast a torque changes at most",
+         .more = "Of a slide N/s. With a lag, too, torques come up no faster than this."}},
     {0, {.path = "controller.noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
-         VALUE(noise), .unit = "N m", .fallback = 0, RANGE(0, LARGE),
+         VALUE(noise), .unit = "N m", .fallback = 0, RANGE(0, LARGE), .samples = NEW,
          .text = "half-width of uniform noise on the torques",
-         .more = "Of a slide in N. White, new at each sample, added before the limit; needs "
-                 "sample_time > 0."}},
+         .more = "Of a slide in N. White, added before the limit."}},
     {0, {.path = "controller.angle_noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
-         VALUE(angle_noise), .unit = "rad", .fallback = 0, RANGE(0, LARGE),
+         VALUE(angle_noise), .unit = "rad", .fallback = 0, RANGE(0, LARGE), .quiet = true,
+         .samples = NEW,
          .text = "half-width of noise on measured angles",
-         .more = "Uniform, on each angle of the posture that the controller sees (of a slide in m), "
-                 "new at each sample. A decoupling law knows all the same which feet touch the "
-                 "ground. Needs sample_time > 0."}},
+         .more = "Uniform, on each angle of the posture that the controller sees (of a slide in "
+                 "m). A decoupling law knows all the same which feet touch the ground."}},
     {0, {.path = "controller.rate_noise", .type = FIELD_NUMBER, .use = USE_CONTROL, .sweep = true,
-         VALUE(rate_noise), .unit = "rad/s", .fallback = 0, RANGE(0, LARGE),
+         VALUE(rate_noise), .unit = "rad/s", .fallback = 0, RANGE(0, LARGE), .quiet = true,
+         .samples = NEW,
          .text = "half-width of noise on measured rates",
          .more = "As controller.angle_noise; of a slide in m/s."}},
 
@@ -366,13 +372,12 @@ const struct row schema_rows[] = {
          RANGE(1, 1 << DOE_MAX_BITS),
          .text = "number of points; of blocks with saltelli, of trajectories with morris"}},
     {0, {.path = "sweep.sample.second_order", .type = FIELD_WORD, BY_HAND, .fallback = 0,
-         WORDS(truth_words),
+         .use = USE_SALTELLI, WORDS(truth_words),
          .text = "whether saltelli's blocks have what second-order indices need",
-         .more = "2 factors + 2 points in each. Only with method saltelli."}},
+         .more = "2 factors + 2 points in each."}},
     {0, {.path = "sweep.sample.levels", .type = FIELD_INTEGER, BY_HAND, .fallback = 4,
-         RANGE(2, 1000), .text = "levels of each factor, an even number",
-         .more = "A step of a trajectory is levels / (2 (levels - 1)) of the range. Only with "
-                 "method morris."}},
+         .use = USE_MORRIS, RANGE(2, 1000), .text = "levels of each factor, an even number",
+         .more = "A step of a trajectory is levels / (2 (levels - 1)) of the range."}},
     {0, {.path = "sweep.sample.vary", .type = FIELD_FACTORS, BY_HAND,
          .text = "the factors: what varies, and within which bounds",
          .more = "A factor is {path, from, to, spacing}, {path, values: [...]}, or of several "
@@ -391,7 +396,7 @@ const struct row schema_rows[] = {
          WORDS(spacing_words), .text = "uniform in the value or in its logarithm"}},
     {0, {.path = "sweep.sample.vary[].values", .type = FIELD_VALUES, BY_HAND,
          .text = "equally likely values: numbers or words, with paths a list for each"}},
-    {0, {.path = "sweep.refine", .type = FIELD_MAP, BY_HAND,
+    {0, {.path = "sweep.refine", .type = FIELD_MAP, .use = USE_UNSOUGHT, BY_HAND,
          .text = "map the outcomes adaptively: simulate a coarse lattice, then only where they "
                  "differ",
          .more = "Along axes of numbers with more than start points; others are taken in full, "
@@ -440,10 +445,10 @@ const struct row schema_rows[] = {
                  "grid) are stabilised. An answer: its mean over all starts, 0 for those that are "
                  "not stabilised; a start counts at most 50000 either way."}},
     {0, {.path = "optimise.weight", .type = FIELD_WORD, BY_HAND, .fallback = 0, WORDS(weight_words),
-         .text = "what a start counts",
+         .use = USE_SHARES, .text = "what a start counts",
          .more = "even: all the same. normal: as a normal density about the middle of the ranges "
                  "whose standard deviation is a quarter of each range."}},
-    {0, {.path = "optimise.price", .type = FIELD_MAP, BY_HAND,
+    {0, {.path = "optimise.price", .type = FIELD_MAP, .use = USE_SHARES, BY_HAND,
          .text = "what a stabilised start costs, taken from what it is worth (1 with share)"}},
     {0, {.path = "optimise.price.peak_torque", .type = FIELD_NUMBER, BY_HAND, .unit = "1/(N m)",
          .fallback = 0, RANGE(0, LARGE), .text = "price of the largest torque"}},
@@ -456,6 +461,7 @@ const struct row schema_rows[] = {
          .text = "price of the gains' root mean square, in their units",
          .more = "The unit of a gain is the torque limit over the half-width of the starts."}},
     {0, {.path = "optimise.over", .type = FIELD_WORD, BY_HAND, .fallback = 0, WORDS(over_words),
+         .use = USE_SHARES,
          .text = "which of the circumstances of sweep.grid counts, or all alike"}},
     {0, {.path = "optimise.require", .type = FIELD_MAP, BY_HAND,
          .text = "what a candidate must have to be simulated",
@@ -489,9 +495,9 @@ const struct row schema_rows[] = {
     {0, {.path = "record", .type = FIELD_MAP, BY_HAND,
          .text = "what is stored besides the parameters"}},
     {0, {.path = "record.every", .type = FIELD_NUMBER, BY_HAND, .unit = "s", .fallback = 0.01,
-         ABOVE(0, LARGE), .text = "time between rows of a trajectory"}},
+         .use = USE_UNSOUGHT, ABOVE(0, LARGE), .text = "time between rows of a trajectory"}},
     {0, {.path = "record.cases", .type = FIELD_CASES, BY_HAND, .fallback = 0, WORDS(record_words),
-         .text = "cases whose trajectories are stored",
+         .use = USE_UNSOUGHT, .text = "cases whose trajectories are stored",
          .more = "A list counts them from 0, the last axis fastest."}},
     {0, {.path = "record.answers", .type = FIELD_WORDS, BY_HAND, WORDS(answer_words),
          .fallback_text = "all", .text = "answers that are stored"}},

@@ -222,8 +222,7 @@ static bool read_vary(struct reader *r)
     bool good = true;
 
     if (!vary)
-        return problem_add(&r->problems, reader_seen(r, "optimise")->key,
-                           "optimise.vary is missing");
+        return reader_refuse(r, "optimise.vary", " is missing");
     if (list && !field_list(&r->problems, "optimise.vary", "words and mappings", vary))
         return false;
     for (size_t i = 0; i < (list ? vary->count : 1); i++) {
@@ -274,61 +273,48 @@ static bool read_grow(struct reader *r)
     return good;
 }
 
-static void read_prices(struct reader *r)
+static void read_prices(struct reader *r, bool *good)
 {
     for (int i = 0; i < STANCE_ANSWER_COUNT; i++) {
         char path[96];
         snprintf(path, sizeof path, "optimise.price.%s", stance_answers[i].name);
         if (schema_find(r->schema, path))
-            reader_value(r, path, &r->s->search.price[i]);
+            r->s->search.price[i] = reader_number(r, path, good);
     }
-    reader_value(r, "optimise.price.gain", &r->s->search.gain_price);
+    r->s->search.gain_price = reader_number(r, "optimise.price.gain", good);
 }
 
 void search_read(struct reader *r)
 {
     struct scenario_search *const search = &r->s->search;
     const struct seen *const seen = reader_seen(r, "optimise");
-    double aim = 0, weight = 0, over = 0, candidates = 0, confirm = NAN, restarts = 0;
 
     if (!seen->node || seen->bad || !r->s->scene)
         return;
     search->given = true;
     bool good = read_vary(r);
-    good = reader_value(r, "optimise.maximise", &aim) && good;
-    good = reader_value(r, "optimise.weight", &weight) && good;
-    good = reader_value(r, "optimise.over", &over) && good;
-    good = reader_value(r, "optimise.require.critical_sample_time", &search->critical) && good;
-    good = reader_value(r, "optimise.candidates", &candidates) && good;
-    good = reader_value(r, "optimise.confirm", &confirm) && good;
-    good = reader_value(r, "optimise.restarts", &restarts) && good;
-    good = reader_value(r, "optimise.first_step", &search->step) && good;
-    read_prices(r);
+    const double aim = reader_number(r, "optimise.maximise", &good),
+                 confirm = reader_number(r, "optimise.confirm", &good);
+    search->normal = reader_number(r, "optimise.weight", &good) != 0;
+    search->worst = reader_number(r, "optimise.over", &good) == 0;
+    search->critical = reader_number(r, "optimise.require.critical_sample_time", &good);
+    search->candidates = (uint64_t)reader_number(r, "optimise.candidates", &good);
+    search->restarts = (int)reader_number(r, "optimise.restarts", &good);
+    search->step = reader_number(r, "optimise.first_step", &good);
+    read_prices(r, &good);
     if (!r->s->sample.given || r->axes_bad) {
         if (!r->axes_bad)
-            problem_add(&r->problems, seen->key,
-                        "optimise needs sweep.sample: starts that all candidates get");
+            reader_refuse(r, "optimise", " needs sweep.sample: starts that all candidates get");
         return;
     }
-    good = read_grow(r) && good;
-    if (!good)
+    if (!read_grow(r) || !good)
         return;
     search->aim = aim < AIM_ANSWER ? (enum scenario_aim)aim : AIM_ANSWER;
     search->answer = (int)aim - AIM_ANSWER;
-    search->normal = weight != 0;
-    search->worst = over == 0;
-    search->candidates = (uint64_t)candidates;
     search->confirm = isnan(confirm) ? 8 * search->grow[search->stages - 1] : (uint64_t)confirm;
-    search->restarts = (int)restarts;
 }
 
 /* ---- what that asks of the rest ------------------------------------------------------------- */
-
-static struct mark key_or(struct reader *r, const char *path)
-{
-    const struct seen *const seen = reader_seen(r, path);
-    return seen->node ? seen->key : reader_seen(r, "optimise")->key;
-}
 
 /* The starts: drawn so that more of them can be had, each by itself. */
 static void check_starts(struct reader *r)
@@ -340,13 +326,13 @@ static void check_starts(struct reader *r)
     for (int k = 0; k < sample->paths; k++)
         starts = starts || scenario_is_start(sample->path[k]);
     if (!starts)
-        problem_add(&r->problems, reader_seen(r, "sweep.sample")->key,
-                    "sweep.sample: optimise needs starts in it: initial.offset or initial.state");
+        reader_refuse(r, "sweep.sample",
+                      ": optimise needs starts in it: initial.offset or initial.state");
     if (method != DOE_RANDOM && method != DOE_SOBOL && method != DOE_SPHERE)
-        problem_add(&r->problems, key_or(r, "sweep.sample.method"),
-                    "sweep.sample.method %s has no meaning with optimise, whose starts grow in "
-                    "number: sobol, random or sphere",
-                    doe_words[method]);
+        reader_refuse(r, "sweep.sample.method",
+                      " %s has no meaning with optimise, whose starts grow in "
+                      "number: sobol, random or sphere",
+                      doe_words[method]);
     if (s->search.aim == AIM_NEAREST) {
         int k;
         const struct scenario_axis *const scale =
@@ -356,21 +342,13 @@ static void check_starts(struct reader *r)
             rises = scenario_axis_value(scale, i, k) >
                     (i > 0 ? scenario_axis_value(scale, i - 1, k) : 0);
         if (method != DOE_SPHERE || !rises || scale->paths != 1 || scale->sample)
-            problem_add(&r->problems, key_or(r, "optimise.maximise"),
-                        "optimise.maximise nearest needs sweep.sample.method sphere and "
-                        "initial.offset.scale, rising from above 0, alone on an axis of "
-                        "sweep.grid");
-        static const char *const worth[] = {"optimise.weight", "optimise.price", "optimise.over"};
-        for (size_t i = 0; i < sizeof worth / sizeof *worth; i++)
-            if (reader_seen(r, worth[i])->node)
-                problem_add(&r->problems, reader_seen(r, worth[i])->key,
-                            "%s has no meaning with optimise.maximise nearest, of which the "
-                            "nearest fall of all counts",
-                            worth[i]);
+            reader_refuse(r, "optimise.maximise",
+                          " nearest needs sweep.sample.method sphere and "
+                          "initial.offset.scale, rising from above 0, alone on an axis of "
+                          "sweep.grid");
     }
     if (8 * s->search.grow[s->search.stages - 1] > UINT64_C(1) << 26)
-        problem_add(&r->problems, key_or(r, "optimise.grow"),
-                    "optimise.grow: more starts than can be kept");
+        reader_refuse(r, "optimise.grow", ": more starts than can be kept");
 }
 
 static void check_circumstances(struct reader *r)
@@ -391,48 +369,43 @@ static void check_circumstances(struct reader *r)
         problem_add(&r->problems, (struct mark){0, methods->line, methods->column},
                     "%s: optimise needs one method for all candidates", methods->path[k]);
     if (circumstances > MOST_CIRCUMSTANCES && s->search.aim != AIM_NEAREST)
-        problem_add(&r->problems, reader_seen(r, "sweep.grid")->key,
-                    "sweep.grid: %zu circumstances are more than the %d that optimise compares",
-                    circumstances, MOST_CIRCUMSTANCES);
+        reader_refuse(r, "sweep.grid",
+                      ": %zu circumstances are more than the %d that optimise compares",
+                      circumstances, MOST_CIRCUMSTANCES);
     if (circumstances == 1 && reader_seen(r, "optimise.over")->node)
-        problem_add(&r->problems, key_or(r, "optimise.over"),
-                    "optimise.over needs circumstances, sweep.grid with more than one point");
+        reader_refuse(r, "optimise.over",
+                      " needs circumstances, sweep.grid with more than one point");
 }
 
 /* What the first candidate is must be known, and lie within the bounds. */
 static void check_first(struct reader *r)
 {
-    const struct scenario *const s = r->s;
-    for (int k = 0; k < s->search.axis.paths; k++) {
-        const struct scenario_varied *const v = &s->search.varied[k];
-        double value;
-        memcpy(&value, (const char *)&s->base + s->search.axis.offset[k], sizeof value);
-        if (scenario_is_start(s->search.axis.path[k]))
-            problem_add(&r->problems, r->sought[k].mark,
-                        "optimise.vary: %s is a start, the same for all candidates: starts are "
-                        "those of sweep.sample",
-                        s->search.axis.path[k]);
-        else if (s->search.axis.offset[k] == offsetof(struct scenario_values, sample_time) &&
+    const struct scenario_search *const search = &r->s->search;
+    for (int k = 0; k < search->axis.paths; k++) {
+        const struct scenario_varied *const v = &search->varied[k];
+        char wrong[160] = "";
+        double is;
+        memcpy(&is, (const char *)&r->s->base + search->axis.offset[k], sizeof is);
+        if (scenario_is_start(search->axis.path[k]))
+            snprintf(wrong, sizeof wrong,
+                     "is a start, the same for all candidates: starts are those of sweep.sample");
+        else if (search->axis.offset[k] == offsetof(struct scenario_values, sample_time) &&
                  !(v->low > 0))
-            problem_add(&r->problems, r->sought[k].mark,
-                        "optimise.vary: %s needs a range from above 0: the shorter it is, the "
-                        "longer a candidate takes",
-                        s->search.axis.path[k]);
-        else if (!isfinite(value))
-            problem_add(&r->problems, r->sought[k].mark,
-                        "optimise.vary: %s has no value to begin with: give it one",
-                        s->search.axis.path[k]);
-        else if (value < v->low || value > v->high)
-            problem_add(&r->problems, r->sought[k].mark,
-                        "optimise.vary: %s is %g in the first candidate, out of its range "
-                        "%g ... %g",
-                        s->search.axis.path[k], value, v->low, v->high);
-        else if ((v->scale == SCALE_RATIO && value <= 0) ||
-                 (v->scale == SCALE_NEGATIVE_RATIO && value >= 0))
-            problem_add(&r->problems, r->sought[k].mark,
-                        "optimise.vary: %s is %g in the first candidate, of which there are no "
-                        "ratios",
-                        s->search.axis.path[k], value);
+            snprintf(wrong, sizeof wrong,
+                     "needs a range from above 0: the shorter it is, the longer a candidate takes");
+        else if (!isfinite(is))
+            snprintf(wrong, sizeof wrong, "has no value to begin with: give it one");
+        else if (is < v->low || is > v->high)
+            snprintf(wrong, sizeof wrong,
+                     "is %g in the first candidate, out of its range %g ... %g", is, v->low,
+                     v->high);
+        else if ((v->scale == SCALE_RATIO && is <= 0) ||
+                 (v->scale == SCALE_NEGATIVE_RATIO && is >= 0))
+            snprintf(wrong, sizeof wrong,
+                     "is %g in the first candidate, of which there are no ratios", is);
+        if (wrong[0])
+            problem_add(&r->problems, r->sought[k].mark, "optimise.vary: %s %s",
+                        search->axis.path[k], wrong);
     }
 }
 
@@ -453,22 +426,21 @@ static void check_gains(struct reader *r)
     if (!varies_gains(s))
         return;
     if (!scenario_law(&s->base)->designed) {
-        problem_add(&r->problems, key_or(r, "optimise.vary"),
-                    "optimise.vary: gains are those of a law that is designed (here: %s)",
-                    scenario_law(&s->base)->name);
+        reader_refuse(r, "optimise.vary", ": gains are those of a law that is designed (here: %s)",
+                      scenario_law(&s->base)->name);
         return;
     }
     if (scenario_far(&s->base) != stance_laws()[0] && s->search.designed_gains)
-        problem_add(&r->problems, key_or(r, "controller.far"),
-                    "controller.far has no meaning with optimise.vary gains: what acts far away "
-                    "would stay as it is");
+        reader_refuse(r, "controller.far",
+                      " has no meaning with optimise.vary gains: what acts far away "
+                      "would stay as it is");
     stance_torque_limits(s->scene, s->base.robot, s->base.torque_limit, s->base.torque_limits,
                          limit);
     for (int i = 0; i < s->scene->actuators; i++)
         if (!isfinite(limit[i])) {
-            problem_add(&r->problems, key_or(r, "optimise.vary"),
-                        "optimise.vary: gains have no unit without controller.torque_limit: give "
-                        "one, or each gain by {path, from, to}");
+            reader_refuse(r, "optimise.vary",
+                          ": gains have no unit without controller.torque_limit: give "
+                          "one, or each gain by {path, from, to}");
             return;
         }
 }
@@ -477,23 +449,18 @@ void search_check(struct reader *r)
 {
     const struct scenario *const s = r->s;
     const struct scenario_search *const search = &s->search;
-    static const char *const alone[] = {"sweep.refine", "record.cases", "record.every"};
 
     if (!search->given || r->axes_bad || search->stages == 0 || r->problems.count > 0)
         return;
-    for (size_t k = 0; k < sizeof alone / sizeof *alone; k++)
-        if (reader_seen(r, alone[k])->node)
-            problem_add(&r->problems, reader_seen(r, alone[k])->key,
-                        "%s has no meaning with optimise", alone[k]);
     if (!s->base.settle)
-        problem_add(&r->problems, key_or(r, "stop.settle"),
-                    "stop.settle off has no meaning with optimise: stabilised starts are to end");
+        reader_refuse(r, "stop.settle",
+                      " off has no meaning with optimise: stabilised starts are to end");
     if (search->aim == AIM_ANSWER && stance_answers[search->answer].type == STANCE_UINT8)
-        problem_add(&r->problems, key_or(r, "optimise.maximise"),
-                    "optimise.maximise: %s is no number", stance_answers[search->answer].name);
+        reader_refuse(r, "optimise.maximise", ": %s is no number",
+                      stance_answers[search->answer].name);
     if (search->critical > 0 && s->base.sample_time == 0)
-        problem_add(&r->problems, key_or(r, "optimise.require.critical_sample_time"),
-                    "optimise.require.critical_sample_time needs controller.sample_time above 0");
+        reader_refuse(r, "optimise.require.critical_sample_time",
+                      " needs controller.sample_time above 0");
     check_starts(r);
     check_circumstances(r);
     check_first(r);

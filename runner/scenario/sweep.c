@@ -429,48 +429,46 @@ static void check_refined_record(struct reader *r)
     const uint64_t needed = 1u << STANCE_ANSWER_outcome | 1u << STANCE_ANSWER_evidence;
 
     if (s->record_cases == RECORD_ALL) {
-        problem_add(&r->problems, reader_seen(r, "record.cases")->key,
-                    "record.cases all has no meaning with sweep.refine: list those to be recorded");
+        reader_refuse(r, "record.cases",
+                      " all has no meaning with sweep.refine: list those to be recorded");
     }
-    if ((s->answers & needed) != needed) {
-        problem_add(&r->problems, reader_seen(r, "record.answers")->key,
-                    "record.answers: sweep.refine needs outcome and evidence among them");
-    }
+    if ((s->answers & needed) != needed)
+        reader_refuse(r, "record.answers", ": sweep.refine needs outcome and evidence among them");
 }
 
 void sweep_read_refine(struct reader *r)
 {
     struct scenario *s = r->s;
     const struct seen *seen = reader_seen(r, "sweep.refine");
-    double start, margin, probes;
-    bool any = false;
+    bool any = false, good = true;
 
     if (!seen->node || seen->bad)
         return;
-    bool good = reader_value(r, "sweep.refine.start", &start);
-    good = reader_value(r, "sweep.refine.margin", &margin) && good;
-    good = reader_value(r, "sweep.refine.probes", &probes) && good;
+    const struct scenario_refine refine = {
+        .given = true,
+        .start = (size_t)reader_number(r, "sweep.refine.start", &good),
+        .margin = (size_t)reader_number(r, "sweep.refine.margin", &good),
+        .probes = reader_number(r, "sweep.refine.probes", &good),
+    };
     if (!reader_seen(r, "sweep.grid")->node) {
-        problem_add(&r->problems, seen->key, "sweep.refine needs sweep.grid: axes to refine");
+        reader_refuse(r, "sweep.refine", " needs sweep.grid: axes to refine");
         return;
     }
     if (!good || r->axes_bad)
         return;
-    s->refine = (struct scenario_refine){true, (size_t)start, (size_t)margin, probes};
+    s->refine = refine;
     for (int a = 0; a < s->axes; a++) {
         struct scenario_axis *axis = &s->axis[a];
         axis->refined = !axis->words && !axis->sample && axis->count > s->refine.start;
         any = any || axis->refined;
     }
-    if (!any) {
-        problem_add(&r->problems, seen->key,
-                    "sweep.refine: no axis of numbers has more points than start, %zu",
-                    s->refine.start);
-    } else if ((double)s->cases > SCENARIO_MOST_REFINED) {
-        problem_add(&r->problems, seen->key,
-                    "sweep.refine: %llu cases are more than the %.0f that it can keep in memory",
-                    (unsigned long long)s->cases, SCENARIO_MOST_REFINED);
-    }
+    if (!any)
+        reader_refuse(r, "sweep.refine", ": no axis of numbers has more points than start, %zu",
+                      s->refine.start);
+    else if ((double)s->cases > SCENARIO_MOST_REFINED)
+        reader_refuse(r, "sweep.refine",
+                      ": %llu cases are more than the %.0f that it can keep in memory",
+                      (unsigned long long)s->cases, SCENARIO_MOST_REFINED);
     check_refined_record(r);
 }
 
