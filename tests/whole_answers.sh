@@ -149,6 +149,16 @@ says "... says so, too" "0.1 ... 0.8, 4 values, not sorted"
 expect "one that falls" 0 "$stance" check ball.yaml --set 'sweep.grid=[{path: ground.restitution, values: [0.8, 0.5, 0.1]}]'
 says "... is sorted" "3  0.8 ... 0.1 *$"
 
+# ---- what is fixed -----------------------------------------------------------------------------
+expect "a law of two laws, designed for another robot" 0 "$stance" run "$shipped/controllers/switching.yaml" --only 0 --quiet \
+    -o fixed.h5 --set controller.model.hip_mass=6 --set 'controller.torque_limits=[5, none]'
+expect "its summary" 0 "$stance" summary fixed.h5
+says "... tells the model" "model.hip_mass 6 kg"
+says "... the angles to be held" "target.q1 0.570127 rad, target.q2 0.82 rad"
+says "... a limit of its own" "torque_limits\[0\] 5 N m"
+! grep -q 'torque_limits\[1\]\|slope\|branch\|proportional\|delay' log
+result $? "... and nothing that is not used, or as it is anyway"
+
 # ---- at least ----------------------------------------------------------------------------------
 sed '/refine/d; s/values: \[-0.41, 1.4\]/values: [-0.41, -0.3]/' map.yaml >full.yaml
 expect "a full map" 0 "$stance" run full.yaml -o full.h5 --quiet

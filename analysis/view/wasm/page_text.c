@@ -83,75 +83,17 @@ static void add_words(struct text *text, const char *const *word, size_t words)
 
 /* ---- fields that may be changed ----------------------------------------------------------- */
 
-/* Slope and gravity are others for described robots alone. */
-static bool is_world(const struct scenario_field *field)
-{
-    const size_t at[] = {offsetof(struct scenario_values, robot[STANCE_ROBOT_SLOPE]),
-                         offsetof(struct scenario_values, model[STANCE_ROBOT_SLOPE]),
-                         offsetof(struct scenario_values, robot[STANCE_ROBOT_GRAVITY]),
-                         offsetof(struct scenario_values, model[STANCE_ROBOT_GRAVITY])};
-    bool found = false;
-    for (size_t k = 0; k < sizeof at / sizeof *at; k++)
-        found |= field->offset == at[k];
-    return found;
-}
-
-/* Whether a field means something for the view as it is. */
-static bool applies(const struct scenario_field *field)
-{
-    const struct scenario_values *const is = &page.view.base;
-    const stance_law *const law = scenario_law(is), *const own = stance_laws()[field->law];
-    if (is_world(field) && !page.view.scene->mechanism)
-        return false;
-    const bool places = is->design == DESIGN_PLACE || is->design == DESIGN_PLACE_SCHUR;
-    switch (field->use) {
-    case USE_CONTROL:
-        return law->set || law->designed;
-    case USE_LAW:
-        return law == own || scenario_far(is) == own;
-    case USE_FAR:
-        return scenario_far(is)->set != NULL;
-    case USE_FEEDBACK:
-        return law->designed;
-    case USE_PLACE:
-        return law->designed && places;
-    case USE_LQR:
-        return law->designed && is->design == DESIGN_LQR;
-    case USE_MODEL:
-        return law->designed && is->design != DESIGN_GAINS;
-    case USE_GAINS:
-        return law->designed && is->design == DESIGN_GAINS;
-    case USE_EQUILIBRIUM:
-        return !is->state_given;
-    case USE_STATE:
-        return is->state_given;
-    case USE_SETTLE:
-        return is->settle;
-    default:
-        return true;
-    }
-}
-
 /* The value of item i of a field. */
 static void add_value(struct text *text, const struct scenario_field *field,
                       const struct scenario_values *values, size_t i)
 {
-    const char *const place = (const char *)values + field->offset;
-    if (field->type == FIELD_NUMBER) {
-        double number;
-        memcpy(&number, place + i * sizeof number, sizeof number);
-        if (isinf(number) && field->words)
-            text_string(text, field->words[0]);
-        else
-            text_number(text, number);
-        return;
-    }
-    int number;
-    memcpy(&number, place, sizeof number);
-    if (field->type == FIELD_WORD && number >= 0 && (size_t)number < field->word_count)
-        text_string(text, field->words[number]);
+    const double number = schema_number(field, values, i);
+    if (field->type == FIELD_NUMBER && isinf(number) && field->words)
+        text_string(text, field->words[0]);
+    else if (field->type == FIELD_WORD && number >= 0 && number < (double)field->word_count)
+        text_string(text, field->words[(size_t)number]);
     else
-        text_add(text, "%d", number);
+        text_number(text, number);
 }
 
 /* Calls `tell` with each item of each field that may be changed: with its path. */
@@ -162,23 +104,13 @@ static void each_field(struct text *text, const struct scenario_values *values,
     for (size_t k = 0; k < page.schema.count; k++) {
         const struct scenario_field *const field = &page.schema.field[k];
         const bool number = field->type == FIELD_NUMBER || field->type == FIELD_INTEGER;
-        if (!field->sweep || field->offset == NO_OFFSET || !applies(field) ||
+        if (!field->sweep || field->offset == NO_OFFSET ||
+            !schema_applies(&page.schema, field, &page.view.base) ||
             (!number && field->type != FIELD_WORD))
             continue;
-        const char *const bracket = strstr(field->path, "[]");
-        const size_t columns = field->columns ? field->columns : 1,
-                     items = (field->items ? field->items : 1) * columns;
-        for (size_t i = 0; i < (bracket ? items : 1); i++) {
-            char path[160];
-            const int length = bracket ? (int)(bracket - field->path) : (int)strlen(field->path);
-            if (!bracket)
-                snprintf(path, sizeof path, "%s", field->path);
-            else if (field->columns)
-                snprintf(path, sizeof path, "%.*s[%zu][%zu]", length, field->path, i / columns,
-                         i % columns);
-            else
-                snprintf(path, sizeof path, "%.*s[%zu]%s", length, field->path, i, bracket + 2);
-            tell(text, field, values, path, i);
+        for (size_t i = 0; i < (strchr(field->path, '[') ? schema_items(field) : 1); i++) {
+            char path[128];
+            tell(text, field, values, schema_item_path(field, i, path), i);
         }
     }
 }
