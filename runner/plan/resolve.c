@@ -570,28 +570,14 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
 {
     message->text[0] = '\0';
     *out = (stance_case){
-        .friction = values->friction,
-        .restitution = values->restitution,
-        .impacts = (stance_impacts)values->impacts,
-        .most_energy = values->prefer != 0,
-        .lands_ahead = values->lands != 0,
-        .contacts = (uint32_t)values->contacts,
-        .torque_limit = values->torque_limit,
-        .angle_noise = values->angle_noise,
-        .rate_noise = values->rate_noise,
-        .noise = values->noise,
-        .delay = values->law == 0 ? 0 : values->delay,
-        .lag = values->law == 0 ? 0 : values->lag,
-        .torque_rate = values->law == 0 || isinf(values->torque_rate) ? 0 : values->torque_rate,
-        .settle = values->settle != 0,
-        .settle_angle = values->settle_angle,
-        .settle_rate = values->settle_rate,
-        .settle_hold = values->settle_hold,
+        .torque_rate = isinf(values->torque_rate) ? 0 : values->torque_rate,
         .settle_place = isinf(values->settle_place) ? 0 : values->settle_place,
-        .fall_height = values->fall_height,
         .seed = seed,
         .grid_index = index,
     };
+#define TAKE(name) out->name = values->name;
+    SCENARIO_WHOLES(TAKE)
+    SCENARIO_NUMBERS(TAKE)
     memcpy(out->robot, values->robot, sizeof out->robot);
     for (int i = 0; i < scene->actuators; i++)
         out->torque_limits[i] = isinf(values->torque_limits[i]) ? 0 : values->torque_limits[i];

@@ -42,15 +42,23 @@ struct scenario_equilibrium {
     int branch;                         /* of several, from 0; the biped's: upper, lower */
 };
 
+/* What a case (stance_case) has by the same name and takes as it is; words by their place in the
+ * schema, contacts as bits. */
+/* clang-format off */
+#define SCENARIO_WHOLES(X) X(impacts) X(most_energy) X(lands_ahead) X(contacts) X(delay) X(settle)
+#define SCENARIO_NUMBERS(X) \
+    X(friction) X(restitution) X(torque_limit) X(lag) X(angle_noise) X(rate_noise) X(noise) \
+    X(settle_angle) X(settle_rate) X(settle_hold) X(fall_height)
+/* clang-format on */
+
 /* Everything that one case needs, as numbers: a sweep changes fields of this struct only, found
  * by their offset. Enumerations and indices are ints, all else double. */
 struct scenario_values {
     double robot[STANCE_MAX_ROBOT];
-    double friction, restitution;
-    int impacts;  /* stance_impacts */
-    int prefer;   /* of several motions: 0 least energy, 1 most */
-    int lands;    /* of feet in the air: 0 anywhere, 1 ahead of those on the ground */
-    int contacts; /* bit mask */
+#define SCENARIO_WHOLE(name) int name;
+    SCENARIO_WHOLES(SCENARIO_WHOLE)
+#define SCENARIO_NUMBER(name) double name;
+    SCENARIO_NUMBERS(SCENARIO_NUMBER)
 
     struct scenario_equilibrium equilibrium; /* initial.equilibrium */
     int support_foot;                        /* 1-based contact; 0: none */
@@ -75,17 +83,12 @@ struct scenario_values {
     int far;                      /* what acts far from the target, see scenario_far; 0: none */
     double near_angle, near_rate; /* semi-axes of the ellipsoid that is near */
     double sample_time;           /* 0: continuous */
-    int delay;                    /* whole samples between measuring and acting */
-    double torque_limit, torque_limits[STANCE_MAX_ACTUATORS], torque_rate; /* INFINITY: none */
-    double lag;                                                            /* of the actuators */
-    double angle_noise, rate_noise, noise;
+    double torque_limits[STANCE_MAX_ACTUATORS], torque_rate; /* INFINITY: none */
 
     int method;             /* index into stance_methods() */
     double step, tolerance; /* tolerance: NAN: the method's own */
 
-    double stop_time;
-    int settle; /* 1: judge on the way (default), 0: `off` */
-    double settle_angle, settle_rate, settle_hold, settle_place, fall_height;
+    double stop_time, settle_place;
 };
 
 struct scenario_field; /* a row of the schema, see schema.h */

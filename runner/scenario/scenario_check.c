@@ -431,7 +431,7 @@ static void check_lands(struct reader *r)
     const stance_scene *const scene = r->s->scene;
     int feet = 0;
     if (r->axes_bad || reader_seen(r, "ground.contacts")->bad ||
-        !takes_word(r, offsetof(struct scenario_values, lands), 1))
+        !takes_word(r, offsetof(struct scenario_values, lands_ahead), 1))
         return;
     for (int c = 0; c < scene->contacts; c++)
         feet += (!scene->grip || scene->grip[c] == c) && (r->s->base.contacts >> c & 1);

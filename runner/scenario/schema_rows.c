@@ -82,15 +82,15 @@ const struct row schema_rows[] = {
                  "adds. limited: the same with the largest e that adds none, where e would "
                  "(limited_impacts counts them). moreau: of tangential velocities the same as of "
                  "normal ones, by which nothing is added."}},
-    {0, {.path = "ground.lands", .type = FIELD_WORD, .sweep = true, VALUE(lands), .fallback = 0,
-         WORDS(lands_words), .quiet = true,
+    {0, {.path = "ground.lands", .type = FIELD_WORD, .sweep = true, VALUE(lands_ahead),
+         .fallback = 0, WORDS(lands_words), .quiet = true,
          .text = "where a foot in the air may come to the ground",
          .more = "ahead: only where it is further along the ground than all other feet on it, as "
                  "walkers without knees need, whose swinging foot would scuff; elsewhere it goes "
                  "through the ground. Decided at the end of each step. Both ends of a sole are one "
                  "foot."}},
-    {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(prefer), .fallback = 0,
-         WORDS(prefer_words), .quiet = true,
+    {0, {.path = "ground.prefer", .type = FIELD_WORD, .sweep = true, VALUE(most_energy),
+         .fallback = 0, WORDS(prefer_words), .quiet = true,
          .text = "which motion, where several obey the contact laws",
          .more = "The one that leaves the least kinetic energy, or the most; contacts that stand "
                  "go on standing while they can. Such steps are counted as ambiguous_steps. Swept "
