@@ -424,8 +424,6 @@ static json_t *map_schema(const struct schema *schema, const char *path)
     if (json_array_size(required) > 0)
         json_object_set(object, "required", required);
     json_decref(required);
-    if (strcmp(path, "sweep.sample") == 0)
-        json_object_set_new(object, "required", json_pack("[s,s,s]", "method", "count", "vary"));
     if (strcmp(path, "initial") == 0) {
         json_object_set_new(object, "not",
                             json_pack("{s:[s,s]}", "required", "equilibrium", "state"));

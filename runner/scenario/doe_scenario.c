@@ -157,25 +157,18 @@ static bool read_factor(struct axis_reader *a, struct scenario_factor *f)
 
 /* ---- the design ------------------------------------------------------------------------------ */
 
-static double read_needed(struct reader *r, const char *path, bool *good)
-{
-    if (!reader_seen(r, path)->node)
-        *good = reader_refuse(r, path, " is missing");
-    return reader_number(r, path, good);
-}
-
 static bool read_design(struct reader *r)
 {
     struct doe *design = &r->s->sample.design;
-    bool known = true, good = true;
-    const double method = read_needed(r, "sweep.sample.method", &known),
-                 count = read_needed(r, "sweep.sample.count", &good),
+    bool good = true;
+    const double method = reader_number(r, "sweep.sample.method", &good),
+                 count = reader_number(r, "sweep.sample.count", &good),
                  second = reader_number(r, "sweep.sample.second_order", &good),
                  levels = reader_number(r, "sweep.sample.levels", &good);
 
-    design->method = known ? (enum doe_method)method : DOE_METHODS;
-    if (!known || !good)
-        return false;
+    design->method = isnan(method) ? DOE_METHODS : (enum doe_method)method;
+    if (isnan(method) || isnan(count) || !good)
+        return false; /* what is missing is said later */
     design->count = (uint64_t)count;
     design->second_order = second != 0;
     design->levels = design->method == DOE_MORRIS ? (int)levels : 0;
@@ -204,9 +197,7 @@ static bool read_factors(struct reader *r, struct scenario_axis *axis)
     const struct tree_node *vary = reader_seen(r, "sweep.sample.vary")->node;
     bool good = true;
 
-    if (!vary)
-        return reader_refuse(r, "sweep.sample.vary", " is missing");
-    if (!field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary))
+    if (!vary || !field_list(&r->problems, "sweep.sample.vary", "a list of factors", vary))
         return false;
     if (vary->count > DOE_MAX_FACTORS) {
         return problem_add(&r->problems, vary->mark, "sweep.sample.vary: more than %d factors",

@@ -135,25 +135,22 @@ static bool is_misused(struct reader *r, const struct situation *is, enum field_
     return true;
 }
 
-/* Whether the mapping that a field stands in is subject to the same condition. */
-static bool parent_has_use(const struct reader *r, const struct scenario_field *field)
+/* The row of the mapping that a field stands in; NULL: of the whole file. */
+static const struct scenario_field *parent_of(const struct reader *r,
+                                              const struct scenario_field *field)
 {
     char path[sizeof field->path];
-    snprintf(path, sizeof path, "%s", field->path);
-    char *dot = strrchr(path, '.');
-    if (!dot)
-        return false;
-    *dot = '\0';
-    const struct scenario_field *parent = schema_find(r->schema, path);
-    return parent && parent->use == field->use && parent->law == field->law;
+    const char *const dot = strrchr(field->path, '.');
+    snprintf(path, sizeof path, "%.*s", dot ? (int)(dot - field->path) : 0, field->path);
+    return schema_find(r->schema, path);
 }
 
 static void check_uses(struct reader *r, const struct situation *is)
 {
     char text[USE_TEXT], name[AXIS_NAME];
     for (size_t i = 0; i < r->schema->count; i++) {
-        const struct scenario_field *field = &r->schema->field[i];
-        if (r->seen[i].node && !parent_has_use(r, field) &&
+        const struct scenario_field *field = &r->schema->field[i], *in = parent_of(r, field);
+        if (r->seen[i].node && !(in && in->use == field->use && in->law == field->law) &&
             is_misused(r, is, field->use, field->law, text))
             problem_add(&r->problems, r->seen[i].key, "%s %s", field->path, text);
     }
@@ -175,11 +172,12 @@ static void check_uses(struct reader *r, const struct situation *is)
 static void check_required(struct reader *r, const struct situation *is)
 {
     for (size_t i = 0; i < r->schema->count; i++) {
-        const struct scenario_field *field = &r->schema->field[i];
+        const struct scenario_field *field = &r->schema->field[i], *in = parent_of(r, field);
         char text[USE_TEXT];
         if (!field->required || field->type == FIELD_MAP || !is_known(r, is, field->use) ||
-            reader_given(&r->seen[i]) || is_misused(r, is, field->use, field->law, text) ||
-            !is_sound(r, field->path))
+            reader_given(&r->seen[i]) ||
+            (in && !in->required && !field->use && !reader_seen(r, in->path)->node) ||
+            is_misused(r, is, field->use, field->law, text) || !is_sound(r, field->path))
             continue;
         const char *const needs = field->use == USE_LAW ? stance_laws()[field->law]->name
                                   : field->use ? schema_uses[field->use].needs + strlen("with ")

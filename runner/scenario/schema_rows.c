@@ -361,15 +361,16 @@ const struct row schema_rows[] = {
          .text = "a designed sample of several fields, at each point of the grid",
          .more = "A further dimension, sample, after the grid's. Points follow from seed and their "
                  "number alone, whatever count is (but for lhs): stance run --extend adds some."}},
-    {0, {.path = "sweep.sample.method", .type = FIELD_WORD, BY_HAND, .fallback = NAN,
-         .words = doe_words, .word_count = DOE_METHODS, .text = "how points are chosen",
+    {0, {.path = "sweep.sample.method", .type = FIELD_WORD, .required = true, BY_HAND,
+         .fallback = NAN, .words = doe_words, .word_count = DOE_METHODS,
+         .text = "how points are chosen",
          .more = "random: independent. lhs: Latin hypercube, each of count strata of each factor "
                  "holds one point. sobol: Sobol' sequence, shifted digitally; best with a power of "
                  "two. saltelli: blocks of factors + 2 points for Sobol' indices. morris: "
                  "trajectories of factors + 1 points for elementary effects. sphere: directions, "
                  "uniform on the ellipsoid inscribed in the box of the ranges."}},
-    {0, {.path = "sweep.sample.count", .type = FIELD_INTEGER, BY_HAND, .fallback = NAN,
-         RANGE(1, 1 << DOE_MAX_BITS),
+    {0, {.path = "sweep.sample.count", .type = FIELD_INTEGER, .required = true, BY_HAND,
+         .fallback = NAN, RANGE(1, 1 << DOE_MAX_BITS),
          .text = "number of points; of blocks with saltelli, of trajectories with morris"}},
     {0, {.path = "sweep.sample.second_order", .type = FIELD_WORD, BY_HAND, .fallback = 0,
          .use = USE_SALTELLI, WORDS(truth_words),
@@ -378,7 +379,7 @@ const struct row schema_rows[] = {
     {0, {.path = "sweep.sample.levels", .type = FIELD_INTEGER, BY_HAND, .fallback = 4,
          .use = USE_MORRIS, RANGE(2, 1000), .text = "levels of each factor, an even number",
          .more = "A step of a trajectory is levels / (2 (levels - 1)) of the range."}},
-    {0, {.path = "sweep.sample.vary", .type = FIELD_FACTORS, BY_HAND,
+    {0, {.path = "sweep.sample.vary", .type = FIELD_FACTORS, .required = true, BY_HAND,
          .text = "the factors: what varies, and within which bounds",
          .more = "A factor is {path, from, to, spacing}, {path, values: [...]}, or of several "
                  "fields that move together {paths: [...], from: [...], to: [...]} or {paths: "
@@ -420,8 +421,8 @@ const struct row schema_rows[] = {
          .more = "The scenario as it is is the first candidate; the points of sweep.sample are the "
                  "starts that all candidates get, those of sweep.grid the circumstances. Other "
                  "commands pass over this section."}},
-    {0, {.path = "optimise.vary", .type = FIELD_VARIED, BY_HAND, WORDS(vary_words),
-         .text = "what differs between candidates",
+    {0, {.path = "optimise.vary", .type = FIELD_VARIED, .required = true, BY_HAND,
+         WORDS(vary_words), .text = "what differs between candidates",
          .more = "gains: all gains of state-feedback, those of the scenario's design to begin "
                  "with; of coordinates that follow from the others while the contacts hold they "
                  "stay 0. poles: all poles, real ones. weights: all weights of lqr. law: the "

@@ -221,9 +221,7 @@ static bool read_vary(struct reader *r)
     const bool list = vary && vary->kind == TREE_LIST;
     bool good = true;
 
-    if (!vary)
-        return reader_refuse(r, "optimise.vary", " is missing");
-    if (list && !field_list(&r->problems, "optimise.vary", "words and mappings", vary))
+    if (!vary || (list && !field_list(&r->problems, "optimise.vary", "words and mappings", vary)))
         return false;
     for (size_t i = 0; i < (list ? vary->count : 1); i++) {
         struct axis_reader a = {.r = r,
