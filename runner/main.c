@@ -34,7 +34,8 @@ static void print_usage(FILE *out)
         fprintf(out, "  %-12s %s\n", commands[i]->name, commands[i]->summary);
     fputs(
         "\nstance COMMAND -h, or stance help COMMAND, explains a command; stance --version says "
-        "what was built.\n"
+        "what was built;\nstance help --options lists all options, a line of fields between tabs "
+        "each.\n"
         "Exit codes: 0 done, 1 some cases failed numerically (compare: files differ),\n"
         "2 bad use or bad scenario, 3 input or output failed, 4 interrupted and resumable.\n"
         "The environment variable STANCE_ISA, if set, names the instruction set to compute with;\n"
@@ -109,6 +110,11 @@ int main(int argc, char **argv)
     const bool helps = strcmp(argv[1], "help") == 0;
     if (strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "--help") == 0 || (helps && argc == 2)) {
         print_usage(stdout);
+        return checked_output(EXIT_DONE);
+    }
+    if (helps && strcmp(argv[2], "--options") == 0) { /* of runner/install */
+        for (size_t i = 0; i < COMMANDS; i++)
+            command_print_rows(commands[i]);
         return checked_output(EXIT_DONE);
     }
     if (helps) { /* stance help COMMAND: stance COMMAND -h */

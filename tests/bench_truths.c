@@ -474,33 +474,42 @@ static void choose_methods(const char *const *name, size_t names)
     }
 }
 
+struct request {
+    const char *given, *csv;
+    struct option_texts methods;
+    double finer;
+    bool json;
+    struct look look;
+};
+
+#define TO(member) OPTION_TO(struct request, member)
+static const struct option options[] = {
+    {"LIST", TO(given), .text = "a list"},
+    {"--json", TO(json), .text = "the same as JSON"},
+    {"--csv", "FILE", TO(csv), .text = "the same as a table"},
+    {"--finer", "N", TO(finer), .low = 0.01, .high = 1e4, .text = "smaller steps"},
+    {"--method", "NAME", TO(methods), .most = METHODS, .text = "that method"},
+    {.at = offsetof(struct request, look), .rows = look_options},
+    {0},
+};
+
 int main(int argc, char **argv)
 {
     static const struct command self = {.name = "bench_truths",
-                                        .synopsis = "bench_truths [LIST] ...",
                                         .summary = "every method held to what is known",
-                                        .help = "The head of tests/bench_truths.c explains.\n"};
-    const char *given = "scenarios/truth/truths.yaml", *csv = NULL, *finer = "1", *name[METHODS];
-    struct look_options options = {0};
-    struct look look;
+                                        .options = options,
+                                        .help = "The head of tests/bench_truths.c explains."};
+    struct request request = {.given = "scenarios/truth/truths.yaml", .finer = 1};
     struct stat status;
-    size_t operands, json = 0, names = 0, count[2];
-    bool help;
-    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
-                                        {"--csv", true, &csv, 1, &count[0]},
-                                        {"--finer", true, &finer, 1, &count[1]},
-                                        {"--method", true, name, METHODS, &names},
-                                        LOOK_SPECS(options)};
-    if (!command_options(&self, argc, argv, specs, sizeof specs / sizeof specs[0], &given, 1,
-                         &operands, &help) ||
-        !instruction_set_usable(self.name) || !look_read(&self, &options, &look))
+    look_begin(&request.look);
+    const int code = command_begin(&self, argc, argv, &request);
+    if (code != COMMAND_GOES_ON)
+        return code;
+    if (!instruction_set_usable(self.name))
         return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    trial.finer = strtod(finer, NULL);
-    if (!(trial.finer >= 0.01 && trial.finer <= 1e4))
-        die(EXIT_USAGE, NULL, "--finer takes a number from 0.01 to 10000");
-    choose_methods(name, names);
+    const char *const given = request.given;
+    trial.finer = request.finer;
+    choose_methods(request.methods.text, request.methods.count);
     const bool folder = stat(given, &status) == 0 && S_ISDIR(status.st_mode);
     snprintf(list, sizeof list, "%s%s", given, folder ? "/truths.yaml" : "");
     read_list();
@@ -509,7 +518,8 @@ int main(int argc, char **argv)
         reach(&reached[i], &truths[i / methods]);
     }
     stance_message message = {""};
-    if (!report(json, csv) || (look.directory && !json && !plot(&look, &message)))
+    if (!report(request.json, request.csv) ||
+        (request.look.directory && !request.json && !plot(&request.look, &message)))
         die(EXIT_IO, NULL, "cannot be written: %s", message.text);
     free(truths);
     free(reached);

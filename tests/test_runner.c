@@ -83,36 +83,75 @@ static int nothing(int argc, char **argv)
     return 0;
 }
 
+struct tried {
+    struct option_texts sets, files;
+    const char *output;
+    bool force, resume;
+    uint64_t cases;
+    double level;
+    int colour;
+};
+
+static const char *colour_word(size_t k)
+{
+    static const char *const words[] = {"red", "green", NULL};
+    return words[k];
+}
+
+/* Every kind of row; what is wrong with each, and with some beside others. */
 static void test_options(void **state)
 {
     (void)state;
-    const struct command command = {"try", "try", "tries", nothing, ""};
-    const char *sets[2], *output = NULL, *operand[2];
-    size_t set_count, outputs, force, operands;
-    bool help;
-    const struct option_spec specs[] = {{"--set", true, sets, 2, &set_count},
-                                        {"-o", true, &output, 1, &outputs},
-                                        {"--force", false, NULL, 0, &force}};
-    char *good[] = {"try", "--set=a=1", "file", "--set", "b=2", "-o", "out", "--", "--force"};
-    assert_true(command_options(&command, 9, good, specs, 3, operand, 2, &operands, &help));
-    assert_int_equal(set_count, 2);
-    assert_string_equal(sets[0], "a=1");
-    assert_string_equal(sets[1], "b=2");
-    assert_string_equal(output, "out");
-    assert_int_equal(force, 0);
-    assert_int_equal(operands, 2);
-    assert_string_equal(operand[1], "--force");
-    char *bad[][4] = {{"try", "--st", "a"},
-                      {"try", "a", "b", "c"},
-                      {"try", "-o", "a", "-oa"},
-                      {"try", "a", "-o"},
-                      {"try", "a", "--force=1"}};
-    const int lengths[] = {3, 4, 4, 3, 3};
+#define TRIED(member) OPTION_TO(struct tried, member)
+    static const struct option more[] = {
+        {"--cases", "N", TRIED(cases), .low = 2, .high = 9, .text = "some"},
+        {"--level", "L", TRIED(level), .low = 0.5, .high = 1, .needs = "--cases or --colour"},
+        {"--colour", TRIED(colour), .word = colour_word},
+        {0},
+    };
+    static const struct option options[] = {
+        {"FILE...", TRIED(files), .low = 1, .high = 2, .text = "a file"},
+        {"--set", "PATH=VALUE", TRIED(sets), .most = 2},
+        {"-o", "FILE", TRIED(output)},
+        {"--force", TRIED(force)},
+        {"--resume", TRIED(resume), .without = "--force FILE..."},
+        {.rows = more},
+        {0},
+    };
+    const struct command command = {"try", "tries", nothing, options, NULL, NULL};
+    struct tried t = {.level = 0.75};
+    char *good[] = {"try", "--set=a=1", "file",      "--set", "b=2",
+                    "-o",  "out",       "--cases=9", "--",    "--force"};
+    assert_int_equal(command_begin(&command, 10, good, &t), COMMAND_GOES_ON);
+    assert_int_equal(t.sets.count, 2);
+    assert_string_equal(t.sets.text[0], "a=1");
+    assert_string_equal(t.sets.text[1], "b=2");
+    assert_string_equal(t.output, "out");
+    assert_false(t.force);
+    assert_int_equal(t.files.count, 2);
+    assert_string_equal(t.files.text[1], "--force");
+    assert_int_equal(t.cases, 9);
+    assert_true(t.level == 0.75);
+    char *words[] = {"try", "a", "--colour", "green", "--level", "1"};
+    assert_int_equal(command_begin(&command, 6, words, &t), COMMAND_GOES_ON);
+    assert_int_equal(t.colour, 1);
+    assert_true(t.level == 1);
+    char *bad[][5] = {{"try", "--st", "a"},       {"try", "a", "b", "c"},
+                      {"try", "-o", "a", "-oa"},  {"try", "a", "-o"},
+                      {"try", "a", "--force=1"},  {"try"},
+                      {"try", "a", "-o=b"},       {"try", "-o", "a", "-o", "b"},
+                      {"try", "a", "--cases=1"},  {"try", "a", "--cases=10"},
+                      {"try", "a", "--cases=3x"}, {"try", "a", "--cases", "18446744073709551615"},
+                      {"try", "a", "--colour=b"}, {"try", "a", "--level=1"},
+                      {"try", "a", "--resume"},   {"try", "a", "--cases=2", "--level=nan"}};
     int silent = dup(STDERR_FILENO);
     assert_non_null(freopen("/dev/null", "w", stderr));
-    for (int i = 0; i < 5; i++)
-        assert_false(
-            command_options(&command, lengths[i], bad[i], specs, 3, operand, 2, &operands, &help));
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        int count = 0;
+        while (count < 5 && bad[i][count])
+            count++;
+        assert_int_equal(command_begin(&command, count, bad[i], &t), EXIT_USAGE);
+    }
     fflush(stderr);
     dup2(silent, STDERR_FILENO);
     close(silent);

@@ -194,6 +194,46 @@ stance run ball_bounce.yaml --only
 stance run ball_bounce.yaml --only 3 --quiet
 a value must follow '--only'
 
+stance run ball_bounce.yaml --only 3.5
+stance run ball_bounce.yaml --only 3 --quiet --force
+--only takes the flat index of a case, not '3.5'
+
+stance run ball_bounce.yaml --trace
+stance run ball_bounce.yaml --only 3 --trace --quiet --force
+--trace needs --only
+
+stance run ball_bounce.yaml --force --resume
+stance run ball_bounce.yaml --force --quiet
+--resume and --force exclude each other
+
+stance compare ball.h5 ball.h5 --of rested
+stance compare ball.h5 ball.h5 --labels --of rested
+--of needs --labels
+
+stance compare ball.h5 ball.h5 --labels --tolerance 0.1
+stance compare ball.h5 ball.h5 --labels
+--labels and --tolerance exclude each other
+
+stance plot map.h5 --of fell
+stance plot map.h5 --of fell --answer fall_time
+--of needs --answer or --outline
+
+stance plot map.h5 --picture map --for journal
+stance plot map.h5 --picture map --for column
+--for takes one of column, page, not 'journal'
+
+stance basin map.h5 --rank 2 --boundary
+stance basin map.h5 --boundary
+--rank and --boundary exclude each other
+
+stance export hopper.yaml
+stance export hopper.yaml --mjcf
+--mjcf must be given
+
+stance describe --schema stop.time
+stance describe stop.time
+--schema and PATH exclude each other
+
 stance plot ball.h5 --answer freinds
 stance plot ball.h5 --answer energy_gain -o .
 --answer
@@ -268,7 +308,7 @@ a results file, not a scenario; write stance summary large.h5
 
 stance plot map.h5 -o film.mp4
 stance plot map.h5 -o film
--o draws svg, png and pdf, replay animations as gif, too, not 'film.mp4'
+-o takes a directory or, without --format, a file that ends in svg, png or pdf, of replay in gif, too, not 'film.mp4'
 
 stance plot map.h5 --picture map -o map.EPS
 stance plot map.h5 --picture map -o map.pdf
@@ -276,7 +316,7 @@ not 'map.EPS'
 
 stance run ball_bounce.yaml -o foo.pdf --quiet
 stance run ball_bounce.yaml -o foo.h5 --quiet
--o names the results, FILE.h5
+-o takes the results, FILE.h5
 
 stance check cart.yaml --set initial.equilibrium.pole=180
 stance check cart.yaml --set initial.equilibrium.pole=3.141592653589793
@@ -316,7 +356,7 @@ a scenario file must be given
 
 stance summary
 stance summary ball.h5
-a results file is needed
+a results file must be given
 END
 # Several files, names as long as a file system takes, shards without a case.
 expect "status of several files" 0 "$stance" status ball.h5 robot.h5

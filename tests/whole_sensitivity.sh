@@ -126,7 +126,7 @@ refused() { # name, code, pattern, command ...
     expect "$name" "$code" "$stance" sensitivity "$@"
     says "... in one line" "$pattern"
 }
-refused "no file" 2 'a results file is needed'
+refused "no file" 2 'a results file must be given'
 refused "a file that is not there" 3 'No such file' nowhere.h5
 refused "an axis that is none" 2 "did you mean 'method.name'" ishigami.h5 --by method.nam
 refused "the sample as an axis" 2 'not a grid axis' ishigami.h5 --by sample
@@ -136,7 +136,7 @@ refused "an answer of failed cases" 2 'has no meaning with --answer' ishigami.h5
 refused "a level beyond" 2 'takes a number from 0.5' ishigami.h5 --level 95
 refused "a level that is none" 2 'takes a number from 0.5' ishigami.h5 --level nan
 refused "too few resamples" 2 'takes a whole number from 100' ishigami.h5 --resamples 10
-refused "two outputs" 2 'not both' ishigami.h5 --json --csv
+refused "two outputs" 2 '--json and --csv exclude each other' ishigami.h5 --json --csv
 expect "a study without samples" 0 "$stance" run ishigami.yaml -o grid.h5 --quiet --set 'sweep={grid: [{path: method.name, values: [implicit, midpoint]}]}'
 refused "... is refused" 2 'has no sampled factors' grid.h5
 echo "1..$count"

@@ -4,6 +4,7 @@
 
 #include "analysis/table/report.h"
 #include "runner/base/sandbox.h"
+#include "runner/plan/asked.h"
 #include "runner/plan/instruction_set.h"
 #include "runner/plan/kernels.h"
 
@@ -12,17 +13,15 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 extern const struct command command_ranges; /* below */
 
-enum { MOST_SETS = 64 };
 #define THIN 0.1 /* share of the ranges below which closer ones are told, too */
 
 struct request {
-    const char *file, *sets[MOST_SETS];
-    size_t set_count, json;
-    uint8_t of;
+    struct asked asked;
+    bool json;
+    int of; /* its place among the outcomes */
 };
 
 /* Of a field at x of its axis, in the digits that ranges have. */
@@ -284,11 +283,16 @@ static bool print_json(const struct ranges *r, const struct table *t)
 
 static int show(const struct request *request, const struct scenario *s)
 {
+    static const uint8_t number_of[] = {
+#define RANGES_NUMBER(NAME, name, number, text) number,
+        STANCE_OUTCOMES(RANGES_NUMBER)
+#undef RANGES_NUMBER
+    };
     struct ranges *r = malloc(sizeof *r);
     struct table t = {0};
     stance_message message = {""};
     int code = EXIT_IO;
-    if (!r || !ranges_make(r, s, request->of, &message)) {
+    if (!r || !ranges_make(r, s, number_of[request->of], &message)) {
         fprintf(stderr, "%s: %s\n", s->file, r ? message.text : "not enough memory");
         code = r ? EXIT_USAGE : EXIT_IO;
     } else {
@@ -303,7 +307,7 @@ static int show(const struct request *request, const struct scenario *s)
 
 /* With kernels that are compiled, where `run` will want them, too: for the sweep that there is, or
  * for the one that is proposed. */
-static int prepare(const struct request *request, const struct scenario *s)
+static int prepare(const struct scenario *s, void *request)
 {
     const struct parallel alone = parallel_alone();
     struct plan plan;
@@ -328,95 +332,61 @@ static int prepare(const struct request *request, const struct scenario *s)
     return code;
 }
 
-static int work(void *context)
+static int work(void *request)
 {
-    const struct request *request = context;
-    struct scenario *s = malloc(sizeof *s);
-    int code = EXIT_IO;
-    if (!s) {
-        fputs("stance ranges: not enough memory\n", stderr);
-    } else if (scenario_read(s, request->file, NULL, request->sets, request->set_count, stderr)) {
-        code = prepare(request, s);
-        scenario_free(s);
-    } else if (access(request->file, R_OK) == 0) {
-        code = EXIT_USAGE;
-    }
-    free(s);
-    return code;
+    return asked_work(&command_ranges, request, prepare, request);
 }
 
 static int run(int argc, char **argv)
 {
-    static const char *const outcomes[] = {
-#define RANGES_OUTCOME(NAME, name, number, text) #name,
-        STANCE_OUTCOMES(RANGES_OUTCOME)
-#undef RANGES_OUTCOME
-    };
-    static const uint8_t number_of[] = {
-#define RANGES_NUMBER(NAME, name, number, text) number,
-        STANCE_OUTCOMES(RANGES_NUMBER)
-#undef RANGES_NUMBER
-    };
-    const size_t count = sizeof number_of / sizeof number_of[0];
-    struct request request = {.of = STANCE_STABILISED};
-    const char *of = NULL;
-    size_t given = 0, operands = 0;
-    const struct option_spec specs[] = {
-        {"--set", true, request.sets, MOST_SETS, &request.set_count},
-        {"--of", true, &of, 1, &given},
-        {"--json", false, NULL, 0, &request.json},
-    };
-    const int code = command_begin(&command_ranges, argc, argv, specs, 3, "a scenario file",
-                                   &request.file, 1, 1, &operands);
+    struct request request = {.of = RESULTS_STABILISED};
+    const int code = command_begin(&command_ranges, argc, argv, &request);
     if (code != COMMAND_GOES_ON)
         return code;
-    const size_t k = of ? command_word(&command_ranges, "--of", of, outcomes, count) : 0;
-    if (k == count || !instruction_set_usable("ranges"))
-        return EXIT_USAGE;
-    request.of = number_of[k];
-    return sandbox(work, &request, request.file);
+    return instruction_set_usable("ranges") ? sandbox(work, &request, request.asked.file)
+                                            : EXIT_USAGE;
 }
+
+static const struct option options[] = {
+    {.rows = asked_options},
+    {"--of", "OUTCOME", OPTION_TO(struct request, of), .word = results_outcome_word,
+     .text = "look for another outcome than stabilised"},
+    {OPTION_TIME_LIMIT},
+    {OPTION_JSON(struct request, json)},
+    {0},
+};
 
 const struct command command_ranges = {
     "ranges",
-    "ranges SCENARIO [--set PATH=VALUE]... [--of OUTCOME] [--time-limit TIME] [--json]",
     "find ranges of starts that show the domain, with the lines to paste",
     run,
+    options,
     "Simulates a few hundred rays from the equilibrium (with initial.state: from that start) "
-    "until\n"
-    "the outcome is lost along each, and prints how far it reaches, ranges that hold all of it\n"
-    "with a margin and that the equilibrium is a point of, and what share of them it fills: as\n"
-    "lines of the scenario, what is for people as comments. One that has no sweep takes them as\n"
-    "they are: stance ranges own.yaml >> own.yaml. Of a domain that fills less than a tenth,\n"
-    "ranges about the equilibrium are told, too, which come first where the others have too few\n"
-    "points for it. The axes are those of sweep.grid and sweep.sample over initial.offset and\n"
-    "initial.state, along which several paths may move together; where there are none, the angle\n"
-    "and the rate of the coordinate along which the outcome is lost first, in units of the window\n"
-    "of settling. Of the sweep's other axes up to 3 points are looked at, evenly spread: the\n"
+    "until the outcome is lost along each, and prints how far it reaches, ranges that hold all of "
+    "it with a margin and that the equilibrium is a point of, and what share of them it fills: as "
+    "lines of the scenario, what is for people as comments. One that has no sweep takes them as "
+    "they are: stance ranges own.yaml >> own.yaml. Of a domain that fills less than a tenth, "
+    "ranges about the equilibrium are told, too, which come first where the others have too few "
+    "points for it. The axes are those of sweep.grid and sweep.sample over initial.offset and "
+    "initial.state, along which several paths may move together; where there are none, the angle "
+    "and the rate of the coordinate along which the outcome is lost first, in units of the window "
+    "of settling. Of the sweep's other axes up to 3 points are looked at, evenly spread: the "
     "ranges hold the domains of all. A ray ends where the outcome is lost first: islands beyond "
-    "do\n"
-    "not count. Angles are followed up to 3.14 rad, places to 10 m, rates to 100 rad/s or m/s, "
-    "and\n"
-    "ranges end where starts cease to exist: at which ends they cut the domain is said.\n"
-    "\n"
-    "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
-    "  --of OUTCOME       look for another outcome than stabilised\n"
-    "  --time-limit TIME  end after 90s, 55m, 1h30m ... of wall time, with exit code 4\n"
-    "  --json             the same as JSON, with the keys\n"
+    "do not count. Angles are followed up to 3.14 rad, places to 10 m, rates to 100 rad/s or m/s, "
+    "and ranges end where starts cease to exist: at which ends they cut the domain is said.\n",
     "    scenario, outcome         strings\n"
     "    chosen                    whether the axes are not the scenario's\n"
-    "    parameters, held          points of the other axes; of these, at which the equilibrium "
-    "has\n"
-    "                              the outcome\n"
-    "    resolved                  whether the whole ranges have points enough to show the domain\n"
+    "    parameters, held          points of the other axes; of these, at which the equilibrium\n"
+    "                              has the outcome\n"
+    "    resolved                  whether the whole ranges have points enough to show the\n"
+    "                              domain\n"
     "    rays, not_lost            rays; of these, along which it was not lost\n"
     "    simulations, failed       numbers\n"
     "    share                     [least, most] over the points, of 256 starts each\n"
-    "    axes                      [{paths, unit, whole: {from, to: [a value a path], count "
-    "(null:\n"
-    "                              of a sample)}, close: the same about the equilibrium; of the\n"
-    "                              first path alone: [low, high] along this axis, beyond: [what\n"
-    "                              becomes of starts there], reach: [least, most] along all rays,\n"
-    "                              cut: [below, above] whether the whole range cuts the domain,\n"
-    "                              lost: [below, above]}]\n",
+    "    axes                      [{paths, unit, whole: {from, to: [a value a path], count\n"
+    "                              (null: of a sample)}, close: the same about the equilibrium;\n"
+    "                              of the first path alone: [low, high] along this axis, beyond:\n"
+    "                              [what becomes of starts there], reach: [least, most] along\n"
+    "                              all rays, cut: [below, above] whether the whole range cuts\n"
+    "                              the domain, lost: [below, above]}]\n",
 };

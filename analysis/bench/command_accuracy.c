@@ -137,31 +137,30 @@ static int run(int argc, char **argv)
     return studies_run(&command_accuracy, &kind, argc, argv);
 }
 
+static const struct option options[] = {
+    {.rows = studies_options},
+    {"--json", OPTION_TO(struct studies, json),
+     .text = "the same as JSON, without pictures: a list `studies` of"},
+    {0},
+};
+
 const struct command command_accuracy = {
     "bench accuracy",
-    "bench accuracy [SCENARIO]... [-o DIR] [--reuse] [--json] [--format F,...]\n"
-    "           [--for column|page] ...",
     "error against cost of every method, on scenes with known answers",
     run,
-    "Runs studies of methods and steps, by default those of scenarios/accuracy, like any other\n"
+    options,
+    "Runs studies of methods and steps, by default those of scenarios/accuracy, like any other "
     "scenario, and compares each row with the first one of event-driven. The first axis of a "
-    "study\n"
-    "varies method.name with method.step (and method.tolerance); the other axes vary the start. "
-    "With\n"
-    "`record.cases: all` positions and velocities are compared, otherwise outcomes: cells of the\n"
-    "grid are counted, which are no draws and have no interval. The cost is measured on one core,\n"
-    "in processor time, the median of at least three repetitions.\n"
-    "\n"
-    "  -o DIR     where the results files and pictures go, default results/accuracy\n"
-    "  --reuse    take results files of the same scenario that are there\n" LOOK_HELP_DRAWN
-    "  --json     the same as JSON, without pictures: a list `studies` of\n"
+    "study varies method.name with method.step (and method.tolerance); the other axes vary the "
+    "start. With `record.cases: all` positions and velocities are compared, otherwise outcomes: "
+    "cells of the grid are counted, which are no draws and have no interval. The cost is measured "
+    "on one core, in processor time, the median of at least three repetitions.\n",
     "    name, title, file         strings\n"
     "    rows                      method, step, tolerance, reference, cases, failed,\n"
-    "                              microseconds_per_second (_low, _high), evaluations_per_second,\n"
-    "                              events_per_second, position_error, velocity_error, "
-    "cells_unlike,\n"
-    "                              cells_unlike_inside, the residuals of the contact laws, "
-    "energy_gain\n"
-    "    orders                    method, of (step or tolerance), position, velocity, from, to, "
-    "rows\n",
+    "                              microseconds_per_second (_low, _high),\n"
+    "                              evaluations_per_second, events_per_second, position_error,\n"
+    "                              velocity_error, cells_unlike, cells_unlike_inside, the\n"
+    "                              residuals of the contact laws, energy_gain\n"
+    "    orders                    method, of (step or tolerance), position, velocity, from, to,\n"
+    "                              rows\n",
 };

@@ -7,7 +7,7 @@
 #include "bench.h"
 
 #include "analysis/table/table.h"
-#include "runner/base/command.h"
+#include "runner/plan/asked.h"
 #include "runner/plan/instruction_set.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ static const double wanted_time = 0.02; /* s, of one measurement */
 /* What is asked for; NULL: all. */
 struct selection {
     const char *scene, *regime, *method;
-    int repeats, cases; /* cases 0: as many as take wanted_time */
+    uint64_t repeats, cases; /* cases 0: as many as take wanted_time */
     enum table_form form;
     struct table rows;
 };
@@ -52,7 +52,7 @@ static double run_once(struct measurement *m, stance_case *cases, stance_result 
 static void prepare(struct measurement *m, const struct selection *what, stance_case *cases,
                     stance_result *results)
 {
-    m->cases = what->cases ? what->cases : FEWEST_CASES;
+    m->cases = what->cases ? (int)what->cases : FEWEST_CASES;
     const double time = run_once(m, cases, results);
     if (!what->cases) {
         const double wanted = floor(wanted_time / time) * FEWEST_CASES;
@@ -114,8 +114,9 @@ static void report(struct selection *what, const char *regime, const stance_case
         add_row(&what->rows, regime, m, scalar_ns);
     } else {
         struct bench_row row = {
-            "stance", k->scene->name, regime,        k->method->name, k->isa, k->lanes, 1,
-            c->step,  m->cases,       what->repeats, "time per step", "ns",   m->ns};
+            "stance", k->scene->name, regime,   k->method->name,    k->isa,          k->lanes,
+            1,        c->step,        m->cases, (int)what->repeats, "time per step", "ns",
+            m->ns};
         bench_csv_row(stdout, &row);
         row.quantity = "time per simulated second";
         row.value = m->per_second;
@@ -177,11 +178,12 @@ static bool bench_workload(struct selection *what, const stance_scene *scene, co
     const int count = good ? find_kernels(what, scene, m) : 0;
     for (int i = 0; i < count; i++)
         prepare(&m[i], what, cases, results);
-    for (int r = 0; r < what->repeats; r++)
+    const int repeats = (int)what->repeats;
+    for (int r = 0; r < repeats; r++)
         for (int i = 0; i < count; i++) {
             m[i].time[r] = run_once(&m[i], cases, results);
-            if (r == what->repeats - 1)
-                take_spread(&m[i], results, what->repeats);
+            if (r == repeats - 1)
+                take_spread(&m[i], results, repeats);
         }
     double scalar_ns = NAN;
     for (int i = 0; i < count; i++) {
@@ -224,91 +226,60 @@ static int bench(struct selection *what)
     return EXIT_DONE;
 }
 
-/* A whole number from 1 to `most`; *value stays when the option was not given. */
-static bool take_number(const char *option, const char *text, long most, int *value)
-{
-    if (text) {
-        char *end;
-        const long number = strtol(text, &end, 10);
-        if (*end || end == text || number < 1 || number > most) {
-            fprintf(stderr, "stance bench: %s takes a whole number from 1 to %ld\n", option, most);
-            return false;
-        }
-        *value = (int)number;
-    }
-    return true;
-}
-
 static int run(int argc, char **argv)
 {
-    bool help;
-    if (argc > 1 && strcmp(argv[1], "accuracy") == 0)
-        return command_accuracy.run(argc - 1, argv + 1);
-    if (argc > 1 && strcmp(argv[1], "failure") == 0)
-        return command_failure.run(argc - 1, argv + 1);
+    struct selection what = {.repeats = 5};
     if (argc > 1 && strcmp(argv[1], "truth") == 0)
         return command_usage(&command_bench, "truths are computed by `make truths` in the source "
                                              "tree, not here");
-    if (argc > 1 && strcmp(argv[1], "plot") == 0)
-        return command_speed.run(argc - 1, argv + 1);
-    struct selection what = {.repeats = 5};
-    const char *operand[1], *repeats = NULL, *cases = NULL;
-    size_t operands, json = 0, csv = 0, count[5] = {0};
-    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
-                                        {"--csv", false, NULL, 0, &csv},
-                                        {"--repeats", true, &repeats, 1, &count[0]},
-                                        {"--cases", true, &cases, 1, &count[1]},
-                                        {"--scene", true, &what.scene, 1, &count[2]},
-                                        {"--regime", true, &what.regime, 1, &count[3]},
-                                        {"--method", true, &what.method, 1, &count[4]}};
-    if (!command_options(&command_bench, argc, argv, specs, sizeof specs / sizeof specs[0], operand,
-                         0, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
+    int code = command_begin(&command_bench, argc, argv, &what);
+    if (code != COMMAND_GOES_ON)
+        return code;
     if (!instruction_set_usable("bench"))
         return EXIT_USAGE;
-    if (!take_number("--repeats", repeats, MOST_REPEATS, &what.repeats) ||
-        !take_number("--cases", cases, MOST_CASES, &what.cases))
-        return EXIT_USAGE;
-    if (what.method && !stance_method_find(what.method)) {
-        fprintf(stderr, "stance bench: unknown method '%s'\n", what.method);
-        return EXIT_USAGE;
-    }
-    what.form = table_form(json, csv);
-    int code = bench(&what);
-    if (json && !table_write_json(table_json(&what.rows, false), stdout))
+    code = bench(&what);
+    if (what.form == TABLE_AS_JSON && !table_write_json(table_json(&what.rows, false), stdout))
         code = EXIT_IO;
     table_free(&what.rows);
     return code;
 }
 
+#define TO(member) OPTION_TO(struct selection, member)
+static const struct option options[] = {
+    {.part = &command_accuracy},
+    {.part = &command_failure},
+    {.part = &command_speed},
+    {"--scene", "NAME", TO(scene), .text = "only this one"},
+    {"--regime", "NAME", TO(regime), .text = "only this one"},
+    {"--method", "NAME", TO(method), .word = asked_method,
+     .text = "only this one. STANCE_ISA in the environment: only that instruction set"},
+    {"--repeats", "N", TO(repeats), .low = 1, .high = MOST_REPEATS, .text = "rounds, default 5"},
+    {"--cases", "N", TO(cases), .low = 1, .high = MOST_CASES,
+     .text = "cases of 1 s in each measurement; default: what takes 20 ms. All of them run once "
+             "more to warm up"},
+    {TABLE_CSV(struct selection, form), .text = "columns as in results/bench.csv"},
+    {TABLE_JSON(struct selection, form),
+     .text = "a list of objects with keys scene, regime, method, isa, lanes, ns_per_step, ns_min, "
+             "ns_max, ns_per_second, iterations_per_step, speedup_over_scalar (null without a "
+             "scalar kernel), failed, cases, steps (of one measurement)"},
+    {0},
+};
+
 const struct command command_bench = {
     "bench",
-    "stance bench [--scene NAME] [--regime NAME] [--method NAME] [--repeats N] [--cases N]\n"
-    "                    [--csv | --json]",
-    "speed of the stepping kernels on one core", run,
-    "Prints nanoseconds per case-step - the median of N rounds (default 5), the lowest and the\n"
+    "speed of the stepping kernels on one core",
+    run,
+    options,
+    "Prints nanoseconds per case-step - the median of N rounds (default 5), the lowest and the "
     "highest -, nanoseconds per simulated second, Newton iterations per step and the speed-up "
-    "over\n"
-    "one lane, for each method and instruction set, in steps of 1 ms. The regimes are\n"
+    "over one lane, for each method and instruction set, in steps of 1 ms. The regimes are\n"
     "  ball    flight, sliding\n"
     "  block   at rest, sliding\n"
     "  rod     flight, one end, two ends\n"
     "  biped   flight    nothing near the ground\n"
     "          one foot  linear balance control, torques held for 1 ms\n"
-    "          two feet  standing with the legs held\n"
-    "\n"
-    "--scene, --regime, --method: only these. STANCE_ISA in the environment: only that "
-    "instruction\n"
-    "set. --cases N: cases of 1 s in each measurement (at most 512); default: what takes 20 ms. "
-    "All\n"
-    "of them run once more to warm up.\n"
-    "\n"
-    "`make bench` measures all of this, the whole program and other engines, and draws it with\n"
-    "`stance bench plot`. More: `stance bench accuracy -h`, error against cost;\n"
-    "`stance bench failure -h`, where methods fail; `stance bench plot -h`, the picture.\n\n"
-    "--csv: columns as in results/bench.csv.\n"
-    "--json: a list of objects with keys scene, regime, method, isa, lanes, ns_per_step, ns_min,\n"
-    "ns_max, ns_per_second, iterations_per_step, speedup_over_scalar (null without a scalar\n"
-    "kernel), failed, cases, steps (of one measurement).\n"};
+    "          two feet  standing with the legs held\n",
+    "`make bench` measures all of this, the whole program and other engines, and draws it with "
+    "`stance bench plot`. More: `stance bench accuracy -h`, error against cost; `stance bench "
+    "failure -h`, where methods fail; `stance bench plot -h`, the picture.",
+};

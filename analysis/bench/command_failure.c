@@ -167,44 +167,40 @@ static int run(int argc, char **argv)
     return studies_run(&command_failure, &kind, argc, argv);
 }
 
+static const struct option options[] = {
+    {.rows = studies_options},
+    {"--json", OPTION_TO(struct studies, json),
+     .text = "the same as JSON, without pictures: a list `studies` of"},
+    {0},
+};
+
 const struct command command_failure = {
     "bench failure",
-    "bench failure [SCENARIO]... [-o DIR] [--reuse] [--json]\n"
-    "           [--format F,...] [--for column|page] ...",
     "where each method fails, as maps with the lines of theory",
     run,
-    "Runs studies, by default those of scenarios/failure, like any other scenario. The first axis\n"
+    options,
+    "Runs studies, by default those of scenarios/failure, like any other scenario. The first axis "
     "of a study varies method.name (with method.tolerance), the other two are a map. Every cell "
-    "is\n"
-    "compared with event-driven, or with the most exact row of capturing where event-driven gave\n"
-    "up; with method.step on the map, both at the smallest step. It gets the first of\n"
+    "is compared with event-driven, or with the most exact row of capturing where event-driven "
+    "gave up; with method.step on the map, both at the smallest step. It gets the first of\n"
     "  gave_up        the case failed; `failed` counts the reasons\n"
-    "  ran_away       numbers not finite, angles beyond 1e4 rad, or more energy created than "
-    "there\n"
-    "                 was at the start (kinetic, and potential above z = 0; at least 1 mJ)\n"
+    "  ran_away       numbers not finite, angles beyond 1e4 rad, or more energy created than\n"
+    "                 there was at the start (kinetic, and potential above z = 0; at least 1 mJ)\n"
     "  broke_law      penetration beyond 1e-6 m, or a residual of a contact law beyond 1e-6\n"
     "  wrong_outcome  not the reference's\n"
     "  inaccurate     a coordinate is off by more than 0.01 m or rad at the end\n"
     "  unjudged       there is no reference\n"
     "  right_other, right_stands  as the reference; whether it came to stand or rest\n"
     "A line in the maps is what theory says, where it is known: the limit of stability of "
-    "explicit\n"
-    "steps (servo of the biped's legs), T* of a sampled controller, Painleve's paradox (rod). A\n"
-    "second picture shows the energy that discretisation created.\n"
-    "\n"
-    "  -o DIR     where the results files and pictures go, default results/failure\n"
-    "  --reuse    take results files of the same scenario that are there\n" LOOK_HELP_DRAWN
-    "  --json     the same as JSON, without pictures: a list `studies` of\n"
+    "explicit steps (servo of the biped's legs), T* of a sampled controller, Painleve's paradox "
+    "(rod). A second picture shows the energy that discretisation created.\n",
     "    name, title, file   strings\n"
     "    axes                the two of the map: name, unit, values\n"
-    "    theory              null, or text, along (an axis), of (the other), values: of the other\n"
-    "                        axis, for each point along; null where there is none\n"
-    "    rows                method, tolerance, cases (for each verdict), failed (for each "
-    "reason),\n"
-    "                        energy_gain (J), energy_share (of that at the start), "
-    "max_penetration,\n"
-    "                        signorini_residual, coulomb_residual, dissipation_residual: largest "
-    "of\n"
-    "                        the cases that did not fail; map: verdicts, a list for each point of\n"
-    "                        the first axis\n",
+    "    theory              null, or text, along (an axis), of (the other), values: of the\n"
+    "                        other axis, for each point along; null where there is none\n"
+    "    rows                method, tolerance, cases (for each verdict), failed (for each\n"
+    "                        reason), energy_gain (J), energy_share (of that at the start),\n"
+    "                        max_penetration, signorini_residual, coulomb_residual,\n"
+    "                        dissipation_residual: largest of the cases that did not fail; map:\n"
+    "                        verdicts, a list for each point of the first axis\n",
 };

@@ -9,23 +9,21 @@
 
 extern const struct command command_speed; /* below */
 
+struct request {
+    const char *file;
+    struct look look;
+};
+
 static int run(int argc, char **argv)
 {
-    const char *file;
-    struct look_options options = {0};
-    struct look look;
-    size_t operands;
-    const struct option_spec specs[] = {LOOK_SPECS(options)};
+    struct request request = {.file = NULL};
     struct speed_table table;
     stance_message message;
-
-    const int begun =
-        command_begin(&command_speed, argc, argv, specs, sizeof specs / sizeof specs[0], "a table",
-                      &file, 1, 1, &operands);
+    look_begin(&request.look);
+    const int begun = command_begin(&command_speed, argc, argv, &request);
     if (begun != COMMAND_GOES_ON)
         return begun;
-    if (!look_read(&command_speed, &options, &look))
-        return EXIT_USAGE;
+    const char *const file = request.file;
     if (!speed_read(file, &table, &message)) {
         fprintf(stderr, "stance bench plot: %s\n", message.text);
         return EXIT_IO;
@@ -33,21 +31,29 @@ static int run(int argc, char **argv)
     const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
     char stem[128], own[1024];
     snprintf(stem, sizeof stem, "%.*s", (int)strcspn(name, "."), name);
-    const char *const directory = look_directory(&look, file, own, sizeof own);
+    const char *const directory = look_directory(&request.look, file, own, sizeof own);
     const bool there = gnuplot_directory(directory);
-    const bool good = there && speed_plot(&table, &look, directory, stem, &message);
+    const bool good = there && speed_plot(&table, &request.look, directory, stem, &message);
     if (there && !good)
         fprintf(stderr, "stance bench plot: %s\n", message.text);
     speed_free(&table);
-    return !good ? EXIT_IO : look_end(&look, &command_speed, file) ? EXIT_DONE : EXIT_USAGE;
+    return !good ? EXIT_IO : look_end(&request.look, &command_speed, file) ? EXIT_DONE : EXIT_USAGE;
 }
 
+static const struct option options[] = {
+    {"FILE.csv", OPTION_TO(struct request, file), .low = 1, .text = "a table"},
+    {.at = offsetof(struct request, look), .rows = look_options},
+    {0},
+};
+
 const struct command command_speed = {
-    "bench plot", "stance bench plot FILE.csv [-o PLACE] [--format F,...] [--for column|page] ...",
-    "picture of the speed benchmarks", run,
-    "Draws a table of `make bench` or `stance bench --csv` as SVG and PNG beside the file: the\n"
-    "biped's step in every instruction set beside the step written by hand and\n"
-    "MuJoCo's, every method in every scene, and the wall time of the shipped map. Marks are "
-    "medians,\n"
-    "bars go from the lowest to the highest. What the table does not have is left out.\n"
-    "\n" LOOK_HELP};
+    "bench plot",
+    "picture of the speed benchmarks",
+    run,
+    options,
+    "Draws a table of `make bench` or `stance bench --csv` as SVG and PNG beside the file: the "
+    "biped's step in every instruction set beside the step written by hand and MuJoCo's, every "
+    "method in every scene, and the wall time of the shipped map. Marks are medians, bars go from "
+    "the lowest to the highest. What the table does not have is left out.\n",
+    NULL,
+};

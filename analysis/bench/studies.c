@@ -218,33 +218,25 @@ static int end(const struct request *request, int code)
 
 int studies_run(const struct command *command, const struct study_kind *kind, int argc, char **argv)
 {
-    const char *given[MAX_STUDIES];
-    struct look_options options = {0};
-    struct look look;
+    struct studies asked = {.json = false};
+    struct look *const look = &asked.look;
     char *found[MAX_STUDIES], fallback[64];
-    size_t json = 0, reuse = 0, operands;
-    bool help;
-    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
-                                        {"--reuse", false, NULL, 0, &reuse},
-                                        LOOK_SPECS(options)};
-    if (!command_options(command, argc, argv, specs, sizeof specs / sizeof specs[0], given,
-                         MAX_STUDIES, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
+    look_begin(look);
+    const int begun = command_begin(command, argc, argv, &asked);
+    if (begun != COMMAND_GOES_ON)
+        return begun;
     if (!instruction_set_usable(command->name))
         return EXIT_USAGE;
-    if (!look_read(command, &options, &look))
-        return EXIT_USAGE;
-    if (look.file)
+    if (look->file)
         return command_usage(command, "-o takes a directory: there are several files");
     snprintf(fallback, sizeof fallback, "results/%s", kind->name);
-    const struct request request = {command, kind,     look.directory ? look.directory : fallback,
-                                    &look,   json > 0, reuse > 0};
-    if ((!look.directory && !make_directory("results")) || !make_directory(request.directory))
+    const struct request request = {
+        command, kind, look->directory ? look->directory : fallback, look, asked.json, asked.reuse};
+    if ((!look->directory && !make_directory("results")) || !make_directory(request.directory))
         return EXIT_IO;
-    if (operands > 0)
-        return end(&request, all_studies(&request, (char *const *)given, operands));
+    if (asked.scenarios.count > 0)
+        return end(&request, all_studies(&request, (char *const *)asked.scenarios.text,
+                                         asked.scenarios.count));
     const size_t count = find_studies(kind->name, found);
     if (count == 0) {
         fprintf(stderr,
@@ -257,3 +249,13 @@ int studies_run(const struct command *command, const struct study_kind *kind, in
         free(found[i]);
     return end(&request, code);
 }
+
+const struct option studies_options[] = {
+    {"SCENARIO...", OPTION_TO(struct studies, scenarios), .text = "scenarios"},
+    {"-o", "DIR", LOOK_PLACE, .at = offsetof(struct studies, look),
+     .text = "where the results files and pictures go, default results/accuracy, results/failure"},
+    {"--reuse", OPTION_TO(struct studies, reuse),
+     .text = "take results files of the same scenario that are there"},
+    {.at = offsetof(struct studies, look), .rows = look_drawn},
+    {0},
+};

@@ -23,6 +23,15 @@ struct study_kind {
     study_function evaluate;
 };
 
+/* Its options but --json, which says what is in it; the command's row is
+ * {OPTION_JSON(struct studies, json)}. */
+struct studies {
+    struct option_texts scenarios;
+    struct look look;
+    bool json, reuse;
+};
+extern const struct option studies_options[];
+
 /* The whole of `stance bench KIND [SCENARIO]... [-o DIR] [--reuse] [--json]`, with the
  * options of pictures but for --picture: runs the scenarios given, by default all of
  * scenarios/KIND, into DIR (default results/KIND) and evaluates each.

@@ -281,21 +281,25 @@ static void print_labels(const struct results r[2], const struct label_compariso
 /* ---- the command -------------------------------------------------------------------------- */
 
 struct request {
-    const char *file[2];
+    struct option_texts files;
+    bool labels;
     enum table_form form;
-    bool labels, of_given;
-    enum results_kind of;   /* of the labels' domain */
-    const char **tolerance; /* as given */
-    size_t tolerance_count;
+    enum results_kind of; /* of the labels' domain; RESULTS_KIND_COUNT: what is judged by */
+    struct given {
+        struct compare_tolerances all;
+        char names[COMPARE_TOLERANCES][96];
+    } tolerances;
 };
 
-/* "RELATIVE[,ABSOLUTE]" or "NAME=RELATIVE[,ABSOLUTE]"; `name` holds the NAME. */
-static bool read_tolerance(const char *text, char name[96], struct compare_tolerance *tolerance)
+/* "RELATIVE[,ABSOLUTE]" or "NAME=RELATIVE[,ABSOLUTE]" */
+static bool read_tolerance(const char *text, void *given)
 {
-    const char *equals = strchr(text, '='), *numbers = equals ? equals + 1 : text;
-    char *end;
+    struct given *const g = given;
+    const char *const equals = strchr(text, '='), *numbers = equals ? equals + 1 : text;
+    char *const name = g->names[g->all.count], *end;
+    struct compare_tolerance *const tolerance = &g->all.tolerance[g->all.count++];
     *tolerance = (struct compare_tolerance){equals ? name : NULL, 0, 0};
-    snprintf(name, 96, "%.*s", equals ? (int)(equals - text) : 0, text);
+    snprintf(name, sizeof g->names[0], "%.*s", equals ? (int)(equals - text) : 0, text);
     tolerance->relative = strtod(numbers, &end);
     bool good = end != numbers;
     if (good && *end == ',') {
@@ -303,14 +307,8 @@ static bool read_tolerance(const char *text, char name[96], struct compare_toler
         tolerance->absolute = strtod(second, &end);
         good = end != second;
     }
-    if (good && *end == '\0' && tolerance->relative >= 0 && tolerance->absolute >= 0 &&
-        isfinite(tolerance->relative) && isfinite(tolerance->absolute))
-        return true;
-    fprintf(stderr,
-            "stance compare: --tolerance takes RELATIVE[,ABSOLUTE] or ANSWER=RELATIVE[,ABSOLUTE], "
-            "not '%.60s'\n",
-            text);
-    return false;
+    return good && *end == '\0' && tolerance->relative >= 0 && tolerance->absolute >= 0 &&
+           isfinite(tolerance->relative) && isfinite(tolerance->absolute);
 }
 
 /* Whether an answer stands for words (outcome, status ...), which have no tolerance. */
@@ -333,15 +331,12 @@ static bool written(bool good)
 
 static int compare_all(const struct results r[2], const struct request *request)
 {
-    struct compare_tolerances tolerances = {.count = request->tolerance_count};
-    char names[COMPARE_TOLERANCES][96];
+    const struct compare_tolerances *const tolerances = &request->tolerances.all;
     struct comparison comparison;
     stance_message message = {""};
 
-    for (size_t i = 0; i < tolerances.count; i++) {
-        if (!read_tolerance(request->tolerance[i], names[i], &tolerances.tolerance[i]))
-            return EXIT_USAGE;
-        const char *name = tolerances.tolerance[i].name;
+    for (size_t i = 0; i < tolerances->count; i++) {
+        const char *name = tolerances->tolerance[i].name;
         if (name && !compare_has(&r[0], name) && !compare_has(&r[1], name)) {
             fprintf(stderr, "stance compare: --tolerance: neither file has a variable '%.60s'\n",
                     name);
@@ -352,7 +347,7 @@ static int compare_all(const struct results r[2], const struct request *request)
             return EXIT_USAGE;
         }
     }
-    if (!compare_results(&comparison, &r[0], &r[1], tolerances.count > 0 ? &tolerances : NULL,
+    if (!compare_results(&comparison, &r[0], &r[1], tolerances->count > 0 ? tolerances : NULL,
                          &message)) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_IO;
@@ -374,7 +369,8 @@ static int compare_only_labels(const struct results r[2], const struct request *
     stance_message message = {""};
 
     if (!compare_labels(&comparison, &r[0], &r[1],
-                        request->of_given ? request->of : statistics_judged(&r[0]), &message)) {
+                        request->of < RESULTS_KIND_COUNT ? request->of : statistics_judged(&r[0]),
+                        &message)) {
         fprintf(stderr, "%s\n", message.text);
         return EXIT_USAGE;
     }
@@ -404,7 +400,7 @@ static int compare(void *context)
     stance_message message = {""};
 
     for (int f = 0; f < 2; f++) {
-        if (!results_open(&r[f], request->file[f], &message)) {
+        if (!results_open(&r[f], request->files.text[f], &message)) {
             fprintf(stderr, "%s\n", message.text);
             if (f == 1)
                 results_close(&r[0]);
@@ -421,88 +417,56 @@ static int compare(void *context)
 
 static int run(int argc, char **argv)
 {
-    const char *files[2], *tolerance[COMPARE_TOLERANCES], *of = NULL;
-    size_t ofs = 0, json = 0, csv = 0, labels = 0, tolerances = 0, operands = 0;
-    bool help = false;
-    const struct option_spec specs[] = {
-        {"--json", false, NULL, 0, &json},
-        {"--csv", false, NULL, 0, &csv},
-        {"--labels", false, NULL, 0, &labels},
-        {"--of", true, &of, 1, &ofs},
-        {"--tolerance", true, tolerance, COMPARE_TOLERANCES, &tolerances}};
-
-    if (!command_options(&command_compare, argc, argv, specs, 5, files, 2, &operands, &help))
-        return EXIT_USAGE;
-    if (help)
-        return EXIT_DONE;
-    if (operands < 2) {
-        fputs("stance compare: two results files are needed (stance compare -h explains)\n",
-              stderr);
-        return EXIT_USAGE;
-    }
-    if ((json && csv) || (labels ? tolerances > 0 : of != NULL)) {
-        fprintf(stderr, "stance compare: %s\n",
-                json && csv ? "--json or --csv, not both"
-                : labels    ? "--labels does not go with --tolerance"
-                            : "--of names the domain of --labels");
-        return EXIT_USAGE;
-    }
-    const size_t kind =
-        of ? command_word(&command_compare, "--of", of, results_kind_names, RESULTS_OUTCOMES) : 0;
-    if (kind == RESULTS_OUTCOMES)
-        return EXIT_USAGE;
-    struct request request = {{files[0], files[1]},
-                              table_form(json, csv),
-                              labels > 0,
-                              of != NULL,
-                              (enum results_kind)kind,
-                              tolerance,
-                              tolerances};
+    struct request request = {.of = RESULTS_KIND_COUNT};
+    const int code = command_begin(&command_compare, argc, argv, &request);
+    if (code != COMMAND_GOES_ON)
+        return code;
     char names[2100];
-    snprintf(names, sizeof names, "%s or %s", files[0], files[1]);
+    snprintf(names, sizeof names, "%s or %s", request.files.text[0], request.files.text[1]);
     return sandbox(compare, &request, names);
 }
 
+#define TO(member) OPTION_TO(struct request, member)
+static const struct option options[] = {
+    {"FILE FILE", TO(files), .low = 2, .high = 2, .text = "two results files"},
+    {"--tolerance", "[ANSWER=]RELATIVE[,ABSOLUTE]", TO(tolerances), .read = read_tolerance,
+     .most = COMPARE_TOLERANCES, .takes = "RELATIVE[,ABSOLUTE] or ANSWER=RELATIVE[,ABSOLUTE]",
+     .text = "numbers a, b are equal when |a - b| <= ABSOLUTE + RELATIVE max(|a|, |b|); with "
+             "ANSWER= (a variable's name) of that answer alone, before the general one. Only "
+             "variables are compared then, not attributes: files of two scenarios over the same "
+             "axes may be equal. Outcomes and other flags have no tolerance. Prints how many "
+             "cases differ by more, and the largest difference; exit code 0 when there are none"},
+    {"--labels", TO(labels), .without = "--tolerance",
+     .text = "compare outcomes alone (and which cases failed): the share that is equal, and how "
+             "many cells, along refined axes, an unequal one is at most away from a case of "
+             "another label than its own in the first file (1: beside it). For a refined map and "
+             "a full one, or maps of two methods; exit code 2 when the axes or the starts differ. "
+             "Then a table of what the labels of the first file have become in the second, and of "
+             "the first one's domain the share that is lost in the second (of a sample with a 95 "
+             "% interval, as in the summary), of the second one's the share that is won"},
+    {"--of", "OUTCOME", TO(of), .word = results_outcome_word, .needs = "--labels",
+     .text = "the domain: stabilised (default; or rested, where nothing else was), rested, fell "
+             "or undecided"},
+    {TABLE_CSV(struct request, form),
+     .text = "a row for each variable or attribute that differs: name, reason, differing, of, "
+             "largest, largest_case (without a tolerance the first case that differs), and both "
+             "values there as first and second; of --labels a row for each pair of labels: first, "
+             "second, cases, share, share_of_first"},
+    {TABLE_JSON(struct request, form), .text = "the same as JSON, with the keys"},
+    {0},
+};
+
 const struct command command_compare = {
     "compare",
-    "compare FILE FILE [--tolerance [ANSWER=]RELATIVE[,ABSOLUTE]]... [--labels [--of OUTCOME]]\n"
-    "        [--json | --csv]",
     "what differs between two results files, bit for bit, beyond a tolerance, or in their labels",
     run,
+    options,
     "Prints `identical` (exit code 0), or every variable and attribute that differs with the "
-    "first\n"
-    "few cases and both values (exit code 1). Left out are group `timing`, the attributes that "
-    "say\n"
-    "where a file comes from (program_version, git_revision, compiler, library_versions,\n"
+    "first few cases and both values (exit code 1). Left out are group `timing`, the attributes "
+    "that say where a file comes from (program_version, git_revision, compiler, library_versions, "
     "instruction_set, ranks, hosts, date, merged_from, merge_note) and the rows of cases that are "
-    "pending in either file:\n"
-    "`status` differs there when one has them. A NAN equals a NAN; 0 and -0 differ.\n"
-    "\n"
-    "  --tolerance RELATIVE[,ABSOLUTE]\n"
-    "           numbers a, b are equal when |a - b| <= ABSOLUTE + RELATIVE max(|a|, |b|); with\n"
-    "           ANSWER= (a variable's name) of that answer alone, before the general one. Only\n"
-    "           variables are compared then, not attributes: files of two scenarios over the same\n"
-    "           axes may be equal. Outcomes and other flags have no tolerance. Prints how many\n"
-    "           cases differ by more, and the largest difference; exit code 0 when there are none\n"
-    "  --labels compare outcomes alone (and which cases failed): the share that is equal, and how\n"
-    "           many cells, along refined axes, an unequal one is at most away from a case of\n"
-    "           another label than its own in the first file (1: beside it). For a refined map "
-    "and\n"
-    "           a full one, or maps of two methods; exit code 2 when the axes or the starts "
-    "differ.\n"
-    "           Then a table of what the labels of the first file have become in the second, and\n"
-    "           of the first one's domain the share that is lost in the second (of a sample with "
-    "a\n"
-    "           95 % interval, as in the summary), of the second one's the share that is won\n"
-    "  --of OUTCOME   the domain: stabilised (default; or rested, where nothing else was), "
-    "rested,\n"
-    "           fell or undecided\n"
-    "  --csv    a row for each variable or attribute that differs: name, reason, differing, of,\n"
-    "           largest, largest_case (without a tolerance the first case that differs), and both\n"
-    "           values there as first and second; of --labels a row for each pair of labels: "
-    "first,\n"
-    "           second, cases, share, share_of_first\n"
-    "  --json   the same as JSON, with the keys\n"
+    "pending in either file: `status` differs there when one has them. A NAN equals a NAN; 0 and "
+    "-0 differ.\n",
     "    files         both paths\n"
     "    identical     true or false (false with a tolerance, as not all is compared)\n"
     "    equal         true when nothing differs, or nothing by more than the tolerance\n"

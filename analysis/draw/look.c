@@ -1,8 +1,6 @@
 /* look.c - options of pictures. */
 #include "look.h"
 
-#include "runner/base/words.h"
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,14 +19,6 @@ void look_begin(struct look *look)
         .format = {[LOOK_SVG] = true, [LOOK_PNG] = true}, .font = LOOK_FONT, .points = 9};
 }
 
-static bool wrong(const struct command *command, const char *option, const char *what,
-                  const char *text)
-{
-    fprintf(stderr, "stance %s: %s %s, not '%.80s' (stance %s -h explains)\n", command->name,
-            option, what, text, command->name);
-    return false;
-}
-
 /* ---- files -------------------------------------------------------------------------------- */
 
 /* Format of a file's name; LOOK_FORMAT_COUNT: it has none of the endings. */
@@ -40,19 +30,20 @@ static enum look_format format_of(const char *name, size_t length)
     return LOOK_FORMAT_COUNT;
 }
 
-static bool read_formats(const struct command *command, const char *text, struct look *look)
+static bool read_formats(const char *text, void *look)
 {
-    memset(look->format, 0, sizeof look->format);
+    struct look *const l = look;
+    l->formatted = true;
+    memset(l->format, 0, sizeof l->format);
     for (const char *word = text; word;) {
         const size_t length = strcspn(word, ",");
         const enum look_format format = format_of(word, length);
         if (format >= LOOK_GIF)
-            return wrong(command, "--format", "takes svg, png or pdf, or several with commas",
-                         text);
-        look->format[format] = true;
+            return false;
+        l->format[format] = true;
         word = word[length] ? word + length + 1 : NULL;
     }
-    return true;
+    return !l->file;
 }
 
 /* Whether an ending is that of a file of another program's format. */
@@ -67,64 +58,86 @@ static bool is_other_format(const char *ending)
 }
 
 /* A place that ends like a picture is a file, unless there is a directory of that name. */
-static bool read_place(const struct command *command, const char *place, bool formatted,
-                       struct look *look)
+bool look_place(const char *text, void *look)
 {
+    struct look *const l = look;
     struct stat information;
-    const char *slash = strrchr(place, '/'), *name = slash ? slash + 1 : place;
+    const char *slash = strrchr(text, '/'), *name = slash ? slash + 1 : text;
     const char *dot = strrchr(name, '.');
     const enum look_format format =
         dot && dot > name ? format_of(dot + 1, strlen(dot + 1)) : LOOK_FORMAT_COUNT;
-    const bool exists = stat(place, &information) == 0 && S_ISDIR(information.st_mode);
-    if (!exists && format == LOOK_FORMAT_COUNT && dot && dot > name && is_other_format(dot + 1))
-        return wrong(command, "-o", "draws svg, png and pdf, replay animations as gif, too", place);
-    if (format == LOOK_FORMAT_COUNT || exists) {
-        look->directory = place;
-        return place[0] || wrong(command, "-o", "takes a directory or a file", place);
+    if (stat(text, &information) == 0 && S_ISDIR(information.st_mode)) {
+        l->directory = text;
+        return true;
     }
-    if (formatted)
-        return wrong(command, "-o", "with --format takes a directory", place);
-    memset(look->format, 0, sizeof look->format);
-    look->format[format] = true;
-    look->file = place;
+    if (format == LOOK_FORMAT_COUNT) {
+        l->directory = text;
+        return text[0] && !(dot && dot > name && is_other_format(dot + 1));
+    }
+    memset(l->format, 0, sizeof l->format);
+    l->format[format] = true;
+    l->file = text;
+    return true;
+}
+
+static bool read_journal(const char *text, void *look)
+{
+    struct look *const l = look;
+    l->width = strcmp(text, "page") == 0 ? 180 : 88;
+    l->points = 8;
+    l->bare = true;
+    if (!l->file) {
+        l->format[LOOK_SVG] = l->format[LOOK_PNG] = false;
+        l->format[LOOK_PDF] = true;
+    }
     return true;
 }
 
 /* ---- sizes -------------------------------------------------------------------------------- */
 
-static bool read_size(const struct command *command, const char *text, struct look *look)
+static bool read_size(const char *text, void *look)
 {
+    struct look *const l = look;
     char *end;
-    look->width = strtod(text, &end);
-    look->height = *end == 'x' ? strtod(end + 1, &end) : 0;
+    l->width = strtod(text, &end);
+    l->height = *end == 'x' ? strtod(end + 1, &end) : 0;
     if (strcmp(end, "mm") == 0)
         end += 2;
-    const bool good = *end == '\0' && look->width >= 30 && look->width <= 1000 &&
-                      (!strchr(text, 'x') || (look->height >= 30 && look->height <= 1000));
-    return good || wrong(command, "--size", "takes WIDTH or WIDTHxHEIGHT, 30 to 1000 mm", text);
+    return *end == '\0' && l->width >= 30 && l->width <= 1000 &&
+           (!strchr(text, 'x') || (l->height >= 30 && l->height <= 1000));
 }
 
 /* "Times", "Times,8", "8" */
-static bool read_font(const struct command *command, const char *text, struct look *look)
+static bool read_font(const char *text, void *look)
 {
     static char name[64]; /* of the one command that a process runs */
+    struct look *const l = look;
     const char *comma = strrchr(text, ','), *size = comma ? comma + 1 : text;
     char *end;
     const double points = strtod(size, &end);
     const bool sized = end != size && *end == '\0';
     const size_t length = comma ? (size_t)(comma - text) : sized ? 0 : strlen(text);
+    l->lettered = true;
     if ((comma && !sized) || length >= sizeof name || strpbrk(text, "'\"\\") ||
         (sized && !(points >= 4 && points <= 40)))
-        return wrong(command, "--font", "takes NAME, NAME,PT or PT (4 to 40)", text);
-    look->points = sized ? points : look->points;
+        return false;
+    l->points = sized ? points : l->points;
     if (length > 0) {
         snprintf(name, sizeof name, "%.*s", (int)length, text);
-        look->font = name;
+        l->font = name;
     }
     return true;
 }
 
 /* ---- names -------------------------------------------------------------------------------- */
+
+static bool read_title(const char *text, void *look)
+{
+    struct look *const l = look;
+    l->title = text;
+    l->bare = !text[0];
+    return true;
+}
 
 static bool read_pair(const char *text, struct look_pair *pair)
 {
@@ -138,55 +151,67 @@ static bool read_pair(const char *text, struct look_pair *pair)
     return true;
 }
 
-static bool read_names(const struct command *command, const struct look_options *o,
-                       struct look *look)
+static bool read_label(const char *text, void *look)
 {
-    for (size_t k = 0; k < o->label_count; k++)
-        if (!read_pair(o->labels[k], &look->label[look->labels++]))
-            return wrong(command, "--labels", "takes NAME=TEXT", o->labels[k]);
-    for (size_t k = 0; k < o->colour_count; k++) {
-        struct look_pair *const pair = &look->colour[look->colours];
-        if (strcmp(o->colours[k], "grey") == 0) {
-            look->grey = true;
-            continue;
-        }
-        if (!read_pair(o->colours[k], pair) || strlen(pair->value) != 7 || pair->value[0] != '#' ||
-            strspn(pair->value + 1, "0123456789abcdefABCDEF") != 6)
-            return wrong(command, "--colours", "takes NAME=#rrggbb, or grey", o->colours[k]);
-        look->colours++;
-    }
-    return true;
+    struct look *const l = look;
+    return read_pair(text, &l->label[l->labels++]);
 }
 
-bool look_given(const struct look_options *o)
+static bool read_colour(const char *text, void *look)
 {
-    size_t given = o->label_count + o->colour_count;
-    for (int k = 0; k < LOOK_WORDS; k++)
-        given += o->given[k];
-    return given > 0;
+    struct look *const l = look;
+    struct look_pair *const pair = &l->colour[l->colours];
+    if (strcmp(text, "grey") == 0)
+        return l->grey = true;
+    l->colours++;
+    return read_pair(text, pair) && strlen(pair->value) == 7 && pair->value[0] == '#' &&
+           strspn(pair->value + 1, "0123456789abcdefABCDEF") == 6;
 }
 
-bool look_read(const struct command *command, const struct look_options *o, struct look *look)
+bool look_given(const struct look *look)
 {
-    look_begin(look);
-    if (o->journal) {
-        const bool page = strcmp(o->journal, "page") == 0;
-        if (!page && strcmp(o->journal, "column") != 0)
-            return wrong(command, "--for", "takes column or page", o->journal);
-        look->width = page ? 180 : 88;
-        look->points = 8;
-        look->bare = true;
-        look->format[LOOK_SVG] = look->format[LOOK_PNG] = false;
-        look->format[LOOK_PDF] = true;
-    }
-    look->picture = o->picture;
-    look->title = o->title;
-    look->bare = o->title ? !o->title[0] : look->bare;
-    return (!o->format || read_formats(command, o->format, look)) &&
-           (!o->place || read_place(command, o->place, o->format != NULL, look)) &&
-           (!o->size || read_size(command, o->size, look)) &&
-           (!o->font || read_font(command, o->font, look)) && read_names(command, o, look);
+    return look->file || look->directory || look->formatted || look->picture || look->width > 0 ||
+           look->lettered || look->title || look->grey || look->labels + look->colours > 0;
 }
+
+static const char *journal_word(size_t k)
+{
+    return k == 0 ? "column" : k == 1 ? "page" : NULL;
+}
+
+/* -o first, whose ending --for and --format heed; what --for chooses others may change. */
+const struct option look_drawn[] = {
+    {"--for", .word = journal_word, .read = read_journal,
+     .text = "column: 88 mm wide, page: 180 mm; text of 8 pt, no title (the caption has it), PDF "
+             "unless another format is asked for"},
+    {"--format", "F,...", .read = read_formats,
+     .takes = "svg, png or pdf, or several with commas, and -o a directory then",
+     .text = "files of each picture: svg, png, pdf; default svg,png"},
+    {"--picture", "P", OPTION_TO(struct look, picture), .text = "of all pictures only NAME-P"},
+    {"--size", "W[xH]", .read = read_size, .takes = "WIDTH or WIDTHxHEIGHT, 30 to 1000 mm",
+     .text = "mm; W alone: as high as it needs"},
+    {"--font", "NAME[,PT]", .read = read_font, .takes = "NAME, NAME,PT or PT (4 to 40)",
+     .text = "or PT alone; default DejaVu Sans, 9 pt (without --for or --size the page grows with "
+             "it)"},
+    {"--title", "TEXT", .read = read_title, .text = "instead of the file's; '' leaves it out"},
+    {"--labels", "NAME=TEXT", .read = read_label, .takes = "NAME=TEXT", .most = LOOK_MOST_NAMES,
+     .text = "TEXT where the picture says NAME: the path of an axis, an outcome, a value or a "
+             "file in the legend or over a panel; repeatable"},
+    {"--colours", "NAME=#rrggbb|grey", .read = read_colour, .takes = "NAME=#rrggbb, or grey",
+     .most = LOOK_MOST_NAMES,
+     .text = "of an outcome or an entry of a legend; repeatable. grey: all in grey"},
+    {.text =
+         "  STANCE_SCRIPTS=DIR in the environment keeps each picture's gnuplot script and data"},
+    {0},
+};
+
+const struct option look_options[] = {
+    {"-o", "PLACE", LOOK_PLACE,
+     .text = "where the pictures go: a directory (made when missing), or a file whose ending says "
+             "what it is: fig.pdf, fig.svg, fig.png"},
+    {.rows = look_drawn},
+    {0},
+};
 
 const char *look_directory(const struct look *look, const char *file, char *own, size_t size)
 {

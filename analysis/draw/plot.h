@@ -87,8 +87,9 @@ struct plot_answer {
     enum results_kind of;           /* RESULTS_KIND_COUNT: all that are done */
 };
 
-/* The table's entry of a name; false when it is none, or no number. */
-bool plot_answer_find(const struct command *command, const char *name, struct plot_answer *answer);
+/* The names of those that are numbers, NULL from the last on; the table's entry of a name. */
+const char *plot_answer_word(size_t k);
+bool plot_answer_find(const char *name, struct plot_answer *answer);
 /* The numbers, NAN for other cases, and their range; values[cases] are freed by the caller. False,
  * with a message, also when there are none. */
 bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,

@@ -14,7 +14,7 @@ static bool print_csv(const struct search_study *study)
 static int summarise_front(struct report *report, stance_message *message)
 {
     struct search_front front;
-    if (!search_front_open(&front, report->files, report->count, message))
+    if (!search_front_open(&front, report->files.text, report->files.count, message))
         return EXIT_IO;
     const bool good = search_front_print(&front, report->form);
     search_front_close(&front);
@@ -24,7 +24,7 @@ static int summarise_front(struct report *report, stance_message *message)
 int search_summarise(struct report *report, stance_message *message)
 {
     struct search_study study;
-    if (report->count > 1)
+    if (report->files.count > 1)
         return summarise_front(report, message);
     if (!search_study_open(&study, report->file, message))
         return EXIT_IO;

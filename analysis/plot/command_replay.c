@@ -8,6 +8,7 @@
 #include "runner/ranks/parallel.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <spawn.h>
 #include <stdlib.h>
@@ -18,13 +19,22 @@
 extern char **environ;
 extern const struct command command_replay; /* below */
 
-enum { MOST_CASES = 2, MOST_SETS = 32 };
+enum { MOST_CASES = 2 };
 
 struct request {
-    const char *file, *index[MOST_CASES], *near[MOST_CASES], *set[MOST_SETS];
-    size_t indices, nears, sets;
+    const char *file;
+    struct numbers {
+        uint64_t number[MOST_CASES];
+        size_t count;
+    } cases;
+    struct option_texts nears, sets;
     struct look look;
 };
+
+static size_t asked_cases(const struct request *request)
+{
+    return request->cases.count + request->nears.count;
+}
 
 static bool bad(const char *what, const char *text)
 {
@@ -171,21 +181,19 @@ static bool find_case(const struct results *r, const struct request *request, si
                       uint64_t *index)
 {
     char text[600];
-    if (k < request->indices) {
-        char *end;
-        errno = 0;
-        *index = strtoull(request->index[k], &end, 10);
-        if (request->index[k][0] < '0' || request->index[k][0] > '9' || *end || errno)
-            return bad("--case takes the number of a case, not", request->index[k]);
-        if (!r->single && *index >= r->cases)
-            return bad("the file has no case", request->index[k]);
+    if (k < request->cases.count) {
+        *index = request->cases.number[k];
+        if (!r->single && *index >= r->cases) {
+            snprintf(text, sizeof text, "%" PRIu64, *index);
+            return bad("the file has no case", text);
+        }
         return true;
     }
     if (r->single) {
         *index = r->index;
         return true;
     }
-    if (!find_near(r, request->near[k - request->indices], index))
+    if (!find_near(r, request->nears.text[k - request->cases.count], index))
         return false;
     results_case_text(r, *index, text, sizeof text);
     fprintf(stderr, "case %llu, %s: %s\n", (unsigned long long)*index, text,
@@ -196,8 +204,8 @@ static bool find_case(const struct results *r, const struct request *request, si
 /* A case has its own values of what is varied: --set would change nothing. */
 static bool check_sets(const struct results *r, const struct request *request)
 {
-    for (size_t k = 0; k < request->sets; k++) {
-        const char *const set = request->set[k];
+    for (size_t k = 0; k < request->sets.count; k++) {
+        const char *const set = request->sets.text[k];
         const size_t length = strcspn(set, "=");
         bool varied = false;
         for (int a = 0; a < r->axes; a++)
@@ -235,19 +243,25 @@ static bool write_scenario(const char *path, const char *text, stance_message *m
 static int run_again(const struct request *request, const struct replay *replay)
 {
     char index[32];
-    const char *arguments[16 + 2 * MOST_SETS] = {"stance", "run",        replay->scenario,
-                                                 "--only", index,        "--trace",
-                                                 "-o",     replay->file, "--quiet"};
-    size_t count = 9;
+    const char *const fixed[] = {"stance",  "run", replay->scenario, "--only", index,
+                                 "--trace", "-o",  replay->file,     "--quiet"};
+    size_t count = sizeof fixed / sizeof fixed[0];
+    const char **const arguments = calloc(count + 2 * request->sets.count + 1, sizeof *arguments);
     pid_t child;
     int status;
+    if (!arguments)
+        return -1;
+    memcpy(arguments, fixed, sizeof fixed);
     parallel_leave_launcher();
     snprintf(index, sizeof index, "%llu", (unsigned long long)replay->index);
-    for (size_t k = 0; k < request->sets; k++) {
+    for (size_t k = 0; k < request->sets.count; k++) {
         arguments[count++] = "--set";
-        arguments[count++] = request->set[k];
+        arguments[count++] = request->sets.text[k];
     }
-    if (posix_spawn(&child, "/proc/self/exe", NULL, NULL, (char *const *)arguments, environ) != 0)
+    const int failed =
+        posix_spawn(&child, "/proc/self/exe", NULL, NULL, (char *const *)arguments, environ);
+    free(arguments);
+    if (failed)
         return -1;
     while (waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
@@ -281,7 +295,7 @@ static int compute(const struct results *r, const struct request *request, struc
         return EXIT_IO;
     replay->opened = true;
     const enum results_kind was = r->kind[r->single ? 0 : replay->index], is = replay->r.kind[0];
-    if (request->sets == 0 && was != RESULTS_PENDING && was != is)
+    if (request->sets.count == 0 && was != RESULTS_PENDING && was != is)
         fprintf(stderr, "case %llu: was %s in the file, and is %s now\n",
                 (unsigned long long)replay->index, results_kind_names[was], results_kind_names[is]);
     return EXIT_DONE;
@@ -329,8 +343,7 @@ static int replay(const struct request *request, struct look *look, const struct
     static struct replay replays[MOST_CASES]; /* large; the process has but one command */
     struct plot plots[MOST_CASES];
     char directory[1024], stem[400];
-    const size_t count =
-        request->indices + request->nears > 0 ? request->indices + request->nears : 1;
+    const size_t count = asked_cases(request) > 0 ? asked_cases(request) : 1;
     size_t used = (size_t)snprintf(stem, sizeof stem, "%.200s", r->name);
     int code = EXIT_DONE;
     if (!check_sets(r, request))
@@ -362,7 +375,7 @@ static int work(void *context)
     stance_message message = {""};
     int code = EXIT_IO;
     if (results_open(&r, request->file, &message)) {
-        if (!r.single && request->indices + request->nears == 0)
+        if (!r.single && asked_cases(request) == 0)
             code = command_usage(&command_replay, "--case N or --near NAME=VALUE,... says which");
         else
             code = replay(request, &request->look, &r, &message);
@@ -377,49 +390,55 @@ static int work(void *context)
 
 static int run(int argc, char **argv)
 {
-    struct request request = {0};
-    struct look_options options = {0};
-    size_t operands;
-    const struct option_spec specs[] = {
-        {"--case", true, request.index, MOST_CASES, &request.indices},
-        {"--near", true, request.near, MOST_CASES, &request.nears},
-        {"--set", true, request.set, MOST_SETS, &request.sets},
-        LOOK_SPECS(options),
-    };
-    const int begun =
-        command_begin(&command_replay, argc, argv, specs, sizeof specs / sizeof specs[0],
-                      "a results file", &request.file, 1, 1, &operands);
-    if (begun != COMMAND_GOES_ON)
-        return begun;
-    if (request.indices + request.nears > MOST_CASES)
+    struct request request = {.file = NULL};
+    struct look *const look = &request.look;
+    look_begin(look);
+    const int code = command_begin(&command_replay, argc, argv, &request);
+    if (code != COMMAND_GOES_ON)
+        return code;
+    if (asked_cases(&request) > MOST_CASES)
         return command_usage(&command_replay, "two cases at the most");
-    if (!look_read(&command_replay, &options, &request.look))
-        return EXIT_USAGE;
-    if (is_animated(&request.look)) {
-        if (!options.format && !options.place)
-            request.look.format[LOOK_PNG] = request.look.format[LOOK_PDF] = false;
-        if (request.look.format[LOOK_PNG] || request.look.format[LOOK_PDF])
+    if (is_animated(look)) {
+        if (!look->formatted && !look->file && !look->directory)
+            look->format[LOOK_PNG] = look->format[LOOK_PDF] = false;
+        if (look->format[LOOK_PNG] || look->format[LOOK_PDF])
             return command_usage(&command_replay, "an animation is svg or gif");
     }
     return sandbox(work, &request, request.file);
 }
 
+static bool read_case(const char *text, void *cases)
+{
+    struct numbers *const n = cases;
+    char *end;
+    n->number[n->count++] = strtoull(text, &end, 10);
+    return text[0] >= '0' && text[0] <= '9' && !*end && errno == 0;
+}
+
+#define TO(member) OPTION_TO(struct request, member)
+static const struct option options[] = {
+    {"FILE", TO(file), .low = 1, .text = "a results file"},
+    {"--case", "N", TO(cases), .most = MOST_CASES, .read = read_case,
+     .takes = "the number of a case",
+     .text = "the case with this flat index; of a file of one case that one"},
+    {"--near", "NAME=VALUE,...", TO(nears), .most = MOST_CASES,
+     .text = "the case nearest to these values: initial.offset.theta=0.02, or theta=0.02 where no "
+             "other path ends so; paths that move along an axis are names, too. Offsets that are "
+             "not named are those of the equilibrium, all else has its first value"},
+    {"--set", "PATH=VALUE", TO(sets),
+     .text = "with a value of the scenario replaced, as `run` has it; may be repeated"},
+    {.at = offsetof(struct request, look), .rows = look_options},
+    {0},
+};
+
 const struct command command_replay = {
     "replay",
-    "replay FILE (--case N | --near NAME=VALUE,...)... [--set PATH=VALUE]...\n"
-    "           [-o PLACE] [--format F,...] [--picture P] [--for column|page] ...",
     "one case of a results file again, drawn: curves, stick figures, animation",
     run,
-    "Computes a case again, from the scenario inside the file, and draws its coordinates, forces,\n"
-    "torques and gaps against time and its stick figures: NAME-caseN-coordinates ... beside the\n"
-    "file. Two cases are overlaid, the second dashed, its stick figures grey.\n"
-    "\n"
-    "  --case N       the case with this flat index; of a file of one case that one\n"
-    "  --near NAME=VALUE,...   the case nearest to these values: initial.offset.theta=0.02, or\n"
-    "                 theta=0.02 where no other path ends so; paths that move along an axis are\n"
-    "                 names, too. Offsets that are not named are those of the equilibrium, all\n"
-    "                 else has its first value\n"
-    "  --set PATH=VALUE   with a value of the scenario replaced, as `run` has it\n"
-    "  -o FILE.gif    an animation in real time instead; --picture animation draws it as SVG, for\n"
-    "                 browsers\n" LOOK_HELP,
+    options,
+    "Computes a case again, from the scenario inside the file, and draws its coordinates, forces, "
+    "torques and gaps against time and its stick figures: NAME-caseN-coordinates ... beside the "
+    "file. Two cases are overlaid, the second dashed, its stick figures grey. -o FILE.gif: an "
+    "animation in real time instead; --picture animation draws it as SVG, for browsers.",
+    NULL,
 };

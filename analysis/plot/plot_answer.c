@@ -7,20 +7,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool plot_answer_find(const struct command *command, const char *name, struct plot_answer *answer)
+/* Not those that are codes: a map of outcomes is drawn anyway. */
+const char *plot_answer_word(size_t k)
 {
-    const char *known[STANCE_ANSWER_COUNT];
-    const stance_answer *of[STANCE_ANSWER_COUNT];
-    size_t count = 0;
-    for (int k = 0; k < STANCE_ANSWER_COUNT; k++)
-        if (!stance_answers[k].word) /* codes: a map of outcomes is drawn anyway */
-            of[count] = &stance_answers[k], known[count++] = stance_answers[k].name;
-    const size_t k = command_word(command, "--answer", name, known, count);
-    if (k < count)
-        *answer =
-            (struct plot_answer){of[k]->name, strcmp(of[k]->unit, "1") == 0 ? "" : of[k]->unit,
-                                 of[k]->text, RESULTS_KIND_COUNT};
-    return k < count;
+    for (size_t a = 0; a < STANCE_ANSWER_COUNT; a++)
+        if (!stance_answers[a].word && k-- == 0)
+            return stance_answers[a].name;
+    return NULL;
+}
+
+bool plot_answer_find(const char *name, struct plot_answer *answer)
+{
+    size_t k = 0;
+    while (k < STANCE_ANSWER_COUNT && strcmp(stance_answers[k].name, name) != 0)
+        k++;
+    if (k < STANCE_ANSWER_COUNT)
+        *answer = (struct plot_answer){
+            name, strcmp(stance_answers[k].unit, "1") == 0 ? "" : stance_answers[k].unit,
+            stance_answers[k].text, RESULTS_KIND_COUNT};
+    return k < STANCE_ANSWER_COUNT;
 }
 
 bool plot_answer_numbers(const struct plot *plot, const struct plot_answer *answer, double **values,

@@ -22,54 +22,58 @@ static int summarise(struct report *report, const struct results *r, stance_mess
     return good ? EXIT_DONE : EXIT_IO;
 }
 
+struct request {
+    struct report report;
+};
+
 static int run(int argc, char **argv)
 {
-    struct report report = {
-        .command = &command_summary, .work = summarise, .search = search_summarise};
-    int code;
-    return report_options(&report, argc, argv, NULL, 0, &code) ? report_run(&report) : code;
+    struct request request = {
+        {.command = &command_summary, .work = summarise, .search = search_summarise}};
+    const int code = command_begin(&command_summary, argc, argv, &request);
+    return code == COMMAND_GOES_ON ? report_run(&request.report) : code;
 }
+
+static const struct option options[] = {
+    {"FILE...", OPTION_TO(struct request, report.files), .low = 1, .high = REPORT_FILES,
+     .text = "a results file"},
+    {REPORT_CSV,
+     .text = "the counts of all cases, then a row for every value of every parameter: parameter, "
+             "value, done, failed, pending, stabilised, rested, fell, undecided, and the share of "
+             "stabilised cases (without a controller that has a target: rested ones) with its "
+             "interval low ... high (of a grid empty); `stance table` has the cases themselves"},
+    {REPORT_JSON, .text = "the same as JSON; what does not apply is left out or null. Keys"},
+    {0},
+};
 
 const struct command command_summary = {
     "summary",
-    "summary FILE [--json | --csv]\n"
-    "       stance summary SEARCH... [--json | --csv]",
     "what came out: outcomes, extent of the stabilised set, extremes, cost",
     run,
-    "Works on files that are not finished, too. Shares are of the cases that are done. Those of a\n"
+    options,
+    "Works on files that are not finished, too. Shares are of the cases that are done. Those of a "
     "grid have no intervals: its cases are no draws, and how much of the space between them has "
-    "an\n"
-    "outcome `stance basin` says. With sweep.sample shares have 95 % intervals of the sample: "
-    "what\n"
-    "scatters are its points (of saltelli and morris blocks), not the cases that each has on grid\n"
-    "axes. An extent is the unbroken stretch of stabilised cases through the equilibrium along one "
-    "axis of offsets, on the line where the other offsets are nearest to\n"
-    "zero; it ends midway between the last stabilised case and the next one.\n"
-    "\n"
-    "  --csv    the counts of all cases, then a row for every value of every parameter: "
-    "parameter,\n"
-    "           value, done, failed, pending, stabilised, rested, fell, undecided, and the share\n"
-    "           of stabilised cases (without a controller that has a target: rested ones) with\n"
-    "           its interval low ... high (of a grid empty); `stance table` has the cases "
-    "themselves\n"
-    "  --json   the same as JSON; what does not apply is left out or null. Keys\n"
+    "an outcome `stance basin` says. With sweep.sample shares have 95 % intervals of the sample: "
+    "what scatters are its points (of saltelli and morris blocks), not the cases that each has on "
+    "grid axes. An extent is the unbroken stretch of stabilised cases through the equilibrium "
+    "along one axis of offsets, on the line where the other offsets are nearest to zero; it ends "
+    "midway between the last stabilised case and the next one.\n",
     "    file, title, version, revision, date, ranks\n"
     "    scenarios    [{date, done}] of a file that went on with another scenario, the first one\n"
     "                 first: since when, cases done with it\n"
     "    axes         [{path, unit, long_name, count, first, last}]\n"
     "    fixed        {path: value} of the fields that do not vary\n"
-    "    cases        total, done, failed, pending; inferred: done, but not simulated (refined "
-    "map);\n"
-    "                 damaged: pending, because their checksums do not fit\n"
+    "    cases        total, done, failed, pending; inferred: done, but not simulated (refined\n"
+    "                 map); damaged: pending, because their checksums do not fit\n"
     "    failures     {reason: count}\n"
     "    outcomes     {name: {count, share, low, high}} of the cases done\n"
-    "    cut          [{path, end: lower or upper, at}]: faces of the box of starts on which "
-    "cases\n"
-    "                 of the kind judged by lie, so that their share is the box's\n"
+    "    cut          [{path, end: lower or upper, at}]: faces of the box of starts on which\n"
+    "                 cases of the kind judged by lie, so that their share is the box's\n"
     "    fall_causes  {point or body: count} of those that fell\n"
     "    extents      [{path, unit, outcome, stabilised, low, high, low_at_end, high_at_end,\n"
-    "                 low_unknown, high_unknown, at: {path: value}}]; outcome of the case nearest\n"
-    "                 to the equilibrium; where that is pending or failed stabilised is null\n"
+    "                 low_unknown, high_unknown, at: {path: value}}]; outcome of the case\n"
+    "                 nearest to the equilibrium; where that is pending or failed stabilised is\n"
+    "                 null\n"
     "    parameters   [{path, unit, share_of, values: [{value, done, failed, pending,\n"
     "                 stabilised, rested, fell, undecided, share, low, high,\n"
     "                 extents: {path: [low, high]}}],\n"

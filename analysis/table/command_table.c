@@ -217,24 +217,24 @@ static bool put_rows(struct listing *t, stance_message *message)
 /* ---- the command -------------------------------------------------------------------------- */
 
 struct request {
-    const char *of;
-    const char **answer;
-    size_t answers;
+    struct report report;
+    struct option_texts answers;
+    enum results_kind of; /* RESULTS_KIND_COUNT: all */
 };
 
 static int work(struct report *report, const struct results *r, stance_message *message)
 {
-    const struct request *request = report->request;
+    const struct request *request = (const struct request *)report;
     struct listing *t = calloc(1, sizeof *t);
     uint64_t ignored;
     if (!t)
         return EXIT_IO;
     t->r = r;
-    t->of = request->of;
-    const bool good = find_parameters(t, message) &&
-                      statistics_inferred(r, &ignored, &t->inferred, message) &&
-                      open_columns(t, request->answers ? request->answer : answers,
-                                   request->answers ? request->answers : ANSWERS, message);
+    t->of = request->of < RESULTS_KIND_COUNT ? results_kind_names[request->of] : NULL;
+    const bool good =
+        find_parameters(t, message) && statistics_inferred(r, &ignored, &t->inferred, message) &&
+        open_columns(t, request->answers.count ? request->answers.text : answers,
+                     request->answers.count ? request->answers.count : ANSWERS, message);
     if (good)
         add_columns(t);
     const bool written = good && put_rows(t, message);
@@ -245,38 +245,37 @@ static int work(struct report *report, const struct results *r, stance_message *
 
 static int run(int argc, char **argv)
 {
-    const char *answer[MOST_COLUMNS];
-    struct request request = {.answer = answer};
-    struct report report = {
-        .command = &command_table, .work = work, .request = &request, .one_form = true};
-    size_t given = 0;
-    const struct option_spec specs[] = {{"--of", true, &request.of, 1, &given},
-                                        {"--answer", true, answer, MOST_COLUMNS, &request.answers}};
-    int code;
-
-    if (!report_options(&report, argc, argv, specs, 2, &code))
-        return code;
-    bool good = !request.of || command_word(&command_table, "--of", request.of, results_kind_names,
-                                            RESULTS_KIND_COUNT) < RESULTS_KIND_COUNT;
-    for (size_t k = 0; good && k < request.answers; k++)
-        good = command_word(&command_table, "--answer", answer[k], answers, ANSWERS) < ANSWERS;
-    return good ? report_run(&report) : EXIT_USAGE;
+    struct request request = {.report = {.command = &command_table, .work = work},
+                              .of = RESULTS_KIND_COUNT};
+    const int code = command_begin(&command_table, argc, argv, &request);
+    return code == COMMAND_GOES_ON ? report_run(&request.report) : code;
 }
+
+static const char *answer_name(size_t k)
+{
+    return k < ANSWERS ? answers[k] : NULL;
+}
+
+static const struct option options[] = {
+    {REPORT_FILE},
+    {"--answer", "NAME", OPTION_TO(struct request, answers), .word = answer_name,
+     .most = MOST_COLUMNS, .text = "these answers alone, in this order; may be repeated"},
+    {"--of", "OUTCOME", OPTION_TO(struct request, of), .word = results_kind_word,
+     .text = "only cases that were stabilised, rested, fell, are undecided, failed or pending"},
+    {0},
+};
 
 const struct command command_table = {
     "table",
-    "table FILE [--answer NAME]... [--of OUTCOME]",
     "every case as a row of CSV",
     run,
-    "Prints, as comma-separated values (RFC 4180) with a head, for each case: its number, the\n"
-    "values of the axes, of what varies with them (further paths of an axis, sampled\n"
-    "parameters), and its answers as the file has them: status, outcome, evidence and failure\n"
-    "as words, numbers as short as gives the same double again, nothing for NAN, nothing but the\n"
-    "status for cases that are pending, nothing but words for those that a refined map has\n"
-    "inferred. Units are those of `stance describe`: SI and radians.\n"
-    "Files of any length are read a few thousand cases at a time.\n"
-    "\n"
-    "  --answer NAME    these answers alone, in this order; may be repeated\n"
-    "  --of OUTCOME     only cases that were stabilised, rested, fell, are undecided, failed or\n"
-    "                   pending\n",
+    options,
+    "Prints, as comma-separated values (RFC 4180) with a head, for each case: its number, the "
+    "values of the axes, of what varies with them (further paths of an axis, sampled parameters), "
+    "and its answers as the file has them: status, outcome, evidence and failure as words, "
+    "numbers as short as gives the same double again, nothing for NAN, nothing but the status for "
+    "cases that are pending, nothing but words for those that a refined map has inferred. Units "
+    "are those of `stance describe`: SI and radians. Files of any length are read a few thousand "
+    "cases at a time.\n",
+    NULL,
 };

@@ -18,25 +18,17 @@ struct report {
     /* The same on the file of a search, which is no results file, or on several; NULL: it has
      * nothing to say of one. */
     int (*search)(struct report *report, stance_message *message);
-    void *request; /* the command's own */
-    bool one_form; /* there is neither --json nor --csv */
-    const char *file;
-    const char *files[REPORT_FILES]; /* `file`, and of searches others */
-    size_t count;
+    struct option_texts files; /* several of searches */
+    const char *file;          /* the first */
     enum table_form form;
 };
+/* Rows of a command whose `struct request` begins with its report. */
+#define REPORT_FILE                                                                                \
+    "FILE", OPTION_TO(struct request, report.files), .low = 1, .high = 1, .text = "a results file"
+#define REPORT_CSV TABLE_CSV(struct request, report.form)
+#define REPORT_JSON TABLE_JSON(struct request, report.form)
 
-/* Reads the command line: specs[count], at most 14, --json, --csv and the file. False: the command
- * has ended with *code. */
-bool report_options(struct report *report, int argc, char **argv, const struct option_spec *specs,
-                    size_t count, int *code);
 /* Opens the file in a sandbox and works on it; returns the exit code. */
 int report_run(struct report *report);
-
-/* Values of options; NULL: it was not given, and the value stays. False: what is wrong has been
- * said. A number lies between low and high. */
-bool report_number(const struct report *report, const char *option, const char *text, double low,
-                   double high, bool whole, double *value);
-bool report_outcome(const struct report *report, const char *text, enum results_kind *of);
 
 #endif

@@ -7,6 +7,7 @@
 #ifndef STANCE_TABLE_TABLE_H
 #define STANCE_TABLE_TABLE_H
 
+#include "runner/base/command.h"
 #include "runner/store/results.h"
 
 #include <jansson.h>
@@ -15,10 +16,10 @@
 
 /* What a command is asked for, with --json, --csv or neither. */
 enum table_form { TABLE_AS_TEXT, TABLE_AS_CSV, TABLE_AS_JSON };
-static inline enum table_form table_form(size_t json, size_t csv)
-{
-    return json ? TABLE_AS_JSON : csv ? TABLE_AS_CSV : TABLE_AS_TEXT;
-}
+/* Their rows, which say in `text` what there is. */
+#define TABLE_CSV(type, member) "--csv", OPTION_TO(type, member), .low = TABLE_AS_CSV
+#define TABLE_JSON(type, member)                                                                   \
+    "--json", OPTION_TO(type, member), .low = TABLE_AS_JSON, .without = "--csv"
 
 enum table_kind {
     TABLE_NOTHING, /* text: the column's word for it; CSV: empty; JSON: null */

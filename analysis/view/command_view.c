@@ -21,8 +21,9 @@ extern const struct command command_view; /* below */
 enum { MOST_FILES = 64, NAME = 1100 };
 
 struct request {
-    const char *files[MOST_FILES], *place, *answers;
-    size_t count;
+    struct option_texts files;
+    const char *place, *answers;
+    bool open;
     struct page_request page;
     const char *file; /* the one at hand */
     char out[NAME];   /* its page */
@@ -148,8 +149,8 @@ static int write_index(void *context)
         return EXIT_IO;
     bool good = true;
     page_index_begin(w.out);
-    for (size_t i = 0; good && i < request->count; i++) {
-        request->file = request->files[i];
+    for (size_t i = 0; good && i < request->files.count; i++) {
+        request->file = request->files.text[i];
         good = name_page(request) &&
                page_index_card(w.out, request->file, strrchr(request->out, '/') + 1, &message);
     }
@@ -180,7 +181,7 @@ static bool name_page(struct request *request)
     const size_t length = strlen(name),
                  stem = length > 3 && strcmp(name + length - 3, ".h5") == 0 ? length - 3 : length;
     int n;
-    if (place && !is_directory(place) && request->count == 1)
+    if (place && !is_directory(place) && request->files.count == 1)
         n = snprintf(request->out, sizeof request->out, "%s", place);
     else if (place)
         n = snprintf(request->out, sizeof request->out, "%s/%.*s.html", place, (int)stem, name);
@@ -239,24 +240,24 @@ static bool is_same(const char *a, const char *b)
 static bool names_differ(struct request *request)
 {
     char name[MOST_FILES + 1][NAME];
-    snprintf(name[request->count], NAME, "%.1000s/index.html",
+    snprintf(name[request->files.count], NAME, "%.1000s/index.html",
              request->place ? request->place : "");
-    for (size_t i = request->count; i-- > 0;) {
-        request->file = request->files[i];
+    for (size_t i = request->files.count; i-- > 0;) {
+        request->file = request->files.text[i];
         if (!name_page(request))
             return command_usage(&command_view, "the page's name is too long"), false;
         memcpy(name[i], request->out, NAME);
-        for (size_t k = 0; k < request->count; k++)
-            if (is_same(request->out, request->files[k])) {
+        for (size_t k = 0; k < request->files.count; k++)
+            if (is_same(request->out, request->files.text[k])) {
                 fprintf(stderr, "stance view: %s is a results file: give its page another name\n",
                         request->out);
                 return false;
             }
-        for (size_t k = i + 1; request->count > 1 && k <= request->count; k++)
+        for (size_t k = i + 1; request->files.count > 1 && k <= request->files.count; k++)
             if (strcmp(name[i], name[k]) == 0) {
                 fprintf(stderr, "stance view: %s: its page would be written over %s%s, %s\n",
-                        request->file, k < request->count ? "that of " : "the index",
-                        k < request->count ? request->files[k] : "", name[k]);
+                        request->file, k < request->files.count ? "that of " : "the index",
+                        k < request->files.count ? request->files.text[k] : "", name[k]);
                 return false;
             }
     }
@@ -267,14 +268,14 @@ static bool names_differ(struct request *request)
 static int write_pages(struct request *request)
 {
     int code = EXIT_DONE;
-    for (size_t i = 0; code == EXIT_DONE && i < request->count; i++) {
-        request->file = request->page.file = request->files[i];
+    for (size_t i = 0; code == EXIT_DONE && i < request->files.count; i++) {
+        request->file = request->page.file = request->files.text[i];
         name_page(request);
         code = sandbox(view, request, request->file);
-        if (code == EXIT_DONE && request->count == 1)
+        if (code == EXIT_DONE && request->files.count == 1)
             printf("%s\n", request->out);
     }
-    if (code != EXIT_DONE || request->count == 1)
+    if (code != EXIT_DONE || request->files.count == 1)
         return code;
     code = sandbox(write_index, request, request->place);
     snprintf(request->out, sizeof request->out, "%.1000s/index.html", request->place);
@@ -285,17 +286,9 @@ static int write_pages(struct request *request)
 
 static int run(int argc, char **argv)
 {
-    struct request request = {0};
-    size_t given[3] = {0};
+    struct request request = {.open = false};
     const char *answer[PAGE_MOST_ANSWERS];
-    const struct option_spec specs[] = {
-        {"-o", true, &request.place, 1, &given[0]},
-        {"--answers", true, &request.answers, 1, &given[1]},
-        {"--open", false, NULL, 0, &given[2]},
-    };
-    const int begun =
-        command_begin(&command_view, argc, argv, specs, sizeof specs / sizeof specs[0],
-                      "a results file", request.files, 1, MOST_FILES, &request.count);
+    const int begun = command_begin(&command_view, argc, argv, &request);
     if (begun != COMMAND_GOES_ON)
         return begun;
     if (!strstr(page_template(), PAGE_DATA)) {
@@ -306,42 +299,45 @@ static int run(int argc, char **argv)
     }
     if (!choose_answers(&request, request.answers, answer))
         return EXIT_USAGE;
-    if (request.count > 1 && !request.place)
+    if (request.files.count > 1 && !request.place)
         return command_usage(&command_view, "pages of several files need a directory: -o DIR");
-    if (request.count == 1 && request.place && !is_directory(request.place) &&
+    if (request.files.count == 1 && request.place && !is_directory(request.place) &&
         !is_page(request.place))
         return command_usage(&command_view, "-o takes a directory, or a name that ends in .html");
     if (!names_differ(&request))
         return EXIT_USAGE;
-    if (request.count > 1 && mkdir(request.place, 0777) != 0 && errno != EEXIST)
+    if (request.files.count > 1 && mkdir(request.place, 0777) != 0 && errno != EEXIST)
         return failed(request.place, "make");
     const int code = write_pages(&request);
     if (code != EXIT_DONE)
         return code;
-    return given[2] ? show(request.out) : EXIT_DONE;
+    return request.open ? show(request.out) : EXIT_DONE;
 }
+
+#define TO(member) OPTION_TO(struct request, member)
+static const struct option options[] = {
+    {"FILE...", TO(files), .low = 1, .high = MOST_FILES, .text = "a results file"},
+    {"-o", "PLACE", TO(place),
+     .text = "the page's name, which ends in .html, or a directory; a file of that name is "
+             "replaced, unless it is one of the results files"},
+    {"--answers", "A,...|all", TO(answers),
+     .text = "the answers that the page carries, for colours and for what the pointer shows; "
+             "`all` of them. Unasked as many as take 24 MB. What is left out the page computes "
+             "where one clicks"},
+    {"--open", TO(open), .text = "opens it in the browser"},
+    {0},
+};
 
 const struct command command_view = {
     "view",
-    "view FILE... [-o PLACE] [--answers A,...|all] [--open]",
     "a page for the browser: a map whose cases are simulated where one clicks",
     run,
+    options,
     "Writes one self-contained page, NAME.html beside the file, which any browser opens from "
-    "disk:\n"
-    "no server, no network, nothing to install. It holds the file's labels, checksums and "
-    "answers,\n"
-    "its scenario, and the engine that computed it. A click on a case simulates and plays it, "
-    "with\n"
-    "the bits that the file has; parameters can be changed there and the map computed anew.\n"
-    "Of several files there is a page each, and index.html leads to them: with -o DIR. Of a "
-    "search\n"
-    "(stance optimise) the page has its curves.\n"
-    "\n"
-    "  -o PLACE       the page's name, which ends in .html, or a directory; a file of that name "
-    "is\n"
-    "                 replaced, unless it is one of the results files\n"
-    "  --answers A,... the answers that the page carries, for colours and for what the pointer\n"
-    "                 shows; `all` of them. Unasked as many as take 24 MB. What is left out the\n"
-    "                 page computes where one clicks\n"
-    "  --open         opens it in the browser\n",
+    "disk: no server, no network, nothing to install. It holds the file's labels, checksums and "
+    "answers, its scenario, and the engine that computed it. A click on a case simulates and "
+    "plays it, with the bits that the file has; parameters can be changed there and the map "
+    "computed anew. Of several files there is a page each, and index.html leads to them: with -o "
+    "DIR. Of a search (stance optimise) the page has its curves.\n",
+    NULL,
 };

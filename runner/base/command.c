@@ -4,210 +4,26 @@
 #include "units.h"
 #include "words.h"
 
+#include <errno.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/time.h>
 #include <unistd.h>
 
-enum { LONGEST_OPTION = 63 };
+enum { LONGEST_OPTION = 63, MOST_ROWS = 64, MOST_WORDS = 128, MARGIN = 92, TEXT_COLUMN = 21 };
 
-static void print_help(const struct command *command)
-{
-    bool named = strncmp(command->synopsis, "stance ", 7) == 0;
-    printf("usage: %s%s\n\n%s.\n", named ? "" : "stance ", command->synopsis, command->summary);
-    if (command->help && command->help[0]) {
-        printf("\n%s", command->help);
-        if (command->help[strlen(command->help) - 1] != '\n')
-            putchar('\n');
-    }
-}
-
-static bool bad_use(const struct command *command, const char *text, const char *word)
-{
-    fprintf(stderr, "stance %s: %s '%s' (stance %s -h explains)\n", command->name, text, word,
-            command->name);
-    return false;
-}
-
-/* Operands that are one too many where PATH=VALUE of a --set or --near was written in another way.
- */
-static bool unexpected(const struct command *command, int argc, char **argv, int i,
-                       const struct option_spec *specs, size_t spec_count)
-{
-    bool sets = false;
-    for (size_t k = 0; k < spec_count; k++)
-        sets = sets || strcmp(specs[k].name, "--set") == 0;
-    const char *path = i > 0 ? argv[i - 1] : "";
-    const bool joined = strncmp(path, "--set=", 6) == 0;
-    path += joined ? 6 : 0;
-    const bool near = i > 1 && strcmp(argv[i - 2], "--near") == 0;
-    if ((near || strncmp(path, "--near=", 7) == 0) && strchr(argv[i], '=')) {
-        fprintf(stderr, "stance %s: unexpected argument '%s'; write --near %s,%s\n", command->name,
-                argv[i], near ? path : path + 7, argv[i]);
-        return false;
-    }
-    if (sets && path[0] != '-' && (joined || (i > 1 && strcmp(argv[i - 2], "--set") == 0)) &&
-        !strchr(path, '=')) {
-        const char *value = strcmp(argv[i], "=") == 0 && i + 1 < argc ? argv[i + 1] : argv[i];
-        fprintf(stderr, "stance %s: unexpected argument '%s'; write --set %s=%s\n", command->name,
-                argv[i], path, value + (value[0] == '='));
-        return false;
-    }
-    if (sets && strchr(argv[i], '=')) {
-        fprintf(stderr, "stance %s: unexpected argument '%s'; write --set %s\n", command->name,
-                argv[i], argv[i]);
-        return false;
-    }
-    return bad_use(command, "unexpected argument", argv[i]);
-}
-
-static bool unknown_option(const struct command *command, const char *word,
-                           const struct option_spec *specs, size_t spec_count)
-{
-    const char *names[32];
-    size_t n = 0;
-    for (size_t i = 0; i < spec_count && n < sizeof names / sizeof names[0]; i++)
-        names[n++] = specs[i].name;
-    char stem[LONGEST_OPTION + 1];
-    snprintf(stem, sizeof stem, "%.*s", LONGEST_OPTION, word);
-    stem[strcspn(stem, "=")] = '\0';
-    static const char *const other[][2] = {{"--output", "-o"}, {"--out", "-o"}, {"-s", "--set"}};
-    const char *near = strlen(stem) > 2 ? nearest_word(stem, names, n) : NULL;
-    for (size_t k = 0; k < sizeof other / sizeof other[0]; k++)
-        for (size_t i = 0; i < n; i++)
-            near = strcmp(stem, other[k][0]) == 0 && strcmp(names[i], other[k][1]) == 0 ? names[i]
-                                                                                        : near;
-    if (strcmp(stem, "-n") == 0 || strcmp(stem, "-np") == 0) {
-        fprintf(stderr,
-                "stance %s: unknown option '%s'; for several ranks write mpirun -n N stance %s\n",
-                command->name, stem, command->name);
-        return false;
-    }
-    if (!near)
-        return bad_use(command, "unknown option", stem);
-    fprintf(stderr, "stance %s: unknown option '%s'; did you mean '%s'?\n", command->name, stem,
-            near);
-    return false;
-}
-
-/* The spec that `word` names, as "--name" or "--name=VALUE" (*value is set then). */
-static const struct option_spec *find_option(const char *word, const struct option_spec *specs,
-                                             size_t spec_count, const char **value)
-{
-    for (size_t i = 0; i < spec_count; i++) {
-        size_t length = strlen(specs[i].name);
-        if (strncmp(word, specs[i].name, length) != 0)
-            continue;
-        if (word[length] == '\0')
-            return &specs[i];
-        if (word[length] == '=' && length > 2) {
-            *value = word + length + 1;
-            return &specs[i];
-        }
-    }
-    return NULL;
-}
-
-/* Takes one option, whose value may be the next argument; *i moves on to the last one used. */
-static bool take_option(const struct command *command, int argc, char **argv, int *i,
-                        const struct option_spec *specs, size_t spec_count)
-{
-    const char *value = NULL;
-    const struct option_spec *spec = find_option(argv[*i], specs, spec_count, &value);
-
-    if (!spec)
-        return unknown_option(command, argv[*i], specs, spec_count);
-    if (spec->takes_value) {
-        if (!value) {
-            if (*i + 1 >= argc)
-                return bad_use(command, "a value must follow", spec->name);
-            value = argv[++*i];
-        }
-        if (*spec->count >= spec->max) {
-            return bad_use(command,
-                           spec->max == 1 ? "given twice:" : "given too often:", spec->name);
-        }
-        spec->values[*spec->count] = value;
-    } else if (value) {
-        return bad_use(command, "takes no value:", spec->name);
-    }
-    ++*spec->count;
-    return true;
-}
-
-/* ---- time limits ---------------------------------------------------------------------------- */
-
-static char late[120];
-
-static void end_late(int number)
-{
-    (void)number;
-    if (write(STDERR_FILENO, late, strlen(late)) < 0) {
-        /* Nobody hears it. */
-    }
-    _exit(EXIT_INTERRUPTED);
-}
-
-static bool limit_time(const struct command *command, const char *limit)
-{
-    const double seconds = seconds_of_text(limit);
-    const struct sigaction action = {.sa_handler = end_late};
-    if (!(seconds >= 0) || seconds > 1e9)
-        return bad_use(command, "--time-limit takes a duration such as 90s, 55m or 1h30m, not",
-                       limit);
-    snprintf(late, sizeof late, "%sstance %s: stopped after %.30s, its time limit\n",
-             isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", command->name, limit);
-    const long whole = (long)seconds;
-    const long rest = (long)((seconds - (double)whole) * 1e6);
-    const struct itimerval timer = {.it_value = {whole, whole + rest > 0 ? rest : 1}};
-    sigaction(SIGALRM, &action, NULL);
-    setitimer(ITIMER_REAL, &timer, NULL);
-    return true;
-}
-
-/* ---- all of them ---------------------------------------------------------------------------- */
-
-bool command_options(const struct command *command, int argc, char **argv,
-                     const struct option_spec *own, size_t spec_count, const char **operand,
-                     size_t max_operands, size_t *operands, bool *help)
-{
-    enum { MOST = 40 };
-    static const char option[] = "--time-limit";
-    bool only_operands = false, limited = strstr(command->help, option) && spec_count < MOST;
-    struct option_spec specs[MOST];
-    const char *limit = NULL;
-    size_t limits = 0;
-
-    for (size_t i = 0; i < spec_count && i < MOST; i++) {
-        specs[i] = own[i];
-        limited = limited && strcmp(own[i].name, option) != 0;
-    }
-    if (limited)
-        specs[spec_count++] = (struct option_spec){option, true, &limit, 1, &limits};
-    *operands = 0;
-    *help = false;
-    for (size_t i = 0; i < spec_count; i++)
-        *specs[i].count = 0;
-    for (int i = 1; i < argc; i++) {
-        if (!only_operands && strcmp(argv[i], "--") == 0) {
-            only_operands = true;
-        } else if (!only_operands &&
-                   (strcmp(argv[i], "-h") == 0 || strcmp(argv[i], "--help") == 0)) {
-            print_help(command);
-            *help = true;
-            return true;
-        } else if (!only_operands && argv[i][0] == '-' && argv[i][1] != '\0') {
-            if (!take_option(command, argc, argv, &i, specs, spec_count))
-                return false;
-        } else if (*operands >= max_operands) {
-            return unexpected(command, argc, argv, i, specs, spec_count);
-        } else {
-            operand[(*operands)++] = argv[i];
-        }
-    }
-    return !limit || limit_time(command, limit);
-}
+/* A command's options, those of rows within rows, too. */
+struct table {
+    const struct command *command;
+    size_t rows, operands; /* row of the operands; `rows`: there are none */
+    struct {
+        const struct option *option;
+        size_t at, given, group; /* rows that exclude each other stand side by side in a group */
+    } row[MOST_ROWS];
+};
 
 int command_usage(const struct command *command, const char *text)
 {
@@ -215,16 +31,298 @@ int command_usage(const struct command *command, const char *text)
     return EXIT_USAGE;
 }
 
-int command_begin(const struct command *command, int argc, char **argv,
-                  const struct option_spec *specs, size_t spec_count, const char *needed,
-                  const char **operand, size_t least, size_t most, size_t *operands)
+/* With a hint such as "; write ..."; NULL or "": that -h explains. */
+static bool bad_use(const struct command *command, const char *text, const char *word,
+                    const char *hint)
 {
-    bool help;
-    char text[120];
-    if (!command_options(command, argc, argv, specs, spec_count, operand, most, operands, &help))
-        return EXIT_USAGE;
-    snprintf(text, sizeof text, "%s must be given", needed);
-    return help ? EXIT_DONE : *operands < least ? command_usage(command, text) : COMMAND_GOES_ON;
+    fprintf(stderr, "stance %s: %s '%s'", command->name, text, word);
+    if (hint && hint[0])
+        fprintf(stderr, "%s\n", hint);
+    else
+        fprintf(stderr, " (stance %s -h explains)\n", command->name);
+    return false;
+}
+
+/* ---- the table ------------------------------------------------------------------------------ */
+
+static bool is_option(const struct option *o)
+{
+    return o->name && o->name[0] == '-';
+}
+
+static bool is_flag(const struct option *o)
+{
+    return !o->read && (o->kind == OPTION_FLAG || (o->kind == OPTION_WORD && !o->word));
+}
+
+/* Takes the next name off a list between blanks; false: there is none. */
+static bool next_name(const char **list, char name[LONGEST_OPTION + 1])
+{
+    const char *const from = *list ? *list + strspn(*list, " ") : "";
+    const size_t length = strcspn(from, " ");
+    snprintf(name, LONGEST_OPTION + 1, "%.*s", (int)length, from);
+    *list = from + length;
+    return length > 0;
+}
+
+static bool has_name(const char *list, const char *wanted)
+{
+    char name[LONGEST_OPTION + 1];
+    while (next_name(&list, name))
+        if (strcmp(name, wanted) == 0)
+            return true;
+    return false;
+}
+
+/* The row of that name, or `rows`. */
+static size_t find_row(const struct table *t, const char *name)
+{
+    size_t i = 0;
+    while (i < t->rows && (!t->row[i].option->name || strcmp(t->row[i].option->name, name) != 0))
+        i++;
+    return i;
+}
+
+static void add_rows(struct table *t, const struct option *o, size_t base)
+{
+    for (; o && (o->name || o->text || o->rows || o->part) && t->rows < MOST_ROWS; o++) {
+        const size_t i = t->rows;
+        if (o->rows)
+            add_rows(t, o->rows, base + o->at);
+        if (o->rows || o->part)
+            continue;
+        t->row[i].option = o;
+        t->row[i].at = base + o->at;
+        t->row[i].group = i;
+        const size_t before = i > 0 ? t->row[i - 1].group : 0;
+        if (i > 0 && is_option(o) && is_option(t->row[before].option) &&
+            has_name(o->without, t->row[before].option->name))
+            t->row[i].group = before;
+        t->rows++;
+    }
+}
+
+static void make_table(struct table *t, const struct command *command)
+{
+    *t = (struct table){.command = command};
+    add_rows(t, command->options, 0);
+    while (t->operands < t->rows &&
+           (!t->row[t->operands].option->name || is_option(t->row[t->operands].option)))
+        t->operands++;
+}
+
+/* How often an option must and may be given, how many operands there may be. */
+static size_t least_of(const struct option *o)
+{
+    return !is_option(o) || o->kind == OPTION_FLAG ? (size_t)o->low : 0;
+}
+
+static size_t most_of(const struct option *o)
+{
+    const double most = is_option(o) ? (double)o->most : o->high;
+    return most > 0 ? (size_t)most : o->kind == OPTION_TEXTS ? SIZE_MAX : 1;
+}
+
+static size_t words_of(const struct option *o, const char *words[MOST_WORDS])
+{
+    size_t count = 0;
+    while (o->word && count < MOST_WORDS && (words[count] = o->word(count)))
+        count++;
+    return count;
+}
+
+/* What the help calls a value, or the words that it may be; NULL: there is none. */
+static const char *value_name(const struct option *o, bool listed, char *text, size_t size)
+{
+    const char *words[MOST_WORDS];
+    const size_t count = words_of(o, words);
+    return count == 0 || (o->value && !listed) ? o->value
+                                               : words_join(text, size, "|", words, count);
+}
+
+/* ---- help ----------------------------------------------------------------------------------- */
+
+/* Fills lines with words, from a column on; returns where the last one ends. */
+static size_t fill(const char *text, size_t length, size_t column, size_t indent)
+{
+    const char *const end = text + length;
+    for (size_t word; (text += strspn(text, " ")) < end; text += word) {
+        word = strcspn(text, " \n");
+        if (column >= indent && column + 1 + word > MARGIN) {
+            putchar('\n');
+            column = 0;
+        }
+        column += (size_t)printf("%*s%.*s", column < indent ? (int)(indent - column) : column > 0,
+                                 "", (int)word, text);
+    }
+    return column;
+}
+
+/* Lines, of which one that begins with a blank stands as it is. */
+static void print_text(const char *text, size_t indent)
+{
+    for (size_t length; *text; text += length + (text[length] == '\n')) {
+        length = strcspn(text, "\n");
+        if (*text == ' ')
+            fwrite(text, 1, length, stdout);
+        else
+            fill(text, length, 0, indent);
+        putchar('\n');
+    }
+}
+
+static void print_synopsis(const struct table *t)
+{
+    char item[500], words[200];
+    size_t column = (size_t)printf("usage: stance %s", t->command->name);
+    if (t->operands < t->rows) {
+        const struct option *const o = t->row[t->operands].option;
+        snprintf(item, sizeof item, least_of(o) > 0 ? "%s" : "[%s]", o->name);
+        column = fill(item, strlen(item), column, 11);
+    }
+    for (size_t i = 0; i < t->rows; i++) {
+        const struct option *const o = t->row[i].option;
+        const bool must = least_of(o) > 0, first = t->row[i].group == i,
+                   last = i + 1 == t->rows || t->row[i + 1].group != t->row[i].group;
+        if (!is_option(o))
+            continue;
+        const char *const value = value_name(o, false, words, sizeof words);
+        /* What is between brackets stands in one line. */
+        snprintf(item, sizeof item, "%s%s%s%s%s%s",
+                 must    ? ""
+                 : first ? "["
+                         : "| ",
+                 o->name, value ? " " : "", value ? value : "", last && !must ? "]" : "",
+                 most_of(o) > 1 ? "..." : "");
+        if (column + 1 + strlen(item) > MARGIN)
+            column = 0, putchar('\n');
+        column += (size_t)printf("%*s%s", column > 0 ? 1 : 11, "", item);
+    }
+    putchar('\n');
+}
+
+/* What the table knows beside the text: range, and what goes with what. */
+static void print_conditions(const struct table *t, size_t i, size_t column)
+{
+    const struct option *const o = t->row[i].option;
+    const bool grouped =
+        t->row[i].group < i || (i + 1 < t->rows && t->row[i + 1].group == t->row[i].group);
+    char text[300];
+    size_t used = 0;
+    text[0] = '\0';
+    if (o->high > 0 && !o->takes)
+        used += (size_t)snprintf(text, sizeof text, "(%.10g to %.10g) ", o->low, o->high);
+    if (o->needs)
+        used += (size_t)snprintf(text + used, sizeof text - used, "(with %s) ", o->needs);
+    if (o->without && !grouped)
+        snprintf(text + used, sizeof text - used, "(not with %s)", o->without);
+    fill(text, strlen(text), column, TEXT_COLUMN);
+}
+
+static void print_option(const struct table *t, size_t i)
+{
+    const struct option *const o = t->row[i].option;
+    char words[200];
+    const char *const value = value_name(o, false, words, sizeof words);
+    const size_t length = strcspn(o->text, "\n");
+    size_t column = (size_t)printf("  %s%s%s", o->name, value ? " " : "", value ? value : "");
+    column +=
+        (size_t)printf("%*s", column + 2 < TEXT_COLUMN ? (int)(TEXT_COLUMN - 1 - column) : 1, "");
+    column = fill(o->text, length, column, TEXT_COLUMN);
+    print_conditions(t, i, column);
+    putchar('\n');
+    if (o->text[length])
+        print_text(o->text + length + 1, TEXT_COLUMN);
+}
+
+static void print_paragraphs(const char *text)
+{
+    if (text && text[0] != ' ')
+        putchar('\n');
+    if (text)
+        print_text(text, 0);
+}
+
+static void print_help(const struct table *t)
+{
+    bool above = false; /* an option: they stand together */
+    print_synopsis(t);
+    printf("\n%s.\n", t->command->summary);
+    print_paragraphs(t->command->help);
+    for (size_t i = 0; i < t->rows; i++) {
+        const bool option = is_option(t->row[i].option);
+        if (i == t->operands)
+            continue;
+        if (!option)
+            print_paragraphs(t->row[i].option->text);
+        else if (!above)
+            putchar('\n');
+        if (option)
+            print_option(t, i);
+        above = option || t->row[i].option->text[0] == ' ';
+    }
+    print_paragraphs(t->command->after);
+}
+
+void command_print_rows(const struct command *command)
+{
+    struct table t;
+    char words[2000];
+    make_table(&t, command);
+    printf("%s\t-\t%s\t%s\n", command->name,
+           t.operands < t.rows ? t.row[t.operands].option->name : "-", command->summary);
+    for (size_t i = 0; i < t.rows; i++) {
+        const struct option *const o = t.row[i].option;
+        const char *const value = value_name(o, true, words, sizeof words);
+        if (is_option(o))
+            printf("%s\t%s\t%s\t%.*s\n", command->name, o->name, value ? value : "-",
+                   (int)strcspn(o->text, "\n"), o->text);
+    }
+    for (const struct option *o = command->options; o && o->part; o++)
+        command_print_rows(o->part);
+}
+
+/* ---- what is wrong -------------------------------------------------------------------------- */
+
+/* Operands that are one too many where PATH=VALUE of a --set or --near was written in another way.
+ */
+static bool unexpected(const struct table *t, int argc, char **argv, int i)
+{
+    const bool sets = find_row(t, "--set") < t->rows;
+    const char *const before = i > 1 ? argv[i - 2] : "", *path = argv[i - 1], *value = argv[i];
+    const bool near = strncmp(path, "--near=", 7) == 0, set = strncmp(path, "--set=", 6) == 0;
+    char hint[400] = "";
+    path += near ? 7 : set ? 6 : 0;
+    if ((near || strcmp(before, "--near") == 0) && strchr(value, '='))
+        snprintf(hint, sizeof hint, "; write --near %s,%s", path, value);
+    else if (sets && path[0] != '-' && (set || strcmp(before, "--set") == 0) && !strchr(path, '='))
+        snprintf(hint, sizeof hint, "; write --set %s=%s", path,
+                 strcmp(value, "=") == 0 && i + 1 < argc ? argv[i + 1] : value + (value[0] == '='));
+    else if (sets && strchr(value, '='))
+        snprintf(hint, sizeof hint, "; write --set %s", value);
+    return bad_use(t->command, "unexpected argument", value, hint);
+}
+
+static bool unknown_option(const struct table *t, const char *word)
+{
+    static const char *const other[][2] = {{"--output", "-o"}, {"--out", "-o"}, {"-s", "--set"}};
+    const char *names[MOST_ROWS];
+    char stem[LONGEST_OPTION + 1], hint[200] = "";
+    size_t n = 0;
+    for (size_t i = 0; i < t->rows; i++)
+        if (is_option(t->row[i].option))
+            names[n++] = t->row[i].option->name;
+    snprintf(stem, sizeof stem, "%.*s", (int)strcspn(word, "="), word);
+    const char *near = strlen(stem) > 2 ? nearest_word(stem, names, n) : NULL;
+    for (size_t k = 0; k < sizeof other / sizeof other[0]; k++)
+        if (strcmp(stem, other[k][0]) == 0 && find_row(t, other[k][1]) < t->rows)
+            near = other[k][1];
+    if (strcmp(stem, "-n") == 0 || strcmp(stem, "-np") == 0)
+        snprintf(hint, sizeof hint, "; for several ranks write mpirun -n N stance %s",
+                 t->command->name);
+    else if (near)
+        snprintf(hint, sizeof hint, "; did you mean '%s'?", near);
+    return bad_use(t->command, "unknown option", stem, hint);
 }
 
 size_t command_word(const struct command *command, const char *option, const char *word,
@@ -246,4 +344,236 @@ size_t command_word(const struct command *command, const char *option, const cha
                 word_list(list, sizeof list, known, count), word);
     }
     return count;
+}
+
+/* ---- values --------------------------------------------------------------------------------- */
+
+bool option_seconds(const char *text, void *seconds)
+{
+    return (*(double *)seconds = seconds_of_text(text)) >= 0;
+}
+
+static char late[120];
+static const struct command *begun;
+
+static void end_late(int number)
+{
+    (void)number;
+    if (write(STDERR_FILENO, late, strlen(late)) < 0) {
+        /* Nobody hears it. */
+    }
+    _exit(EXIT_INTERRUPTED);
+}
+
+bool option_alarm(const char *text, void *ignored)
+{
+    (void)ignored;
+    const double seconds = seconds_of_text(text);
+    const struct sigaction action = {.sa_handler = end_late};
+    if (!(seconds >= 0) || seconds > 1e9)
+        return false;
+    snprintf(late, sizeof late, "%sstance %s: stopped after %.30s, its time limit\n",
+             isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "", begun->name, text);
+    const long whole = (long)seconds;
+    const long rest = (long)((seconds - (double)whole) * 1e6);
+    const struct itimerval timer = {.it_value = {whole, whole + rest > 0 ? rest : 1}};
+    sigaction(SIGALRM, &action, NULL);
+    setitimer(ITIMER_REAL, &timer, NULL);
+    return true;
+}
+
+static bool read_number(const struct option *o, const char *text, double *number)
+{
+    char *end;
+    *number = strtod(text, &end);
+    return end != text && !*end && errno == 0 && *number >= o->low && *number <= o->high;
+}
+
+static bool read_whole(const struct option *o, const char *text, uint64_t *number)
+{
+    char *end;
+    *number = strtoull(text, &end, 10);
+    return text[0] >= '0' && text[0] <= '9' && !*end && errno == 0 && *number < OPTION_NONE &&
+           (double)*number >= o->low && (o->high <= 0 || (double)*number <= o->high);
+}
+
+/* Of an option, or an operand, into its member; false with a line on standard error. */
+static bool read_value(const struct command *command, const struct option *o, const char *text,
+                       void *member)
+{
+    const char *words[MOST_WORDS];
+    const size_t known = words_of(o, words),
+                 word = known ? command_word(command, o->name, text, words, known) : 0;
+    struct option_texts *const texts = member;
+    uint64_t whole;
+    double number;
+    bool good = true;
+    if (known > 0 && word == known)
+        return false;
+    errno = 0;
+    if (o->read)
+        good = o->read(text, member);
+    else if (o->kind == OPTION_FLAG)
+        *(bool *)member = true;
+    else if (o->kind == OPTION_TEXT)
+        *(const char **)member = text;
+    else if (o->kind == OPTION_TEXTS)
+        texts->text[texts->count++] = text;
+    else if (o->kind == OPTION_WORD)
+        memcpy(member, &(int){known > 0 ? (int)word : (int)o->low}, sizeof(int));
+    else if (o->kind == OPTION_WHOLE && (good = read_whole(o, text, &whole)))
+        *(uint64_t *)member = whole;
+    else if (o->kind == OPTION_NUMBER && (good = read_number(o, text, &number)))
+        *(double *)member = number;
+    if (good)
+        return true;
+    fprintf(stderr, "stance %s: %s takes ", command->name, o->name);
+    if (o->takes)
+        fputs(o->takes, stderr);
+    else
+        fprintf(stderr, "a %snumber from %.10g to %.10g", o->kind == OPTION_WHOLE ? "whole " : "",
+                o->low, o->high);
+    fprintf(stderr, ", not '%.80s'\n", text);
+    return false;
+}
+
+/* ---- all of them ---------------------------------------------------------------------------- */
+
+/* A row that was given, and with what. */
+struct given {
+    size_t row;
+    const char *text;
+};
+
+/* The option that argv[*i] is, as "--name" or "--name=VALUE", else the next argument is its value;
+ * *i moves on to the last one used. */
+static bool take_option(struct table *t, int argc, char **argv, int *i, struct given *given)
+{
+    const char *word = argv[*i], *const equals = strchr(word, '=');
+    char name[LONGEST_OPTION + 1];
+    const bool joined = equals && equals > word + 2 && equals - word <= LONGEST_OPTION;
+    snprintf(name, sizeof name, "%.*s", joined ? (int)(equals - word) : LONGEST_OPTION, word);
+    given->row = find_row(t, name);
+    given->text = joined ? equals + 1 : NULL;
+    if (given->row == t->rows)
+        return unknown_option(t, word);
+    const struct option *const o = t->row[given->row].option;
+    if (is_flag(o))
+        return !joined || bad_use(t->command, "takes no value:", name, NULL);
+    if (!joined && *i + 1 >= argc)
+        return bad_use(t->command, "a value must follow", name, NULL);
+    if (!joined)
+        given->text = argv[++*i];
+    return t->row[given->row].given < most_of(o) ||
+           bad_use(t->command, most_of(o) == 1 ? "given twice:" : "given too often:", name, NULL);
+}
+
+/* Splits argv; `asked`: for help. */
+static bool split(struct table *t, int argc, char **argv, struct given *given, size_t *count,
+                  bool *asked)
+{
+    bool only_operands = false;
+    for (int i = 1; i < argc && !*asked; i++) {
+        struct given *const next = &given[*count];
+        if (!only_operands && strcmp(argv[i], "--") == 0) {
+            only_operands = true;
+            continue;
+        }
+        *asked = !only_operands && (strcmp(argv[i], "-h") == 0 || strcmp(argv[i], "--help") == 0);
+        if (*asked)
+            break;
+        if (!only_operands && argv[i][0] == '-' && argv[i][1]) {
+            if (!take_option(t, argc, argv, &i, next))
+                return false;
+        } else {
+            *next = (struct given){t->operands, argv[i]};
+            if (t->operands == t->rows ||
+                t->row[t->operands].given >= most_of(t->row[t->operands].option))
+                return unexpected(t, argc, argv, i);
+        }
+        t->row[next->row].given++;
+        ++*count;
+    }
+    return true;
+}
+
+/* The first of a list that was given beside row i; `rows`: none. */
+static size_t beside(const struct table *t, size_t i, const char *list)
+{
+    char name[LONGEST_OPTION + 1];
+    while (next_name(&list, name)) {
+        const size_t other = find_row(t, name);
+        if (other != i && other < t->rows && t->row[other].given > 0)
+            return other;
+    }
+    return t->rows;
+}
+
+/* What stands with what. */
+static bool agree(const struct table *t)
+{
+    char text[400] = "";
+    for (size_t i = 0; i < t->rows && !text[0]; i++) {
+        const struct option *const o = t->row[i].option;
+        const size_t wrong = t->row[i].given > 0 ? beside(t, i, o->without) : t->rows;
+        if (wrong < t->rows)
+            snprintf(text, sizeof text, "%s and %s exclude each other", o->name,
+                     t->row[wrong].option->name);
+        else if (t->row[i].given > 0 && o->needs && beside(t, i, o->needs) == t->rows)
+            snprintf(text, sizeof text, "%s needs %s", o->name, o->needs);
+        else if (least_of(o) > t->row[i].given)
+            snprintf(text, sizeof text, "%s must be given", is_option(o) ? o->name : o->text);
+    }
+    return !text[0] || command_usage(t->command, text) == EXIT_DONE;
+}
+
+/* Room for the texts of lists, which stays. */
+static const char **room_for(size_t count)
+{
+    static struct room {
+        struct room *before;
+        const char *text[];
+    } * last;
+    struct room *const room = malloc(sizeof *room + count * sizeof room->text[0]);
+    if (!room)
+        return NULL;
+    room->before = last;
+    last = room;
+    return room->text;
+}
+
+static bool read_all(const struct table *t, const struct given *given, size_t count, void *request)
+{
+    const char **room = room_for(count + t->rows);
+    for (size_t i = 0; room && i < t->rows; i++) {
+        void *const member = (char *)request + t->row[i].at;
+        if (t->row[i].option->kind == OPTION_TEXTS && !t->row[i].option->read) {
+            *(struct option_texts *)member = (struct option_texts){room, 0};
+            room += t->row[i].given + 1;
+        }
+        for (size_t k = 0; k < count; k++)
+            if (given[k].row == i &&
+                !read_value(t->command, t->row[i].option, given[k].text, member))
+                return false;
+    }
+    return room || command_usage(t->command, strerror(ENOMEM)) == EXIT_DONE;
+}
+
+int command_begin(const struct command *command, int argc, char **argv, void *request)
+{
+    struct table t;
+    size_t count = 0;
+    bool asked = false;
+    for (const struct option *o = command->options; argc > 1 && o && o->part; o++)
+        if (strcmp(strrchr(o->part->name, ' ') + 1, argv[1]) == 0)
+            return o->part->run(argc - 1, argv + 1);
+    make_table(&t, command);
+    begun = command;
+    struct given *const given = calloc((size_t)argc + 1, sizeof *given);
+    bool good = given && split(&t, argc, argv, given, &count, &asked);
+    if (good && asked)
+        print_help(&t);
+    good = good && (asked || (agree(&t) && read_all(&t, given, count, request)));
+    free(given);
+    return !good ? EXIT_USAGE : asked ? EXIT_DONE : COMMAND_GOES_ON;
 }

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Completion of commands, options, files and paths of scenarios for bash, zsh or fish, from what the help
-# texts say (commands.sh); paths are asked of `stance describe` when they are wanted.
+# Completion of commands, options, files and paths of scenarios for bash, zsh or fish, from the program's tables
+# of options (stance help --options); paths are asked of `stance describe` when they are wanted.
 # Usage: completion.sh STANCE bash|zsh|fish
 set -eu
-lines=$(bash "$(dirname "$0")/commands.sh" "$1")
+lines=$("$1" help --options)
 paths="stance describe 2>/dev/null | grep -E '^[a-z_]+([.][][a-zA-Z_]+)*\$' | sort -u"
 
 # What may stand for a word of the synopsis: a kind that each shell completes in its own way.
@@ -19,6 +19,8 @@ kinds='
     }
     BEGIN { FS = "\t"; quote = "\047" }
     { gsub(/[`"$\\]/, ""); gsub(quote, "") } # nothing that a shell would read
+    $2 == "-" { sub(/[. ].*/, "", $3) } # of operands the first
+    $2 != "-" { sub(/^[.][.][.] /, "", $4); if (match($4, /([;:,(]|[.] |[.]$)/) && RSTART > 8) $4 = substr($4, 1, RSTART - 1) }
 '
 case $2 in
 bash)

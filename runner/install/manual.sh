@@ -5,7 +5,7 @@
 set -eu
 stance=$1 folder=$2
 version=$("$stance" --version | awk 'NR == 1 {print $1, $2}')
-names=$(bash "$(dirname "$0")/commands.sh" "$stance" | awk -F'\t' '$2 == "-" {print $1}' | tr ' ' -)
+names=$("$stance" help --options | awk -F'\t' '$2 == "-" {print $1}' | tr ' ' -)
 
 page() { # name, section: of a text "NAME section", a synopsis, and lines, on standard input
     awk -v name="$1" -v section="$2" -v version="$version" -v others="$names" '

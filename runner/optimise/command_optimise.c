@@ -5,11 +5,11 @@
 #include "linear_limit.h"
 #include "search_plan.h"
 
-#include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/sandbox.h"
 #include "runner/base/units.h"
 #include "runner/plan/allowed.h"
+#include "runner/plan/asked.h"
 #include "runner/plan/instruction_set.h"
 #include "runner/plan/search_numbers.h"
 #include "runner/ranks/crash.h"
@@ -32,8 +32,8 @@ extern const struct command command_optimise; /* below */
 static const double most_undecided = 1e-3;
 
 struct options {
-    const char *scenario, *output, **sets;
-    size_t set_count;
+    struct asked asked;
+    const char *output;
     bool force, resume, quiet, help;
     double time_limit; /* s, INFINITY: none */
 };
@@ -68,67 +68,16 @@ static bool fail(struct optimise *o, enum exit_code code)
 
 /* ---- options -------------------------------------------------------------------------------- */
 
-static bool usage(struct optimise *o, const char *text)
-{
-    command_usage(&command_optimise, text);
-    o->printed = true;
-    return fail(o, EXIT_USAGE);
-}
-
-static bool read_options(struct optimise *o)
-{
-    struct options *const options = &o->options;
-    const char *limit = NULL;
-    size_t outputs, limits, force, resume, quiet, operands;
-    const struct option_spec specs[] = {
-        {"-o", true, &options->output, 1, &outputs},
-        {"--set", true, options->sets, (size_t)o->argc, &options->set_count},
-        {"--force", false, NULL, 0, &force},
-        {"--resume", false, NULL, 0, &resume},
-        {"--time-limit", true, &limit, 1, &limits},
-        {"--quiet", false, NULL, 0, &quiet},
-    };
-    options->time_limit = INFINITY;
-    if (!command_options(&command_optimise, o->argc, o->argv, specs, sizeof specs / sizeof *specs,
-                         &options->scenario, 1, &operands, &options->help)) {
-        o->printed = true;
-        return fail(o, EXIT_USAGE);
-    }
-    options->force = force > 0;
-    options->resume = resume > 0;
-    options->quiet = quiet > 0;
-    if (options->help)
-        return true;
-    if (operands != 1)
-        return usage(o, "a scenario file must be given");
-    if (options->force && options->resume)
-        return usage(o, "--force and --resume exclude each other");
-    if (limit && (options->time_limit = seconds_of_text(limit)) < 0)
-        return usage(o, "--time-limit takes a duration such as 90s, 55m or 1h30m");
-    return true;
-}
-
-/* Rank 0 first: it says what is wrong, and the others need not. */
 static bool stage_options(struct optimise *o)
 {
-    bool good = true;
-    o->options.sets = malloc((size_t)o->argc * sizeof *o->options.sets);
-    if (!o->options.sets)
-        return no_memory(&o->message) || fail(o, EXIT_IO);
-    if (o->parallel.rank == 0)
-        good = read_options(o);
-    parallel_broadcast(&o->parallel, &good, sizeof good);
-    bool help = o->options.help;
-    parallel_broadcast(&o->parallel, &help, sizeof help);
-    if (good && !help && o->parallel.rank != 0)
-        read_options(o);
-    o->options.help = help;
-    if (!good) {
-        o->printed = true;
-        return fail(o, EXIT_USAGE);
-    }
-    deadline_limit(o->options.time_limit - (clock_seconds() - o->start));
-    return help || instruction_set_check(&o->message) || fail(o, EXIT_USAGE);
+    struct options *const options = &o->options;
+    options->time_limit = INFINITY;
+    const int code = claim_options(&o->parallel, &command_optimise, o->argc, o->argv, options);
+    options->help = code == EXIT_DONE;
+    o->printed = code > 0;
+    deadline_limit(options->time_limit - (clock_seconds() - o->start));
+    return code > 0 ? fail(o, (enum exit_code)code)
+                    : options->help || instruction_set_check(&o->message) || fail(o, EXIT_USAGE);
 }
 
 /* ---- the scenario --------------------------------------------------------------------------- */
@@ -146,9 +95,9 @@ static bool say_place(struct optimise *o, const char *key, const char *text)
 static bool read_first(struct optimise *o, const char *text)
 {
     char *said = NULL;
-    size_t size = 0, place = strlen(o->options.scenario);
+    size_t size = 0, place = strlen(o->options.asked.file);
     FILE *const to = open_memstream(&said, &size);
-    const bool good = to && scenario_read(o->first, o->options.scenario, text, NULL, 0, to);
+    const bool good = to && scenario_read(o->first, o->options.asked.file, text, NULL, 0, to);
     if (to)
         fclose(to);
     if (!good && size > place) {
@@ -164,10 +113,10 @@ static bool read_first(struct optimise *o, const char *text)
 static bool read_scenario(struct optimise *o)
 {
     const struct options *const options = &o->options;
-    if (!scenario_read(o->asked, options->scenario, NULL, options->sets, options->set_count,
-                       stderr)) {
+    if (!scenario_read(o->asked, options->asked.file, NULL, options->asked.sets.text,
+                       options->asked.sets.count, stderr)) {
         o->printed = true;
-        return fail(o, access(options->scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO);
+        return fail(o, access(options->asked.file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO);
     }
     if (!o->asked->search.given)
         return say_place(o, "stance:",
@@ -187,7 +136,7 @@ static bool stage_scenario(struct optimise *o)
     if (!o->asked || !o->first)
         abort(); /* the others wait in the broadcast: MPI ends the job */
     const bool read = o->parallel.rank == 0 && read_scenario(o);
-    if (claim_scenario(&o->parallel, o->first, o->options.scenario, read, &o->message)) {
+    if (claim_scenario(&o->parallel, o->first, o->options.asked.file, read, &o->message)) {
         search_numbers_keep(o->first);
         static const char none[] = "optimise.vary: all of these stay 0 while the contacts hold";
         if (o->first->search.axis.paths > 0)
@@ -262,7 +211,7 @@ static bool spares_files(struct optimise *o)
     const char *const names[] = {o->file, o->best};
     const struct options *const options = &o->options;
     struct stat scenario, other;
-    if (stat(options->scenario, &scenario) != 0)
+    if (stat(options->asked.file, &scenario) != 0)
         return true; /* read all the same: from a pipe */
     for (int i = 0; i < 2; i++)
         if (stat(names[i], &other) == 0 && other.st_dev == scenario.st_dev &&
@@ -607,39 +556,41 @@ static int run_optimise(int argc, char **argv)
     lock_release(&o->lock);
     heartbeat_end(&o->heartbeat);
     parallel_finish(&o->parallel);
-    free(o->options.sets);
     free(o->asked);
     free(o->first);
     free(o);
     return code;
 }
 
+#define TO(member) OPTION_TO(struct options, member)
+static const struct option options[] = {
+    {"-o", "FILE", TO(output),
+     .text = "file of the search; default results/<scenario name>-search.h5. stance summary and "
+             "stance plot read it. Beside it <scenario name>-best.yaml, the scenario with the "
+             "best candidate"},
+    {.rows = asked_options},
+    {"--force", TO(force), .text = "replace files of these names"},
+    {"--resume", TO(resume), .without = "--force",
+     .text = "go on with a search of the same scenario after its last whole generation. Begins "
+             "when there is no file"},
+    {"--time-limit", "TIME", TO(time_limit), .read = option_seconds, .takes = OPTION_DURATION,
+     .text = "stop after 90s, 55m, 1h30m ... of wall time; resumable"},
+    {"--quiet", TO(quiet), .text = "neither progress nor summary"},
+    {0},
+};
+
 const struct command command_optimise = {
     "optimise",
-    "optimise SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume]\n"
-    "           [--time-limit TIME] [--quiet]",
     "search for the controller that recovers from more starts; alone or under mpirun -n N",
     run_optimise,
-    "The scenario's section optimise says what differs between candidates and what counts as\n"
-    "better (stance describe optimise); sweep.sample are the starts that all candidates get,\n"
-    "sweep.grid the circumstances. The scenario as it is, with the gains of its design, is the\n"
-    "first candidate. An evolution strategy (CMA-ES) proposes the others, a generation at a time;\n"
+    options,
+    "The scenario's section optimise says what differs between candidates and what counts as "
+    "better (stance describe optimise); sweep.sample are the starts that all candidates get, "
+    "sweep.grid the circumstances. The scenario as it is, with the gains of its design, is the "
+    "first candidate. An evolution strategy (CMA-ES) proposes the others, a generation at a time; "
     "at the end the first, and of each stage the best and the mean, are compared from as many "
-    "starts\n"
-    "that the search has not seen, and what they recover is told of others: fresh starts, by "
-    "which\n"
-    "nothing was chosen.\n"
-    "\n"
-    "  -o FILE            file of the search; default results/<scenario name>-search.h5. stance\n"
-    "                     summary and stance plot read it. Beside it <scenario name>-best.yaml,\n"
-    "                     the scenario with the best candidate\n"
-    "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
-    "  --force            replace files of these names\n"
-    "  --resume           go on with a search of the same scenario after its last whole\n"
-    "                     generation. Begins when there is no file\n"
-    "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
-    "  --quiet            neither progress nor summary\n"
-    "\n"
-    "The result does not depend on ranks, nor on stops and resumes. Exit codes: 0 done, 2 bad use\n"
+    "starts that the search has not seen, and what they recover is told of others: fresh starts, "
+    "by which nothing was chosen.\n",
+    "The result does not depend on ranks, nor on stops and resumes. Exit codes: 0 done, 2 bad use "
     "or scenario, 3 input or output, 4 stopped and resumable.\n",
 };

@@ -1,49 +1,22 @@
 /* command_build.c - `stance build`: compiles what a scenario computes with, so that it is there in
  * time, and where there is no compiler.
  */
-#include "instruction_set.h"
+#include "asked.h"
 #include "kernels.h"
 
-#include "runner/base/command.h"
 #include "runner/objects/objects.h"
-#include "runner/scenario/scenario.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 extern const struct command command_build; /* below */
 
-enum { MOST = 16, MAX_SETS = 64 };
-
-/* What was asked for. */
-struct choice {
-    const char *word[MOST];
-    size_t count;
+struct request {
+    struct asked asked;
+    struct option_texts methods, isas;
 };
-
-/* Are all of these words known? */
-static bool known(const char *option, const struct choice *choice, const char *const *words,
-                  size_t count)
-{
-    for (size_t i = 0; i < choice->count; i++)
-        if (command_word(&command_build, option, choice->word[i], words, count) == count)
-            return false;
-    return true;
-}
-
-static bool choices_known(const struct choice *methods, const struct choice *isas)
-{
-    const char *method[MOST], *isa[MOST];
-    size_t m = 0, i = 0;
-    for (; m < MOST && stance_methods()[m]; m++)
-        method[m] = stance_methods()[m]->name;
-    for (; i < MOST && objects_isa(i); i++)
-        isa[i] = objects_isa(i);
-    return known("--method", methods, method, m) && known("--isa", isas, isa, i);
-}
 
 static int fail(const char *text)
 {
@@ -86,14 +59,17 @@ static int take(struct plan *plan, const struct kernels_choice *choice)
     return code;
 }
 
-static int build(const struct scenario *s, const struct kernels_choice *choice)
+static int build(const struct scenario *s, void *asked)
 {
+    const struct request *const request = asked;
+    const struct kernels_choice choice = {request->methods.text, request->isas.text,
+                                          request->methods.count, request->isas.count, true};
     struct plan plan;
     struct plan_error error;
     if (s->scene->mechanism) {
         if (!plan_make(&plan, s, false, 0, false, &error))
             return fail(error.message.text);
-        const int code = take(&plan, choice);
+        const int code = take(&plan, &choice);
         plan_free(&plan);
         return code;
     }
@@ -103,62 +79,35 @@ static int build(const struct scenario *s, const struct kernels_choice *choice)
 
 static int run(int argc, char **argv)
 {
-    struct choice methods = {.count = 0}, isas = {.count = 0};
-    const char *sets[MAX_SETS], *file = NULL;
-    size_t set_count = 0, operands = 0;
-    const struct option_spec specs[] = {
-        {"--method", true, methods.word, MOST, &methods.count},
-        {"--isa", true, isas.word, MOST, &isas.count},
-        {"--set", true, sets, MAX_SETS, &set_count},
-    };
-    int code =
-        command_begin(&command_build, argc, argv, specs, 3, "a scenario", &file, 1, 1, &operands);
-    if (code != COMMAND_GOES_ON)
-        return code;
-    if (!choices_known(&methods, &isas) || !instruction_set_usable("build"))
-        return EXIT_USAGE;
-    struct scenario *s = malloc(sizeof *s);
-    if (!s) {
-        fprintf(stderr, "stance build: %s\n", strerror(ENOMEM));
-        return EXIT_IO;
-    }
-    code = EXIT_USAGE;
-    if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
-        code = build(
-            s, &(struct kernels_choice){methods.word, isas.word, methods.count, isas.count, true});
-        scenario_free(s);
-    } else if (access(file, R_OK) != 0) {
-        code = EXIT_IO;
-    }
-    free(s);
-    return code;
+    struct request request = {.methods = {0}};
+    return asked_run(&command_build, argc, argv, build, &request);
 }
+
+static const struct option options[] = {
+    {.rows = asked_options},
+    {"--method", "NAME", OPTION_TO(struct request, methods), .word = asked_method,
+     .text = "that method; otherwise those of the scenario"},
+    {"--isa", "NAME", OPTION_TO(struct request, isas), .word = objects_isa,
+     .text = "for that instruction set, also one that this machine does not run; otherwise the "
+             "one in use (stance --version)"},
+    {OPTION_TIME_LIMIT},
+    {0},
+};
 
 const struct command command_build = {
     "build",
-    "build SCENARIO [--method NAME]... [--isa NAME]... [--set PATH=VALUE]...\n"
-    "           [--time-limit TIME]",
     "compiles what a scenario computes with, for machines without a compiler",
     run,
+    options,
     "Kernels for what a scenario describes are compiled when they are first needed, by CC, cc, "
-    "gcc\n"
-    "or clang, and kept in a cache: STANCE_CACHE, else XDG_CACHE_HOME/stance, else\n"
+    "gcc or clang, and kept in a cache: STANCE_CACHE, else XDG_CACHE_HOME/stance, else "
     "~/.cache/stance. This command does it ahead; a file of the cache may be copied to the cache "
-    "of\n"
-    "another machine. Scenes that the program has (biped, ball, block, rod) need nothing "
-    "compiled.\n"
-    "\n"
-    "  --method NAME  that method; otherwise those of the scenario\n"
-    "  --isa NAME     for that instruction set, also one that this machine does not run;\n"
-    "                 otherwise the one in use (stance --version)\n"
-    "  --set          replaces a value, as everywhere\n"
-    "  --time-limit TIME  end after 90s, 55m, 1h30m ... of wall time, with exit code 4\n"
-    "\n"
+    "of another machine. Scenes that the program has (biped, ball, block, rod) need nothing "
+    "compiled.",
     "What is compiled is tried on cases of the scenario before it is kept: an object that "
-    "computes\n"
-    "something else than the kernel that is built in is refused. That is remembered for the\n"
-    "compiler and the version, and the kernel that is built in computes, more slowly, until CC\n"
-    "names another compiler or this command, which tries again, has an object that is right. Exit\n"
-    "codes: 0 all there, 2 bad use or scenario, 3 something is not in the cache now, for the\n"
-    "reason that is said.\n",
+    "computes something else than the kernel that is built in is refused. That is remembered for "
+    "the compiler and the version, and the kernel that is built in computes, more slowly, until "
+    "CC names another compiler or this command, which tries again, has an object that is right. "
+    "Exit codes: 0 all there, 2 bad use or scenario, 3 something is not in the cache now, for the "
+    "reason that is said.",
 };

@@ -1,22 +1,20 @@
 /* command_design.c - `stance design`: what control theory says about a scenario before any case of
  * it runs.
  */
+#include "asked.h"
 #include "design.h"
-#include "instruction_set.h"
 #include "standing.h"
 
-#include "runner/base/command.h"
 #include "runner/base/message.h"
 
-#include <errno.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 extern const struct command command_design; /* below */
 
-enum { MAX_SETS = 64 };
+struct request {
+    struct asked asked;
+    bool json;
+};
 
 /* Takes the reference. */
 static int print_json(json_t *report)
@@ -72,8 +70,9 @@ static int design_decoupling(const struct scenario *s, bool json)
     return selections.singular ? report_at(s, selections.complaint.text) : EXIT_DONE;
 }
 
-static int design(const struct scenario *s, bool json)
+static int design(const struct scenario *s, void *request)
 {
+    const bool json = ((const struct request *)request)->json;
     struct design_report report;
     stance_message message = {""};
 
@@ -96,44 +95,24 @@ static int design(const struct scenario *s, bool json)
 
 static int run(int argc, char **argv)
 {
-    const char *sets[MAX_SETS], *file = NULL;
-    size_t set_count = 0, json = 0, operands = 0;
-    const struct option_spec specs[] = {
-        {"--set", true, sets, MAX_SETS, &set_count},
-        {"--json", false, NULL, 0, &json},
-    };
-    int code =
-        command_begin(&command_design, argc, argv, specs, 2, "a scenario", &file, 1, 1, &operands);
-    if (code != COMMAND_GOES_ON)
-        return code;
-    if (!instruction_set_usable("design"))
-        return EXIT_USAGE;
-    struct scenario *s = malloc(sizeof *s);
-    if (!s) {
-        fprintf(stderr, "stance design: %s\n", strerror(ENOMEM));
-        return EXIT_IO;
-    }
-    code = EXIT_USAGE;
-    if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
-        code = design(s, json > 0);
-        scenario_free(s);
-    } else if (access(file, R_OK) != 0) {
-        code = EXIT_IO;
-    }
-    free(s);
-    return code;
+    struct request request = {.json = false};
+    return asked_run(&command_design, argc, argv, design, &request);
 }
+
+static const struct option options[] = {
+    {.rows = asked_options},
+    {OPTION_TIME_LIMIT},
+    {OPTION_JSON(struct request, json)},
+    {0},
+};
 
 const struct command command_design = {
     "design",
-    "design SCENARIO [--set PATH=VALUE]... [--time-limit TIME] [--json]",
     "equilibrium, linearisation, Kalman rank, gains, poles, critical sample time, safe set",
     run,
-    "Prints what linear control theory says about the scenario's base values; a sweep is not\n"
-    "looked at. `--set` replaces a value, as everywhere.\n"
-    "\n"
-    "  --time-limit TIME  end after 90s, 55m, 1h30m ... of wall time, with exit code 4\n"
-    "  --json   the same as JSON, with the keys\n"
+    options,
+    "Prints what linear control theory says about the scenario's base values; a sweep is not "
+    "looked at.\n",
     "    scenario, title, scene   strings\n"
     "    robot                    the body that the design believes in: {parameter: value}\n"
     "    ground                   {slope (rad), gravity (m/s^2)} that it believes in\n"
@@ -181,8 +160,7 @@ const struct command command_design = {
     "                             other states 0, and free\n"
     "\n"
     "With controller.kind decoupling it prints instead for each selection of coordinates where "
-    "the\n"
-    "law is singular; as JSON: scenario, title, scene and\n"
+    "the law is singular; as JSON: scenario, title, scene and\n"
     "    selections               [{coordinates, controlled (is it the scenario's?),\n"
     "                             condition_at_start (null: singular), best_condition,\n"
     "                             damped_share (of all postures), singular}, ...]\n",

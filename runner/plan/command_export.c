@@ -1,17 +1,19 @@
 /* command_export.c - `stance export`: a described mechanism for other programs. */
+#include "asked.h"
 #include "mjcf.h"
 #include "plan.h"
-
-#include "runner/base/command.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 extern const struct command command_export; /* below */
 
-enum { MAX_SETS = 64 };
+struct request {
+    struct asked asked;
+    const char *path;
+    bool mjcf;
+};
 
 static int fail(const char *text)
 {
@@ -33,13 +35,21 @@ static int write_model(const struct scenario *s, const stance_case *c, const cha
 }
 
 /* The first case; whether it exists is known when its design has been computed. */
-static int export(const struct scenario *s, const char *path)
+static int export(const struct scenario *s, void *asked)
 {
+    const struct request *const request = asked;
     const struct parallel alone = parallel_alone();
     struct plan plan;
     struct plan_error error;
     stance_case *const c = calloc(1, sizeof *c);
     int method, code = EXIT_USAGE;
+    if (!s->scene->mechanism) {
+        fprintf(stderr,
+                "%s: the scene %s is not described as bodies: only a mechanism can be exported\n",
+                s->file, s->scene->name);
+        free(c);
+        return EXIT_USAGE;
+    }
     if (!c || !plan_make(&plan, s, true, 0, false, &error)) {
         free(c);
         return fail(c ? error.message.text : strerror(ENOMEM));
@@ -49,7 +59,7 @@ static int export(const struct scenario *s, const char *path)
     else if (!plan_resolve(&plan, 0, c, &method))
         fail("the first case does not exist");
     else
-        code = write_model(s, c, path);
+        code = write_model(s, c, request->path);
     plan_free(&plan);
     free(c);
     return code;
@@ -57,54 +67,27 @@ static int export(const struct scenario *s, const char *path)
 
 static int run(int argc, char **argv)
 {
-    const char *sets[MAX_SETS], *file = NULL, *path = NULL;
-    size_t set_count = 0, mjcf = 0, paths = 0, operands = 0;
-    const struct option_spec specs[] = {
-        {"--mjcf", false, NULL, 0, &mjcf},
-        {"-o", true, &path, 1, &paths},
-        {"--set", true, sets, MAX_SETS, &set_count},
-    };
-    int code =
-        command_begin(&command_export, argc, argv, specs, 3, "a scenario", &file, 1, 1, &operands);
-    if (code != COMMAND_GOES_ON)
-        return code;
-    if (!mjcf)
-        return command_usage(&command_export, "say in which format: --mjcf");
-    struct scenario *s = malloc(sizeof *s);
-    if (!s) {
-        fprintf(stderr, "stance export: %s\n", strerror(ENOMEM));
-        return EXIT_IO;
-    }
-    code = EXIT_USAGE;
-    if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
-        if (s->scene->mechanism)
-            code = export(s, path);
-        else
-            fprintf(
-                stderr,
-                "%s: the scene %s is not described as bodies: only a mechanism can be exported\n",
-                file, s->scene->name);
-        scenario_free(s);
-    } else if (access(file, R_OK) != 0) {
-        code = EXIT_IO;
-    }
-    free(s);
-    return code;
+    struct request request = {.path = NULL};
+    return asked_run(&command_export, argc, argv, export, &request);
 }
+
+static const struct option options[] = {
+    {"--mjcf", OPTION_TO(struct request, mjcf), .low = 1,
+     .text = "for MuJoCo: bodies, joints with springs, dampers, armature and limits, contacts, "
+             "the ground and its slope, motors with their limits, the initial state as keyframe "
+             "`initial`. qpos and qvel are the scenario's coordinates and rates, by name, so that "
+             "accelerations may be compared as they are; the file says what is not in it (control "
+             "laws, pushes, restitution, falls)."},
+    {"-o", "FILE", OPTION_TO(struct request, path), .text = "the file"},
+    {.rows = asked_options},
+    {0},
+};
 
 const struct command command_export = {
     "export",
-    "export --mjcf SCENARIO [-o FILE] [--set PATH=VALUE]...",
     "writes a described mechanism as a model of another simulator",
     run,
+    options,
     "Writes the first case of a scenario whose scene is `mechanism`, to FILE or to standard "
-    "output.\n"
-    "\n"
-    "  --mjcf  for MuJoCo: bodies, joints with springs, dampers, armature and limits, contacts,\n"
-    "          the ground and its slope, motors with their limits, the initial state as keyframe\n"
-    "          `initial`. qpos and qvel are the scenario's coordinates and rates, by name, so\n"
-    "          that accelerations may be compared as they are; the file says what is not in it\n"
-    "          (control laws, pushes, restitution, falls).\n"
-    "  -o      the file\n"
-    "  --set   replaces a value, as everywhere\n",
-};
+    "output.",
+    NULL};

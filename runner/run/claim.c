@@ -32,6 +32,16 @@ bool claim_ranks(const char *who, struct parallel *parallel)
     return true;
 }
 
+int claim_options(const struct parallel *parallel, const struct command *command, int argc,
+                  char **argv, void *options)
+{
+    int code = parallel->rank == 0 ? command_begin(command, argc, argv, options) : EXIT_DONE;
+    parallel_broadcast(parallel, &code, sizeof code);
+    return code == COMMAND_GOES_ON && parallel->rank != 0
+               ? command_begin(command, argc, argv, options)
+               : code;
+}
+
 bool claim_scenario(const struct parallel *parallel, struct scenario *s, const char *file,
                     bool read, stance_message *message)
 {

@@ -4,6 +4,7 @@
 #ifndef STANCE_RUN_CLAIM_H
 #define STANCE_RUN_CLAIM_H
 
+#include "runner/base/command.h"
 #include "runner/ranks/parallel.h"
 #include "runner/scenario/scenario.h"
 #include "runner/store/lock.h"
@@ -11,6 +12,10 @@
 /* The ranks of the job, which from now on attend to signals and say where they crash. false: a
  * launcher started several processes that are no ranks of each other; the first one has said so. */
 bool claim_ranks(const char *who, struct parallel *parallel);
+
+/* Collective: command_begin() on rank 0 first, which says what is wrong; the others need not. */
+int claim_options(const struct parallel *parallel, const struct command *command, int argc,
+                  char **argv, void *options);
 
 /* Collective: rank 0's scenario, which it has read (`read`), is read from its text by the others.
  * false: it has not, or (*message is not empty) this rank cannot. What was read is freed then. */

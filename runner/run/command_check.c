@@ -1,18 +1,21 @@
 /* command_check.c - `stance check`: is the scenario sound, and what would running it take? */
 #include "report.h"
 
-#include "runner/base/command.h"
-#include "runner/plan/instruction_set.h"
+#include "runner/plan/asked.h"
 #include "runner/plan/warnings.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
 
 extern const struct command command_check; /* below */
 
-static int check(const struct scenario *s, bool json)
+struct request {
+    struct asked asked;
+    bool json;
+};
+
+static int check(const struct scenario *s, void *request)
 {
+    const bool json = ((const struct request *)request)->json;
     struct parallel alone = parallel_alone();
     struct plan plan;
     struct plan_error error = {0};
@@ -43,50 +46,28 @@ static int check(const struct scenario *s, bool json)
 
 static int run_check(int argc, char **argv)
 {
-    const char **sets = malloc((size_t)argc * sizeof *sets), *file;
-    struct scenario *s = calloc(1, sizeof *s);
-    size_t set_count = 0, json = 0, operands;
-    int code = EXIT_IO;
-    const struct option_spec specs[] = {
-        {"--set", true, sets, (size_t)argc, &set_count},
-        {"--json", false, NULL, 0, &json},
-    };
-
-    if (!sets || !s) {
-        fprintf(stderr, "stance check: not enough memory\n");
-    } else if ((code = command_begin(&command_check, argc, argv, specs, 2, "a scenario file", &file,
-                                     1, 1, &operands)) == COMMAND_GOES_ON) {
-        if (!instruction_set_usable("check")) {
-            code = EXIT_USAGE;
-        } else if (scenario_read(s, file, NULL, sets, set_count, stderr)) {
-            code = check(s, json > 0);
-            scenario_free(s);
-        } else {
-            code = access(file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
-        }
-    }
-    free(s);
-    free(sets);
-    return code;
+    struct request request = {.json = false};
+    return asked_run(&command_check, argc, argv, check, &request);
 }
+
+static const struct option options[] = {
+    {.rows = asked_options},
+    {OPTION_JSON(struct request, json)},
+    {0},
+};
 
 const struct command command_check = {
     "check",
-    "check SCENARIO [--set PATH=VALUE]... [--json]",
     "validate a scenario; print cases, cost and file size; touch nothing",
     run_check,
-    "Reads the scenario, computes the controller designs, tries the initial states of the corners\n"
+    options,
+    "Reads the scenario, computes the controller designs, tries the initial states of the corners "
     "of the sweep and of up to 4096 other cases, and runs a few cases for a moment to estimate "
-    "the\n"
-    "cost. It returns within seconds: of very many designs those of the corners and others, "
-    "evenly\n"
-    "spread, are computed for 1.5 s, and what is left unchecked is said (`run` computes all of\n"
-    "them). Each error is one line, FILE:LINE:COLUMN: message.\n"
+    "the cost. It returns within seconds: of very many designs those of the corners and others, "
+    "evenly spread, are computed for 1.5 s, and what is left unchecked is said (`run` computes "
+    "all of them). Each error is one line, FILE:LINE:COLUMN: message.\n"
     "\n"
-    "A file beyond 100 GB or what is free, and months of work, are warned of, too.\n"
-    "\n"
-    "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
-    "  --json             the same as JSON, with the keys\n"
+    "A file beyond 100 GB or what is free, and months of work, are warned of, too.",
     "    scenario, title, scene    strings\n"
     "    cases                     number of cases\n"
     "    dimensions                list of {name, count}\n"
@@ -99,12 +80,10 @@ const struct command command_check = {
     "                              short a time to tell\n"
     "    seconds_is_upper_bound    some cases took too long to try to their ends: it is a\n"
     "                              bound\n"
-    "    compile_seconds           that run needs first, roughly, for kernels that it compiles; "
-    "0:\n"
-    "                              none, or they are in the cache, where nothing is touched. "
-    "Without\n"
-    "                              them seconds_on_one_rank is reckoned from those that are built "
-    "in\n"
+    "    compile_seconds           that run needs first, roughly, for kernels that it compiles;\n"
+    "                              0: none, or they are in the cache, where nothing is touched.\n"
+    "                              Without them seconds_on_one_rank is reckoned from those that\n"
+    "                              are built in\n"
     "    refine                    null, or with sweep.refine {coarse_cases, probes (expected),\n"
     "                              most_cases}: seconds_on_one_rank is then for all of them\n",
 };

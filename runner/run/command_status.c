@@ -229,7 +229,8 @@ static void print_text(const char *file, const struct state *state)
 }
 
 struct request {
-    const char *file;
+    struct option_texts files;
+    const char *file; /* the one at hand */
     bool json, watch;
 };
 
@@ -260,58 +261,53 @@ static int say(void *context)
 }
 
 /* All files, once; STILL_RUNNING: at least one is being written. */
-static int say_all(struct request *request, const char *const *files, size_t count)
+static int say_all(struct request *request)
 {
     int worst = EXIT_DONE, running = 0;
-    for (size_t i = 0; i < count; i++) {
-        request->file = files[i];
-        if (request->json && count > 1)
+    const bool list = request->json && request->files.count > 1;
+    for (size_t i = 0; i < request->files.count; i++) {
+        request->file = request->files.text[i];
+        if (list)
             fputs(i ? ",\n" : "[\n", stdout);
         fflush(stdout);
-        const int code = sandbox(say, request, files[i]);
-        if (request->json && count > 1 && code != EXIT_DONE && code != STILL_RUNNING)
+        const int code = sandbox(say, request, request->file);
+        if (list && code != EXIT_DONE && code != STILL_RUNNING)
             fputs("null", stdout);
         running += code == STILL_RUNNING;
         worst = code != STILL_RUNNING && code > worst ? code : worst;
     }
-    if (request->json && count > 1)
+    if (list)
         fputs("]\n", stdout);
     return running > 0 ? STILL_RUNNING : worst;
 }
 
 static int run_status(int argc, char **argv)
 {
-    const char **const files = calloc((size_t)argc, sizeof *files);
-    size_t json = 0, watch = 0, operands;
-    const struct option_spec specs[] = {{"--json", false, NULL, 0, &json},
-                                        {"--watch", false, NULL, 0, &watch}};
-    if (!files) {
-        fputs("stance status: not enough memory\n", stderr);
-        return EXIT_IO;
-    }
-    int code = command_begin(&command_status, argc, argv, specs, 2, "a results file", files, 1,
-                             (size_t)argc, &operands);
-    if (code == COMMAND_GOES_ON) {
-        struct request request = {NULL, json > 0, watch > 0};
-        while ((code = say_all(&request, files, operands)) == STILL_RUNNING)
+    struct request request = {.json = false};
+    int code = command_begin(&command_status, argc, argv, &request);
+    if (code == COMMAND_GOES_ON)
+        while ((code = say_all(&request)) == STILL_RUNNING)
             sleep(WATCH_INTERVAL);
-    }
-    free(files);
     return code;
 }
 
+static const struct option options[] = {
+    {"FILE...", OPTION_TO(struct request, files), .low = 1, .text = "a results file"},
+    {"--watch", OPTION_TO(struct request, watch),
+     .text = "again every 5 s, as long as the file is being written"},
+    {"--json", OPTION_TO(struct request, json),
+     .text = "the same as JSON, of several files a list (null: cannot be read), with the keys"},
+    {0},
+};
+
 const struct command command_status = {
     "status",
-    "status FILE... [--json] [--watch]",
     "how far a run or a search is: what is done, time left, ranks alive",
     run_status,
+    options,
     "Reads the results file, which a run may be writing, and FILE.lock, where the run gives a "
-    "sign\n"
-    "of life every other second, from any machine that sees them. A run elsewhere counts as\n"
-    "running until it was silent for 30 s. The rate is that of the last minute.\n"
-    "\n"
-    "  --watch  again every 5 s, as long as the file is being written\n"
-    "  --json   the same as JSON, of several files a list (null: cannot be read), with the keys\n"
+    "sign of life every other second, from any machine that sees them. A run elsewhere counts as "
+    "running until it was silent for 30 s. The rate is that of the last minute.",
     "    file                     as given\n"
     "    shard                    K/N of a shard's file, of whose share all is told; else null\n"
     "    cases, done, failed      numbers of cases\n"

@@ -47,28 +47,14 @@ static void fail_scenario(struct run *run, const struct plan_error *error)
 static void stage_options(struct run *run)
 {
     struct options *o = &run->options;
-    bool good = false;
-
-    o->sets = malloc((size_t)run->argc * sizeof *o->sets);
-    if (!o->sets)
-        run_fail(run, EXIT_IO, "stance run: not enough memory");
-    /* Rank 0 first: it says what is wrong, and the others need not. */
-    if (run->parallel.rank == 0 && o->sets)
-        good = run_read_options(o, run->argc, run->argv) &&
-               (o->help || run_read_shard(o, run->argc, run->argv));
-    parallel_broadcast(&run->parallel, &good, sizeof good);
-    if (!good) {
-        run->failure.code = run->failure.code ? run->failure.code : EXIT_USAGE;
-        return;
-    }
-    bool help = o->help;
-    parallel_broadcast(&run->parallel, &help, sizeof help);
-    if (run->parallel.rank != 0 && !help && o->sets)
-        run_read_options(o, run->argc, run->argv);
-    o->help = help;
+    const int code = run_read_options(o, &run->parallel, run->argc, run->argv);
+    o->help = code == EXIT_DONE;
+    if (code > 0 ||
+        (code < 0 && run->parallel.rank == 0 && !run_read_shard(o, run->argc, run->argv)))
+        run->failure.code = EXIT_USAGE; /* it has been said why */
     parallel_broadcast(&run->parallel, &o->shard, sizeof o->shard);
     deadline_limit(o->time_limit - (clock_seconds() - run->start));
-    if (!help && !instruction_set_check(&run->message))
+    if (code == COMMAND_GOES_ON && !instruction_set_check(&run->message))
         run_fail(run, EXIT_USAGE, "stance run: %s", run->message.text);
 }
 
@@ -79,17 +65,17 @@ static bool read_scenario(struct run *run)
 {
     const struct options *o = &run->options;
     struct scenario *s = run->scenario;
-    const size_t own = o->set_count - (o->extend_count > 0);
+    const struct option_texts *sets = &o->asked.sets;
 
     if (o->extend_count > 0) {
-        if (!scenario_read(s, o->scenario, NULL, o->sets, own, stderr))
+        if (!scenario_read(s, o->asked.file, NULL, sets->text, sets->count - 1, stderr))
             return false;
         const bool good = run_extend_check(run);
         scenario_free(s);
         if (!good)
             return false;
     }
-    return scenario_read(s, o->scenario, NULL, o->sets, o->set_count, stderr);
+    return scenario_read(s, o->asked.file, NULL, sets->text, sets->count, stderr);
 }
 
 /* Rank 0 reads the file; the others read the text that it resolved to. */
@@ -102,9 +88,9 @@ static void stage_scenario(struct run *run)
     if (run->parallel.rank == 0 && run->scenario) {
         read = read_scenario(run);
         if (!read && run->failure.code == EXIT_DONE) /* the reader has printed why */
-            run->failure.code = access(o->scenario, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
+            run->failure.code = access(o->asked.file, R_OK) == 0 ? EXIT_USAGE : EXIT_IO;
     }
-    if (!claim_scenario(&run->parallel, run->scenario, o->scenario, read, &run->message)) {
+    if (!claim_scenario(&run->parallel, run->scenario, o->asked.file, read, &run->message)) {
         free(run->scenario);
         run->scenario = NULL;
         if (run->message.text[0])
@@ -584,7 +570,7 @@ static int go_through(struct run *run)
     return run_conclude(run);
 }
 
-static int run_run(int argc, char **argv)
+int run_run(int argc, char **argv)
 {
     struct run *run = calloc(1, sizeof *run);
     if (!run) {
@@ -610,52 +596,7 @@ static int run_run(int argc, char **argv)
     lock_release(&run->lock);
     heartbeat_end(&run->heartbeat);
     parallel_finish(&run->parallel);
-    free(run->options.sets);
     free(run->scenario);
     free(run);
     return code;
 }
-
-const struct command command_run = {
-    "run",
-    "run SCENARIO [-o FILE] [--set PATH=VALUE]... [--force | --resume [--force-scenario]]\n"
-    "           [--extend COUNT [--from FILE]] [--shard K/N]\n"
-    "           [--time-limit TIME] [--only CASE [--trace]] [--dry-run] [--quiet]",
-    "compute every case of a scenario; alone or under mpirun -n N",
-    run_run,
-    "  -o FILE            results file; default results/<scenario name>.h5 (one case: with\n"
-    "                     -case<N>). An existing file is left alone and the exit code is 3\n"
-    "  --set PATH=VALUE   replace a value of the scenario; may be repeated\n"
-    "  --force            replace the file of that name, whatever it holds; of a symbolic link\n"
-    "                     the link, not the file that it names\n"
-    "  --resume           go on with an existing file of the same scenario: cases that it holds\n"
-    "                     whole, as their checksums say, are kept. Begins when there is no file\n"
-    "  --force-scenario   ... of another scenario: what is done stays, what is pending is "
-    "computed\n"
-    "                     as this one says. The file keeps both texts and which case is whose\n"
-    "                     (group history, variable scenario_number). The sweep, the answers, the\n"
-    "                     records and the designs must be the same\n"
-    "  --time-limit TIME  stop after 90s, 55m, 1h30m ... of wall time; resumable\n"
-    "  --only CASE        compute one case of the sweep, by its flat index, to a file of its own\n"
-    "  --trace            ... and record its trajectory, each 0.01 s unless record.every says\n"
-    "  --extend COUNT     a new file with sweep.sample.count COUNT, by default\n"
-    "                     results/<scenario name>-COUNT.h5, which takes over what a file of the\n"
-    "                     same scenario with fewer points holds, and computes the rest. That file\n"
-    "                     need not be complete and stays as it is. Not for method lhs\n"
-    "  --from FILE        ... that file; default results/<scenario name>.h5\n"
-    "  --shard K/N        compute the Kth of N equal shares of the cases, by default into\n"
-    "                     results/<scenario name>.shard-K-of-N.h5, which takes the disk of its "
-    "share\n"
-    "                     alone; `merge` makes the file of one run of these. slurm instead of "
-    "K/N:\n"
-    "                     in the tasks of an array 1-N, as Slurm tells. Not of refined maps\n"
-    "  --dry-run          plan and estimate as `check` does, within seconds; write nothing\n"
-    "  --quiet            neither progress nor summary\n"
-    "\n"
-    "SIGINT, SIGTERM and SIGUSR1 to any rank stop the job at once: cases in hand are given up,\n"
-    "what has ended is written, and the command that goes on is printed; mpirun forwards SIGUSR1\n"
-    "but kills its ranks a second after SIGINT or SIGTERM, and returns 1 then. Cases that do not\n"
-    "verify when a run is resumed are computed again and named. Exit\n"
-    "codes: 0 done, 1 some cases failed, 2 bad use or scenario, 3 input or output, 4 stopped and\n"
-    "resumable.\n",
-};

@@ -6,17 +6,17 @@
 #include "claim.h"
 #include "work.h"
 
-#include "runner/base/command.h"
 #include "runner/base/message.h"
 #include "runner/base/units.h"
+#include "runner/plan/asked.h"
 #include "runner/plan/kernels.h"
 #include "runner/store/lock.h"
 
 struct options {
-    const char *scenario, *output; /* output NULL: the default */
-    const char **sets;
-    size_t set_count;
-    bool force, force_scenario, resume, single, trace, dry_run, quiet, help;
+    struct asked asked;
+    const char *output; /* NULL: the default */
+    bool force, force_scenario, resume, trace, dry_run, quiet, help;
+    bool single; /* --only, of this case */
     uint64_t single_case;
     struct shard shard;     /* count 0: none */
     const char *shard_word; /* of --shard, as given */
@@ -56,8 +56,8 @@ struct run {
     double start, look_at;  /* of clock_seconds(): the beginning, the next look at the counters */
 };
 
-/* run_options.c. Prints what is wrong with them on standard error; false then. */
-bool run_read_options(struct options *o, int argc, char **argv);
+/* run_options.c. Collective, as claim_options(). */
+int run_read_options(struct options *o, const struct parallel *parallel, int argc, char **argv);
 /* On rank 0, whose environment may tell: --shard, in whose place argv then has its number. */
 bool run_read_shard(struct options *o, int argc, char **argv);
 
@@ -87,6 +87,7 @@ void run_say_stopped(const struct run *run, const char *what);
 /* Collective: adds up over the ranks, says what came out, and returns the exit code. */
 int run_conclude(struct run *run);
 
-extern const struct command command_run;
+extern const struct command command_run; /* run_options.c */
+int run_run(int argc, char **argv);
 
 #endif

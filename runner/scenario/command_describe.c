@@ -5,29 +5,36 @@
 
 extern const struct command command_describe; /* below */
 
+struct request {
+    const char *path;
+    bool schema;
+};
+
 static int run_describe(int argc, char **argv)
 {
-    size_t schema = 0, operands;
-    const struct option_spec options[] = {{"--schema", false, NULL, 0, &schema}};
-    const char *path = NULL;
-    const int code =
-        command_begin(&command_describe, argc, argv, options, 1, "", &path, 0, 1, &operands);
+    struct request request = {0};
+    const int code = command_begin(&command_describe, argc, argv, &request);
 
     if (code != COMMAND_GOES_ON)
         return code;
-    if (schema && operands)
-        return command_usage(&command_describe, "--schema takes no PATH");
-    if (scenario_describe(operands ? path : NULL, schema > 0, stdout, stderr))
+    if (scenario_describe(request.path, request.schema, stdout, stderr))
         return EXIT_DONE;
-    return operands ? EXIT_USAGE : EXIT_IO;
+    return request.path ? EXIT_USAGE : EXIT_IO;
 }
 
+static const struct option options[] = {
+    {"PATH", OPTION_TO(struct request, path), .text = "a path"},
+    {"--schema", OPTION_TO(struct request, schema), .without = "PATH",
+     .text = "JSON Schema (draft 2020-12), for editors"},
+    {0},
+};
+
 const struct command command_describe = {
-    .name = "describe",
-    .synopsis = "describe [--schema | PATH]",
-    .summary = "documents the scenario format",
-    .run = run_describe,
-    .help = "Without argument: every key with its type, range, unit and default.\n"
-            "  PATH      one key, such as controller.sample_time or sweep.grid[0].count\n"
-            "  --schema  JSON Schema (draft 2020-12), for editors\n",
+    "describe",
+    "documents the scenario format",
+    run_describe,
+    options,
+    "Without argument: every key with its type, range, unit and default. PATH: one key, such as "
+    "controller.sample_time or sweep.grid[0].count.",
+    NULL,
 };

@@ -15,8 +15,8 @@
 extern const struct command command_merge; /* below */
 
 struct request {
-    const char *output;
-    const char **files;
+    struct option_texts operands;
+    const char *output, **files;
     size_t count;
     bool force;
 };
@@ -192,50 +192,46 @@ static int start(struct request *request)
 
 static int run(int argc, char **argv)
 {
-    const char **operand = calloc((size_t)argc, sizeof *operand);
-    size_t force = 0, operands = 0;
-    const struct option_spec specs[] = {{"--force", false, NULL, 0, &force}};
-
-    if (!operand) {
-        fputs("stance merge: not enough memory\n", stderr);
-        return EXIT_IO;
-    }
-    int code = command_begin(&command_merge, argc, argv, specs, 1,
-                             "a file to write and two or more to read", operand, 3, (size_t)argc,
-                             &operands);
-    if (code == COMMAND_GOES_ON) {
-        struct request request = {operand[0], operand + 1, operands - 1, force > 0};
-        code = start(&request);
-    }
-    free(operand);
-    return code;
+    struct request request = {.force = false};
+    const int code = command_begin(&command_merge, argc, argv, &request);
+    if (code != COMMAND_GOES_ON)
+        return code;
+    request.output = request.operands.text[0];
+    request.files = request.operands.text + 1;
+    request.count = request.operands.count - 1;
+    return start(&request);
 }
+
+static const struct option options[] = {
+    {"OUT FILE FILE...", OPTION_TO(struct request, operands), .low = 3,
+     .text = "a file to write and two or more to read"},
+    {"--force", OPTION_TO(struct request, force), .text = "replace OUT"},
+    {0},
+};
 
 const struct command command_merge = {
     "merge",
-    "merge OUT FILE FILE... [--force]",
     "the files of an array job into one",
     run,
+    options,
     "The files' scenarios may\n"
     "\n"
     "  be equal                 each file has computed some of the cases: `stance run --shard`\n"
     "  differ along one axis    each file has some of its points: an array of tasks with\n"
     "                           --set sweep.grid[0].from=... or --set sweep.grid[0].values=...\n"
-    "  differ in one value      which becomes the first axis: tasks with --set "
-    "ground.friction=...\n"
+    "  differ in one value      which becomes the first axis: tasks with --set\n"
+    "                           ground.friction=...\n"
     "\n"
-    "and in their titles, of which the first is kept. Numbers are sorted where the files' own\n"
-    "are; words stay in the order of the files. Every row is verified by its checksum and copied\n"
+    "and in their titles, of which the first is kept. Numbers are sorted where the files' own "
+    "are; words stay in the order of the files. Every row is verified by its checksum and copied "
     "as it is, with its trajectory; cases that no file has stay pending. A case that several "
-    "files\n"
-    "have must be the same in all of them. OUT is a results file like any other, and `stance run\n"
-    "--resume` computes what is pending; its attribute `merged_from` names the files and how many\n"
-    "cases came from each.\n"
+    "files have must be the same in all of them. OUT is a results file like any other, and "
+    "`stance run --resume` computes what is pending; its attribute `merged_from` names the files "
+    "and how many cases came from each.\n"
     "\n"
-    "Random numbers are keyed by a case's index in its own file: with torque noise or\n"
-    "sweep.refine.probes the merged file is not what one run of the whole gives. Nor is it along\n"
-    "an axis that sweep.refine refines: each part was refined for itself. This is said, also in\n"
-    "the attribute `merge_note`.\n"
-    "\n"
-    "  --force   replace OUT\n",
+    "Random numbers are keyed by a case's index in its own file: with torque noise or "
+    "sweep.refine.probes the merged file is not what one run of the whole gives. Nor is it along "
+    "an axis that sweep.refine refines: each part was refined for itself. This is said, also in "
+    "the attribute `merge_note`.\n",
+    NULL,
 };

@@ -22,6 +22,16 @@ const char *const results_kind_names[RESULTS_KIND_COUNT] = {
 #define KIND_NAME(name, text) [RESULTS_##name] = text,
         RESULTS_OTHER_KINDS(KIND_NAME)};
 
+const char *results_outcome_word(size_t k)
+{
+    return k < RESULTS_OUTCOMES ? results_kind_names[k] : NULL;
+}
+
+const char *results_kind_word(size_t k)
+{
+    return k < RESULTS_KIND_COUNT ? results_kind_names[k] : NULL;
+}
+
 /* ---- errors ------------------------------------------------------------------------------- */
 
 bool results_failed(const struct results *r, const char *what, stance_message *message)

@@ -26,6 +26,9 @@ enum results_kind {
 };
 
 extern const char *const results_kind_names[RESULTS_KIND_COUNT];
+/* The names of outcomes, and of all, for options: NULL from the last on. */
+const char *results_outcome_word(size_t k);
+const char *results_kind_word(size_t k);
 
 enum { RESULTS_TEXT = 160 };
 

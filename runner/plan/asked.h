@@ -1,0 +1,23 @@
+/* asked.h - what commands that look at one scenario have in common: options, reading it. */
+#ifndef STANCE_PLAN_ASKED_H
+#define STANCE_PLAN_ASKED_H
+
+#include "runner/base/command.h"
+#include "runner/scenario/scenario.h"
+
+struct asked {
+    const char *file;
+    struct option_texts sets;
+};
+extern const struct option asked_options[]; /* SCENARIO, --set */
+/* The names of methods, NULL from the last on. */
+const char *asked_method(size_t k);
+
+/* Reads a scenario and works on it; returns an exit code. */
+int asked_work(const struct command *command, const struct asked *asked,
+               int (*work)(const struct scenario *s, void *request), void *request);
+/* The same from the command line on, of a request that begins with what is asked. */
+int asked_run(const struct command *command, int argc, char **argv,
+              int (*work)(const struct scenario *s, void *request), void *request);
+
+#endif
