@@ -376,17 +376,16 @@ const struct command command_ranges = {
     "and ranges end where starts cease to exist: at which ends they cut the domain is said.\n",
     "    scenario, outcome         strings\n"
     "    chosen                    whether the axes are not the scenario's\n"
-    "    parameters, held          points of the other axes; of these, at which the equilibrium\n"
-    "                              has the outcome\n"
-    "    resolved                  whether the whole ranges have points enough to show the\n"
-    "                              domain\n"
+    "    parameters, held          points of the other axes; of these, at which the equilibrium "
+    "has the outcome\n"
+    "    resolved                  whether the whole ranges have points enough to show the "
+    "domain\n"
     "    rays, not_lost            rays; of these, along which it was not lost\n"
     "    simulations, failed       numbers\n"
     "    share                     [least, most] over the points, of 256 starts each\n"
-    "    axes                      [{paths, unit, whole: {from, to: [a value a path], count\n"
-    "                              (null: of a sample)}, close: the same about the equilibrium;\n"
-    "                              of the first path alone: [low, high] along this axis, beyond:\n"
-    "                              [what becomes of starts there], reach: [least, most] along\n"
-    "                              all rays, cut: [below, above] whether the whole range cuts\n"
-    "                              the domain, lost: [below, above]}]\n",
+    "    axes                      [{paths, unit, whole: {from, to: [a value a path], count "
+    "(null: of a sample)}, close: the same about the equilibrium; of the first path alone: [low, "
+    "high] along this axis, beyond: [what becomes of starts there], reach: [least, most] along "
+    "all rays, cut: [below, above] whether the whole range cuts the domain, lost: [below, "
+    "above]}]\n",
 };

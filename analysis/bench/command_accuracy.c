@@ -156,11 +156,10 @@ const struct command command_accuracy = {
     "cells of the grid are counted, which are no draws and have no interval. The cost is measured "
     "on one core, in processor time, the median of at least three repetitions.\n",
     "    name, title, file         strings\n"
-    "    rows                      method, step, tolerance, reference, cases, failed,\n"
-    "                              microseconds_per_second (_low, _high),\n"
-    "                              evaluations_per_second, events_per_second, position_error,\n"
-    "                              velocity_error, cells_unlike, cells_unlike_inside, the\n"
-    "                              residuals of the contact laws, energy_gain\n"
-    "    orders                    method, of (step or tolerance), position, velocity, from, to,\n"
-    "                              rows\n",
+    "    rows                      method, step, tolerance, reference, cases, failed, "
+    "microseconds_per_second (_low, _high), evaluations_per_second, events_per_second, "
+    "position_error, velocity_error, cells_unlike, cells_unlike_inside, the residuals of the "
+    "contact laws, energy_gain\n"
+    "    orders                    method, of (step or tolerance), position, velocity, from, to, "
+    "rows\n",
 };

@@ -184,8 +184,8 @@ const struct command command_failure = {
     "is compared with event-driven, or with the most exact row of capturing where event-driven "
     "gave up; with method.step on the map, both at the smallest step. It gets the first of\n"
     "  gave_up        the case failed; `failed` counts the reasons\n"
-    "  ran_away       numbers not finite, angles beyond 1e4 rad, or more energy created than\n"
-    "                 there was at the start (kinetic, and potential above z = 0; at least 1 mJ)\n"
+    "  ran_away       numbers not finite, angles beyond 1e4 rad, or more energy created than "
+    "there was at the start (kinetic, and potential above z = 0; at least 1 mJ)\n"
     "  broke_law      penetration beyond 1e-6 m, or a residual of a contact law beyond 1e-6\n"
     "  wrong_outcome  not the reference's\n"
     "  inaccurate     a coordinate is off by more than 0.01 m or rad at the end\n"
@@ -196,11 +196,10 @@ const struct command command_failure = {
     "(rod). A second picture shows the energy that discretisation created.\n",
     "    name, title, file   strings\n"
     "    axes                the two of the map: name, unit, values\n"
-    "    theory              null, or text, along (an axis), of (the other), values: of the\n"
-    "                        other axis, for each point along; null where there is none\n"
-    "    rows                method, tolerance, cases (for each verdict), failed (for each\n"
-    "                        reason), energy_gain (J), energy_share (of that at the start),\n"
-    "                        max_penetration, signorini_residual, coulomb_residual,\n"
-    "                        dissipation_residual: largest of the cases that did not fail; map:\n"
-    "                        verdicts, a list for each point of the first axis\n",
+    "    theory              null, or text, along (an axis), of (the other), values: of the other "
+    "axis, for each point along; null where there is none\n"
+    "    rows                method, tolerance, cases (for each verdict), failed (for each "
+    "reason), energy_gain (J), energy_share (of that at the start), max_penetration, "
+    "signorini_residual, coulomb_residual, dissipation_residual: largest of the cases that did "
+    "not fail; map: verdicts, a list for each point of the first axis\n",
 };

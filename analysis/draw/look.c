@@ -22,27 +22,25 @@ void look_begin(struct look *look)
 /* ---- files -------------------------------------------------------------------------------- */
 
 /* Format of a file's name; LOOK_FORMAT_COUNT: it has none of the endings. */
-static enum look_format format_of(const char *name, size_t length)
+static enum look_format format_of(const char *name)
 {
-    for (int f = 0; f < LOOK_FORMAT_COUNT; f++)
-        if (strlen(look_endings[f]) == length && strncmp(name, look_endings[f], length) == 0)
-            return (enum look_format)f;
-    return LOOK_FORMAT_COUNT;
+    int f = 0;
+    while (f < LOOK_FORMAT_COUNT && strcmp(name, look_endings[f]) != 0)
+        f++;
+    return (enum look_format)f;
 }
 
-static bool read_formats(const char *text, void *look)
+static const char *format_word(size_t k)
+{
+    return k < LOOK_GIF ? look_endings[k] : NULL;
+}
+
+static bool read_format(const char *text, void *look)
 {
     struct look *const l = look;
-    l->formatted = true;
-    memset(l->format, 0, sizeof l->format);
-    for (const char *word = text; word;) {
-        const size_t length = strcspn(word, ",");
-        const enum look_format format = format_of(word, length);
-        if (format >= LOOK_GIF)
-            return false;
-        l->format[format] = true;
-        word = word[length] ? word + length + 1 : NULL;
-    }
+    if (!l->formatted)
+        memset(l->format, 0, sizeof l->format);
+    l->formatted = l->format[format_of(text)] = true;
     return !l->file;
 }
 
@@ -64,8 +62,7 @@ bool look_place(const char *text, void *look)
     struct stat information;
     const char *slash = strrchr(text, '/'), *name = slash ? slash + 1 : text;
     const char *dot = strrchr(name, '.');
-    const enum look_format format =
-        dot && dot > name ? format_of(dot + 1, strlen(dot + 1)) : LOOK_FORMAT_COUNT;
+    const enum look_format format = dot && dot > name ? format_of(dot + 1) : LOOK_FORMAT_COUNT;
     if (stat(text, &information) == 0 && S_ISDIR(information.st_mode)) {
         l->directory = text;
         return true;
@@ -184,8 +181,8 @@ const struct option look_drawn[] = {
     {"--for", .word = journal_word, .read = read_journal,
      .text = "column: 88 mm wide, page: 180 mm; text of 8 pt, no title (the caption has it), PDF "
              "unless another format is asked for"},
-    {"--format", "F,...", .read = read_formats,
-     .takes = "svg, png or pdf, or several with commas, and -o a directory then",
+    {"--format", "F,...", .word = format_word, .listed = true, .read = read_format,
+     .takes = "formats of files in a directory, -o DIR",
      .text = "files of each picture: svg, png, pdf; default svg,png"},
     {"--picture", "P", OPTION_TO(struct look, picture), .text = "of all pictures only NAME-P"},
     {"--size", "W[xH]", .read = read_size, .takes = "WIDTH or WIDTHxHEIGHT, 30 to 1000 mm",

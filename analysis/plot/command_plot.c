@@ -297,6 +297,6 @@ const struct command command_plot = {
     run,
     options,
     "Draws with gnuplot what the file calls for, beside the file or where -o says, and prints the "
-    "path of every file written.",
+    "path of every file written.\n\n",
     NULL,
 };

@@ -19,7 +19,7 @@
 extern char **environ;
 extern const struct command command_replay; /* below */
 
-enum { MOST_CASES = 2 };
+enum { MOST_CASES = 2, MOST_SETS = 32 };
 
 struct request {
     const char *file;
@@ -243,25 +243,19 @@ static bool write_scenario(const char *path, const char *text, stance_message *m
 static int run_again(const struct request *request, const struct replay *replay)
 {
     char index[32];
-    const char *const fixed[] = {"stance",  "run", replay->scenario, "--only", index,
-                                 "--trace", "-o",  replay->file,     "--quiet"};
-    size_t count = sizeof fixed / sizeof fixed[0];
-    const char **const arguments = calloc(count + 2 * request->sets.count + 1, sizeof *arguments);
+    const char *arguments[16 + 2 * MOST_SETS] = {"stance", "run",        replay->scenario,
+                                                 "--only", index,        "--trace",
+                                                 "-o",     replay->file, "--quiet"};
+    size_t count = 9;
     pid_t child;
     int status;
-    if (!arguments)
-        return -1;
-    memcpy(arguments, fixed, sizeof fixed);
     parallel_leave_launcher();
     snprintf(index, sizeof index, "%llu", (unsigned long long)replay->index);
     for (size_t k = 0; k < request->sets.count; k++) {
         arguments[count++] = "--set";
         arguments[count++] = request->sets.text[k];
     }
-    const int failed =
-        posix_spawn(&child, "/proc/self/exe", NULL, NULL, (char *const *)arguments, environ);
-    free(arguments);
-    if (failed)
+    if (posix_spawn(&child, "/proc/self/exe", NULL, NULL, (char *const *)arguments, environ) != 0)
         return -1;
     while (waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
@@ -425,7 +419,7 @@ static const struct option options[] = {
      .text = "the case nearest to these values: initial.offset.theta=0.02, or theta=0.02 where no "
              "other path ends so; paths that move along an axis are names, too. Offsets that are "
              "not named are those of the equilibrium, all else has its first value"},
-    {"--set", "PATH=VALUE", TO(sets),
+    {"--set", "PATH=VALUE", TO(sets), .most = MOST_SETS,
      .text = "with a value of the scenario replaced, as `run` has it; may be repeated"},
     {.at = offsetof(struct request, look), .rows = look_options},
     {0},

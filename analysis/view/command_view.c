@@ -21,8 +21,8 @@ extern const struct command command_view; /* below */
 enum { MOST_FILES = 64, NAME = 1100 };
 
 struct request {
-    struct option_texts files;
-    const char *place, *answers;
+    struct option_texts files, answers;
+    const char *place;
     bool open;
     struct page_request page;
     const char *file; /* the one at hand */
@@ -204,30 +204,6 @@ static int show(const char *page)
     return EXIT_DONE;
 }
 
-/* Splits the list of --answers; false with a message: there is no such answer. */
-static bool choose_answers(struct request *request, const char *list,
-                           const char *answer[PAGE_MOST_ANSWERS])
-{
-    static char text[1024];
-    const char *known[STANCE_ANSWER_COUNT];
-    request->page.answer = answer;
-    if (!list)
-        return true;
-    request->page.whole = strcmp(list, "all") == 0;
-    for (int a = 0; a < STANCE_ANSWER_COUNT; a++)
-        known[a] = stance_answers[a].name;
-    snprintf(text, sizeof text, "%s", list);
-    char *rest = text;
-    for (char *name; !request->page.whole && (name = strsep(&rest, ","));) {
-        if (command_word(&command_view, "--answers", name, known, STANCE_ANSWER_COUNT) ==
-            STANCE_ANSWER_COUNT)
-            return false;
-        if (request->page.answers < PAGE_MOST_ANSWERS)
-            answer[request->page.answers++] = name;
-    }
-    return true;
-}
-
 /* Whether two names are of one file. */
 static bool is_same(const char *a, const char *b)
 {
@@ -287,7 +263,6 @@ static int write_pages(struct request *request)
 static int run(int argc, char **argv)
 {
     struct request request = {.open = false};
-    const char *answer[PAGE_MOST_ANSWERS];
     const int begun = command_begin(&command_view, argc, argv, &request);
     if (begun != COMMAND_GOES_ON)
         return begun;
@@ -297,8 +272,10 @@ static int run(int argc, char **argv)
               stderr);
         return EXIT_USAGE;
     }
-    if (!choose_answers(&request, request.answers, answer))
-        return EXIT_USAGE;
+    request.page.answer = request.answers.text;
+    request.page.answers = request.answers.count;
+    for (size_t k = 0; k < request.answers.count; k++)
+        request.page.whole = request.page.whole || strcmp(request.answers.text[k], "all") == 0;
     if (request.files.count > 1 && !request.place)
         return command_usage(&command_view, "pages of several files need a directory: -o DIR");
     if (request.files.count == 1 && request.place && !is_directory(request.place) &&
@@ -314,13 +291,20 @@ static int run(int argc, char **argv)
     return request.open ? show(request.out) : EXIT_DONE;
 }
 
+static const char *answer_word(size_t k)
+{
+    return k < STANCE_ANSWER_COUNT    ? stance_answers[k].name
+           : k == STANCE_ANSWER_COUNT ? "all"
+                                      : NULL;
+}
+
 #define TO(member) OPTION_TO(struct request, member)
 static const struct option options[] = {
     {"FILE...", TO(files), .low = 1, .high = MOST_FILES, .text = "a results file"},
     {"-o", "PLACE", TO(place),
      .text = "the page's name, which ends in .html, or a directory; a file of that name is "
              "replaced, unless it is one of the results files"},
-    {"--answers", "A,...|all", TO(answers),
+    {"--answers", "A,...|all", TO(answers), .most = 1, .listed = true, .word = answer_word,
      .text = "the answers that the page carries, for colours and for what the pointer shows; "
              "`all` of them. Unasked as many as take 24 MB. What is left out the page computes "
              "where one clicks"},

@@ -13,7 +13,6 @@
 
 enum {
     PAGE_MOST_CASES = 8000000,
-    PAGE_MOST_ANSWERS = 32, /* that may be asked for */
 };
 /* Compressed bytes of answers that a page carries unasked. */
 #define PAGE_BYTES 24e6

@@ -158,15 +158,26 @@ static size_t fill(const char *text, size_t length, size_t column, size_t indent
     return column;
 }
 
-/* Lines, of which one that begins with a blank stands as it is. */
+/* Where a line that begins with a blank goes on when it is filled: under the text behind its name.
+ */
+static size_t hang(const char *line)
+{
+    const size_t own = strspn(line, " ");
+    const char *const gap = strstr(line + own, "  ");
+    const bool within = gap && gap < line + strcspn(line, "\n");
+    return within ? (size_t)(gap - line) + strspn(gap, " ") : own;
+}
+
 static void print_text(const char *text, size_t indent)
 {
     for (size_t length; *text; text += length + (text[length] == '\n')) {
         length = strcspn(text, "\n");
-        if (*text == ' ')
+        const size_t head = *text == ' ' ? hang(text) : 0, under = head > 0 ? head : indent;
+        if (*text == ' ' && length <= MARGIN)
             fwrite(text, 1, length, stdout);
         else
-            fill(text, length, 0, indent);
+            fill(text + head, length - head, (size_t)printf("%.*s", (int)head - (head > 0), text),
+                 under);
         putchar('\n');
     }
 }
@@ -527,36 +538,44 @@ static bool agree(const struct table *t)
     return !text[0] || command_usage(t->command, text) == EXIT_DONE;
 }
 
-/* Room for the texts of lists, which stays. */
-static const char **room_for(size_t count)
+/* Memory that stays. */
+static void *keep(size_t size)
 {
-    static struct room {
-        struct room *before;
-        const char *text[];
+    static struct kept {
+        struct kept *before;
+        const char *memory[];
     } * last;
-    struct room *const room = malloc(sizeof *room + count * sizeof room->text[0]);
-    if (!room)
-        return NULL;
-    room->before = last;
-    last = room;
-    return room->text;
+    struct kept *const kept = malloc(sizeof *kept + size);
+    if (!kept)
+        abort();
+    kept->before = last;
+    last = kept;
+    return kept->memory;
 }
 
-static bool read_all(const struct table *t, const struct given *given, size_t count, void *request)
+/* The values of row i, of `count` that were given. */
+static bool read_row(const struct table *t, size_t i, const struct given *given, size_t count,
+                     void *member)
 {
-    const char **room = room_for(count + t->rows);
-    for (size_t i = 0; room && i < t->rows; i++) {
-        void *const member = (char *)request + t->row[i].at;
-        if (t->row[i].option->kind == OPTION_TEXTS && !t->row[i].option->read) {
-            *(struct option_texts *)member = (struct option_texts){room, 0};
-            room += t->row[i].given + 1;
-        }
-        for (size_t k = 0; k < count; k++)
-            if (given[k].row == i &&
-                !read_value(t->command, t->row[i].option, given[k].text, member))
+    const struct option *const o = t->row[i].option;
+    size_t values = 1;
+    for (size_t k = 0; k < count; k++)
+        for (const char *c = given[k].row == i ? given[k].text : NULL; c; c = strchr(c + 1, ','))
+            values++;
+    if (o->kind == OPTION_TEXTS)
+        ((struct option_texts *)member)->text = keep(values * sizeof(char *));
+    if (o->kind == OPTION_TEXTS)
+        ((struct option_texts *)member)->count = 0;
+    for (size_t k = 0; k < count; k++) {
+        if (given[k].row != i)
+            continue;
+        char *rest = given[k].text ? strcpy(keep(strlen(given[k].text) + 1), given[k].text) : NULL;
+        do
+            if (!read_value(t->command, o, o->listed ? strsep(&rest, ",") : given[k].text, member))
                 return false;
+        while (o->listed && rest);
     }
-    return room || command_usage(t->command, strerror(ENOMEM)) == EXIT_DONE;
+    return true;
 }
 
 int command_begin(const struct command *command, int argc, char **argv, void *request)
@@ -573,7 +592,9 @@ int command_begin(const struct command *command, int argc, char **argv, void *re
     bool good = given && split(&t, argc, argv, given, &count, &asked);
     if (good && asked)
         print_help(&t);
-    good = good && (asked || (agree(&t) && read_all(&t, given, count, request)));
+    good = good && (asked || agree(&t));
+    for (size_t i = 0; good && !asked && i < t.rows; i++)
+        good = read_row(&t, i, given, count, (char *)request + t.row[i].at);
     free(given);
     return !good ? EXIT_USAGE : asked ? EXIT_DONE : COMMAND_GOES_ON;
 }

@@ -55,6 +55,7 @@ struct option {
                        * a flag: it must be given */
     const char *(*word)(size_t k); /* its words, up to NULL: of a word the index is kept, without
                                     * words, of a flag, `low` */
+    bool listed;                   /* several with commas between them, each a value */
     size_t most; /* how often it may be given; 0: once, texts any number of times */
     bool (*read)(const char *text, void *member);
     const char *takes;          /* "a duration such as 90s": instead of what its kind says */

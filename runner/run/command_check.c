@@ -76,14 +76,12 @@ const struct command command_check = {
     "    recorded_cases            cases whose trajectories would be recorded\n"
     "    file, file_bytes          where the results would go, and their size\n"
     "    ranks                     1\n"
-    "    seconds_on_one_rank       estimate; null when no case could be tried, or for too\n"
-    "                              short a time to tell\n"
-    "    seconds_is_upper_bound    some cases took too long to try to their ends: it is a\n"
-    "                              bound\n"
-    "    compile_seconds           that run needs first, roughly, for kernels that it compiles;\n"
-    "                              0: none, or they are in the cache, where nothing is touched.\n"
-    "                              Without them seconds_on_one_rank is reckoned from those that\n"
-    "                              are built in\n"
-    "    refine                    null, or with sweep.refine {coarse_cases, probes (expected),\n"
-    "                              most_cases}: seconds_on_one_rank is then for all of them\n",
+    "    seconds_on_one_rank       estimate; null when no case could be tried, or for too short a "
+    "time to tell\n"
+    "    seconds_is_upper_bound    some cases took too long to try to their ends: it is a bound\n"
+    "    compile_seconds           that run needs first, roughly, for kernels that it compiles; "
+    "0: none, or they are in the cache, where nothing is touched. Without them "
+    "seconds_on_one_rank is reckoned from those that are built in\n"
+    "    refine                    null, or with sweep.refine {coarse_cases, probes (expected), "
+    "most_cases}: seconds_on_one_rank is then for all of them\n",
 };
