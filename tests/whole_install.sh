@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # `make install`: everything is there and works from there, and `make uninstall` leaves nothing. What is made
-# of the help texts (manual pages, completion) has every command and option; the schema takes every scenario
-# that ships, as PyYAML (YAML 1.1) reads it.
+# of the tables of options (help, manual pages, completion) has every command and option; the schema takes every
+# scenario that ships, as PyYAML (YAML 1.1) reads it.
 # Speaks TAP.
 set -u
 . "$(dirname "$0")/scratch.sh"
@@ -36,6 +36,10 @@ man -l "$at/share/man/man1/stance-basin.1" 2>/dev/null | sed 's/‐$//' | tr -d 
 "$stance" basin -h | awk 'blank >= 2; /^$/ { blank++ }' | tr -d ' \n-' | head -c 700 >part
 tr -d '‐' <page | grep -qF -f part
 result $? "... says what the help says"
+for said in "basin:(2 to 1000)" "run:(not with --only --extend --force-scenario)" "compare:(with --labels)"; do
+    "$stance" "${said%%:*}" -h | tr -s ' \n' ' ' | grep -qF -- "${said#*:}"
+    result $? "... ${said%%:*}: ${said#*:}"
+done
 
 # ---- completion ---------------------------------------------------------------------------------
 "$stance" help --options >commands
@@ -75,6 +79,8 @@ offers "scenarios" "drop.yaml" stance check dr
 offers "paths" "ground.friction" stance describe ground.f
 offers "paths to set" "stop.time" stance run drop.yaml --set stop.t
 offers "words" "drop fallen" stance sensitivity --failed ""
+offers "outcomes" "stabilised" stance compare --of stab
+offers "methods" "lagrange" stance build --method la
 offers "commands of bench" "accuracy" stance bench acc
 for shell in zsh fish; do
     file=$at/share/$shell/$([ $shell = zsh ] && echo site-functions/_stance || echo vendor_completions.d/stance.fish)

@@ -21,7 +21,7 @@ struct table {
     size_t rows, operands; /* row of the operands; `rows`: there are none */
     struct {
         const struct option *option;
-        size_t at, given, group; /* rows that exclude each other stand side by side in a group */
+        size_t at, given;
     } row[MOST_ROWS];
 };
 
@@ -86,20 +86,20 @@ static size_t find_row(const struct table *t, const char *name)
 static void add_rows(struct table *t, const struct option *o, size_t base)
 {
     for (; o && (o->name || o->text || o->rows || o->part) && t->rows < MOST_ROWS; o++) {
-        const size_t i = t->rows;
         if (o->rows)
             add_rows(t, o->rows, base + o->at);
         if (o->rows || o->part)
             continue;
-        t->row[i].option = o;
-        t->row[i].at = base + o->at;
-        t->row[i].group = i;
-        const size_t before = i > 0 ? t->row[i - 1].group : 0;
-        if (i > 0 && is_option(o) && is_option(t->row[before].option) &&
-            has_name(o->without, t->row[before].option->name))
-            t->row[i].group = before;
-        t->rows++;
+        t->row[t->rows].option = o;
+        t->row[t->rows++].at = base + o->at;
     }
+}
+
+/* Whether row i cannot stand beside the one before it: "[--force | --resume]". */
+static bool joins(const struct table *t, size_t i)
+{
+    return i > 0 && i < t->rows && is_option(t->row[i].option) && is_option(t->row[i - 1].option) &&
+           has_name(t->row[i].option->without, t->row[i - 1].option->name);
 }
 
 static void make_table(struct table *t, const struct command *command)
@@ -188,23 +188,20 @@ static void print_synopsis(const struct table *t)
     size_t column = (size_t)printf("usage: stance %s", t->command->name);
     if (t->operands < t->rows) {
         const struct option *const o = t->row[t->operands].option;
-        snprintf(item, sizeof item, least_of(o) > 0 ? "%s" : "[%s]", o->name);
-        column = fill(item, strlen(item), column, 11);
+        column += (size_t)printf(least_of(o) > 0 ? " %s" : " [%s]", o->name);
     }
     for (size_t i = 0; i < t->rows; i++) {
         const struct option *const o = t->row[i].option;
-        const bool must = least_of(o) > 0, first = t->row[i].group == i,
-                   last = i + 1 == t->rows || t->row[i + 1].group != t->row[i].group;
+        const char *const value = value_name(o, false, words, sizeof words);
+        const char *const open = least_of(o) > 0 ? ""
+                                 : joins(t, i)   ? "| "
+                                                 : "[",
+                          *const close = least_of(o) > 0 || joins(t, i + 1) ? "" : "]";
         if (!is_option(o))
             continue;
-        const char *const value = value_name(o, false, words, sizeof words);
         /* What is between brackets stands in one line. */
-        snprintf(item, sizeof item, "%s%s%s%s%s%s",
-                 must    ? ""
-                 : first ? "["
-                         : "| ",
-                 o->name, value ? " " : "", value ? value : "", last && !must ? "]" : "",
-                 most_of(o) > 1 ? "..." : "");
+        snprintf(item, sizeof item, "%s%s%s%s%s%s", open, o->name, value ? " " : "",
+                 value ? value : "", close, most_of(o) > 1 ? "..." : "");
         if (column + 1 + strlen(item) > MARGIN)
             column = 0, putchar('\n');
         column += (size_t)printf("%*s%s", column > 0 ? 1 : 11, "", item);
@@ -216,8 +213,6 @@ static void print_synopsis(const struct table *t)
 static void print_conditions(const struct table *t, size_t i, size_t column)
 {
     const struct option *const o = t->row[i].option;
-    const bool grouped =
-        t->row[i].group < i || (i + 1 < t->rows && t->row[i + 1].group == t->row[i].group);
     char text[300];
     size_t used = 0;
     text[0] = '\0';
@@ -225,7 +220,7 @@ static void print_conditions(const struct table *t, size_t i, size_t column)
         used += (size_t)snprintf(text, sizeof text, "(%.10g to %.10g) ", o->low, o->high);
     if (o->needs)
         used += (size_t)snprintf(text + used, sizeof text - used, "(with %s) ", o->needs);
-    if (o->without && !grouped)
+    if (o->without && !joins(t, i) && !joins(t, i + 1))
         snprintf(text + used, sizeof text - used, "(not with %s)", o->without);
     fill(text, strlen(text), column, TEXT_COLUMN);
 }
