@@ -84,7 +84,7 @@ static int nothing(int argc, char **argv)
 }
 
 struct tried {
-    struct option_texts sets, files;
+    struct option_texts sets, files, colours;
     const char *output;
     bool force, resume;
     uint64_t cases;
@@ -107,6 +107,7 @@ static void test_options(void **state)
         {"--cases", "N", TRIED(cases), .low = 2, .high = 9, .text = "some"},
         {"--level", "L", TRIED(level), .low = 0.5, .high = 1, .needs = "--cases or --colour"},
         {"--colour", TRIED(colour), .word = colour_word},
+        {"--colours", "C,...", TRIED(colours), .word = colour_word, .listed = true},
         {0},
     };
     static const struct option options[] = {
@@ -132,18 +133,22 @@ static void test_options(void **state)
     assert_string_equal(t.files.text[1], "--force");
     assert_int_equal(t.cases, 9);
     assert_true(t.level == 0.75);
-    char *words[] = {"try", "a", "--colour", "green", "--level", "1"};
-    assert_int_equal(command_begin(&command, 6, words, &t), COMMAND_GOES_ON);
+    char *words[] = {"try", "a", "--colour", "green", "--level", "1", "--colours=red,green"};
+    assert_int_equal(command_begin(&command, 7, words, &t), COMMAND_GOES_ON);
+    assert_int_equal(t.colours.count, 2);
+    assert_string_equal(t.colours.text[1], "green");
     assert_int_equal(t.colour, 1);
     assert_true(t.level == 1);
-    char *bad[][5] = {{"try", "--st", "a"},       {"try", "a", "b", "c"},
-                      {"try", "-o", "a", "-oa"},  {"try", "a", "-o"},
-                      {"try", "a", "--force=1"},  {"try"},
-                      {"try", "a", "-o=b"},       {"try", "-o", "a", "-o", "b"},
-                      {"try", "a", "--cases=1"},  {"try", "a", "--cases=10"},
-                      {"try", "a", "--cases=3x"}, {"try", "a", "--cases", "18446744073709551615"},
-                      {"try", "a", "--colour=b"}, {"try", "a", "--level=1"},
-                      {"try", "a", "--resume"},   {"try", "a", "--cases=2", "--level=nan"}};
+    char *bad[][5] = {
+        {"try", "--st", "a"},          {"try", "a", "b", "c"},
+        {"try", "-o", "a", "-oa"},     {"try", "a", "-o"},
+        {"try", "a", "--force=1"},     {"try"},
+        {"try", "a", "-o=b"},          {"try", "-o", "a", "-o", "b"},
+        {"try", "a", "--cases=1"},     {"try", "a", "--cases=10"},
+        {"try", "a", "--cases=3x"},    {"try", "a", "--cases", "18446744073709551615"},
+        {"try", "a", "--colour=b"},    {"try", "a", "--level=1"},
+        {"try", "a", "--resume"},      {"try", "a", "--cases=2", "--level=nan"},
+        {"try", "a", "--colours=red,"}};
     int silent = dup(STDERR_FILENO);
     assert_non_null(freopen("/dev/null", "w", stderr));
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

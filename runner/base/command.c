@@ -558,17 +558,15 @@ static bool read_row(const struct table *t, size_t i, const struct given *given,
         for (const char *c = given[k].row == i ? given[k].text : NULL; c; c = strchr(c + 1, ','))
             values++;
     if (o->kind == OPTION_TEXTS)
-        ((struct option_texts *)member)->text = keep(values * sizeof(char *));
-    if (o->kind == OPTION_TEXTS)
-        ((struct option_texts *)member)->count = 0;
+        *(struct option_texts *)member = (struct option_texts){keep(values * sizeof(char *)), 0};
     for (size_t k = 0; k < count; k++) {
         if (given[k].row != i)
             continue;
-        char *rest = given[k].text ? strcpy(keep(strlen(given[k].text) + 1), given[k].text) : NULL;
+        char *rest = o->listed ? strcpy(keep(strlen(given[k].text) + 1), given[k].text) : NULL;
         do
-            if (!read_value(t->command, o, o->listed ? strsep(&rest, ",") : given[k].text, member))
+            if (!read_value(t->command, o, rest ? strsep(&rest, ",") : given[k].text, member))
                 return false;
-        while (o->listed && rest);
+        while (rest);
     }
     return true;
 }
