@@ -154,6 +154,12 @@ most = h5py.File('feet.h5')['evaluations'][...].max()
 assert most <= 5000, most" >log 2>&1
 result $? "contacts that throw each other up come to an end"
 
+# ---- feet that come to rest in turn --------------------------------------------------------------------
+# A foot that stops as the other begins to slide: what crossed that event took all of the load off one of
+# them, and pulled it into the ground by less than 1e-11 m/s, which is much in 5e-10 s.
+expect "legs that slide apart" 0 "$stance" run "$shipped/controllers/walk_gains.yaml" --set sweep.grid[2].count=15 \
+    --set sweep.grid[3].count=15 --only 1195 -o apart.h5
+
 # ---- what bounced is judged by the impact ----------------------------------------------------------
 expect "bouncing, in steps of fixed length" 0 "$stance" run walker.yaml --set method.name=midpoint --set ground.restitution=0.3 -o bounces.h5
 "$python" -c "

@@ -31,6 +31,7 @@
 #define CONTACT_REGULAR 1e-9      /* of the largest it can be: a pivot this small needs care */
 #define CONTACT_STICKS (1 - 1e-9) /* of the cone: an impulse inside it sticks */
 #define CONTACT_TOLERANCE 1e-11   /* of the largest free velocity (at least 1 m/s) */
+#define CONTACT_STILL 1e-4        /* m/s: free velocities are known to CONTACT_TOLERANCE of it */
 
 /* Contacts that matter in any lane: bit c. With an end of a sole its first one is in, too, which
  * holds the tangential impulse. What an open contact would do costs nothing. */
@@ -362,6 +363,21 @@ struct contact_rule {
     const lanes (*before)[2], (*last)[2];
     mask keeps; /* where that mode is a solution's it is taken, preferred or not */
 };
+
+/* Largest violations of the laws, m/s, of what is a solution, `most`, and of what is one to
+ * rounding, `exact`. Over a very short time velocities change by no more than the first, which
+ * admits every mode, also one that pulls a foot into the ground: such are taken only where none is
+ * exact. What they leave behind is beside every mode: of two feet of which one slides each would
+ * stop and slide in turn, without end. */
+struct contact_tolerance {
+    lanes exact, most;
+};
+HOT struct contact_tolerance contact_tolerance(lanes largest)
+{
+    return (struct contact_tolerance){CONTACT_TOLERANCE *
+                                          lanes_max(largest, lanes_of(CONTACT_STILL)),
+                                      CONTACT_TOLERANCE * lanes_max(largest, lanes_of(1))};
+}
 
 /* What is said of a solution, in lanes. */
 struct contact_verdict {

@@ -63,7 +63,7 @@ static bool crowd_offer_mode(const struct lane_problem *p, const double *r,
     struct lane_modes modes;
     double exact[LANE_ROWS] = {0};
     crowd_modes_of(p, r, &modes);
-    return lane_in_modes(p, &modes, exact) && lane_offer(p, exact, best) <= p->tolerance;
+    return lane_in_modes(p, &modes, exact) && lane_offer(p, exact, best) <= p->exact;
 }
 
 /* Newton's iteration on modes; true: it arrived. */
@@ -75,7 +75,7 @@ static bool crowd_newton(const struct lane_problem *p, struct lane_choice *best)
         double r[LANE_ROWS] = {0}, u[LANE_ROWS];
         if (!lane_in_modes(p, &modes, r))
             return false;
-        if (lane_offer(p, r, best) <= p->tolerance)
+        if (lane_offer(p, r, best) <= p->exact)
             return true;
         lane_velocities(p, r, u);
         for (int k = 0; k < p->elements; k++) {

@@ -57,7 +57,7 @@ struct lane_problem {
     double shift[LANE_ROWS];
     double last[LANE_ROWS]; /* see contact_rule */
     double friction, prefer;
-    double tolerance; /* admitted violation, m/s */
+    double tolerance, exact; /* violations, m/s, see contact_tolerance: the most, and none */
     bool indefinite;
 };
 
@@ -80,7 +80,7 @@ struct lane_modes {
 static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                         const lanes (*uf)[2], contact_set active, int lane, struct lane_problem *p)
 {
-    double largest = 1;
+    double largest = 0;
     p->rows = p->elements = 0;
     for (int c = 0; c < SCENE_CONTACTS; c++) {
         const contact_set ends = contact_ends(c);
@@ -110,7 +110,8 @@ static void lane_gather(const struct contact_rule *rule, const lanes (*D)[CONTAC
     }
     p->friction = lane_get(&rule->friction, lane);
     p->prefer = lane_get(&rule->prefer, lane);
-    p->tolerance = CONTACT_TOLERANCE * largest;
+    p->tolerance = CONTACT_TOLERANCE * fmax(largest, 1);
+    p->exact = CONTACT_TOLERANCE * fmax(largest, CONTACT_STILL);
     p->indefinite = rule->indefinite;
 }
 
@@ -217,11 +218,13 @@ static double lane_offer(const struct lane_problem *p, const double *r, struct l
     for (int i = 0; i < p->rows; i++)
         apart = lane_max(fabs(u[i] - best->u[i]), apart);
     const bool valid = violation <= p->tolerance, have = best->violation <= p->tolerance;
+    const bool exact = violation <= p->exact, known = best->violation <= p->exact;
     const double tie = 1e-12 * (fabs(energy) + fabs(best->energy));
     /* With the same velocities it is the same solution, whatever rounding makes of its energy. */
-    const bool other = valid && have && 16 * p->tolerance < apart;
-    best->ambiguous |= other;
-    if ((valid && !have) || (other && energy < best->energy - tie) ||
+    const bool first = (valid && !have) || (exact && !known);
+    const bool other = valid && have && exact == known && 16 * p->tolerance < apart;
+    best->ambiguous = (best->ambiguous && !first) || other;
+    if (first || (other && energy < best->energy - tie) ||
         (!valid && !have && violation < best->violation)) {
         memcpy(best->r, r, sizeof best->r);
         memcpy(best->u, u, sizeof best->u);
@@ -495,7 +498,7 @@ static void lane_arrive(const struct lane_problem *p, const struct lane_path *pa
     const double violation = lane_offer(p, r, best);
     /* Anew, with care, where that may be rounding: a contact may slide on the verge of having no
      * answer. (To offer the same twice changes nothing.) */
-    if (violation > p->tolerance && violation < LANE_ROUNDING * p->tolerance &&
+    if (violation > p->exact && violation < LANE_ROUNDING * p->tolerance &&
         lane_in_modes(p, &path->modes, r))
         lane_offer(p, r, best);
 }
@@ -595,8 +598,10 @@ static void lane_enumerate(const struct lane_problem *p, struct lane_choice *bes
     lane_matrix A;
     struct lane_path path = {0};
     lane_choose_none(best);
-    lane_hold(p, r);
+    const bool holds = lane_hold(p, r);
     lane_offer(p, r, best);
+    if (holds && best->violation <= p->tolerance) /* as exact as redundant contacts let it be */
+        best->violation = 0;
     for (int i = 0; i < p->rows; i++) {
         memcpy(A[i], p->D[i], sizeof p->D[i]);
         A[i][p->rows] = p->uf[i];

@@ -12,13 +12,13 @@
 /* The best solution so far, as in lane.h. */
 struct pair_choice {
     lanes r[CONTACTS][2], u[CONTACTS][2], energy;
-    mask have, ambiguous;
+    mask have, exact, ambiguous;
 };
 
 /* Takes r with the velocities u, where it is `valid` and better than the choice. */
 static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)[2],
                               lanes tolerance, contact_set touching, const mask *active,
-                              const lanes (*r)[2], const lanes (*u)[2], mask valid,
+                              const lanes (*r)[2], const lanes (*u)[2], mask valid, mask exact,
                               struct pair_choice *best)
 {
     const lanes none = lanes_of(0);
@@ -36,11 +36,13 @@ static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)
     if (!rule->indefinite)
         energy = rule->prefer * energy;
     const lanes tie = 1e-12 * (lanes_abs(energy) + lanes_abs(best->energy));
-    const mask other = valid & best->have & mask_less(16 * tolerance, apart);
-    const mask take =
-        (valid & LANES_NOT(best->have)) | (other & mask_less(energy, best->energy - tie));
-    best->ambiguous |= other;
+    const mask first = (valid & LANES_NOT(best->have)) | (exact & LANES_NOT(best->exact));
+    const mask other =
+        valid & best->have & LANES_NOT(exact ^ best->exact) & mask_less(16 * tolerance, apart);
+    const mask take = first | (other & mask_less(energy, best->energy - tie));
+    best->ambiguous = (best->ambiguous & LANES_NOT(first)) | other;
     best->have |= valid;
+    best->exact |= exact;
     best->energy = choose(take, energy, best->energy);
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int a = 0; a < 2; a++) {
@@ -54,12 +56,13 @@ static inline void pair_offer(const struct contact_rule *rule, const lanes (*uf)
  * verge of a solution, or there is none. */
 COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                          const lanes (*uf)[2], contact_set touching, int first, int second,
-                         const mask *active, lanes tolerance, mask todo, lanes (*r)[2],
-                         mask *ambiguous)
+                         const mask *active, const struct contact_tolerance *tolerance, mask todo,
+                         lanes (*r)[2], mask *ambiguous)
 {
     enum { OPEN, STICK, FORWARD, BACKWARD, MODES };
     const lanes none = lanes_of(0);
-    struct pair_choice best = {.have = MASK_NONE, .ambiguous = MASK_NONE, .energy = none};
+    struct pair_choice best = {
+        .have = MASK_NONE, .exact = MASK_NONE, .ambiguous = MASK_NONE, .energy = none};
     lanes candidate[CONTACTS][2], u[CONTACTS][2], edge[CONTACTS];
     mask verge = MASK_NONE, never[CONTACTS][MODES], closed[CONTACTS], sticks[CONTACTS];
     for (int c = 0; c < SCENE_CONTACTS; c++) {
@@ -76,11 +79,12 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
             never[c][BACKWARD] |= mask_less(none, slide);
         }
     }
-    const mask holds = direct_hold(rule->friction, tolerance, D, uf, touching, active, candidate) &
-                       LANES_NOT(never[first][STICK] | never[second][STICK]);
+    const mask holds =
+        direct_hold(rule->friction, tolerance->most, D, uf, touching, active, candidate) &
+        LANES_NOT(never[first][STICK] | never[second][STICK]);
     direct_velocities(D, uf, touching, (const lanes(*)[2])candidate, u);
-    pair_offer(rule, uf, tolerance, touching, active, (const lanes(*)[2])candidate,
-               (const lanes(*)[2])u, todo & holds, &best);
+    pair_offer(rule, uf, tolerance->most, touching, active, (const lanes(*)[2])candidate,
+               (const lanes(*)[2])u, todo & holds, todo & holds, &best);
     for (int mode = 0; mode < MODES * MODES; mode++) {
         const int of[2] = {mode / MODES, mode % MODES}, point[2] = {first, second};
         const mask may = todo & LANES_NOT(never[first][of[0]] | never[second][of[1]]);
@@ -127,11 +131,13 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
             for (int a = 0; a < 2; a++)
                 sum += candidate[point[k]][a] + u[point[k]][a];
         const mask regular = may & mask_finite(sum);
-        const mask valid = regular & mask_less_equal(violation, tolerance);
-        verge |= regular & LANES_NOT(valid) & mask_less_equal(violation, PAIR_VERGE * tolerance);
+        const mask valid = regular & mask_less_equal(violation, tolerance->most);
+        verge |=
+            regular & LANES_NOT(valid) & mask_less_equal(violation, PAIR_VERGE * tolerance->most);
         if (mask_any(valid))
-            pair_offer(rule, uf, tolerance, touching, active, (const lanes(*)[2])candidate,
-                       (const lanes(*)[2])u, valid, &best);
+            pair_offer(rule, uf, tolerance->most, touching, active, (const lanes(*)[2])candidate,
+                       (const lanes(*)[2])u, valid,
+                       regular & mask_less_equal(violation, tolerance->exact), &best);
     }
     const mask done = todo & best.have & LANES_NOT(verge);
     *ambiguous = done & best.ambiguous;
@@ -143,7 +149,8 @@ COLD mask pair_enumerate(const struct contact_rule *rule, const lanes (*D)[CONTA
  * `touching`, for other lanes. */
 static inline mask pair_every(const struct contact_rule *rule, const lanes (*D)[CONTACTS][2][2],
                               const lanes (*uf)[2], contact_set touching, const mask *active,
-                              lanes tolerance, mask todo, lanes (*r)[2], mask *ambiguous)
+                              const struct contact_tolerance *tolerance, mask todo, lanes (*r)[2],
+                              mask *ambiguous)
 {
     mask done = MASK_NONE;
     for (int a = 0; a < SCENE_CONTACTS; a++)

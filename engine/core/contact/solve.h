@@ -14,15 +14,15 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
                      lanes (*r)[2], struct contact_verdict *v)
 {
     const lanes none = lanes_of(0);
-    lanes stick[CONTACTS][2], scale = lanes_of(1);
+    lanes stick[CONTACTS][2], largest = none;
     for (int c = 0; c < SCENE_CONTACTS; c++)
         for (int a = 0; a < contact_unknowns(c) && touching >> c & 1; a++)
-            scale = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), scale);
-    const lanes tolerance = CONTACT_TOLERANCE * scale;
+            largest = lanes_max(choose(active[c], lanes_abs(uf[c][a]), none), largest);
+    const struct contact_tolerance tolerance = contact_tolerance(largest);
     const mask stood = unsure & direct_stood(rule, touching, active);
     mask done = MASK_NONE;
     if (mask_any(stood)) {
-        done = stood & direct_hold(rule->friction, tolerance, D, uf, touching, active, stick);
+        done = stood & direct_hold(rule->friction, tolerance.most, D, uf, touching, active, stick);
         for (int c = 0; c < SCENE_CONTACTS; c++)
             for (int a = 0; a < 2; a++)
                 r[c][a] = choose(done, stick[c][a], r[c][a]);
@@ -31,10 +31,10 @@ COLD void solve_rest(const struct contact_rule *rule, const lanes (*D)[CONTACTS]
         const mask todo =
             unsure & LANES_NOT(done) & direct_unique(rule->friction, D, touching, active);
         if (mask_any(todo))
-            done |= direct_modes(rule, D, uf, touching, active, tolerance, todo, r);
+            done |= direct_modes(rule, D, uf, touching, active, tolerance.exact, todo, r);
     }
     mask left = unsure & LANES_NOT(done);
-    left &= LANES_NOT(pair_every(rule, D, uf, touching, active, tolerance,
+    left &= LANES_NOT(pair_every(rule, D, uf, touching, active, &tolerance,
                                  left & LANES_NOT(stood | rule->keeps), r, &v->ambiguous));
     for (int lane = 0; lane < LANES && mask_any(left); lane++) {
         if (!mask_get(left, lane))
