@@ -178,6 +178,11 @@ for k, (low, high) in enumerate([(0, 0.3), (0.3, 9), (0.2, 0.4)]):
     assert basin["within"] == ["settle_time <= 0.3", "settle_time >= 0.3", "0.2 <= settle_time <= 0.4"][k]
 END
 result $? "the basin of what settles within a time, not before it, between two"
+expect "the same map, refined" 0 "$stance" run full.yaml -o part.h5 --quiet --set 'sweep.refine={start: 4}'
+expect "numbers that inferred cases have not" 2 "$stance" basin part.h5 --within settle_time=0.3
+says "... are no bound" '^stance basin: --within settle_time: [0-9]* cases were inferred and have no such number: it takes a map without sweep.refine$'
+expect "... nor a sample" 0 "$stance" basin part.h5 --answer settle_time
+says "... which is said" 'warning: [0-9]* of these cases were inferred and have no settle_time'
 for wrong in settle_time=2..1 settle_time=.. settle_time=1..x; do
     expect "--within $wrong" 2 "$stance" basin full.h5 --within $wrong
 done

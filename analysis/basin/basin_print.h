@@ -21,6 +21,12 @@ bool basin_rays_print_boundary(const struct basin_rays *rays);
  * name, or words. False: it cannot be read. */
 bool basin_numbers(const struct results *r, const char *answer, double **value,
                    stance_message *message);
+/* Of the cases that ended so, those without such a number: those that were inferred, and others. */
+struct basin_lack {
+    uint64_t inferred, others;
+};
+bool basin_lacks(const struct results *r, enum results_kind of, const double *value,
+                 struct basin_lack *lack, stance_message *message);
 
 /* Answers to single questions. *usage: it is the request that is at fault; *message says why. */
 bool basin_print_threshold(const struct basin *basin, const char *path, double threshold,

@@ -220,6 +220,20 @@ bool basin_numbers(const struct results *r, const char *answer, double **value,
     return good;
 }
 
+bool basin_lacks(const struct results *r, enum results_kind of, const double *value,
+                 struct basin_lack *lack, stance_message *message)
+{
+    uint64_t count;
+    bool *inferred;
+    const bool good = statistics_inferred(r, &count, &inferred, message);
+    *lack = (struct basin_lack){0};
+    for (uint64_t i = 0; good && i < r->cases; i++)
+        if (r->kind[i] == of && isnan(value[i]))
+            ++*(inferred && inferred[i] ? &lack->inferred : &lack->others);
+    free(inferred);
+    return good;
+}
+
 /* The numbers of the cases with the outcome, row by row: those of row k are number[begin[k]] up to
  * number[begin[k + 1]]; largest[k]: a case with the largest. begin[rows + 1], zero at first. */
 static void sort_numbers(const struct basin *b, const double *value, double *number,
@@ -250,8 +264,13 @@ bool basin_print_answer(const struct basin *b, const char *answer, enum table_fo
 {
     struct table t = {0};
     double *value = NULL;
+    struct basin_lack lack = {0};
     if (!basin_numbers(b->r, answer, &value, message))
         return false;
+    if (value && !basin_lacks(b->r, b->choice.of, value, &lack, message)) {
+        free(value);
+        return false;
+    }
     double *number = malloc(b->r->cases * sizeof *number);
     uint64_t *begin = calloc(2 * b->rows + 1, sizeof *begin);
     *usage = !value;
@@ -264,6 +283,11 @@ bool basin_print_answer(const struct basin *b, const char *answer, enum table_fo
                                 answer);
     }
     uint64_t *largest = begin + b->rows + 1;
+    if (lack.inferred > 0)
+        fprintf(stderr,
+                "stance basin: warning: %" PRIu64 " of these cases were inferred and have no %s: "
+                "the numbers are of the others, which are near boundaries\n",
+                lack.inferred, answer);
     sort_numbers(b, value, number, begin, largest);
     for (size_t row = 0; row < b->rows; row++) {
         struct statistics_numbers found;

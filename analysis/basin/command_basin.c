@@ -6,6 +6,7 @@
 #include "analysis/table/report.h"
 #include "runner/base/message.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -160,6 +161,21 @@ static int keep_within(struct results *r, struct request *request, stance_messag
                      request->within.text[k]);
             return EXIT_USAGE;
         }
+        struct basin_lack lack;
+        const bool good = basin_lacks(r, request->choice.of, value, &lack, message);
+        if (good && lack.inferred > 0)
+            complain(message,
+                     "stance basin: --within %.60s: %" PRIu64 " cases were inferred and have no "
+                     "such number: it takes a map without sweep.refine",
+                     name, lack.inferred);
+        if (!good || lack.inferred > 0) {
+            free(value);
+            return good ? EXIT_USAGE : EXIT_IO;
+        }
+        if (lack.others > 0)
+            fprintf(stderr,
+                    "stance basin: warning: %" PRIu64 " cases have no %s, and count as outside\n",
+                    lack.others, name);
         for (uint64_t i = 0; i < r->cases; i++)
             if (r->kind[i] == request->choice.of && !(bound[0] <= value[i] && value[i] <= bound[1]))
                 r->kind[i] =
@@ -330,7 +346,8 @@ const struct command command_basin = {
     "other axis is a parameter. For each point of the parameters: how many of the starts end in "
     "the outcome, and what share of the box of starts that is. Rows are averages over a sample of "
     "parameters (stance sensitivity tells what it says of each), and with --by over all other "
-    "parameters. Cases inferred by sweep.refine count as simulated ones do.\n"
+    "parameters. Cases inferred by sweep.refine count as simulated ones do, but have no numbers: "
+    "--within refuses them.\n"
     "\n"
     "  volume    the box reaches from the first to the last place of each axis; cases on its edge "
     "count by the part of their cell that lies in it (so the share is not quite that of the "

@@ -562,7 +562,7 @@ static bool read_row(const struct table *t, size_t i, const struct given *given,
     for (size_t k = 0; k < count; k++) {
         if (given[k].row != i)
             continue;
-        const size_t size = strlen(given[k].text) + 1;
+        const size_t size = o->listed ? strlen(given[k].text) + 1 : 0;
         char *rest = o->listed ? memcpy(keep(size), given[k].text, size) : NULL;
         do
             if (!read_value(t->command, o, rest ? strsep(&rest, ",") : given[k].text, member))
