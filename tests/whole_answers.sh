@@ -178,7 +178,8 @@ for k, (low, high) in enumerate([(0, 0.3), (0.3, 9), (0.2, 0.4)]):
     assert basin["within"] == ["settle_time <= 0.3", "settle_time >= 0.3", "0.2 <= settle_time <= 0.4"][k]
 END
 result $? "the basin of what settles within a time, not before it, between two"
-expect "the same map, refined" 0 "$stance" run full.yaml -o part.h5 --quiet --set 'sweep.refine={start: 4}'
+expect "a larger map, refined" 0 "$stance" run "$shipped/basin_one_foot.yaml" -o part.h5 --quiet \
+    --set 'sweep.grid[0].count=64' --set 'sweep.grid[1].count=64' --set 'sweep.refine={start: 8}'
 expect "numbers that inferred cases have not" 2 "$stance" basin part.h5 --within settle_time=0.3
 says "... are no bound" '^stance basin: --within settle_time: [0-9]* cases were inferred and have no such number: it takes a map without sweep.refine$'
 expect "... nor a sample" 0 "$stance" basin part.h5 --answer settle_time
