@@ -636,10 +636,15 @@ static double number(const char *text)
 
 int main(int argc, char **argv)
 {
+    static const struct option options[] = {
+        {.rows = studies_options},
+        {"--json", OPTION_TO(struct studies, json), .text = "the same as JSON"},
+        {0},
+    };
     static const struct command self = {.name = "bench_peers",
-                                        .synopsis = "bench_peers [SCENARIO]... ...",
                                         .summary = "other simulators on the charts",
-                                        .help = "The head of tests/bench_peers.c explains.\n"};
+                                        .options = options,
+                                        .help = "The head of tests/bench_peers.c explains."};
     static const struct study_kind kind = {"accuracy", accuracy_fits, study};
     int left = 1; /* options that are those of `stance bench accuracy` */
     for (int i = 1; i < argc; i++)
