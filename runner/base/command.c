@@ -98,8 +98,10 @@ static void add_rows(struct table *t, const struct option *o, size_t base)
 /* Whether row i cannot stand beside the one before it: "[--force | --resume]". */
 static bool joins(const struct table *t, size_t i)
 {
-    return i > 0 && i < t->rows && is_option(t->row[i].option) && is_option(t->row[i - 1].option) &&
-           has_name(t->row[i].option->without, t->row[i - 1].option->name);
+    if (i == 0 || i >= t->rows)
+        return false;
+    const struct option *const o = t->row[i].option, *const before = t->row[i - 1].option;
+    return is_option(o) && is_option(before) && has_name(o->without, before->name);
 }
 
 static void make_table(struct table *t, const struct command *command)
@@ -425,9 +427,10 @@ static bool read_value(const struct command *command, const struct option *o, co
         *(const char **)member = text;
     else if (o->kind == OPTION_TEXTS)
         texts->text[texts->count++] = text;
-    else if (o->kind == OPTION_WORD)
-        memcpy(member, &(int){known > 0 ? (int)word : (int)o->low}, sizeof(int));
-    else if (o->kind == OPTION_WHOLE && (good = read_whole(o, text, &whole)))
+    else if (o->kind == OPTION_WORD) {
+        const int chosen = known > 0 ? (int)word : (int)o->low;
+        memcpy(member, &chosen, sizeof chosen);
+    } else if (o->kind == OPTION_WHOLE && (good = read_whole(o, text, &whole)))
         *(uint64_t *)member = whole;
     else if (o->kind == OPTION_NUMBER && (good = read_number(o, text, &number)))
         *(double *)member = number;
