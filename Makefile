@@ -419,6 +419,7 @@ $(FUZZ)/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call QUIET,fuzz,$@)$(FUZZ_CC) -I. $(STRICT) $(WARNINGS) $(FUZZ_CFLAGS) $(PROGRAM_CFLAGS) $(EXTRA) -MMD -MP -c -o $@ $<
 $(FUZZ)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
+$(FUZZ)/runner/store/build_info.o: $(BUILD)/revision
 $(FUZZ)/fuzz_scenario: $(FUZZ)/tests/fuzz_scenario.o $(FUZZ)/tests/fuzz_mutate.o $(fuzz_objects) $(archives)
 	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined,fuzzer $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
 $(FUZZ)/fuzz_results: $(FUZZ)/tests/fuzz_results.o $(FUZZ)/tests/fuzz_numbers.o $(FUZZ)/tests/damage.o $(fuzz_objects) $(archives)
