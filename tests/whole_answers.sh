@@ -30,6 +30,8 @@ expect "our own in a file of an earlier version, too" 0 "$stance" table old.h5 -
 cmp log new.csv >>log 2>&1
 result $? "... the same"
 expect "which is the same map" 0 "$stance" compare --labels map.h5 old.h5
+"$stance" summary map.h5 | grep -q 'settle.place 0.5 m' && ! "$stance" summary old.h5 | grep -q settle.place
+result $? "of which none was judged by a rule that came later"
 cp old.h5 half.h5
 "$python" "$tests/results_tools.py" age old.h5 300
 expect "of which the rest is computed now" 0 mpirun -n 2 "$stance" run map.yaml -o old.h5 --resume --quiet

@@ -3,6 +3,7 @@
 
 #include "runner/base/problem.h"
 #include "runner/scenario/schema.h"
+#include "runner/store/results_rows.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -78,8 +79,19 @@ static bool is_controlled(const struct results *r, const struct scenario *s,
     return found;
 }
 
+static bool has_answer(const struct results *r, const char *name)
+{
+    struct results_column column = {.id = -1};
+    stance_message message;
+    const bool has = results_column_open(r, name, &column, &message) && column.id >= 0;
+    if (has)
+        results_column_close(&column);
+    return has;
+}
+
 /* The number that a case has where the scenario leaves it open: of the posture at which all cases
- * begin, of a method's tolerance. */
+ * begin, of a method's tolerance. How far a support may have moved nothing was judged by in files
+ * of before: they lack the answer that came with it. */
 static double completed(const struct results *r, const struct scenario *s,
                         const struct scenario_field *field, const struct scenario_values *v,
                         double number)
@@ -88,6 +100,8 @@ static double completed(const struct results *r, const struct scenario *s,
         (field->offset - offsetof(struct scenario_values, equilibrium.posture)) / sizeof number;
     const double tolerance = stance_methods()[v->method]->tolerance;
     double start[STANCE_MAX_COORDINATES];
+    if (field->offset == offsetof(struct scenario_values, settle_place))
+        return has_answer(r, "through_ground") ? number : NAN;
     if (field->offset == offsetof(struct scenario_values, tolerance))
         return !(tolerance > 0) ? NAN : isnan(number) ? tolerance : number;
     return posture < STANCE_MAX_POSTURE &&
