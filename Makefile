@@ -53,7 +53,7 @@ endif
 # gcc infers worse how long numbers are in instrumented code.
 ALLFLAGS = -I. $(STRICT) $(WARNINGS) $(SANITIZE) $(if $(SANITIZE),-Wno-format-truncation)
 
-# Of what is not simulated with, programs take the functions that they call.
+# Each function in a section of its own, but for kernels: test programs leave out what they do not call.
 SECTIONS = -ffunction-sections -fdata-sections
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
 SCENES  = ball block rod biped
@@ -353,7 +353,7 @@ MPI_ENVIRONMENT = OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 PMIX
 TEST_ENVIRONMENT = $(MPI_ENVIRONMENT) BUILD=$(BUILD) PYTHON=$(PYTHON) STANCE=$(abspath $(PROGRAM)) \
                    FUZZ_SECONDS=$(FUZZ_SECONDS) FUZZ_RUNS=$(FUZZ_RUNS)
 
-# ARM's kernels against this machine's, in an emulator. `check` does so where the packages are, with
+# ARM's kernels against this machine's, in an emulator. `check-scripts` does so where the packages are, with
 # kernels that are quicker to compile.
 test-neon: packages-neon
 	$(MAKE) golden
@@ -426,7 +426,7 @@ $(FUZZ)/fuzz_results: $(FUZZ)/tests/fuzz_results.o $(FUZZ)/tests/fuzz_numbers.o 
 	$(call QUIET,link,$@)$(FUZZ_CC) -fsanitize=address,undefined -shared-libasan -Wl,-rpath,$(dir $(fuzz_library)) \
 	    $(foreach f,$(fuzz_wrapped),-Wl,--wrap=$(f)) $(FUZZ_COVERAGE) -o $@ $^ $(LDFLAGS) $(LIBS)
 
-# A longer campaign: FUZZ_SECONDS=3600, or FUZZ_RUNS=1000000; `test` runs a share, too.
+# A longer campaign: FUZZ_SECONDS=3600, or FUZZ_RUNS=1000000; `test-scripts` runs a share, too.
 fuzz: packages-test
 	$(MAKE) $(PROGRAM) fuzz-programs
 	@$(TEST_ENVIRONMENT) bash tests/run.sh whole_fuzz

@@ -264,9 +264,7 @@ static struct against compare(const struct line *best, const stance_method *meth
 static void add_row(struct table *t, const struct line *line)
 {
     const struct accuracy_row *const row = &line->row;
-    const bool truth = line == &lines[a.truth], compared = row->compared > 0 && !truth;
-    const bool paths = compared && !a.labels, cells = compared && a.labels;
-    const struct table_value none = as_nothing(truth ? "reference" : NULL);
+    const bool truth = line == &lines[a.truth];
     char remark[96];
     snprintf(remark, sizeof remark, "gave up %" PRIu64 " of %" PRIu64 "%s%s", row->failed,
              row->cases, line->peer ? "" : ": ",
@@ -280,20 +278,10 @@ static void add_row(struct table *t, const struct line *line)
         {{"tolerance", "toler.", "%.0e", .width = 6}, as_number(row->tolerance)},
         {{.name = "reference"}, as_truth(truth)}, {{.name = "cases"}, as_whole(row->cases)},
         {{.name = "failed"}, as_whole(row->failed)},
-        {{"microseconds_per_second", "us per s", "%.3g", .width = 10}, as_number(cost_of(line))},
-        {{"position_error", "position", "%.2e", .before = "  ", .width = 9},
-         paths ? as_number(row->position) : none},
-        {{"velocity_error", "velocity", "%.2e", .width = 9},
-         as_number(paths ? row->velocity : NAN)},
-        {{"cells_unlike", "unlike", .width = 9}, cells ? as_whole(row->differ) : none},
-        {{"of", "cells", .hidden = TABLE_NO_JSON, .before = " of ", .left = true},
-         as_whole(row->compared)},
-        {{"share", "share", "%.3f %%", .hidden = TABLE_NO_JSON, .width = 8, .percent = true},
-         as_number(cells ? (double)row->differ / (double)row->compared : NAN)},
-        {{"cells_unlike_inside", "inside", .width = 6},
-         cells ? as_whole(row->inside) : as_nothing(NULL)},
-        {{"remark", .hidden = TABLE_VIEW_ONLY, .before = "  ", .empty = ""},
-         as_nothing(row->failed > 0 ? remark : NULL)});
+        {{"microseconds_per_second", "us per s", "%.3g", .width = 10}, as_number(cost_of(line))});
+    accuracy_errors(t, row, truth, a.labels);
+    TABLE_FACTS(t, {{"remark", .hidden = TABLE_VIEW_ONLY, .before = "  ", .empty = ""},
+                    as_nothing(row->failed > 0 ? remark : NULL)});
     table_end_row(t);
 }
 

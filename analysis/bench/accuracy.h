@@ -9,6 +9,7 @@
 #define STANCE_BENCH_ACCURACY_H
 
 #include "analysis/draw/look.h"
+#include "analysis/table/table.h"
 #include "measure.h"
 
 #include "runner/store/results.h"
@@ -64,6 +65,10 @@ void accuracy_trajectory(const struct results_trajectory *truth,
 void accuracy_label(const struct accuracy *a, const struct results *r, size_t cell, uint8_t kind,
                     struct accuracy_row *row);
 size_t accuracy_cases(const struct accuracy *a, const struct results *r);
+
+/* The columns of a row's errors: of the reference itself, or of what was not compared, there are
+ * none. */
+void accuracy_errors(struct table *t, const struct accuracy_row *row, bool reference, bool labels);
 
 /* DIRECTORY/STEM.svg and .png: error against cost, a line for each method. */
 bool accuracy_plot(const struct accuracy *a, const struct results *r, struct look *look,

@@ -12,13 +12,11 @@ static const double measuring_budget = 0.3; /* s per method and step */
 
 /* ---- text and JSON ------------------------------------------------------------------------ */
 
-/* What a row's errors are: of the reference itself, or of what was not compared, there are none. */
-static void add_errors(struct table *t, const struct accuracy *a, size_t k)
+void accuracy_errors(struct table *t, const struct accuracy_row *row, bool reference, bool labels)
 {
-    const struct accuracy_row *row = &a->row[k];
-    const bool compared = row->compared > 0 && k != a->truth;
-    const bool paths = compared && !a->labels, cells = compared && a->labels;
-    const struct table_value none = as_nothing(k == a->truth ? "reference" : NULL);
+    const bool compared = row->compared > 0 && !reference;
+    const bool paths = compared && !labels, cells = compared && labels;
+    const struct table_value none = as_nothing(reference ? "reference" : NULL);
     TABLE_FACTS(
         t,
         {{"position_error", "position", "%.2e", .before = "  ", .width = 9},
@@ -51,7 +49,7 @@ static void add_row(struct table *t, const struct accuracy *a, size_t k)
         {{.name = "microseconds_high"}, as_number(row->cost.high)},
         {{"evaluations_per_second", "evals/s", "%.0f", .width = 9}, as_number(row->evaluations)},
         {{.name = "events_per_second"}, as_number(row->events)});
-    add_errors(t, a, k);
+    accuracy_errors(t, row, k == a->truth, a->labels);
     TABLE_FACTS(
         t, {{"signorini_residual", "Signor.", "%.0e", .width = 8}, as_number(row->signorini)},
         {{"coulomb_residual", "Coulomb", "%.0e", .width = 8}, as_number(row->coulomb)},

@@ -13,9 +13,8 @@
 enum { LABEL_SIZE = 256 };
 static int put_label(char text[LABEL_SIZE], const struct image_label *label)
 {
-    return snprintf(text, LABEL_SIZE,
-                    "\nstance object\ncompiler %-80.80s\nchecked %d\nkey %-65.65s\n",
-                    label->compiler, label->checked, label->key);
+    return snprintf(text, LABEL_SIZE, "\nstance object\ncompiler %-80.80s\nkey %-65.65s\n",
+                    label->compiler, label->key);
 }
 static const char hash_format[] = "sha256 %-64.64s\n";
 
@@ -78,17 +77,14 @@ bool image_label(const struct image *image, struct image_label *label)
     if (memcmp(image->bytes + hashed, expected, hash) != 0)
         return false;
     char text[LABEL_SIZE], compiler[IMAGE_COMPILER + 1]; /* the blank before it, and it */
-    int checked;
     memcpy(text, image->bytes + image->size - length, length - hash);
     text[length - hash] = '\0';
-    if (sscanf(text, "\nstance object\ncompiler%81c\nchecked %d\nkey %65s", compiler, &checked,
-               label->key) != 3)
+    if (sscanf(text, "\nstance object\ncompiler%81c\nkey %65s", compiler, label->key) != 2)
         return false;
     compiler[IMAGE_COMPILER] = '\0';
     memcpy(label->compiler, compiler + 1, IMAGE_COMPILER);
     for (size_t n = strlen(label->compiler); n > 0 && label->compiler[n - 1] == ' '; n--)
         label->compiler[n - 1] = '\0';
-    label->checked = checked == 1;
     return true;
 }
 

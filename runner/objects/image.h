@@ -4,7 +4,6 @@
  *
  *     stance object
  *     compiler gcc (Debian 12.2.0-14+deb12u1) 12.2.0 ...
- *     checked 1
  *     key 0123...-4567...
  *     sha256 of all that stands before this word
  */
@@ -28,7 +27,6 @@ struct image {
 
 struct image_label {
     char key[IMAGE_KEY], compiler[IMAGE_COMPILER];
-    bool checked; /* its results were those of a reference */
 };
 
 /* Reads an open regular file into memory. false: no memory, or it cannot be read; none then. */

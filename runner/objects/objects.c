@@ -87,7 +87,6 @@ static bool check(const struct objects_request *request, const struct cache *cac
     const bool loads = load_object(&m->image, &object, message),
                good = loads && load_check(&object, m->reference, request, message);
     objects_release(&object, 1);
-    m->label.checked = m->reference && request->checks > 0;
     m->checked = good;
     if (loads && !good)
         cache_refuse(cache, m->name, &m->label, message->text);
