@@ -22,10 +22,10 @@ struct making {
     const stance_kernel *reference; /* of this rank; NULL: none, or others alone want it */
     struct image image;             /* sealed */
     size_t stem;                    /* characters of the name that are any compiler's */
-    char name[CACHE_NAME];          /* of its file */
-    struct image_label label;
     enum object_origin origin;
     bool checked; /* on this rank */
+    struct image_label label;
+    char name[CACHE_NAME]; /* of its file */
 };
 
 /* What rank 0 tells all before the images: how long each is (0: there is none) and where it comes
