@@ -56,8 +56,8 @@ ALLFLAGS = -I. $(STRICT) $(WARNINGS) $(SANITIZE) $(if $(SANITIZE),-Wno-format-tr
 # Each function in a section of its own, but for kernels: test programs leave out what they do not call.
 SECTIONS = -ffunction-sections -fdata-sections
 # ---- the engine: a library without MPI, HDF5, YAML, files or terminals ---------------------------
-SCENES  = ball block rod biped
-# Of mechanisms: the structure is read at run time. Others are compiled on demand.
+# Structures that kernels are compiled for ahead, and the one that reads any at run time. Others are compiled on demand.
+STRUCTURES = biped
 RUNTIME = runtime
 METHODS = implicit midpoint capturing lagrange
 SCALAR_METHODS = event_driven
@@ -87,9 +87,11 @@ scalar_method_flags = -DSTANCE_LANES=1
 # Loops over contacts are unrolled before gcc knows which of them a set leaves out.
 kernel_warnings = -Wno-maybe-uninitialized
 
-kernels        := $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),$(s)-$(m)-$(i)))) \
+# Ahead for the fastest, which the others are held to be equal to; `make ISAS=all` for all.
+ahead_isas     := $(if $(filter $(words $(every_isa)),$(words $(ISAS))),$(ISAS),$(or $(filter $(own_isa),$(ISAS)),$(lastword $(ISAS))))
+kernels        := $(foreach s,$(STRUCTURES),$(foreach m,$(METHODS),$(foreach i,$(ahead_isas),$(s)-$(m)-$(i)))) \
                   $(foreach m,$(METHODS),$(RUNTIME)-$(m)-$(RUNTIME_ISA))
-scalar_kernels := $(foreach s,$(SCENES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
+scalar_kernels := $(foreach s,$(STRUCTURES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),$(s)-$(m)-scalar))
 kernel_objects := $(patsubst %,$(BUILD)/kernel/%.o,$(kernels) $(scalar_kernels))
 engine_sources := $(wildcard engine/*.c engine/core/lanes/*.c engine/laws/*.c engine/scenes/*.c)
 engine_objects := $(engine_sources:%.c=$(BUILD)/%.o) $(kernel_objects)
@@ -139,14 +141,13 @@ $(BUILD)/%.a:
 define kernel_rule
 $(BUILD)/kernel/$(1)-$(2)-$(3).o: engine/methods/$(2).c $(BUILD)/flags
 	@mkdir -p $$(@D)
-	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(kernel_warnings) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(firstword $(SCENES)),$(1)),-DSTANCE_DESCRIBE_METHOD) \
+	$$(call QUIET,kernel,$$@)$$(CC) $$(KERNEL_CFLAGS) $$(ALLFLAGS) $$(kernel_warnings) $(4) -DSTANCE_SCENE=$(1) -DSTANCE_ISA=$(3) $(if $(filter $(RUNTIME),$(1)),-DSTANCE_DESCRIBE_METHOD) \
 	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
-$(foreach s,$(SCENES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
+$(foreach s,$(STRUCTURES),$(foreach m,$(METHODS),$(foreach i,$(ISAS),\
 $(eval $(call kernel_rule,$(s),$(m),$(i),$(isa_flags_$(i)))))))
 $(foreach m,$(METHODS),$(eval $(call kernel_rule,$(RUNTIME),$(m),$(RUNTIME_ISA),$(isa_flags_$(RUNTIME_ISA)))))
-$(foreach s,$(SCENES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),\
-$(eval $(call kernel_rule,$(s),$(m),scalar,$(scalar_method_flags)))))
+$(foreach s,$(STRUCTURES) $(RUNTIME),$(foreach m,$(SCALAR_METHODS),$(eval $(call kernel_rule,$(s),$(m),scalar,$(scalar_method_flags)))))
 
 $(BUILD)/engine/%.o: engine/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
@@ -163,13 +164,13 @@ $(foreach b,$(BUILD) $(BUILD)/fuzz,$(eval $(scripts:%.gp=$(b)/%.o): $(b)/%.o: %.
     $(eval $(b)/analysis/draw/gnuplot.o: $(wildcard analysis/draw/*.gp)))
 # The page that `stance view` fills, and the engines that it may carry, where `make web` has made them.
 PAGE = $(wildcard $(WEB)/page.html)
-$(BUILD)/analysis/view/page_template.o: PROGRAM_CFLAGS += $(PAGE:%=-DSTANCE_PAGE='"%"' -DSTANCE_PAGE_ENGINES='$(foreach s,$(SCENES) $(RUNTIME),ENGINE($(s)))')
+$(BUILD)/analysis/view/page_template.o: PROGRAM_CFLAGS += $(PAGE:%=-DSTANCE_PAGE='"%"' -DSTANCE_PAGE_ENGINES='$(foreach s,$(STRUCTURES) $(RUNTIME),ENGINE($(s)))')
 $(BUILD)/analysis/view/page_template.o: $(PAGE)
 # What the build was is recorded in one object, made anew when the revision changes.
 $(BUILD)/runner/store/build_info.o: EXTRA = $(BUILD_INFO)
 $(BUILD)/runner/store/build_info.o: $(BUILD)/revision
 # Kernels that are compiled on demand: the sources that the program carries, and how it compiles them.
-carried = $(sort $(wildcard engine/*.h engine/core/*/*.h engine/scenes/*_lanes.h engine/scenes/tree_*.h)) $(METHODS:%=engine/methods/%.c)
+carried = $(sort $(wildcard engine/*.h engine/core/*/*.h engine/scenes/tree_*.h)) $(METHODS:%=engine/methods/%.c)
 $(BUILD)/runner/objects/sources.o: EXTRA = -DSTANCE_SOURCES='$(foreach f,$(carried),SOURCE("$(f)"))'
 $(BUILD)/runner/objects/sources.o: $(carried)
 $(BUILD)/runner/objects/compiler.o: EXTRA = \
@@ -223,7 +224,7 @@ $(BUILD)/tests/test_fuzz: test_objects = $(BUILD)/tests/fuzz_scenario.o
 $(BUILD)/tests/test_fma: test_objects = $(fused_objects)
 
 # Kernels of one lane that think their neighbours need everything: see core/lanes/lanes.h.
-doubting         = $(foreach s,$(SCENES),$(foreach m,$(METHODS),$(s)-$(m)))
+doubting         = $(foreach s,$(STRUCTURES),$(foreach m,$(METHODS),$(s)-$(m)))
 doubting_objects = $(doubting:%=$(BUILD)/tests/doubting-%.o)
 define doubting_rule
 $(BUILD)/tests/doubting-$(1)-$(2).o: engine/methods/$(2).c $(BUILD)/flags
@@ -231,7 +232,7 @@ $(BUILD)/tests/doubting-$(1)-$(2).o: engine/methods/$(2).c $(BUILD)/flags
 	$$(call QUIET,cc,$$@)$$(CC) -O1 $$(ALLFLAGS) $$(kernel_warnings) $(isa_flags_scalar) -DSTANCE_DOUBT -DSTANCE_SCENE=$(1) -DSTANCE_ISA=doubting \
 	    -DSTANCE_SCENE_LANES='"engine/scenes/$(1)_lanes.h"' -MMD -MP -c -o $$@ $$<
 endef
-$(foreach s,$(SCENES),$(foreach m,$(METHODS),$(eval $(call doubting_rule,$(s),$(m)))))
+$(foreach s,$(STRUCTURES),$(foreach m,$(METHODS),$(eval $(call doubting_rule,$(s),$(m)))))
 $(BUILD)/tests/test_lanes: $(doubting_objects)
 $(BUILD)/tests/test_lanes: test_objects = $(doubting_objects)
 $(BUILD)/tests/test_lanes: EXTRA = -DSTANCE_DOUBTING_LIST='$(foreach k,$(doubting),KERNEL($(subst -,$(comma),$(k))))'
@@ -275,7 +276,7 @@ page_sources := $(wildcard analysis/view/wasm/*.c) $(addprefix runner/base/,chec
     $(addprefix runner/plan/,plan.c refine.c resolve.c shard.c) \
     $(filter-out %/command_describe.c %/describe.c %/scenario_file.c %/tree_yaml.c,$(wildcard runner/scenario/*.c))
 # A page carries the engine of its file's scene.
-engines = $(patsubst %,$(WEB)/engine-%.z,$(SCENES) $(RUNTIME))
+engines = $(patsubst %,$(WEB)/engine-%.z,$(STRUCTURES) $(RUNTIME))
 ifeq ($(BUILD),$(WEB))
 page_objects = $(page_sources:%.c=$(WEB)/%.o)
 define engine_rule
@@ -285,7 +286,7 @@ $(WEB)/kernels-$(1).o: engine/kernels.c $$(BUILD)/flags
 $(WEB)/engine-$(1).wasm: $(WEB)/kernels-$(1).o $$(page_objects) $(WEB)/libstance.a
 	$$(call QUIET,link,$$@)$$(CC) -mexec-model=reactor $$(LDFLAGS) -o $$@ $$^ -lm
 endef
-$(foreach s,$(SCENES),$(eval $(call engine_rule,$(s),$(firstword $(ISAS)))))
+$(foreach s,$(STRUCTURES),$(eval $(call engine_rule,$(s),$(firstword $(ISAS)))))
 $(eval $(call engine_rule,$(RUNTIME),$(RUNTIME_ISA)))
 %.z: %.wasm
 	@node -e 'const fs = require("fs"), z = require("zlib"); fs.writeFileSync("$@", z.deflateSync(fs.readFileSync("$<"), {level: 9}))'
@@ -317,7 +318,7 @@ $(BUILD)/simulators: FORCE
 	@mkdir -p $(@D); echo '$(MUJOCO)' | cmp -s - $@ || echo '$(MUJOCO)' > $@
 
 # ---- benchmarks: what the kernels are held to -----------------------------------------------------
-bench_programs = $(BUILD)/tests/bench_scalar $(BUILD)/tests/bench_tables $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit)
+bench_programs = $(BUILD)/tests/bench_scalar $(if $(MUJOCO),$(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit)
 $(BUILD)/tests/bench_mujoco $(BUILD)/tests/bench_mujoco_rabbit: LIBS += $(MUJOCO)
 # Of other simulators; they need nothing of ours but headers.
 $(BUILD)/tests/peer_mujoco: tests/peer_mujoco.c $(BUILD)/flags

@@ -1,11 +1,11 @@
 /* kernels.c - the tables of methods and kernels, and the choice among instruction sets. */
-#include "stance.h"
+#include "tree.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* What there is, from the Makefile: METHOD(implicit) ..., ISA(sse2) ISA(scalar) ... from slow to
- * fast, and KERNEL(ball, implicit, sse2) ... in that order of instruction sets; the kernels of
+ * fast, and KERNEL(biped, implicit, sse2) ... in that order of instruction sets; the kernels of
  * methods that take one case at a time, which run on every processor, in a list of their own. Here
  * is what a tool that reads this file alone sees. */
 #ifndef STANCE_METHOD_LIST
@@ -15,7 +15,6 @@
 #define STANCE_SCALAR_KERNEL_LIST
 #endif
 
-extern const stance_scene stance_scene_runtime;
 #define METHOD(method) extern const stance_method stance_method_##method;
 STANCE_METHOD_LIST
 #undef METHOD
@@ -73,22 +72,34 @@ static bool isa_runs(const char *isa)
     return true;
 }
 
+bool stance_kernel_fits(const stance_kernel *kernel, const stance_scene *scene)
+{
+    if (strcmp(kernel->structure, "runtime") == 0)
+        return true;
+    const stance_scene *const own = stance_scene_find(kernel->structure);
+    return own == scene || memcmp(own->tree, scene->tree, sizeof *scene->tree) == 0;
+}
+
+bool stance_kernel_ahead(const stance_kernel *kernel)
+{
+    return strcmp(kernel->structure, "runtime") != 0;
+}
+
 const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_method *method,
                                         const char *isa)
 {
-    const bool described =
-        scene->mechanism; /* then the structure is read at run time, for any isa */
-    if (described)
-        scene = &stance_scene_runtime;
-    for (int i = KERNELS - 1; i >= 0; i--) {
-        const stance_kernel *const k = kernels[i];
-        if (k->scene != scene || k->method != method || !isa_runs(k->isa))
-            continue;
-        if (!isa || strcmp(isa, k->isa) == 0 || described)
-            return k;
-    }
-    for (int i = 0; scalar_kernels[i]; i++)
-        if (scalar_kernels[i]->scene == scene && scalar_kernels[i]->method == method)
+    bool runs = !isa;
+    for (int i = 0; i < ISAS; i++)
+        runs = runs || (strcmp(isa, isas[i]) == 0 && isa_runs(isa));
+    for (int ahead = 1; ahead >= 0 && runs; ahead--)
+        for (int i = KERNELS - 1; i >= 0; i--) {
+            const stance_kernel *const k = kernels[i];
+            if (k->method == method && stance_kernel_ahead(k) == ahead && isa_runs(k->isa) &&
+                (!isa || !ahead || strcmp(isa, k->isa) == 0) && stance_kernel_fits(k, scene))
+                return k;
+        }
+    for (int i = 0; scalar_kernels[i]; i++) /* those that are compiled for a structure first */
+        if (scalar_kernels[i]->method == method && stance_kernel_fits(scalar_kernels[i], scene))
             return scalar_kernels[i];
     return NULL;
 }

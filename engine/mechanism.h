@@ -2,10 +2,11 @@
  * are compiled from.
  *
  * Frames: x forward, z up, angles counter-clockwise, R(a) = [cos a, -sin a; sin a, cos a]. A body's
- * frame has its origin at the joint to its parent, from where a slide takes it along its axis, and
- * the parent's direction where the joint's angle is 0. `body[0]` is the root; the parent of every
- * other one stands before it. Everything that is a number may be varied without another structure;
- * which of them are varied a scene knows by robot[] (see `number`).
+ * frame has its origin at the joint to its parent, from where a slide takes it along its axis;
+ * where the joint's coordinate is 0 it is turned against the parent's (a root's against the
+ * world's) by `angle`. `body[0]` is the root; the parent of every other one stands before it.
+ * Everything that is a number may be varied without another structure; which of them are varied a
+ * scene knows by robot[] (see `number`).
  */
 #ifndef STANCE_MECHANISM_H
 #define STANCE_MECHANISM_H
@@ -34,6 +35,7 @@ typedef struct stance_body_numbers {
     double centre[2]; /* m, of mass, in the body's frame */
     double at[2];     /* m, the joint in the parent's frame; a root's in the world's */
     double axis[2];   /* of a slide, likewise, of any length > 0 */
+    double angle;     /* rad, against the parent where the joint's coordinate is 0 */
     double stiffness; /* N m/rad or N/m, of the joint, >= 0 */
     double damping;   /* N m s/rad or N s/m, >= 0 */
     double rest;      /* rad or m: where the spring pulls nothing */
@@ -53,7 +55,8 @@ typedef struct stance_point_numbers {
     double lowest; /* m above the ground: lower has fallen; -INFINITY: none */
     double
         force[2]; /* along the ground and normal to it: N, from `from` to `to`, or N s, at `from` */
-    double from, to; /* s */
+    double from, to;  /* s */
+    double frequency; /* Hz: a force that swings is sin(2 pi frequency (t - from)) of that */
 } stance_point_numbers;
 
 /* What the world does to a point. */
@@ -67,10 +70,27 @@ typedef struct stance_mechanism_numbers {
     double limit[STANCE_MAX_ACTUATORS]; /* N m or N, > 0, may be INFINITY */
 } stance_mechanism_numbers;
 
+/* A mechanism that the program carries: its numbers follow from parameters of its own. */
+typedef struct stance_carried {
+    const char *name, *text;
+    int parameters;
+    const stance_quantity *parameter;  /* [parameters]: the first of the scene's robot[] */
+    const stance_quantity *coordinate; /* of each, as in stance_scene */
+    /* robot[STANCE_MAX_ROBOT] -> those of the numbers that follow from it. */
+    void (*set)(const double *robot, stance_mechanism_numbers *number);
+    const stance_workload *workload; /* as in stance_scene; or NULL */
+    const double (*outline)[2]; /* m, of the last body, which has no size of its own; or NULL */
+    int corners;
+    bool numbered;    /* contacts are feet with numbers from 1, branches of equilibria words */
+    bool along_slope; /* x and z are along the ground and normal to it */
+} stance_carried;
+
 typedef struct stance_mechanism {
+    const stance_carried *carried; /* or NULL: all numbers are as described */
     int bodies, elements, points, actuators;
     struct {
         char name[STANCE_NAME];
+        char coordinate[STANCE_NAME]; /* of its joint, a free root's angle; "": as the body */
         stance_joint joint;
         int parent;   /* -1: the root */
         bool bounded; /* its `turn` counts */
@@ -85,20 +105,28 @@ typedef struct stance_mechanism {
         int body;
         bool falls;         /* its `lowest` counts */
         stance_push pushed; /* at most STANCE_MAX_PUSHES are */
+        bool swings;        /* its `frequency` counts: of a force */
     } point[STANCE_MAX_NAMED];
     struct {
         char name[STANCE_NAME];
         int body; /* whose joint it drives: on the body, and the opposite on its parent */
     } actuator[STANCE_MAX_ACTUATORS];
     stance_mechanism_numbers value; /* as described */
-    /* robot[i] of a scene is the number at index number[i] of `value`, taken as an array of
-     * doubles; those with varies[i] may differ from it from case to case. */
+    /* After the parameters of what is carried, which have number[i] = -1, robot[i] of a scene is
+     * the number at index number[i] of `value`, taken as an array of doubles; those with varies[i]
+     * may differ from it from case to case. */
     int numbers, number[STANCE_MAX_ROBOT];
     bool varies[STANCE_MAX_ROBOT];
 } stance_mechanism;
 
 /* Has the joint of body b, a hinge or a slide, a stop at its lower (side 0) or upper (1) limit? */
 bool stance_mechanism_stops(const stance_mechanism *m, int b, int side);
+
+/* The coordinate of the joint of body b, or a free root's angle; b is not fixed. */
+int stance_mechanism_coordinate(const stance_mechanism *m, int b);
+
+/* What the numbers are that nobody gives, where that is not 0. */
+void stance_mechanism_defaults(stance_mechanism_numbers *numbers);
 
 /* The numbers with robot[numbers] in place of those of `value`. */
 void stance_mechanism_expand(const stance_mechanism *m, const double *robot,
@@ -107,9 +135,9 @@ void stance_mechanism_expand(const stance_mechanism *m, const double *robot,
 /* A scene that owns a copy of m, to be given back by stance_scene_free; `m` must be a tree as
  * above.
  *
- * Coordinates: of a free root x, z (of its origin) and its angle, of one that slides its
- * displacement; then the angles of hinges and displacements of slides, named as their bodies, in
- * the bodies' order.
+ * Coordinates: of a free root x, z (of its reference point) and its angle, of one that slides its
+ * displacement; then the angles of hinges and displacements of slides, named as their bodies unless
+ * told otherwise, in the bodies' order.
  * Postures: all of them but x and z. Contacts: the elements, a sole as NAME_heel (`at`) and
  * NAME_toe (`to`), then NAME_low and NAME_high for the stops of each body's joint, in the bodies'
  * order. Robot quantities: m->number[], named by where they

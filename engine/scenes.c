@@ -1,10 +1,9 @@
 /* scenes.c - the scenes there are, and the texts of errors. */
-#include "stance.h"
+#include "engine/scenes/carried.h"
+#include "tree.h"
 
+#include <stdlib.h>
 #include <string.h>
-
-extern const stance_scene stance_scene_biped, stance_scene_ball, stance_scene_block,
-    stance_scene_rod;
 
 void stance_robot_fallback(const stance_scene *scene, double *robot)
 {
@@ -12,13 +11,35 @@ void stance_robot_fallback(const stance_scene *scene, double *robot)
     for (int i = 0; i < scene->robot_count; i++)
         robot[i] = scene->robot[i].fallback;
     robot[STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY;
+    robot[STANCE_ROBOT_FALL_HEIGHT] = STANCE_FALL_HEIGHT;
+}
+
+void stance_case_robot(const stance_scene *scene, stance_case *c)
+{
+    stance_tree_numbers_make(scene->tree, scene->mechanism, c->robot, &c->body);
+    c->tree = scene->tree;
+    c->scene = scene;
+    for (int k = 0; k < scene->contacts; k++) /* stops are no ground */
+        c->contacts |= scene->grip[k] < 0 ? 1u << k : 0;
+}
+
+/* Those that are carried, made before the program begins. */
+static const stance_scene *carried[STANCE_MAX_CARRIED + 1];
+
+__attribute__((constructor)) static void make_carried(void)
+{
+    stance_mechanism m;
+    for (int i = 0; stance_carried_mechanism(i, &m); i++) {
+        stance_scene *scene;
+        if (i == STANCE_MAX_CARRIED || stance_mechanism_scene(&m, &scene, NULL) != STANCE_OK)
+            abort();
+        carried[i] = scene;
+    }
 }
 
 const stance_scene *const *stance_scenes(void)
 {
-    static const stance_scene *const scenes[] = {&stance_scene_biped, &stance_scene_ball,
-                                                 &stance_scene_block, &stance_scene_rod, NULL};
-    return scenes;
+    return carried;
 }
 
 const stance_scene *stance_scene_find(const char *name)

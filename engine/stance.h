@@ -17,18 +17,21 @@ enum {
     STANCE_MAX_CONTACTS = 12,
     STANCE_MAX_ACTUATORS = 6,
     STANCE_MAX_POSTURE = 8, /* coordinates that a posture law acts on */
-    STANCE_MAX_ROBOT = 96,  /* parameters of a scene's body; the last two are the world's: */
+    STANCE_MAX_ROBOT = 97,  /* parameters of a scene's body; the last three are others: */
     STANCE_MAX_ANGLES = 7,  /* joints of a mechanism; a rail is none, a free root one */
     STANCE_MAX_NAMED = 8,   /* points of a mechanism that have a name */
     STANCE_MAX_PUSHES = 4,
-    STANCE_MAX_DELAY = 16,                       /* samples */
-    STANCE_MAX_WORDS = 32,                       /* that an answer may be, if it is a code */
-    STANCE_ROBOT_GRAVITY = STANCE_MAX_ROBOT - 2, /* m/s^2 */
-    STANCE_ROBOT_SLOPE = STANCE_MAX_ROBOT - 1,   /* rad, of the ground; positive: +x is downhill */
-    STANCE_MAX_POINTS = 192,                     /* points of a stick figure */
+    STANCE_MAX_DELAY = 16,                           /* samples */
+    STANCE_MAX_WORDS = 32,                           /* that an answer may be, if it is a code */
+    STANCE_ROBOT_FALL_HEIGHT = STANCE_MAX_ROBOT - 3, /* of the biped that is carried: lower has its
+                                                      * hip fallen, in leg lengths */
+    STANCE_ROBOT_GRAVITY,                            /* m/s^2 */
+    STANCE_ROBOT_SLOPE,      /* rad, of the ground; positive: +x is downhill */
+    STANCE_MAX_POINTS = 192, /* points of a stick figure */
 };
 
-#define STANCE_GRAVITY 9.81 /* m/s^2 */
+#define STANCE_GRAVITY 9.81    /* m/s^2 */
+#define STANCE_FALL_HEIGHT 0.2 /* leg lengths */
 
 /* ---- errors: one table gives the enumeration and the text --------------------------------- */
 
@@ -85,7 +88,7 @@ typedef struct stance_equilibrium_choice {
     double posture[STANCE_MAX_POSTURE]; /* NAN where not given */
     /* Of several equilibria, from 0: where coordinates are undetermined those with lower torques
      * come first, then those whose bodies are nearest to where they are with all angles 0 (largest
-     * sum of cosines), then the highest. The biped: 0, 1 with the hip above and below the foot. */
+     * sum of cosines), then the highest. */
     int branch;
 } stance_equilibrium_choice;
 
@@ -107,7 +110,7 @@ struct stance_tree;
 typedef struct stance_scene stance_scene;
 struct stance_scene {
     const char *name, *text;
-    const struct stance_mechanism *mechanism; /* of one that is described, see mechanism.h ... */
+    const struct stance_mechanism *mechanism; /* what it is made of, see mechanism.h ... */
     const struct stance_tree *tree;           /* ... and its structure, see tree.h */
     int coordinates, contacts, actuators, postures, robot_count;
     const stance_quantity *robot; /* [robot_count] */
@@ -137,31 +140,28 @@ struct stance_scene {
                   double points[][2]);
     int causes; /* of a fall, by what touches the ground, is too low or has turned too far */
     const char *const *cause; /* [causes] its names, in the order of the lanes' scene_fall_margin */
-    /* Has it fallen: the hip is lower than fall_height leg lengths, or the trunk's end touches the
-     * ground; a mechanism, by its own points and angles alone. NULL where nothing falls. */
-    bool (*fallen)(const stance_scene *scene, const double *robot, const double *position,
-                   double fall_height);
+    /* Has it fallen, by its own points and angles. */
+    bool (*fallen)(const stance_scene *scene, const double *robot, const double *position);
     /* Kinetic and potential energy, J. */
     double (*energy)(const stance_scene *scene, const double *robot, const double *position,
                      const double *velocity);
     /* Inertia matrix A[n][n] in these coordinates, n = coordinates. */
     void (*inertia)(const stance_scene *scene, const double *robot, const double *position,
                     double *A);
-    /* NO_EQUILIBRIUM, BAD_ARGUMENT: `message` says why. With OK it holds a remark, or nothing. NULL
-     * where a scene has none. */
+    /* NO_EQUILIBRIUM, BAD_ARGUMENT: `message` says why. With OK it holds a remark, or nothing. */
     stance_error (*equilibrium)(const stance_scene *scene, const double *robot,
                                 const stance_equilibrium_choice *choice, stance_equilibrium *result,
                                 stance_message *message);
     /* With the supports sticking: d/dt x = A x + B dtorque, x = (dp, dp'), p the equilibrium's
      * freedoms; A[2p][2p], B[2p][actuators], exact derivatives. `equilibrium`: as the function
-     * above gives it. Errors: BAD_ARGUMENT. NULL where a scene has none. */
+     * above gives it. Errors: BAD_ARGUMENT. */
     stance_error (*linearise)(const stance_scene *scene, const double *robot,
                               const stance_equilibrium *equilibrium, double *A, double *B);
     /* Forces of the ground on the supports, in the order of their bits, sticking there:
      * force[supports][2] = (normal, tangential) at rest, N; exact first derivatives
      * by_state[supports][2][2p] by x, N/rad and N s/rad, and by_torque[supports][2][actuators],
      * N/(N m); where they are not determined, those of least norm. A sole's tangential force is its
-     * first end's. Errors as `linearise`. NULL where a scene has none. */
+     * first end's. Errors as `linearise`. */
     stance_error (*contact_force)(const stance_scene *scene, const double *robot,
                                   const stance_equilibrium *equilibrium, double *force,
                                   double *by_state, double *by_torque);
@@ -176,7 +176,8 @@ bool stance_selection(const stance_scene *scene, int index, int *coordinate);
 enum { STANCE_MAX_SELECTIONS = 126 }; /* of 9 coordinates 4 or 5 */
 _Static_assert(STANCE_MAX_COORDINATES <= 9, "room for all selections");
 
-/* The robot that a scene has by default, and the world's numbers. robot[STANCE_MAX_ROBOT]. */
+/* The robot that a scene has by default, with the numbers that are not the body's.
+ * robot[STANCE_MAX_ROBOT]. */
 void stance_robot_fallback(const stance_scene *scene, double *robot);
 /* What each actuator gives at most, in its unit: the robot's limit, `most` or its own of
  * `limits`[actuators], whichever is smallest. */
@@ -345,16 +346,17 @@ typedef struct stance_tree_numbers {
     double moment[STANCE_MAX_ANGLES][2];     /* kg m, first */
     double inertia[STANCE_MAX_ANGLES];       /* kg m^2, second, about the joint, rotors included; of
                                               * a slide kg */
+    double inverse[STANCE_MAX_ANGLES];       /* 1 / inertia */
     double joint[STANCE_MAX_ANGLES][2];      /* m, in the frame above; of a slide its direction */
     double rotor[STANCE_MAX_ANGLES + 1];     /* kg m^2, kg */
     double spring[STANCE_MAX_ANGLES + 1][3]; /* stiffness, damping, where it rests */
     double end[STANCE_MAX_CONTACTS][3]; /* m: place in its frame, radius; of a stop: the limit */
     double point[STANCE_MAX_NAMED][2];  /* m: points that may fall, in their frames ... */
     double lowest[STANCE_MAX_NAMED];    /* ... and how far */
-    double turn[STANCE_MAX_ANGLES];     /* rad, that bodies may turn */
+    double turn[STANCE_MAX_ANGLES][2];  /* rad, that bodies may turn; their angles at 0 */
     double limit[STANCE_MAX_ACTUATORS]; /* N m, N: what an actuator gives at most */
-    double push[STANCE_MAX_PUSHES][6];  /* m: place in its frame; N, or N s where it is at an
-                                         * instant,  in the ground's axes; s: from, to */
+    double push[STANCE_MAX_PUSHES][7];  /* m: place in its frame; N, or N s where it is at an
+                                         * instant,  in the ground's axes; s: from, to; Hz */
 } stance_tree_numbers;
 
 /* What restitution e asks of contacts that meet the ground: normal velocities -e times those
@@ -368,7 +370,7 @@ typedef enum stance_impacts {
 
 typedef struct stance_case {
     double robot[STANCE_MAX_ROBOT];
-    /* Of a mechanism, in place of robot: */
+    /* By stance_case_robot: */
     stance_tree_numbers body;
     const struct stance_tree *tree; /* the same in all cases of a stream, as ... */
     const stance_scene *scene;
@@ -420,11 +422,14 @@ typedef struct stance_case {
     double settle_hold;  /* s */
     double settle_place; /* m along the ground that a support may be from where it began, with what
                           * counts as stabilised; 0: anywhere */
-    double fall_height;  /* see stance_scene.fallen */
 
     uint64_t seed, grid_index, sample_index; /* key of the random numbers */
     stance_trajectory *trajectory;           /* NULL: not recorded */
 } stance_case;
+
+/* Makes what kernels take of c->robot, and the scene, that of a case. To be called again where
+ * robot has changed. */
+void stance_case_robot(const stance_scene *scene, stance_case *c);
 
 /* The answers of a case, in the order in which files hold them: name, type, how a case gets it,
  * which steps tell it, unit, text. Where there is none floating-point answers are NAN, counts
@@ -550,9 +555,9 @@ typedef struct stance_feed {
     bool (*leave)(void *context);
 } stance_feed;
 
-/* One compiled stepping core: a scene, a method, a number of lanes. */
+/* One compiled stepping core: a structure, a method, a number of lanes. */
 typedef struct stance_kernel {
-    const stance_scene *scene;
+    const char *structure; /* the scene whose tables it is compiled for; "runtime": reads any */
     const stance_method *method;
     const char *isa; /* "scalar", "sse2", "avx2", "avx512", "neon", "wasm128" */
     int lanes;
@@ -566,7 +571,6 @@ typedef struct stance_kernel {
 /* What a kernel that is compiled on demand exports, under the name stance_kernel_object. */
 typedef struct stance_object {
     size_t case_size, result_size; /* of the structs that it was compiled with */
-    const stance_scene **scene;    /* to be set before it runs */
     int lanes;
     bool (*stream)(const stance_feed *feed); /* as of stance_kernel */
     void (*run)(const stance_case *cases, stance_result *results, size_t n);
@@ -577,9 +581,14 @@ const stance_method *const *stance_methods(void);
 const stance_method *stance_method_find(const char *name);
 /* The kernel for a scene and a method; isa NULL: the fastest that this processor runs. A method
  * that takes one case at a time has a scalar kernel only, which runs on every processor, and gives
- * it for every isa. NULL when there is none, as for an isa that this processor does not run. */
+ * it for every isa; so does the one that reads structures at run time, for what is not compiled
+ * ahead. NULL when there is none, as for an isa that this processor does not run. */
 const stance_kernel *stance_kernel_find(const stance_scene *scene, const stance_method *method,
                                         const char *isa);
+/* Whether a kernel computes cases of a scene. */
+bool stance_kernel_fits(const stance_kernel *kernel, const stance_scene *scene);
+/* Whether it is compiled for a structure; else it reads the structure at run time, more slowly. */
+bool stance_kernel_ahead(const stance_kernel *kernel);
 /* Name of the instruction set that comes at `rank` (0: fastest) among those that this build has and
  * this processor runs; NULL past the last. */
 const char *stance_isa(int rank);

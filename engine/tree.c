@@ -52,9 +52,20 @@ struct frames {
     int joint[STANCE_MAX_BODIES]; /* the same, or the joint that slides in that frame and carries it
                                    */
     double at[STANCE_MAX_BODIES][2];
+    /* By how much the body's own frame is turned against it, and sine and cosine of that. Joints
+     * count from the frame, so that nothing but what stands in the body's own is turned. */
+    double turned[STANCE_MAX_BODIES], sine[STANCE_MAX_BODIES], cosine[STANCE_MAX_BODIES];
     int body[STANCE_MAX_ANGLES]; /* that turns, or slides */
     int angles;
 };
+
+/* A vector of a body's own frame, in the one that carries it. */
+static void frames_turn(const struct frames *f, int b, const double own[2], double out[2])
+{
+    const double x = own[0], z = own[1];
+    out[0] = f->cosine[b] * x - f->sine[b] * z;
+    out[1] = f->sine[b] * x + f->cosine[b] * z;
+}
 
 static void frames_make(const stance_mechanism *m, const stance_mechanism_numbers *v,
                         struct frames *f)
@@ -63,11 +74,15 @@ static void frames_make(const stance_mechanism *m, const stance_mechanism_number
     for (int b = 0; b < m->bodies; b++) {
         const int parent = m->body[b].parent;
         const stance_joint joint = m->body[b].joint;
-        const double *const at = v->body[b].at;
         const bool turns = joint == STANCE_FREE || joint == STANCE_HINGE;
         const bool keeps = !turns && parent >= 0; /* the angle of its parent */
+        double at[2] = {0, 0};
+        if (keeps)
+            frames_turn(f, parent, v->body[b].at, at);
         for (int k = 0; k < 2; k++)
             f->at[b][k] = keeps ? f->at[parent][k] + at[k] : 0;
+        f->turned[b] = v->body[b].angle + (parent >= 0 ? f->turned[parent] : 0);
+        stance_sincos(f->turned[b], &f->sine[b], &f->cosine[b]);
         f->of[b] = turns ? f->angles : keeps ? f->of[parent] : -1;
         f->joint[b] = keeps ? f->joint[parent] : -1;
         if (turns || (keeps && joint == STANCE_SLIDE)) {
@@ -88,8 +103,9 @@ static bool slides(const stance_mechanism *m, const struct frames *f, int joint)
 static void frames_place(const stance_mechanism_numbers *v, const struct frames *f, int b,
                          const double local[2], double place[2])
 {
+    frames_turn(f, b, local, place);
     for (int k = 0; k < 2; k++) {
-        place[k] = f->at[b][k] + local[k];
+        place[k] = f->at[b][k] + place[k];
         if (f->of[b] < 0)
             place[k] += v->body[0].at[k]; /* the rail's origin */
     }
@@ -104,7 +120,8 @@ static void frames_joint(const stance_mechanism *m, const stance_mechanism_numbe
     const bool free = m->body[0].joint == STANCE_FREE;
     if (slides(m, f, angle)) {
         const double *const axis = v->body[b].axis, size = length(axis);
-        joint[0] = axis[0] / size, joint[1] = axis[1] / size;
+        const double unit[2] = {axis[0] / size, axis[1] / size};
+        frames_turn(f, parent, unit, joint);
         return;
     }
     if (parent >= 0)
@@ -152,7 +169,10 @@ static void lumps_make(const stance_mechanism *m, const stance_mechanism_numbers
             l->base += body->mass;
             continue;
         }
-        const double c[2] = {f->at[b][0] + body->centre[0], f->at[b][1] + body->centre[1]};
+        double c[2];
+        frames_turn(f, b, body->centre, c);
+        for (int k = 0; k < 2; k++)
+            c[k] = f->at[b][k] + c[k];
         l->own_mass[i] += body->mass;
         l->own_inertia[i] += body->inertia + body->mass * squared(c); /* about the joint, so far */
         for (int k = 0; k < 2; k++)
@@ -171,8 +191,10 @@ static void lumps_make(const stance_mechanism *m, const stance_mechanism_numbers
         for (int b = 0; b < m->bodies; b++) {
             if (f->joint[b] != i)
                 continue;
-            const double d[2] = {f->at[b][0] + v->body[b].centre[0] - l->own_centre[i][0],
-                                 f->at[b][1] + v->body[b].centre[1] - l->own_centre[i][1]};
+            double d[2];
+            frames_turn(f, b, v->body[b].centre, d);
+            for (int k = 0; k < 2; k++)
+                d[k] = f->at[b][k] + d[k] - l->own_centre[i][k];
             l->own_inertia[i] += v->body[b].inertia + v->body[b].mass * squared(d);
         }
     }
@@ -295,6 +317,13 @@ static void lumps_curvature(const stance_mechanism *m, const stance_mechanism_nu
             arm = arm > 0 ? fmax(arm, 1) : 0;
         }
     }
+    int turning = 0;
+    for (int i = 0; i < f->angles; i++)
+        turning += !slides(m, f, i);
+    if (turning == 0) { /* then nothing bends */
+        out[0] = out[1] = out[2] = 0;
+        return;
+    }
     least = m->body[0].joint == STANCE_HINGE ? least_angle : fmin(hub, least_angle);
     /* Where nothing resists in some posture there is no bound; then one for what nearly nothing
      * resists. */
@@ -311,10 +340,15 @@ static void lumps_curvature(const stance_mechanism *m, const stance_mechanism_nu
 /* Numbers that differ from zero wherever a case's may. */
 static void typical(const stance_mechanism *m, stance_mechanism_numbers *v)
 {
+    double any[STANCE_MAX_ROBOT];
+    for (int i = 0; i < STANCE_MAX_ROBOT; i++)
+        any[i] = 0.5 + 0.7548776662466927 * i;
     *v = m->value;
+    if (m->carried)
+        m->carried->set(any, v);
     for (int i = 0; i < m->numbers; i++)
         if (m->varies[i])
-            ((double *)v)[m->number[i]] = 0.5 + 0.7548776662466927 * i;
+            ((double *)v)[m->number[i]] = any[i];
 }
 
 /* The arms from the root to the point `own` in the frame of what `joint` carries; returns the first
@@ -514,11 +548,18 @@ stance_error stance_tree_make(const stance_mechanism *m, stance_tree *tree, stan
         if (tree->pushes == STANCE_MAX_PUSHES)
             return refuse(message, "points that are pushed", STANCE_MAX_PUSHES);
         tree->push_impulse[tree->pushes] = m->point[p].pushed == STANCE_IMPULSE;
+        tree->push_swings[tree->pushes] = m->point[p].swings;
         frames_place(&v, &f, b, v.point[p].at, own);
         path_make(m, &f, tree, &l, f.joint[b], own, tree->push_path[tree->pushes++]);
     }
     tables_couple(m, &f, &l, tree);
     tables_loads(tree);
+    for (int i = 0; i < tree->angles; i++) { /* of what slides rotors are no part of the inertia */
+        tree->alone[i] = !tree->slide[i];
+        for (int k = i + 1; k < tree->angles; k++)
+            if (tree->near[k][i] || (tree->slide[k] && tree->above[k] == i))
+                tree->alone[i] = 0;
+    }
     return STANCE_OK;
 }
 
@@ -606,14 +647,14 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         number->rail[1] = (sine * axis[0] + cosine * axis[1]) / size;
         number->mass += v.body[0].armature;
     }
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++)
         number->lift[k] = number->gravity[k] * (l.mass / number->mass);
-        number->reference[k] = v.reference[k];
-    }
+    frames_turn(&f, 0, v.reference, number->reference);
     for (int i = 0; i < tree->angles; i++) {
         const bool turned = tree->above[i] < 0 && tree->base < 2; /* into the ground's axes */
         const double *const joint = l.joint[i];
         number->inertia[i] = l.inertia[i];
+        number->inverse[i] = 1 / l.inertia[i];
         memcpy(number->moment[i], l.moment[i], sizeof l.moment[i]);
         memcpy(number->joint[i], joint, sizeof l.joint[i]);
         if (turned)
@@ -631,8 +672,10 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
             number->spring[spring][1] = body->damping;
             number->spring[spring++][2] = body->rest + (is_upright(tree, i) ? slope : 0);
         }
-        if (m->body[b].bounded)
-            number->turn[turn++] = body->turn;
+        if (m->body[b].bounded) {
+            number->turn[turn][0] = body->turn;
+            number->turn[turn++][1] = f.turned[b];
+        }
     }
     memcpy(number->limit, v.limit, sizeof number->limit);
     for (int p = 0, k = 0; p < m->points; p++) {
@@ -650,7 +693,8 @@ void stance_tree_numbers_make(const stance_tree *tree, const stance_mechanism *m
         frames_place(&v, &f, m->point[p].body, point->at, number->push[k]);
         memcpy(&number->push[k][2], point->force, sizeof point->force);
         number->push[k][4] = point->from;
-        number->push[k++][5] = m->point[p].pushed == STANCE_IMPULSE ? point->from : point->to;
+        number->push[k][5] = m->point[p].pushed == STANCE_IMPULSE ? point->from : point->to;
+        number->push[k++][6] = point->frequency;
     }
     const double arm = number_contacts(tree, m, &v, &f, &l, number->slope, number->end);
     lumps_curvature(m, &v, &f, &l, arm, number->curvature);

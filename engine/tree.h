@@ -41,6 +41,7 @@ typedef struct stance_tree {
     /* [i][j]: the joint in frame j through which i hangs from it; of a j that slides, >= 0 where it
      * moves i. */
     int through[STANCE_MAX_ANGLES][STANCE_MAX_ANGLES];
+    int alone[STANCE_MAX_ANGLES];   /* nothing that hangs from it changes what it resists with */
     int carries[STANCE_MAX_ANGLES]; /* it is on a contact's path */
     int kind[STANCE_MAX_CONTACTS], body[STANCE_MAX_CONTACTS];
     int straight_end[STANCE_MAX_CONTACTS];
@@ -56,7 +57,8 @@ typedef struct stance_tree {
     int spring[STANCE_MAX_ANGLES + 1], rotor[STANCE_MAX_ANGLES + 1];
     int point_path[STANCE_MAX_NAMED][STANCE_MAX_ANGLES], point_top[STANCE_MAX_NAMED];
     int turning[STANCE_MAX_ANGLES];
-    int push_path[STANCE_MAX_PUSHES][STANCE_MAX_ANGLES], push_impulse[STANCE_MAX_PUSHES];
+    int push_path[STANCE_MAX_PUSHES][STANCE_MAX_ANGLES], push_impulse[STANCE_MAX_PUSHES],
+        push_swings[STANCE_MAX_PUSHES];
 } stance_tree;
 
 /* Errors: BAD_ARGUMENT where there are more angles, contacts or else than fit. */

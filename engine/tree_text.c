@@ -58,6 +58,7 @@ void stance_tree_text(const stance_tree *t, bool servos, char text[STANCE_TREE_T
     write_list(&end, "tree_straight", t->straight, t->angles);
     write_list(&end, "tree_straight_joint", t->straight_joint, t->angles);
     write_list(&end, "tree_straight_end", t->straight_end, t->contacts);
+    write_list(&end, "tree_alone", t->alone, t->angles);
     write_list(&end, "tree_carries", t->carries, t->angles);
     write_list(&end, "tree_kind", t->kind, t->contacts);
     write_list(&end, "tree_body", t->body, t->contacts);
@@ -69,6 +70,7 @@ void stance_tree_text(const stance_tree *t, bool servos, char text[STANCE_TREE_T
     write_list(&end, "tree_spring", t->spring, t->springs);
     write_list(&end, "tree_rotor", t->rotor, t->rotors);
     write_list(&end, "tree_push_impulse", t->push_impulse, t->pushes);
+    write_list(&end, "tree_push_swings", t->push_swings, t->pushes);
     write_list(&end, "tree_turning", t->turning, t->turns);
     write_table(&end, "tree_coupled", t->angles, t->angles, t->coupled);
     write_table(&end, "tree_near", t->angles, t->angles, t->near);

@@ -2,7 +2,7 @@
  * one-lane kernel.
  *
  * What an engineer would write who needs nothing but this: the biped on one foot, theta = 1, linear
- * law sampled each step, in plain C. The equations are those of engine/scenes/biped_lanes.h and
+ * law sampled each step, in plain C. The equations are those of engine/scenes/tree_lanes.h and
  * engine/core/implicit/step.h: hip and absolute angles, the angles eliminated from Newton's matrix,
  * a 2 x 2 Schur complement, one contact in closed form (open, stick, slip). As in the kernels,
  * Newton starts from the velocity that the last two changes point to and from the last impulses.

@@ -34,7 +34,7 @@ static void make_cases(const stance_workload *regime, stance_case *cases)
         }
         c->sample_every = 1;
         c->steps = STEPS;
-        c->fall_height = -1e9;
+        c->robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
         regime->begin((double[2]){uniform(&dice, 0, 1), uniform(&dice, 0, 1)}, c);
     }
 }
@@ -69,7 +69,7 @@ static double time_per_step(const stance_kernel *k, const stance_case *cases)
     static stance_result results[CASES];
     double steps = 0;
     const double begin = now();
-    k->run(cases, results, CASES);
+    run_cases(k, cases, results, CASES);
     const double time = now() - begin;
     for (int i = 0; i < CASES; i++)
         steps += (double)results[i].steps;

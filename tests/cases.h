@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "engine/stance.h"
+#include "run_cases.h"
 
 /* Uniform in [low, high) from splitmix64: the same everywhere. */
 static inline double uniform(uint64_t *state, double low, double high)
@@ -30,13 +31,13 @@ static inline stance_case plain_case(void)
     stance_case c;
     memset(&c, 0, sizeof c);
     stance_robot_fallback(biped(), c.robot);
+    c.scene = biped();
     c.friction = 0.8;
     c.contacts = 3;
     c.torque_limit = INFINITY;
     c.step = 1e-3;
     c.steps = 1000;
     c.settle_angle = 0.05, c.settle_rate = 0.5, c.settle_hold = 0.5;
-    c.fall_height = 0.2;
     return c;
 }
 
@@ -91,7 +92,7 @@ static inline void random_case(uint64_t *seed, int i, double h, stance_case *c)
     c->sample_every = i % 4 ? 1 : 0;
     c->step = h;
     c->steps = (int64_t)lround(0.25 / h);
-    c->fall_height = -1e9;
+    c->robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
 }
 
 /* The golden cases: given gains, given states, noise, both feet, restitution; no
@@ -116,7 +117,7 @@ static inline void golden_case(uint64_t *seed, int i, stance_case *c)
         c->torque_limit = 10, c->noise = 0.1;
         c->sample_every = 1 + i % 4;
         c->steps = 3000;
-        c->fall_height = 0.2;
+        c->robot[STANCE_ROBOT_FALL_HEIGHT] = 0.2;
     }
     c->restitution = i % 5 == 4 ? 0.5 : 0;
     c->tolerance = 1e-8;
@@ -128,6 +129,7 @@ static inline void scene_case(const stance_scene *scene, uint64_t *seed, stance_
     double gap[STANCE_MAX_CONTACTS], least = INFINITY;
     *c = plain_case();
     stance_robot_fallback(scene, c->robot);
+    c->scene = scene;
     c->contacts = (1u << scene->contacts) - 1;
     for (int i = 0; i < scene->coordinates; i++) {
         c->position[i] = uniform(seed, -1, 1);
@@ -140,7 +142,7 @@ static inline void scene_case(const stance_scene *scene, uint64_t *seed, stance_
     c->friction = uniform(seed, 0, 2);
     c->restitution = uniform(seed, 0, 0.5);
     c->steps = 250;
-    c->fall_height = -1e9;
+    c->robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
     c->tolerance = 1e-8;
 }
 
@@ -181,26 +183,25 @@ static inline uint64_t hash_result(const stance_result *r, int coordinates, uint
 
 /* Hash of the results of the first n golden cases of the biped, or, for another scene, of random
  * ones: given to the kernel in slices, in order or from the last to the first. 0: no memory. */
-static inline uint64_t golden_hash(const stance_kernel *kernel, size_t n, bool backwards,
-                                   size_t slice)
+static inline uint64_t golden_hash(const stance_kernel *kernel, const stance_scene *scene, size_t n,
+                                   bool backwards, size_t slice)
 {
-    const bool biped = strcmp(kernel->scene->name, "biped") == 0;
     stance_case *const cases = calloc(n, sizeof *cases);
     stance_result *const results = calloc(n, sizeof *results);
     uint64_t seed = 99, h = 0;
     if (cases && results) {
         for (size_t i = 0; i < n; i++) {
             stance_case *const c = &cases[backwards ? n - 1 - i : i];
-            if (biped)
+            if (scene == biped())
                 golden_case(&seed, (int)i, c);
             else
-                scene_case(kernel->scene, &seed, c);
+                scene_case(scene, &seed, c);
         }
         for (size_t i = 0; i < n; i += slice)
-            kernel->run(cases + i, results + i, i + slice <= n ? slice : n - i);
+            run_cases(kernel, cases + i, results + i, i + slice <= n ? slice : n - i);
         h = 0xcbf29ce484222325u;
         for (size_t i = 0; i < n; i++)
-            h = hash_result(&results[backwards ? n - 1 - i : i], kernel->scene->coordinates, h);
+            h = hash_result(&results[backwards ? n - 1 - i : i], scene->coordinates, h);
     }
     free(cases);
     free(results);

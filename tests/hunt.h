@@ -92,7 +92,7 @@ static inline void hunt_case(const stance_scene *scene, uint64_t *seed, bool ext
     if (uniform(seed, 0, 1) < 0.2)
         c->contacts = 1;
     c->steps = 2 + (int64_t)uniform(seed, 0, 12);
-    c->fall_height = -1e9;
+    c->robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
     c->tolerance = spread(seed, 1e-8, 1e-3);
     c->seed = 3, c->grid_index = *seed;
 }

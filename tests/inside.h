@@ -10,11 +10,12 @@
 static void random_motion(uint64_t *seed, uint32_t on, double least_friction, double most_friction,
                           double h, struct bundle *b)
 {
-    stance_case c = {.robot = {0.5, 0.5, 1, 1, 3}, .step = h, .steps = 1, .torque_limit = 10};
+    stance_case c = {.step = h, .steps = 1, .torque_limit = 10};
     const stance_scene *const scene = stance_scene_find("biped");
     static const stance_feed feed;
     static stance_case kept;
     static stance_result result;
+    stance_robot_fallback(scene, c.robot);
     for (int k = 0; k < scene->robot_count; k++)
         c.robot[k] = scene->robot[k].fallback * uniform(seed, 0.7, 1.4);
     c.contacts = on;
@@ -29,6 +30,7 @@ static void random_motion(uint64_t *seed, uint32_t on, double least_friction, do
         scene->stand(scene, c.robot, 1, c.position, c.velocity);
     memset(b, 0, sizeof *b);
     b->feed = &feed;
+    stance_case_robot(scene, &c);
     kept = c;
     bundle_load(b, 0, &kept, &result);
     bundle_begin(b, true);

@@ -2,14 +2,15 @@
  * what in one of its two texts, and what is said of it.
  */
 {"mass: 20", "mas: 20",
- "5:26: robot.bodies.trunk: unknown key 'mas'; did you mean 'mass'? (known: joint, parent, like, "
- "at, axis, mass, inertia, centre, stiffness, damping, rest, armature, limits, turn)"},
+ "5:26: robot.bodies.trunk: unknown key 'mas'; did you mean 'mass'? (known: joint, coordinate, "
+ "parent, "
+ "like, at, axis, angle, mass, inertia, centre, stiffness, damping, rest, armature, limits, turn)"},
     {"  points:", "  point:",
      "14:3: robot: unknown key 'point'; did you mean 'points'? (known: bodies, contacts, points, "
      "actuators)"},
     {"at: [0, 0.625]", "where: [0, 0.625]",
      "15:25: robot.points.head: unknown key 'where' (known: body, at, lowest, force, impulse, "
-     "from, to)"},
+     "from, to, frequency)"},
     {"{body: thigh1, limit: 150}", "{body: thigh1, torque: 150}",
      "17:26: robot.actuators.hip1: unknown key 'torque' (known: body, limit)"},
     {"foot1: {body: shank1, at: [0, -0.4]}", "foot1: {body: shank1, at: [0, -0.4], on: trunk}",
@@ -268,7 +269,7 @@
      "20:19: initial.state: unknown key 'trnk'; did you mean 'trunk'? (known: x, z, trunk, thigh1, "
      "shank1, thigh2, shank2, vx, vz, vtrunk, vthigh1, vshank1, vthigh2, vshank2)"},
     {"state: {pole: 0.1}", "state: {pole: 0.1}, support: [cart]",
-     "9:31: initial: unknown key 'support' (known: equilibrium, offset, state)"},
+     "9:31: initial: the scene mechanism has no key 'support' (known: equilibrium, offset, state)"},
     {"stop: {time: 5}\n",
      "stop: {time: 5}\nsweep: {grid: [{path: robot.bodies.trunk.mas, values: [1]}]}\n",
      "22:23: sweep.grid[0]: unknown field 'robot.bodies.trunk.mas'; did you mean "

@@ -79,7 +79,7 @@ class Mechanism:
         lines = []
         for b in self.bodies:
             words = ["body", b["name"], b["joint"], b["parent"] or "-", b["mass"], b["inertia"], *b["centre"], *b["at"]]
-            for key in ("axis", "stiffness", "damping", "rest", "armature", "limits"):
+            for key in ("axis", "angle", "stiffness", "damping", "rest", "armature", "limits"):
                 if key in b:
                     words += [key, *(b[key] if isinstance(b[key], tuple) else [b[key]])]
             lines.append(words)
@@ -105,9 +105,15 @@ class Mechanism:
         return way @ (X[3 * k:3 * k + 2] + arm), row, (way @ arm) * V[3 * k + 2] ** 2
 
     def angle(self, k, X):
+        """What body k is turned against its parent, or the world, beyond its own angle."""
         row = np.zeros(len(X), dtype=COMPLEX)
         row[3 * k + 2] = 1
-        return X[3 * k + 2], row, 0
+        value = X[3 * k + 2] - REAL(self.bodies[k].get("angle", 0))
+        if self.bodies[k]["parent"] is not None:
+            up = self.index[self.bodies[k]["parent"]]
+            row[3 * up + 2] = -1
+            value = value - X[3 * up + 2]
+        return value, row, 0
 
     def sliding(self, k, direction, X, V):
         """The way of body k from where its joint is in the parent's frame, along a direction there."""
@@ -140,11 +146,11 @@ class Mechanism:
                 up = self.index[b["parent"]]
                 if b["joint"] == "slide":
                     across = (-b["axis"][1], b["axis"][0])
-                    out += [self.sliding(k, across, X, V), self.minus(self.angle(k, X), self.angle(up, X))]
+                    out += [self.sliding(k, across, X, V), self.angle(k, X)]
                     continue
                 out += [self.minus(self.point(k, (0, 0), X, V, w), self.point(up, b["at"], X, V, w)) for w in ways]
                 if b["joint"] == "fixed":
-                    out.append(self.minus(self.angle(k, X), self.angle(up, X)))
+                    out.append(self.angle(k, X))
             elif b["joint"] == "hinge":
                 for w in ways:
                     value, row, bias = self.point(k, (0, 0), X, V, w)
@@ -168,9 +174,7 @@ class Mechanism:
                 return self.sliding(k, axis, X, V)
             value, row, bias = self.point(k, (0, 0), X, V, axis)
             return value - axis @ np.array(b["at"], dtype=COMPLEX), row, bias
-        if kind == "angle" or b["parent"] is None:
-            return self.angle(k, X)
-        return self.minus(self.angle(k, X), self.angle(self.index[b["parent"]], X))
+        return self.angle(k, X)
 
     def contact(self, c, X, V, direction):
         """Gap (0) or tangential travel (1) of a contact."""
@@ -186,8 +190,8 @@ class Mechanism:
         radius = REAL(d["radius"])
         if direction == 0:
             return value - radius, row, bias
-        turn, turned, _ = self.angle(k, X)
-        return value + radius * turn, row + radius * turned, bias
+        row[3 * k + 2] += radius
+        return value + radius * X[3 * k + 2], row, bias
 
     def sticking(self, supports):
         out = []
@@ -214,14 +218,16 @@ class Mechanism:
             if up is not None:
                 c, s = np.cos(a), np.sin(a)
                 p = origin[up] + np.array([c * p[0] - s * p[1], s * p[0] + c * p[1]])
+            a = a + REAL(b.get("angle", 0))
             if b["joint"] == "free":
-                a = q[2]
+                a = a + q[2]
                 c, s, r = np.cos(a), np.sin(a), self.reference
                 p = np.array([q[0] - c * r[0] + s * r[1], q[1] - s * r[0] - c * r[1]], dtype=COMPLEX)
             elif b["joint"] == "slide":
                 axis = np.array(b["axis"], dtype=COMPLEX)
                 axis = axis / np.sqrt(axis @ axis) * q[at[k]]
-                c, s = np.cos(a), np.sin(a)
+                turn = X[3 * up + 2] if up is not None else 0
+                c, s = np.cos(turn), np.sin(turn)
                 p = p + np.array([c * axis[0] - s * axis[1], s * axis[0] + c * axis[1]])
             elif b["joint"] == "hinge":
                 a = a + q[at[k]]
@@ -462,6 +468,8 @@ def random_mechanism(random, number, slides):
         if turning > 7:
             break
         more = {}
+        if random.random() < 0.3:
+            more["angle"] = random.uniform(-3, 3)
         if joint in ("hinge", "slide"):
             if random.random() < 0.3:
                 more.update(stiffness=random.uniform(0, 50), damping=random.uniform(0, 5), rest=random.uniform(-1, 1))

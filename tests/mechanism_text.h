@@ -1,10 +1,9 @@
 /* mechanism_text.h - mechanisms for tests as text, a line for each part, words apart by spaces:
  *
  *   body NAME free|hinge|slide|fixed PARENT mass inertia centre at [KEY number(s)] ...
- *                                       keys: axis stiffness damping rest armature limits turn
- *   point|disc|sole NAME BODY at        a disc's radius, a sole's second end follow
- *   named NAME BODY at [lowest]
- *   force fx fz from to | impulse px pz at  on the point named last
+ *                                       keys: axis angle stiffness damping rest armature limits
+ * turn point|disc|sole NAME BODY at        a disc's radius, a sole's second end follow named NAME
+ * BODY at [lowest] force fx fz from to [frequency] | impulse px pz at  on the point named last
  *   reference at                            what a free root's x and z are of
  *   actuator NAME BODY limit
  *
@@ -83,6 +82,8 @@ static inline void body_line(struct words *w, stance_mechanism *m)
             n->armature = next_number(w);
         else if (strcmp(key, "limits") == 0)
             next_pair(w, n->limits);
+        else if (strcmp(key, "angle") == 0)
+            n->angle = next_number(w);
         else if (strcmp(key, "turn") == 0)
             n->turn = next_number(w), m->body[m->bodies].bounded = true;
         else
@@ -110,6 +111,9 @@ static inline bool mechanism_line(char *line, stance_mechanism *m)
         next_pair(&w, n->force);
         n->from = next_number(&w);
         n->to = *kind == 'f' ? next_number(&w) : n->from;
+        const char *const frequency = next_word(&w);
+        m->point[m->points - 1].swings = *frequency != 0;
+        n->frequency = *frequency ? strtod(frequency, NULL) : 0;
     } else if (strcmp(kind, "reference") == 0) {
         next_pair(&w, m->value.reference);
     } else if (strcmp(kind, "actuator") == 0) {
@@ -146,7 +150,7 @@ static inline void mechanism_all_vary(stance_mechanism *m)
 #undef PART
     m->numbers = 0;
     for (size_t p = 0; p < sizeof part / sizeof part[0]; p++)
-        for (size_t i = 0; i < part[p].size && m->numbers < STANCE_ROBOT_GRAVITY;
+        for (size_t i = 0; i < part[p].size && m->numbers < STANCE_ROBOT_FALL_HEIGHT;
              i += sizeof(double))
             m->number[m->numbers++] = (int)((part[p].first + i) / sizeof(double));
 }

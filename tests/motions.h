@@ -27,6 +27,7 @@ static inline struct robot robot_of(const char *text, double slope)
 {
     struct robot r = {.scene = mechanism_scene(text)};
     stance_robot_fallback(r.scene, r.c.robot);
+    r.c.scene = r.scene;
     r.c.robot[STANCE_ROBOT_SLOPE] = slope;
     r.c.contacts = (1u << r.scene->contacts) - 1;
     r.c.friction = 1;

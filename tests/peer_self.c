@@ -49,6 +49,7 @@ static stance_case make_case(const double *state)
     const struct peer_request *const r = engine.request;
     stance_case c = {.friction = r->friction, .restitution = r->restitution};
     stance_robot_fallback(stance_scene_find("biped"), c.robot);
+    c.scene = stance_scene_find("biped");
     memcpy(c.robot, r->robot, sizeof(double) * (size_t)r->robots);
     memcpy(c.position, state, 5 * sizeof(double));
     memcpy(c.velocity, state + 5, 5 * sizeof(double));

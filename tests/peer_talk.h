@@ -211,7 +211,7 @@ static void peer_request(FILE *out)
             (double)c->sample_every * c->step, task->time, task->every, task->labels);
     fprintf(out, "settle %.17g %.17g %.17g\nplace %.17g\nfall_height %.17g\n", c->settle_angle,
             c->settle_rate, c->settle_hold, c->settle_place > 0 ? c->settle_place : INFINITY,
-            c->fall_height);
+            c->robot[STANCE_ROBOT_FALL_HEIGHT]);
     peer_put_bits(out, "supports", c->supports, scene->contacts);
     fprintf(out, "budget %.17g\neffort %.17g\nchecks %d\n", task->budget, task->effort,
             PEER_CHECKS);

@@ -45,6 +45,8 @@ static inline void add_body(stance_mechanism *m, stance_joint joint, int parent)
                                   .axis = {between(0.2, 1), between(-1, 1)}};
     random_vector(body->centre, 0.5);
     random_vector(body->at, 0.7);
+    if (sometimes(0.3))
+        body->angle = between(-3, 3);
     if (joint == STANCE_FIXED || joint == STANCE_FREE)
         return;
     if (sometimes(0.3)) {
@@ -130,6 +132,11 @@ static inline stance_scene *random_scene(int tree, double slides)
                     m.point[p].pushed == STANCE_FORCE ? between(-100, 100) : between(-3, 3);
             n->from = between(0, 0.2);
             n->to = n->from + between(0, 0.1);
+            m.point[p].swings = m.point[p].pushed == STANCE_FORCE && sometimes(0.3);
+            if (m.point[p].swings) {
+                n->frequency = between(0.5, 20);
+                n->to = sometimes(0.5) ? INFINITY : n->to;
+            }
         }
         for (int e = 0; e < m.elements; e++) /* a sole has a length */
             m.element[e].sole &= fabs(m.value.element[e].at[0] - m.value.element[e].to[0]) +
@@ -148,6 +155,7 @@ static inline void random_scene_case(const stance_scene *scene, stance_case *c)
     bool beyond = true;
     memset(c, 0, sizeof *c);
     stance_robot_fallback(scene, c->robot);
+    c->scene = scene;
     const double slope = sometimes(0.5) ? 0 : between(-0.3, 0.3);
     double sine, cosine;
     stance_sincos(slope, &sine, &cosine);

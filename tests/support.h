@@ -57,6 +57,17 @@ static inline stance_case balance_case(double theta, double vtheta)
     return c;
 }
 
+/* The equilibrium on foot 1 that a case's controller is for. */
+static inline stance_equilibrium equilibrium_at(const stance_case *c)
+{
+    const stance_equilibrium_choice choice = {1, {c->near.target[0], NAN, c->near.target[2]}, 0};
+    stance_equilibrium equilibrium;
+    stance_message message;
+    if (biped()->equilibrium(biped(), c->robot, &choice, &equilibrium, &message) != STANCE_OK)
+        fail_msg("%s", message.text);
+    return equilibrium;
+}
+
 /* Buffers for a trajectory of `rows` rows; freed by trajectory_free. */
 static inline stance_trajectory trajectory_new(int64_t rows, double interval)
 {

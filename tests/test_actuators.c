@@ -15,7 +15,7 @@ static stance_case shaken_case(void)
     c.torque_limit = 3;
     c.sample_every = EVERY;
     c.steps = STEPS;
-    c.fall_height = -1e9;
+    c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
     c.tolerance = 1e-8;
     return c;
 }
@@ -27,7 +27,7 @@ static void torques_of(const char *method, stance_case c, double (*torque)[2])
     stance_result r;
     t = trajectory_new(STEPS + 1, c.step);
     c.trajectory = &t;
-    kernel_of(method, NULL)->run(&c, &r, 1);
+    run_cases(kernel_of(method, NULL), &c, &r, 1);
     assert_int_equal(r.status, STANCE_DONE);
     for (int k = 0; k < STEPS; k++) /* a row holds those of the step that ends there */
         memcpy(torque[k], t.torque + 2 * (k + 1), sizeof *torque);
@@ -108,11 +108,10 @@ struct plant {
 static struct plant plant_of(const stance_case *c)
 {
     const stance_scene *const scene = stance_scene_find("biped");
-    stance_equilibrium equilibrium = {.supports = 1};
+    const stance_equilibrium equilibrium = equilibrium_at(c);
     struct plant p = {.n = 6};
     double A[36], B[12], K[12];
     get_gain(c, K);
-    memcpy(&equilibrium.position[2], c->near.target, sizeof(double[3]));
     assert_int_equal(scene->linearise(scene, c->robot, &equilibrium, A, B), STANCE_OK);
     if (c->lag > 0) {
         p.n = 8;
@@ -147,10 +146,10 @@ static void late_loops_are_lost_where_theory_says(void **state)
             c.steps = 16000;
             c.settle = false;
             c.torque_limit = INFINITY;
-            kernel_of("midpoint", NULL)->run(&c, &r, 1);
+            run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
             size[side] = fabs(r.position[2] - c.near.target[0]);
             c.settle = true;
-            kernel_of("midpoint", NULL)->run(&c, &r, 1);
+            run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
             outcome[side] = r.outcome;
         }
         print_message("# delay %d, lag %g s: T* = %.5f s; 1e-6 rad became %.1e below, %.1e above\n",
@@ -188,7 +187,7 @@ static void noise_wanders_as_theory_says(void **state)
                          STANCE_OK);
         t = trajectory_new(ROWS, T);
         c.trajectory = &t;
-        kernel_of("midpoint", NULL)->run(&c, &r, 1);
+        run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
         assert_int_equal(r.status, STANCE_DONE);
         for (int64_t row = 1000; row < ROWS; row++)
             for (int i = 0; i < 3; i++) {
@@ -219,7 +218,7 @@ static void lags_converge(void **state)
         c.settle = false;
         c.lag = 0.02, c.torque_rate = 60, c.delay = 1;
         c.step = 4e-3 / (1 << k), c.sample_every = 5 << k, c.steps = 50 << k;
-        kernel_of("midpoint", NULL)->run(&c, &r, 1);
+        run_cases(kernel_of("midpoint", NULL), &c, &r, 1);
         assert_int_equal(r.status, STANCE_DONE);
         memcpy(end[k], &r.position[2], sizeof end[k]);
     }

@@ -19,7 +19,7 @@ static stance_case bent_case(uint64_t *seed, int i)
     c.contacts = i % 2 ? 1 : 3;
     c.steps = STEPS;
     c.settle = false;
-    c.fall_height = -1e9;
+    c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
     return c;
 }
 
@@ -52,7 +52,7 @@ static void torques_bend(void **state)
         c.trajectory = &t;
         c.delay = i % 4 == 3 ? 2 : 0;
         c.tolerance = 1e-6;
-        kernel_of(methods[i / 3 % 3], NULL)->run(&c, &r, 1);
+        run_cases(kernel_of(methods[i / 3 % 3], NULL), &c, &r, 1);
         assert_int_equal(r.status, STANCE_DONE);
         for (int64_t n = 0; n < r.steps; n++) { /* a row holds the torques of the step before */
             const int64_t sample = (n / c.sample_every - c.delay) * c.sample_every;
@@ -88,8 +88,8 @@ static void without_push_it_is_linear(void **state)
         linear[i] = bent[i];
         linear[i].bends = false;
     }
-    kernel_of("midpoint", NULL)->run(bent, got, N);
-    kernel_of("midpoint", NULL)->run(linear, wanted, N);
+    run_cases(kernel_of("midpoint", NULL), bent, got, N);
+    run_cases(kernel_of("midpoint", NULL), linear, wanted, N);
     assert_memory_equal(got, wanted, sizeof got);
 }
 
@@ -115,9 +115,9 @@ static void lanes_agree(void **state)
     }
     for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
         for (int i = 0; i < N; i++)
-            kernel_of(methods[m], "scalar")->run(&cases[i], &first[i], 1);
+            run_cases(kernel_of(methods[m], "scalar"), &cases[i], &first[i], 1);
         for (int rank = 0; stance_isa(rank); rank++) {
-            kernel_of(methods[m], stance_isa(rank))->run(cases, other, N);
+            run_cases(kernel_of(methods[m], stance_isa(rank)), cases, other, N);
             for (int i = 0; i < N; i++)
                 assert_memory_equal(&first[i], &other[i], sizeof first[i]);
         }

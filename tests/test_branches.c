@@ -29,7 +29,7 @@ static stance_case landing(int way, bool most)
     c.step = ways[way].step;
     c.tolerance = ways[way].tolerance;
     c.steps = (int64_t)lround(0.3 / c.step);
-    c.fall_height = 0;
+    c.robot[STANCE_ROBOT_FALL_HEIGHT] = 0;
     c.most_energy = most;
     return c;
 }
@@ -42,7 +42,7 @@ static void one_rule_for_all(void **state)
         for (int k = 0; k < WAYS; k++) {
             const stance_case c = landing(k, most);
             stance_result r;
-            kernel_of(ways[k].method, NULL)->run(&c, &r, 1);
+            run_cases(kernel_of(ways[k].method, NULL), &c, &r, 1);
             print_message("# %s, %s at %g s: theta %.6f, q1 %.6f, ambiguous %lld\n",
                           most ? "most" : "least", ways[k].method, c.step, r.position[2],
                           r.position[3], (long long)r.ambiguous_steps);

@@ -16,7 +16,6 @@ enum {
     SOLES = 2,
     STOPS = 2,
 };
-#define SCENE_GRIPS
 static const int scene_grip[SCENE_CONTACTS] = {0, 1, 2, 3, 4, 5, 6, 6, 8, 8, -1, -1};
 #include "engine/core/contact/solve.h"
 #define DENSE_ROWS 18

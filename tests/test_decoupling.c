@@ -30,7 +30,7 @@ static stance_case pair_case(int pair, const double *posture, bool stands, doubl
     c.contacts = stands;
     c.friction = 50;
     c.supports = stands;
-    c.fall_height = -1e9;
+    c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
     c.step = 0.01;
     c.steps = HORIZON;
     c.position[1] = 3;
@@ -90,7 +90,7 @@ static double worst_error(const char *method, bool stands, double ki)
             c.steps /= 2;
         if (strcmp(method, "lagrange") == 0)
             c.step = 1e-3, c.steps *= 10;
-        kernel_of(method, NULL)->run(&c, &r, 1);
+        run_cases(kernel_of(method, NULL), &c, &r, 1);
         assert_int_equal(r.status, STANCE_DONE);
         assert_int_equal(r.degraded_samples, 0);
         assert_int_equal(r.steps, c.steps);
@@ -131,7 +131,7 @@ static void sampling_converges(void **state)
                 c.steps = lround(0.05 / c.step);
                 c.tolerance = 1e-10;
                 c.sample_every = m == 0;
-                kernel_of(methods[m], NULL)->run(&c, &r, 1);
+                run_cases(kernel_of(methods[m], NULL), &c, &r, 1);
                 assert_int_equal(r.status, STANCE_DONE);
                 for (int i = 0; i < 2; i++)
                     error[fine] = fmax(fabs(r.position[c.servo[i].coordinate] - promised(&c, i)),
@@ -168,11 +168,11 @@ static void compare_methods(stance_case c, const double tolerance[2], double wor
 {
     stance_result r;
     c.tolerance = 1e-11;
-    kernel_of("event-driven", NULL)->run(&c, truth, 1);
+    run_cases(kernel_of("event-driven", NULL), &c, truth, 1);
     assert_int_equal(truth->status, STANCE_DONE);
     for (int t = 0; t < 2; t++) {
         c.tolerance = tolerance[t];
-        kernel_of("capturing", NULL)->run(&c, &r, 1);
+        run_cases(kernel_of("capturing", NULL), &c, &r, 1);
         assert_int_equal(r.status, STANCE_DONE);
         for (int i = 0; i < 5; i++) {
             worst[t] = fmax(fabs(r.position[i] - truth->position[i]), worst[t]);
@@ -258,7 +258,7 @@ static void singular_is_survived(void **state)
         c.tolerance = 1e-8;
         if (limited)
             c.torque_limit = 20;
-        kernel_of("capturing", NULL)->run(&c, &r, 1);
+        run_cases(kernel_of("capturing", NULL), &c, &r, 1);
         print_message("# x-z from upright, %s: %d of %d samples degraded, torque up to %.3g N m\n",
                       limited ? "20 N m" : "no limit", (int)r.degraded_samples, (int)r.steps,
                       r.peak_torque);
@@ -290,7 +290,7 @@ static void integrals_are_bounded(void **state)
         c.servo[i].ramp = 0;
         c.servo[i].setpoint = c.position[3 + i] + (i ? -1 : 1);
     }
-    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
     double beyond = 0;
     for (int k = 0; k < 601; k++)
         beyond = fmax(position[5 * k + 3] - c.servo[0].setpoint, beyond);
@@ -342,7 +342,7 @@ static void delay_shortens(void **state)
         c.step = low * (side ? 1.01 : 0.99);
         c.sample_every = 1;
         c.steps = 500;
-        kernel_of("capturing", NULL)->run(&c, &r, 1);
+        run_cases(kernel_of("capturing", NULL), &c, &r, 1);
         assert_int_equal(r.status, STANCE_DONE);
         size[side] = fabs(r.position[2] - c.near.target[0]);
     }
@@ -372,8 +372,8 @@ static void switching_is_either(void **state)
             memcpy(alone.near.gain, c.far.gain, sizeof alone.near.gain);
             memset(alone.near.feedforward, 0, sizeof alone.near.feedforward);
         }
-        kernel_of("capturing", NULL)->run(&alone, &a, 1);
-        kernel_of("capturing", NULL)->run(&c, &b, 1);
+        run_cases(kernel_of("capturing", NULL), &alone, &a, 1);
+        run_cases(kernel_of("capturing", NULL), &c, &b, 1);
         assert_memory_equal(a.position, b.position, sizeof a.position);
         assert_memory_equal(a.velocity, b.velocity, sizeof a.velocity);
     }
@@ -395,7 +395,7 @@ static void constant_torque_acts(void **state)
         c.steps = 10;
         c.tolerance = 1e-10;
         c.near.feedforward[0] = 1, c.near.feedforward[1] = -1;
-        kernel_of(methods[m], NULL)->run(&c, &r, 1);
+        run_cases(kernel_of(methods[m], NULL), &c, &r, 1);
         /* Opposite torques on legs that hang straight: phi_i'' = +-1 / (m l^2). */
         const double l = c.robot[0], turn = 1 / (c.robot[2] * l * l);
         assert_int_equal(r.status, STANCE_DONE);
@@ -422,9 +422,9 @@ static void neighbours_do_not_matter(void **state)
         cases[i].torque_limit = 10;
         cases[i].step = 1e-3, cases[i].steps = 300, cases[i].tolerance = 1e-8;
     }
-    kernel_of("capturing", NULL)->run(cases, together, 4);
+    run_cases(kernel_of("capturing", NULL), cases, together, 4);
     for (int i = 0; i < 4; i++) {
-        kernel_of("capturing", NULL)->run(&cases[i], &alone, 1);
+        run_cases(kernel_of("capturing", NULL), &cases[i], &alone, 1);
         assert_memory_equal(&together[i], &alone, sizeof alone);
     }
 }
@@ -462,7 +462,7 @@ static void missing_reactions_are_counted(void **state)
                                 0,
                                 4.168654800320388,
                                 INFINITY};
-    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
     assert_int_equal(r.status, STANCE_DONE);
     assert_true(fabs(r.peak_torque - 131.63153345) < 1e-7);
     assert_int_equal(r.degraded_samples, 1);
@@ -485,7 +485,7 @@ static void integrals_unwind(void **state)
     c.torque_limit = 2;
     c.tolerance = 1e-8;
     c.steps = 100;
-    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
     assert_int_equal(r.status, STANCE_DONE);
     assert_true(r.velocity[3] < 0); /* it turns back; a latched torque drives it on */
 }
@@ -512,10 +512,10 @@ static void lanes_agree(void **state)
         cases[i].delay = i % 5 > 0 && i % 2;
     }
     for (int m = 0; m < 3; m++) {
-        kernel_of(methods[m], "scalar")->run(cases, first, N);
+        run_cases(kernel_of(methods[m], "scalar"), cases, first, N);
         for (int rank = 0; stance_isa(rank); rank++) {
             const stance_kernel *const kernel = kernel_of(methods[m], stance_isa(rank));
-            kernel->run(cases, other, N);
+            run_cases(kernel, cases, other, N);
             for (int i = 0; i < N; i++)
                 assert_memory_equal(&first[i], &other[i], sizeof first[i]);
         }

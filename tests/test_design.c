@@ -11,7 +11,7 @@ enum { N = 6, M = 2 };
 struct sample {
     const json_t *record;
     const char *name;
-    double robot[8], A[N * N], B[N * M], states[N], torques[M], T;
+    double robot[STANCE_MAX_ROBOT], A[N * N], B[N * M], states[N], torques[M], T;
     stance_equilibrium equilibrium;
 };
 
@@ -28,7 +28,8 @@ static void for_each_record(void (*check)(const struct sample *s))
     const json_t *cases = json_object_get(root, "cases");
     assert_int_equal(json_array_size(cases), 15);
     for (size_t i = 0; i < json_array_size(cases); i++) {
-        struct sample s = {.record = json_array_get(cases, i)};
+        struct sample s = {.record = json_array_get(cases, i),
+                           .robot = {[STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY}};
         double given[3];
         s.name = json_string_value(json_object_get(s.record, "name"));
         matrix_of(s.record, "robot", 5, 1, s.robot);
@@ -287,13 +288,37 @@ static void placement_messages(void **state)
     assert_near(K[1], 4, 1e-12, "double pole");
 }
 
+/* What A is rounded to changes gains by no more: its eigenvalues come in pairs of opposite signs,
+ * whose order is rounding's. */
+static void schur_is_steady(void **state)
+{
+    (void)state;
+    const double re[N] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6}, im[N] = {0};
+    double robot[STANCE_MAX_ROBOT], A[N * N], B[N * M], rounded[N * N], K[2][N * M];
+    uint64_t seed = 4;
+    stance_message message;
+    stance_robot_fallback(biped(), robot);
+    const stance_equilibrium e = equilibrium_of(robot, 0, -0.41, NAN, 0.82, false);
+    assert_int_equal(biped()->linearise(biped(), robot, &e, A, B), STANCE_OK);
+    assert_int_equal(stance_place_schur(N, M, A, B, re, im, K[0], &message), STANCE_OK);
+    for (int round = 0; round < 50; round++) {
+        for (int i = 0; i < N * N; i++)
+            rounded[i] = A[i] * (1 + uniform(&seed, -1e-15, 1e-15));
+        assert_int_equal(stance_place_schur(N, M, rounded, B, re, im, K[1], &message), STANCE_OK);
+        for (int i = 0; i < N * M; i++)
+            assert_near(K[1][i], K[0][i], 1e-9, "gain");
+    }
+}
+
 /* An equilibrium that no torque can hold: both legs level, the hip at the height of the foot, the
  * trunk longer than the rest is heavy. The angular momentum about the foot is then a mode of its
  * own, and torques at the hip do not reach it. */
 static void uncontrollable_equilibrium(void **state)
 {
     (void)state;
-    const double robot[8] = {0.5, 2, 2, 4, 4}, level = 2 * M_PI / 3;
+    const double robot[STANCE_MAX_ROBOT] = {0.5, 2, 2,
+                                            4,   4, [STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY},
+                 level = 2 * M_PI / 3;
     const double re[N] = {-3, -3.3, -3.6, -3.9, -4.2, -4.6}, im[N] = {0};
     const double ones[N] = {1, 1, 1, 1, 1, 1};
     double A[N * N], B[N * M], K[M * N], sv[N];
@@ -573,7 +598,7 @@ static void force_in_simulation(void **state)
             1e-6, 2, &position[0][0], &velocity[0][0], &torque[0][0], &found[0][0][0], &gap[0][0]};
         c.trajectory = &trajectory;
         stance_result result;
-        kernel->run(&c, &result, 1);
+        run_cases(kernel, &c, &result, 1);
         assert_int_equal(result.status, STANCE_DONE);
         assert_near(found[1][0][0], force[0], 5e-4, "normal force");
         assert_near(found[1][0][1], force[1], 5e-4, "tangential force");
@@ -591,6 +616,7 @@ int main(void)
         cmocka_unit_test(placement_limits),
         cmocka_unit_test(sampled_double_integrator),
         cmocka_unit_test(placement_messages),
+        cmocka_unit_test(schur_is_steady),
         cmocka_unit_test(uncontrollable_equilibrium),
         cmocka_unit_test(critical_sample_times),
         cmocka_unit_test(delayed_integrator),

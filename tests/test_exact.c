@@ -53,7 +53,7 @@ static double sensitivity(const stance_case *c, const stance_result *end)
         if (low < reference_tolerance || now < 0)
             nudged[k].position[1] += low - now;
     }
-    kernel_of("event-driven", NULL)->run(nudged, r, NUDGED);
+    run_cases(kernel_of("event-driven", NULL), nudged, r, NUDGED);
     for (int k = 0; k < NUDGED; k++) {
         if (r[k].status != STANCE_DONE)
             return NAN;
@@ -73,7 +73,7 @@ static bool parallel(const stance_case *c)
     fine.tolerance = reference_tolerance;
     fine.step /= FINER, fine.steps *= FINER, fine.sample_every *= FINER;
     fine.trajectory = &way;
-    kernel_of("event-driven", NULL)->run(&fine, &r, 1);
+    run_cases(kernel_of("event-driven", NULL), &fine, &r, 1);
     for (int64_t k = 0; k < way.rows; k++)
         found |= fmax(way.gap[2 * k], way.gap[2 * k + 1]) < 1e-6 &&
                  fabs(sin(way.position[5 * k + 3] - way.position[5 * k + 4])) < 1e-6;
@@ -134,8 +134,8 @@ static struct hunted hunt(long count, double from, double to, double tolerance, 
             exact[i] = cases[i];
             exact[i].tolerance = reference_tolerance;
         }
-        kernel_of("capturing", NULL)->run(cases, r, BATCH);
-        kernel_of("event-driven", NULL)->run(exact, reference, BATCH);
+        run_cases(kernel_of("capturing", NULL), cases, r, BATCH);
+        run_cases(kernel_of("event-driven", NULL), exact, reference, BATCH);
         for (int i = 0; i < BATCH; i++)
             if (judge(&cases[i], &reference[i], &r[i], &h))
                 print_message("# case %ld, %d of the batch of seed %llu, is off by %g\n",
@@ -175,7 +175,7 @@ static stance_case sliding_and_landing(uint64_t *seed)
     c.velocity[0] += uniform(seed, -1, 1); /* the first foot slides, the other does what it does */
     c.position[1] -= least_gap(&c);
     c.steps = 5;
-    c.fall_height = -1e9;
+    c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
     c.tolerance = 1e-6;
     c.sample_every = 1;
     return c;
@@ -187,11 +187,11 @@ static long paradoxes(long count, uint64_t seed)
     for (long k = 0; k < count; k++) {
         const stance_case c = sliding_and_landing(&seed);
         stance_result r;
-        kernel_of("event-driven", NULL)->run(&c, &r, 1);
+        run_cases(kernel_of("event-driven", NULL), &c, &r, 1);
         if (r.status != STANCE_FAILED || r.failure != STANCE_FAILURE_PAINLEVE)
             continue;
         seen++;
-        kernel_of("capturing", NULL)->run(&c, &r, 1);
+        run_cases(kernel_of("capturing", NULL), &c, &r, 1);
         failed += r.status != STANCE_DONE;
     }
     print_message(

@@ -228,6 +228,7 @@ static void others(void **state)
         stance_scene *const scene = mechanism_scene(list[k].text);
         stance_case c = {.friction = 0.5, .step = 1e-3, .contacts = ~0u, .torque_limit = INFINITY};
         stance_robot_fallback(scene, c.robot);
+        c.scene = scene;
         c.robot[STANCE_ROBOT_GRAVITY] = list[k].gravity;
         c.robot[STANCE_ROBOT_SLOPE] = list[k].slope;
         for (int i = 0; i < scene->coordinates; i++)

@@ -13,6 +13,7 @@ enum {
     SCENE_ANGLES = 7,
     N = SCENE_COORDINATES,
 };
+static const int scene_grip[SCENE_CONTACTS] = {0, 1, 2, 3};
 #include "engine/core/contact/impact.h"
 #define DENSE_ROWS N
 #include "dense.h"

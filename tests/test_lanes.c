@@ -1,7 +1,7 @@
 /* test_lanes - a case's numbers are its own: whatever lane it runs in, however many there are, and
  * whatever runs beside it. Cases of ordinary and of extreme proportions run
  *
- *   alone, in one lane: the reference,
+ *   alone, the structure read at run time where no one-lane kernel is built: the reference,
  *   alone in a kernel that doubts: all it may ask of its neighbours (mask_any, the set of contacts
  *     that touch anywhere) it is told yes at random; a kernel that passes computes the same
  * whatever its neighbours do, since that is all they can do to it, among others, in random order,
@@ -27,6 +27,7 @@ static const stance_kernel *const doubting[] = {STANCE_DOUBTING_LIST NULL};
 #undef KERNEL
 
 struct hunt {
+    const stance_scene *scene;
     const stance_kernel *kernel;
     stance_case cases[BATCH], shuffled[BATCH];
     stance_result alone[BATCH], beside[BATCH];
@@ -62,7 +63,7 @@ static void run_beside(const stance_kernel *k, uint64_t *seed)
     }
     for (size_t i = 0; i < hunt.n; i++)
         hunt.shuffled[i] = hunt.cases[hunt.order[i]];
-    k->run(hunt.shuffled, hunt.beside, hunt.n);
+    run_cases(k, hunt.shuffled, hunt.beside, hunt.n);
     for (size_t i = 0; i < hunt.n; i++)
         compare(k->isa, hunt.order[i], &hunt.beside[i]);
 }
@@ -70,18 +71,18 @@ static void run_beside(const stance_kernel *k, uint64_t *seed)
 /* One batch of the cases that follow from *seed. */
 static void batch(bool extreme, uint64_t *seed)
 {
-    const stance_scene *const scene = hunt.kernel->scene;
+    const stance_scene *const scene = hunt.scene;
     for (size_t i = 0; i < hunt.n; i++)
         hunt_case(scene, seed, extreme, &hunt.cases[i]);
     for (size_t i = 0; i < hunt.n; i++) {
-        hunt.kernel->run(&hunt.cases[i], &hunt.alone[i], 1);
+        run_cases(hunt.kernel, &hunt.cases[i], &hunt.alone[i], 1);
         hunt.failed += hunt.alone[i].status == STANCE_FAILED;
     }
     for (int k = 0; doubting[k]; k++)
-        if (wanted("doubting") && doubting[k]->scene == scene &&
+        if (wanted("doubting") && stance_kernel_fits(doubting[k], scene) &&
             doubting[k]->method == hunt.kernel->method)
             for (size_t i = 0; i < hunt.n; i++) {
-                doubting[k]->run(&hunt.cases[i], &hunt.beside[i], 1);
+                run_cases(doubting[k], &hunt.cases[i], &hunt.beside[i], 1);
                 compare("doubting", i, &hunt.beside[i]);
             }
     for (int rank = 0; stance_isa(rank); rank++) {
@@ -97,6 +98,7 @@ static void batch(bool extreme, uint64_t *seed)
 static bool run(const stance_scene *scene, const stance_method *method, bool extreme, double count,
                 uint64_t seed)
 {
+    hunt.scene = scene;
     hunt.kernel = stance_kernel_find(scene, method, "scalar");
     hunt.differ = hunt.failed = hunt.done = 0;
     hunt.n = count < BATCH ? (size_t)count : BATCH;
@@ -124,10 +126,10 @@ int main(int argc, char **argv)
     for (int k = 0; doubting[k]; k++)
         for (int extreme = 0; extreme < 2; extreme++) {
             const double count = long_tests() ? 50 * BATCH : extreme ? SHARE / 8 : SHARE;
-            const bool good =
-                run(doubting[k]->scene, doubting[k]->method, extreme, count, 7 + (uint64_t)k);
+            const bool good = run(stance_scene_find(doubting[k]->structure), doubting[k]->method,
+                                  extreme, count, 7 + (uint64_t)k);
             printf("%sok %d - %s, %s, %s cases\n", good ? "" : "not ", ++tests,
-                   doubting[k]->scene->name, doubting[k]->method->name,
+                   doubting[k]->structure, doubting[k]->method->name,
                    extreme ? "extreme" : "ordinary");
             all &= good;
         }

@@ -82,7 +82,7 @@ static stance_case flying_case(double h, double kp, double kd, const double vect
 {
     stance_case c = plain_case();
     c.contacts = 0;
-    c.fall_height = -1;
+    c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1;
     c.position[1] = 10 + STANCE_GRAVITY * pow(STEPS * h, 2), c.position[2] = -0.5,
     c.position[3] = 0.9, c.position[4] = -1;
     hold_legs(&c, kp, kd);
@@ -102,7 +102,7 @@ static bool swings_up(const char *method, double h, double kp, double kd, const 
     stance_result r;
     c.steps = STEPS;
     c.trajectory = &t;
-    kernel_of(method, NULL)->run(&c, &r, 1);
+    run_cases(kernel_of(method, NULL), &c, &r, 1);
     double size[3] = {0, 0, 0}; /* first, between, last */
     for (int k = 0; k < ROWS; k++)
         for (int i = 0; i < 2; i++) {
@@ -219,7 +219,7 @@ static double longest_calm(const char *method, const stance_case *base, int part
         t[k] = trajectory_new(SAMPLES + 1, T);
         c[k].trajectory = &t[k];
     }
-    kernel_of(method, NULL)->run(c, r, TRIES);
+    run_cases(kernel_of(method, NULL), c, r, TRIES);
     int calm = -1;
     for (int k = TRIES - 1; k >= 0; k--) {
         const bool grows = r[k].status != STANCE_DONE || r[k].outcome == STANCE_FELL ||
@@ -348,7 +348,7 @@ static stance_case wild_case(uint64_t *random, int *group, double *stored)
         if (servo)
             c.near.gain[i][1 + i] = kp, c.near.gain[i][4 + i] = kd;
     }
-    c.fall_height = -1e15;
+    c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e15;
     c.step = logarithmic(random, 1e-4, 0.1);
     c.steps = chance(random, 0.25) ? 1 : LONG_RUN;
     return c;
@@ -466,7 +466,7 @@ static void run_wild(const char *method, int batches, struct tally tally[GROUPS]
     for (int b = 0; b < batches; b++) {
         for (int i = 0; i < BATCH; i++)
             c[i] = wild_case(&random, &group[i], &stored[i]);
-        kernel_of(method, NULL)->run(c, r, BATCH);
+        run_cases(kernel_of(method, NULL), c, r, BATCH);
         for (int i = 0; i < BATCH; i++)
             tally_add(&tally[group[i]], &c[i], &r[i], stored[i]);
     }
@@ -504,7 +504,7 @@ static stance_case endless_case(double damping)
     hold_legs(&c, 65, damping);
     c.near.target[1] += 0.017, c.near.target[2] += 0.0055;
     c.torque_limit = 8;
-    c.friction = 0, c.fall_height = 0;
+    c.friction = 0, c.robot[STANCE_ROBOT_FALL_HEIGHT] = 0;
     c.tolerance = 1e-4;
     c.steps = 300;
     return c;
@@ -518,12 +518,12 @@ static void work_is_bounded(void **state)
     static const char *const methods[] = {"event-driven", "lagrange", "implicit", "midpoint"};
     stance_case c = endless_case(4.7e6);
     stance_result r;
-    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
     assert_true(r.status == STANCE_FAILED && r.failure == STANCE_FAILURE_WORK && r.steps == 0);
     for (int m = 0; m < 4; m++) /* they pass it, or say one of their reasons */
-        kernel_of(methods[m], NULL)->run(&c, &r, 1);
+        run_cases(kernel_of(methods[m], NULL), &c, &r, 1);
     c = endless_case(1.12);
-    kernel_of("capturing", NULL)->run(&c, &r, 1);
+    run_cases(kernel_of("capturing", NULL), &c, &r, 1);
     assert_true(r.status == STANCE_FAILED && r.failure == STANCE_FAILURE_WORK);
     assert_true(r.steps > 100 && (double)r.evaluations > 9e6 && (double)r.evaluations < 1.1e7);
 }
@@ -544,7 +544,7 @@ static void little_is_left_after_landings(void **state)
             stance_result r;
             random_case(&seed, i, 1e-2, &c);
             c.restitution = 0;
-            kernel_of(methods[m], NULL)->run(&c, &r, 1);
+            run_cases(kernel_of(methods[m], NULL), &c, &r, 1);
             if (r.status == STANCE_DONE) {
                 above += r.signorini_residual > 1e-3;
                 largest = fmax(largest, r.signorini_residual);

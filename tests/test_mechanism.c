@@ -1,7 +1,10 @@
 /* test_mechanism.c - described mechanisms: the biped among them against its own scene, and what is
  * known in closed form. */
+#include "closed_biped.h"
 #include "linear.h"
 #include "mechanism_text.h"
+
+#include "engine/tree.h"
 
 /* Its coordinates are of the trunk's mass, its root is the hip. */
 #define BIPED                                                                                      \
@@ -64,10 +67,8 @@ static void names(void **state)
 }
 
 /* Gaps, contact points, energy, inertia, standing of the biped at random states. */
-static void the_biped(void **state)
+static void biped_moves(const stance_scene *s)
 {
-    (void)state;
-    stance_scene *const s = mechanism_scene(BIPED);
     double robot[STANCE_MAX_ROBOT], own[STANCE_MAX_ROBOT];
     uint64_t seed = 1;
     stance_robot_fallback(s, robot);
@@ -79,34 +80,31 @@ static void the_biped(void **state)
             v[k] = v2[k] = uniform(&seed, -10, 10);
         }
         s->gaps(s, robot, q, gap[0]);
-        biped()->gaps(biped(), own, q, gap[1]);
+        closed_biped.gaps(&closed_biped, own, q, gap[1]);
         same(gap[0], gap[1], 2, 1, "gaps");
         for (int c = 0; c < 2; c++) {
             s->contact_point(s, robot, q, v, c, point[0], speed[0]);
-            biped()->contact_point(biped(), own, q, v, c, point[1], speed[1]);
+            closed_biped.contact_point(&closed_biped, own, q, v, c, point[1], speed[1]);
             same(point[0], point[1], 2, 1, "contact point");
             same(speed[0], speed[1], 2, 10, "contact speed");
         }
         s->inertia(s, robot, q, A[0]);
-        biped()->inertia(biped(), own, q, A[1]);
+        closed_biped.inertia(&closed_biped, own, q, A[1]);
         same(A[0], A[1], 25, 10, "inertia");
-        assert_near(s->energy(s, robot, q, v), biped()->energy(biped(), own, q, v), 1e-10,
+        assert_near(s->energy(s, robot, q, v), closed_biped.energy(&closed_biped, own, q, v), 1e-10,
                     "energy");
         s->stand(s, robot, 1u << i % 2, q, v);
-        biped()->stand(biped(), own, 1u << i % 2, q2, v2);
+        closed_biped.stand(&closed_biped, own, 1u << i % 2, q2, v2);
         same(q, q2, 5, 1, "stands");
         same(v, v2, 5, 10, "stands still");
         s->gaps(s, robot, q, gap[0]);
         assert_true(gap[0][i % 2] >= 0 && gap[0][i % 2] <= 1e-15);
     }
-    stance_scene_free(s);
 }
 
 /* The biped's equilibrium, its linearisation and its contact force, on either foot. */
-static void the_biped_at_rest(void **state)
+static void biped_rests(const stance_scene *s)
 {
-    (void)state;
-    stance_scene *const s = mechanism_scene(BIPED);
     double robot[STANCE_MAX_ROBOT], own[STANCE_MAX_ROBOT];
     uint64_t seed = 3;
     int found = 0;
@@ -123,7 +121,7 @@ static void the_biped_at_rest(void **state)
         stance_equilibrium e[2];
         stance_message message;
         double A[2][36], B[2][12], force[2][2], by[2][12], by_torque[2][4];
-        if (biped()->equilibrium(biped(), own, &choice, &e[0], NULL) != STANCE_OK)
+        if (closed_biped.equilibrium(&closed_biped, own, &choice, &e[0], NULL) != STANCE_OK)
             continue;
         if (s->equilibrium(s, robot, &choice, &e[1], &message) != STANCE_OK) {
             assert_true(fabs(e[0].torque[0]) > 10 || fabs(e[0].torque[1]) > 10);
@@ -140,7 +138,7 @@ static void the_biped_at_rest(void **state)
         assert_true(e[1].freedoms == 3 && e[1].freedom[2] == 4 && e[1].condition < 1 + 1e-12);
         assert_near(e[1].friction, 0, 1e-12, "friction");
         for (int k = 0; k < 2; k++) {
-            const stance_scene *const scene = k ? s : biped();
+            const stance_scene *const scene = k ? s : &closed_biped;
             const double *const r = k ? robot : own;
             assert_int_equal(scene->linearise(scene, r, &e[k], A[k], B[k]), STANCE_OK);
             assert_int_equal(scene->contact_force(scene, r, &e[k], force[k], by[k], by_torque[k]),
@@ -154,41 +152,118 @@ static void the_biped_at_rest(void **state)
     }
     print_message("# equilibria compared: %d\n", found);
     assert_true(found > 50);
-    stance_scene_free(s);
 }
 
-/* The rod's own scene and the rod described. */
+/* As described, and as the program carries it. */
+static void the_biped(void **state)
+{
+    (void)state;
+    stance_scene *const s = mechanism_scene(BIPED);
+    biped_moves(s);
+    biped_rests(s);
+    stance_scene_free(s);
+    biped_moves(biped());
+    biped_rests(biped());
+}
+
+/* A rod of length l = 1 and its ends at x -+ l/2 cos, z -+ l/2 sin. */
 static void the_rod(void **state)
 {
     (void)state;
-    const stance_scene *const rod = stance_scene_find("rod");
-    stance_scene *const s = mechanism_scene("body rod free - 1 0.08333333333333333 0 0 0 0\n"
-                                            "point end1 rod -0.5 0\n"
-                                            "point end2 rod 0.5 0\n");
-    double robot[STANCE_MAX_ROBOT], own[STANCE_MAX_ROBOT];
+    const stance_scene *const s = stance_scene_find("rod");
+    double robot[STANCE_MAX_ROBOT];
     uint64_t seed = 5;
     stance_robot_fallback(s, robot);
-    stance_robot_fallback(rod, own);
     for (int i = 0; i < 100; i++) {
-        double q[3], v[3], gap[2][2], A[2][9], at[2][2], speed[2][2];
+        double q[3], v[3], gap[2], A[9], at[2], speed[2];
         for (int k = 0; k < 3; k++) {
             q[k] = uniform(&seed, -3, 3);
             v[k] = uniform(&seed, -3, 3);
         }
-        for (int k = 0; k < 2; k++) {
-            const stance_scene *const scene = k ? s : rod;
-            const double *const r = k ? robot : own;
-            scene->gaps(scene, r, q, gap[k]);
-            scene->inertia(scene, r, q, A[k]);
-            scene->contact_point(scene, r, q, v, i % 2, at[k], speed[k]);
-        }
-        same(gap[1], gap[0], 2, 1, "gaps");
-        same(A[1], A[0], 9, 1, "inertia");
-        same(at[1], at[0], 2, 1, "an end");
-        same(speed[1], speed[0], 2, 1, "its speed");
-        assert_near(s->energy(s, robot, q, v), rod->energy(rod, own, q, v), 1e-12, "energy");
+        const double arm = i % 2 ? 0.5 : -0.5, sine = sin(q[2]), cosine = cos(q[2]);
+        s->gaps(s, robot, q, gap);
+        s->inertia(s, robot, q, A);
+        s->contact_point(s, robot, q, v, i % 2, at, speed);
+        same(gap, (double[]){q[1] - 0.5 * sine, q[1] + 0.5 * sine}, 2, 1, "gaps");
+        same(A, (double[]){1, 0, 0, 0, 1, 0, 0, 0, 1. / 12}, 9, 1, "inertia");
+        same(at, (double[]){q[0] + arm * cosine, q[1] + arm * sine}, 2, 1, "an end");
+        same(speed, (double[]){v[0] - arm * v[2] * sine, v[1] + arm * v[2] * cosine}, 2, 1,
+             "its speed");
+        assert_near(s->energy(s, robot, q, v),
+                    0.5 * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] / 12) + 9.81 * q[1], 1e-12,
+                    "energy");
     }
+}
+
+/* A body turned against its parent at coordinate 0 is the same as one whose own places, and those
+ * of what hangs from it, are turned by hand. */
+static void turned_frames(void **state)
+{
+    (void)state;
+    const double a = 0.7;
+    stance_scene *const s =
+        mechanism_scene("body trunk free - 2 0.1 0.05 0.2 0 0 angle 0.7\n"
+                        "reference 0.1 0.3\n"
+                        "body arm hinge trunk 1 0.02 0.1 -0.3 0.2 0.1 angle -1.1 limits -1 1\n"
+                        "body hand fixed arm 0.5 0.01 0.1 0 0.3 -0.4 angle 0.4\n"
+                        "body rod slide hand 0.3 0.01 0.1 0.2 0 0.1 axis 0.6 0.8 angle 0.2\n"
+                        "point foot rod 0.2 -0.3\n"
+                        "sole flat trunk -0.1 -0.2 0.2 -0.2\n"
+                        "actuator elbow arm 10\n");
+    char text[1200];
+    double at[12][2];
+    /* Frames by their turns: trunk a, arm a - 1.1, hand a - 0.7 = 0, rod 0.2. */
+    const double turn[12] = {a, a, a - 1.1, a, 0, a - 1.1, 0.2, 0, 0, 0.2, a, a};
+    const double own[12][2] = {{0.05, 0.2}, {0.1, 0.3},  {0.1, -0.3},  {0.2, 0.1},
+                               {0.1, 0},    {0.3, -0.4}, {0.1, 0.2},   {0, 0.1},
+                               {0.6, 0.8},  {0.2, -0.3}, {-0.1, -0.2}, {0.2, -0.2}};
+    for (int k = 0; k < 12; k++) {
+        at[k][0] = cos(turn[k]) * own[k][0] - sin(turn[k]) * own[k][1];
+        at[k][1] = sin(turn[k]) * own[k][0] + cos(turn[k]) * own[k][1];
+    }
+    snprintf(text, sizeof text,
+             "body trunk free - 2 0.1 %.17g %.17g 0 0\nreference %.17g %.17g\n"
+             "body arm hinge trunk 1 0.02 %.17g %.17g %.17g %.17g limits -1 1\n"
+             "body hand fixed arm 0.5 0.01 %.17g %.17g %.17g %.17g\n"
+             "body rod slide hand 0.3 0.01 %.17g %.17g %.17g %.17g axis %.17g %.17g\n"
+             "point foot rod %.17g %.17g\nsole flat trunk %.17g %.17g %.17g %.17g\n"
+             "actuator elbow arm 10\n",
+             at[0][0], at[0][1], at[1][0], at[1][1], at[2][0], at[2][1], at[3][0], at[3][1],
+             at[4][0], at[4][1], at[5][0], at[5][1], at[6][0], at[6][1], at[7][0], at[7][1],
+             at[8][0], at[8][1], at[9][0], at[9][1], at[10][0], at[10][1], at[11][0], at[11][1]);
+    stance_scene *const hand = mechanism_scene(text);
+    double robot[2][STANCE_MAX_ROBOT];
+    uint64_t seed = 8;
+    stance_robot_fallback(s, robot[0]);
+    stance_robot_fallback(hand, robot[1]);
+    robot[0][STANCE_ROBOT_SLOPE] = robot[1][STANCE_ROBOT_SLOPE] = 0.2;
+    for (int i = 0; i < 100; i++) {
+        double q[2][5], v[2][5], gap[2][5], A[2][25], energy[2];
+        stance_tree_numbers number[2];
+        for (int k = 0; k < 5; k++) {
+            q[0][k] = q[1][k] = uniform(&seed, -1, 1);
+            v[0][k] = v[1][k] = uniform(&seed, -3, 3);
+        }
+        for (int k = 0; k < 2; k++) {
+            const stance_scene *const scene = k ? hand : s;
+            scene->gaps(scene, robot[k], q[k], gap[k]);
+            scene->inertia(scene, robot[k], q[k], A[k]);
+            energy[k] = scene->energy(scene, robot[k], q[k], v[k]);
+            stance_tree_numbers_make(scene->tree, scene->mechanism, robot[k], &number[k]);
+        }
+        same(gap[0], gap[1], 5, 10, "gaps");
+        same(A[0], A[1], 25, 10, "inertia");
+        assert_near(energy[0], energy[1], 1e-11, "energy");
+        same(number[0].moment[0], number[1].moment[0], 6, 10, "moments");
+        same(number[0].inertia, number[1].inertia, 3, 10, "second moments");
+        same(number[0].joint[0], number[1].joint[0], 6, 10, "joints");
+        same(number[0].end[0], number[1].end[0], 15, 10, "ends");
+        same(number[0].reference, number[1].reference, 2, 10, "reference");
+        same(number[0].curvature, number[1].curvature, 3, 1000, "curvature");
+    }
+    assert_int_equal(memcmp(s->tree->kind, hand->tree->kind, sizeof hand->tree->kind), 0);
     stance_scene_free(s);
+    stance_scene_free(hand);
 }
 
 static stance_equilibrium at_rest(const stance_scene *s, const double *robot,
@@ -377,13 +452,13 @@ static void falls(void **state)
                                             "point foot base 0 0\n");
     double robot[STANCE_MAX_ROBOT];
     stance_robot_fallback(s, robot);
-    assert_false(s->fallen(s, robot, (double[]){0, 0, 0, 0}, 0.2));
-    assert_false(s->fallen(s, robot, (double[]){0, 0, 0, 2.5}, 0.2));
-    assert_false(s->fallen(s, robot, (double[]){0, -0.1, 0, M_PI}, 0.2));
-    assert_true(s->fallen(s, robot, (double[]){0, -0.3, 0, M_PI}, 0.2));
-    assert_true(s->fallen(s, robot, (double[]){0, 2, -1.6, 0}, 0.2));
+    assert_false(s->fallen(s, robot, (double[]){0, 0, 0, 0}));
+    assert_false(s->fallen(s, robot, (double[]){0, 0, 0, 2.5}));
+    assert_false(s->fallen(s, robot, (double[]){0, -0.1, 0, M_PI}));
+    assert_true(s->fallen(s, robot, (double[]){0, -0.3, 0, M_PI}));
+    assert_true(s->fallen(s, robot, (double[]){0, 2, -1.6, 0}));
     robot[STANCE_ROBOT_SLOPE] = -0.5;
-    assert_true(s->fallen(s, robot, (double[]){3, 0, 0, 0}, 0.2));
+    assert_true(s->fallen(s, robot, (double[]){3, 0, 0, 0}));
     stance_scene_free(s);
 }
 
@@ -411,25 +486,19 @@ static void figures(void **state)
             least = fmin(least, hypot(points[i][0] - on[k][0], points[i][1] - on[k][1]));
         assert_near(least, 0, 1e-15, "a point of the figure");
     }
-    assert_memory_equal(points[0], points[n - 1], sizeof points[0]);
+    assert_memory_equal(points, points[n - 1], sizeof points);
     stance_scene_free(s);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(names),
-        cmocka_unit_test(the_biped),
-        cmocka_unit_test(the_biped_at_rest),
-        cmocka_unit_test(the_rod),
-        cmocka_unit_test(a_pendulum),
-        cmocka_unit_test(a_cart_pole),
-        cmocka_unit_test(a_heavy_side),
-        cmocka_unit_test(no_equilibrium),
-        cmocka_unit_test(numbers_vary),
-        cmocka_unit_test(a_wheel),
-        cmocka_unit_test(falls),
-        cmocka_unit_test(figures),
+        cmocka_unit_test(names),        cmocka_unit_test(the_biped),
+        cmocka_unit_test(the_rod),      cmocka_unit_test(turned_frames),
+        cmocka_unit_test(a_pendulum),   cmocka_unit_test(a_cart_pole),
+        cmocka_unit_test(a_heavy_side), cmocka_unit_test(no_equilibrium),
+        cmocka_unit_test(numbers_vary), cmocka_unit_test(a_wheel),
+        cmocka_unit_test(falls),        cmocka_unit_test(figures),
     };
     return cmocka_run_group_tests_name("mechanism", tests, NULL, NULL);
 }

@@ -581,15 +581,15 @@ static void rimless_wheel(void **state)
 /* ---- pushes -----------------------------------------------------------------------------------*/
 
 /* A body in flight, pushed along the ground's axes at a point that turns with it. */
-static double pushing[2];
+static double pushing[2], swinging;
 static void pushed_rate(double t, const double *x, double *rate)
 {
-    (void)t;
     const double px = 0.3 * cos(x[2]) - 0.2 * sin(x[2]), pz = 0.3 * sin(x[2]) + 0.2 * cos(x[2]);
     memcpy(rate, x + 3, sizeof(double[3]));
-    rate[3] = pushing[0] / 1.5;
-    rate[4] = pushing[1] / 1.5 - G;
-    rate[5] = (px * pushing[1] - pz * pushing[0]) / 0.1;
+    const double swing = swinging > 0 ? sin(2 * M_PI * swinging * (t - 0.104)) : 1;
+    rate[3] = swing * pushing[0] / 1.5;
+    rate[4] = swing * pushing[1] / 1.5 - G;
+    rate[5] = swing * (px * pushing[1] - pz * pushing[0]) / 0.1;
 }
 static struct robot pushed(const char *text, double from, double to, double T, double *x)
 {
@@ -612,6 +612,17 @@ static void push(void **state)
     double x[MOST];
     struct robot r = pushed(PUSHED "0.104 0.256\n", 0.104, 0.256, 0.4, x);
     arrives("push from step to step", &r, 0.008, 0.4, x, 0);
+    stance_scene_free(r.scene);
+}
+/* One that swings, and ends. */
+static void swing(void **state)
+{
+    (void)state;
+    double x[MOST];
+    swinging = 3.7;
+    struct robot r = pushed(PUSHED "0.104 0.256 3.7\n", 0.104, 0.256, 0.4, x);
+    arrives("push that swings", &r, 0.008, 0.4, x, 20);
+    swinging = 0;
     stance_scene_free(r.scene);
 }
 /* Ends inside steps: what is given is exact; where it acts is known to order 2 by methods whose
@@ -780,6 +791,7 @@ int main(void)
         cmocka_unit_test(rail_ends),
         cmocka_unit_test(rimless_wheel),
         cmocka_unit_test(push),
+        cmocka_unit_test(swing),
         cmocka_unit_test(push_inside_steps),
         cmocka_unit_test(blow_to_pendulum),
         cmocka_unit_test(blow_inside_steps),

@@ -11,14 +11,16 @@
 #include "runner/base/units.h"
 #include "runner/objects/objects.h"
 
+#include "engine/tree.h"
+
 enum { CHECKS = 64, STEPS = 50, CASES = 200, MOST = 8 };
 
 static bool same(const struct object *object)
 {
-    const stance_kernel *const own =
-        stance_kernel_find(object->kernel.scene, object->kernel.method, "scalar");
-    return golden_hash(&object->kernel, CASES, false, CASES) ==
-           golden_hash(own, CASES, false, CASES);
+    const stance_scene *const scene = stance_scene_find(object->kernel.structure);
+    const stance_kernel *const own = stance_kernel_find(scene, object->kernel.method, "scalar");
+    return golden_hash(&object->kernel, scene, CASES, false, CASES) ==
+           golden_hash(own, scene, CASES, false, CASES);
 }
 
 /* What is asked for, with all that it points to. */
@@ -26,7 +28,7 @@ struct asked {
     struct objects_request request;
     struct objects_wanted wanted[MOST];
     stance_case check[CHECKS];
-    char tables[100];
+    char tables[STANCE_TREE_TEXT];
 };
 
 static void ask(struct asked *asked, const char *scene, char *methods, const char *isa, bool alone)
@@ -38,13 +40,14 @@ static void ask(struct asked *asked, const char *scene, char *methods, const cha
                                               .wanted = asked->wanted,
                                               .check = asked->check,
                                               .checks = CHECKS};
-    snprintf(asked->tables, sizeof asked->tables, "#include \"engine/scenes/%s_lanes.h\"\n", scene);
+    stance_tree_text(asked->request.scene->tree, true, asked->tables);
     for (int i = 0; i < CHECKS; i++) {
         if (strcmp(scene, "biped") == 0)
             golden_case(&seed, i, &asked->check[i]);
         else
             scene_case(asked->request.scene, &seed, &asked->check[i]);
         asked->check[i].steps = STEPS;
+        stance_case_robot(asked->request.scene, &asked->check[i]);
     }
     for (char *name = strtok_r(methods, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
         const stance_method *const method = stance_method_find(name);

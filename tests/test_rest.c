@@ -8,7 +8,7 @@ enum { SIDE = 48 };
 static stance_result run_one(const char *method, const stance_case *c)
 {
     stance_result r;
-    kernel_of(method, NULL)->run(c, &r, 1);
+    run_cases(kernel_of(method, NULL), c, &r, 1);
     if (r.status != STANCE_DONE)
         print_message("# %s: failure %d after %.3f s\n", method, r.failure, r.end_time);
     assert_int_equal(r.status, STANCE_DONE);
@@ -27,13 +27,13 @@ static void map(const char *method, stance_case base, double tilt, double rate, 
         c[i].velocity[2] += rate * (2.0 * (i / SIDE) / (SIDE - 1) - 1);
         biped()->stand(biped(), c[i].robot, 1, c[i].position, c[i].velocity);
     }
-    kernel_of(method, NULL)->run(c, r, SIDE * SIDE);
+    run_cases(kernel_of(method, NULL), c, r, SIDE * SIDE);
     for (int i = 0; i < SIDE * SIDE; i++) {
         outcome[r[i].outcome]++;
         c[i].settle = false;
         c[i].steps *= 10;
     }
-    kernel_of(method, NULL)->run(c, later, SIDE * SIDE);
+    run_cases(kernel_of(method, NULL), c, later, SIDE * SIDE);
     int wrong = 0;
     for (int i = 0; i < SIDE * SIDE; i++)
         if (r[i].outcome == STANCE_RESTED || r[i].outcome == STANCE_STABILISED)
@@ -64,10 +64,9 @@ static void slow_is_not_at_rest(void **state)
 static double critical_time(const stance_case *c, int delay)
 {
     const stance_scene *const scene = stance_scene_find("biped");
-    stance_equilibrium equilibrium = {.supports = 1};
+    const stance_equilibrium equilibrium = equilibrium_at(c);
     double A[36], B[12], K[12], T;
     get_gain(c, K);
-    memcpy(&equilibrium.position[2], c->near.target, sizeof(double[3]));
     assert_int_equal(scene->linearise(scene, c->robot, &equilibrium, A, B), STANCE_OK);
     assert_int_equal(stance_critical_sample_time(6, 2, A, B, K, delay, 1, &T), STANCE_OK);
     return T;
@@ -136,6 +135,7 @@ static void pulled_blocks_rest_if_held(void **state)
     for (int k = 0; k < 5; k++) {
         stance_case c = plain_case();
         stance_robot_fallback(scene, c.robot);
+        c.scene = scene;
         for (int i = 0; i < scene->robot_count; i++) {
             if (strcmp(scene->robot[i].name, "pull") == 0)
                 c.robot[i] = share[k] * 0.5 * 9.81 * c.robot[0];
@@ -147,10 +147,10 @@ static void pulled_blocks_rest_if_held(void **state)
         c.friction = 0.5;
         c.contacts = 1;
         c.settle = true;
-        c.fall_height = -1e9;
+        c.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9;
         c.steps = 2000;
         stance_result r;
-        stance_kernel_find(scene, stance_method_find("capturing"), NULL)->run(&c, &r, 1);
+        run_cases(stance_kernel_find(scene, stance_method_find("capturing"), NULL), &c, &r, 1);
         assert_int_equal(r.outcome, share[k] > 1 ? STANCE_UNDECIDED : STANCE_RESTED);
     }
 }
@@ -205,6 +205,7 @@ static stance_case odd_case(uint64_t *seed, int kind)
         const double spread = uniform(seed, low ? 0.3 : 0.1, low ? 1 : 0.6);
         tilt = low ? uniform(seed, 1.6, 3) : uniform(seed, -0.2, 0.2);
         stance_robot_fallback(scene, c.robot);
+        c.scene = scene;
         for (int i = 0; i < 5 && !low; i++)
             c.robot[i] *= exp(uniform(seed, -0.5, 0.5));
         if (low)
@@ -285,13 +286,13 @@ static struct stay stay_of(const stance_kernel *kernel, stance_case *c, int coun
                          *const later = end + count;
     struct stay sum = {0};
     assert_non_null(r);
-    kernel->run(c, r, (size_t)count);
+    run_cases(kernel, c, r, (size_t)count);
     for (int i = 0; i < count; i++)
         c[i].settle = false;
-    kernel->run(c, end, (size_t)count);
+    run_cases(kernel, c, end, (size_t)count);
     for (int i = 0; i < count; i++)
         c[i].steps *= 3;
-    kernel->run(c, later, (size_t)count);
+    run_cases(kernel, c, later, (size_t)count);
     for (int i = 0; i < count; i++)
         stay_add(&sum, &r[i], &end[i], &later[i], c[i].settle_angle);
     free(r);
@@ -349,6 +350,7 @@ static void bounces_within_a_step_rest(void **state)
     for (int k = 0; k < 19; k++) {
         stance_case c = plain_case();
         stance_robot_fallback(scene, c.robot);
+        c.scene = scene;
         double gap[STANCE_MAX_CONTACTS];
         scene->gaps(scene, c.robot, c.position, gap);
         c.position[1] += 0.5 - gap[0];
@@ -358,7 +360,7 @@ static void bounces_within_a_step_rest(void **state)
         c.settle_rate = 0.02, c.settle_hold = 0.25;
         c.steps = 8000;
         stance_result r;
-        stance_kernel_find(scene, stance_method_find("midpoint"), NULL)->run(&c, &r, 1);
+        run_cases(stance_kernel_find(scene, stance_method_find("midpoint"), NULL), &c, &r, 1);
         assert_int_equal(r.outcome, STANCE_RESTED);
     }
 }

@@ -167,8 +167,9 @@ static void every_key_is_read(void **state)
     check_numbers((double[]){v->sample_time, v->torque_limit, v->noise}, (double[]){0.002, 10, 0.1},
                   3);
     assert_string_equal(stance_methods()[v->method]->name, "midpoint");
-    check_numbers((double[]){v->step, v->tolerance, v->stop_time, v->fall_height},
-                  (double[]){5e-4, 1e-7, 8.5, 0.3}, 4);
+    check_numbers(
+        (double[]){v->step, v->tolerance, v->stop_time, v->robot[STANCE_ROBOT_FALL_HEIGHT]},
+        (double[]){5e-4, 1e-7, 8.5, 0.3}, 4);
     assert_int_equal(v->settle, 1);
     check_numbers((double[]){v->settle_angle, v->settle_rate, v->settle_hold},
                   (double[]){0.04, 0.4, 0.6}, 3);
@@ -202,7 +203,7 @@ static void defaults_hold(void **state)
     }
     check_numbers((double[]){v->friction, v->restitution, v->step, v->sample_time, v->noise,
                              v->settle_angle, v->settle_rate, v->settle_hold, v->settle_place,
-                             v->fall_height},
+                             v->robot[STANCE_ROBOT_FALL_HEIGHT]},
                   (double[]){0.8, 0, 0.001, 0, 0, 0.05, 0.5, 0.5, 0.5, 0.2}, 10);
     assert_true(isinf(v->torque_limit));
     assert_true(isnan(v->tolerance)); /* the method's own */
@@ -338,7 +339,7 @@ static void other_scenes_are_read(void **state)
         {"stance: 1\nscene: block\nrobot: {slope: -0.5}\ninitial: {state: {x: 2}}\n"
          "stop: {time: 1}\n",
          "block",
-         {1, -0.5, 0, 1},
+         {1, 0, 1},
          {2, 0}},
         {"stance: 1\nscene: rod\ninitial: {state: {theta: 1}}\ncontroller: {kind: none}\n"
          "stop: {time: 1}\n",

@@ -147,7 +147,7 @@ static double fall_margin(const struct trial *t, int cause, double ahead, double
     for (int k = 0; k < SCENE_COORDINATES; k++)
         s[k] = t->s[k] + ahead * t->w[k];
     scene_trigonometry(s, &trig);
-    return scene_fall_margin(&t->body, s, &trig, t->w, 0, cause, rate);
+    return scene_fall_margin(&t->body, s, &trig, t->w, cause, rate);
 }
 /* What has fallen, and what not, of points that may be anywhere. */
 static int down;
@@ -162,7 +162,7 @@ static void compare_falls(const struct trial *t)
         near((fall_margin(t, cause, e, &other) - fall_margin(t, cause, -e, &other)) / (2 * e), rate,
              1e-6, "rate of a fall");
     }
-    assert_int_equal(fallen, t->scene->fallen(t->scene, t->robot, t->q, 0));
+    assert_int_equal(fallen, t->scene->fallen(t->scene, t->robot, t->q));
     down += fallen;
 }
 
@@ -490,9 +490,31 @@ static void trees_that_slide(void **state)
     trees_of(0.4);
 }
 
+/* The structure that kernels are compiled for ahead is that of the biped that the program carries,
+ * and of whoever describes the same. */
+static void structure_ahead(void **state)
+{
+    (void)state;
+    const stance_scene *const biped = stance_scene_find("biped");
+    const stance_method *const midpoint = stance_method_find("midpoint");
+    static char wanted[STANCE_TREE_TEXT], text[STANCE_TREE_TEXT + 400];
+    stance_scene *same;
+    FILE *const file = fopen("engine/scenes/biped_lanes.h", "r");
+    assert_non_null(file);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    stance_tree_text(biped->tree, true, wanted);
+    assert_string_equal(strstr(text, "*/\n") + 3, wanted);
+    assert_int_equal(stance_mechanism_scene(biped->mechanism, &same, NULL), STANCE_OK);
+    assert_true(stance_kernel_ahead(stance_kernel_find(same, midpoint, NULL)));
+    assert_false(stance_kernel_ahead(stance_kernel_find(stance_scene_find("rod"), midpoint, NULL)));
+    stance_scene_free(same);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(structure_ahead),
         cmocka_unit_test(trees),
         cmocka_unit_test(trees_that_slide),
     };

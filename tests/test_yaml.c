@@ -57,7 +57,7 @@ static void colons_before_brackets_end_keys(void **state)
     refused(HEAD "robot: {mass:, radius:{a:}, size: 1}\n", NULL,
             "bad.yaml:5:14: robot.mass: expected a number, found nothing\n"
             "bad.yaml:5:23: robot.radius: expected a number, found a mapping\n"
-            "bad.yaml:5:29: robot: unknown key 'size' (known: mass, radius)\n");
+            "bad.yaml:5:29: robot: unknown key 'size' (known: mass, radius, points)\n");
     char text[2000] = HEAD "ground: [";
     for (int i = 0; i < 65; i++) /* more than are mended */
         strcat(text, "{a:}, ");

@@ -138,7 +138,7 @@ static void add_postures(struct ranges *r, const struct scenario_values *values)
     stance_equilibrium equilibrium;
     stance_message ignored;
     const bool known =
-        scene->equilibrium && resolve_equilibrium(scene, values, model, &equilibrium, &ignored);
+        resolve_equilibrium(scene, values, model, &equilibrium, &ignored);
     for (int k = 0; k < scene->postures; k++) {
         bool free = !known;
         for (int p = 0; known && p < equilibrium.freedoms; p++)

@@ -50,7 +50,7 @@ static bool balance(const stance_scene *scene, const stance_equilibrium_choice *
 bool bench_cases(const stance_scene *scene, const char *regime, stance_case *cases, int count)
 {
     const stance_workload *workload = scene->workload;
-    while (workload->name && strcmp(workload->name, regime) != 0)
+    while (workload && workload->name && strcmp(workload->name, regime) != 0)
         workload++;
     stance_case base = {.friction = 0.8,
                         .contacts = (1U << scene->contacts) - 1,
@@ -60,10 +60,12 @@ bool bench_cases(const stance_scene *scene, const char *regime, stance_case *cas
                         .steps = STEPS,
                         .settle_angle = 0.05,
                         .settle_rate = 0.5,
-                        .settle_hold = 0.5,
-                        .fall_height = -1e9 /* never */};
+                        .settle_hold = 0.5};
     stance_robot_fallback(scene, base.robot);
-    if (!workload->name || (workload->balance && !balance(scene, workload->balance, &base)))
+    base.robot[STANCE_ROBOT_FALL_HEIGHT] = -1e9; /* never */
+    stance_case_robot(scene, &base);
+    if (!workload || !workload->name ||
+        (workload->balance && !balance(scene, workload->balance, &base)))
         return false;
     for (int i = 0; i < count; i++) {
         cases[i] = base;

@@ -78,14 +78,14 @@ static void take_spread(struct measurement *m, const stance_result *results, int
         (struct bench_spread){second * time.median, second * time.lowest, second * time.highest};
 }
 
-static void add_row(struct table *t, const char *regime, const struct measurement *m,
-                    double scalar_ns)
+static void add_row(struct table *t, const char *scene, const char *regime,
+                    const struct measurement *m, double scalar_ns)
 {
     const stance_kernel *const k = m->kernel;
     char remark[48];
     snprintf(remark, sizeof remark, "%d of %d cases failed", m->failed, m->cases);
     TABLE_FACTS(
-        t, {{"scene", "scene", .width = 6, .left = true, .before = ""}, as_text(k->scene->name)},
+        t, {{"scene", "scene", .width = 6, .left = true, .before = ""}, as_text(scene)},
         {{"regime", "regime", .width = 9, .left = true}, as_text(regime)},
         {{"method", "method", .width = 12, .left = true}, as_text(k->method->name)},
         {{"isa", "isa", .width = 7, .left = true}, as_text(k->isa)},
@@ -106,17 +106,17 @@ static void add_row(struct table *t, const char *regime, const struct measuremen
     table_end_row(t);
 }
 
-static void report(struct selection *what, const char *regime, const stance_case *c,
-                   const struct measurement *m, double scalar_ns)
+static void report(struct selection *what, const char *scene, const char *regime,
+                   const stance_case *c, const struct measurement *m, double scalar_ns)
 {
     const stance_kernel *const k = m->kernel;
     if (what->form != TABLE_AS_CSV) {
-        add_row(&what->rows, regime, m, scalar_ns);
+        add_row(&what->rows, scene, regime, m, scalar_ns);
     } else {
         struct bench_row row = {
-            "stance", k->scene->name, regime,   k->method->name,    k->isa,          k->lanes,
-            1,        c->step,        m->cases, (int)what->repeats, "time per step", "ns",
-            m->ns};
+            "stance",        scene, regime,  k->method->name, k->isa,
+            k->lanes,        1,     c->step, m->cases,        (int)what->repeats,
+            "time per step", "ns",  m->ns};
         bench_csv_row(stdout, &row);
         row.quantity = "time per simulated second";
         row.value = m->per_second;
@@ -152,7 +152,11 @@ static int find_kernels(const struct selection *what, const stance_scene *scene,
             continue;
         for (int i = isas - 1; i >= 0 && count < MOST_KERNELS; i--) {
             const stance_kernel *k = stance_kernel_find(scene, *method, isa[i]);
-            if (k && k != previous)
+            /* Not the one that reads structures at run time in place of one that is not built. */
+            const bool stands_in =
+                k && !stance_kernel_ahead(k) &&
+                stance_kernel_ahead(stance_kernel_find(scene, *method, stance_isa(0)));
+            if (k && k != previous && !stands_in)
                 m[count++].kernel = k;
             previous = k;
         }
@@ -189,7 +193,7 @@ static bool bench_workload(struct selection *what, const stance_scene *scene, co
     for (int i = 0; i < count; i++) {
         if (i == 0 || m[i].kernel->method != m[i - 1].kernel->method)
             scalar_ns = one_lane(m + i, count - i);
-        report(what, regime, cases, &m[i], scalar_ns);
+        report(what, scene->name, regime, cases, &m[i], scalar_ns);
     }
     free(cases);
     free(results);
@@ -210,7 +214,7 @@ static int bench(struct selection *what)
     for (const stance_scene *const *scene = stance_scenes(); *scene; scene++) {
         if (what->scene && strcmp(what->scene, (*scene)->name) != 0)
             continue;
-        for (const stance_workload *w = (*scene)->workload; w->name; w++) {
+        for (const stance_workload *w = (*scene)->workload; w && w->name; w++) {
             if (what->regime && strcmp(what->regime, w->name) != 0)
                 continue;
             any = true;

@@ -13,7 +13,7 @@ int plot_case_grounded(const stance_scene *scene)
 
 double figure_fall(const struct plot_case *c)
 {
-    return c->scenario.scene->mechanism ? tan(c->values.robot[STANCE_ROBOT_SLOPE]) : 0;
+    return tan(c->values.robot[STANCE_ROBOT_SLOPE]);
 }
 
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row)

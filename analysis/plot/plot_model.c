@@ -245,7 +245,7 @@ static void put_arrows(struct model *m)
             GNUPLOT_ROW(m->g, moved->point[0], moved->point[1], 0.18 * m->size * moved->along[0],
                         0.18 * m->size * moved->along[1], INK_ACTUATOR, 1);
     }
-    const double slope = m->scene->mechanism ? m->c->robot[STANCE_ROBOT_SLOPE] : 0;
+    const double slope = m->c->robot[STANCE_ROBOT_SLOPE];
     const double rest[STANCE_MAX_COORDINATES] = {0}, length = 0.13 * m->size;
     for (int k = 0; k < plot_case_grounded(m->scene); k++) {
         double point[2], speed[2];
@@ -396,7 +396,7 @@ static bool draw_model(const struct scenario *s, const stance_case *c, struct lo
     m->c = c;
     m->g = &g;
     make_model(m);
-    const double fall = s->scene->mechanism ? tan(c->robot[STANCE_ROBOT_SLOPE]) : 0;
+    const double fall = tan(c->robot[STANCE_ROBOT_SLOPE]);
     snprintf(subtitle, sizeof subtitle, "The model in its first posture, scene %.60s",
              s->scene->name);
     bool good =

@@ -127,8 +127,8 @@ void summary_collect_fields(struct summary *summary, const struct results *r,
         scenario_case_values(s, r->index, &v);
     for (size_t k = 0; schema && k < schema->count; k++) {
         const struct scenario_field *const field = &schema->field[k];
-        if (field->offset == NO_OFFSET || is_design(field) || !schema_applies(schema, field, &v) ||
-            !is_controlled(r, s, field, &v))
+        if (field->offset == NO_OFFSET || is_design(field) ||
+            !schema_allows(field->use, field->law, &v) || !is_controlled(r, s, field, &v))
             continue;
         for (size_t i = 0; i < (strchr(field->path, '[') ? schema_items(field) : 1); i++) {
             char path[128];

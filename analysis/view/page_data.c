@@ -175,7 +175,8 @@ static bool put_engine(struct page *p)
         return true;
     const stance_scene *const scene = p->scenario.scene;
     size_t size;
-    const uint8_t *const engine = page_engine(scene->mechanism ? "runtime" : scene->name, &size);
+    const stance_kernel *const kernel = stance_kernel_find(scene, stance_methods()[0], NULL);
+    const uint8_t *const engine = page_engine(kernel->structure, &size);
     if (engine)
         page_base64(p->more, "engine", engine, size);
     json_object_set_new(p->head, "engine", json_boolean(engine != NULL));

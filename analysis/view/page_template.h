@@ -13,7 +13,7 @@
  * without. */
 const char *page_template(void);
 
-/* The engine of a scene, "runtime" for described ones: a WebAssembly module, deflated (zlib).
+/* The engine of a structure, "runtime" for any: a WebAssembly module, deflated (zlib).
  * NULL: there is none. */
 const uint8_t *page_engine(const char *scene, size_t *size);
 

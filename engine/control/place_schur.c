@@ -4,10 +4,14 @@
  * SLICOT's SB01BD has it: A is brought to real Schur form, and one real pole or pair after the
  * other is assigned to the last block by the feedback of smallest norm that does so. Stable
  * numerically and quick; but with several inputs the gain is one of many, and which one decides how
- * far the nonlinear robot may be from its equilibrium.
+ * far the nonlinear robot may be from its equilibrium. It depends on the order in which the form
+ * has the eigenvalues of A, which the QR algorithm leaves to rounding where they lie in pairs of
+ * opposite signs, as those of what swings and falls do: so they are brought into the order of their
+ * real parts first, the fastest that falls in front.
  */
 #include "control.h"
 
+#include <lapacke.h>
 #include <string.h>
 
 /* SLICOT, Fortran: F with the wanted eigenvalues of A + B F; those of A with a real part below
@@ -27,21 +31,55 @@ static stance_error uncontrollable(stance_message *message, double complex mode)
                          stance_complex_text(mode, text));
 }
 
+/* A block of a real Schur form: is it of two rows? */
+static bool is_pair(int n, const double *T, int i)
+{
+    return i + 1 < n && T[i * n + i + 1] != 0;
+}
+
+/* a, column by column, becomes its real Schur form Z'aZ, eigenvalues by falling real parts. */
+static bool sort_schur(int n, double *a, double *Z, double *re, double *im)
+{
+    int ignored;
+    if (LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', NULL, n, a, n, &ignored, re, im, Z, n) != 0)
+        return false;
+    for (int at = 0; at < n; at += is_pair(n, a, at) ? 2 : 1) {
+        int first = at;
+        for (int i = at; i < n; i += is_pair(n, a, i) ? 2 : 1)
+            if (a[i * n + i] > a[first * n + first])
+                first = i;
+        int from = first + 1, to = at + 1;
+        if (LAPACKE_dtrexc(LAPACK_COL_MAJOR, 'V', n, a, n, Z, n, &from, &to) != 0)
+            return false;
+    }
+    return true;
+}
+
 /* K from paired poles. */
 static stance_error assign(int n, int m, const double *A, const double *B,
                            const double complex *pole, double *K, stance_message *message)
 {
     const size_t nn = (size_t)n * (size_t)n, nm = (size_t)n * (size_t)m;
     const int work = 10 * (n > m ? n : m) + 16;
-    double *a = matrix_room(2 * nn + 2 * nm + 2 * (size_t)n + (size_t)work);
+    double *a = matrix_room(3 * nn + 3 * nm + 2 * (size_t)n + (size_t)work);
     if (!a)
         return STANCE_NO_MEMORY;
-    double *z = a + nn, *b = z + nn, *f = b + nm, *re = f + nm, *im = re + n, *dwork = im + n;
+    double *z = a + nn, *turn = z + nn, *b = turn + nn, *f = b + nm, *own = f + nm, *re = own + nm,
+           *im = re + n, *dwork = im + n;
     const double none_stays = -1e300, tolerance = 0;
     int stay = 0, assigned = 0, unreached = 0, warnings = 0, info = 0;
 
     matrix_transpose(n, n, A, a);
-    matrix_transpose(n, m, B, b);
+    if (!sort_schur(n, a, turn, re, im)) {
+        free(a);
+        return STANCE_NUMERICAL;
+    }
+    for (int j = 0; j < m; j++) /* turn'B */
+        for (int i = 0; i < n; i++) {
+            b[j * n + i] = 0;
+            for (int k = 0; k < n; k++)
+                b[j * n + i] += turn[i * n + k] * B[k * m + j];
+        }
     for (int i = 0; i < n; i++) {
         re[i] = creal(pole[i]);
         im[i] = cimag(pole[i]);
@@ -49,8 +87,12 @@ static stance_error assign(int n, int m, const double *A, const double *B,
     sb01bd_("C", &n, &m, &n, &none_stays, a, &n, b, &n, re, im, &stay, &assigned, &unreached, f, &m,
             z, &n, &tolerance, dwork, &work, &warnings, &info, 1);
     for (int i = 0; i < n; i++)
-        for (int j = 0; j < m; j++)
-            K[j * n + i] = -f[i * m + j];
+        for (int j = 0; j < m; j++) {
+            own[j * n + i] = 0;
+            for (int k = 0; k < n; k++)
+                own[j * n + i] -= f[k * m + j] * turn[k * n + i];
+        }
+    memcpy(K, own, nm * sizeof *K);
     stance_error error = info == 0 && matrix_finite(nm, K) ? STANCE_OK : STANCE_NUMERICAL;
     if (error == STANCE_OK && assigned < n) {
         error = stance_refuse(message, STANCE_BAD_POLES,

@@ -482,7 +482,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD
-WEAK const stance_method stance_method_capturing = {
+const stance_method stance_method_capturing = {
     .name = "capturing",
     .text = "order 4 or 5 between events; the implicit law, refined to tolerance, across them",
     .order_smooth = 5,

@@ -554,7 +554,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD
-WEAK const stance_method stance_method_event_driven = {
+const stance_method stance_method_event_driven = {
     .name = "event-driven",
     .text = "the reference: order 6 between events, every event located to rounding (SUNDIALS)",
     .order_smooth = 6,

@@ -17,7 +17,7 @@
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD
-WEAK const stance_method stance_method_implicit = {
+const stance_method stance_method_implicit = {
     .name = "implicit",
     .text = "Moreau's implicit step, theta = 1, exact contact: the paper's method",
     .order_smooth = 1,

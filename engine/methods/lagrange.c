@@ -148,7 +148,7 @@ static inline mask advance(struct advance *a, const struct setting *set, const l
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD
-WEAK const stance_method stance_method_lagrange = {
+const stance_method stance_method_lagrange = {
     .name = "lagrange",
     .text = "switched Lagrange equations, Runge-Kutta of order 4, switches bracketed by halving",
     .order_smooth = 4,

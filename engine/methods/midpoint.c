@@ -15,7 +15,7 @@
 // clang-format on
 
 #ifdef STANCE_DESCRIBE_METHOD
-WEAK const stance_method stance_method_midpoint = {
+const stance_method stance_method_midpoint = {
     .name = "midpoint",
     .text = "implicit midpoint for smooth forces, implicit contact impulses",
     .order_smooth = 2,

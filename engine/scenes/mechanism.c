@@ -27,14 +27,18 @@ struct described {
     int posture[STANCE_MAX_POSTURE], actuated[STANCE_MAX_ACTUATORS], grip[STANCE_MAX_CONTACTS];
 };
 
-/* What kernels are of that read the structure at run time. */
-extern const stance_scene stance_scene_runtime;
-const stance_scene stance_scene_runtime = {.name = "mechanism"};
-
 bool stance_mechanism_stops(const stance_mechanism *m, int b, int side)
 {
     return (m->body[b].joint == STANCE_HINGE || m->body[b].joint == STANCE_SLIDE) &&
            isfinite(m->value.body[b].limits[side]);
+}
+
+int stance_mechanism_coordinate(const stance_mechanism *m, int b)
+{
+    int i = m->body[0].joint == STANCE_FREE ? 2 : 0;
+    for (int k = 0; k < b; k++)
+        i += m->body[k].joint != STANCE_FIXED;
+    return i;
 }
 
 /* ---- numbers: one table ---------------------------------------------------------------------- */
@@ -54,6 +58,8 @@ static const struct number_kind body_numbers[] = {
     {"centre", "m", "m", "centre of mass, in the frame, of", BODY(centre), 2, -FAR, FAR},
     {"at", "m", "m", "joint, in the parent's frame, of", BODY(at), 2, -FAR, FAR},
     {"axis", "1", "1", "direction of the slide of", BODY(axis), 2, -FAR, FAR},
+    {"angle", "rad", "rad", "angle against the parent at coordinate 0 of", BODY(angle), 1, -TURNS,
+     TURNS},
     {"stiffness", "N m/rad", "N/m", "spring at the joint of", BODY(stiffness), 1, 0, 1e12},
     {"damping", "N m s/rad", "N s/m", "damper at the joint of", BODY(damping), 1, 0, 1e12},
     {"rest", "rad", "m", "where the spring pulls nothing, at the joint of", BODY(rest), 1, -FAR,
@@ -80,6 +86,7 @@ static const struct number_kind point_numbers[] = {
      1e9},
     {"from", "s", "s", "beginning of the push on", POINT(from), 1, 0, 1e9},
     {"to", "s", "s", "end of the push on", POINT(to), 1, 0, INFINITY},
+    {"frequency", "Hz", "Hz", "frequency of the push on", POINT(frequency), 1, 0, FAR},
 };
 #undef POINT
 static const struct number_kind reference_numbers[] = {
@@ -133,6 +140,10 @@ static bool slides_in(const stance_mechanism *m, enum number_part part, size_t k
 static void describe_number(struct described *d, int i)
 {
     const stance_mechanism *const m = &d->m;
+    if (m->number[i] < 0) {
+        d->robot[i] = m->carried->parameter[i];
+        return;
+    }
     const size_t at = (size_t)m->number[i] * sizeof(double);
     enum number_part part = LIMITS;
     while (parts[part].offset > at)
@@ -170,12 +181,22 @@ static void add_coordinate(struct described *d, const char *name, bool turns, co
                            const char *of, const char *against)
 {
     const int i = d->scene.coordinates++;
+    if (d->m.carried) {
+        d->coordinate[i] = d->m.carried->coordinate[i];
+        return;
+    }
     snprintf(d->coordinate_text[i], TEXT, "%s %s%s", text, of, against);
     d->coordinate[i] = (stance_quantity){.name = name,
                                          .unit = turns ? "rad" : "m",
                                          .text = d->coordinate_text[i],
                                          .low = turns ? -TURNS : -FAR,
                                          .high = turns ? TURNS : FAR};
+}
+
+/* What the coordinate of a body's joint is called. */
+static const char *own_name(const stance_mechanism *m, int b)
+{
+    return m->body[b].coordinate[0] ? m->body[b].coordinate : m->body[b].name;
 }
 
 static void add_coordinates(struct described *d)
@@ -188,9 +209,10 @@ static void add_coordinates(struct described *d)
     }
     const int first = d->scene.coordinates;
     if (m->body[0].joint == STANCE_SLIDE)
-        add_coordinate(d, root, false, "displacement of", root, " along its axis");
+        add_coordinate(d, own_name(m, 0), false, "displacement of", root, " along its axis");
     else
-        add_coordinate(d, root, true, "angle of", root, " against the upright, counter-clockwise");
+        add_coordinate(d, own_name(m, 0), true, "angle of", root,
+                       " against the upright, counter-clockwise");
     for (int b = 1; b < m->bodies; b++) {
         const bool turns = m->body[b].joint == STANCE_HINGE;
         char against[STANCE_NAME + 40];
@@ -198,7 +220,7 @@ static void add_coordinates(struct described *d)
             continue;
         snprintf(against, sizeof against, " against %s%s", m->body[m->body[b].parent].name,
                  turns ? ", counter-clockwise" : "");
-        add_coordinate(d, m->body[b].name, turns, turns ? "angle of" : "displacement of",
+        add_coordinate(d, own_name(m, b), turns, turns ? "angle of" : "displacement of",
                        m->body[b].name, against);
     }
     for (int i = first; i < d->scene.coordinates; i++)
@@ -260,23 +282,22 @@ static stance_error refuse(stance_message *message, int most, int count, const c
 stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **scene,
                                     stance_message *message)
 {
-    static const double straight[STANCE_MAX_COORDINATES];
-    double robot[STANCE_MAX_ROBOT];
-    stance_pose pose;
     const int contacts = contacts_of(m);
     if (contacts > STANCE_MAX_CONTACTS) {
         return refuse(message, STANCE_MAX_CONTACTS, contacts,
                       "contacts, counting both ends of soles and stops");
     }
-    if (m->numbers > STANCE_ROBOT_GRAVITY)
-        return refuse(message, STANCE_ROBOT_GRAVITY, m->numbers, "numbers that may vary");
+    if (m->numbers > STANCE_ROBOT_FALL_HEIGHT)
+        return refuse(message, STANCE_ROBOT_FALL_HEIGHT, m->numbers, "numbers that may vary");
     struct described *const d = calloc(1, sizeof *d);
     if (!d)
         return STANCE_NO_MEMORY;
     d->m = *m;
     d->scene = (stance_scene){
-        .name = "mechanism",
-        .text = "planar tree of rigid bodies, as the scenario describes it",
+        .name = m->carried ? m->carried->name : "mechanism",
+        .text = m->carried ? m->carried->text
+                           : "planar tree of rigid bodies, as the scenario describes it",
+        .workload = m->carried ? m->carried->workload : NULL,
         .mechanism = &d->m,
         .actuators = m->actuators,
         .robot_count = m->numbers,
@@ -310,14 +331,26 @@ stance_error stance_mechanism_scene(const stance_mechanism *m, stance_scene **sc
     add_coordinates(d);
     add_contacts(d);
     add_causes(d);
-    stance_robot_fallback(&d->scene, robot);
-    stance_pose_at(&d->m, robot, straight, &pose);
     for (int a = 0; a < m->actuators; a++) {
         d->actuator_name[a] = d->m.actuator[a].name;
-        d->actuated[a] = pose.own[m->actuator[a].body];
+        d->actuated[a] = stance_mechanism_coordinate(m, m->actuator[a].body);
     }
     *scene = &d->scene;
     return STANCE_OK;
+}
+
+void stance_mechanism_defaults(stance_mechanism_numbers *numbers)
+{
+    for (int b = 0; b < STANCE_MAX_BODIES; b++) {
+        numbers->body[b].axis[0] = 1;
+        numbers->body[b].limits[0] = -INFINITY;
+        numbers->body[b].limits[1] = INFINITY;
+        numbers->body[b].turn = INFINITY;
+    }
+    for (int i = 0; i < STANCE_MAX_NAMED; i++)
+        numbers->point[i].lowest = -INFINITY;
+    for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
+        numbers->limit[i] = INFINITY;
 }
 
 void stance_scene_free(stance_scene *scene)

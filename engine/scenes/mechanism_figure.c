@@ -74,15 +74,34 @@ static void draw_slide(struct pen *pen)
     line_to(pen, pen->pose->origin[0]);
 }
 
+/* In the directions of the ground. */
+static void draw_outline(struct pen *pen, int body)
+{
+    const stance_carried *const carried = pen->pose->m->carried;
+    const double *const along = pen->pose->tangent, *const up = pen->pose->normal;
+    for (int i = 0; i < carried->corners; i++) {
+        const double u = carried->outline[i][0], v = carried->outline[i][1];
+        line_to_local(pen, body, u * along[0] + v * up[0], u * along[1] + v * up[1]);
+    }
+}
+
 /* A body that ends nowhere else is drawn to its centre of mass. */
 static void draw_body(struct pen *pen, int body)
 {
     const stance_mechanism *const m = pen->pose->m;
     const stance_mechanism_numbers *const n = &pen->pose->number;
     bool ends = false;
+    if (body == 0 && m->body[body].joint == STANCE_SLIDE && n->body[body].mass == 0) {
+        for (int b = 1; b < m->bodies; b++) /* of an axis that carries another one */
+            if (m->body[b].parent == body)
+                draw_body(pen, b);
+        return;
+    }
     line_to(pen, pen->pose->origin[body]);
     if (body == 0 && m->body[body].joint == STANCE_SLIDE)
         draw_slide(pen);
+    if (m->carried && m->carried->outline && body == m->bodies - 1)
+        draw_outline(pen, body);
     for (int e = 0; e < m->elements; e++) {
         if (m->element[e].body == body) {
             draw_element(pen, e);

@@ -9,7 +9,9 @@ void stance_mechanism_expand(const stance_mechanism *m, const double *robot,
                              stance_mechanism_numbers *numbers)
 {
     *numbers = m->value;
-    for (int i = 0; i < m->numbers; i++)
+    if (m->carried)
+        m->carried->set(robot, numbers);
+    for (int i = m->carried ? m->carried->parameters : 0; i < m->numbers; i++)
         memcpy((char *)numbers + (size_t)m->number[i] * sizeof *robot, &robot[i], sizeof *robot);
 }
 
@@ -17,10 +19,9 @@ void stance_torque_limits(const stance_scene *scene, const double *robot, double
                           const double *limits, double limit[STANCE_MAX_ACTUATORS])
 {
     stance_mechanism_numbers number;
-    if (scene->mechanism)
-        stance_mechanism_expand(scene->mechanism, robot, &number);
+    stance_mechanism_expand(scene->mechanism, robot, &number);
     for (int i = 0; i < scene->actuators; i++)
-        limit[i] = fmin(fmin(most, limits[i]), scene->mechanism ? number.limit[i] : INFINITY);
+        limit[i] = fmin(fmin(most, limits[i]), number.limit[i]);
 }
 
 static double along(const double a[2], const double b[2])
@@ -59,7 +60,8 @@ static void place_root(stance_pose *pose)
     pose->own[0] = free ? 2 : 0;
     pose->coordinates = pose->own[0] + 1;
     pose->turns[0] = pose->m->body[0].joint != STANCE_SLIDE;
-    pose->angle[0] = pose->turns[0] ? q[pose->own[0]] : 0;
+    pose->straight[0] = root->angle;
+    pose->angle[0] = root->angle + (pose->turns[0] ? q[pose->own[0]] : 0);
     stance_sincos(pose->angle[0], &pose->sine[0], &pose->cosine[0]);
     memcpy(pose->pivot[0], free ? q : root->at, sizeof pose->pivot[0]);
     memcpy(pose->origin[0], pose->pivot[0], sizeof pose->origin[0]);
@@ -95,10 +97,12 @@ void stance_pose_at(const stance_mechanism *m, const double *robot, const double
         memcpy(pose->pivot[b], pose->origin[b], sizeof pose->pivot[b]);
         pose->turns[b] = m->body[b].joint == STANCE_HINGE;
         pose->own[b] = m->body[b].joint != STANCE_FIXED ? pose->coordinates++ : -1;
-        pose->angle[b] = pose->angle[parent] + (pose->turns[b] ? position[pose->own[b]] : 0);
+        pose->straight[b] = pose->straight[parent] + pose->number.body[b].angle;
+        pose->angle[b] = pose->angle[parent] + pose->number.body[b].angle +
+                         (pose->turns[b] ? position[pose->own[b]] : 0);
         stance_sincos(pose->angle[b], &pose->sine[b], &pose->cosine[b]);
         if (m->body[b].joint == STANCE_SLIDE)
-            place_slide(pose, b, pose->sine[b], pose->cosine[b]);
+            place_slide(pose, b, pose->sine[parent], pose->cosine[parent]);
     }
 }
 
@@ -359,13 +363,11 @@ void stance_mechanism_stand(const stance_scene *scene, const double *robot, uint
         velocity[k] = 0 - (up * pose.normal[k] + on * pose.tangent[k]);
 }
 
-bool stance_mechanism_fallen(const stance_scene *scene, const double *robot, const double *position,
-                             double fall_height)
+bool stance_mechanism_fallen(const stance_scene *scene, const double *robot, const double *position)
 {
     const stance_mechanism *const m = scene->mechanism;
     stance_pose pose;
     bool down = false;
-    (void)fall_height; /* a mechanism falls by points and angles of its own */
     stance_pose_at(m, robot, position, &pose);
     for (int p = 0; p < m->points; p++) {
         double point[2];

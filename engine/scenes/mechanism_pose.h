@@ -1,9 +1,10 @@
 /* mechanism_pose.h - where the bodies of a mechanism are, and how points of them move.
  *
  * Coordinates q: of a free root (x, z) of its reference point and its angle, else of each joint the
- * angle against the parent or the displacement along it. O_i the joint of body i, of a free root
- * its reference point, T_i the direction in which it slides, E the quarter turn (x, z) -> (-z, x):
- * a point P of body b moves, for each joint between b and the world, itself included, by
+ * angle against the parent (beyond the body's own `angle`) or the displacement along it. O_i the
+ * joint of body i, of a free root its reference point, T_i the direction in which it slides, E the
+ * quarter turn (x, z) -> (-z, x): a point P of body b moves, for each joint between b and the
+ * world, itself included, by
  *
  *   dP/dq_i = E (P - O_i) of a hinge,   T_i of a slide,
  *   d2P/dq_i dq_j = -(P - O_k) of two hinges, k the one of i, j that is further from the root,
@@ -34,6 +35,7 @@ typedef struct stance_pose {
     int own[STANCE_MAX_BODIES];
     bool turns[STANCE_MAX_BODIES];
     double angle[STANCE_MAX_BODIES], sine[STANCE_MAX_BODIES], cosine[STANCE_MAX_BODIES];
+    double straight[STANCE_MAX_BODIES]; /* the angle where all coordinates are 0 */
     double origin[STANCE_MAX_BODIES][2], pivot[STANCE_MAX_BODIES][2]; /* of the frame; O */
     double axis[STANCE_MAX_BODIES][2];                                /* of what slides: T */
     double position[STANCE_MAX_COORDINATES];                          /* q */
@@ -89,8 +91,8 @@ void stance_mechanism_stand(const stance_scene *scene, const double *robot, uint
                             double *position, double *velocity);
 int stance_mechanism_figure(const stance_scene *scene, const double *robot, const double *position,
                             double points[][2]);
-bool stance_mechanism_fallen(const stance_scene *scene, const double *robot, const double *position,
-                             double fall_height);
+bool stance_mechanism_fallen(const stance_scene *scene, const double *robot,
+                             const double *position);
 double stance_mechanism_energy(const stance_scene *scene, const double *robot,
                                const double *position, const double *velocity);
 void stance_mechanism_inertia(const stance_scene *scene, const double *robot,

@@ -348,9 +348,11 @@ static double height(const struct search *s, const stance_pose *pose)
 /* How near all bodies are to where they are when all angles are 0. */
 static double straightness(const struct search *s, const stance_pose *pose)
 {
-    double sum = 0;
-    for (int b = 0; b < s->m->bodies; b++)
-        sum += pose->turns[b] ? pose->cosine[b] : 0;
+    double sum = 0, sine, cosine;
+    for (int b = 0; b < s->m->bodies; b++) {
+        stance_sincos(pose->angle[b] - pose->straight[b], &sine, &cosine);
+        sum += pose->turns[b] ? cosine : 0;
+    }
     return sum;
 }
 

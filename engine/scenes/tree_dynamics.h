@@ -123,6 +123,19 @@ HOT void tree_push_reach(const scene_body *b, const scene_trig *trig, int p, int
         tree_arm(b, trig, through != TREE_OWN && tree_straight_joint[through],
                  through == TREE_OWN ? b->push[p] : b->joint[through], j, tree_push_path[p], out);
 }
+/* The force of push p at time t. */
+HOT void tree_push_force(const scene_body *b, int p, lanes t, lanes out[2])
+{
+    out[0] = b->pull[p][0], out[1] = b->pull[p][1];
+    if (!tree_push_swings[p])
+        return;
+    const double round_bits = 0x1.8p52; /* adding it rounds to a whole number of periods */
+    const lanes periods = b->push[p][6] * (t - b->push[p][4]);
+    const lanes phase = periods - ((periods + round_bits) - round_bits);
+    lanes sine, cosine;
+    lanes_sincos(0x1.921fb54442d18p+2 * phase, &sine, &cosine); /* 2 pi */
+    out[0] = out[0] * sine, out[1] = out[1] * sine;
+}
 /* Adds what a force at the point of push p is as a generalised one, times a factor, to x. */
 HOT void tree_push_add(const scene_body *b, const scene_trig *trig, int p, const lanes force[2],
                        lanes factor, lanes *x)
@@ -155,25 +168,45 @@ HOT void tree_resist(const scene_body *b, lanes h, const lanes *s, const lanes *
     }
 }
 
+/* c + a b or, `less`, c - a b. */
+HOT lanes tree_add(bool less, lanes a, lanes b, lanes c)
+{
+    if (less)
+        return lanes_fnma(a, b, c);
+    return lanes_fma(a, b, c);
+}
+
 /* residual = A(u) change - h (forces without contact), evaluated at the place s with angles `trig`
- * and velocity w; change = velocity at the end minus velocity before the step. */
+ * and velocity w; change = velocity at the end minus velocity before the step. NULL: the forces
+ * alone, whatever h is. */
 HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
                         const scene_trig *trig, const lanes *w, const lanes *change,
                         const lanes *torque, lanes *residual)
 {
-    (void)t; /* no force depends on time */
+    const bool step = change != NULL; /* then forces count less */
     tree_pad(residual);
-    lanes pull[2], sum[2] = {lanes_of(0), lanes_of(0)};
-    for (int axis = 0; axis < 2; axis++)
-        pull[axis] = lanes_fma(h, b->gravity[axis], tree_base(b, change, axis));
+    lanes pull[2], sum[2] = {lanes_of(0), lanes_of(0)}, turned[TREE_SLOTS(TREE_ANGLES)];
+    for (int axis = 0; axis < 2; axis++) {
+        pull[axis] = b->gravity[axis];
+        if (step)
+            pull[axis] = lanes_fma(h, b->gravity[axis], tree_base(b, change, axis));
+    }
     TREE_UNROLL
     for (int i = 0; i < tree_angles; i++) {
         lanes K[2];
         tree_moment(b, trig, i, K);
+        turned[i] = tree_centrifugal(w, i);
+        if (step)
+            turned[i] = h * turned[i];
+        for (int axis = 0; axis < 2; axis++)
+            sum[axis] = tree_add(step, K[axis], turned[i], sum[axis]);
+        if (!step) {
+            residual[TREE_BASE + i] = lanes_fms(K[1], pull[0], K[0] * pull[1]);
+            continue;
+        }
         const lanes c = change[TREE_BASE + i];
-        const lanes centrifugal = h * tree_centrifugal(w, i);
-        sum[0] = lanes_fnma(K[1], c, lanes_fnma(K[0], centrifugal, sum[0]));
-        sum[1] = lanes_fma(K[0], c, lanes_fnma(K[1], centrifugal, sum[1]));
+        sum[0] = lanes_fnma(K[1], c, sum[0]);
+        sum[1] = lanes_fma(K[0], c, sum[1]);
         residual[TREE_BASE + i] =
             lanes_fma(tree_inertia(b, trig, i), c, lanes_fms(K[0], pull[1], K[1] * pull[0]));
     }
@@ -187,14 +220,16 @@ HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
             tree_moment(b, trig, i, K);
             tree_couple(b, trig, j, i, K, &C, &S);
             lanes *const ri = &residual[TREE_BASE + i], *const rj = &residual[TREE_BASE + j];
-            *ri =
-                lanes_fma(C, change[TREE_BASE + j], lanes_fma(S, h * tree_centrifugal(w, j), *ri));
-            *rj =
-                lanes_fma(C, change[TREE_BASE + i], lanes_fnma(S, h * tree_centrifugal(w, i), *rj));
+            *ri = tree_add(!step, S, turned[j], *ri);
+            *rj = tree_add(step, S, turned[i], *rj);
+            if (!step)
+                continue;
+            *ri = lanes_fma(C, change[TREE_BASE + j], *ri);
+            *rj = lanes_fma(C, change[TREE_BASE + i], *rj);
         }
     }
     TREE_UNROLL
-    for (int k = 0; k < tree_rotors; k++) {
+    for (int k = 0; k < tree_rotors && step; k++) {
         const int i = tree_rotor[k];
         lanes *const ri = &residual[TREE_BASE + (i < 0 ? 0 : i)];
         if (i >= 0 && tree_slides(i)) {
@@ -208,16 +243,21 @@ HOT void scene_residual(const scene_body *b, lanes h, lanes t, const lanes *s,
     }
     if (tree_free) {
         for (int axis = 0; axis < 2; axis++)
-            residual[axis] = lanes_fma(b->mass, pull[axis], sum[axis]);
+            residual[axis] = tree_add(!step, b->mass, pull[axis], sum[axis]);
     } else if (tree_rail) {
-        const lanes along = lanes_fma(b->rail[0], b->lift[0], b->rail[1] * b->lift[1]);
-        residual[0] = lanes_fma(b->mass, lanes_fma(h, along, change[0]),
-                                lanes_fma(b->rail[0], sum[0], b->rail[1] * sum[1]));
+        lanes along = lanes_fma(b->rail[0], b->lift[0], b->rail[1] * b->lift[1]);
+        if (step)
+            along = lanes_fma(h, along, change[0]);
+        residual[0] =
+            tree_add(!step, b->mass, along, lanes_fma(b->rail[0], sum[0], b->rail[1] * sum[1]));
     }
-    tree_resist(b, h, s, w, torque, residual);
+    tree_resist(b, step ? h : lanes_of(-1), s, w, torque, residual);
     TREE_UNROLL
-    for (int p = 0; p < tree_pushes; p++)
-        tree_push_add(b, trig, p, b->pull[p], -h, residual);
+    for (int p = 0; p < tree_pushes; p++) {
+        lanes force[2];
+        tree_push_force(b, p, t, force);
+        tree_push_add(b, trig, p, force, step ? -h : lanes_of(1), residual);
+    }
 }
 
 /* R(a_j) times the arm; -E T of a joint that slides. `tangential`: of the row of friction, which a
@@ -263,17 +303,21 @@ HOT bool tree_meets(int i, int k)
 }
 
 /* Eliminates the angles and inverts what is left of the base; m->row holds J_ij and J_ip, m->column
- * J_ji and J_pi, pivot J_ii, base J_pp. */
-HOT void tree_eliminate(lanes *pivot, lanes base[2][2], scene_matrix *m)
+ * J_ji and J_pi, pivot J_ii, base J_pp. inertia, not NULL: J is its, symmetric, and m->row is not
+ * yet set. */
+HOT void tree_eliminate(const scene_body *inertia, lanes *pivot, lanes base[2][2], scene_matrix *m)
 {
     TREE_UNROLL
     for (int i = tree_angles - 1; i >= 0; i--) {
-        m->inverse[i] = 1 / pivot[i];
+        if (inertia && tree_alone[i])
+            m->inverse[i] = inertia->inverse[i];
+        else
+            m->inverse[i] = 1 / pivot[i];
         lanes row[SCENE_COORDINATES];
         TREE_UNROLL
         for (int k = 0; k < TREE_BASE + i; k++)
             if (tree_meets(i, k)) {
-                row[k] = m->inverse[i] * m->row[i][k];
+                row[k] = m->inverse[i] * (inertia ? m->column[i][k] : m->row[i][k]);
                 m->row[i][k] = row[k];
             }
         TREE_UNROLL
@@ -285,16 +329,19 @@ HOT void tree_eliminate(lanes *pivot, lanes base[2][2], scene_matrix *m)
             TREE_UNROLL
             for (int k = 0; k < TREE_BASE + j; k++)
                 if (tree_meets(i, k)) {
-                    m->row[j][k] = lanes_fnma(factor, row[k], m->row[j][k]);
+                    if (!inertia)
+                        m->row[j][k] = lanes_fnma(factor, row[k], m->row[j][k]);
                     m->column[j][k] =
                         lanes_fnma(m->column[i][k], row[TREE_BASE + j], m->column[j][k]);
                 }
         }
         for (int j = 0; j < tree_base_size; j++)
-            for (int k = 0; k < tree_base_size; k++)
+            for (int k = 0; k < (inertia ? j + 1 : tree_base_size); k++)
                 base[j][k] = lanes_fnma(m->column[i][j], row[k], base[j][k]);
     }
     if (tree_free) {
+        if (inertia)
+            base[0][1] = base[1][0];
         const lanes reciprocal = 1 / lanes_fms(base[0][0], base[1][1], base[0][1] * base[1][0]);
         m->base[0][0] = base[1][1] * reciprocal;
         m->base[0][1] = -base[0][1] * reciprocal;
@@ -605,7 +652,7 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
         TREE_UNROLL
         for (int j = 0; j < tree_angles; j++) {
             lanes reach[2];
-            if (tree_push_path[p][j] < 0)
+            if (tree_push_path[p][j] < 0 || tree_push_swings[p]) /* Newton does without */
                 continue;
             tree_push_reach(b, trig, p, j, reach);
             const lanes turned = lanes_fma(reach[0], b->pull[p][0], reach[1] * b->pull[p][1]);
@@ -615,7 +662,7 @@ scene_factor(const scene_body *b, lanes h, double rate, lanes lever, lanes conta
     }
     if (tree_slide_count > 0)
         tree_factor_slides(b, h, twice, lever, trig, w, change, bend, pivot, m);
-    tree_eliminate(pivot, base, m);
+    tree_eliminate(NULL, pivot, base, m);
     if (coupled)
         tree_close_loop(h, torque_rate, m);
 }
@@ -629,10 +676,10 @@ HOT void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix
         lanes K[2];
         tree_moment(b, trig, i, K);
         if (tree_free) {
-            m->row[i][0] = m->column[i][0] = -K[1];
-            m->row[i][1] = m->column[i][1] = K[0];
+            m->column[i][0] = -K[1];
+            m->column[i][1] = K[0];
         } else if (tree_rail) {
-            m->row[i][0] = m->column[i][0] = lanes_fms(b->rail[1], K[0], b->rail[0] * K[1]);
+            m->column[i][0] = lanes_fms(b->rail[1], K[0], b->rail[0] * K[1]);
         }
         pivot[i] = tree_inertia(b, trig, i);
         TREE_UNROLL
@@ -642,7 +689,7 @@ HOT void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix
             lanes C = lanes_of(0), S;
             if (tree_coupled[i][j])
                 tree_couple(b, trig, j, i, K, &C, &S);
-            m->row[i][TREE_BASE + j] = m->column[i][TREE_BASE + j] = C;
+            m->column[i][TREE_BASE + j] = C;
         }
     }
     TREE_UNROLL
@@ -651,27 +698,21 @@ HOT void scene_inertia(const scene_body *b, const scene_trig *trig, scene_matrix
         if (i >= 0 && tree_slides(i)) {
             pivot[i] = pivot[i] + b->rotor[k];
         } else if (i >= 0 && tree_above[i] >= 0) {
-            lanes *const row = &m->row[i][TREE_BASE + tree_above[i]];
-            *row = *row - b->rotor[k];
-            m->column[i][TREE_BASE + tree_above[i]] = *row;
+            lanes *const column = &m->column[i][TREE_BASE + tree_above[i]];
+            *column = *column - b->rotor[k];
         }
     }
     for (int j = 0; j < 2; j++)
         for (int k = 0; k < 2; k++)
             base[j][k] = j == k ? b->mass : lanes_of(0);
-    tree_eliminate(pivot, base, m);
+    tree_eliminate(b, pivot, base, m);
 }
 
 /* Generalised forces without contact: centrifugal, gravity, torques, springs. */
 HOT void scene_forces(const scene_body *b, lanes t, const lanes *s, const scene_trig *trig,
                       const lanes *w, const lanes *torque, lanes *force)
 {
-    lanes still[SCENE_COORDINATES];
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        still[i] = lanes_of(0);
-    scene_residual(b, lanes_of(1), t, s, trig, w, still, torque, force);
-    for (int i = 0; i < SCENE_COORDINATES; i++)
-        force[i] = -force[i];
+    scene_residual(b, lanes_of(1), t, s, trig, w, NULL, torque, force);
 }
 
 /* x = A^-1 B e_i for a unit of torque i, of m from scene_inertia. */

@@ -121,7 +121,6 @@ HOT lanes scene_energy_change(const scene_body *b, const lanes *s, const scene_t
     return sum;
 }
 /* What dampers take over a displacement d with rates w. */
-#define SCENE_DAMPS
 HOT lanes scene_damped(const scene_body *b, const lanes *w, const lanes *d)
 {
     lanes sum = lanes_of(0);
@@ -135,17 +134,18 @@ HOT lanes scene_damped(const scene_body *b, const lanes *w, const lanes *d)
 HOT lanes scene_work(const scene_body *b, lanes h, lanes t, const scene_trig *trig,
                      const lanes *torque, const lanes *d)
 {
-    (void)h, (void)t;
+    (void)h;
     lanes sum = lanes_of(0);
     TREE_UNROLL
     for (int i = 0; i < tree_actuators; i++)
         sum = lanes_fma(torque[i], tree_joint(d, tree_actuator[i]), sum);
     TREE_UNROLL
     for (int p = 0; p < tree_pushes; p++) {
-        lanes force[SCENE_COORDINATES];
+        lanes force[SCENE_COORDINATES], pull[2];
         for (int k = 0; k < SCENE_COORDINATES; k++)
             force[k] = lanes_of(0);
-        tree_push_add(b, trig, p, b->pull[p], lanes_of(1), force);
+        tree_push_force(b, p, t, pull);
+        tree_push_add(b, trig, p, pull, lanes_of(1), force);
         for (int k = 0; k < SCENE_COORDINATES; k++)
             sum = lanes_fma(force[k], d[k], sum);
     }

@@ -104,13 +104,8 @@ enum {
 #if TREE_SERVOS
 #define SCENE_SERVOS
 #endif
-#define SCENE_GRIPS
 #define SCENE_SLIDES(a) tree_slides(a)
 #define SCENE_PUSHES TREE_PUSHES
-#define SCENE_NUMBERS(c) &(c)->body
-#define SCENE_OF(c) (c)->scene
-#define SCENE_POSTURE_ORIGIN(c, i) scene_posture_origin(&(c)->body, i)
-#define SCENE_TORQUE_LIMIT(c, i) (c)->body.limit[i]
 
 #ifdef TREE_RUNTIME
 #define TREE_UNROLL
@@ -128,15 +123,17 @@ typedef struct scene_body {
     lanes reference[2]; /* of the root's frame: what the user's x and z are of */
     lanes curvature[3]; /* see scene_curvature */
     lanes moment[TREE_SLOTS(TREE_ANGLES)][2]; /* k; of a slide kappa, both where l = 0 */
-    lanes inertia[TREE_SLOTS(TREE_ANGLES)];   /* I, rotors included; of a slide the mass */
+    lanes inertia[TREE_SLOTS(TREE_ANGLES)];   /* I, rotors included; of a slide the mass ... */
+    lanes inverse[TREE_SLOTS(TREE_ANGLES)];   /* ... and 1 / that */
     lanes joint[TREE_SLOTS(TREE_ANGLES)][2];  /* of a body, in the frame above; a slide's axis */
     lanes rotor[TREE_SLOTS(TREE_ROTORS)];
     lanes spring[TREE_SLOTS(TREE_SPRINGS)][3]; /* stiffness, damping, angle at rest */
     lanes end[TREE_SLOTS(TREE_CONTACTS)][3];   /* place in its body, radius; of a stop: limit */
     lanes point[TREE_SLOTS(TREE_POINTS)][2];   /* points that may fall, in their bodies ... */
     lanes lowest[TREE_SLOTS(TREE_POINTS)];     /* ... and how far, m */
-    lanes turn[TREE_SLOTS(TREE_TURNS)];        /* rad, that a body may turn */
-    lanes push[TREE_SLOTS(TREE_PUSHES)][6];    /* place in its frame; force or impulse; from, to */
+    lanes turn[TREE_SLOTS(TREE_TURNS)][2];     /* rad, that a body may turn; its angle at 0 */
+    lanes push[TREE_SLOTS(TREE_PUSHES)][7];    /* place in its frame; force or impulse; from, to;
+                                                * frequency */
     lanes pull[TREE_SLOTS(TREE_PUSHES)][2];    /* N, in the present step: see scene_push */
 } scene_body;
 
@@ -169,7 +166,8 @@ static inline void scene_load_body(scene_body *b, int lane, const stance_tree_nu
     tree_load((lanes *)&b->field, lane, (const double *)&number->field,                            \
               (int)(sizeof b->field / sizeof(lanes)))
     LOAD(mass), LOAD(gravity), LOAD(slope), LOAD(lift), LOAD(rail), LOAD(reference);
-    LOAD(curvature), LOAD(moment), LOAD(inertia), LOAD(joint), LOAD(rotor), LOAD(spring);
+    LOAD(curvature), LOAD(moment), LOAD(inertia), LOAD(inverse), LOAD(joint), LOAD(rotor),
+        LOAD(spring);
     LOAD(end), LOAD(point), LOAD(lowest), LOAD(turn), LOAD(push);
 #undef LOAD
 }
@@ -476,7 +474,11 @@ HOT void scene_push(scene_body *b, lanes t, lanes h)
     TREE_UNROLL
     for (int p = 0; p < tree_pushes; p++) {
         const lanes first = lanes_max(b->push[p][4], t), last = lanes_min(b->push[p][5], t + h);
-        const lanes share = lanes_max(last - first, lanes_of(0)) / h;
+        lanes share = lanes_max(last - first, lanes_of(0)) / h;
+        if (tree_push_swings[p]) /* for ever, at t = INFINITY, too */
+            share =
+                choose(mask_less(b->push[p][5], lanes_of(INFINITY)) | mask_less(t, b->push[p][4]),
+                       share, lanes_of(1));
         for (int axis = 0; axis < 2; axis++) {
             b->pull[p][axis] = share * b->push[p][2 + axis];
             if (tree_push_impulse[p])
@@ -498,13 +500,26 @@ HOT lanes scene_push_edge(const scene_body *b, lanes t, lanes h, lanes least)
         }
     return next;
 }
-/* Time after which nothing pushes any more. */
+/* Time after which nothing pushes any more but one force, if any, that swings for ever: what rests
+ * under it is told by its phases. */
 HOT lanes scene_pushed_until(const scene_body *b)
 {
-    lanes until = lanes_of(0);
+    lanes until = lanes_of(0), endless = lanes_of(0);
+    for (int p = 0; p < tree_pushes; p++) {
+        const mask ends = mask_less(b->push[p][5], lanes_of(INFINITY));
+        endless = choose(ends, endless, endless + 1);
+        until = lanes_max(choose(ends, b->push[p][5], b->push[p][4]), until);
+    }
+    return choose(mask_less(lanes_of(1), endless), lanes_of(INFINITY), until);
+}
+/* When it begins to swing, s. */
+HOT lanes scene_swings_from(const scene_body *b)
+{
+    lanes from = lanes_of(0);
     for (int p = 0; p < tree_pushes; p++)
-        until = lanes_max(b->push[p][5], until);
-    return until;
+        if (tree_push_swings[p])
+            from = lanes_max(b->push[p][4], from);
+    return from;
 }
 /* Lanes where an impulse is due at t: its instant is `within` of it; *w changes by what it gives.
  */
@@ -535,14 +550,13 @@ HOT mask scene_strike(const scene_body *b, const scene_trig *trig, lanes t, lane
 #define SCENE_CAUSES (tree_points + tree_turns)
 #define SCENE_FALLS_BEYOND(cause) ((cause) >= tree_points) /* exactly there it has not fallen */
 HOT lanes scene_fall_margin(const scene_body *b, const lanes *s, const scene_trig *trig,
-                            const lanes *w, lanes fall_height, int cause, lanes *rate)
+                            const lanes *w, int cause, lanes *rate)
 {
-    (void)fall_height;
     if (cause >= tree_points) {
         const int k = cause - tree_points, at = TREE_BASE + tree_turning[k];
-        const lanes angle = s[at] - b->slope[0];
+        const lanes angle = s[at] - b->slope[0] + b->turn[k][1];
         *rate = choose(mask_less(angle, lanes_of(0)), w[at], -w[at]);
-        return b->turn[k] - lanes_abs(angle);
+        return b->turn[k][0] - lanes_abs(angle);
     }
     lanes height = tree_base(b, s, 1);
     *rate = tree_base(b, w, 1);
@@ -595,11 +609,14 @@ HOT lanes scene_curvature(const scene_body *b)
                      squared * b->curvature[2]);
 }
 
-/* The longest step, s, that resolves how forces change with time: they do not. */
+/* The longest step, s, that resolves how forces change with time: an eighth of a period. */
 HOT lanes scene_longest_step(const scene_body *b)
 {
-    (void)b;
-    return lanes_of(INFINITY);
+    lanes longest = lanes_of(INFINITY);
+    for (int p = 0; p < tree_pushes; p++)
+        if (tree_push_swings[p])
+            longest = lanes_min(longest, 0.125 / b->push[p][6]);
+    return longest;
 }
 
 #endif

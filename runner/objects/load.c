@@ -42,7 +42,6 @@ bool load_object(const struct image *image, struct object *object, stance_messag
     if (!exported || exported->case_size != sizeof(stance_case) ||
         exported->result_size != sizeof(stance_result))
         return complain(message, "a compiled kernel is not of this program");
-    *exported->scene = object->kernel.scene;
     object->kernel.lanes = exported->lanes;
     object->kernel.stream = exported->stream;
     object->kernel.run = exported->run;
@@ -87,8 +86,7 @@ bool load_check(const struct object *object, const stance_kernel *reference,
         object->kernel.run(request->check, got, n);
     }
     for (size_t i = 0; good && i < n; i++) {
-        const char *const what =
-            difference(&expected[i], &got[i], object->kernel.scene->coordinates);
+        const char *const what = difference(&expected[i], &got[i], request->scene->coordinates);
         good = !what ||
                complain(message,
                         "%s for %s, compiled by %.60s, computes another %s in check %zu: "

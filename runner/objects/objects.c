@@ -81,7 +81,7 @@ static bool name_object(struct making *m, const char *tables, const struct compi
 static bool check(const struct objects_request *request, const struct cache *cache,
                   struct making *m, stance_message *message)
 {
-    struct object object = {.kernel = {request->scene, m->method, m->isa, 0, NULL, NULL},
+    struct object object = {.kernel = {request->scene->name, m->method, m->isa, 0, NULL, NULL},
                             .memory = -1};
     snprintf(object.compiler, sizeof object.compiler, "%s", m->label.compiler);
     const bool loads = load_object(&m->image, &object, message),
@@ -353,7 +353,7 @@ enum exit_code objects_take(const struct parallel *ranks, const struct objects_r
     const size_t count = list_wanted(ranks, request, making);
     bool missing = false;
     for (size_t k = 0; k < request->count; k++)
-        object[k] = (struct object){.kernel = {.scene = request->scene,
+        object[k] = (struct object){.kernel = {.structure = request->scene->name,
                                                .method = request->wanted[k].method,
                                                .isa = request->wanted[k].isa},
                                     .memory = -1};

@@ -1,6 +1,8 @@
 /* elsewhere.c - the scenario with one thing changed, and some candidates tried in it. */
 #include "elsewhere.h"
 
+#include "engine/mechanism.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -42,7 +44,8 @@ static bool is_mass(const struct scenario *s, int i)
 static bool has_masses(const struct scenario *s)
 {
     bool any = false;
-    for (int i = 0; !s->own_scene && i < s->scene->robot_count; i++)
+    const stance_carried *const carried = s->scene->mechanism->carried;
+    for (int i = 0; carried && i < carried->parameters; i++)
         any = any || is_mass(s, i);
     return any && !MOVES(s, robot) && !MOVES(s, model);
 }
@@ -92,7 +95,7 @@ static void change(struct scenario *s, enum elsewhere where)
         base->sample_time *= 2;
         break;
     default:
-        for (int i = 0; i < s->scene->robot_count; i++) {
+        for (int i = 0; i < s->scene->mechanism->carried->parameters; i++) {
             if (!is_mass(s, i))
                 continue;
             base->model[i] = isnan(base->model[i]) ? base->robot[i] : base->model[i];

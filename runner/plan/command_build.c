@@ -66,15 +66,11 @@ static int build(const struct scenario *s, void *asked)
                                           request->methods.count, request->isas.count, true};
     struct plan plan;
     struct plan_error error;
-    if (s->scene->mechanism) {
-        if (!plan_make(&plan, s, false, 0, false, &error))
-            return fail(error.message.text);
-        const int code = take(&plan, &choice);
-        plan_free(&plan);
-        return code;
-    }
-    printf("%s: the scene %s is built in: nothing is to be compiled\n", s->file, s->scene->name);
-    return EXIT_DONE;
+    if (!plan_make(&plan, s, false, 0, false, &error))
+        return fail(error.message.text);
+    const int code = take(&plan, &choice);
+    plan_free(&plan);
+    return code;
 }
 
 static int run(int argc, char **argv)
@@ -102,8 +98,7 @@ const struct command command_build = {
     "Kernels for what a scenario describes are compiled when they are first needed, by CC, cc, "
     "gcc or clang, and kept in a cache: STANCE_CACHE, else XDG_CACHE_HOME/stance, else "
     "~/.cache/stance. This command does it ahead; a file of the cache may be copied to the cache "
-    "of another machine. Scenes that the program has (biped, ball, block, rod) need nothing "
-    "compiled.",
+    "of another machine.",
     "What is compiled is tried on cases of the scenario before it is kept: an object that "
     "computes something else than the kernel that is built in is refused. That is remembered for "
     "the compiler and the version, and the kernel that is built in computes, more slowly, until "

@@ -1,4 +1,4 @@
-/* command_export.c - `stance export`: a described mechanism for other programs. */
+/* command_export.c - `stance export`: a robot for other programs. */
 #include "asked.h"
 #include "mjcf.h"
 #include "plan.h"
@@ -43,13 +43,6 @@ static int export(const struct scenario *s, void *asked)
     struct plan_error error;
     stance_case *const c = calloc(1, sizeof *c);
     int method, code = EXIT_USAGE;
-    if (!s->scene->mechanism) {
-        fprintf(stderr,
-                "%s: the scene %s is not described as bodies: only a mechanism can be exported\n",
-                s->file, s->scene->name);
-        free(c);
-        return EXIT_USAGE;
-    }
     if (!c || !plan_make(&plan, s, true, 0, false, &error)) {
         free(c);
         return fail(c ? error.message.text : strerror(ENOMEM));
@@ -85,9 +78,8 @@ static const struct option options[] = {
 
 const struct command command_export = {
     "export",
-    "writes a described mechanism as a model of another simulator",
+    "writes a robot as a model of another simulator",
     run,
     options,
-    "Writes the first case of a scenario whose scene is `mechanism`, to FILE or to standard "
-    "output.",
+    "Writes the first case of a scenario, to FILE or to standard output.",
     NULL};

@@ -38,8 +38,6 @@ static bool open_loop(struct design_report *r, stance_message *message)
 
     if (!resolve_equilibrium(scene, values, r->model, &r->equilibrium, message))
         return false;
-    if (!scene->linearise)
-        return complain(message, "the scene %s has no linearisation", scene->name);
     r->remark = *message;
     r->states = 2 * r->equilibrium.freedoms;
     r->normal = 0;
@@ -268,7 +266,7 @@ static stance_error margins(struct design_report *r)
 
 static const char *why_no_set(const struct design_report *r)
 {
-    if (!scenario_law(&r->scenario->base)->designed || !r->scenario->scene->contact_force)
+    if (!scenario_law(&r->scenario->base)->designed)
         return "only for state feedback on one foot";
     if (r->equilibrium.supports == 0 ||
         (r->equilibrium.supports & (r->equilibrium.supports - 1)) != 0)

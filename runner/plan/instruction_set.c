@@ -49,19 +49,22 @@ bool instruction_set_usable(const char *command)
     return false;
 }
 
+static const stance_scene *preferred_scene;
 static const stance_kernel *const *preferred;
 static size_t preferred_count;
 
-void instruction_set_prefer(const stance_kernel *const *kernels, size_t count)
+void instruction_set_prefer(const stance_scene *scene, const stance_kernel *const *kernels,
+                            size_t count)
 {
+    preferred_scene = scene;
     preferred = kernels;
     preferred_count = kernels ? count : 0;
 }
 
 const stance_kernel *instruction_set_kernel(const stance_scene *scene, const stance_method *method)
 {
-    for (size_t i = 0; i < preferred_count; i++)
-        if (preferred[i]->scene == scene && preferred[i]->method == method)
+    for (size_t i = 0; i < preferred_count && scene == preferred_scene; i++)
+        if (preferred[i]->method == method)
             return preferred[i];
     return stance_kernel_find(scene, method, instruction_set());
 }

@@ -21,9 +21,10 @@ bool instruction_set_usable(const char *command);
 /* Names of all that this build has and this machine runs, fastest first: "avx2, scalar, sse2". */
 void instruction_set_names(char text[INSTRUCTION_SETS_SIZE]);
 
-/* Kernels that are compiled for a scene that is described come before those that read its structure
- * at run time. The kernel stays where it is; NULL: none any more. */
-void instruction_set_prefer(const stance_kernel *const *kernels, size_t count);
+/* Kernels that are compiled on demand for a scene come before others. They stay where they are;
+ * NULL: none any more. */
+void instruction_set_prefer(const stance_scene *scene, const stance_kernel *const *kernels,
+                            size_t count);
 
 /* The kernel for a scene and a method, or NULL. */
 const stance_kernel *instruction_set_kernel(const stance_scene *scene, const stance_method *method);

@@ -226,8 +226,21 @@ static enum exit_code take(struct kernels *kernels, const struct plan *plan,
     kernels->count = request.count;
     for (size_t i = 0; i < kernels->count; i++)
         kernels->kernel[i] = &kernels->object[i].kernel;
-    instruction_set_prefer(kernels->kernel, kernels->count);
+    instruction_set_prefer(plan->scenario->scene, kernels->kernel, kernels->count);
     return code;
+}
+
+/* Whether what the plan needs is compiled ahead. */
+static bool all_ahead(const struct plan *plan)
+{
+    bool all = true;
+    for (int m = 0; stance_methods()[m]; m++)
+        if (uses_method(plan, m)) {
+            const stance_kernel *const kernel =
+                instruction_set_kernel(plan->scenario->scene, stance_methods()[m]);
+            all = all && kernel && stance_kernel_ahead(kernel);
+        }
+    return all;
 }
 
 enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
@@ -236,7 +249,7 @@ enum exit_code kernels_take(struct kernels *kernels, const struct plan *plan,
 {
     bool ignored;
     kernels->count = 0;
-    if (!plan->scenario->scene->mechanism)
+    if (!choice && all_ahead(plan))
         return EXIT_DONE;
     return take(kernels, plan, choice, parallel,
                 (struct objects_request){.quiet = quiet, .again = choice && choice->again},
@@ -273,7 +286,7 @@ struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *
     struct kernels_outlook outlook = {0, 1, true};
     stance_message ignored;
     kernels->count = 0;
-    if (!plan->scenario->scene->mechanism ||
+    if (all_ahead(plan) ||
         take(kernels, plan, NULL, &alone, (struct objects_request){.quiet = true, .looks = true},
              &outlook.brief, &ignored) != EXIT_DONE)
         return outlook;
@@ -288,7 +301,7 @@ struct kernels_outlook kernels_look(struct kernels *kernels, const struct plan *
 
 void kernels_give_back(struct kernels *kernels)
 {
-    instruction_set_prefer(NULL, 0);
+    instruction_set_prefer(NULL, NULL, 0);
     objects_release(kernels->object, kernels->count);
     kernels->count = 0;
 }

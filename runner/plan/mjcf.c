@@ -59,6 +59,15 @@ static void numbers(FILE *out, const char *key, const double *value, int count)
     fputc('\'', out);
 }
 
+/* R(angle) v. */
+static void turn(double angle, const double v[2], double out[2])
+{
+    double sine, cosine;
+    stance_sincos(angle, &sine, &cosine);
+    out[0] = cosine * v[0] - sine * v[1];
+    out[1] = sine * v[0] + cosine * v[1];
+}
+
 static void joint(struct model *o, const char *type, const double axis[2], const double anchor[2])
 {
     const stance_quantity *const q = &o->scene->coordinate[o->coordinate];
@@ -93,8 +102,13 @@ static void springs(struct model *o, int b)
 
 static void joints(struct model *o, int b)
 {
-    static const double none[2], x[2] = {1, 0}, z[2] = {0, 1};
+    static const double none[2];
+    double x[2], z[2], axis[2]; /* in the body's own frame */
     const stance_joint kind = o->m->body[b].joint;
+    const double back = -o->number.body[b].angle;
+    turn(back, (const double[]){1, 0}, x);
+    turn(back, (const double[]){0, 1}, z);
+    turn(back, o->number.body[b].axis, axis);
     if (kind == STANCE_FIXED)
         return;
     if (kind == STANCE_FREE) {
@@ -103,8 +117,7 @@ static void joints(struct model *o, int b)
         joint(o, "slide", z, none);
         fputs("/>\n", o->out);
     }
-    joint(o, kind == STANCE_SLIDE ? "slide" : "hinge",
-          kind == STANCE_SLIDE ? o->number.body[b].axis : NULL,
+    joint(o, kind == STANCE_SLIDE ? "slide" : "hinge", kind == STANCE_SLIDE ? axis : NULL,
           kind == STANCE_FREE ? o->number.reference : none);
     if (kind != STANCE_FREE)
         springs(o, b);
@@ -139,24 +152,19 @@ static void places(struct model *o, int b)
     }
 }
 
-/* The first coordinate of a body. */
-static int coordinate_of(const stance_mechanism *m, int b)
-{
-    int i = m->body[0].joint == STANCE_FREE && b > 0 ? 2 : 0;
-    for (int k = 0; k < b; k++)
-        i += m->body[k].joint != STANCE_FIXED;
-    return i;
-}
-
 static void body(struct model *o, int b)
 {
     const stance_body_numbers *const n = &o->number.body[b];
     const bool free = o->m->body[b].joint == STANCE_FREE;
-    const double *const r = o->number.reference, back[2] = {-r[0], -r[1]};
+    double back[2];
     const double inertia = fmax(n->inertia, LEAST);
-    o->coordinate = coordinate_of(o->m, b);
+    turn(n->angle, o->number.reference, back);
+    back[0] = 0 - back[0], back[1] = 0 - back[1];
+    o->coordinate = free ? 0 : stance_mechanism_coordinate(o->m, b);
     fprintf(line(o), "<body name='%s'", o->m->body[b].name);
     in_plane(o->out, "pos", free ? back : n->at); /* all coordinates 0 */
+    if (n->angle != 0)
+        numbers(o->out, "euler", (double[]){0, -n->angle, 0}, 3);
     fputs(">\n", o->out);
     o->depth++;
     joints(o, b);

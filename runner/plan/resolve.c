@@ -88,8 +88,6 @@ static bool solve_equilibrium(const stance_scene *scene, const double *robot,
                               stance_equilibrium *result, stance_message *message)
 {
     stance_equilibrium_choice choice = {.supports = supports, .branch = wanted->branch};
-    if (!scene->equilibrium || !scene->stand)
-        return complain(message, "the scene %s has no equilibria: give initial.state", scene->name);
     memcpy(choice.posture, wanted->posture, sizeof choice.posture);
     return scene->equilibrium(scene, robot, &choice, result, message) == STANCE_OK;
 }
@@ -239,8 +237,6 @@ static bool design_state_feedback(const stance_scene *scene, const struct scenar
 
     if (!resolve_equilibrium(scene, values, model, &equilibrium, message))
         return false;
-    if (!scene->linearise)
-        return complain(message, "the scene %s has no linearisation", scene->name);
     const stance_error error = scene->linearise(scene, model, &equilibrium, A, B);
     if (error != STANCE_OK)
         return complain(message, "linearisation: %s", stance_error_text(error));
@@ -364,8 +360,7 @@ static bool passes_through(const stance_scene *scene, const stance_case *out, in
 {
     bool behind = false;
     for (int k = 0; k < scene->contacts && out->lands_ahead; k++) {
-        const bool other =
-            scene->grip ? scene->grip[k] >= 0 && scene->grip[k] != scene->grip[c] : k != c;
+        const bool other = scene->grip[k] >= 0 && scene->grip[k] != scene->grip[c];
         if (other && (out->contacts >> k & 1) && fabs(gap[k]) <= DEEPEST_START)
             behind |= along(scene, out, c) <= along(scene, out, k);
     }
@@ -387,13 +382,11 @@ static bool beyond_stop(const stance_scene *scene, const struct scenario_values 
         i = k % 2;
     }
     side = i;
-    for (i = 0; strcmp(scene->coordinate[i].name, m->body[body].name) != 0;)
-        i++;
+    i = stance_mechanism_coordinate(m, body);
     stance_mechanism_expand(m, out->robot, &number);
-    const char *const unit = scene->coordinate[i].unit;
+    const char *const unit = scene->coordinate[i].unit, *const name = scene->coordinate[i].name;
     return complain(message, "initial.%s.%s: %s would start at %.6g %s, %s limit of %.6g %s",
-                    values->state_given ? "state" : "offset", m->body[body].name,
-                    m->body[body].name, out->position[i], unit,
+                    values->state_given ? "state" : "offset", name, name, out->position[i], unit,
                     side ? "above its upper" : "below its lower", number.body[body].limits[side],
                     unit);
 }
@@ -581,13 +574,7 @@ bool resolve_case(const stance_scene *scene, const struct scenario_values *value
     memcpy(out->robot, values->robot, sizeof out->robot);
     for (int i = 0; i < scene->actuators; i++)
         out->torque_limits[i] = isinf(values->torque_limits[i]) ? 0 : values->torque_limits[i];
-    if (scene->mechanism) {
-        stance_tree_numbers_make(scene->tree, scene->mechanism, out->robot, &out->body);
-        out->tree = scene->tree;
-        out->scene = scene;
-        for (int c = 0; c < scene->contacts; c++) /* stops are no ground */
-            out->contacts |= scene->grip[c] < 0 ? 1u << c : 0;
-    }
+    stance_case_robot(scene, out);
     if (!isfinite(out->friction) || out->friction < 0 ||
         !(out->restitution >= 0 && out->restitution <= 1)) {
         return complain(message, "ground.friction must not be negative, ground.restitution lie "

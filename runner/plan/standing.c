@@ -87,7 +87,7 @@ void standing_ranges(const struct scenario *s, const struct scenario_values *val
     stance_equilibrium ignored;
     stance_message unsaid;
     const size_t used = strlen(message->text);
-    if (!s->scene->mechanism || !strstr(message->text, "no equilibrium: "))
+    if (!strstr(message->text, "no equilibrium: "))
         return;
     q.values.law = 0; /* the start's own, or else that of the controller */
     q.posture = q.values.equilibrium.posture;

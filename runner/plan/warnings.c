@@ -62,8 +62,7 @@ static void look_at_friction(const struct design_report *r, uint64_t index, stru
     double force[STANCE_MAX_CONTACTS][2];
     double by_state[STANCE_MAX_CONTACTS * 2 * DESIGN_STATES];
     double by_torque[STANCE_MAX_CONTACTS * 2 * DESIGN_INPUTS];
-    if (!scene->contact_force ||
-        scene->contact_force(scene, r->model, &r->equilibrium, &force[0][0], by_state, by_torque) !=
+    if (scene->contact_force(scene, r->model, &r->equilibrium, &force[0][0], by_state, by_torque) !=
             STANCE_OK)
         return;
     for (int c = 0, k = 0; c < scene->contacts; c++) {
@@ -284,7 +283,7 @@ static void look_at_inertia(const struct scenario *s, const char *who, FILE *out
     const char *point[STANCE_MAX_BODIES];
     char list[300];
     size_t count = 0;
-    for (int b = 0; m && b < m->bodies; b++) {
+    for (int b = 0; !m->carried && b < m->bodies; b++) {
         const double *const numbers = (const double *)(const void *)&m->value;
         const int place = (int)(&m->value.body[b].inertia - numbers);
         bool given = false;
@@ -328,8 +327,8 @@ static void look_at_edge(const struct plan *plan, const char *who, FILE *out)
     const double trifle = 1e-6; /* rad */
     stance_case *const c = malloc(sizeof *c);
     int method;
-    bool rests = c && scene->mechanism && scene->mechanism->body[0].joint == STANCE_FREE &&
-                 plan_resolve(plan, 0, c, &method);
+    bool rests =
+        c && scene->mechanism->body[0].joint == STANCE_FREE && plan_resolve(plan, 0, c, &method);
     for (int i = 0; rests && i < scene->coordinates; i++)
         rests = c->velocity[i] == 0;
     if (rests && carried(plan, c, trifle) != carried(plan, c, -trifle))
@@ -350,8 +349,7 @@ bool warnings_print(const struct plan *plan, const char *who, FILE *out)
         const uint64_t index = plan_case(plan, row);
         if (plan->design_status[plan_design(plan, index)] != STANCE_DONE)
             continue;
-        if (plan->scenario->scene->linearise)
-            look_at(plan, index, &t);
+        look_at(plan, index, &t);
         look_at_start(plan, row, &t);
     }
     bool any = false;

@@ -23,20 +23,6 @@ static double *places(stance_mechanism *m)
     return (double *)(void *)&m->value;
 }
 
-void description_defaults(stance_mechanism *m)
-{
-    for (int b = 0; b < STANCE_MAX_BODIES; b++) {
-        m->value.body[b].axis[0] = 1;
-        m->value.body[b].limits[0] = -INFINITY;
-        m->value.body[b].limits[1] = INFINITY;
-        m->value.body[b].turn = INFINITY;
-    }
-    for (int i = 0; i < STANCE_MAX_NAMED; i++)
-        m->value.point[i].lowest = -INFINITY;
-    for (int i = 0; i < STANCE_MAX_ACTUATORS; i++)
-        m->value.limit[i] = INFINITY;
-}
-
 /* Why a key that there is may not stand in part i. */
 static bool misplaced(struct description *d, const struct part_key *key, int i, const char *path,
                       struct mark mark)
@@ -69,6 +55,8 @@ static bool read_key(struct description *d, const struct part_key *key, int i,
         return misplaced(d, key, i, path, node->mark);
     double *const value = &places(d->m)[place];
     d->given[place] = true;
+    if (key->part == PART_POINT && d->m->point[i].swings && !tree_find(entry->map, "to"))
+        d->m->value.point[i].to = INFINITY;
     if (count == 1)
         return field_number(description_problems(d), &row, path, node, value);
     if (!field_items(description_problems(d), path, node, 2, "numbers"))
@@ -181,7 +169,7 @@ static void choose_key(struct description *d, const struct part_key *key, int i)
                              (const char *const[]){"controller", "model", part_kinds[key->part].key,
                                                    name, key->field.path, NULL});
     for (int n = 0; wanted && n < count; n++) {
-        if (m->numbers < STANCE_ROBOT_GRAVITY) {
+        if (m->numbers < STANCE_ROBOT_FALL_HEIGHT) {
             m->number[m->numbers] = place + n;
             m->varies[m->numbers] = varies[n];
         }
@@ -200,9 +188,9 @@ bool description_numbers(struct description *d)
             for (size_t k = 0; k < part_key_count; k++)
                 if (part_keys[k].part == (enum part)part)
                     choose_key(d, &part_keys[k], i);
-    return (d->m->numbers <= STANCE_ROBOT_GRAVITY ||
+    return (d->m->numbers <= STANCE_ROBOT_FALL_HEIGHT ||
             problem_add(description_problems(d), tree_find(d->r->tree.root, "robot")->mark,
                         "robot: %d numbers are given; at most %d", d->m->numbers,
-                        STANCE_ROBOT_GRAVITY)) &&
+                        STANCE_ROBOT_FALL_HEIGHT)) &&
            good;
 }

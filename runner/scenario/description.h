@@ -21,6 +21,7 @@ struct description {
     struct reader *r;
     stance_mechanism *m;
     struct entry entry[PARTS][STANCE_MAX_BODIES];
+    struct tree_key carried[PARTS][STANCE_MAX_BODIES]; /* keys of what the file does not write */
     int count[PARTS];
     const char *body_name[STANCE_MAX_BODIES];
     int place[STANCE_MAX_BODIES], back[STANCE_MAX_BODIES]; /* of the file's bodies in m; and back */
@@ -35,9 +36,6 @@ static inline struct problems *description_problems(struct description *d)
 /* "robot.bodies.trunk.mass". Returns path. */
 const char *description_path(char path[DESCRIPTION_PATH], enum part part, const char *name,
                              const char *key);
-
-/* What the numbers are that nobody gives, where that is not 0. */
-void description_defaults(stance_mechanism *m);
 
 /* Reads the numbers of all parts, whose names and links are in m, and chooses those of robot[].
  * False: a problem. */

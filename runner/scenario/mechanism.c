@@ -100,7 +100,7 @@ static bool check_keys(struct description *d, const struct tree_node *map, const
 static bool check_part(struct description *d, enum part part, const struct entry *entry)
 {
     char path[DESCRIPTION_PATH];
-    const char *known[16];
+    const char *known[24];
     size_t count = 0;
     description_path(path, part, entry->key->name, "");
     if (entry->map->kind != TREE_MAP)
@@ -264,6 +264,17 @@ static bool sort_bodies(struct description *d)
     return true;
 }
 
+static void fill_point(struct description *d, int i)
+{
+    const struct entry *const entry = &d->entry[PART_POINT][i];
+    snprintf(d->m->point[i].name, STANCE_NAME, "%s", entry->key->name);
+    d->m->point[i].body = d->place[entry->body];
+    d->m->point[i].falls |= tree_find(entry->map, "lowest") != NULL;
+    d->m->point[i].swings |= tree_find(entry->map, "frequency") != NULL;
+    if (tree_find(entry->map, "impulse") || tree_find(entry->map, "force"))
+        d->m->point[i].pushed = tree_find(entry->map, "impulse") ? STANCE_IMPULSE : STANCE_FORCE;
+}
+
 /* Names and links, with bodies in their places. */
 static void fill_structure(struct description *d)
 {
@@ -278,6 +289,9 @@ static void fill_structure(struct description *d)
         m->body[b].joint = entry->joint;
         m->body[b].parent = entry->parent < 0 ? -1 : d->place[entry->parent];
         m->body[b].bounded = tree_find(entry->map, "turn");
+        const struct tree_node *const own = tree_find(entry->map, "coordinate");
+        if (own && own->kind == TREE_SCALAR)
+            snprintf(m->body[b].coordinate, STANCE_NAME, "%s", own->text);
     }
     for (int i = 0; i < m->elements; i++) {
         const struct entry *const entry = &d->entry[PART_CONTACT][i];
@@ -285,14 +299,8 @@ static void fill_structure(struct description *d)
         m->element[i].body = d->place[entry->body];
         m->element[i].sole = tree_find(entry->map, "from") || tree_find(entry->map, "to");
     }
-    for (int i = 0; i < m->points; i++) {
-        snprintf(m->point[i].name, STANCE_NAME, "%s", d->entry[PART_POINT][i].key->name);
-        m->point[i].body = d->place[d->entry[PART_POINT][i].body];
-        m->point[i].falls = tree_find(d->entry[PART_POINT][i].map, "lowest");
-        m->point[i].pushed = tree_find(d->entry[PART_POINT][i].map, "impulse") ? STANCE_IMPULSE
-                             : tree_find(d->entry[PART_POINT][i].map, "force") ? STANCE_FORCE
-                                                                               : STANCE_NO_PUSH;
-    }
+    for (int i = 0; i < m->points; i++)
+        fill_point(d, i);
     for (int i = 0; i < m->actuators; i++) {
         snprintf(m->actuator[i].name, STANCE_NAME, "%s", d->entry[PART_ACTUATOR][i].key->name);
         m->actuator[i].body = d->place[d->entry[PART_ACTUATOR][i].body];
@@ -359,18 +367,53 @@ static bool check_actuator(struct description *d, int i)
     return true;
 }
 
-/* A push ends. */
+/* A push ends, unless it swings. */
 static bool check_push(struct description *d, int i)
 {
     const struct entry *const entry = &d->entry[PART_POINT][i];
-    return d->m->point[i].pushed != STANCE_FORCE || tree_find(entry->map, "to") ||
+    return d->m->point[i].pushed != STANCE_FORCE || d->m->point[i].swings ||
+           tree_find(entry->map, "to") ||
            problem_add(description_problems(d), entry->key->mark,
                        "robot.points.%s.to is missing: when the push ends", entry->key->name);
+}
+
+/* A coordinate's own name is a name, and no other's, nor that of another's rate. */
+static bool check_coordinate(struct description *d, int b)
+{
+    const struct entry *const entry = &d->entry[PART_BODY][d->back[b]];
+    const struct tree_node *const node = tree_find(entry->map, "coordinate");
+    char path[DESCRIPTION_PATH], text[STANCE_NAME + 8], word[SHOWN_SIZE];
+    description_path(path, PART_BODY, entry->key->name, "coordinate");
+    if (!node)
+        return true;
+    if (!field_text(description_problems(d), path, node, text, sizeof text))
+        return false;
+    const char *const fault = d->m->body[b].joint == STANCE_FIXED ? "what is fixed has none"
+                                                                  : name_fault(PART_BODY, text);
+    if (fault)
+        return problem_add(description_problems(d), node->mark, "%s: '%s' is no name: %s", path,
+                           shown(word, text), fault);
+    for (int other = 0; other < d->m->bodies; other++) {
+        const char *const own = d->m->body[other].coordinate, *const its =
+                                                                  own[0] ? own
+                                                                         : d->m->body[other].name;
+        if (other == b || d->m->body[other].joint == STANCE_FIXED)
+            continue;
+        if (strcmp(its, text) == 0 || (text[0] == 'v' && strcmp(its, text + 1) == 0) ||
+            (its[0] == 'v' && strcmp(its + 1, text) == 0))
+            return problem_add(description_problems(d), node->mark,
+                               "%s: the coordinate of %s, or its rate, is called so, too: choose "
+                               "another name",
+                               path, d->m->body[other].name);
+    }
+    return true;
 }
 
 static bool check_links(struct description *d)
 {
     bool good = check_joints(d);
+    for (int b = 0; b < d->m->bodies; b++)
+        good = check_coordinate(d, b) && good;
     for (int i = 0; i < d->m->points; i++)
         good = check_push(d, i) && good;
     for (int i = 0; i < d->m->elements; i++)
@@ -400,8 +443,69 @@ static bool describe(struct description *d)
     if (!good || !read_links(d) || !sort_bodies(d))
         return false;
     fill_structure(d);
-    description_defaults(d->m);
+    stance_mechanism_defaults(&d->m->value);
     good = check_links(d);
+    return description_numbers(d) && good;
+}
+
+/* What a scene that is carried gets beside its parameters: more points, and more of its own. */
+static bool describe_points(struct description *d, const stance_mechanism *carried)
+{
+    static const struct tree_node nothing = {.kind = TREE_MAP};
+    const struct tree_node *const map =
+        tree_find(tree_find(d->r->tree.root, "robot"), part_kinds[PART_POINT].key);
+    stance_mechanism *const m = d->m;
+    bool good = true;
+    *m = *carried;
+    if (map->kind != TREE_MAP)
+        return field_mismatch(description_problems(d), "robot.points",
+                              "a mapping of names, without dashes", map);
+    for (int part = 0; part < PARTS; part++) {
+        d->count[part] = part_count(m, (enum part)part);
+        for (int i = 0; i < d->count[part]; i++) {
+            struct tree_key *const key = &d->carried[part][i];
+            key->name = part_name(carried, (enum part)part, i);
+            d->entry[part][i] = (struct entry){.key = key,
+                                               .map = &nothing,
+                                               .parent = -1,
+                                               .like = -1,
+                                               .body = part_body(carried, (enum part)part, i)};
+        }
+    }
+    for (int b = 0; b < m->bodies; b++) {
+        d->body_name[b] = part_name(carried, PART_BODY, b);
+        d->place[b] = d->back[b] = b;
+    }
+    for (size_t k = 0; k < map->count; k++) {
+        int i = 0;
+        while (i < m->points && strcmp(m->point[i].name, map->key[k].name) != 0)
+            i++;
+        if (i == STANCE_MAX_NAMED)
+            return problem_add(description_problems(d), map->key[k].mark,
+                               "robot.points: more than the %d that fit", STANCE_MAX_NAMED);
+        struct entry *const entry = &d->entry[PART_POINT][i];
+        const bool more = i == m->points;
+        if (more)
+            *entry = (struct entry){.parent = -1, .like = -1};
+        entry->key = &map->key[k];
+        entry->map = map->item[k];
+        const char *const fault = more ? name_fault(PART_POINT, entry->key->name) : NULL;
+        char word[SHOWN_SIZE];
+        if (fault)
+            good = problem_add(description_problems(d), entry->key->mark,
+                               "robot.points: '%s' is no name: %s", shown(word, entry->key->name),
+                               fault);
+        if (!check_part(d, PART_POINT, entry))
+            return false;
+        if (more || tree_find(entry->map, "body"))
+            good = read_body(d, PART_POINT, entry, "body", true, &entry->body) && good;
+        if (!good)
+            return false;
+        m->points += more;
+        d->count[PART_POINT] = m->points;
+        fill_point(d, i);
+        good = check_push(d, i);
+    }
     return description_numbers(d) && good;
 }
 
@@ -436,7 +540,7 @@ static stance_scene *make_scene(struct description *d)
     return scene;
 }
 
-stance_scene *mechanism_read(struct reader *r)
+stance_scene *mechanism_read(struct reader *r, const stance_scene *carried)
 {
     struct description *const d = calloc(1, sizeof *d);
     stance_mechanism *const m = calloc(1, sizeof *m);
@@ -444,7 +548,7 @@ stance_scene *mechanism_read(struct reader *r)
     if (d && m) {
         d->r = r;
         d->m = m;
-        if (describe(d))
+        if (carried ? describe_points(d, carried->mechanism) : describe(d))
             scene = make_scene(d);
     } else {
         problem_no_memory(&r->problems);
@@ -465,15 +569,17 @@ static bool same_parts(const stance_mechanism *a, const stance_mechanism *b, enu
 
 bool mechanism_same(const stance_mechanism *a, const stance_mechanism *b)
 {
-    bool same = a->numbers == b->numbers;
+    bool same = a->numbers == b->numbers && a->carried == b->carried;
     for (int part = 0; part < PARTS; part++)
         same = same && same_parts(a, b, (enum part)part);
     for (int i = 0; same && i < a->bodies; i++)
-        same = a->body[i].joint == b->body[i].joint && a->body[i].bounded == b->body[i].bounded;
+        same = a->body[i].joint == b->body[i].joint && a->body[i].bounded == b->body[i].bounded &&
+               strcmp(a->body[i].coordinate, b->body[i].coordinate) == 0;
     for (int i = 0; same && i < a->elements; i++)
         same = a->element[i].sole == b->element[i].sole;
     for (int i = 0; same && i < a->points; i++)
-        same = a->point[i].falls == b->point[i].falls && a->point[i].pushed == b->point[i].pushed;
+        same = a->point[i].falls == b->point[i].falls && a->point[i].pushed == b->point[i].pushed &&
+               a->point[i].swings == b->point[i].swings;
     for (int i = 0; same && i < a->numbers; i++)
         same = a->number[i] == b->number[i] && a->varies[i] == b->varies[i];
     return same;
@@ -507,7 +613,7 @@ stance_scene *mechanism_pattern(void)
     snprintf(m->element[0].name, STANCE_NAME, "CONTACT");
     snprintf(m->point[0].name, STANCE_NAME, "POINT");
     snprintf(m->actuator[0].name, STANCE_NAME, "ACTUATOR");
-    description_defaults(m);
+    stance_mechanism_defaults(&m->value);
     if (stance_mechanism_scene(m, &scene, &message) != STANCE_OK)
         scene = NULL;
     free(m);

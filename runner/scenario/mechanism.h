@@ -7,10 +7,10 @@
 
 struct reader;
 
-/* The scene that the tree describes, bodies sorted parents first; its numbers as they stand there,
- * those that axes vary marked as such. Freed by stance_scene_free. NULL: problems, each of them
- * reported. */
-stance_scene *mechanism_read(struct reader *r);
+/* The scene that the tree describes, bodies sorted parents first, or `carried` with the points that
+ * it gets there; numbers as they stand there, those that axes vary marked as such. Freed by
+ * stance_scene_free. NULL: problems, each of them reported. */
+stance_scene *mechanism_read(struct reader *r, const stance_scene *carried);
 
 /* What must hold of its numbers together, as they stand and at the ends of axes: something with
  * mass or inertia resists every coordinate, stops are in order. For scenarios with a mechanism,

@@ -125,8 +125,12 @@ static bool inertia_fault(const stance_scene *scene, const double *robot, struct
         if (resisted(n, A, motion))
             continue;
         const int i = culprit(scene, motion);
+        int b = 0;
+        while (i >= 0 && (scene->mechanism->body[b].joint == STANCE_FIXED ||
+                          stance_mechanism_coordinate(scene->mechanism, b) != i))
+            b++;
         snprintf(f->path, sizeof f->path, "robot.bodies%s%s", i < 0 ? "" : ".",
-                 i < 0 ? "" : scene->coordinate[i].name);
+                 i < 0 ? "" : scene->mechanism->body[b].name);
         snprintf(f->text, sizeof f->text, "%s",
                  i < 0 ? "nothing with mass resists motion"
                  : strcmp(scene->coordinate[i].unit, "m") == 0
@@ -158,7 +162,7 @@ static bool find_fault(const stance_scene *scene, const double *robot, struct fa
 
 static bool is_robot(size_t offset)
 {
-    return offset < sizeof(double[STANCE_ROBOT_GRAVITY]);
+    return offset < sizeof(double[STANCE_ROBOT_FALL_HEIGHT]);
 }
 
 /* The points of an axis where a path has its least and its largest value. */

@@ -10,7 +10,11 @@ enum { PATH_SIZE = 160 };
 
 bool reader_described(const struct reader *r, const char *path)
 {
-    return r->s->own_scene && strncmp(path, "robot", strcspn(path, ".")) == 0 && path[0];
+    if (!r->s->own_scene || !path[0])
+        return false;
+    return r->s->own_scene->mechanism->carried
+               ? strncmp(path, "robot.points", 12) == 0 && (!path[12] || path[12] == '.')
+               : strncmp(path, "robot", strcspn(path, ".")) == 0;
 }
 
 static bool is_empty(const struct tree_node *node)
@@ -102,6 +106,7 @@ static const struct scenario_field *elsewhere(const struct reader *r, const char
     const struct schema *const schema = r->schema;
     for (size_t i = 0; i < schema->count; i++)
         if (!strchr(schema->field[i].path, '[') && !reader_described(r, schema->field[i].path) &&
+            strncmp(schema->field[i].path, "robot.points.", 13) != 0 &&
             !(r->s->own_scene && strncmp(schema->field[i].path, "controller.model.", 17) == 0) &&
             strcmp(schema_last_name(schema->field[i].path), key) == 0)
             return &schema->field[i];

@@ -100,7 +100,7 @@ static bool read_bound(struct reader *r, const struct scenario_field *field,
             ? field_pole(&r->problems, field, field->path, node, &number, &r->s->base.pole_im[pole])
         : field->type == FIELD_WORDS ? field_words(&r->problems, field, field->path, node, &mask)
                                      : field_value(&r->problems, field, field->path, node, &number);
-    if (good && field->type == FIELD_WORDS && r->s->scene->mechanism)
+    if (good && field->type == FIELD_WORDS)
         mask = mechanism_contacts(r->s->scene, (uint32_t)mask);
     if (good && field->type == FIELD_NUMBER) {
         memcpy(place, &number, sizeof number);
@@ -164,7 +164,8 @@ int scenario_poles(const struct scenario_values *values, double re[SCENARIO_MAX_
 static bool misfits(struct reader *r, const char *path, const struct tree_node *node, size_t items,
                     const char *what)
 {
-    if (!r->s->scene->mechanism || node->kind != TREE_LIST || node->count == items ||
+    const stance_carried *const carried = r->s->scene->mechanism->carried;
+    if ((carried && carried->numbered) || node->kind != TREE_LIST || node->count == items ||
         r->misfits == sizeof r->misfit / sizeof r->misfit[0])
         return false;
     struct misfit *const misfit = &r->misfit[r->misfits++];
@@ -286,8 +287,6 @@ static void set_defaults(struct reader *r)
     }
     if (r->s->scene && r->s->scene->actuators == 0)
         base->torque_limit = INFINITY;
-    if (r->s->scene && r->s->scene->postures == 0)
-        base->settle_angle = 1; /* of no angle */
     base->settle = 1;
     base->contacts = r->s->scene ? (1 << r->s->scene->contacts) - 1 : 0;
     r->s->cases = 1;
@@ -426,8 +425,10 @@ static bool read_scene(struct reader *r)
         r->s->scene = stance_scenes()[place]; /* NULL behind the last one */
         if (!robot_fits(r, scene))
             return false;
-        if (!r->s->scene)
-            r->s->scene = r->s->own_scene = mechanism_read(r);
+        const stance_scene *const carried = r->s->scene;
+        const struct tree_node *const robot = tree_find(r->tree.root, "robot");
+        if (!carried || (robot && robot->kind == TREE_MAP && tree_find(robot, "points")))
+            r->s->scene = r->s->own_scene = mechanism_read(r, carried);
         const struct schema *const known =
             r->s->scene ? schema_of(r->s->scene, &r->own_schema) : NULL;
         if (known)
@@ -607,7 +608,8 @@ bool scenario_same_scene(const struct scenario *a, const struct scenario *b)
 
 uint32_t scenario_supports(const stance_scene *scene, const struct scenario_values *values)
 {
-    return scene->mechanism           ? (uint32_t)values->support
+    return !(scene->mechanism->carried && scene->mechanism->carried->numbered)
+               ? (uint32_t)values->support
            : values->support_foot > 0 ? UINT32_C(1) << (values->support_foot - 1)
                                       : 1;
 }

@@ -38,8 +38,8 @@ enum scenario_record { RECORD_NONE, RECORD_ALL, RECORD_LIST };
 /* Which member of the family of equilibria, as the user gave it: NAN where not given. */
 struct scenario_equilibrium {
     bool given;
-    double posture[STANCE_MAX_POSTURE]; /* theta, q1, q2 for the biped */
-    int branch;                         /* of several, from 0; the biped's: upper, lower */
+    double posture[STANCE_MAX_POSTURE];
+    int branch; /* of several, from 0 */
 };
 
 /* What a case (stance_case) has by the same name and takes as it is; words by their place in the
@@ -48,7 +48,7 @@ struct scenario_equilibrium {
 #define SCENARIO_WHOLES(X) X(impacts) X(most_energy) X(lands_ahead) X(contacts) X(delay) X(settle)
 #define SCENARIO_NUMBERS(X) \
     X(friction) X(restitution) X(torque_limit) X(lag) X(angle_noise) X(rate_noise) X(noise) \
-    X(settle_angle) X(settle_rate) X(settle_hold) X(fall_height)
+    X(settle_angle) X(settle_rate) X(settle_hold)
 /* clang-format on */
 
 /* Everything that one case needs, as numbers: a sweep changes fields of this struct only, found
@@ -62,10 +62,10 @@ struct scenario_values {
 
     struct scenario_equilibrium equilibrium; /* initial.equilibrium */
     int support_foot;                        /* 1-based contact; 0: none */
-    int support;                             /* of a mechanism: contacts, a bit each; 0: none */
-    double offset[SCENARIO_MAX_STATES];      /* positions, then velocities, in the scene's order */
-    double offset_scale;                     /* of all of them */
-    int state_given;                         /* initial.state instead of an equilibrium */
+    int support; /* where feet have no numbers: contacts, a bit each; 0: none */
+    double offset[SCENARIO_MAX_STATES]; /* positions, then velocities, in the scene's order */
+    double offset_scale;                /* of all of them */
+    int state_given;                    /* initial.state instead of an equilibrium */
     double state[SCENARIO_MAX_STATES];
 
     int law;                        /* index into stance_laws() */

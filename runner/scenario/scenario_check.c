@@ -189,37 +189,25 @@ static void check_required(struct reader *r, const struct situation *is)
 
 /* ---- equilibria ------------------------------------------------------------------------------ */
 
-/* Of a scene whose closed forms ask for it all angles but one must be given; `path` is
- * initial.equilibrium or controller.equilibrium. True: the equilibrium is there. */
-static bool check_equilibrium(struct reader *r, const char *path)
+/* Whether an equilibrium, initial.equilibrium or controller.equilibrium, is there, or may be. */
+static bool has_equilibrium(struct reader *r, const char *path)
 {
-    const struct seen *map = reader_seen(r, path);
-    const stance_scene *scene = r->s->scene;
-    int given = 0, wanted = scene->postures - 1;
-    bool doubtful = map->bad || map->excused;
-    struct mark mark = map->key;
-    char name[96], list[128];
-    const char *names[STANCE_MAX_POSTURE];
+    const struct seen *const map = reader_seen(r, path);
+    const stance_scene *const scene = r->s->scene;
+    bool there = map->node || map->bad || map->excused;
+    char name[96];
+    for (int i = 0; i <= scene->postures; i++) {
+        snprintf(name, sizeof name, "%s.%s", path,
+                 i < scene->postures ? scene->coordinate[scene->posture[i]].name : "branch");
+        there = there || reader_given(reader_seen(r, name)) || reader_seen(r, name)->excused;
+    }
+    return there;
+}
 
-    for (int i = 0; i < scene->postures; i++) {
-        names[i] = scene->coordinate[scene->posture[i]].name;
-        snprintf(name, sizeof name, "%s.%s", path, names[i]);
-        const struct seen *angle = reader_seen(r, name);
-        given += reader_given(angle);
-        doubtful = doubtful || angle->excused;
-        if (angle->swept && !map->node)
-            mark = angle->sweep;
-    }
-    snprintf(name, sizeof name, "%s.branch", path);
-    if (!map->node && given == 0 && !reader_seen(r, name)->swept)
-        return doubtful;
-    if (!map->node && given == 0)
-        mark = reader_seen(r, name)->sweep;
-    if (given != wanted && !doubtful && !scene->mechanism) {
-        problem_add(&r->problems, mark, "%s: give %d of %s; %d given", path, wanted,
-                    word_list(list, sizeof list, names, (size_t)scene->postures), given);
-    }
-    return true;
+/* Are its feet numbers of initial.support_foot? */
+static bool is_numbered(const stance_scene *scene)
+{
+    return scene->mechanism->carried && scene->mechanism->carried->numbered;
 }
 
 /* What a mechanism stands on: a state in which it stands has no translation of its own. */
@@ -229,7 +217,7 @@ static void check_standing(struct reader *r, const struct situation *is)
                                               "initial.state.vx", "initial.state.vz"};
     const stance_scene *const scene = r->s->scene;
     const struct seen *const support = reader_seen(r, "initial.support");
-    if (!scene->mechanism)
+    if (is_numbered(scene))
         return;
     r->s->base.support_foot = 0;
     if (support->node && scene->mechanism->body[0].joint != STANCE_FREE) {
@@ -270,7 +258,6 @@ static void check_start(struct reader *r, const struct situation *is)
         return;
     }
     if (is->from_equilibrium) {
-        check_equilibrium(r, "initial.equilibrium");
         if (!reader_seen(r, "initial.support_foot")->node)
             r->s->base.support_foot = 1;
     }
@@ -287,7 +274,7 @@ static void check_controller(struct reader *r, const struct situation *is)
         reader_refuse(r, "controller.kind", ": the scene %s has no actuators", r->s->scene->name);
     if (!is->law->designed)
         return;
-    base->design_point.given = check_equilibrium(r, "controller.equilibrium");
+    base->design_point.given = has_equilibrium(r, "controller.equilibrium");
     if (!base->design_point.given && is->start_known && !is->from_equilibrium) {
         reader_refuse(r, "controller.equilibrium",
                       " is missing: %s needs one where the run does not begin at one",
@@ -394,7 +381,7 @@ static void check_steps(struct reader *r)
 static void check_support(struct reader *r, const struct situation *is)
 {
     const struct scenario *s = r->s;
-    if (!is->from_equilibrium || s->own_scene || r->axes_bad ||
+    if (!is->from_equilibrium || !is_numbered(s->scene) || r->axes_bad ||
         reader_seen(r, "ground.contacts")->bad || reader_seen(r, "initial.support_foot")->bad)
         return;
     for (int foot = 1; foot <= s->scene->contacts; foot++) {
@@ -432,32 +419,19 @@ static void check_lands(struct reader *r)
         !takes_word(r, offsetof(struct scenario_values, lands_ahead), 1))
         return;
     for (int c = 0; c < scene->contacts; c++)
-        feet += (!scene->grip || scene->grip[c] == c) && (r->s->base.contacts >> c & 1);
+        feet += scene->grip[c] == c && (r->s->base.contacts >> c & 1);
     if (feet < 2)
         reader_refuse(r, "ground.lands",
                       ": ahead needs two contacts that may touch the ground, there %s %d",
                       feet == 1 ? "is" : "are", feet);
 }
 
-/* Scenes that are not described have the world that their equations were written for. */
-static void check_world(struct reader *r)
+/* Where a run begins at a state and no controller is designed no design depends on anything. */
+static void check_designs(struct reader *r, const struct situation *is)
 {
-    for (size_t i = 0; i < r->schema->count && !r->axes_bad; i++) {
-        const struct scenario_field *const field = &r->schema->field[i];
-        const bool slope = strcmp(field->unit, "rad") == 0;
-        const double usual = slope ? 0 : STANCE_GRAVITY;
-        double least, largest;
-        if (!reader_given(&r->seen[i]) || r->seen[i].bad ||
-            !schema_allows(field->use, field->law, &r->s->base) ||
-            schema_applies(r->schema, field, &r->s->base))
-            continue;
-        scenario_extent(r->s, field->offset, &least, &largest);
-        if (least != usual || largest != usual)
-            reader_refuse(r, field->path,
-                          ": the scene %s knows %s alone; a mechanism has any (scene: mechanism, "
-                          "see scenarios/mechanisms)",
-                          r->s->scene->name, slope ? "level ground, 0" : "9.81");
-    }
+    const bool none = is->start_known && is->from_state && is->law_known && !is->law->designed;
+    for (int a = 0; a < r->s->axes && none; a++)
+        r->s->axis[a].design = false;
 }
 
 void scenario_cross_check(struct reader *r)
@@ -474,12 +448,11 @@ void scenario_cross_check(struct reader *r)
     check_multiplicity(r, &is);
     check_sampling(r, &is);
     check_support(r, &is);
-    if (r->s->own_scene) {
-        check_contacts(r);
+    check_contacts(r);
+    if (r->s->own_scene)
         mechanism_check(r);
-    }
-    check_world(r);
     check_lands(r);
+    check_designs(r, &is);
     for (size_t i = 0; i < r->misfits; i++)
         named_misfit(r, &r->misfit[i]);
     search_check(r);

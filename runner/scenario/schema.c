@@ -51,11 +51,10 @@ static void describe_quantity(struct scenario_field *field, const struct row *ro
 
 static bool add_robot(struct schema *schema, const struct row *row)
 {
+    const stance_carried *const carried = schema->scene ? schema->scene->mechanism->carried : NULL;
     if (!schema->scene)
         return true;
-    if (schema->scene->mechanism)
-        return schema_add_mechanism(schema, &row->field);
-    for (int i = 0; i < schema->scene->robot_count; i++) {
+    for (int i = 0; carried && i < carried->parameters; i++) {
         const stance_quantity *quantity = &schema->scene->robot[i];
         struct scenario_field *field = schema_add(schema, &row->field, "", quantity->name);
         if (!field)
@@ -64,7 +63,7 @@ static bool add_robot(struct schema *schema, const struct row *row)
         field->offset += (size_t)i * sizeof(double);
         field->fallback = field->fallback_text ? NAN : quantity->fallback;
     }
-    return true;
+    return schema_add_mechanism(schema, &row->field);
 }
 
 static bool add_states(struct schema *schema, const struct row *row)
@@ -204,6 +203,11 @@ static const char *describe_tolerance(char *text, size_t size)
     return text;
 }
 
+static bool has_numbered_feet(const stance_scene *scene)
+{
+    return scene->mechanism->carried && scene->mechanism->carried->numbered;
+}
+
 /* Rows that stay one field, whose words or sizes are the scene's. */
 static bool add_single(struct schema *schema, const struct row *row)
 {
@@ -234,20 +238,17 @@ static bool add_single(struct schema *schema, const struct row *row)
         field->more = describe_tolerance(schema->tolerance, sizeof schema->tolerance);
     } else if (!scene) {
         return true; /* what follows is the scene's */
-    } else if (row->family == FAMILY_CONTACTS && scene->mechanism) {
+    } else if (row->family == FAMILY_CONTACTS) {
         const stance_mechanism *const m = scene->mechanism;
         for (int i = 0; i < m->elements; i++)
             schema->elements[i] = m->element[i].name;
         field->words = schema->elements;
         field->word_count = (size_t)m->elements;
-    } else if (row->family == FAMILY_CONTACTS) {
-        field->words = scene->contact_name;
-        field->word_count = (size_t)scene->contacts;
     } else if (row->family == FAMILY_FOOT) {
         field->low = 1;
         field->high = scene->contacts;
         field->fallback = NAN;
-    } else if (row->family == FAMILY_BRANCH && scene->mechanism) {
+    } else if (row->family == FAMILY_BRANCH && !has_numbered_feet(scene)) {
         field->type = FIELD_INTEGER;
         field->words = NULL;
         field->word_count = 0;
@@ -256,7 +257,7 @@ static bool add_single(struct schema *schema, const struct row *row)
                  "which of several solutions, those with the centre of mass higher up first");
     } else if (row->family == FAMILY_POLES) {
         field->items = 2 * postures;
-        field->fewer = scene->mechanism && field->type == FIELD_POLES;
+        field->fewer = !has_numbered_feet(scene) && field->type == FIELD_POLES;
     } else if (row->family == FAMILY_ACTUATORS) {
         field->items = actuators;
     } else if (row->family == FAMILY_MATRIX) {
@@ -269,9 +270,12 @@ static bool add_single(struct schema *schema, const struct row *row)
 /* Whether a scene has what the rows of a path are about: a controller where something acts. */
 static bool scene_has(const stance_scene *scene, const char *path)
 {
-    const bool acts = scene->actuators > 0, stands = scene->equilibrium && scene->stand;
-    const bool described = scene->mechanism != NULL;
-    const bool touches = described ? scene->mechanism->elements > 0 : scene->contacts > 0;
+    const bool acts = scene->actuators > 0, touches = scene->mechanism->elements > 0;
+    const bool numbered = has_numbered_feet(scene);
+    /* On rails that nothing else moves, nothing can stand. */
+    const bool stands =
+        !(scene->mechanism->carried && scene->mechanism->body[0].joint == STANCE_SLIDE);
+    const bool along = scene->mechanism->carried && scene->mechanism->carried->along_slope;
     const struct {
         const char *begins;
         bool has;
@@ -281,12 +285,12 @@ static bool scene_has(const stance_scene *scene, const char *path)
         {"optimise", acts},
         {"ground.contacts", touches},
         {"initial.equilibrium", stands},
-        {"initial.support_foot", stands && !described},
-        {"initial.support", described && touches},
         {"initial.offset", stands},
-        {"stop.settle.angle", scene->postures > 0},
-        {"stop.settle.place", scene->postures > 0},
-        {"stop.fall_height", scene->fallen && !described},
+        {"initial.support_foot", numbered},
+        {"initial.support", touches && stands && !numbered},
+        {"ground.slope", !along},
+        {"robot.slope", along},
+        {"stop.fall_height", numbered},
     };
     for (size_t i = 0; i < sizeof needs / sizeof needs[0]; i++)
         if (strncmp(path, needs[i].begins, strlen(needs[i].begins)) == 0)
@@ -325,7 +329,7 @@ bool schema_build(struct schema *schema, const stance_scene *scene)
 {
     memset(schema, 0, offsetof(struct schema, field));
     schema->scene = scene;
-    schema->pattern = scene && scene->mechanism && scene->mechanism->numbers == 0;
+    schema->pattern = scene && scene->mechanism->numbers == 0;
     for (size_t i = 0; i < SCHEMA_MAX_WORDS - 1 && stance_scenes()[i]; i++)
         schema->scenes[schema->scene_count++] = stance_scenes()[i]->name;
     schema->scenes[schema->scene_count++] = MECHANISM_WORD;
@@ -339,9 +343,5 @@ bool schema_build(struct schema *schema, const stance_scene *scene)
     for (size_t i = 0; i < schema_row_count; i++)
         if (!add_row(schema, &schema_rows[i]))
             return false;
-    /* Where there is neither an equilibrium nor a controller no design depends on anything. */
-    for (size_t i = 0; scene && !scene->equilibrium && scene->actuators == 0 && i < schema->count;
-         i++)
-        schema->field[i].design = false;
     return true;
 }

@@ -130,9 +130,6 @@ const stance_scene *schema_scene_with(const char *path);
 
 /* Whether values, of the scenario or of a case, allow a use; those behind USE_SETTLE all do. */
 bool schema_allows(enum field_use use, int law, const struct scenario_values *values);
-/* Whether a field that may be swept means something with these values, in the schema's scene. */
-bool schema_applies(const struct schema *schema, const struct scenario_field *field,
-                    const struct scenario_values *values);
 /* Whether its number, or word, asks for a controller.sample_time > 0. */
 bool schema_samples(const struct scenario_field *field, const struct scenario_values *values);
 

@@ -48,18 +48,6 @@ bool schema_allows(enum field_use use, int law, const struct scenario_values *v)
     return use > USE_SETTLE || (allows[use] && (!within || schema_allows(within, law, v)));
 }
 
-bool schema_applies(const struct schema *schema, const struct scenario_field *field,
-                    const struct scenario_values *values)
-{
-    /* Slope and gravity are others for described robots alone. */
-    const size_t world = offsetof(struct scenario_values, robot[STANCE_ROBOT_GRAVITY]),
-                 model = offsetof(struct scenario_values, model[STANCE_ROBOT_GRAVITY]),
-                 both = 2 * sizeof(double);
-    return schema_allows(field->use, field->law, values) &&
-           (schema->scene->mechanism ||
-            (field->offset - world >= both && field->offset - model >= both));
-}
-
 size_t schema_items(const struct scenario_field *field)
 {
     return (field->items ? field->items : 1) * (field->columns ? field->columns : 1);

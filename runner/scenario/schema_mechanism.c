@@ -49,7 +49,11 @@ const struct part_key part_keys[] = {
                 "along a rail and does not turn. Any other turns on a hinge, slides along an axis "
                 "of its parent and keeps the parent's angle, or is fixed to it. Its angle, "
                 "counter-clockwise, or its displacement is called as the body is; 0: its frame has "
-                "the parent's direction, or stands where its joint is."}, .joints = ANY},
+                "the parent's direction but for `angle`, or stands where its joint is."},
+        .joints = ANY},
+    {PART_BODY, {.path = "coordinate", .type = FIELD_TEXT, WORD_ROW,
+        .fallback_text = "the body's name", .text = "what the joint's angle or displacement is called",
+        .more = "Of a free root its angle; x and z are always called so."}, .joints = MOVES | 1 << STANCE_FREE},
     {PART_BODY, {.path = "parent", .type = FIELD_WORD, WORD_ROW,
         .fallback_text = "none, it is the root", .text = "the body that it hangs from"},
         .joints = HANGS, .names_body = true},
@@ -64,6 +68,9 @@ const struct part_key part_keys[] = {
     {PART_BODY, {.path = "axis", BODY_TWO(axis), .unit = "1", RANGE(-FAR, FAR),
         .fallback_text = "[1, 0]", .text = "direction in which it slides, of any length",
         .more = "x and z in the parent's frame; of a root in the world's."}, .joints = SLIDES},
+    {PART_BODY, {.path = "angle", BODY(angle), .unit = "rad", RANGE(-TURN, TURN),
+        .text = "how its frame is turned against the parent's where its coordinate is 0",
+        .more = "Counter-clockwise; of a root against the world's."}, .joints = ANY},
     {PART_BODY, {.path = "mass", BODY(mass), .unit = "kg", RANGE(0, LARGE), .text = "mass"},
         .joints = ANY},
     {PART_BODY, {.path = "inertia", BODY(inertia), .unit = "kg m^2", RANGE(0, LARGE),
@@ -133,7 +140,13 @@ const struct part_key part_keys[] = {
         .text = "when the push begins, or the impulse falls"},
         .pushes = 1 << STANCE_FORCE | 1 << STANCE_IMPULSE},
     {PART_POINT, {.path = "to", .type = FIELD_NUMBER, POINT(to), .unit = "s", RANGE(0, LARGE),
-        .text = "when the push ends"}, .pushes = 1 << STANCE_FORCE},
+        .fallback_text = "none where it swings", .text = "when the push ends"},
+        .pushes = 1 << STANCE_FORCE},
+    {PART_POINT, {.path = "frequency", .type = FIELD_NUMBER, POINT(frequency), .unit = "Hz",
+        RANGE(0, FAR), .fallback_text = "none: it is constant",
+        .text = "how often the force swings",
+        .more = "It is then sin(2 pi frequency (t - from)) of `force`."},
+        .pushes = 1 << STANCE_FORCE},
 
     {PART_ACTUATOR, {.path = "body", .type = FIELD_WORD, .required = true, WORD_ROW,
         .text = "the body whose joint it drives",
@@ -254,7 +267,7 @@ static bool add_key(struct schema *schema, const struct scenario_field *row, boo
         memcpy(field->path, general.path, sizeof field->path);
         field->use = general.use;
         field->by_scene = true;
-        field->required = own->required && !model;
+        field->required = own->required && !model && !m->carried;
         field->sweep = varied;
         field->design = general.design && key->part != PART_POINT; /* no law knows those */
         field->offset =
@@ -286,9 +299,12 @@ bool schema_add_mechanism(struct schema *schema, const struct scenario_field *ro
     const stance_mechanism *const m = schema->scene->mechanism;
     const bool model = row->fallback_text != NULL;
     bool good = true;
+    if (model && m->carried) /* no design knows points */
+        return true;
     for (int b = 0; b < m->bodies; b++)
         schema->bodies[b] = m->body[b].name;
-    for (int part = 0; good && part < PARTS; part++) {
+    for (int part = m->carried ? PART_POINT : 0;
+         good && part < (m->carried ? PART_ACTUATOR : PARTS); part++) {
         const struct part_kind *const kind = &part_kinds[part];
         good = add_map(schema, row, kind->key, kind->text);
         for (int i = 0; good && i < part_count(m, (enum part)part); i++) {

@@ -63,6 +63,10 @@ const struct row schema_rows[] = {
     {FAMILY_ROBOT, {.path = "robot.*", .type = FIELD_NUMBER, .by_scene = true, .design = true,
          .sweep = true, VALUE(robot)}},
 
+    {0, {.path = "robot.slope", .type = FIELD_NUMBER, .by_scene = true, .sweep = true,
+         VALUE(robot[STANCE_ROBOT_SLOPE]), .unit = "rad", .fallback = 0, RANGE(-1.5, 1.5),
+         .text = "angle of the plane; positive: the block's +x is downhill"}},
+
     {0, {.path = "ground", .type = FIELD_MAP, BY_HAND, .text = "the ground, a half plane z <= 0"}},
     {0, {.path = "ground.friction", .type = FIELD_NUMBER, .sweep = true, VALUE(friction),
          .unit = "1", .fallback = 0.8, RANGE(0, 10), .text = "Coulomb coefficient of friction"}},
@@ -72,10 +76,10 @@ const struct row schema_rows[] = {
     {0, {.path = "ground.slope", .type = FIELD_NUMBER, .design = true, .sweep = true,
          VALUE(robot[STANCE_ROBOT_SLOPE]), .unit = "rad", .fallback = 0, RANGE(-RIGHT, RIGHT),
          .text = "slope of the ground, positive: +x is downhill",
-         .more = "x and z stay level and upright. Only of a mechanism; the block has robot.slope."}},
+         .more = "x and z stay level and upright."}},
     {0, {.path = "ground.gravity", .type = FIELD_NUMBER, .design = true, .sweep = true,
          VALUE(robot[STANCE_ROBOT_GRAVITY]), .unit = "m/s^2", .fallback = STANCE_GRAVITY,
-         RANGE(0, 1e4), .text = "acceleration of gravity", .more = "Only of a mechanism."}},
+         RANGE(0, 1e4), .text = "acceleration of gravity"}},
     {0, {.path = "ground.law", .type = FIELD_WORD, .sweep = true, VALUE(impacts), .fallback = 0,
          .quiet = true, WORDS(impacts_words), .text = "what restitution asks for",
          .more = "newton: normal velocities, -e times those before, whatever energy friction then "
@@ -103,8 +107,8 @@ const struct row schema_rows[] = {
          .text = "how a run begins: from an equilibrium or from a given state"}},
     {0, {.path = "initial.equilibrium", .type = FIELD_MAP, .by_scene = true, .use = USE_EQUILIBRIUM,
          BY_HAND, .text = "the position of rest that the run begins at",
-         .more = "Give all but one of the angles of the biped; the last follows. Of a mechanism "
-                 "give any, or none: the others are found. Excludes initial.state."}},
+         .more = "Give any of its coordinates, or none: the others are found. Excludes "
+                 "initial.state."}},
     {FAMILY_POSTURE, {.path = "initial.equilibrium.*", .type = FIELD_NUMBER, .by_scene = true,
          .use = USE_EQUILIBRIUM, .design = true, .sweep = true, VALUE(equilibrium.posture),
          .fallback_text = "follows from the others", .text = "equilibrium: %s"}},
@@ -158,9 +162,8 @@ const struct row schema_rows[] = {
          .use = USE_PLACE, .required = true, .design = true, BY_HAND, .unit = "1/s",
          .text = "poles of the closed loop, in the open left half plane",
          .more = "Real, or complex as -3+1.5i with -3-1.5i beside it; with place none may stand "
-                 "there more often than there are actuators. Of a mechanism as many as it has "
-                 "states while the contacts that it stands on hold. A list, or a mapping of "
-                 "names of states."}},
+                 "there more often than there are actuators. As many as the robot has states while "
+                 "the contacts that it stands on hold. A list, or a mapping of names of states."}},
     {FAMILY_POLES, {.path = "controller.poles[]", .type = FIELD_NUMBER, .by_scene = true,
          .use = USE_PLACE, .design = true, .sweep = true, VALUE(pole_re), .unit = "1/s",
          .fallback = NAN, RANGE(-1e6, 0), .high_open = true, .text = "pole of the closed loop",
@@ -330,8 +333,9 @@ const struct row schema_rows[] = {
          .more = "Along the ground, either way, however it came there: a robot that stands at its "
                  "target further away has hopped, slid or rolled off and is rested. none: "
                  "anywhere."}},
-    {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true, VALUE(fall_height),
-         .unit = "1", .fallback = 0.2, RANGE(0, 1),
+    {0, {.path = "stop.fall_height", .type = FIELD_NUMBER, .sweep = true,
+         VALUE(robot[STANCE_ROBOT_FALL_HEIGHT]), .unit = "1", .fallback = STANCE_FALL_HEIGHT,
+         RANGE(0, 1),
          .text = "height of the hip, in leg lengths, below which the robot has fallen",
          .more = "Its fall_cause is then hip, and trunk where the trunk touches the ground. "
                  "implicit, midpoint and lagrange look at the ends of steps only."}},

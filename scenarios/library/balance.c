@@ -27,8 +27,7 @@ int main(void)
     stance_equilibrium rest;
     stance_message message = {""};
 
-    stance_case c = {.scene = biped,
-                     .friction = 0.8,
+    stance_case c = {.friction = 0.8,
                      .contacts = 1, /* foot 1 may touch the ground */
                      .torque_limit = 10,
                      .step = 0.001,
@@ -40,9 +39,9 @@ int main(void)
                      .supports = 1,
                      .settle_angle = 0.05,
                      .settle_rate = 0.5,
-                     .settle_hold = 0.5,
-                     .fall_height = 0.2};
+                     .settle_hold = 0.5};
     stance_robot_fallback(biped, c.robot);
+    stance_case_robot(biped, &c);
     stance_error error = biped->equilibrium(biped, c.robot, &choice, &rest, &message);
     if (error == STANCE_OK)
         error = biped->linearise(biped, c.robot, &rest, A, B);

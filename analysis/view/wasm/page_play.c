@@ -165,7 +165,7 @@ const char *play_text(void)
     text_add(&text, ",\"figure\":%d,\"contacts\":%d,\"kind\":%d,\"checksum\":%lu,\"slope\":",
              played.points, page.view.scene->contacts, page_kind(&played.result),
              (unsigned long)page_checksum(&played.result));
-    text_number(&text, page.view.scene->mechanism ? played.input.robot[STANCE_ROBOT_SLOPE] : 0);
+    text_number(&text, played.input.robot[STANCE_ROBOT_SLOPE]);
     text_add(&text, ",\"answers\":[");
     for (int a = 0; a < STANCE_ANSWER_COUNT; a++) {
         text_add(&text, "%s", a ? "," : "");

@@ -105,7 +105,7 @@ static void each_field(struct text *text, const struct scenario_values *values,
         const struct scenario_field *const field = &page.schema.field[k];
         const bool number = field->type == FIELD_NUMBER || field->type == FIELD_INTEGER;
         if (!field->sweep || field->offset == NO_OFFSET ||
-            !schema_applies(&page.schema, field, &page.view.base) ||
+            !schema_allows(field->use, field->law, &page.view.base) ||
             (!number && field->type != FIELD_WORD))
             continue;
         for (size_t i = 0; i < (strchr(field->path, '[') ? schema_items(field) : 1); i++) {
@@ -225,7 +225,7 @@ const char *view_text(void)
     text_add(&text, ",\"stop_time\":");
     text_number(&text, s->base.stop_time);
     text_add(&text, ",\"slope\":");
-    text_number(&text, s->scene->mechanism ? s->base.robot[STANCE_ROBOT_SLOPE] : 0);
+    text_number(&text, s->base.robot[STANCE_ROBOT_SLOPE]);
     text_add(&text, ",\"cases\":%.0f", (double)page.view_plan.rows);
     add_bodies(&text, s->scene);
     add_axes(&text, s);

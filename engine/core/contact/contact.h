@@ -41,11 +41,7 @@ typedef unsigned contact_set;
 /* The contact that holds the friction of contact c: itself, the first end of its sole; -1: none. */
 HOT int contact_grip(int c)
 {
-#ifdef SCENE_GRIPS
     return scene_grip[c];
-#else
-    return c;
-#endif
 }
 /* Unknowns of contact c: its normal impulse and, if it holds one, the tangential. */
 HOT int contact_unknowns(int c)
@@ -56,16 +52,12 @@ HOT int contact_unknowns(int c)
  * know sets of contacts from the beginning. */
 HOT contact_set contact_leaning(int c)
 {
-#ifdef SCENE_GRIPS
     _Static_assert(SCENE_CONTACTS <= 12, "all are looked at");
 #define LEANS(k) ((k) < SCENE_CONTACTS && scene_grip[(k) % CONTACTS] == c ? 1u << (k) : 0u)
 #define LEAN4(k) (LEANS(k) | LEANS((k) + 1) | LEANS((k) + 2) | LEANS((k) + 3))
     return LEAN4(0) | LEAN4(4) | LEAN4(8);
 #undef LEAN4
 #undef LEANS
-#else
-    return c < 0 ? 0 : 1u << c;
-#endif
 }
 /* A point or a disc: nothing else has part in its friction. */
 HOT bool contact_is_point(int c)
@@ -109,22 +101,18 @@ _Static_assert(SCENE_CONTACTS <= 12, "each grip has its set");
 HOT lanes contact_load(int g, const lanes (*r)[2])
 {
     lanes load = r[g][0];
-#ifdef SCENE_GRIPS
     EACH (c, g + 1, SCENE_CONTACTS)
         if (contact_grip(c) == g)
             load += r[c][0];
-#endif
     return load;
 }
 /* Lanes where an end of grip g is in `part`. */
 HOT mask contact_part(int g, const mask *part)
 {
     mask any = part[g];
-#ifdef SCENE_GRIPS
     EACH (c, g + 1, SCENE_CONTACTS)
         if (contact_grip(c) == g)
             any |= part[c];
-#endif
     return any;
 }
 

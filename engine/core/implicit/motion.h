@@ -16,7 +16,6 @@ struct setting {
     lanes moreau, limited;       /* 1 or 0: whose restitution, see impact.h */
     lanes may_touch[CONTACTS];   /* 1 or 0 */
     lanes prefer;                /* of several contact solutions, see contact_rule */
-    lanes fall_height;           /* see stance_scene.fallen */
     struct law law;
 };
 
@@ -57,7 +56,7 @@ HOT mask motion_beyond(int cause, lanes margin)
 HOT mask motion_falls(const struct setting *set, const lanes *s, const scene_trig *trig, int cause)
 {
     lanes rate;
-    const lanes margin = scene_fall_margin(&set->body, s, trig, s, set->fall_height, cause, &rate);
+    const lanes margin = scene_fall_margin(&set->body, s, trig, s, cause, &rate);
     return motion_beyond(cause, margin);
 }
 /* ... by whatever cause. */
@@ -74,13 +73,7 @@ HOT mask motion_fallen(const struct setting *set, const lanes *s, const scene_tr
 HOT lanes motion_work(const scene_body *body, lanes h, lanes t, const scene_trig *trig,
                       const lanes *torque, const lanes *w, const lanes *d)
 {
-    const lanes work = scene_work(body, h, t, trig, torque, d);
-#ifdef SCENE_DAMPS
-    return work - scene_damped(body, w, d);
-#else
-    (void)w;
-    return work;
-#endif
+    return scene_work(body, h, t, trig, torque, d) - scene_damped(body, w, d);
 }
 
 /* Fills in the energies of a motion. */

@@ -197,15 +197,10 @@ HOT mask step_lands(const struct motion *from, contact_set touching, const struc
 HOT lanes step_damped(const struct setting *set, const struct motion *from,
                       const struct iterate *it, const lanes *moved)
 {
-#ifdef SCENE_DAMPS
     lanes rate[SCENE_COORDINATES];
     EACH (i, 0, SCENE_COORDINATES)
         rate[i] = lanes_fma(lanes_of(METHOD_THETA), it->w[i] - from->w[i], from->w[i]);
     return (SCENE_PUSHES > 0 ? 2 : 1) * scene_damped(&set->body, rate, moved);
-#else
-    (void)set, (void)from, (void)it, (void)moved;
-    return lanes_of(0);
-#endif
 }
 
 /* What an iterate that has arrived leaves: position errors removed, the balance of energy, the

@@ -138,7 +138,7 @@ static void bundle_load_linear(struct linear_law *law, int lane, const stance_ca
         }
     }
     for (int j = 0; j < OWN_POSTURE; j++)
-        lane_set(&law->target[j], lane, c->target[j] + SCENE_POSTURE_ORIGIN(of, j));
+        lane_set(&law->target[j], lane, c->target[j] + scene_posture_origin(&of->body, j));
 }
 
 static void bundle_load_law(struct law *law, int lane, const stance_case *c)
@@ -158,7 +158,7 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
         lane_set(&servo->kd, lane, from->kd);
         lane_set(&servo->integral_limit, lane, from->integral_limit);
         const double own = c->torque_limits[i] > 0 ? c->torque_limits[i] : INFINITY;
-        lane_set(&law->limit[i], lane, fmin(fmin(SCENE_TORQUE_LIMIT(c, i), c->torque_limit), own));
+        lane_set(&law->limit[i], lane, fmin(fmin(c->body.limit[i], c->torque_limit), own));
     }
     lane_set(&law->decouples, lane, c->decouples);
     lane_set(&law->switches, lane, c->switches);
@@ -176,12 +176,11 @@ static void bundle_load_law(struct law *law, int lane, const stance_case *c)
 
 static void bundle_load_setting(struct setting *set, int lane, const stance_case *c)
 {
-    scene_load_body(&set->body, lane, SCENE_NUMBERS(c));
+    scene_load_body(&set->body, lane, &c->body);
     lane_set(&set->friction, lane, c->friction);
     lane_set(&set->prefer, lane, c->most_energy ? -1 : 1);
     lane_set(&set->moreau, lane, c->impacts == STANCE_IMPACTS_MOREAU);
     lane_set(&set->limited, lane, c->impacts != STANCE_IMPACTS_NEWTON);
-    lane_set(&set->fall_height, lane, c->fall_height);
     for (int i = 0; i < SCENE_CONTACTS; i++) {
         lane_set(&set->may_touch[i], lane, (double)(c->contacts >> i & 1));
         lane_set(&set->restitution[i], lane, contact_grip(i) >= 0 ? c->restitution : 0);
@@ -235,7 +234,7 @@ static void bundle_load(struct bundle *b, int lane, const stance_case *c, stance
     b->filled++;
     bundle_count(b, c, 1);
     bundle_load_setting(&b->set, lane, c);
-    scene_enter(SCENE_NUMBERS(c), c->position, c->velocity, s, w);
+    scene_enter(&c->body, c->position, c->velocity, s, w);
     set_all(b->now.s, SCENE_COORDINATES, lane, s);
     set_all(b->now.w, SCENE_COORDINATES, lane, w);
     for (int i = 0; i < SCENE_ACTUATORS; i++) {

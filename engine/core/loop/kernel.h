@@ -1,6 +1,6 @@
-/* kernel.h - names of a compiled kernel: a method for one scene and one instruction set.
+/* kernel.h - names of a compiled kernel: a method for one structure and one instruction set.
  *
- * A method's file is compiled once per scene and instruction set with -DSTANCE_SCENE=biped
+ * A method's file is compiled once per structure and instruction set with -DSTANCE_SCENE=biped
  * -DSTANCE_SCENE_LANES=\"engine/scenes/biped_lanes.h\" -DSTANCE_ISA=avx2 -DSTANCE_LANES=4; it
  * defines METHOD and METHOD_THETA, includes stream.h, and ends in STANCE_KERNEL, its one const
  * struct. With -DSTANCE_OBJECT instead of the names that struct is a stance_object.
@@ -17,27 +17,18 @@
 #define STANCE_JOIN2_(a, b) stance_##a##_##b
 #define STANCE_JOIN2(a, b) STANCE_JOIN2_(a, b)
 
-/* A method's description is in every kernel of the first scene: which of these are built is open.
- */
-#define WEAK __attribute__((weak))
-
 #ifdef STANCE_OBJECT
 /* Compiled on demand, into an object of its own: nothing of the program can be named. */
-static const stance_scene *kernel_scene;
-#define KERNEL_SCENE kernel_scene
 #define STANCE_KERNEL(name)                                                                        \
     extern __attribute__((visibility("default"))) const stance_object stance_kernel_object;        \
     const stance_object stance_kernel_object = {sizeof(stance_case), sizeof(stance_result),        \
-                                                &kernel_scene,       STANCE_LANES,                 \
-                                                bundle_stream,       bundle_run}
+                                                STANCE_LANES, bundle_stream, bundle_run}
 #else
-extern const stance_scene STANCE_JOIN2(scene, STANCE_SCENE);
-#define KERNEL_SCENE (&STANCE_JOIN2(scene, STANCE_SCENE))
 #define STANCE_KERNEL(name)                                                                        \
     extern const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name, STANCE_ISA);               \
     extern const stance_method STANCE_JOIN2(method, name);                                         \
     const stance_kernel STANCE_JOIN4(kernel, STANCE_SCENE, name,                                   \
-                                     STANCE_ISA) = {&STANCE_JOIN2(scene, STANCE_SCENE),            \
+                                     STANCE_ISA) = {STANCE_QUOTE(STANCE_SCENE),                    \
                                                     &STANCE_JOIN2(method, name),                   \
                                                     STANCE_QUOTE(STANCE_ISA),                      \
                                                     STANCE_LANES,                                  \

@@ -17,7 +17,7 @@ static void bundle_record(struct bundle *b, int lane)
     const double elapsed = (n - lane_get(&b->recorded_at, lane)) * c->step;
     int64_t row = b->row[lane];
     for (; row < t->rows && nearbyint((double)row * t->interval / c->step) <= n; row++) {
-        scene_leave(SCENE_NUMBERS(c), s, w, q, v);
+        scene_leave(&c->body, s, w, q, v);
         memcpy(t->position + row * OWN_COORDINATES, q, sizeof *q * OWN_COORDINATES);
         memcpy(t->velocity + row * OWN_COORDINATES, v, sizeof *v * OWN_COORDINATES);
         for (int i = 0; i < OWN_ACTUATORS; i++)
@@ -95,7 +95,7 @@ COLD void bundle_finish(struct bundle *b, int lane, stance_status status, stance
     r->excursion = c->has_target ? r->excursion : NAN;
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lane_get(&b->now.s[i], lane), w[i] = lane_get(&b->now.w[i], lane);
-    scene_leave(SCENE_NUMBERS(c), s, w, r->position, r->velocity);
+    scene_leave(&c->body, s, w, r->position, r->velocity);
     for (int i = 0; i < OWN_COORDINATES; i++) {
         r->position[i] = record_plain(r->position[i]);
         r->velocity[i] = record_plain(r->velocity[i]);

@@ -268,7 +268,7 @@ COLD bool rest_holds(const struct bundle *b, int lane, const lanes *s, const lan
     const int parts = isfinite(lane_get(&part, lane)) ? 8 : 1;
     for (int k = 0; k < parts; k++) {
         if (parts > 1)
-            r.t = k * part;
+            r.t = scene_swings_from(&b->set.body) + k * part;
         if (!rest_mode(&r, r.s, torque, &r.mode))
             return false;
     }
@@ -312,7 +312,7 @@ static void rest_key(const struct bundle *b, int lane, double *key)
 COLD bool rest_target(struct bundle *b, int lane)
 {
     const stance_case *const c = b->which[lane];
-    const stance_scene *const scene = SCENE_OF(c);
+    const stance_scene *const scene = c->scene;
     double key[REST_KEY], q[SCENE_COORDINATES] = {0}, v[SCENE_COORDINATES] = {0};
     double s1[SCENE_COORDINATES], w1[SCENE_COORDINATES];
     rest_key(b, lane, key);
@@ -323,7 +323,7 @@ COLD bool rest_target(struct bundle *b, int lane)
         q[scene->posture[i]] = c->near.target[i];
     if (c->supports)
         scene->stand(scene, c->robot, c->supports, q, v);
-    scene_enter(SCENE_NUMBERS(c), q, v, s1, w1);
+    scene_enter(&c->body, q, v, s1, w1);
     for (int i = 0; i < SCENE_COORDINATES; i++)
         s[i] = lanes_of(s1[i]);
     for (int i = 0; i < ACTUATORS; i++)

@@ -107,7 +107,7 @@ static inline lanes inside_margin(const struct inside_way *way, int cause, lanes
         s[i] = cubic_at(b, x);
     }
     scene_trigonometry(s, &trig);
-    return scene_fall_margin(&way->set->body, s, &trig, s, way->set->fall_height, cause, &rate);
+    return scene_fall_margin(&way->set->body, s, &trig, s, cause, &rate);
 }
 
 /* When it falls by `cause`, in the lanes of `low` where it does; the margin is about b, which says
@@ -144,7 +144,7 @@ HOT void inside_falls(const struct inside_way *way, mask where, struct step_repo
         lanes margin[2], rate[2], b[CUBIC];
         for (int end = 0; end < 2; end++)
             margin[end] = scene_fall_margin(&way->set->body, way->s[end], way->trig[end],
-                                            way->w[end], way->set->fall_height, k, &rate[end]);
+                                            way->w[end], k, &rate[end]);
         cubic_hermite(margin[0], rate[0], margin[1], rate[1], way->h, b);
         const mask low =
             where &
@@ -206,7 +206,7 @@ HOT mask inside_near(const struct setting *set, const lanes *s, const lanes *w,
     mask near = MASK_NONE;
     EACH (k, 0, SCENE_CAUSES) {
         lanes rate;
-        const lanes margin = scene_fall_margin(&set->body, s, trig, w, set->fall_height, k, &rate);
+        const lanes margin = scene_fall_margin(&set->body, s, trig, w, k, &rate);
         near |= mask_less_equal(margin, lanes_fma(INSIDE_FASTER * h, lanes_abs(rate), h));
     }
     return near;
