@@ -1,8 +1,6 @@
 /* scenes.c - the scenes there are, and the texts of errors. */
-#include "engine/scenes/carried.h"
 #include "tree.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 void stance_robot_fallback(const stance_scene *scene, double *robot)
@@ -21,25 +19,6 @@ void stance_case_robot(const stance_scene *scene, stance_case *c)
     c->scene = scene;
     for (int k = 0; k < scene->contacts; k++) /* stops are no ground */
         c->contacts |= scene->grip[k] < 0 ? 1u << k : 0;
-}
-
-/* Those that are carried, made before the program begins. */
-static const stance_scene *carried[STANCE_MAX_CARRIED + 1];
-
-__attribute__((constructor)) static void make_carried(void)
-{
-    stance_mechanism m;
-    for (int i = 0; stance_carried_mechanism(i, &m); i++) {
-        stance_scene *scene;
-        if (i == STANCE_MAX_CARRIED || stance_mechanism_scene(&m, &scene, NULL) != STANCE_OK)
-            abort();
-        carried[i] = scene;
-    }
-}
-
-const stance_scene *const *stance_scenes(void)
-{
-    return carried;
 }
 
 const stance_scene *stance_scene_find(const char *name)

@@ -59,12 +59,17 @@ struct frames {
     int angles;
 };
 
+/* R(a) v, `out` may be v: a vector of the base's, upright, into the ground's axes. */
+static void lay(double sine, double cosine, const double v[2], double out[2])
+{
+    const double x = v[0], z = v[1];
+    out[0] = cosine * x - sine * z;
+    out[1] = sine * x + cosine * z;
+}
 /* A vector of a body's own frame, in the one that carries it. */
 static void frames_turn(const struct frames *f, int b, const double own[2], double out[2])
 {
-    const double x = own[0], z = own[1];
-    out[0] = f->cosine[b] * x - f->sine[b] * z;
-    out[1] = f->sine[b] * x + f->cosine[b] * z;
+    lay(f->sine[b], f->cosine[b], own, out);
 }
 
 static void frames_make(const stance_mechanism *m, const stance_mechanism_numbers *v,
@@ -582,14 +587,6 @@ static double longest_arm(const stance_tree *tree, const stance_mechanism *m,
         longest = fmax(longest, more + length(next == STANCE_TREE_OWN ? end : l->joint[next]));
     }
     return longest;
-}
-
-/* A vector of the base's, upright, into the ground's axes. */
-static void lay(double sine, double cosine, const double v[2], double out[2])
-{
-    const double x = v[0], z = v[1];
-    out[0] = cosine * x - sine * z;
-    out[1] = sine * x + cosine * z;
 }
 
 /* Is a joint's coordinate an angle against the upright? */

@@ -486,7 +486,7 @@ static void figures(void **state)
             least = fmin(least, hypot(points[i][0] - on[k][0], points[i][1] - on[k][1]));
         assert_near(least, 0, 1e-15, "a point of the figure");
     }
-    assert_memory_equal(points, points[n - 1], sizeof points);
+    assert_memory_equal(points[0], points[n - 1], sizeof points[0]);
     stance_scene_free(s);
 }
 

@@ -141,8 +141,6 @@ static void pulled_blocks_rest_if_held(void **state)
                 c.robot[i] = share[k] * 0.5 * 9.81 * c.robot[0];
             if (strcmp(scene->robot[i].name, "pull_frequency") == 0)
                 c.robot[i] = 0.05; /* 20 s: it is still for long */
-            if (strcmp(scene->robot[i].name, "slope") == 0)
-                c.robot[i] = 0;
         }
         c.friction = 0.5;
         c.contacts = 1;

@@ -1,6 +1,7 @@
 /* The stepping core: contact laws on random states, convergence on the second drop, the stages of
  * the first drop, determinism over lanes and order, failures. References: physics.md's figures and
  * an independent event-driven program (tests/reference). */
+#include "long.h"
 #include "support.h"
 
 #define PENETRATION 1e-9
@@ -457,9 +458,11 @@ static void golden(void **state)
             const uint64_t h = golden_hash(kernel, scene, 400, false, 400);
             print_message("# %s %s %s: %016llx\n", expected[m].scene, expected[m].method,
                           stance_isa(rank), (unsigned long long)h);
+            assert_true(h == expected[m].hash);
+            if (!stance_kernel_ahead(kernel)) /* one lane, for whatever set */
+                break;
             assert_true(golden_hash(kernel, scene, 400, true, 400) == h);
             assert_true(golden_hash(kernel, scene, 400, false, 37) == h);
-            assert_true(h == expected[m].hash);
         }
     }
 }
@@ -473,8 +476,9 @@ static void neighbours_change_nothing(void **state)
         const stance_kernel *const wide = kernel_of(methods[m], stance_isa(0));
         const stance_kernel *const narrow =
             kernel_of(methods[m], stance_isa(stance_isa(1) ? 1 : 0)); /* the next narrower */
-        assert_true(golden_hash(wide, biped(), 4000, false, 4000) ==
-                    golden_hash(narrow, biped(), 4000, false, 4000));
+        const size_t n = long_tests() ? 4000 : 1000;
+        assert_true(golden_hash(wide, biped(), n, false, n) ==
+                    golden_hash(narrow, biped(), n, false, n));
     }
 }
 

@@ -197,7 +197,7 @@ accepted "... planned" "$stance" run --dry-run designs.yaml
 says "$some"
 refused "more cases than fit a number" 2 'make more than 2^53 cases' "$stance" check "$good" --set "$huge, {path: ground.friction, from: 0, to: 1, count: 2}]"
 refused "more instants than fit a file" 2 'record.every: .* instants' "$stance" check "$good" --set 'record={every: 1e-300, cases: all}'
-refused "a file that no disk holds" 3 'results/ball_bounce.h5' "$stance" run "$good" --set "$huge]"
+refused "a file that no disk holds" 3 'results/ball_bounce.h5' "$stance" run "$good" --quiet --set "$huge]"
 refused "a case that is no number" 2 '--only' "$stance" run "$good" --only 99999999999999999999999
 refused "a case beyond the last" 2 '--only 18446744073709551614' "$stance" run "$good" --only 18446744073709551614
 refused "a time that is none" 2 '--time-limit' "$stance" run "$good" --time-limit 1e999h

@@ -37,6 +37,7 @@ int plot_case_grounded(const stance_scene *scene);
 struct figure {
     double time;
     int points;
+    bool outline; /* of discs, or of what has no joints: corners are no joints, sides the body's */
     double point[STANCE_MAX_POINTS][2];
     double contact[STANCE_MAX_CONTACTS][2];
     double centre; /* m, what stands in the middle of its place */

@@ -1,6 +1,8 @@
 /* plot_figure.c - a robot as a stick figure. */
 #include "plot_case.h"
 
+#include "engine/mechanism.h"
+
 #include <math.h>
 
 int plot_case_grounded(const stance_scene *scene)
@@ -16,6 +18,17 @@ double figure_fall(const struct plot_case *c)
     return tan(c->values.robot[STANCE_ROBOT_SLOPE]);
 }
 
+static bool is_outline(const struct plot_case *c)
+{
+    const stance_mechanism *const m = c->scenario.scene->mechanism;
+    stance_mechanism_numbers number;
+    bool round = m->carried && m->carried->outline;
+    stance_mechanism_expand(m, c->values.robot, &number);
+    for (int e = 0; e < m->elements; e++)
+        round = round || (!m->element[e].sole && number.element[e].radius > 0);
+    return round;
+}
+
 void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
 {
     const stance_scene *scene = c->scenario.scene;
@@ -25,6 +38,7 @@ void figure_make(struct figure *figure, const struct plot_case *c, size_t row)
     double speed[2];
 
     figure->time = t->time[row];
+    figure->outline = is_outline(c);
     figure->points = scene->figure(scene, c->values.robot, position, figure->point);
     for (int k = 0; k < plot_case_grounded(scene); k++)
         scene->contact_point(scene, c->values.robot, position, rest, k, figure->contact[k], speed);
@@ -44,21 +58,12 @@ static int contact_at(const struct figure *figure, int contacts, int point)
     return -1;
 }
 
-/* A line that ends where it begins is an outline: its corners are no joints, its sides belong to
- * the body. */
-static bool is_outline(const struct figure *figure)
-{
-    const double *first = figure->point[0], *last = figure->point[figure->points - 1];
-    return figure->points > 1 && hypot(first[0] - last[0], first[1] - last[1]) < 1e-9;
-}
-
 /* Contact whose colour a segment has; the number of contacts: the body's, as between two contacts.
  */
 static int contact_of_segment(const struct figure *figure, int contacts, int p)
 {
     const int first = contact_at(figure, contacts, p), second = contact_at(figure, contacts, p + 1);
-    const bool body =
-        is_outline(figure) || (first >= 0 && second >= 0) || (first < 0 && second < 0);
+    const bool body = figure->outline || (first >= 0 && second >= 0) || (first < 0 && second < 0);
     return body ? contacts : first >= 0 ? first : second;
 }
 
@@ -71,7 +76,7 @@ void figure_put(struct gnuplot *g, const struct figure *figure, int contacts, en
             GNUPLOT_ROW(g, figure->point[p + end][0] + dx, figure->point[p + end][1] + dz, contact);
         gnuplot_set(g, "%s", "");
     }
-    for (int p = 0; part == FIGURE_POINTS && p < figure->points && !is_outline(figure); p++)
+    for (int p = 0; part == FIGURE_POINTS && p < figure->points && !figure->outline; p++)
         if (contact_at(figure, contacts, p) < 0)
             GNUPLOT_ROW(g, figure->point[p][0] + dx, figure->point[p][1] + dz, contacts);
     for (int k = 0; part == FIGURE_POINTS && k < contacts; k++)

@@ -12,11 +12,11 @@
  *
  * rod: rigid, both ends may touch; its centre is (x, z).
  */
-#include "carried.h"
+#include "engine/mechanism.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
+#include <stdlib.h>
 
 #define FAR 1e6   /* m */
 #define TURNS 1e3 /* rad */
@@ -282,20 +282,39 @@ static const struct {
      rod_make},
 };
 
-bool stance_carried_mechanism(int place, stance_mechanism *m)
+/* The one at a place, with its default numbers. */
+static stance_mechanism mechanism_at(int place)
 {
+    const stance_carried *const carried = &scenes[place].carried;
+    stance_mechanism m = {.carried = carried, .numbers = carried->parameters};
     double robot[STANCE_MAX_ROBOT] = {
         [STANCE_ROBOT_GRAVITY] = STANCE_GRAVITY, [STANCE_ROBOT_FALL_HEIGHT] = STANCE_FALL_HEIGHT};
-    if (place >= (int)(sizeof scenes / sizeof scenes[0]))
-        return false;
-    const stance_carried *const carried = &scenes[place].carried;
-    *m = (stance_mechanism){.carried = carried, .numbers = carried->parameters};
-    stance_mechanism_defaults(&m->value);
+    stance_mechanism_defaults(&m.value);
     for (int i = 0; i < carried->parameters; i++) {
         robot[i] = carried->parameter[i].fallback;
-        m->number[i] = -1;
+        m.number[i] = -1;
     }
-    scenes[place].make(m);
-    carried->set(robot, &m->value);
-    return true;
+    scenes[place].make(&m);
+    carried->set(robot, &m.value);
+    return m;
+}
+
+enum { SCENES = sizeof scenes / sizeof *scenes };
+static const stance_scene *made[SCENES + 1];
+
+/* Before the program begins, and once. */
+__attribute__((constructor)) static void make_scenes(void)
+{
+    for (int i = 0; i < SCENES; i++) {
+        const stance_mechanism m = mechanism_at(i);
+        stance_scene *scene;
+        if (stance_mechanism_scene(&m, &scene, NULL) != STANCE_OK)
+            abort();
+        made[i] = scene;
+    }
+}
+
+const stance_scene *const *stance_scenes(void)
+{
+    return made;
 }

@@ -113,44 +113,7 @@ HOT void tree_drive(int i, lanes torque, lanes *x)
         x[TREE_BASE + tree_against(i)] = x[TREE_BASE + tree_against(i)] - torque;
 }
 
-/* R(a_j) times the arm of push p in frame j; -E T of a joint that slides. */
-HOT void tree_push_reach(const scene_body *b, const scene_trig *trig, int p, int j, lanes out[2])
-{
-    const int through = tree_push_path[p][j];
-    if (tree_slides(j))
-        tree_slide_arm(b, trig, j, out);
-    else
-        tree_arm(b, trig, through != TREE_OWN && tree_straight_joint[through],
-                 through == TREE_OWN ? b->push[p] : b->joint[through], j, tree_push_path[p], out);
-}
-/* The force of push p at time t. */
-HOT void tree_push_force(const scene_body *b, int p, lanes t, lanes out[2])
-{
-    out[0] = b->pull[p][0], out[1] = b->pull[p][1];
-    if (!tree_push_swings[p])
-        return;
-    const double round_bits = 0x1.8p52; /* adding it rounds to a whole number of periods */
-    const lanes periods = b->push[p][6] * (t - b->push[p][4]);
-    const lanes phase = periods - ((periods + round_bits) - round_bits);
-    lanes sine, cosine;
-    lanes_sincos(0x1.921fb54442d18p+2 * phase, &sine, &cosine); /* 2 pi */
-    out[0] = out[0] * sine, out[1] = out[1] * sine;
-}
-/* Adds what a force at the point of push p is as a generalised one, times a factor, to x. */
-HOT void tree_push_add(const scene_body *b, const scene_trig *trig, int p, const lanes force[2],
-                       lanes factor, lanes *x)
-{
-    tree_base_add(b, factor, force, x);
-    TREE_UNROLL
-    for (int j = 0; j < tree_angles; j++) {
-        lanes reach[2];
-        if (tree_push_path[p][j] < 0)
-            continue;
-        tree_push_reach(b, trig, p, j, reach);
-        const lanes turning = lanes_fms(reach[0], force[1], reach[1] * force[0]);
-        x[TREE_BASE + j] = lanes_fma(factor, turning, x[TREE_BASE + j]);
-    }
-}
+#include "engine/scenes/tree_pushes.h"
 
 /* Torques of actuators, springs and dampers at place s with rates w, times h, taken from x. */
 HOT void tree_resist(const scene_body *b, lanes h, const lanes *s, const lanes *w,

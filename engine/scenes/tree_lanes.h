@@ -467,60 +467,6 @@ HOT void scene_coordinate_curvature(const scene_body *b, const scene_trig *trig,
 #include "engine/scenes/tree_contacts.h"
 #include "engine/scenes/tree_energy.h"
 
-/* Pushes from t to t + h: each acts by its mean over that, so that what it gives in all is exact
- * wherever its ends fall. */
-HOT void scene_push(scene_body *b, lanes t, lanes h)
-{
-    TREE_UNROLL
-    for (int p = 0; p < tree_pushes; p++) {
-        const lanes first = lanes_max(b->push[p][4], t), last = lanes_min(b->push[p][5], t + h);
-        lanes share = lanes_max(last - first, lanes_of(0)) / h;
-        if (tree_push_swings[p]) /* for ever, at t = INFINITY, too */
-            share =
-                choose(mask_less(b->push[p][5], lanes_of(INFINITY)) | mask_less(t, b->push[p][4]),
-                       share, lanes_of(1));
-        for (int axis = 0; axis < 2; axis++) {
-            b->pull[p][axis] = share * b->push[p][2 + axis];
-            if (tree_push_impulse[p])
-                b->pull[p][axis] = lanes_of(0);
-        }
-    }
-}
-/* Time from t to the next instant at which a push begins or ends or a blow falls, where it is more
- * than `least` away from t and from t + h; else h. */
-HOT lanes scene_push_edge(const scene_body *b, lanes t, lanes h, lanes least)
-{
-    lanes next = h;
-    TREE_UNROLL
-    for (int p = 0; p < tree_pushes; p++)
-        for (int end = 4; end < 6; end++) {
-            const lanes off = b->push[p][end] - t;
-            const mask inside = mask_less(least, off) & mask_less(off, h - least);
-            next = choose(inside, lanes_min(off, next), next);
-        }
-    return next;
-}
-/* Time after which nothing pushes any more but one force, if any, that swings for ever: what rests
- * under it is told by its phases. */
-HOT lanes scene_pushed_until(const scene_body *b)
-{
-    lanes until = lanes_of(0), endless = lanes_of(0);
-    for (int p = 0; p < tree_pushes; p++) {
-        const mask ends = mask_less(b->push[p][5], lanes_of(INFINITY));
-        endless = choose(ends, endless, endless + 1);
-        until = lanes_max(choose(ends, b->push[p][5], b->push[p][4]), until);
-    }
-    return choose(mask_less(lanes_of(1), endless), lanes_of(INFINITY), until);
-}
-/* When it begins to swing, s. */
-HOT lanes scene_swings_from(const scene_body *b)
-{
-    lanes from = lanes_of(0);
-    for (int p = 0; p < tree_pushes; p++)
-        if (tree_push_swings[p])
-            from = lanes_max(b->push[p][4], from);
-    return from;
-}
 /* Lanes where an impulse is due at t: its instant is `within` of it; *w changes by what it gives.
  */
 HOT mask scene_strike(const scene_body *b, const scene_trig *trig, lanes t, lanes within, lanes *w)
@@ -607,16 +553,6 @@ HOT lanes scene_curvature(const scene_body *b)
     const double squared = METHOD_THETA * METHOD_THETA;
     return lanes_max(lanes_fma(lanes_of(squared), b->curvature[0], b->curvature[1]),
                      squared * b->curvature[2]);
-}
-
-/* The longest step, s, that resolves how forces change with time: an eighth of a period. */
-HOT lanes scene_longest_step(const scene_body *b)
-{
-    lanes longest = lanes_of(INFINITY);
-    for (int p = 0; p < tree_pushes; p++)
-        if (tree_push_swings[p])
-            longest = lanes_min(longest, 0.125 / b->push[p][6]);
-    return longest;
 }
 
 #endif

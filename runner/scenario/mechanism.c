@@ -59,26 +59,26 @@ static const struct entry *namesake(const struct description *d, enum part part,
     return NULL;
 }
 
-static bool check_names(struct description *d, enum part part)
+static bool check_name(struct description *d, enum part part, int i)
 {
-    bool good = true;
-    for (int i = 0; i < d->count[part]; i++) {
-        const struct tree_key *const key = d->entry[part][i].key;
-        const char *const fault = name_fault(part, key->name);
-        const struct entry *const other = fault ? NULL : namesake(d, part, i);
-        char word[SHOWN_SIZE];
-        if (fault) {
-            good = problem_add(description_problems(d), key->mark, "robot.%s: '%s' is no name: %s",
-                               part_kinds[part].key, shown(word, key->name), fault);
-        } else if (other) {
-            const bool rate = strcmp(other->key->name, key->name) != 0;
-            good = problem_add(description_problems(d), key->mark,
-                               "robot.%s.%s: %s in line %d is called so, too: choose another name",
-                               part_kinds[part].key, key->name,
-                               rate ? "the rate of the body" : "the part", other->key->mark.line);
-        }
-    }
-    return good;
+    const struct tree_key *const key = d->entry[part][i].key;
+    const char *const fault = name_fault(part, key->name);
+    const struct entry *const other = fault ? NULL : namesake(d, part, i);
+    char word[SHOWN_SIZE];
+    if (fault)
+        return problem_add(description_problems(d), key->mark, "robot.%s: '%s' is no name: %s",
+                           part_kinds[part].key, shown(word, key->name), fault);
+    if (!other)
+        return true;
+    const bool rate = strcmp(other->key->name, key->name) != 0;
+    if (other->key->mark.line == 0)
+        return problem_add(description_problems(d), key->mark,
+                           "robot.%s.%s: a part of the scene is called so: choose another name",
+                           part_kinds[part].key, key->name);
+    return problem_add(description_problems(d), key->mark,
+                       "robot.%s.%s: %s in line %d is called so, too: choose another name",
+                       part_kinds[part].key, key->name, rate ? "the rate of the body" : "the part",
+                       other->key->mark.line);
 }
 
 /* The keys of a mapping, which are those of the table. */
@@ -138,7 +138,9 @@ static bool read_names(struct description *d, const struct tree_node *robot, enu
         if (part == PART_BODY)
             d->body_name[i] = map->key[i].name;
     }
-    return check_names(d, part) && good;
+    for (int i = 0; i < d->count[part]; i++)
+        good = check_name(d, part, i) && good;
+    return good;
 }
 
 /* ---- how they hang together ------------------------------------------------------------------ */
@@ -423,8 +425,6 @@ static bool check_links(struct description *d)
     return good;
 }
 
-/* ---- the scene ------------------------------------------------------------------------------- */
-
 static bool describe(struct description *d)
 {
     const struct tree_node *const robot = tree_find(d->r->tree.root, "robot");
@@ -448,20 +448,16 @@ static bool describe(struct description *d)
     return description_numbers(d) && good;
 }
 
-/* What a scene that is carried gets beside its parameters: more points, and more of its own. */
-static bool describe_points(struct description *d, const stance_mechanism *carried)
+/* ---- more points of a scene that is carried ---------------------------------------------------
+ */
+
+/* Its parts as if the file wrote them, without a key. */
+static void enter_carried(struct description *d, const stance_mechanism *carried)
 {
     static const struct tree_node nothing = {.kind = TREE_MAP};
-    const struct tree_node *const map =
-        tree_find(tree_find(d->r->tree.root, "robot"), part_kinds[PART_POINT].key);
-    stance_mechanism *const m = d->m;
-    bool good = true;
-    *m = *carried;
-    if (map->kind != TREE_MAP)
-        return field_mismatch(description_problems(d), "robot.points",
-                              "a mapping of names, without dashes", map);
+    *d->m = *carried;
     for (int part = 0; part < PARTS; part++) {
-        d->count[part] = part_count(m, (enum part)part);
+        d->count[part] = part_count(carried, (enum part)part);
         for (int i = 0; i < d->count[part]; i++) {
             struct tree_key *const key = &d->carried[part][i];
             key->name = part_name(carried, (enum part)part, i);
@@ -472,42 +468,53 @@ static bool describe_points(struct description *d, const stance_mechanism *carri
                                                .body = part_body(carried, (enum part)part, i)};
         }
     }
-    for (int b = 0; b < m->bodies; b++) {
+    for (int b = 0; b < carried->bodies; b++) {
         d->body_name[b] = part_name(carried, PART_BODY, b);
         d->place[b] = d->back[b] = b;
     }
-    for (size_t k = 0; k < map->count; k++) {
-        int i = 0;
-        while (i < m->points && strcmp(m->point[i].name, map->key[k].name) != 0)
-            i++;
-        if (i == STANCE_MAX_NAMED)
-            return problem_add(description_problems(d), map->key[k].mark,
-                               "robot.points: more than the %d that fit", STANCE_MAX_NAMED);
-        struct entry *const entry = &d->entry[PART_POINT][i];
-        const bool more = i == m->points;
-        if (more)
-            *entry = (struct entry){.parent = -1, .like = -1};
-        entry->key = &map->key[k];
-        entry->map = map->item[k];
-        const char *const fault = more ? name_fault(PART_POINT, entry->key->name) : NULL;
-        char word[SHOWN_SIZE];
-        if (fault)
-            good = problem_add(description_problems(d), entry->key->mark,
-                               "robot.points: '%s' is no name: %s", shown(word, entry->key->name),
-                               fault);
-        if (!check_part(d, PART_POINT, entry))
-            return false;
-        if (more || tree_find(entry->map, "body"))
-            good = read_body(d, PART_POINT, entry, "body", true, &entry->body) && good;
-        if (!good)
-            return false;
-        m->points += more;
-        d->count[PART_POINT] = m->points;
-        fill_point(d, i);
-        good = check_push(d, i);
-    }
-    return description_numbers(d) && good;
 }
+
+/* One of robot.points: of a point that there is, or a new one. */
+static bool read_point(struct description *d, const struct tree_key *key,
+                       const struct tree_node *map)
+{
+    int i = 0;
+    while (i < d->m->points && strcmp(d->m->point[i].name, key->name) != 0)
+        i++;
+    if (i == STANCE_MAX_NAMED)
+        return problem_add(description_problems(d), key->mark, "robot.points: at most %d fit",
+                           STANCE_MAX_NAMED);
+    struct entry *const entry = &d->entry[PART_POINT][i];
+    const bool more = i == d->m->points;
+    if (more)
+        *entry = (struct entry){.parent = -1, .like = -1};
+    entry->key = key;
+    entry->map = map;
+    d->count[PART_POINT] = d->m->points + more;
+    if ((more && !check_name(d, PART_POINT, i)) || !check_part(d, PART_POINT, entry) ||
+        ((more || tree_find(map, "body")) &&
+         !read_body(d, PART_POINT, entry, "body", true, &entry->body)))
+        return false;
+    d->m->points += more;
+    fill_point(d, i);
+    return check_push(d, i);
+}
+
+static bool describe_points(struct description *d, const stance_mechanism *carried)
+{
+    const struct tree_node *const map =
+        tree_find(tree_find(d->r->tree.root, "robot"), part_kinds[PART_POINT].key);
+    bool good = true;
+    enter_carried(d, carried);
+    if (map->kind != TREE_MAP)
+        return field_mismatch(description_problems(d), "robot.points",
+                              "a mapping of names, without dashes", map);
+    for (size_t k = 0; k < map->count; k++)
+        good = read_point(d, &map->key[k], map->item[k]) && good;
+    return good && description_numbers(d);
+}
+
+/* ---- the scene ------------------------------------------------------------------------------- */
 
 /* Names that the scene makes of those that are given must be its own, too. */
 static bool check_contact_names(struct description *d, const stance_scene *scene)
