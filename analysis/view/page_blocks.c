@@ -3,7 +3,6 @@
 
 #include <openssl/evp.h>
 #include <stdlib.h>
-#include <string.h>
 #include <zlib.h>
 
 /* In pieces of whole groups. */
@@ -49,19 +48,6 @@ bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, c
     free(shuffled);
     free(packed);
     return good;
-}
-
-json_t *page_text(const char *text)
-{
-    json_t *const json = json_string(text);
-    char *const plain = json ? NULL : strdup(text);
-    if (!plain)
-        return json;
-    for (char *c = plain; *c; c++)
-        *c = (unsigned char)*c < 0x80 ? *c : '?';
-    json_t *const found = json_string(plain);
-    free(plain);
-    return found;
 }
 
 static int put_escaped(const char *text, size_t size, void *out)

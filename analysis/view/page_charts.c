@@ -16,48 +16,39 @@
 enum { MOST_TABLES = 6, MOST_DOTS = 4000 };
 #define COST_SECONDS 0.03 /* that a row of error against cost is measured for */
 
-static json_t *number(double x)
-{
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
 static json_t *axis(const char *label, const char *unit, bool log, json_t *words)
 {
-    return json_pack("{s:s,s:s,s:b,s:o}", "label", label, "unit", unit, "log", log, "words",
-                     words ? words : json_null());
+    return TABLE_OBJECT({"label", as_text(label)}, {"unit", as_text(unit)}, {"log", as_truth(log)},
+                        {"words", as_tree(words)});
 }
 
-/* Points of a curve, with intervals where `low` is one. */
-struct curve {
-    json_t *x, *y, *low, *high;
-};
-
-static struct curve curve_begin(void)
+/* A curve without points, the list's own. */
+static json_t *add_curve(json_t *series, const char *name, bool lines)
 {
-    return (struct curve){json_array(), json_array(), json_array(), json_array()};
-}
-
-static void curve_add(struct curve *c, double x, double y, struct interval interval)
-{
-    json_array_append_new(c->x, number(x));
-    json_array_append_new(c->y, number(y));
-    json_array_append_new(c->low, number(interval.low));
-    json_array_append_new(c->high, number(interval.high));
+    json_t *const curve = TABLE_OBJECT({"name", as_text(name)}, {"x", as_tree(json_array())},
+                                       {"y", as_tree(json_array())}, {"low", as_tree(json_array())},
+                                       {"high", as_tree(json_array())}, {"lines", as_truth(lines)});
+    json_array_append_new(series, curve);
+    return curve;
 }
 
 static const struct interval no_interval = {NAN, NAN};
 
-static void curve_end(json_t *series, const struct curve *c, const char *name, bool lines)
+static void add_point(json_t *curve, double x, double y, struct interval interval)
 {
-    json_array_append_new(series,
-                          json_pack("{s:s,s:o,s:o,s:o,s:o,s:b}", "name", name, "x", c->x, "y", c->y,
-                                    "low", c->low, "high", c->high, "lines", lines));
+    table_append(json_object_get(curve, "x"), as_number(x));
+    table_append(json_object_get(curve, "y"), as_number(y));
+    table_append(json_object_get(curve, "low"), as_number(interval.low));
+    table_append(json_object_get(curve, "high"), as_number(interval.high));
 }
 
-static json_t *chart(const char *title, const char *text, json_t *x, json_t *y, json_t *series)
+/* Takes over what is of JSON. */
+static void add_chart(json_t *charts, const char *title, const char *text, json_t *x, json_t *y,
+                      json_t *series)
 {
-    return json_pack("{s:o,s:o,s:o,s:o,s:o}", "title", page_text(title), "text", page_text(text),
-                     "x", x, "y", y, "series", series);
+    json_array_append_new(charts, TABLE_OBJECT({"title", as_text(title)}, {"text", as_text(text)},
+                                               {"x", as_tree(x)}, {"y", as_tree(y)},
+                                               {"series", as_tree(series)}));
 }
 
 /* ---- shares along an axis ----------------------------------------------------------------- */
@@ -66,14 +57,6 @@ static bool is_start(const struct results_axis *a)
 {
     return strncmp(a->name, "initial.offset.", 15) == 0 ||
            strncmp(a->name, "initial.state.", 14) == 0;
-}
-
-static json_t *words_of(const struct results_axis *a)
-{
-    json_t *const list = a->word ? json_array() : NULL;
-    for (size_t i = 0; list && i < a->count; i++)
-        json_array_append_new(list, page_text(a->word[i]));
-    return list;
 }
 
 /* The share of each outcome that occurs, at each value of an axis. */
@@ -90,17 +73,15 @@ static bool put_shares(json_t *charts, const struct results *r, int k, stance_me
     for (int kind = 0; kind < RESULTS_OUTCOMES; kind++) {
         if (all.kind[kind] == 0)
             continue;
-        struct curve c = curve_begin();
+        json_t *const curve = add_curve(series, results_kind_names[kind], true);
         for (size_t i = 0; i < a->count; i++)
-            curve_add(&c, a->value[i], 100 * (double)counts[i].kind[kind] / (double)counts[i].done,
-                      no_interval);
-        curve_end(series, &c, results_kind_names[kind], true);
+            add_point(curve, a->value[i],
+                      100 * (double)counts[i].kind[kind] / (double)counts[i].done, no_interval);
     }
     free(counts);
     snprintf(title, sizeof title, "Shares of outcomes along %.120s", a->name);
-    json_array_append_new(charts, chart(title, a->text, axis(a->name, a->unit, false, words_of(a)),
-                                        axis("share of the cases that are done", "%", false, NULL),
-                                        series));
+    add_chart(charts, title, a->text, axis(a->name, a->unit, false, page_words(a->word, a->count)),
+              axis("share of the cases that are done", "%", false, NULL), series);
     return true;
 }
 
@@ -124,23 +105,21 @@ static void put_basin(json_t *charts, const struct results *r, int k)
         return;
     if (basin.by_axes == 1 && basin.start_axes > 0) {
         json_t *const series = json_array();
-        struct curve c = curve_begin();
+        json_t *const curve = add_curve(series, "basin, with its likely error (95 %)", true);
         for (size_t i = 0; i < basin.rows; i++) {
             const struct basin_row *const row = &basin.row[i];
             const double scale = 100 / basin.box;
-            curve_add(&c, a->value[row->point[k]], scale * row->volume,
+            add_point(curve, a->value[row->point[k]], scale * row->volume,
                       (struct interval){fmax(0, scale * (row->volume - row->reach)),
                                         fmin(100, scale * (row->volume + row->reach))});
         }
-        curve_end(series, &c, "basin, with its likely error (95 %)", true);
         snprintf(title, sizeof title, "Basin of what is %s along %.120s",
                  results_kind_names[choice.of], a->name);
-        json_array_append_new(charts,
-                              chart(title,
-                                    "Volume of the starts from which cases end so, of the "
-                                    "box of starts; stance basin has more",
-                                    axis(a->name, a->unit, false, words_of(a)),
-                                    axis("share of the box of starts", "%", false, NULL), series));
+        add_chart(charts, title,
+                  "Volume of the starts from which cases end so, of the box of starts; stance "
+                  "basin has more",
+                  axis(a->name, a->unit, false, page_words(a->word, a->count)),
+                  axis("share of the box of starts", "%", false, NULL), series);
     }
     basin_free(&basin);
 }
@@ -153,7 +132,7 @@ static json_t *factor_names(const struct sensitivity_study *study)
     for (size_t i = 0; i < study->factors; i++) {
         char text[160];
         sensitivity_factor_text(study, study->order[i], text, sizeof text);
-        json_array_append_new(list, page_text(text));
+        table_append(list, as_text(text));
     }
     return list;
 }
@@ -164,12 +143,11 @@ static void put_measure(json_t *series, const struct sensitivity_study *study,
 {
     if (!s->measure[measure])
         return;
-    struct curve c = curve_begin();
+    json_t *const curve = add_curve(series, name, false);
     for (size_t i = 0; i < study->factors; i++) {
         const struct sensitivity_value *const v = &s->measure[measure][study->order[i]];
-        curve_add(&c, (double)i, v->estimate, (struct interval){v->low, v->high});
+        add_point(curve, (double)i, v->estimate, (struct interval){v->low, v->high});
     }
-    curve_end(series, &c, name, false);
 }
 
 static void put_table(json_t *charts, const struct sensitivity_study *study, size_t t)
@@ -186,12 +164,11 @@ static void put_table(json_t *charts, const struct sensitivity_study *study, siz
     put_measure(series, study, s, SENSITIVITY_TOTAL, "total: with interactions");
     put_measure(series, study, s, SENSITIVITY_MU_STAR, "mean magnitude of the effects");
     put_measure(series, study, s, SENSITIVITY_SIGMA, "their standard deviation");
-    json_array_append_new(
-        charts, chart(title,
-                      morris ? "Morris's elementary effects over the ranges, with 95 % intervals"
-                             : "Sobol' indices with 95 % intervals, what matters most first",
-                      axis("factor", "", false, factor_names(study)),
-                      axis(morris ? "effect" : "index", "", false, NULL), series));
+    add_chart(charts, title,
+              morris ? "Morris's elementary effects over the ranges, with 95 % intervals"
+                     : "Sobol' indices with 95 % intervals, what matters most first",
+              axis("factor", "", false, factor_names(study)),
+              axis(morris ? "effect" : "index", "", false, NULL), series);
 }
 
 static bool put_sensitivity(json_t *charts, const struct results *r, stance_message *message)
@@ -226,18 +203,15 @@ static bool put_accuracy(json_t *charts, const struct results *r)
         return false;
     json_t *const series = json_array();
     for (const stance_method *const *m = stance_methods(); *m; m++) {
-        struct curve c = curve_begin();
-        for (size_t k = 0; k < a.rows; k++)
-            if (a.row[k].method == *m && k != a.truth && error_of(&a, &a.row[k]) > 0)
-                curve_add(&c, a.row[k].cost.median, error_of(&a, &a.row[k]), no_interval);
-        if (json_array_size(c.x) > 0)
-            curve_end(series, &c, (*m)->name, true);
-        else
-            json_decref(c.x), json_decref(c.y), json_decref(c.low), json_decref(c.high);
+        json_t *curve = NULL;
+        for (size_t k = 0; k < a.rows; k++) {
+            if (a.row[k].method != *m || k == a.truth || !(error_of(&a, &a.row[k]) > 0))
+                continue;
+            curve = curve ? curve : add_curve(series, (*m)->name, true);
+            add_point(curve, a.row[k].cost.median, error_of(&a, &a.row[k]), no_interval);
+        }
     }
-    json_array_append_new(
-        charts,
-        chart("Error against cost",
+    add_chart(charts, "Error against cost",
               a.labels ? "Share of the cases whose outcome is not that of the reference; none at "
                          "all is drawn as one. Cost was measured when the page was made"
                        : "Largest difference of a coordinate from the reference. Cost was measured "
@@ -245,7 +219,7 @@ static bool put_accuracy(json_t *charts, const struct results *r)
               axis("processor time per simulated second of a case", "us", true, NULL),
               axis(a.labels ? "share of outcomes unlike the reference" : "error of coordinates",
                    a.labels ? "" : "m, rad", true, NULL),
-              series));
+              series);
     accuracy_free(&a);
     return true;
 }
@@ -278,48 +252,42 @@ static void put_candidates(json_t *charts, const struct search_study *study, dou
     const size_t n = f->length[SEARCH_CANDIDATE], every = (n + MOST_DOTS - 1) / MOST_DOTS;
     char aim[300];
     json_t *const series = json_array();
-    struct curve dots = curve_begin(), best = curve_begin();
+    json_t *const dots = add_curve(series, "candidates", false),
+                  *const best = add_curve(series, "best so far, of its stage's starts", true);
     for (size_t i = 0; i < n; i += every ? every : 1)
-        curve_add(&dots, (double)i + 1, scale * f->objective[i], no_interval);
+        add_point(dots, (double)i + 1, scale * f->objective[i], no_interval);
     for (size_t g = 0; g < f->length[SEARCH_GENERATION]; g++)
-        curve_add(&best, (double)f->candidates[g], scale * f->objective[f->best[g]], no_interval);
-    curve_end(series, &dots, "candidates", false);
-    curve_end(series, &best, "best so far, of its stage's starts", true);
+        add_point(best, (double)f->candidates[g], scale * f->objective[f->best[g]], no_interval);
     search_aim(study, aim, sizeof aim);
-    json_array_append_new(charts,
-                          chart("The search as it went", aim, axis("candidate", "", false, NULL),
-                                axis(study->plain ? "recovered starts" : "objective",
-                                     study->plain ? "%" : "", false, NULL),
-                                series));
+    add_chart(
+        charts, "The search as it went", aim, axis("candidate", "", false, NULL),
+        axis(study->plain ? "recovered starts" : "objective", study->plain ? "%" : "", false, NULL),
+        series);
 }
 
 static void put_confirmed(json_t *charts, const struct search_study *study, double scale)
 {
     const struct search_file *const f = &study->f;
     json_t *const series = json_array(), *const names = json_array();
-    struct curve fresh = curve_begin(), training = curve_begin();
+    json_t *const fresh = add_curve(series, "fresh starts, 95 % intervals", false),
+                  *const training =
+                      study->plain ? add_curve(series, "the search's own starts", false) : NULL;
     for (size_t k = 0; k < f->length[SEARCH_CONFIRMED]; k++) {
         char name[80];
         const struct interval own = search_interval(study, k, SEARCH_OVERALL);
         search_name(study, k, name, sizeof name);
-        json_array_append_new(names, page_text(name));
-        curve_add(&fresh, (double)k, 100 * search_share(study, k, SEARCH_OVERALL),
+        table_append(names, as_text(name));
+        add_point(fresh, (double)k, 100 * search_share(study, k, SEARCH_OVERALL),
                   (struct interval){100 * own.low, 100 * own.high});
-        curve_add(&training, (double)k, scale * f->confirmed_training[k], no_interval);
+        if (training)
+            add_point(training, (double)k, scale * f->confirmed_training[k], no_interval);
     }
-    curve_end(series, &fresh, "fresh starts, 95 % intervals", false);
-    if (study->plain)
-        curve_end(series, &training, "the search's own starts", false);
-    else
-        json_decref(training.x), json_decref(training.y), json_decref(training.low),
-            json_decref(training.high);
-    json_array_append_new(charts, chart("What is left of it from fresh starts",
-                                        search_chosen_apart(study)
-                                            ? "Shares of starts by which nothing was chosen"
-                                            : "Shares of the starts by which one was chosen, "
-                                              "whose share is too high",
-                                        axis("candidate", "", false, names),
-                                        axis("recovered starts", "%", false, NULL), series));
+    add_chart(charts, "What is left of it from fresh starts",
+              search_chosen_apart(study)
+                  ? "Shares of starts by which nothing was chosen"
+                  : "Shares of the starts by which one was chosen, whose share is too high",
+              axis("candidate", "", false, names), axis("recovered starts", "%", false, NULL),
+              series);
 }
 
 json_t *page_search_charts(const char *file, char title[256], stance_message *message)

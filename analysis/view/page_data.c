@@ -4,6 +4,7 @@
 #include "page_template.h"
 
 #include "analysis/statistics/statistics.h"
+#include "analysis/table/table.h"
 #include "runner/base/message.h"
 #include "runner/plan/plan.h"
 #include "runner/store/ancestry.h"
@@ -35,12 +36,6 @@ const char *const page_kind_colour[RESULTS_KIND_COUNT] = {
     [RESULTS_PENDING] = "#e4e4e4",
 };
 
-/* NaN and infinities: null. */
-static json_t *number_of(double x)
-{
-    return isfinite(x) ? json_real(x) : json_null();
-}
-
 static bool put_block(struct page *p, const char *name, const char *type, const void *numbers,
                       size_t size, size_t count)
 {
@@ -50,55 +45,51 @@ static bool put_block(struct page *p, const char *name, const char *type, const 
 
 /* ---- axes --------------------------------------------------------------------------------- */
 
-static json_t *words_of(char **word, size_t count)
+json_t *page_words(char *const *word, size_t count)
 {
-    json_t *const list = json_array();
-    for (size_t i = 0; i < count; i++)
-        json_array_append_new(list, page_text(word[i]));
+    json_t *const list = word ? json_array() : NULL;
+    for (size_t i = 0; word && i < count; i++)
+        table_append(list, as_text(word[i]));
     return list;
 }
 
-static json_t *values_of(const double *value, size_t count)
+/* Of an axis, or of what is varied. */
+static void add_values(json_t *list, json_t *object, json_t *words, const struct results_axis *axis)
 {
-    json_t *const list = json_array();
-    for (size_t i = 0; i < count; i++)
-        json_array_append_new(list, number_of(value[i]));
-    return list;
-}
-
-static json_t *axis_of(const struct results_axis *axis)
-{
-    return json_pack("{s:o,s:o,s:o,s:I,s:b,s:o,s:o}", "path", page_text(axis->name), "unit",
-                     page_text(axis->unit), "text", page_text(axis->text), "count",
-                     (json_int_t)axis->count, "offset", axis->offset, "words",
-                     axis->word ? words_of(axis->word, axis->count) : json_null(), "values",
-                     values_of(axis->value, axis->count));
-}
-
-static json_t *varied_of(const struct results_varied *v)
-{
-    json_t *words = json_null();
-    if (v->word) {
-        words = json_array();
-        for (int i = 0; i < v->words; i++)
-            json_array_append_new(words, page_text(v->word[i]));
-    }
-    return json_pack("{s:o,s:o,s:o,s:i,s:o,s:o}", "path", page_text(v->of.name), "unit",
-                     page_text(v->of.unit), "text", page_text(v->of.text), "factor", v->factor,
-                     "words", words, "values", values_of(v->of.value, v->of.count));
+    json_t *const values = json_array();
+    for (size_t i = 0; i < axis->count; i++)
+        table_append(values, as_number(axis->value[i]));
+    table_put(object, "words", as_tree(words));
+    table_put(object, "values", as_tree(values));
+    json_array_append_new(list, object);
 }
 
 static void put_axes(struct page *p)
 {
     const struct results *const r = p->r;
     json_t *const axes = json_array(), *const varied = json_array();
-    for (int a = 0; a < r->axes && !r->single; a++)
-        json_array_append_new(axes, axis_of(&r->axis[a]));
-    for (int k = 0; k < r->varied; k++)
-        json_array_append_new(varied, varied_of(&r->vary[k]));
-    json_object_set_new(p->head, "axes", axes);
-    json_object_set_new(p->head, "varied", varied);
-    json_object_set_new(p->head, "sample", json_integer(r->single ? -1 : r->sample));
+    for (int k = 0; k < r->axes && !r->single; k++) {
+        const struct results_axis *const a = &r->axis[k];
+        add_values(axes,
+                   TABLE_OBJECT({"path", as_text(a->name)}, {"unit", as_text(a->unit)},
+                                {"text", as_text(a->text)}, {"count", as_whole(a->count)},
+                                {"offset", as_truth(a->offset)}),
+                   page_words(a->word, a->count), a);
+    }
+    for (int k = 0; k < r->varied; k++) {
+        const struct results_varied *const v = &r->vary[k];
+        json_t *const words = v->word ? json_array() : NULL;
+        for (int i = 0; v->word && i < v->words; i++)
+            table_append(words, as_text(v->word[i]));
+        add_values(varied,
+                   TABLE_OBJECT({"path", as_text(v->of.name)}, {"unit", as_text(v->of.unit)},
+                                {"text", as_text(v->of.text)},
+                                {"factor", as_whole((uint64_t)v->factor)}),
+                   words, &v->of);
+    }
+    table_put(p->head, "axes", as_tree(axes));
+    table_put(p->head, "varied", as_tree(varied));
+    table_put(p->head, "sample", as_tree(json_integer(r->single ? -1 : r->sample)));
 }
 
 /* ---- what the engine needs ---------------------------------------------------------------- */
@@ -138,9 +129,9 @@ static bool put_designs(struct page *p)
                 store_read_designs(store, plan, p->message);
     if (store)
         store_abandon(store);
-    json_object_set_new(p->head, "designs",
-                        json_pack("{s:I,s:I}", "count", (json_int_t)plan->designs, "numbers",
-                                  (json_int_t)plan->design_size));
+    table_put(p->head, "designs",
+              as_tree(TABLE_OBJECT({"count", as_whole(plan->designs)},
+                                   {"numbers", as_whole(plan->design_size)})));
     return good &&
            put_block(p, "designs", "f64", plan->design, sizeof *plan->design,
                      plan->designs * plan->design_size) &&
@@ -159,7 +150,7 @@ static bool put_stored(struct page *p)
         stored |= (uint64_t)(column.id >= 0) << a;
         results_column_close(&column);
     }
-    json_object_set_new(p->head, "stored", json_integer((json_int_t)stored));
+    table_put(p->head, "stored", as_whole(stored));
     return true;
 }
 
@@ -169,7 +160,7 @@ static bool put_engine(struct page *p)
     char *const wire = page_wire(p->r->scenario);
     const bool known = wire && (p->r->single ? results_scenario(p->r, &p->scenario)
                                              : results_swept(p->r, &p->scenario, p->message));
-    json_object_set_new(p->head, "wire", known ? page_text(wire) : json_null());
+    table_put(p->head, "wire", as_text(known ? wire : NULL));
     free(wire);
     if (!known)
         return true;
@@ -179,7 +170,7 @@ static bool put_engine(struct page *p)
     const uint8_t *const engine = page_engine(kernel->structure, &size);
     if (engine)
         page_base64(p->more, "engine", engine, size);
-    json_object_set_new(p->head, "engine", json_boolean(engine != NULL));
+    table_put(p->head, "engine", as_truth(engine != NULL));
     return put_stored(p) && put_axis_values(p) && put_designs(p);
 }
 
@@ -206,7 +197,7 @@ static bool put_checksums(struct page *p)
     }
     results_column_close(&column);
     free(rows);
-    json_object_set_new(p->head, "checksums", json_boolean(there));
+    table_put(p->head, "checksums", as_truth(there));
     good = good && (!there || put_block(p, "checksum", "u32", crc, sizeof *crc, cases));
     free(crc);
     return good;
@@ -220,16 +211,14 @@ static bool is_asked(const struct page *p, const char *name)
     return found;
 }
 
+/* NULL: it has none. */
 static json_t *answer_words(const struct page *p, int answer)
 {
     const char *word[STANCE_MAX_WORDS];
     if (answer == STANCE_ANSWER_fall_cause && !p->scenario.scene)
-        return json_null();
+        return NULL;
     const int words = stance_answer_words(p->scenario.scene, answer, word);
-    json_t *const list = words ? json_array() : json_null();
-    for (int i = 0; i < words; i++)
-        json_array_append_new(list, page_text(word[i]));
-    return list;
+    return page_words(words ? (char *const *)word : NULL, (size_t)words);
 }
 
 /* The numbers of one answer: codes as bytes, others in single precision, which is what a picture
@@ -246,7 +235,7 @@ static bool put_answer(struct page *p, int answer, json_t *list)
     if (!value)
         return true;
     json_t *const words = answer_words(p, answer);
-    const bool code = json_is_array(words), asked = is_asked(p, a->name) || code;
+    const bool code = words != NULL, asked = is_asked(p, a->name) || code;
     const size_t limit = asked || p->bytes < PAGE_BYTES ? SIZE_MAX : 0;
     void *const numbers = malloc(cases * (code ? 1 : sizeof(float)));
     bool good = numbers != NULL || no_memory(p->message);
@@ -264,15 +253,13 @@ static bool put_answer(struct page *p, int answer, json_t *list)
                     no_memory(p->message));
     free(numbers);
     p->bytes += asked ? 0 : (double)bytes;
-    json_array_append_new(list, json_pack("{s:s,s:s,s:s,s:s,s:o,s:o}", "name", a->name, "unit",
-                                          a->unit, "text", a->text, "type",
-                                          code                       ? "code"
-                                          : a->type == STANCE_DOUBLE ? "number"
-                                                                     : "count",
-                                          "words", words, "block",
-                                          carried ? page_text(name) : json_null()));
+    const char *const type = code ? "code" : a->type == STANCE_DOUBLE ? "number" : "count";
+    json_array_append_new(list, TABLE_OBJECT({"name", as_text(a->name)}, {"unit", as_text(a->unit)},
+                                             {"text", as_text(a->text)}, {"type", as_text(type)},
+                                             {"words", as_tree(words)},
+                                             {"block", as_text(carried ? name : NULL)}));
     if (!carried)
-        json_array_append_new(p->left_out, page_text(a->name));
+        table_append(p->left_out, as_text(a->name));
     return good;
 }
 
@@ -285,7 +272,7 @@ static bool put_scenario_numbers(struct page *p)
     if (!ancestry_read(p->r, &ancestry, p->message))
         return false;
     const int last = (int)ancestry.scenarios - 1;
-    json_object_set_new(p->head, "number", json_integer(last > 0 ? last : -1));
+    table_put(p->head, "number", as_tree(json_integer(last > 0 ? last : -1)));
     if (last <= 0)
         return true;
     if (!results_answer(p->r, "scenario_number", &value, p->message))
@@ -327,6 +314,7 @@ static bool put_cases(struct page *p)
 
 /* ---- the head ----------------------------------------------------------------------------- */
 
+/* Makes the head. */
 static bool put_provenance(struct page *p)
 {
     const struct results *const r = p->r;
@@ -334,29 +322,21 @@ static bool put_provenance(struct page *p)
     size_t count;
     json_t *const kinds = json_array(), *const list = json_array();
     for (int k = 0; k < RESULTS_KIND_COUNT; k++)
-        json_array_append_new(kinds, json_pack("{s:s,s:s}", "name", results_kind_names[k], "colour",
-                                               page_kind_colour[k]));
+        json_array_append_new(kinds, TABLE_OBJECT({"name", as_text(results_kind_names[k])},
+                                                  {"colour", as_text(page_kind_colour[k])}));
     const bool good = results_recorded(r, &recorded, &count, p->message);
     for (size_t i = 0; good && i < count && i < MOST_LISTED; i++)
-        json_array_append_new(list, json_integer((json_int_t)recorded[i]));
+        table_append(list, as_whole(recorded[i]));
     if (good)
         free(recorded);
-    json_t *const head = p->head;
-    json_object_set_new(head, "format", json_integer(1));
-    json_object_set_new(head, "program", page_text(STANCE_VERSION));
-    json_object_set_new(head, "revision", page_text(build_revision()));
-    json_object_set_new(head, "file_program", page_text(r->version));
-    json_object_set_new(head, "file_revision", page_text(r->revision));
-    json_object_set_new(head, "file", page_text(r->name));
-    json_object_set_new(head, "command_file", page_text(p->request->file));
-    json_object_set_new(head, "title", page_text(r->title));
-    json_object_set_new(head, "date", page_text(r->date));
-    json_object_set_new(head, "scenario", page_text(r->scenario));
-    json_object_set_new(head, "cases", json_integer((json_int_t)r->cases));
-    json_object_set_new(head, "single", json_boolean(r->single));
-    json_object_set_new(head, "index", json_integer((json_int_t)r->index));
-    json_object_set_new(head, "kinds", kinds);
-    json_object_set_new(head, "recorded", list);
+    p->head = TABLE_OBJECT(
+        {"format", as_whole(1)}, {"program", as_text(STANCE_VERSION)},
+        {"revision", as_text(build_revision())}, {"file_program", as_text(r->version)},
+        {"file_revision", as_text(r->revision)}, {"file", as_text(r->name)},
+        {"command_file", as_text(p->request->file)}, {"title", as_text(r->title)},
+        {"date", as_text(r->date)}, {"scenario", as_text(r->scenario)},
+        {"cases", as_whole(r->cases)}, {"single", as_truth(r->single)},
+        {"index", as_whole(r->index)}, {"kinds", as_tree(kinds)}, {"recorded", as_tree(list)});
     return good;
 }
 
@@ -367,7 +347,7 @@ bool page_data_write(FILE *out, FILE *more, const struct results *r,
     if (!p)
         return no_memory(message);
     *p = (struct page){.out = out, .more = more, .r = r, .request = request, .message = message};
-    p->head = json_object(), p->blocks = json_object(), p->left_out = json_array();
+    p->blocks = json_object(), p->left_out = json_array();
     json_t *const charts = page_charts(r, message);
     const bool good = charts && put_provenance(p) && put_engine(p) && put_cases(p);
     json_object_set_new(p->head, "charts", charts ? charts : json_array());
@@ -392,9 +372,10 @@ bool page_search_write(FILE *out, const char *file, stance_message *message)
     if (!charts)
         return false;
     json_t *const head =
-        json_pack("{s:i,s:s,s:s,s:o,s:o,s:i,s:o}", "format", 1, "program", STANCE_VERSION,
-                  "revision", build_revision(), "title", page_text(title), "file",
-                  page_text(slash ? slash + 1 : file), "cases", 0, "charts", charts);
+        TABLE_OBJECT({"format", as_whole(1)}, {"program", as_text(STANCE_VERSION)},
+                     {"revision", as_text(build_revision())}, {"title", as_text(title)},
+                     {"file", as_text(slash ? slash + 1 : file)}, {"cases", as_whole(0)},
+                     {"charts", as_tree(charts)});
     page_json(out, "head", head);
     json_decref(head);
     return true;

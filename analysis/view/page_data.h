@@ -37,9 +37,8 @@ bool page_search_write(FILE *out, const char *file, stance_message *message);
  * written. False: no memory. */
 bool page_block(FILE *out, json_t *blocks, const char *name, const char *type, const void *numbers,
                 size_t size, size_t count, size_t limit, size_t *bytes);
-/* Text as JSON; where it is not UTF-8 (names of files need not be) with '?' for what is foreign.
- * NULL: no memory. */
-json_t *page_text(const char *text);
+/* A list of texts; of NULL none, which is NULL. */
+json_t *page_words(char *const *word, size_t count);
 /* A script element of bytes as base64. */
 void page_base64(FILE *out, const char *id, const uint8_t *bytes, size_t size);
 /* One of JSON, without '<' and '&'. */
